@@ -128,7 +128,7 @@ struct ShGridSettings {
     int voxels = 128;            ///< along the longest side; the field has a quarter of them
     int photons = 262144;        ///< light paths per update
     int caustic_photons = 65536; ///< light paths per pass that begin on mirrors and glass; 0 = no caustics
-    float caustic_radius_m = 0;  ///< of the first disks in which photons of caustics count; 0 = chosen by them
+    float caustic_radius_m = 0;  ///< of the first disks that photons of caustics light; 0 = by their density
     int reflections = 64;        ///< of a photon, at most
     int degree = 2;              ///< of the spherical harmonics
     int directions = 400;        ///< per cell of the field

@@ -31,6 +31,7 @@ struct CausticPath {
     ShadingPoint at; ///< where the path begins
     Ray ray;         ///< to the next surface
     vec3 flux{0};    ///< W; 0 = the path has ended
+    std::uint32_t target = 0;
 };
 
 /// Starts a path on a smooth triangle, lit by a sample of the lights if nothing is between.
@@ -39,6 +40,7 @@ RayQuery start_caustic(WorldView const& world, CausticTargets const& targets, st
 {
     double which = (double(i) + p.rng.uniform_double()) / double(count);
     std::uint32_t const k = view(targets.choice).sample(which), triangle = targets.triangles[k];
+    p.target = k;
     vec2 const place = square_to_triangle(p.rng.uniform2());
     vec3 const position = shading_detail::SurfacePoint{world.surfaces[triangle], place}.position();
     LightChoice const choice = choose_light(world, p.rng.uniform_double());
@@ -93,7 +95,8 @@ void meet_surface(ShadingPoint const& at, bool first, CausticPath& p, std::vecto
     float const cos_arrived = glm::dot(from, at.geometric_normal);
     p.flux = arrived.z > 0 && cos_arrived > 0 ? p.flux * (arrived.z / cos_arrived) : vec3{0};
     if (!(max_component(p.flux) > 0)) return;
-    if (!first && !only_delta(at.bsdf)) found.push_back({at.position, at.geometric_normal, from, p.flux});
+    if (!first && !only_delta(at.bsdf))
+        found.push_back({at.position, at.geometric_normal, from, p.flux, p.target});
     leave_by_delta_lobe(at, arrived, p);
 }
 
@@ -186,6 +189,7 @@ void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, s
     focus_ = focus;
     if (surfaces_changed_ || light_changed_ || new_focus) {
         targets_ = find_caustic_targets(world_, focus_);
+        learned_ = false;
         sets_ = 0;
     } else if (new_cameras) {
         if (sets_ == 1) return;
@@ -203,13 +207,9 @@ void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, s
     }
 }
 
-void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
+std::vector<CausticPhoton> Caustics::photons_of_set(ExactVisibility const& visibility, PathCounts& counts)
 {
     constexpr std::uint32_t kTogether = 64;
-    constexpr int kNeighbours = 50;                      // photons in the first disks, in the median
-    constexpr float kAlpha = 2.0f / 3;                   // Knaus and Zwicker 2011: how slowly disks shrink
-    constexpr float kLargest = 0.05f, kSmallest = 1e-4f; // radii over the sides of what holds the photons
-    StageTimer const timer(report_, "caustic photons");
     BuildStop const stop(stop_);
     WorldView const w = view(world_);
     auto const count = std::uint32_t(settings_.sh_grid.caustic_photons);
@@ -246,34 +246,55 @@ void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
         counts += counts_of[b];
         cut_ += cut[b];
     }
-    Bounds box;
-    for (CausticPhoton const& p : photons) box = joined(box, {p.position, p.position});
-    float const side = longest_side(box);
-    if (sets_ == 0 || !(radius_ > 0)) {
-        float const chosen = settings_.sh_grid.caustic_radius_m;
-        radius_ = chosen > 0 ? chosen
-                             : std::clamp(median_radius(photons, kNeighbours), kSmallest * side, kLargest * side);
+    return photons;
+}
+
+/// Most of the other half of the paths then leaves photons, where few did. Independent sets keep it unbiased.
+void Caustics::learn_chances(std::span<CausticPhoton const> photons)
+{
+    std::vector<float> weights(targets_.triangles.size());
+    double sum = 0;
+    for (CausticPhoton const& p : photons) {
+        weights[p.target] += luminance(p.flux);
+        sum += double(luminance(p.flux));
     }
+    for (std::uint32_t k = 0; k < weights.size(); ++k)
+        weights[k] = float(double(weights[k]) / sum) + view(targets_.choice).probability(k);
+    targets_.choice = make_alias_table(weights);
+}
+
+void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
+{
+    constexpr float kAlpha = 2.0f / 3; // Knaus and Zwicker 2011: how slowly disks shrink
+    constexpr float kLargest = 0.05f;  // radius over the longest side of what is lit, or of the focus
+    StageTimer const timer(report_, "caustic photons");
+    std::vector<CausticPhoton> photons = photons_of_set(visibility, counts);
+    auto const few = std::size_t(settings_.sh_grid.caustic_photons / 4);
+    if (!learned_ && !photons.empty() && photons.size() < few) {
+        learn_chances(photons);
+        photons = photons_of_set(visibility, counts);
+    }
+    learned_ = true;
+    Bounds box = focus_;
+    if (focus_.empty())
+        for (CausticPhoton const& p : photons) box = joined(box, {p.position, p.position});
+    float const chosen = settings_.sh_grid.caustic_radius_m,
+                largest = chosen > 0 ? chosen : kLargest * longest_side(box);
+    shrunk_ = sets_ == 0 ? 1.0f : shrunk_ * std::sqrt((float(sets_) + kAlpha) / (float(sets_) + 1));
     ++sets_;
-    if (!(radius_ > 0)) { // one photon, or all at one point: no area to spread them over
-        map_ = {};
-        return;
-    }
-    map_ = CausticMap(std::move(photons), radius_);
-    radius_ *= std::sqrt((float(sets_) + kAlpha) / (float(sets_) + 1));
+    map_ = {};
+    if (largest > 0) // else they all lie at one point: no area to spread them over
+        map_ = CausticMap(photons, {.largest = largest, .factor = shrunk_, .same = chosen > 0});
 }
 
 void Caustics::report_counts()
 {
     if (targets_.choice.empty()) return;
-    dvec3 flux{0};
-    for (CausticPhoton const& p : map_.photons()) flux += dvec3(p.flux);
     report_.count("caustic photons: smooth triangles", double(targets_.triangles.size()));
-    report_.count("caustic photons: stored, of the last set", double(map_.photons().size()));
+    report_.count("caustic photons: stored, of the last set", double(map_.count()));
     report_.count("caustic photons: sets since the last change", double(sets_));
-    report_.count("caustic photons: flux, W (luminance)", double(luminance(vec3(flux))));
-    report_.count("caustic photons: radius of the last disks, m",
-                  double(map_.photons().empty() ? 0 : map_.radius()));
+    report_.count("caustic photons: flux, W (luminance)", double(luminance(vec3(map_.flux()))));
+    report_.count("caustic photons: mean radius of the last disks, m", double(map_.mean_radius()));
     report_.lose("light paths of caustics cut at 64 smooth surfaces", cut_);
     cut_ = 0;
 }

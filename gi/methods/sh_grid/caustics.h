@@ -50,11 +50,13 @@ public:
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
                  Bounds const& focus, PathCounts& counts);
     /// Null if the world has no smooth surface, no light reached one, or nothing is to be traced.
-    CausticMap const* map() const { return map_.photons().empty() ? nullptr : &map_; }
+    CausticMap const* map() const { return map_.empty() ? nullptr : &map_; }
     void report_counts();
 
 private:
     void trace(ExactVisibility const& visibility, PathCounts& counts);
+    std::vector<CausticPhoton> photons_of_set(ExactVisibility const& visibility, PathCounts& counts);
+    void learn_chances(std::span<CausticPhoton const> photons);
 
     World const& world_;
     RenderSettings const& settings_;
@@ -65,9 +67,10 @@ private:
     Bounds focus_;
     bool surfaces_changed_ = true, light_changed_ = true;
     CausticTargets targets_;
+    bool learned_ = false; ///< chances follow the photons of a first set, if these were few
     CausticMap map_;
     std::uint32_t sets_ = 0; ///< of photons since the last change
-    float radius_ = 0;       ///< of the next set's disks, m
+    float shrunk_ = 1;       ///< factor of the disks' radii
     std::uint64_t cut_ = 0;  ///< paths
 };
 
