@@ -19,6 +19,8 @@ PhotonCells::PhotonCells(std::vector<CausticPhoton> const& photons, float radius
     for (CausticPhoton const& p : photons) {
         bucket_of.push_back(bucket(cell_of(p.position)));
         ++first_[bucket_of.back() + 1];
+        low_ = glm::min(low_, p.position - radius);
+        high_ = glm::max(high_, p.position + radius);
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     std::vector<std::uint32_t> next = first_;
@@ -39,6 +41,7 @@ glm::ivec3 PhotonCells::cell_of(vec3 position) const
 template <class F>
 void PhotonCells::search(vec3 position, F const& f) const
 {
+    if (glm::any(glm::lessThan(position, low_)) || glm::any(glm::lessThan(high_, position))) return;
     glm::ivec3 const low = cell_of(position - radius_);
     std::uint32_t buckets[8];
     for (int k = 0; k < 8; ++k) buckets[k] = bucket(low + glm::ivec3{k & 1, k >> 1 & 1, k >> 2});

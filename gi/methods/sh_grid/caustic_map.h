@@ -35,6 +35,7 @@ private:
     glm::ivec3 cell_of(vec3 position) const;
 
     float radius_;
+    vec3 low_{kInf}, high_{-kInf};       ///< of what may find photons
     std::vector<CausticPhoton> photons_; ///< by the bucket of their cell, which is two radii wide
     std::vector<std::uint32_t> first_;   ///< per bucket, and one more
 };
