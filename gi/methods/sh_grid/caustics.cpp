@@ -189,7 +189,7 @@ void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, s
     focus_ = focus;
     if (surfaces_changed_ || light_changed_ || new_focus) {
         targets_ = find_caustic_targets(world_, focus_);
-        learned_ = false;
+        learned_.reset();
         sets_ = 0;
     } else if (new_cameras) {
         if (sets_ == 1) return;
@@ -210,6 +210,8 @@ void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, s
 std::vector<CausticPhoton> Caustics::photons_of_set(ExactVisibility const& visibility, PathCounts& counts)
 {
     constexpr std::uint32_t kTogether = 64;
+    // Chances that follow from random numbers need others, else there were a bias.
+    std::uint64_t const stream = learned_.value_or(false) ? 0xca58 : 0xca57;
     BuildStop const stop(stop_);
     WorldView const w = view(world_);
     auto const count = std::uint32_t(settings_.sh_grid.caustic_photons);
@@ -226,7 +228,7 @@ std::vector<CausticPhoton> Caustics::photons_of_set(ExactVisibility const& visib
         std::vector<RayQuery> shadows;
         for (std::uint32_t k = 0; k < n; ++k) {
             CausticPath& p = paths[k];
-            p.rng = Pcg32::for_path(settings_.seed ^ 0xca57, first + k, pass);
+            p.rng = Pcg32::for_path(settings_.seed ^ stream, first + k, pass);
             RayQuery const shadow = start_caustic(w, targets_, first + k, count, p);
             if (!(max_component(p.flux) > 0)) continue;
             lit.push_back(&p);
@@ -249,7 +251,7 @@ std::vector<CausticPhoton> Caustics::photons_of_set(ExactVisibility const& visib
     return photons;
 }
 
-/// Most of the other half of the paths then leaves photons, where few did. Independent sets keep it unbiased.
+/// Half of the paths then begin where others brought light.
 void Caustics::learn_chances(std::span<CausticPhoton const> photons)
 {
     std::vector<float> weights(targets_.triangles.size());
@@ -270,11 +272,13 @@ void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
     StageTimer const timer(report_, "caustic photons");
     std::vector<CausticPhoton> photons = photons_of_set(visibility, counts);
     auto const few = std::size_t(settings_.sh_grid.caustic_photons / 4);
-    if (!learned_ && !photons.empty() && photons.size() < few) {
-        learn_chances(photons);
-        photons = photons_of_set(visibility, counts);
+    if (!learned_) {
+        learned_ = !photons.empty() && photons.size() < few;
+        if (*learned_) {
+            learn_chances(photons);
+            photons = photons_of_set(visibility, counts);
+        }
     }
-    learned_ = true;
     Bounds box = focus_;
     if (focus_.empty())
         for (CausticPhoton const& p : photons) box = joined(box, {p.position, p.position});

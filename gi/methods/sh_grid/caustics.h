@@ -67,7 +67,7 @@ private:
     Bounds focus_;
     bool surfaces_changed_ = true, light_changed_ = true;
     CausticTargets targets_;
-    bool learned_ = false; ///< chances follow the photons of a first set, if these were few
+    std::optional<bool> learned_; ///< whether chances follow the photons of a first set, because these were few
     CausticMap map_;
     std::uint32_t sets_ = 0; ///< of photons since the last change
     float shrunk_ = 1;       ///< factor of the disks' radii

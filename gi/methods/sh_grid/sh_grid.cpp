@@ -46,7 +46,7 @@ protected:
         field_.prepare(*visibility_, index, views, counts);
         auto const levels = field_.levels();
         caustics_.prepare(*visibility_, index, views, levels.size() > 1 ? levels[0].bounds : Bounds{}, counts);
-        rays_ += double(counts.nearest_rays);
+        rays_ += double(counts.nearest_rays + counts.shadow_rays);
         work_.paths += counts;
         if (light_) unseen_ += light_->unseen();
         light_.reset();
