@@ -5,6 +5,7 @@
 // lower numbers than their parents, and the root is the last.
 
 #include "gi/bvh/bvh.h"
+#include "gi/core/morton.h"
 
 namespace gi {
 
@@ -62,14 +63,6 @@ struct FindKeys {
     View<std::uint64_t> keys;
     View<std::uint32_t> order;
 
-    GI_FN static std::uint64_t spread(std::uint64_t x)
-    {
-        x = (x | x << 32) & 0x1f00000000ffffull;
-        x = (x | x << 16) & 0x1f0000ff0000ffull;
-        x = (x | x << 8) & 0x100f00f00f00f00full;
-        x = (x | x << 4) & 0x10c30c30c30c30c3ull;
-        return (x | x << 2) & 0x1249249249249249ull;
-    }
     GI_FN void operator()(std::size_t i) const
     {
         order[i] = std::uint32_t(i);
@@ -79,8 +72,7 @@ struct FindKeys {
             return;
         }
         vec3 const at = glm::clamp((0.5f * (box.low + box.high) - low) * per_m, 0.0f, 2097151.0f);
-        keys[i] =
-            spread(std::uint64_t(at.x)) | spread(std::uint64_t(at.y)) << 1 | spread(std::uint64_t(at.z)) << 2;
+        keys[i] = morton(std::uint32_t(at.x), std::uint32_t(at.y), std::uint32_t(at.z));
     }
 };
 

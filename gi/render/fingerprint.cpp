@@ -130,11 +130,13 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     }
     if (method == "sh_grid") {
         ShGridSettings const& o = s.sh_grid;
-        for (int const v : {o.voxels, o.photons, o.reflections, o.degree, o.directions, o.gather_directions,
-                            o.glossy_directions, o.field_shadow_rays, o.field_passes, int(o.field_rays),
-                            int(o.radiance_by), int(o.multilevel), int(o.leak_weights), int(o.field_glyphs)})
+        for (int const v :
+             {o.voxels, o.photons, o.caustic_photons, o.reflections, o.degree, o.directions, o.gather_directions,
+              o.glossy_directions, o.field_shadow_rays, o.field_passes, int(o.field_rays), int(o.radiance_by),
+              int(o.multilevel), int(o.leak_weights), int(o.field_glyphs)})
             h.add(std::uint64_t(v));
         h.add(o.obscurance_m);
+        h.add(o.caustic_radius_m);
     }
     if (method == "whitted" || method == "sh_grid") {
         for (int const v : {s.whitted.recursion, s.whitted.light_samples}) h.add(std::uint64_t(v));

@@ -1,7 +1,7 @@
 #include "gi/methods/sh_grid/exposure.h"
 
 #include "gi/core/rng.h"
-#include "gi/scene/shading/shading_point.h"
+#include "gi/methods/sh_grid/met_surface.h"
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
@@ -102,12 +102,11 @@ void look_around(World const& world, ExactVisibility const& visibility, GridFram
             }
             code = PatchSample::kSky;
             if (hits[k].triangle == kNoTriangle) continue;
-            ShadingPoint const at =
-                shading_point(w, hits[k].triangle, hits[k].barycentric, queries[k].ray.direction);
+            MetSurface const at = met_surface(w, hits[k].triangle, hits[k].barycentric, queries[k].ray.direction);
             glm::ivec3 const cell = frame.at(at.position);
             if (hits[k].distance < 0.02f * frame.cell)
                 code = PatchSample::kNear;
-            else if (only_delta(at.bsdf))
+            else if (at.smooth)
                 code = PatchSample::kMirrorOrGlass;
             else if (frame.holds(cell))
                 code = 16 * frame.index(cell) + ReachedSides::side_index(at.geometric_normal, at.front);

@@ -47,6 +47,22 @@ FieldDirections::FieldDirections(int count, int degree, std::uint32_t turned)
     }
 }
 
+PackedTint packed(vec3 tint)
+{
+    PackedTint out;
+    float const largest = max_component(tint);
+    if (!(largest > 1e-30f)) {
+        for (std::uint8_t& m : out.mantissa) m = 0;
+        return out;
+    }
+    int exponent = 0;
+    std::frexp(std::min(largest, 1e30f), &exponent); // 2^exponent is above it
+    out.exponent = std::int8_t(exponent - 8);
+    for (int k = 0; k < 3; ++k)
+        out.mantissa[k] = std::uint8_t(std::min(std::round(std::ldexp(tint[k], 8 - exponent)), 255.0f));
+    return out;
+}
+
 std::vector<std::uint32_t> cells_near_surfaces(SparseCells<BlockVoxels> const& blocks)
 {
     GridFrame const& frame = blocks.frame;

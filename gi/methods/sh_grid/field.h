@@ -53,13 +53,27 @@ struct FieldDirections {
     FieldDirections(int count, int degree, std::uint32_t turned);
 };
 
-/// What a ray from a cell's centre meets.
+/// A factor of light, each channel of 8 bits with an exponent that they share (Ward 1991).
+struct PackedTint {
+    std::uint8_t mantissa[3] = {128, 128, 128}; ///< 1, exactly
+    std::int8_t exponent = -7;
+
+    GI_FN vec3 unpacked() const
+    {
+        return std::ldexp(1.0f, exponent) * vec3{float(mantissa[0]), float(mantissa[1]), float(mantissa[2])};
+    }
+};
+/// @param tint  >= 0; below 1e-30 and above 1e30 it is cut off
+PackedTint packed(vec3 tint);
+
+/// What a ray from a cell's centre meets, by way of mirrors and glass.
 struct FieldHit {
-    static constexpr std::uint32_t kSky = 0xffffffffu, kNothing = 0xfffffffeu; ///< kNothing: mirrors; all is dark
+    static constexpr std::uint32_t kSky = 0xffffffffu, kNothing = 0xfffffffeu; ///< kNothing: all is dark
     std::uint32_t what;     ///< kSky, kNothing, or 2 x patch + side; of a walk through voxels the place of a cell
     std::uint8_t level;     ///< of the grid
     std::int8_t towards[3]; ///< normal that the ray meets, or that against it, times 127
-    float distance;         ///< m; kInf for the sky
+    float distance;  ///< m, of the first mirror or glass that is not a pane, else of what is met; kInf = sky
+    PackedTint tint; ///< of light from there
 };
 
 /// Indices of the cells with surfaces and their 26 neighbours, ascending.

@@ -55,7 +55,7 @@ struct WalkVoxels {
             float const start = 0.2501f * blocks.frame.cell / max_component(glm::abs(directions[k].direction));
             GridHit const hit = walk_grid(blocks, center, directions[k].direction, start);
             vec3 const back = -127.0f * directions[k].direction;
-            FieldHit out{FieldHit::kSky, std::uint8_t(level), {}, kInf};
+            FieldHit out{FieldHit::kSky, std::uint8_t(level), {}, kInf, {}};
             for (int axis = 0; axis < 3; ++axis) out.towards[axis] = std::int8_t(back[axis]);
             if (hit.distance >= 0) {
                 out.what = blocks.find_place(hit.block);
@@ -97,6 +97,7 @@ struct ProjectLight {
                     vec3{float(hit.towards[0]), float(hit.towards[1]), float(hit.towards[2])} / 127.0f;
                 seen = seen_light(light[hit.level], hit,
                                   settings.by == RadianceBy::normal ? towards : -d.direction, settings, area);
+                seen.radiance *= hit.tint.unpacked();
             }
             if (!(seen.area > 0) && !(hit.what == FieldHit::kSky && settings.sky_shines)) ++closed;
             float const distance = glm::min(hit.distance / cell_m, settings.farthest);

@@ -74,10 +74,11 @@ vec3 field_irradiance(FieldCell const& cell, int degree, vec3 normal)
     return glm::max(sum, vec3{0});
 }
 
-FieldLight::FieldLight(std::span<GridLevel const> levels, ExactVisibility const& visibility,
-                       GatherSettings const& settings)
-    : visibility_(visibility),
-      degree_(levels[0].field.degree),
+FieldLight::FieldLight(std::span<GridLevel const> levels, CausticMap const* caustics,
+                       ExactVisibility const& visibility, GatherSettings const& settings)
+    : caustics_(caustics),
+      visibility_(visibility),
+      degree_(levels.empty() ? 0 : levels[0].field.degree),
       coefficients_((degree_ + 1) * (degree_ + 1)),
       settings_(settings)
 {
@@ -180,6 +181,12 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
 
 void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const
 {
+    if (caustics_ != nullptr)
+        for (TreePoint const& p : points) layer_of(*p.sample, 1) += p.throughput * caustics_->radiance(p.at, p.wo);
+    if (levels_.empty()) {
+        std::ranges::fill(out, vec3{0});
+        return;
+    }
     std::vector<NearCell> cells;
     std::vector<FieldCell> around(points.size());
     std::vector<ShadowRay> rays;
@@ -225,7 +232,7 @@ void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, Path
 
 std::optional<Glyph> FieldLight::glyph(Ray const& ray, float reach) const
 {
-    return settings_.glyphs ? nearest_glyph(levels_[0], degree_, ray, reach) : std::nullopt;
+    return settings_.glyphs && !levels_.empty() ? nearest_glyph(levels_[0], degree_, ray, reach) : std::nullopt;
 }
 
 void FieldLight::add(NearCell const& near, float weight, FieldCell& out) const

@@ -8,6 +8,7 @@
 // maps, Donnelly and Lauritzen 2006). Exact shadow rays to a few cells, chosen by these weights, decide: the mean
 // is that of the cells that they reach.
 
+#include "gi/methods/sh_grid/caustic_map.h"
 #include "gi/methods/sh_grid/indirect_field.h"
 #include "gi/methods/whitted/tree_tracer.h"
 
@@ -26,10 +27,12 @@ struct GatherSettings {
 
 class FieldLight : public SurfaceLight {
 public:
-    /// @param levels  the finest first; with the other arguments must outlive it
-    FieldLight(std::span<GridLevel const> levels, ExactVisibility const& visibility,
+    /// @param levels  the finest first, empty without indirect light; with the other arguments must outlive it
+    /// @param caustics  null = none
+    FieldLight(std::span<GridLevel const> levels, CausticMap const* caustics, ExactVisibility const& visibility,
                GatherSettings const& settings);
 
+    /// Also adds the light of caustics, which has scattered once, to that layer of the points' samples.
     void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const override;
     std::optional<Glyph> glyph(Ray const& ray, float reach) const override;
     /// Points so far from which no cell is seen: they get no indirect light.
@@ -60,6 +63,7 @@ private:
                      std::span<std::uint8_t> seen) const;
 
     std::vector<CellsView<FieldCell>> levels_;
+    CausticMap const* caustics_;
     ExactVisibility const& visibility_;
     int degree_, coefficients_;
     GatherSettings settings_;

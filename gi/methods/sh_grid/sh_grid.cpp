@@ -1,7 +1,7 @@
 #include "gi/methods/sh_grid/sh_grid.h"
 
+#include "gi/methods/sh_grid/caustics.h"
 #include "gi/methods/sh_grid/field_light.h"
-#include "gi/methods/sh_grid/indirect_field.h"
 #include "gi/methods/whitted/whitted.h"
 
 namespace gi {
@@ -12,13 +12,15 @@ public:
     ShGridRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
                    StopRequest const* stop)
         : TreeRenderer(world, settings, first_moving, report, stop),
-          field_(world, settings, first_moving, report, stop)
+          field_(world, settings, first_moving, report, stop),
+          caustics_(world, settings, report, stop)
     {
     }
     void changed(Changes const& changes) override
     {
         TreeRenderer::changed(changes);
         field_.changed(changes);
+        caustics_.changed(changes);
     }
     void report_work() override
     {
@@ -29,13 +31,15 @@ public:
                      unseen_);
         unseen_ = 0;
         field_.report_counts();
+        caustics_.report_counts();
     }
     std::string options() const override
     {
         RenderSettings chosen = settings_;
         chosen.sh_grid.voxels = field_.voxels();
         chosen.sh_grid.photons = int(field_.light_paths());
-        return TreeRenderer::options() + " " + as_options(sh_grid_options(), chosen, {"voxels", "photons"});
+        return TreeRenderer::options() + " " +
+               as_options(sh_grid_options(), chosen, {"voxels", "photons", "caustic-photons"});
     }
 
 protected:
@@ -43,13 +47,15 @@ protected:
     {
         PathCounts counts;
         field_.prepare(*visibility_, index, views, counts);
-        rays_ += double(counts.nearest_rays);
+        auto const levels = field_.levels();
+        caustics_.prepare(*visibility_, index, views, levels.size() > 1 ? levels[0].bounds : Bounds{}, counts);
+        rays_ += double(counts.nearest_rays + counts.shadow_rays);
         work_.paths += counts;
         if (light_) unseen_ += light_->unseen();
         light_.reset();
-        if (field_.levels().empty()) return nullptr;
+        if (levels.empty() && caustics_.map() == nullptr) return nullptr;
         ShGridSettings const& s = settings_.sh_grid;
-        light_.emplace(field_.levels(), *visibility_,
+        light_.emplace(levels, caustics_.map(), *visibility_,
                        GatherSettings{s.gather_directions, s.glossy_directions, s.obscurance_m,
                                       s.leak_weights == Switch::on, s.field_glyphs == Switch::on,
                                       s.field_shadow_rays});
@@ -58,6 +64,7 @@ protected:
 
 private:
     IndirectField field_;
+    Caustics caustics_;
     std::uint64_t unseen_ = 0; ///< see FieldLight::unseen()
     std::optional<FieldLight> light_;
 };

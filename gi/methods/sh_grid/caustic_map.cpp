@@ -1,0 +1,135 @@
+#include "gi/methods/sh_grid/caustic_map.h"
+
+#include "gi/core/morton.h"
+#include "gi/core/rng.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+namespace gi {
+
+PhotonCells::PhotonCells(std::vector<CausticPhoton> const& photons, float radius)
+    : radius_(radius),
+      photons_(photons.size()),
+      first_(std::bit_ceil(std::max<std::size_t>(photons.size(), 1)) + 1)
+{
+    std::vector<std::uint32_t> bucket_of;
+    bucket_of.reserve(photons.size());
+    for (CausticPhoton const& p : photons) {
+        bucket_of.push_back(bucket(cell_of(p.position)));
+        ++first_[bucket_of.back() + 1];
+        low_ = glm::min(low_, p.position - radius);
+        high_ = glm::max(high_, p.position + radius);
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::uint32_t> next = first_;
+    for (std::size_t i = 0; i < photons.size(); ++i) photons_[next[bucket_of[i]]++] = photons[i];
+}
+
+std::uint32_t PhotonCells::bucket(glm::ivec3 cell) const
+{
+    std::uint64_t const xy = std::uint64_t(std::uint32_t(cell.x)) << 32 | std::uint32_t(cell.y);
+    return std::uint32_t(mix_bits(xy + mix_bits(std::uint32_t(cell.z))) & (first_.size() - 2));
+}
+
+glm::ivec3 PhotonCells::cell_of(vec3 position) const
+{
+    return glm::ivec3(glm::floor(glm::clamp(position / (2 * radius_), -1e9f, 1e9f)));
+}
+
+template <class F>
+void PhotonCells::search(vec3 position, F const& f) const
+{
+    if (glm::any(glm::lessThan(position, low_)) || glm::any(glm::lessThan(high_, position))) return;
+    glm::ivec3 const low = cell_of(position - radius_);
+    std::uint32_t buckets[8];
+    for (int k = 0; k < 8; ++k) buckets[k] = bucket(low + glm::ivec3{k & 1, k >> 1 & 1, k >> 2});
+    std::ranges::sort(buckets); // two cells may share one
+    for (int k = 0; k < 8; ++k) {
+        if (k > 0 && buckets[k] == buckets[k - 1]) continue;
+        for (std::uint32_t i = first_[buckets[k]]; i < first_[buckets[k] + 1]; ++i) {
+            vec3 const way = photons_[i].position - position;
+            float const squared = glm::dot(way, way);
+            if (squared < square(radius_)) f(photons_[i], squared);
+        }
+    }
+}
+
+namespace {
+
+constexpr int kLayers = 12; ///< of disks, each half as wide as those before
+
+/// Of each photon the smallest disks of whose area, as a cell of an octree about it, at least kEnough photons are.
+std::vector<int> disk_layers(std::vector<CausticPhoton> const& photons, float largest)
+{
+    constexpr std::size_t kEnough = 16;
+    struct Place {
+        std::uint64_t key; ///< of the finest cell, along a Morton curve
+        std::uint32_t photon;
+    };
+    vec3 low{kInf};
+    for (CausticPhoton const& p : photons) low = glm::min(low, p.position);
+    float const per_m = std::ldexp(1 / (largest * std::sqrt(kPi)), kLayers - 1);
+    std::vector<Place> places;
+    places.reserve(photons.size());
+    for (std::uint32_t i = 0; i < photons.size(); ++i) {
+        glm::uvec3 const at(glm::clamp((photons[i].position - low) * per_m, 0.0f, 2097151.0f));
+        places.push_back({morton(at.x, at.y, at.z), i});
+    }
+    std::ranges::sort(places, {}, &Place::key);
+    std::vector<int> out(photons.size());
+    for (int layer = 1; layer < kLayers; ++layer) {
+        int const shift = 3 * (kLayers - 1 - layer);
+        for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+            while (end < places.size() && places[end].key >> shift == places[begin].key >> shift) ++end;
+            for (std::size_t k = begin; end - begin >= kEnough && k < end; ++k) out[places[k].photon] = layer;
+        }
+    }
+    return out;
+}
+
+} // namespace
+
+CausticMap::CausticMap(std::vector<CausticPhoton> const& photons, CausticDisks const& disks)
+    : count_(photons.size())
+{
+    std::vector<int> const layer =
+        disks.same ? std::vector<int>(photons.size()) : disk_layers(photons, disks.largest);
+    std::vector<std::vector<CausticPhoton>> parts(kLayers);
+    for (std::size_t i = 0; i < photons.size(); ++i) {
+        parts[std::size_t(layer[i])].push_back(photons[i]);
+        flux_ += dvec3(photons[i].flux);
+    }
+    for (int k = 0; k < kLayers; ++k)
+        if (auto const& part = parts[std::size_t(k)]; !part.empty())
+            layers_.emplace_back(part, disks.factor * std::ldexp(disks.largest, -k));
+}
+
+vec3 CausticMap::radiance(ShadingPoint const& at, vec3 wo) const
+{
+    constexpr float kSameWay = 0.8f;   // least cosine of a photon's normal with the surface's
+    constexpr float kFromPlane = 0.2f; // radii; else the light of a table would lie on the paper on it
+    vec3 out{0};
+    for (PhotonCells const& layer : layers_) {
+        vec3 sum{0};
+        float const r2 = square(layer.radius());
+        layer.search(at.position, [&](CausticPhoton const& p, float squared) {
+            float const height = glm::dot(p.position - at.position, at.geometric_normal);
+            if (glm::dot(p.normal, at.geometric_normal) >= kSameWay &&
+                std::abs(height) <= kFromPlane * layer.radius())
+                sum += (1 - squared / r2) * p.flux * evaluate(at.bsdf, wo, at.frame.to_local(p.from)).f;
+        });
+        out += sum * (2 * kInvPi / r2); // Epanechnikov's kernel
+    }
+    return out;
+}
+
+float CausticMap::mean_radius() const
+{
+    double sum = 0;
+    for (PhotonCells const& layer : layers_) sum += double(layer.radius()) * double(layer.size());
+    return count_ == 0 ? 0 : float(sum / double(count_));
+}
+
+} // namespace gi
