@@ -1,11 +1,13 @@
 // Pictures of the method sh_grid against closed forms and quadrature: furnaces, form factors, flux, leaks, scales.
 
+#include "gi/methods/reference/reference.h"
 #include "gi/methods/sh_grid/sh_grid.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/motion/moving_world.h"
 #include "tests/support/scenes.h"
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 namespace gi::test {
@@ -228,6 +230,100 @@ TEST(ShGrid, FollowsLights)
     frames->changed(moving.set_light(0, half));
     for (int k = 0; k < 3; ++k) now = mean_of(frames->frame(eye, {}, {}, {}).picture, "L2").mean;
     EXPECT_EQ(now, 0);
+}
+
+/// A floor and a wall under a lamp, before a dark sky: what sees the sky is lit all the same.
+TEST(ShGrid, OpenSceneUnderADarkSky)
+{
+    Scene scene;
+    int const matt = add_material(scene, lambert(vec3{0.7f}));
+    add_quad(scene, {-1.5f, 0, -1.5f}, {0, 0, 3}, {3, 0, 0}, matt);
+    add_quad(scene, {-1.5f, 0, -1.5f}, {3, 0, 0}, {0, 2, 0}, matt);
+    Light lamp;
+    lamp.type = LightType::point;
+    lamp.position = {0.1f, 1.4f, 0.2f};
+    add_light(scene, lamp);
+    World const world = world_of(scene);
+    Camera const eye = look_at({0, 1, 4}, {0, 0.7, 0}, 50);
+    RenderSettings s = picture_of(48, 64);
+    s.paths = 16;
+    Report report;
+    double const own = mean_of(render_sh_grid(world, eye, s, {}, {}, report).picture, "L2").mean;
+    s.paths = 512;
+    double const truth = mean_of(render_reference(world, eye, s, {}, {}, report).picture, "L2").mean;
+    fmt::print("open scene: {:.4f} of the reference\n", own / truth);
+    EXPECT_NEAR(own / truth, 1, 0.06);
+}
+
+/// A lit box moves away: its light leaves with it, and in the frames that follow all photons and cells know.
+TEST(ShGrid, FollowsMotion)
+{
+    Scene scene;
+    int const wall = add_material(scene, lambert(vec3{0.6f}));
+    add_box(scene, {-2, -1, -1}, {2, 1, 1}, wall, true);
+    Light lamp;
+    lamp.type = LightType::point;
+    lamp.position = {0, 0.8f, 0};
+    add_light(scene, lamp);
+    int const red = add_material(scene, lambert(vec3{0.9f, 0.1f, 0.1f}));
+    std::size_t const box = scene.nodes.size();
+    add_box(scene, {-0.5f, -0.6f, -0.3f}, {0.1f, 0.1f, 0.3f}, red, false);
+    for (std::size_t k = box; k < scene.nodes.size(); ++k) scene.nodes[k].driven = true;
+    Report report;
+    auto const shared = std::make_shared<Scene const>(scene);
+    MovingWorld moving(shared, 0.0, report);
+    ASSERT_LT(moving.world().static_triangles, moving.world().triangles.size());
+    Camera const eye = look_at({-1.9, 0, 0}, {0, -0.2, 0}, 80);
+    RenderSettings s = picture_of(24, 64);
+    s.paths = 1;
+    auto const mean_now = [&](FrameRenderer& frames, int n) {
+        Picture p;
+        for (int k = 0; k < n; ++k) p = frames.frame(eye, {}, {}, {}).picture;
+        return mean_of(p, "L2").mean;
+    };
+    auto const frames = start_sh_grid_frames(moving, eye, s, report);
+    mean_now(*frames, 1);
+    Pose pose = evaluate_pose(*shared, 0.0);
+    for (std::size_t k = box; k < scene.nodes.size(); ++k)
+        pose.world_from_node[k] = glm::translate(pose.world_from_node[k], dvec3{1.2, 0, 0});
+    frames->changed(moving.advance(pose));
+    int const parts = s.sh_grid.field_passes;
+    double const followed = mean_now(*frames, 2 * parts - 1);
+    auto const fresh = start_sh_grid_frames(moving, eye, s, report);
+    EXPECT_NEAR(followed / mean_now(*fresh, 1), 1, 0.01);
+}
+
+/// A grid as fine as the budget allows, and the picture's options say which.
+TEST(ShGrid, BudgetLimitsTheGrid)
+{
+    World const world = world_of(generate_cornell());
+    RenderSettings s = picture_of(16, 256);
+    s.budget_s = 0.02;
+    s.paths = 1u << 20;
+    Report report;
+    RenderResult const r = render_sh_grid(world, world.cameras.at(0), s, {}, {}, report);
+    EXPECT_GT(mean_of(r.picture, "L2").mean, 0);
+    EXPECT_EQ(r.options.find("--voxels 256"), std::string::npos) << r.options;
+    EXPECT_NE(r.options.find("--voxels"), std::string::npos) << r.options;
+}
+
+/// A glyph shows the radiance that arrives from where its surface points: in a furnace all the same.
+TEST(ShGrid, GlyphsShowTheField)
+{
+    Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, glowing(1, 0.5f)), true);
+    RenderSettings s = picture_of(32, 32);
+    s.sh_grid.field_glyphs = Switch::on;
+    Report report;
+    Picture const p =
+        render_sh_grid(world_of(scene), look_at({0, 0, 0.3}, {0, -0.2, -1}, 90), s, {}, {}, report).picture;
+    std::size_t glyphs = 0;
+    for (std::size_t i = 0; i < p.pixels(); ++i) {
+        if (rgb(*p.find("L0"), i).x > 0) continue; // some path met the wall
+        ++glyphs;
+        EXPECT_NEAR(rgb(*p.find("L2"), i).x, 1, 0.03) << i; // reflected once or more: 1
+    }
+    EXPECT_GT(glyphs, 3u);
 }
 
 /// Without light, without surfaces, and with only one triangle.

@@ -210,7 +210,7 @@ TEST(Voxels, PatchesAreWhatTouchesAndFacesTheSameWay)
     Patches patches;
     patches.first_moving = 1u << 20;
     std::vector<std::uint32_t> of_piece;
-    patches.fixed = find_patches(world, grid, patches.cell_of_patch, of_piece);
+    patches.fixed = find_patches(world, grid, patches, of_piece);
     // In the middle: two quads of two triangles each.
     std::uint32_t const cell = grid.blocks.view().find_place(grid.blocks.frame.at({0.5f, 0.005f, 0.5f}));
     ASSERT_NE(cell, kNoCell);

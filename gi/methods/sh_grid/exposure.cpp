@@ -5,6 +5,7 @@
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <tbb/parallel_for.h>
 
@@ -20,6 +21,41 @@ float judged(float exposed, float whole, float largest)
 {
     if (exposed < kLeastExposed * whole || whole < kLeastOfCell * largest) return 0;
     return std::max(exposed, kSurelyExposed * whole);
+}
+
+/// Rays overlook what is lit directly and sees only what is dark. Where photons show a larger share of a patch, by
+/// this factor (voxels are coarse), they are right.
+constexpr float kRaysWrong = 1.25f;
+
+/// The voxels of a cell in which photons leave a patch's side.
+BlockVoxels lit_voxels(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
+                       std::span<Photon const> photons, SortedPhotons const& sorted, std::size_t patch,
+                       std::size_t side)
+{
+    GridFrame const& frame = blocks.frame;
+    vec3 const low = vec3(frame.cell_of(blocks.cells[patches.cell_of_patch[patch]]));
+    BlockVoxels lit = 0;
+    for (std::uint32_t k = sorted.firsts[2 * patch + side]; k < sorted.firsts[2 * patch + side + 1]; ++k) {
+        vec3 const in = (photons[sorted.order[k]].position - frame.low) / frame.cell - low;
+        glm::ivec3 const v = glm::clamp(glm::ivec3(glm::floor(4.0f * in)), 0, 3);
+        lit |= BlockVoxels(1) << (v.x + 4 * v.y + 16 * v.z);
+    }
+    return lit;
+}
+
+/// The share of a patch's voxels over which n photons must have been spread at random so that these are hit; 1 if
+/// photons are too few to tell.
+float lit_share(BlockVoxels of_patch, BlockVoxels lit, std::uint32_t n)
+{
+    float const all = float(std::max(std::popcount(of_patch), 1)), hit = float(std::popcount(lit));
+    auto const expected = [&](float voxels) { return voxels * (1 - std::exp(-float(n) / voxels)); };
+    float low = hit, high = all;
+    if (expected(all) <= hit) return 1;
+    for (int k = 0; k < 12; ++k) {
+        float const middle = 0.5f * (low + high);
+        (expected(middle) < hit ? low : high) = middle;
+    }
+    return high / all;
 }
 
 void add_piece(vec3 normal, float area, RadianceBy by, CellArea& out)
@@ -114,11 +150,13 @@ void look_around(World const& world, ExactVisibility const& visibility, GridFram
     });
 }
 
-ExposedAreas exposed_areas(std::size_t cells, Patches const& patches, std::span<PatchSample const> samples,
-                           ReachedSides const& reached, SortedPhotons const& photons, bool sky_shines,
+ExposedAreas exposed_areas(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
+                           std::span<PatchSample const> samples, ReachedSides const& reached,
+                           std::span<Photon const> photons, SortedPhotons const& sorted, bool sky_shines,
                            RadianceBy by)
 {
     ExposedAreas out;
+    std::size_t const cells = blocks.values.size();
     out.of_cell.resize(cells);
     out.of_patch.resize(patches.count());
     std::vector<CellArea> whole(cells);
@@ -128,29 +166,31 @@ ExposedAreas exposed_areas(std::size_t cells, Patches const& patches, std::span<
         if (code == PatchSample::kSky) return sky_shines;
         return code == PatchSample::kMirrorOrGlass || (reached.of_cell[code / 16] >> code % 16 & 1) != 0;
     };
-    auto const is_exposed = [&](PatchSample const& s, std::size_t side) {
-        return std::ranges::any_of(s.met[side], lets_light_in);
-    };
     for (PatchSample const& s : samples) {
         whole_patch[s.patch] += s.area;
         for (std::size_t side = 0; side < 2; ++side)
-            if (is_exposed(s, side)) out.of_patch[s.patch][side] += s.area;
+            if (std::ranges::any_of(s.met[side], lets_light_in)) out.of_patch[s.patch][side] += s.area;
     }
-    for (std::size_t patch = 0; patch < whole_patch.size(); ++patch)
+    tbb::parallel_for(std::size_t(0), whole_patch.size(), [&](std::size_t patch) {
         for (std::size_t side = 0; side < 2; ++side) {
             float& exposed = out.of_patch[patch][side];
-            exposed = judged(exposed, whole_patch[patch], 0);
-            if (exposed == 0 && photons.hit(2 * patch + side)) exposed = whole_patch[patch]; // rays were wrong
+            float const all = whole_patch[patch];
+            exposed = judged(exposed, all, 0);
+            if (!(exposed < all) || !sorted.hit(2 * patch + side)) continue;
+            float const lit =
+                all * lit_share(patches.voxels[patch], lit_voxels(blocks, patches, photons, sorted, patch, side),
+                                sorted.count(2 * patch + side));
+            if (lit > kRaysWrong * exposed) exposed = std::min(lit, all);
         }
+    });
     for (PatchSample const& s : samples)
         for (std::size_t side = 0; side < 2; ++side) {
             vec3 const normal = side == 0 ? s.normal : -s.normal;
             std::uint32_t const cell = patches.cell_of_patch[s.patch];
+            float const area = s.area * out.of_patch[s.patch][side] / whole_patch[s.patch];
             add_piece(normal, s.area, by, whole[cell]);
-            if (out.of_patch[s.patch][side] == whole_patch[s.patch] || is_exposed(s, side))
-                add_piece(normal, s.area, by, out.of_cell[cell]);
-            else
-                out.hidden_m2 += double(s.area);
+            add_piece(normal, area, by, out.of_cell[cell]);
+            out.hidden_m2 += double(s.area - area);
         }
     for (std::size_t i = 0; i < whole.size(); ++i)
         for (int k = 0; k < 6; ++k) {

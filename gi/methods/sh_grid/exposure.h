@@ -45,10 +45,11 @@ struct ExposedAreas {
     double hidden_m2 = 0;                       ///< left out, of both sides
 };
 
-/// Areas of the samples of which a ray met a side that light has reached, mirrors or glass, or a sky that shines.
-/// A patch that photons hit is exposed as a whole if rays say that none of it is.
-ExposedAreas exposed_areas(std::size_t cells, Patches const& patches, std::span<PatchSample const> samples,
-                           ReachedSides const& reached, SortedPhotons const& photons, bool sky_shines,
+/// Areas of the samples of which a ray met a side that light has reached, mirrors or glass, or a sky that shines;
+/// more if photons leave more of a patch.
+ExposedAreas exposed_areas(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
+                           std::span<PatchSample const> samples, ReachedSides const& reached,
+                           std::span<Photon const> photons, SortedPhotons const& sorted, bool sky_shines,
                            RadianceBy by);
 
 } // namespace gi

@@ -101,7 +101,7 @@ void IndirectField::find_fixed_surfaces(GridLevel& level, ExactVisibility const&
     add_triangles(world_, 0, first_moving_, grid, stop);
     std::vector<std::uint32_t> patch_of;
     level.patches.first_moving = std::uint32_t(first_moving_);
-    level.patches.fixed = find_patches(world_, grid, level.patches.cell_of_patch, patch_of);
+    level.patches.fixed = find_patches(world_, grid, level.patches, patch_of);
     choose_samples(grid.pieces, patch_of, level.samples);
     look_around(world_, visibility, grid.blocks.frame, RayWorld::what_stays, stop, level.samples);
     level.fixed_patches = level.patches.count();
@@ -117,9 +117,10 @@ void IndirectField::find_moving_surfaces(ExactVisibility const& visibility, Buil
         VoxelGrid grid{level.fixed_blocks, {}};
         add_triangles(world_, first_moving_, world_.triangles.size(), grid, stop);
         level.patches.cell_of_patch.resize(level.fixed_patches);
+        level.patches.voxels.resize(level.fixed_patches);
         level.samples.resize(level.fixed_samples);
         std::vector<std::uint32_t> patch_of;
-        level.patches.moving = find_patches(world_, grid, level.patches.cell_of_patch, patch_of);
+        level.patches.moving = find_patches(world_, grid, level.patches, patch_of);
         choose_samples(grid.pieces, patch_of, level.samples);
         look_around(world_, visibility, grid.blocks.frame, RayWorld::all, stop,
                     std::span(level.samples).subspan(level.fixed_samples));
@@ -178,8 +179,8 @@ void IndirectField::make_radiance_grids()
     for (std::vector<Photon> const& part : photons_) all.insert(all.end(), part.begin(), part.end());
     for (GridLevel& level : levels_) {
         SortedPhotons const sorted = sort_photons(level.blocks, level.patches, all);
-        auto const areas = exposed_areas(level.blocks.values.size(), level.patches, level.samples, *level.reached,
-                                         sorted, sky_shines(), by());
+        auto const areas = exposed_areas(level.blocks, level.patches, level.samples, *level.reached, all, sorted,
+                                         sky_shines(), by());
         level.hidden_m2 = areas.hidden_m2;
         level.grids = gi::make_radiance_grids(level.blocks, level.patches, areas, all, sorted, by());
     }

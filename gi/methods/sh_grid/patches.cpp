@@ -52,7 +52,7 @@ private:
 
 } // namespace
 
-PatchTable find_patches(World const& world, VoxelGrid const& grid, std::vector<std::uint32_t>& cell_of_patch,
+PatchTable find_patches(World const& world, VoxelGrid const& grid, Patches& all,
                         std::vector<std::uint32_t>& of_piece)
 {
     std::size_t const cells = grid.blocks.values.size(), pieces = grid.pieces.size();
@@ -117,7 +117,7 @@ PatchTable find_patches(World const& world, VoxelGrid const& grid, std::vector<s
         out.first_patch[cell + 1] = count;
     });
     std::partial_sum(out.first_entry.begin(), out.first_entry.end(), out.first_entry.begin());
-    out.first_patch[0] = std::uint32_t(cell_of_patch.size());
+    out.first_patch[0] = std::uint32_t(all.count());
     std::partial_sum(out.first_patch.begin(), out.first_patch.end(), out.first_patch.begin());
     out.triangles.reserve(out.first_entry.back());
     out.patches.reserve(out.first_entry.back());
@@ -127,9 +127,11 @@ PatchTable find_patches(World const& world, VoxelGrid const& grid, std::vector<s
             patch = out.first_patch[cell] + patches[cell][patch];
         }
         out.triangles.insert(out.triangles.end(), triangles[cell].begin(), triangles[cell].end());
-        cell_of_patch.resize(out.first_patch[cell + 1], std::uint32_t(cell));
+        all.cell_of_patch.resize(out.first_patch[cell + 1], std::uint32_t(cell));
         for (std::uint32_t const p : patches[cell]) out.patches.push_back(out.first_patch[cell] + p);
     }
+    all.voxels.resize(all.count());
+    for (std::size_t i = 0; i < pieces; ++i) all.voxels[of_piece[i]] |= BlockVoxels(1) << grid.pieces[i].voxel;
     return out;
 }
 

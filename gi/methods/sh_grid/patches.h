@@ -53,16 +53,17 @@ struct Patches {
     PatchTable fixed, moving;
     std::uint32_t first_moving = 0;           ///< triangle
     std::vector<std::uint32_t> cell_of_patch; ///< index of its value
+    std::vector<BlockVoxels> voxels;          ///< of its cell, in which each patch has pieces
 
     PatchesView view() const { return {fixed.view(), moving.view(), first_moving}; }
     std::size_t count() const { return cell_of_patch.size(); }
 };
 
-/// Patches of the pieces in a grid, numbered from cell_of_patch.size(). Those of less than a twentieth of a cell's
+/// Patches of the pieces in a grid, numbered from all.count(). Those of less than a twentieth of a cell's
 /// face are joined with the others of their cell that face the same way: else single photons would make them
 /// glare.
-/// @param cell_of_patch  theirs are appended  @param of_piece  overwritten: the patch of each piece
-PatchTable find_patches(World const& world, VoxelGrid const& grid, std::vector<std::uint32_t>& cell_of_patch,
+/// @param all  cells and voxels of theirs are appended  @param of_piece  overwritten: the patch of each piece
+PatchTable find_patches(World const& world, VoxelGrid const& grid, Patches& all,
                         std::vector<std::uint32_t>& of_piece);
 
 /// The patch that a point on a triangle belongs to, also where rounding moved the point to the next cell, or

@@ -35,7 +35,8 @@ struct SortedPhotons {
     std::vector<std::uint32_t> order;  ///< indices, those of no patch last
     std::vector<std::uint32_t> firsts; ///< per side (2 x patch, + 1: back) in `order`, and one more
 
-    bool hit(std::size_t side) const { return firsts[side] < firsts[side + 1]; }
+    std::uint32_t count(std::size_t side) const { return firsts[side + 1] - firsts[side]; }
+    bool hit(std::size_t side) const { return count(side) > 0; }
 };
 SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
                            std::span<Photon const> photons);

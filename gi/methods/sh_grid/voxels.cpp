@@ -153,12 +153,14 @@ void add_triangles(World const& world, std::size_t first, std::size_t last, Voxe
         for (VoxelPiece const& p : part) {
             glm::ivec3 const in = p.voxel % 4;
             std::uint32_t const block = grid.blocks.place_at(p.voxel / 4);
-            grid.blocks.values[block] |= BlockVoxels(1) << (in.x + 4 * in.y + 16 * in.z);
+            auto const voxel_of_block = std::uint8_t(in.x + 4 * in.y + 16 * in.z);
+            grid.blocks.values[block] |= BlockVoxels(1) << voxel_of_block;
             double const size = glm::length(p.area);
             float const area = float(size * double(voxel) * double(voxel));
             if (!(area > 0)) continue;
             grid.pieces.push_back({.block = block,
                                    .triangle = p.triangle,
+                                   .voxel = voxel_of_block,
                                    .point = vec3(dvec3(frame.low) + double(voxel) * p.point),
                                    .normal = vec3(p.area / size),
                                    .area = area});

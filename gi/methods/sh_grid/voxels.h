@@ -17,9 +17,10 @@ using BlockVoxels = std::uint64_t;
 struct SurfacePiece {
     std::uint32_t block; ///< index of its value in VoxelGrid::blocks
     std::uint32_t triangle;
-    vec3 point;  ///< its centroid, m, from the world's origin
-    vec3 normal; ///< unit, geometric, of the side from which the triangle is counter-clockwise
-    float area;  ///< m^2
+    std::uint8_t voxel; ///< of the block: x + 4 y + 16 z
+    vec3 point;         ///< its centroid, m, from the world's origin
+    vec3 normal;        ///< unit, geometric, of the side from which the triangle is counter-clockwise
+    float area;         ///< m^2
 };
 
 struct VoxelGrid {
