@@ -29,7 +29,7 @@ std::vector<PlanItem> explain_sh_grid(World const& world, RenderSettings const& 
     if (world.light_select.empty()) return {{"grid", false, "there is no light"}};
     ExactVisibility const visibility(world, plan_scene(world).alpha_tests, settings.threads);
     FrameView const view{camera, 512, 512};
-    Bounds const focus = focus_of(shown_points(world, visibility, {&view, 1}));
+    Bounds const focus = focus_of(shown_points(world, visibility, {&view, 1}), s.voxels);
     std::vector<PlanItem> out{grid_item("grid of the scene", world.bounds, s.voxels)};
     std::string const extents = fmt::format("what the camera shows is {:.3g} of {:.3g} m long",
                                             double(longest_side(focus)), double(longest_side(world.bounds)));

@@ -121,7 +121,7 @@ void FieldLight::find_cells(vec3 position, vec3 normal, std::vector<NearCell>& o
         GridFrame const& frame = levels_[level].frame;
         vec3 const end = vec3(frame.size), at = (position - frame.low) / frame.cell;
         // Towards the sides of the fine grid, the coarse one takes over.
-        float const inside = 0.5f * min_component(glm::min(at, end - at)) - 0.5f;
+        float const inside = min_component(glm::min(at, end - at)) - 0.5f; // cells
         float const share = level + 1 == levels_.size() ? left : left * glm::clamp(inside, 0.0f, 1.0f);
         std::size_t const before = out.size();
         if (share > 0) add_cells(level, position, normal, share, out);

@@ -8,23 +8,22 @@
 
 namespace gi {
 
-std::vector<vec3> shown_points(World const& world, ExactVisibility const& visibility,
-                               std::span<FrameView const> views)
+std::vector<ShownPoint> shown_surfaces(World const& world, ExactVisibility const& visibility,
+                                       std::span<FrameView const> views, int side, int surfaces)
 {
-    constexpr int kSide = 32; // rays across and down each view
     WorldView const w = view(world);
-    std::vector<vec3> points;
+    std::vector<ShownPoint> points;
     std::vector<RayQuery> queries;
     for (FrameView const& v : views) {
         CameraRays const camera = camera_rays(v.camera, v.width, v.height, world.origin);
-        for (int k = 0; k < kSide * kSide; ++k) {
-            vec2 const at = (vec2{float(k % kSide), float(k / kSide)} + 0.5f) / float(kSide);
+        for (int k = 0; k < side * side; ++k) {
+            vec2 const at = (vec2{float(k % side), float(k / side)} + 0.5f) / float(side);
             Ray const ray = camera.through(at * vec2{float(v.width), float(v.height)});
             queries.push_back({.ray = ray, .seed = std::uint32_t(k), .start = camera_clearance(ray.origin)});
         }
     }
     Pcg32 rng(7, 7);
-    for (int bounce = 0; bounce < 2; ++bounce) {
+    for (int surface = 0; surface < surfaces; ++surface) {
         std::vector<Hit> hits(queries.size());
         visibility.nearest(queries, hits);
         std::vector<RayQuery> next;
@@ -32,7 +31,7 @@ std::vector<vec3> shown_points(World const& world, ExactVisibility const& visibi
             if (hits[k].triangle == kNoTriangle) continue;
             ShadingPoint const at =
                 shading_point(w, hits[k].triangle, hits[k].barycentric, queries[k].ray.direction);
-            points.push_back(at.position);
+            points.push_back({at.position, hits[k].triangle, at.front});
             vec3 const direction =
                 Frame::about(at.geometric_normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
             next.push_back({.ray = {leave(at, direction), direction}, .seed = rng.next()});
@@ -42,7 +41,15 @@ std::vector<vec3> shown_points(World const& world, ExactVisibility const& visibi
     return points;
 }
 
-Bounds focus_of(std::span<vec3 const> points)
+std::vector<vec3> shown_points(World const& world, ExactVisibility const& visibility,
+                               std::span<FrameView const> views)
+{
+    std::vector<vec3> points;
+    for (ShownPoint const& p : shown_surfaces(world, visibility, views, 32, 2)) points.push_back(p.position);
+    return points;
+}
+
+Bounds focus_of(std::span<vec3 const> points, int voxels)
 {
     if (points.empty()) return {};
     Bounds box;
@@ -54,7 +61,8 @@ Bounds focus_of(std::span<vec3 const> points)
         box.low[axis] = along[cut];
         box.high[axis] = along[points.size() - 1 - cut];
     }
-    float const margin = 0.05f * max_component(box.high - box.low);
+    float const cell = 4 / float(std::max(voxels, 16)), around = std::max(0.05f, 1.5f * cell / (1 - 3 * cell));
+    float const margin = around * max_component(box.high - box.low);
     return {box.low - margin, box.high + margin};
 }
 

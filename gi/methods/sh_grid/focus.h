@@ -9,12 +9,23 @@
 
 namespace gi {
 
-/// What rays from the cameras meet, and after one more ray in a random direction. The same rays for the same
-/// cameras. m
+/// A point of a surface, and its side that a ray met.
+struct ShownPoint {
+    vec3 position; ///< m
+    std::uint32_t triangle;
+    bool front; ///< the counter-clockwise side
+};
+
+/// What rays from the cameras meet, and rays that go on from there in random directions. The same rays for the
+/// same cameras. @param side  rays across and down each view  @param surfaces  along a ray
+std::vector<ShownPoint> shown_surfaces(World const& world, ExactVisibility const& visibility,
+                                       std::span<FrameView const> views, int side, int surfaces);
+/// Positions of the first two surfaces of 1,024 rays a view, m.
 std::vector<vec3> shown_points(World const& world, ExactVisibility const& visibility,
                                std::span<FrameView const> views);
-/// A box around all but 2 % of the points along each axis, and a margin. Empty without points.
-Bounds focus_of(std::span<vec3 const> points);
+/// A box around all but 2 % of the points along each axis, and a margin of at least one and a half cells of its
+/// field. Empty without points. @param voxels  along its longest side
+Bounds focus_of(std::span<vec3 const> points, int voxels);
 /// Longest side of a box, m; 0 if it is empty.
 float longest_side(Bounds const& b);
 /// True if what is shown is less than half as long as the world. An empty focus needs none.

@@ -24,6 +24,13 @@ RadianceLevels to_levels(GridLevel const& of)
     return out;
 }
 
+std::vector<Photon> all_of(std::vector<std::vector<Photon>> const& parts)
+{
+    std::vector<Photon> all;
+    for (std::vector<Photon> const& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
 } // namespace
 
 IndirectField::IndirectField(World const& world, RenderSettings const& settings, std::size_t first_moving,
@@ -72,7 +79,7 @@ void IndirectField::place_levels(ExactVisibility const& visibility, std::span<Fr
         float const room = 0.25f * longest_side(whole);
         whole = {whole.low - room, whole.high + room};
     }
-    Bounds const focus = focus_of(points);
+    Bounds const focus = focus_of(points, voxels_);
     bool const wants_two = needs_fine_grid(focus, whole);
     bool const shows =
         fits && (levels_.size() == 1 ? !wants_two
@@ -128,64 +135,131 @@ void IndirectField::find_moving_surfaces(ExactVisibility const& visibility, Buil
     }
 }
 
-/// Traces a part of the light paths of a set. @param part  of parts()
-void IndirectField::trace_photons(ExactVisibility const& visibility, int part, BuildStop const& stop,
-                                  PathCounts& counts)
+LightPaths IndirectField::light_paths_of(int part, BuildStop const& stop) const
 {
-    StageTimer const timer(report_, "photons");
     std::uint64_t const all = light_paths_, n = std::uint64_t(parts());
-    LightPaths paths{.count = light_paths_,
-                     .bounces = std::min(settings_.sh_grid.reflections, settings_.bounces),
-                     .seed = settings_.seed,
-                     .pass = *first_index_ + photon_sets_, // the same photons in every frame: no flicker
-                     .stop = &stop};
-    if (levels_.size() > 1) paths.focus = levels_[0].bounds;
-    std::vector<Photon> found;
-    auto const first = std::uint32_t(all * std::uint64_t(part) / n),
-               end = std::uint32_t(all * std::uint64_t(part + 1) / n);
-    constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
-    for (paths.first = first; paths.first < end; paths.first += kTogether) {
-        paths.last = std::min(end - paths.first, kTogether) + paths.first;
-        auto const vertices = trace_light_paths(view(world_), world_.bounds, visibility, paths, counts);
-        for (GridLevel& level : levels_) level.reached->add(vertices);
-        reflect_photons(vertices, settings_.seed + paths.pass + (std::uint64_t(paths.first) << 32), found);
-    }
-    photons_.resize(n);
-    photons_[std::size_t(part)] = std::move(found);
+    return {.count = light_paths_,
+            .first = std::uint32_t(all * std::uint64_t(part) / n),
+            .last = std::uint32_t(all * std::uint64_t(part + 1) / n),
+            .bounces = std::min(settings_.sh_grid.reflections, settings_.bounces),
+            .seed = settings_.seed,
+            .pass = *first_index_ + photon_sets_, // the same photons in every frame: no flicker
+            .stop = &stop};
 }
 
-void IndirectField::trace_all_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts)
+/// Traces a part of a set of light paths. @param part  of parts()  @param trace  (LightPaths) -> their vertices
+template <class Trace>
+std::vector<Photon> IndirectField::trace_part(LightPaths paths, std::uint64_t stream, Trace const& trace)
 {
-    if (photon_sets_ == 0)
+    constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
+    std::vector<Photon> found;
+    std::uint32_t const end = paths.last;
+    for (; paths.first < end; paths.first += kTogether) {
+        paths.last = std::min(end - paths.first, kTogether) + paths.first;
+        std::vector<VirtualLight> const vertices = trace(paths);
+        for (GridLevel& level : levels_) level.reached->add(vertices);
+        std::uint64_t const number = stream + paths.first;
+        reflect_photons(vertices, settings_.seed + paths.pass + (number << 32), found);
+    }
+    return found;
+}
+
+void IndirectField::trace_from_lights(ExactVisibility const& visibility, int part, BuildStop const& stop,
+                                      PathCounts& counts)
+{
+    LightPaths paths = light_paths_of(part, stop);
+    if (levels_.size() > 1) {
+        paths.focus = levels_[0].bounds;
+        paths.place = [&, blocks = levels_[0].blocks.view(),
+                       patches = levels_[0].patches.view()](vec3 position, std::uint32_t triangle) {
+            if (patch_at(blocks, patches, position, triangle) == kNoCell) return PathPlace::outside;
+            return triangle < first_moving_ ? PathPlace::ends : PathPlace::inside;
+        };
+    }
+    photons_[std::size_t(part)] = trace_part(paths, 0, [&](LightPaths const& some) {
+        return trace_light_paths(view(world_), world_.bounds, visibility, some, counts);
+    });
+}
+
+/// Light that enters a fine grid, from the sky and from what the coarse one holds by now.
+void IndirectField::trace_inner(ExactVisibility const& visibility, int first_part, int last_part,
+                                std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts)
+{
+    if (levels_.size() < 2) return;
+    GridLevel &fine = levels_[0], &coarse = levels_[1];
+    make_radiance_grid(coarse, all_of(photons_));
+    InnerWorld const inner{view(world_),        visibility,           fine.blocks.view(),
+                           fine.patches.view(), coarse.blocks.view(), coarse.patches.view(),
+                           coarse.grids.patches};
+    if (!inner_paths_) {
+        inner_paths_.emplace(std::span(fine.samples).first(fine.fixed_samples),
+                             count_shown_sides(world_, visibility, views, inner.fine, inner.fine_patches,
+                                               2 * fine.patches.count()));
+        LightPaths first = light_paths_of(0, stop);
+        first.count = first.last = std::min(light_paths_, 1u << 16);
+        inner_paths_->learn(inner, first, counts);
+    }
+    for (int part = first_part; part < last_part; ++part)
+        inner_photons_[std::size_t(part)] =
+            trace_part(light_paths_of(part, stop), 1u << 25, [&](LightPaths const& some) {
+                return trace_from_surfaces(inner.world, visibility, inner_paths_->trace(inner, some, counts), some,
+                                           counts);
+            });
+}
+
+/// @param first_part, last_part  which of parts() to trace anew: all but the last
+void IndirectField::trace_photons(ExactVisibility const& visibility, int first_part, int last_part,
+                                  std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts)
+{
+    StageTimer const timer(report_, "photons");
+    photons_.resize(std::size_t(parts()));
+    inner_photons_.resize(std::size_t(parts()));
+    for (int part = first_part; part < last_part; ++part) trace_from_lights(visibility, part, stop, counts);
+    trace_inner(visibility, first_part, last_part, views, stop, counts);
+}
+
+void IndirectField::trace_all_photons(ExactVisibility const& visibility, std::span<FrameView const> views,
+                                      BuildStop const& stop, PathCounts& counts)
+{
+    if (photon_sets_ == 0) {
         for (GridLevel& level : levels_) level.reached.emplace(level.blocks.frame);
-    for (int part = 0; part < parts(); ++part) trace_photons(visibility, part, stop, counts);
+        inner_paths_.reset();
+        photons_.clear();
+        inner_photons_.clear();
+    }
+    trace_photons(visibility, 0, parts(), views, stop, counts);
     photon_parts_left_ = 0;
     ++photon_sets_;
 }
 
 /// After geometry has moved: one part per call.
-void IndirectField::trace_next_photons(ExactVisibility const& visibility, BuildStop const& stop,
-                                       PathCounts& counts)
+void IndirectField::trace_next_photons(ExactVisibility const& visibility, std::span<FrameView const> views,
+                                       BuildStop const& stop, PathCounts& counts)
 {
-    trace_photons(visibility, next_photon_part_, stop, counts);
+    trace_photons(visibility, next_photon_part_, next_photon_part_ + 1, views, stop, counts);
     next_photon_part_ = (next_photon_part_ + 1) % parts();
     if (--photon_parts_left_ == 0) photon_sets_ = 1;
+}
+
+void IndirectField::make_radiance_grid(GridLevel& level, std::span<Photon const> photons)
+{
+    SortedPhotons const sorted = sort_photons(level.blocks, level.patches, photons);
+    auto const areas = exposed_areas(level.blocks, level.patches, level.samples, *level.reached, photons, sorted,
+                                     sky_shines(), by());
+    level.hidden_m2 = areas.hidden_m2;
+    level.grids = gi::make_radiance_grids(level.blocks, level.patches, areas, photons, sorted, by());
 }
 
 void IndirectField::make_radiance_grids()
 {
     StageTimer const timer(report_, "radiance grids");
-    std::vector<Photon> all;
-    for (std::vector<Photon> const& part : photons_) all.insert(all.end(), part.begin(), part.end());
-    for (GridLevel& level : levels_) {
-        SortedPhotons const sorted = sort_photons(level.blocks, level.patches, all);
-        auto const areas = exposed_areas(level.blocks, level.patches, level.samples, *level.reached, all, sorted,
-                                         sky_shines(), by());
-        level.hidden_m2 = areas.hidden_m2;
-        level.grids = gi::make_radiance_grids(level.blocks, level.patches, areas, all, sorted, by());
-    }
+    std::vector<Photon> all = all_of(photons_);
+    std::vector<Photon> const inner = all_of(inner_photons_);
+    all.insert(all.end(), inner.begin(), inner.end());
+    for (GridLevel& level : levels_) make_radiance_grid(level, all);
     stored_ = dvec3{0};
     for (Photon const& p : all) stored_ += dvec3(p.flux);
+    photons_held_ = all.size();
 }
 
 /// Cells where surfaces are now; those that stay keep their values. Of a coarse level, those deep in the fine one
@@ -331,10 +405,10 @@ void IndirectField::update(ExactVisibility const& visibility, std::span<FrameVie
         photon_sets_ = updates_ = calls_at_rest_ = 0;
         if (surfaces_changed_) find_moving_surfaces(visibility, stop);
         if (light_changed_) {
-            trace_all_photons(visibility, stop, counts);
+            trace_all_photons(visibility, views, stop, counts);
         } else {
             photon_parts_left_ = parts();
-            trace_next_photons(visibility, stop, counts);
+            trace_next_photons(visibility, views, stop, counts);
         }
         make_radiance_grids();
         if (surfaces_changed_)
@@ -342,14 +416,14 @@ void IndirectField::update(ExactVisibility const& visibility, std::span<FrameVie
         parts_left_ = update_all_ ? 1 : parts();
         surfaces_changed_ = light_changed_ = false;
     } else if (photon_parts_left_ > 0) {
-        trace_next_photons(visibility, stop, counts);
+        trace_next_photons(visibility, views, stop, counts);
         make_radiance_grids();
         parts_left_ = parts();
     } else if (parts_left_ == 0 && ++calls_at_rest_ >= 4 && std::has_single_bit(calls_at_rest_) &&
                (moves() || !(settings_.budget_s > 0) ||
                 seconds_since(started_) + last_update_s_ < settings_.budget_s)) {
         // A field costs as much as many passes.
-        trace_all_photons(visibility, stop, counts);
+        trace_all_photons(visibility, views, stop, counts);
         make_radiance_grids();
         parts_left_ = 1;
         update_all_ = true;
@@ -379,9 +453,7 @@ void IndirectField::report_counts()
         report_.count(grid + ": area that no light can reach, both sides, m^2", level.hidden_m2);
     }
     if (levels_.empty()) return;
-    std::size_t photons = 0;
-    for (std::vector<Photon> const& part : photons_) photons += part.size();
-    report_.count("photons of the last set", double(photons));
+    report_.count("photons of the last set", double(photons_held_));
     report_.count("sets of photons", double(photon_sets_));
     report_.count("flux of the photons, W (luminance)", watt(stored_));
 }

@@ -5,6 +5,7 @@
 #include "gi/core/report.h"
 #include "gi/methods/sh_grid/field.h"
 #include "gi/methods/sh_grid/focus.h"
+#include "gi/methods/sh_grid/inner_paths.h"
 #include "gi/render/path_sample.h"
 #include "gi/render/render_settings.h"
 #include "gi/scene/motion/moving_world.h"
@@ -65,9 +66,19 @@ private:
     void place_levels(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop);
     void find_fixed_surfaces(GridLevel& level, ExactVisibility const& visibility, BuildStop const& stop);
     void find_moving_surfaces(ExactVisibility const& visibility, BuildStop const& stop);
-    void trace_photons(ExactVisibility const& visibility, int part, BuildStop const& stop, PathCounts& counts);
-    void trace_next_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts);
-    void trace_all_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts);
+    LightPaths light_paths_of(int part, BuildStop const& stop) const;
+    template <class Trace>
+    std::vector<Photon> trace_part(LightPaths paths, std::uint64_t stream, Trace const& trace);
+    void trace_from_lights(ExactVisibility const& visibility, int part, BuildStop const& stop, PathCounts& counts);
+    void trace_inner(ExactVisibility const& visibility, int first_part, int last_part,
+                     std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
+    void trace_photons(ExactVisibility const& visibility, int first_part, int last_part,
+                       std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
+    void trace_all_photons(ExactVisibility const& visibility, std::span<FrameView const> views,
+                           BuildStop const& stop, PathCounts& counts);
+    void trace_next_photons(ExactVisibility const& visibility, std::span<FrameView const> views,
+                            BuildStop const& stop, PathCounts& counts);
+    void make_radiance_grid(GridLevel& level, std::span<Photon const> photons);
     void make_radiance_grids();
     void place_cells(GridLevel& level);
     void update_cells(ExactVisibility const& visibility, int part, int parts, BuildStop const& stop,
@@ -92,8 +103,11 @@ private:
 
     std::vector<GridLevel> levels_;
     bool surfaces_changed_ = true, light_changed_ = true, coverage_changed_ = false, materials_changed_ = false;
-    std::vector<std::vector<Photon>> photons_; ///< of the last set, by part of the light paths
-    int photon_parts_left_ = 0;                ///< that do not know the latest geometry
+    std::optional<InnerPaths> inner_paths_; ///< with a fine grid
+    /// Of the last set, by part of the light paths: from the lights, and from surfaces of the fine grid.
+    std::vector<std::vector<Photon>> photons_, inner_photons_;
+    std::size_t photons_held_ = 0;
+    int photon_parts_left_ = 0; ///< that do not know the latest geometry
     int next_photon_part_ = 0;
     std::uint32_t photon_sets_ = 0; ///< since the last change
     dvec3 stored_{0};               ///< flux of photons, W

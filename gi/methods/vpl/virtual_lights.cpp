@@ -19,7 +19,8 @@ struct LightPath {
     EmittedLight light;
     int scatterings = 0; ///< non-delta, so far
     bool from_light = true;
-    std::vector<VirtualLight> left; ///< left along the path
+    bool from_outside = false, straight = true; ///< see LightPaths::place
+    std::vector<VirtualLight> left;             ///< left along the path
 };
 
 /// Advances from a hit to the next ray. Returns false if the path ends.
@@ -40,6 +41,11 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     vec3 const power = p.light.power * (arrived.z / cos_arrived);
     if (!all_finite(power) || !(max_component(power) > 0)) return false;
     if (!only_delta(at.bsdf)) {
+        if (s.place) {
+            PathPlace const place = s.place(at.position, hit.triangle);
+            if (p.from_outside && p.straight && place == PathPlace::ends) return false;
+            p.from_outside = place == PathPlace::outside;
+        }
         p.left.push_back({.position = at.position,
                           .normal = at.geometric_normal,
                           .triangle = hit.triangle,
@@ -53,6 +59,7 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     }
     float const u_lobe = p.rng.uniform();
     BsdfSample const next = sample(at.bsdf, arrived, at.front, u_lobe, p.rng.uniform2());
+    p.straight = !next.delta;
     if (!next.delta && ++p.scatterings >= s.bounces) return false;
     vec3 const leaves = at.frame.to_world(next.wi);
     float const cos_leaves = glm::dot(leaves, at.geometric_normal);
@@ -112,35 +119,22 @@ void trace(WorldView const& world, ExactVisibility const& visibility, LightPaths
     }
 }
 
-} // namespace
-
-std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const& bounds,
-                                            ExactVisibility const& visibility, LightPaths const& s,
-                                            PathCounts& counts)
+/// Traces blocks of paths. @param start  (index, path) -> whether there is one
+template <class Start>
+std::vector<VirtualLight> trace_blocks(WorldView const& world, ExactVisibility const& visibility,
+                                       LightPaths const& s, std::uint32_t first, std::uint32_t end,
+                                       PathCounts& counts, Start const& start)
 {
-    if (s.bounces < 1 || world.light_select.empty()) return {};
-    std::uint32_t const end = std::min(s.count, s.last);
-    if (s.first >= end) return {};
-    std::uint32_t const blocks = (end - s.first + kPathsTogether - 1) / kPathsTogether;
+    if (first >= end) return {};
+    std::uint32_t const blocks = (end - first + kPathsTogether - 1) / kPathsTogether;
     std::vector<std::vector<VirtualLight>> found(blocks);
     std::vector<PathCounts> of_block(blocks);
     tbb::parallel_for(0u, blocks, [&](std::uint32_t block) {
         FlushDenormals const guard;
         if (s.stop != nullptr && s.stop->given_up()) throw Interrupted();
-        std::uint32_t const first = s.first + block * kPathsTogether, last = std::min(end, first + kPathsTogether);
-        std::vector<LightPath> paths(last - first);
-        for (std::uint32_t i = first; i < last; ++i) {
-            LightPath& p = paths[i - first];
-            p.rng = Pcg32::for_path(s.seed ^ 0x7619, i, s.pass);
-            // Stratified over the lights, so that every light gets its share of the paths in each pass.
-            double const u = (double(i) + p.rng.uniform_double()) / double(s.count);
-            LightChoice const choice = choose_light(world, u);
-            vec2 const place = p.rng.uniform2(), direction = p.rng.uniform2();
-            p.light = emit_light(world, choice, bounds, place, direction, p.rng.uniform());
-            p.light.power /= float(s.count);
-            if (!s.focus.empty() && comes_from_afar(world, choice))
-                focus_light(s, bounds, p.rng.uniform() < 0.5f, place, p.light);
-        }
+        std::uint32_t const begin = first + block * kPathsTogether, last = std::min(end, begin + kPathsTogether);
+        std::vector<LightPath> paths(last - begin);
+        for (std::uint32_t i = begin; i < last; ++i) start(i, paths[i - begin]);
         trace(world, visibility, s, paths, of_block[block]);
         for (LightPath const& p : paths) found[block].insert(found[block].end(), p.left.begin(), p.left.end());
     });
@@ -150,6 +144,44 @@ std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const
         counts += of_block[b];
     }
     return all;
+}
+
+} // namespace
+
+std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const& bounds,
+                                            ExactVisibility const& visibility, LightPaths const& s,
+                                            PathCounts& counts)
+{
+    if (s.bounces < 1 || world.light_select.empty()) return {};
+    return trace_blocks(world, visibility, s, s.first, std::min(s.count, s.last), counts,
+                        [&](std::uint32_t i, LightPath& p) {
+                            p.rng = Pcg32::for_path(s.seed ^ 0x7619, i, s.pass);
+                            // Stratified over the lights, so that every light gets its share of the paths in each
+                            // pass.
+                            double const u = (double(i) + p.rng.uniform_double()) / double(s.count);
+                            LightChoice const choice = choose_light(world, u);
+                            vec2 const place = p.rng.uniform2(), direction = p.rng.uniform2();
+                            p.light = emit_light(world, choice, bounds, place, direction, p.rng.uniform());
+                            p.light.power /= float(s.count);
+                            p.from_outside = comes_from_afar(world, choice);
+                            if (!s.focus.empty() && p.from_outside)
+                                focus_light(s, bounds, p.rng.uniform() < 0.5f, place, p.light);
+                        });
+}
+
+std::vector<VirtualLight> trace_from_surfaces(WorldView const& world, ExactVisibility const& visibility,
+                                              std::span<LightStart const> starts, LightPaths const& s,
+                                              PathCounts& counts)
+{
+    if (s.bounces < 1) return {};
+    return trace_blocks(world, visibility, s, 0, std::uint32_t(starts.size()), counts,
+                        [&](std::uint32_t i, LightPath& p) {
+                            LightStart const& start = starts[i];
+                            p.rng = Pcg32::for_path(s.seed ^ 0x57a8, start.number, s.pass);
+                            p.light.ray.direction = start.direction;
+                            p.light.power = start.power;
+                            if (!advance(world, s, p, start.hit)) p.light.power = vec3{0};
+                        });
 }
 
 } // namespace gi

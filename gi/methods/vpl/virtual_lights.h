@@ -6,6 +6,7 @@
 #include "gi/render/path_sample.h"
 #include "gi/scene/shading/shading_point.h"
 
+#include <functional>
 #include <vector>
 
 namespace gi {
@@ -24,6 +25,9 @@ struct VirtualLight {
     bool matt;    ///< purely diffuse: the BSDF is `bsdf.diffuse` / pi
 };
 
+/// See LightPaths::place.
+enum class PathPlace : std::uint8_t { outside, inside, ends };
+
 struct LightPaths {
     std::uint32_t count = 256;           ///< >= 1
     std::uint32_t first = 0, last = ~0u; ///< those of them to trace: first to last - 1
@@ -33,6 +37,9 @@ struct LightPaths {
     /// Half of the sky's and the parallel lights' paths go through the sphere around this box, the others past it;
     /// empty = all go through the whole scene.
     Bounds focus{};
+    /// Where a path from a light ends without a trace if it comes there, not by mirrors or glass, from outside or
+    /// from afar, as others begin there. Empty = nowhere.
+    std::function<PathPlace(vec3 position, std::uint32_t triangle)> place{};
     BuildStop const* stop = nullptr; ///< null = never; else trace_light_paths() throws Interrupted
 };
 
@@ -41,5 +48,17 @@ struct LightPaths {
 std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const& bounds,
                                             ExactVisibility const& visibility, LightPaths const& settings,
                                             PathCounts& counts);
+
+/// Light that has reached a surface: the start of a path from there.
+struct LightStart {
+    Hit hit;
+    vec3 direction;       ///< unit, in which the light travels
+    vec3 power;           ///< W
+    std::uint32_t number; ///< of its random numbers
+};
+/// As trace_light_paths(), for paths that begin so.
+std::vector<VirtualLight> trace_from_surfaces(WorldView const& world, ExactVisibility const& visibility,
+                                              std::span<LightStart const> starts, LightPaths const& settings,
+                                              PathCounts& counts);
 
 } // namespace gi
