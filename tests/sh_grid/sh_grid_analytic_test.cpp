@@ -255,6 +255,38 @@ TEST(ShGrid, OpenSceneUnderADarkSky)
     EXPECT_NEAR(own / truth, 1, 0.06);
 }
 
+/// A room whose only light comes through a window, alone and on a plain of 400 m: the sky and what the plain
+/// reflects light it alike.
+TEST(ShGrid, RoomInALargeWorld)
+{
+    Scene scene;
+    int const matt = add_material(scene, lambert(vec3{0.6f}));
+    add_quad(scene, {-200, -0.1f, -200}, {0, 0, 400}, {400, 0, 0}, matt);
+    for (float const shell : {0.0f, 0.2f}) { // inner and outer sides of walls with a window at x = 2
+        vec3 const low{-2 - shell, -shell / 4, -2 - shell}, high{2 + shell, 2.5f + shell, 2 + shell};
+        vec3 const e = high - low;
+        add_quad(scene, low, {e.x, 0, 0}, {0, 0, e.z}, matt);
+        add_quad(scene, {low.x, high.y, low.z}, {e.x, 0, 0}, {0, 0, e.z}, matt);
+        for (float const z : {low.z, high.z}) add_quad(scene, {low.x, low.y, z}, {e.x, 0, 0}, {0, e.y, 0}, matt);
+        add_quad(scene, low, {0, e.y, 0}, {0, 0, e.z}, matt);
+        add_quad(scene, {high.x, low.y, low.z}, {0, 1 - low.y, 0}, {0, 0, e.z}, matt);
+        add_quad(scene, {high.x, 2, low.z}, {0, high.y - 2, 0}, {0, 0, e.z}, matt);
+        add_quad(scene, {high.x, 1, low.z}, {0, 1, 0}, {0, 0, -0.7f - low.z}, matt);
+        add_quad(scene, {high.x, 1, 0.7f}, {0, 1, 0}, {0, 0, high.z - 0.7f}, matt);
+    }
+    set_environment(scene, vec3{1});
+    World const world = world_of(scene);
+    Camera const eye = look_at({1.5, 1.6, 1.5}, {-2, 0.8, -1}, 70);
+    RenderSettings s = picture_of(32, 64);
+    Report report;
+    double const own = mean_of(render_sh_grid(world, eye, s, {}, {}, report).picture, "L2").mean;
+    EXPECT_GT(report.counts().at("fine grid: cells of the field"), 100);
+    s.paths = 1024;
+    double const truth = mean_of(render_reference(world, eye, s, {}, {}, report).picture, "L2").mean;
+    fmt::print("room on a plain: {:.4f} of the reference\n", own / truth);
+    EXPECT_NEAR(own / truth, 1, 0.1);
+}
+
 /// A lit box moves away: its light leaves with it, and in the frames that follow all photons and cells know.
 TEST(ShGrid, FollowsMotion)
 {
