@@ -182,7 +182,7 @@ TEST(ShGridCaustics, PhotonsStayWhileTheCameraMoves)
     std::uint32_t index = 0;
     auto const pass = [&](double x) {
         FrameView const view{look_at({x, 0.3, 0.95}, {0, -0.9, -0.2}, 80), 16, 16};
-        caustics.prepare(visibility, index++, {&view, 1}, {}, counts);
+        caustics.prepare(visibility, index++, {&view, 1}, {}, 1, counts);
         return caustics.map();
     };
     float const first = pass(0)->mean_radius();

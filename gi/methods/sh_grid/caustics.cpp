@@ -178,9 +178,10 @@ void Caustics::changed(Changes const& c)
 }
 
 void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
-                       Bounds const& focus, PathCounts& counts)
+                       Bounds const& focus, double share, PathCounts& counts)
 {
     if (settings_.sh_grid.caustic_photons == 0) return;
+    paths_ = std::max(1u, std::uint32_t(share * settings_.sh_grid.caustic_photons));
     if (!first_index_) first_index_ = index;
     bool const new_focus = focus.low != focus_.low || focus.high != focus_.high;
     bool const new_cameras = !std::ranges::equal(views, cameras_, {}, &FrameView::camera);
@@ -214,7 +215,7 @@ std::vector<CausticPhoton> Caustics::photons_of_set(ExactVisibility const& visib
     std::uint64_t const stream = learned_.value_or(false) ? 0xca58 : 0xca57;
     BuildStop const stop(stop_);
     WorldView const w = view(world_);
-    auto const count = std::uint32_t(settings_.sh_grid.caustic_photons);
+    std::uint32_t const count = paths_;
     std::uint32_t const blocks = (count + kTogether - 1) / kTogether, pass = *first_index_ + sets_;
     std::vector<std::vector<CausticPhoton>> found(blocks);
     std::vector<PathCounts> counts_of(blocks);
@@ -271,7 +272,7 @@ void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
     constexpr float kLargest = 0.05f;  // radius over the longest side of what is lit, or of the focus
     StageTimer const timer(report_, "caustic photons");
     std::vector<CausticPhoton> photons = photons_of_set(visibility, counts);
-    auto const few = std::size_t(settings_.sh_grid.caustic_photons / 4);
+    std::size_t const few = paths_ / 4;
     if (!learned_) {
         learned_ = !photons.empty() && photons.size() < few;
         if (*learned_) {

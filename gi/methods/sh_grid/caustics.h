@@ -46,9 +46,10 @@ public:
     /// Follows the world.
     void changed(Changes const& changes);
     /// Traces the photons of one more pass. Throws Interrupted if a stop is requested and there are none yet.
-    /// @param index  of the pass; the first decides which photons are traced
+    /// @param index  of the pass; the first decides which photons are traced  @param share  of the paths that the
+    /// settings ask for
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
-                 Bounds const& focus, PathCounts& counts);
+                 Bounds const& focus, double share, PathCounts& counts);
     /// Null if the world has no smooth surface, no light reached one, or nothing is to be traced.
     CausticMap const* map() const { return map_.empty() ? nullptr : &map_; }
     void report_counts();
@@ -69,9 +70,10 @@ private:
     CausticTargets targets_;
     std::optional<bool> learned_; ///< whether chances follow the photons of a first set, because these were few
     CausticMap map_;
-    std::uint32_t sets_ = 0; ///< of photons since the last change
-    float shrunk_ = 1;       ///< factor of the disks' radii
-    std::uint64_t cut_ = 0;  ///< paths
+    std::uint32_t paths_ = 0; ///< of a set
+    std::uint32_t sets_ = 0;  ///< of photons since the last change
+    float shrunk_ = 1;        ///< factor of the disks' radii
+    std::uint64_t cut_ = 0;   ///< paths
 };
 
 } // namespace gi

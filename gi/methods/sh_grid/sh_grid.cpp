@@ -48,7 +48,8 @@ protected:
         PathCounts counts;
         field_.prepare(*visibility_, index, views, counts);
         auto const levels = field_.levels();
-        caustics_.prepare(*visibility_, index, views, levels.size() > 1 ? levels[0].bounds : Bounds{}, counts);
+        caustics_.prepare(*visibility_, index, views, levels.size() > 1 ? levels[0].bounds : Bounds{},
+                          double(field_.light_paths()) / settings_.sh_grid.photons, counts);
         rays_ += double(counts.nearest_rays + counts.shadow_rays);
         work_.paths += counts;
         if (light_) unseen_ += light_->unseen();
