@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <optional>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -43,14 +44,15 @@ BlockVoxels lit_voxels(SparseCells<BlockVoxels> const& blocks, Patches const& pa
     return lit;
 }
 
-/// The share of a patch's voxels over which n photons must have been spread at random so that these are hit; 1 if
-/// photons are too few to tell.
-float lit_share(BlockVoxels of_patch, BlockVoxels lit, std::uint32_t n)
+/// The share of a patch's voxels over which n photons must have been spread at random so that these are hit; none
+/// if photons are too few to tell.
+std::optional<float> lit_share(BlockVoxels of_patch, BlockVoxels lit, std::uint32_t n)
 {
     float const all = float(std::max(std::popcount(of_patch), 1)), hit = float(std::popcount(lit));
+    if (hit >= all) return 1.0f;
     auto const expected = [&](float voxels) { return voxels * (1 - std::exp(-float(n) / voxels)); };
+    if (expected(all) <= hit) return std::nullopt;
     float low = hit, high = all;
-    if (expected(all) <= hit) return 1;
     for (int k = 0; k < 12; ++k) {
         float const middle = 0.5f * (low + high);
         (expected(middle) < hit ? low : high) = middle;
@@ -177,10 +179,11 @@ ExposedAreas exposed_areas(SparseCells<BlockVoxels> const& blocks, Patches const
             float const all = whole_patch[patch];
             exposed = judged(exposed, all, 0);
             if (!(exposed < all) || !sorted.hit(2 * patch + side)) continue;
-            float const lit =
-                all * lit_share(patches.voxels[patch], lit_voxels(blocks, patches, photons, sorted, patch, side),
-                                sorted.count(2 * patch + side));
-            if (lit > kRaysWrong * exposed) exposed = std::min(lit, all);
+            auto const share =
+                lit_share(patches.voxels[patch], lit_voxels(blocks, patches, photons, sorted, patch, side),
+                          sorted.count(2 * patch + side));
+            if (!share && exposed == 0) exposed = all; // else the photons' light were lost
+            if (share && all * *share > kRaysWrong * exposed) exposed = std::min(all * *share, all);
         }
     });
     for (PatchSample const& s : samples)

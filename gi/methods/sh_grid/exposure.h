@@ -46,7 +46,7 @@ struct ExposedAreas {
 };
 
 /// Areas of the samples of which a ray met a side that light has reached, mirrors or glass, or a sky that shines;
-/// more if photons leave more of a patch.
+/// more if photons show a larger lit share of a patch.
 ExposedAreas exposed_areas(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
                            std::span<PatchSample const> samples, ReachedSides const& reached,
                            std::span<Photon const> photons, SortedPhotons const& sorted, bool sky_shines,

@@ -30,6 +30,33 @@ struct GridFrame {
     GI_FN vec3 center(glm::ivec3 c) const { return low + cell * (vec3(c) + 0.5f); }
 };
 
+/// The part of a ray in a box from 0 to `end`, in any unit of length.
+struct GridRay {
+    vec3 from;      ///< where it enters the box, or the origin in it
+    vec3 direction; ///< unit
+    vec3 inverse;   ///< of the direction, finite
+    float skipped;  ///< from the origin to `from`
+    float length;   ///< from there to where it leaves; not above 0 = the ray misses the box
+
+    /// @param origin  relative to the box's corner  @param start  nearer parts are skipped
+    GI_FN GridRay(vec3 origin, vec3 direction_, vec3 end, float start) : direction(direction_)
+    {
+        for (int axis = 0; axis < 3; ++axis) {
+            float const d = direction[axis];
+            inverse[axis] = 1 / (glm::abs(d) < 1e-9f ? (d < 0 ? -1e-9f : 1e-9f) : d);
+        }
+        vec3 const to_low = -origin * inverse, to_high = (end - origin) * inverse;
+        skipped = glm::max(max_component(glm::min(to_low, to_high)), start);
+        length = min_component(glm::max(to_low, to_high)) - skipped;
+        from = origin + skipped * direction;
+    }
+    /// Where it leaves a cube, from `from`. @param corner  the low one
+    GI_FN float leaves(vec3 corner, float side) const
+    {
+        return min_component(glm::max((corner - from) * inverse, (corner + side - from) * inverse));
+    }
+};
+
 inline constexpr std::uint32_t kNoCell = 0xffffffffu;
 
 /// Values of some cells, to read.

@@ -24,13 +24,6 @@ RadianceLevels to_levels(GridLevel const& of)
     return out;
 }
 
-std::vector<Photon> all_of(std::vector<std::vector<Photon>> const& parts)
-{
-    std::vector<Photon> all;
-    for (std::vector<Photon> const& part : parts) all.insert(all.end(), part.begin(), part.end());
-    return all;
-}
-
 } // namespace
 
 IndirectField::IndirectField(World const& world, RenderSettings const& settings, std::size_t first_moving,
@@ -41,7 +34,8 @@ IndirectField::IndirectField(World const& world, RenderSettings const& settings,
       report_(report),
       stop_(stop),
       voxels_(settings.sh_grid.voxels),
-      light_paths_(std::uint32_t(settings.sh_grid.photons))
+      light_paths_(std::uint32_t(settings.sh_grid.photons)),
+      photons_(world, settings, first_moving_)
 {
 }
 
@@ -91,175 +85,22 @@ void IndirectField::place_levels(ExactVisibility const& visibility, std::span<Fr
     std::vector<Bounds> boxes;
     if (wants_two) boxes.push_back(focus);
     if (!fits) boxes.push_back(whole);
-    for (Bounds const& box : boxes) {
-        GridLevel& level = levels.emplace_back();
-        level.bounds = box;
-        find_fixed_surfaces(level, visibility, stop);
-    }
+    for (Bounds const& box : boxes)
+        levels.push_back(make_grid_level(world_, first_moving_, box, voxels_, visibility, stop));
     if (fits) levels.push_back(std::move(levels_.back()));
     levels_ = std::move(levels);
     only_smooth_ = only_smooth();
     surfaces_changed_ = light_changed_ = update_all_ = true;
 }
 
-void IndirectField::find_fixed_surfaces(GridLevel& level, ExactVisibility const& visibility, BuildStop const& stop)
-{
-    VoxelGrid grid = empty_voxel_grid(level.bounds, voxels_);
-    add_triangles(world_, 0, first_moving_, grid, stop);
-    std::vector<std::uint32_t> patch_of;
-    level.patches.first_moving = std::uint32_t(first_moving_);
-    level.patches.fixed = find_patches(world_, grid, level.patches, patch_of);
-    choose_samples(grid.pieces, patch_of, level.samples);
-    look_around(world_, visibility, grid.blocks.frame, RayWorld::what_stays, stop, level.samples);
-    level.fixed_patches = level.patches.count();
-    level.fixed_samples = level.samples.size();
-    level.fixed_blocks = level.blocks = std::move(grid.blocks);
-}
-
-void IndirectField::find_moving_surfaces(ExactVisibility const& visibility, BuildStop const& stop)
-{
-    StageTimer const timer(report_, "voxels");
-    if (!moves()) return;
-    for (GridLevel& level : levels_) {
-        VoxelGrid grid{level.fixed_blocks, {}};
-        add_triangles(world_, first_moving_, world_.triangles.size(), grid, stop);
-        level.patches.cell_of_patch.resize(level.fixed_patches);
-        level.patches.voxels.resize(level.fixed_patches);
-        level.samples.resize(level.fixed_samples);
-        std::vector<std::uint32_t> patch_of;
-        level.patches.moving = find_patches(world_, grid, level.patches, patch_of);
-        choose_samples(grid.pieces, patch_of, level.samples);
-        look_around(world_, visibility, grid.blocks.frame, RayWorld::all, stop,
-                    std::span(level.samples).subspan(level.fixed_samples));
-        level.blocks = std::move(grid.blocks);
-    }
-}
-
-LightPaths IndirectField::light_paths_of(int part, BuildStop const& stop) const
-{
-    std::uint64_t const all = light_paths_, n = std::uint64_t(parts());
-    return {.count = light_paths_,
-            .first = std::uint32_t(all * std::uint64_t(part) / n),
-            .last = std::uint32_t(all * std::uint64_t(part + 1) / n),
-            .bounces = std::min(settings_.sh_grid.reflections, settings_.bounces),
-            .seed = settings_.seed,
-            .pass = *first_index_ + photon_sets_, // the same photons in every frame: no flicker
-            .stop = &stop};
-}
-
-/// Traces a part of a set of light paths. @param part  of parts()  @param trace  (LightPaths) -> their vertices
-template <class Trace>
-std::vector<Photon> IndirectField::trace_part(LightPaths paths, std::uint64_t stream, Trace const& trace)
-{
-    constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
-    std::vector<Photon> found;
-    std::uint32_t const end = paths.last;
-    for (; paths.first < end; paths.first += kTogether) {
-        paths.last = std::min(end - paths.first, kTogether) + paths.first;
-        std::vector<VirtualLight> const vertices = trace(paths);
-        for (GridLevel& level : levels_) level.reached->add(vertices);
-        std::uint64_t const number = stream + paths.first;
-        reflect_photons(vertices, settings_.seed + paths.pass + (number << 32), found);
-    }
-    return found;
-}
-
-void IndirectField::trace_from_lights(ExactVisibility const& visibility, int part, BuildStop const& stop,
-                                      PathCounts& counts)
-{
-    LightPaths paths = light_paths_of(part, stop);
-    if (levels_.size() > 1) {
-        paths.focus = levels_[0].bounds;
-        paths.place = [&, blocks = levels_[0].blocks.view(),
-                       patches = levels_[0].patches.view()](vec3 position, std::uint32_t triangle) {
-            if (patch_at(blocks, patches, position, triangle) == kNoCell) return PathPlace::outside;
-            return triangle < first_moving_ ? PathPlace::ends : PathPlace::inside;
-        };
-    }
-    photons_[std::size_t(part)] = trace_part(paths, 0, [&](LightPaths const& some) {
-        return trace_light_paths(view(world_), world_.bounds, visibility, some, counts);
-    });
-}
-
-/// Light that enters a fine grid, from the sky and from what the coarse one holds by now.
-void IndirectField::trace_inner(ExactVisibility const& visibility, int first_part, int last_part,
-                                std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts)
-{
-    if (levels_.size() < 2) return;
-    GridLevel &fine = levels_[0], &coarse = levels_[1];
-    make_radiance_grid(coarse, all_of(photons_));
-    InnerWorld const inner{view(world_),        visibility,           fine.blocks.view(),
-                           fine.patches.view(), coarse.blocks.view(), coarse.patches.view(),
-                           coarse.grids.patches};
-    if (!inner_paths_) {
-        inner_paths_.emplace(std::span(fine.samples).first(fine.fixed_samples),
-                             count_shown_sides(world_, visibility, views, inner.fine, inner.fine_patches,
-                                               2 * fine.patches.count()));
-        LightPaths first = light_paths_of(0, stop);
-        first.count = first.last = std::min(light_paths_, 1u << 16);
-        inner_paths_->learn(inner, first, counts);
-    }
-    for (int part = first_part; part < last_part; ++part)
-        inner_photons_[std::size_t(part)] =
-            trace_part(light_paths_of(part, stop), 1u << 25, [&](LightPaths const& some) {
-                return trace_from_surfaces(inner.world, visibility, inner_paths_->trace(inner, some, counts), some,
-                                           counts);
-            });
-}
-
-/// @param first_part, last_part  which of parts() to trace anew: all but the last
-void IndirectField::trace_photons(ExactVisibility const& visibility, int first_part, int last_part,
-                                  std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts)
-{
-    StageTimer const timer(report_, "photons");
-    photons_.resize(std::size_t(parts()));
-    inner_photons_.resize(std::size_t(parts()));
-    for (int part = first_part; part < last_part; ++part) trace_from_lights(visibility, part, stop, counts);
-    trace_inner(visibility, first_part, last_part, views, stop, counts);
-}
-
-void IndirectField::trace_all_photons(ExactVisibility const& visibility, std::span<FrameView const> views,
-                                      BuildStop const& stop, PathCounts& counts)
-{
-    if (photon_sets_ == 0) {
-        for (GridLevel& level : levels_) level.reached.emplace(level.blocks.frame);
-        inner_paths_.reset();
-        photons_.clear();
-        inner_photons_.clear();
-    }
-    trace_photons(visibility, 0, parts(), views, stop, counts);
-    photon_parts_left_ = 0;
-    ++photon_sets_;
-}
-
-/// After geometry has moved: one part per call.
-void IndirectField::trace_next_photons(ExactVisibility const& visibility, std::span<FrameView const> views,
-                                       BuildStop const& stop, PathCounts& counts)
-{
-    trace_photons(visibility, next_photon_part_, next_photon_part_ + 1, views, stop, counts);
-    next_photon_part_ = (next_photon_part_ + 1) % parts();
-    if (--photon_parts_left_ == 0) photon_sets_ = 1;
-}
-
-void IndirectField::make_radiance_grid(GridLevel& level, std::span<Photon const> photons)
-{
-    SortedPhotons const sorted = sort_photons(level.blocks, level.patches, photons);
-    auto const areas = exposed_areas(level.blocks, level.patches, level.samples, *level.reached, photons, sorted,
-                                     sky_shines(), by());
-    level.hidden_m2 = areas.hidden_m2;
-    level.grids = gi::make_radiance_grids(level.blocks, level.patches, areas, photons, sorted, by());
-}
-
 void IndirectField::make_radiance_grids()
 {
     StageTimer const timer(report_, "radiance grids");
-    std::vector<Photon> all = all_of(photons_);
-    std::vector<Photon> const inner = all_of(inner_photons_);
-    all.insert(all.end(), inner.begin(), inner.end());
-    for (GridLevel& level : levels_) make_radiance_grid(level, all);
+    std::vector<Photon> const photons = photons_.photons();
+    for (GridLevel& level : levels_) make_radiance_grid(photons, sky_shines(), by(), level);
     stored_ = dvec3{0};
-    for (Photon const& p : all) stored_ += dvec3(p.flux);
-    photons_held_ = all.size();
+    for (Photon const& p : photons) stored_ += dvec3(p.flux);
+    photon_count_ = photons.size();
 }
 
 /// Cells where surfaces are now; those that stay keep their values. Of a coarse level, those deep in the fine one
@@ -359,11 +200,13 @@ void IndirectField::prepare(ExactVisibility const& visibility, std::uint32_t ind
 {
     if (settings_.bounces < 1 || world_.light_select.empty() || world_.bounds.empty()) return levels_.clear();
     if (!first_index_) first_index_ = index;
+    BuildStop const stop(stop_);
+    Now const now{visibility, views, stop, counts};
     try {
         if (!has_field_ && settings_.budget_s > 0)
-            fit_budget(visibility, views, BuildStop(stop_), counts);
+            fit_budget(now);
         else
-            update(visibility, views, BuildStop(stop_), counts);
+            update(now);
     } catch (Interrupted const&) {
         if (!has_field_) throw;
     }
@@ -371,66 +214,91 @@ void IndirectField::prepare(ExactVisibility const& visibility, std::uint32_t ind
 
 /// Makes coarse fields, and finer ones as long as their time, judged by that of the last, leaves half of the
 /// budget to the passes.
-void IndirectField::fit_budget(ExactVisibility const& visibility, std::span<FrameView const> views,
-                               BuildStop const& stop, PathCounts& counts)
+void IndirectField::fit_budget(Now const& now)
 {
     constexpr int kFirst = 32;                      // voxels
     constexpr double kSurfaces = 1.8, kLight = 4.5; // growth of time when voxels are doubled
     ShGridSettings const& asked = settings_.sh_grid;
     double const most_s = 0.5 * settings_.budget_s;
     int doublings = 0;
-    for (voxels_ = asked.voxels; voxels_ / 2 >= kFirst; voxels_ /= 2) ++doublings;
+    for (int v = asked.voxels; v / 2 >= kFirst; v /= 2) ++doublings;
     for (;; --doublings) {
+        std::vector<GridLevel> coarser = std::move(levels_);
+        auto const voxels = voxels_;
+        auto const light_paths = light_paths_;
+        levels_.clear();
+        surfaces_changed_ = light_changed_ = update_all_ = true;
         voxels_ = asked.voxels >> doublings;
         light_paths_ = std::max(1u, std::uint32_t(asked.photons) >> 2 * doublings);
         auto const begun = Clock::now();
-        update(visibility, views, stop, counts);
+        try {
+            update(now);
+        } catch (Interrupted const&) {
+            levels_ = std::move(coarser);
+            voxels_ = voxels;
+            light_paths_ = light_paths;
+            throw;
+        }
         double const surfaces_s = seconds_since(begun) - last_update_s_;
         // Of a moving world, most surfaces stay, and light follows in parts.
         double const next_s = moves() ? kLight * last_update_s_ / parts()
                                       : seconds_since(started_) + kSurfaces * surfaces_s + kLight * last_update_s_;
         if (doublings == 0 || next_s > most_s) return;
-        levels_.clear();
-        has_field_ = false;
-        surfaces_changed_ = light_changed_ = update_all_ = true;
     }
 }
 
-void IndirectField::update(ExactVisibility const& visibility, std::span<FrameView const> views,
-                           BuildStop const& stop, PathCounts& counts)
+/// True if the fields shall become means over more photons and directions, which takes as long as many passes.
+bool IndirectField::refines_at_rest()
 {
-    place_levels(visibility, views, stop);
+    ++calls_at_rest_;
+    if (calls_at_rest_ < 4 || !std::has_single_bit(calls_at_rest_)) return false;
+    return frames() || !(settings_.budget_s > 0) || seconds_since(started_) + last_update_s_ < settings_.budget_s;
+}
+
+void IndirectField::update(Now const& now)
+{
+    place_levels(now.visibility, now.views, now.stop);
     auto const begun = Clock::now();
+    auto const trace_photons = [&](bool whole) {
+        StageTimer const timer(report_, "photons");
+        PhotonSets::Trace const trace{levels_, now.visibility, now.views, now.stop, now.counts};
+        whole ? photons_.trace_all(trace) : photons_.trace_next(trace);
+    };
     if (light_changed_ || surfaces_changed_) {
-        photon_sets_ = updates_ = calls_at_rest_ = 0;
-        if (surfaces_changed_) find_moving_surfaces(visibility, stop);
-        if (light_changed_) {
-            trace_all_photons(visibility, views, stop, counts);
-        } else {
-            photon_parts_left_ = parts();
-            trace_next_photons(visibility, views, stop, counts);
+        updates_ = calls_at_rest_ = 0;
+        if (surfaces_changed_ && moves()) {
+            StageTimer const timer(report_, "voxels");
+            for (GridLevel& level : levels_) find_moving_surfaces(world_, now.visibility, now.stop, level);
         }
+        if (light_changed_)
+            photons_.restart(light_paths_, *first_index_);
+        else
+            photons_.begin_parts(true);
+        trace_photons(light_changed_);
         make_radiance_grids();
         if (surfaces_changed_)
             for (GridLevel& level : levels_) place_cells(level);
         parts_left_ = update_all_ ? 1 : parts();
         surfaces_changed_ = light_changed_ = false;
-    } else if (photon_parts_left_ > 0) {
-        trace_next_photons(visibility, views, stop, counts);
-        make_radiance_grids();
-        parts_left_ = parts();
-    } else if (parts_left_ == 0 && ++calls_at_rest_ >= 4 && std::has_single_bit(calls_at_rest_) &&
-               (moves() || !(settings_.budget_s > 0) ||
-                seconds_since(started_) + last_update_s_ < settings_.budget_s)) {
-        // A field costs as much as many passes.
-        trace_all_photons(visibility, views, stop, counts);
-        make_radiance_grids();
-        parts_left_ = 1;
-        update_all_ = true;
+    } else if (photons_.parts_left() > 0) {
+        trace_photons(false);
+        if (updates_ == 0 || photons_.parts_left() == 0) { // means take whole sets
+            make_radiance_grids();
+            parts_left_ = parts();
+        }
+    } else if (parts_left_ == 0 && refines_at_rest()) {
         ++updates_;
+        if (frames()) {
+            photons_.begin_parts(false);
+        } else {
+            trace_photons(true);
+            make_radiance_grids();
+            parts_left_ = 1;
+            update_all_ = true;
+        }
     }
     if (parts_left_ == 0) return;
-    update_cells(visibility, update_all_ ? 0 : next_part_, update_all_ ? 1 : parts(), stop, counts);
+    update_cells(now.visibility, update_all_ ? 0 : next_part_, update_all_ ? 1 : parts(), now.stop, now.counts);
     next_part_ = (next_part_ + 1) % parts();
     --parts_left_;
     if (update_all_) last_update_s_ = seconds_since(begun);
@@ -453,8 +321,8 @@ void IndirectField::report_counts()
         report_.count(grid + ": area that no light can reach, both sides, m^2", level.hidden_m2);
     }
     if (levels_.empty()) return;
-    report_.count("photons of the last set", double(photons_held_));
-    report_.count("sets of photons", double(photon_sets_));
+    report_.count("photons of the last set", double(photon_count_));
+    report_.count("sets of photons", double(photons_.sets()));
     report_.count("flux of the photons, W (luminance)", watt(stored_));
 }
 

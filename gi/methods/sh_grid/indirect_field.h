@@ -3,9 +3,8 @@
 // A world that is much larger than what is shown has two levels: a fine grid around the latter, and one of all.
 
 #include "gi/core/report.h"
-#include "gi/methods/sh_grid/field.h"
 #include "gi/methods/sh_grid/focus.h"
-#include "gi/methods/sh_grid/inner_paths.h"
+#include "gi/methods/sh_grid/photon_sets.h"
 #include "gi/render/path_sample.h"
 #include "gi/render/render_settings.h"
 #include "gi/scene/motion/moving_world.h"
@@ -15,24 +14,10 @@
 
 namespace gi {
 
-struct GridLevel {
-    Bounds bounds;
-    SparseCells<BlockVoxels> fixed_blocks; ///< of triangles that stay
-    SparseCells<BlockVoxels> blocks;       ///< of all, first those of the former
-    Patches patches;
-    std::vector<PatchSample> samples; ///< of patches that stay, then of others
-    std::size_t fixed_patches = 0, fixed_samples = 0;
-    std::optional<ReachedSides> reached;
-    RadianceGrids grids;
-    Field field;
-    std::vector<std::uint32_t> new_cells; ///< indices of those without a value yet
-    double hidden_m2 = 0;                 ///< area that no light can reach, of both sides
-};
-
 class IndirectField {
 public:
     /// @param world  must outlive it  @param first_moving  index of the first triangle that may move
-    /// @param stop  see StartPasses
+    /// @param stop  of the only picture; null = frames
     IndirectField(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
                   StopRequest const* stop);
 
@@ -58,31 +43,24 @@ private:
     {
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
-    void fit_budget(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop,
-                    PathCounts& counts);
-    void update(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop,
-                PathCounts& counts);
+    /// What an update works with.
+    struct Now {
+        ExactVisibility const& visibility;
+        std::span<FrameView const> views;
+        BuildStop const& stop;
+        PathCounts& counts;
+    };
+    void fit_budget(Now const& now);
+    void update(Now const& now);
+    bool refines_at_rest();
     std::vector<bool> only_smooth() const;
     void place_levels(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop);
-    void find_fixed_surfaces(GridLevel& level, ExactVisibility const& visibility, BuildStop const& stop);
-    void find_moving_surfaces(ExactVisibility const& visibility, BuildStop const& stop);
-    LightPaths light_paths_of(int part, BuildStop const& stop) const;
-    template <class Trace>
-    std::vector<Photon> trace_part(LightPaths paths, std::uint64_t stream, Trace const& trace);
-    void trace_from_lights(ExactVisibility const& visibility, int part, BuildStop const& stop, PathCounts& counts);
-    void trace_inner(ExactVisibility const& visibility, int first_part, int last_part,
-                     std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
-    void trace_photons(ExactVisibility const& visibility, int first_part, int last_part,
-                       std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
-    void trace_all_photons(ExactVisibility const& visibility, std::span<FrameView const> views,
-                           BuildStop const& stop, PathCounts& counts);
-    void trace_next_photons(ExactVisibility const& visibility, std::span<FrameView const> views,
-                            BuildStop const& stop, PathCounts& counts);
-    void make_radiance_grid(GridLevel& level, std::span<Photon const> photons);
     void make_radiance_grids();
     void place_cells(GridLevel& level);
     void update_cells(ExactVisibility const& visibility, int part, int parts, BuildStop const& stop,
                       PathCounts& counts);
+    /// Whether passes belong to frames, none of which shall take long, instead of to one picture.
+    bool frames() const { return stop_ == nullptr; }
     bool moves() const { return first_moving_ < world_.triangles.size(); }
     int parts() const { return settings_.sh_grid.field_passes; }
     RadianceBy by() const { return settings_.sh_grid.radiance_by; }
@@ -103,14 +81,9 @@ private:
 
     std::vector<GridLevel> levels_;
     bool surfaces_changed_ = true, light_changed_ = true, coverage_changed_ = false, materials_changed_ = false;
-    std::optional<InnerPaths> inner_paths_; ///< with a fine grid
-    /// Of the last set, by part of the light paths: from the lights, and from surfaces of the fine grid.
-    std::vector<std::vector<Photon>> photons_, inner_photons_;
-    std::size_t photons_held_ = 0;
-    int photon_parts_left_ = 0; ///< that do not know the latest geometry
-    int next_photon_part_ = 0;
-    std::uint32_t photon_sets_ = 0; ///< since the last change
-    dvec3 stored_{0};               ///< flux of photons, W
+    PhotonSets photons_;
+    std::size_t photon_count_ = 0;
+    dvec3 stored_{0}; ///< flux of photons, W
     bool has_field_ = false;
     bool update_all_ = true;    ///< cells in the next update
     std::uint32_t updates_ = 0; ///< of the whole fields since the last change, each with other directions

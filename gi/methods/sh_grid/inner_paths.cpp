@@ -3,7 +3,6 @@
 #include "gi/core/rng.h"
 #include "gi/methods/sh_grid/focus.h"
 #include "gi/methods/sh_grid/met_surface.h"
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
 #include "gi/methods/vpl/emission.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/ray_path.h"
@@ -62,7 +61,8 @@ std::vector<InnerPaths::Start> InnerPaths::trace_block(InnerWorld const& world, 
             ShadingPoint const at = shading_point(world.world, s.triangle, weights, -l.direction);
             shadows.push_back(shadow_ray(at.position, at.geometric_normal, at.clearance, l));
             shadows.back().seed = rng.next();
-            lit.push_back({{{s.triangle, weights, l.distance}, -l.direction, power, i}, k, cosine > 0 ? 0u : 1u});
+            lit.push_back(
+                {{{s.triangle, weights, l.distance}, -l.direction, power, i, 0}, k, cosine > 0 ? 0u : 1u});
         } else {
             float const front = shown_[2 * s.patch], both = front + shown_[2 * s.patch + 1];
             float const chance = both > 0 ? 0.05f + 0.9f * front / both : 0.5f;
@@ -72,7 +72,7 @@ std::vector<InnerPaths::Start> InnerPaths::trace_block(InnerWorld const& world, 
             ShadingPoint const at = shading_point(world.world, s.triangle, weights, -direction);
             rays.push_back({.ray = {leave(at, direction), direction}, .seed = rng.next()});
             vec3 const power{kPi * area / (side == 0 ? chance : 1 - chance)}; // for a radiance of 1
-            seeing.push_back({{{s.triangle, weights, 0}, -direction, power, i}, k, side});
+            seeing.push_back({{{s.triangle, weights, 0}, -direction, power, i, 1}, k, side});
         }
     }
     std::vector<Start> out;

@@ -17,6 +17,25 @@ void ReachedSides::add(std::span<VirtualLight const> vertices)
     }
 }
 
+ReachedSides& ReachedSides::operator|=(ReachedSides const& o)
+{
+    for (std::size_t k = 0; k < of_cell.size(); ++k) of_cell[k] |= o.of_cell[k];
+    return *this;
+}
+
+void move_photons(WorldView const& world, std::size_t first_moving, std::span<Photon> photons)
+{
+    tbb::parallel_for(std::size_t(0), photons.size(), [&](std::size_t i) {
+        Photon& p = photons[i];
+        if (p.triangle < first_moving) return;
+        Surface const& s = world.surfaces[p.triangle];
+        vec3 const across = glm::cross(s.edge1, s.edge2);
+        float const length = glm::length(across);
+        p.position = s.corner + p.weights.x * s.edge1 + p.weights.y * s.edge2;
+        if (length > 0) p.normal = across * ((p.front ? 1.0f : -1.0f) / length);
+    });
+}
+
 SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
                            std::span<Photon const> photons)
 {
@@ -32,7 +51,8 @@ SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const
     return out;
 }
 
-void reflect_photons(std::span<VirtualLight const> vertices, std::uint64_t seed, std::vector<Photon>& out)
+void reflect_photons(WorldView const& world, std::span<VirtualLight const> vertices, std::uint64_t seed,
+                     std::vector<Photon>& out)
 {
     std::vector<Photon> photons(vertices.size());
     tbb::parallel_for(std::size_t(0), vertices.size(), [&](std::size_t i) {
@@ -43,8 +63,13 @@ void reflect_photons(std::span<VirtualLight const> vertices, std::uint64_t seed,
         BsdfSample const s = sample(v.bsdf, v.arrived, v.front, u_lobe, rng.uniform2());
         vec3 const direction = v.frame.to_world(s.wi);
         bool const leaves = !s.delta && s.wi.z > 0 && glm::dot(direction, v.normal) > 0;
-        photons[i] = {v.position, v.normal, leaves ? direction : v.normal, leaves ? v.power * s.weight : vec3{0},
-                      v.triangle, v.front};
+        photons[i] = {v.position,
+                      v.normal,
+                      leaves ? direction : v.normal,
+                      leaves ? v.power * s.weight : vec3{0},
+                      v.triangle,
+                      v.front,
+                      barycentric_at(world.surfaces[v.triangle], v.position)};
     });
     for (Photon const& p : photons)
         if (max_component(p.flux) > 0 && all_finite(p.flux)) out.push_back(p);

@@ -15,7 +15,8 @@ struct Photon {
     vec3 direction; ///< unit, in which it leaves
     vec3 flux;      ///< W
     std::uint32_t triangle;
-    bool front; ///< it leaves the counter-clockwise side
+    bool front;   ///< it leaves the counter-clockwise side
+    vec2 weights; ///< of corners 1 and 2 of the triangle
 };
 
 /// The sides of surfaces that light has reached, by cell: bit side_index() of them.
@@ -28,6 +29,7 @@ struct ReachedSides {
 
     explicit ReachedSides(GridFrame const& f) : frame(f), of_cell(f.cells()) {}
     void add(std::span<VirtualLight const> vertices);
+    ReachedSides& operator|=(ReachedSides const& o); ///< of the same frame
 };
 
 /// Photons by the sides of patches that they leave.
@@ -41,8 +43,12 @@ struct SortedPhotons {
 SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
                            std::span<Photon const> photons);
 
+/// Moves photons with the triangles from first_moving on, to where these are now.
+void move_photons(WorldView const& world, std::size_t first_moving, std::span<Photon> photons);
+
 /// Reflects each vertex of light paths once, in a random direction, and appends the photons.
-/// @param seed  of the directions
-void reflect_photons(std::span<VirtualLight const> vertices, std::uint64_t seed, std::vector<Photon>& out);
+/// @param world  of the vertices  @param seed  of the directions
+void reflect_photons(WorldView const& world, std::span<VirtualLight const> vertices, std::uint64_t seed,
+                     std::vector<Photon>& out);
 
 } // namespace gi

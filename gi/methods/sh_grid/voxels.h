@@ -55,29 +55,20 @@ GI_FN inline GridHit walk_grid(CellsView<BlockVoxels> const& blocks, vec3 origin
 {
     GridFrame const& frame = blocks.frame;
     float const voxel = frame.cell / 4;
-    vec3 const from = (origin - frame.low) / voxel, end = vec3(4 * frame.size);
-    vec3 inverse;
-    for (int axis = 0; axis < 3; ++axis) {
-        float const d = direction[axis];
-        inverse[axis] = 1 / (glm::abs(d) < 1e-9f ? (d < 0 ? -1e-9f : 1e-9f) : d);
-    }
-    vec3 const to_low = -from * inverse, to_high = (end - from) * inverse;
     constexpr float kStep = 1e-3f; // past borders, voxels
-    float t = glm::max(max_component(glm::min(to_low, to_high)) + kStep, start / voxel);
-    float const stop = min_component(glm::max(to_low, to_high)) - kStep;
-    while (t < stop) {
-        vec3 const p = from + t * direction;
+    GridRay const ray((origin - frame.low) / voxel, direction, vec3(4 * frame.size), start / voxel);
+    for (float t = kStep; t < ray.length - kStep;) {
+        vec3 const p = ray.from + t * direction;
         glm::ivec3 const v = glm::clamp(glm::ivec3(glm::floor(p)), glm::ivec3{0}, 4 * frame.size - 1);
         std::uint32_t const place = blocks.place[frame.index(v / 4)];
         float side = 4;
         if (place != kNoCell) {
             glm::ivec3 const in = v % 4;
-            if ((blocks.values[place] >> (in.x + 4 * in.y + 16 * in.z) & 1) != 0) return {v / 4, t * voxel};
+            if ((blocks.values[place] >> (in.x + 4 * in.y + 16 * in.z) & 1) != 0)
+                return {v / 4, (ray.skipped + t) * voxel};
             side = 1;
         }
-        vec3 const corner = glm::floor(p / side) * side;
-        vec3 const leaves = glm::max((corner - from) * inverse, (corner + side - from) * inverse);
-        t = glm::max(min_component(leaves), t) + kStep;
+        t = glm::max(ray.leaves(glm::floor(p / side) * side, side), t) + kStep;
     }
     return {};
 }

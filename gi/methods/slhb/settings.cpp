@@ -205,8 +205,8 @@ std::string as_options(RenderSettings const& chosen)
     if (s.cache != RadianceCaching::automatic) names.push_back("radiance-cache");
     if (s.cone > 0) names.push_back("cone");
     names.insert(names.end(), {"packed", "gather"});
-    std::string const device = chosen.space == Space::device ? " --device cuda" : "";
-    return as_options(slhb_options(), all, names) + device;
+    std::string const own = as_options(slhb_options(), all, names);
+    return chosen.space == Space::device ? own + " " + as_options(common_options(), all, {"device"}) : own;
 }
 
 std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, Camera const& camera)

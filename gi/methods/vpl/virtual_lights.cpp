@@ -19,7 +19,7 @@ struct LightPath {
     EmittedLight light;
     int scatterings = 0; ///< non-delta, so far
     bool from_light = true;
-    bool from_outside = false, straight = true; ///< see LightPaths::place
+    bool from_outside = false, straight = true; ///< see LightPaths::grid_side
     std::vector<VirtualLight> left;             ///< left along the path
 };
 
@@ -41,10 +41,10 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     vec3 const power = p.light.power * (arrived.z / cos_arrived);
     if (!all_finite(power) || !(max_component(power) > 0)) return false;
     if (!only_delta(at.bsdf)) {
-        if (s.place) {
-            PathPlace const place = s.place(at.position, hit.triangle);
-            if (p.from_outside && p.straight && place == PathPlace::ends) return false;
-            p.from_outside = place == PathPlace::outside;
+        if (s.grid_side) {
+            GridSide const side = s.grid_side(at.position, hit.triangle);
+            if (p.from_outside && p.straight && side == GridSide::inside_still) return false;
+            p.from_outside = side == GridSide::outside;
         }
         p.left.push_back({.position = at.position,
                           .normal = at.geometric_normal,
@@ -179,6 +179,8 @@ std::vector<VirtualLight> trace_from_surfaces(WorldView const& world, ExactVisib
                             LightStart const& start = starts[i];
                             p.rng = Pcg32::for_path(s.seed ^ 0x57a8, start.number, s.pass);
                             p.light.ray.direction = start.direction;
+                            if (start.scatterings >= s.bounces) return;
+                            p.scatterings = start.scatterings;
                             p.light.power = start.power;
                             if (!advance(world, s, p, start.hit)) p.light.power = vec3{0};
                         });

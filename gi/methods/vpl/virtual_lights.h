@@ -25,8 +25,8 @@ struct VirtualLight {
     bool matt;    ///< purely diffuse: the BSDF is `bsdf.diffuse` / pi
 };
 
-/// See LightPaths::place.
-enum class PathPlace : std::uint8_t { outside, inside, ends };
+/// Where a point of a surface lies relative to a fine grid; `still`: of a triangle that does not move.
+enum class GridSide : std::uint8_t { outside, inside_moving, inside_still };
 
 struct LightPaths {
     std::uint32_t count = 256;           ///< >= 1
@@ -37,9 +37,9 @@ struct LightPaths {
     /// Half of the sky's and the parallel lights' paths go through the sphere around this box, the others past it;
     /// empty = all go through the whole scene.
     Bounds focus{};
-    /// Where a path from a light ends without a trace if it comes there, not by mirrors or glass, from outside or
-    /// from afar, as others begin there. Empty = nowhere.
-    std::function<PathPlace(vec3 position, std::uint32_t triangle)> place{};
+    /// If set, paths that come from outside of a fine grid or from afar, not by mirrors or glass, end at its still
+    /// surfaces without a trace, as other paths start there (LightStart).
+    std::function<GridSide(vec3 position, std::uint32_t triangle)> grid_side{};
     BuildStop const* stop = nullptr; ///< null = never; else trace_light_paths() throws Interrupted
 };
 
@@ -55,6 +55,7 @@ struct LightStart {
     vec3 direction;       ///< unit, in which the light travels
     vec3 power;           ///< W
     std::uint32_t number; ///< of its random numbers
+    int scatterings;      ///< of the light before, at least
 };
 /// As trace_light_paths(), for paths that begin so.
 std::vector<VirtualLight> trace_from_surfaces(WorldView const& world, ExactVisibility const& visibility,

@@ -33,6 +33,20 @@ GI_FN vec3 albedo(Bsdf const& bsdf);
 /// Coverage of the surface there, 0..1: 1 for opaque materials, 0 or 1 for masks, alpha for blend.
 GI_FN float coverage(WorldView const& world, std::uint32_t triangle, vec2 barycentric);
 
+/// Weights of vertices 1 and 2 at a point on (or near) a triangle, within the triangle.
+GI_FN inline vec2 barycentric_at(Surface const& s, vec3 position)
+{
+    vec3 const p = position - s.corner;
+    float const a = glm::dot(s.edge1, s.edge1), b = glm::dot(s.edge1, s.edge2), c = glm::dot(s.edge2, s.edge2);
+    float const p1 = glm::dot(p, s.edge1), p2 = glm::dot(p, s.edge2), determinant = a * c - b * b;
+    if (!(determinant > 0)) return vec2{1.0f / 3};
+    vec2 w{(c * p1 - b * p2) / determinant, (a * p2 - b * p1) / determinant};
+    if (!(w.x == w.x) || !(w.y == w.y)) return vec2{1.0f / 3};
+    w = glm::clamp(w, 0.0f, 1.0f);
+    float const sum = w.x + w.y;
+    return sum > 1 ? w / sum : w;
+}
+
 } // namespace gi
 
 #include "gi/scene/shading/shading_point.inl.h"

@@ -8,20 +8,6 @@
 
 namespace gi {
 
-/// Weights of vertices 1 and 2 at a point on (or near) a triangle, within the triangle.
-GI_FN inline vec2 barycentric_at(Surface const& s, vec3 position)
-{
-    vec3 const p = position - s.corner;
-    float const a = glm::dot(s.edge1, s.edge1), b = glm::dot(s.edge1, s.edge2), c = glm::dot(s.edge2, s.edge2);
-    float const p1 = glm::dot(p, s.edge1), p2 = glm::dot(p, s.edge2), determinant = a * c - b * b;
-    if (!(determinant > 0)) return vec2{1.0f / 3};
-    vec2 w{(c * p1 - b * p2) / determinant, (a * p2 - b * p1) / determinant};
-    if (!(w.x == w.x) || !(w.y == w.y)) return vec2{1.0f / 3};
-    w = glm::clamp(w, 0.0f, 1.0f);
-    float const sum = w.x + w.y;
-    return sum > 1 ? w / sum : w;
-}
-
 /// True if a triangle with alpha has a surface at a position in a texel (random if coverage is partial).
 GI_FN inline bool is_there(WorldView const& world, std::uint32_t triangle, std::uint32_t texel, vec3 position,
                            std::uint32_t seed)

@@ -121,7 +121,7 @@ void KernelRenderer<S>::changed(Changes const& c)
         }
         scene_.update(world_, soup_, c);
     }
-    if (c.materials) build_exact();
+    if (c.materials || c.coverage) build_exact();
     bool axes = axes_.walks() != walks(), light_points = changes_lights(c);
     if (c.geometry) {
         if (grow(grid_bounds_, world_.bounds)) {
