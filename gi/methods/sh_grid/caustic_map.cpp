@@ -68,14 +68,24 @@ std::vector<int> disk_layers(std::vector<CausticPhoton> const& photons, float la
         std::uint64_t key; ///< of the finest cell, along a Morton curve
         std::uint32_t photon;
     };
-    vec3 low{kInf};
-    for (CausticPhoton const& p : photons) low = glm::min(low, p.position);
+    vec3 middle{0};
+    std::vector<float> along(photons.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < photons.size(); ++i) along[i] = photons[i].position[axis];
+        auto const median = along.begin() + std::ptrdiff_t(along.size() / 2);
+        std::nth_element(along.begin(), median, along.end());
+        if (median != along.end()) middle[axis] = *median;
+    }
     float const per_m = std::ldexp(1 / (largest * std::sqrt(kPi)), kLayers - 1);
     std::vector<Place> places;
     places.reserve(photons.size());
+    constexpr float kCells = 2097152; // of a Morton curve, along an axis
     for (std::uint32_t i = 0; i < photons.size(); ++i) {
-        glm::uvec3 const at(glm::clamp((photons[i].position - low) * per_m, 0.0f, 2097151.0f));
-        places.push_back({morton(at.x, at.y, at.z), i});
+        vec3 const at = (photons[i].position - middle) * per_m + kCells / 2;
+        // Others are so far away that the largest disks will do.
+        if (!(min_component(at) >= 0) || !(max_component(at) < kCells)) continue;
+        glm::uvec3 const cell(at);
+        places.push_back({morton(cell.x, cell.y, cell.z), i});
     }
     std::ranges::sort(places, {}, &Place::key);
     std::vector<int> out(photons.size());

@@ -174,7 +174,7 @@ Caustics::Caustics(World const& world, RenderSettings const& settings, Report& r
 void Caustics::changed(Changes const& c)
 {
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds || c.materials || c.coverage;
-    light_changed_ = light_changed_ || c.lights || c.emitters || c.environment || c.light_select;
+    light_changed_ = light_changed_ || c.lights || c.emitters || c.environment;
 }
 
 void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,

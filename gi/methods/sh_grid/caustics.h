@@ -12,7 +12,7 @@
 // Light paths begin on smooth triangles: a point there, a sample of the lights, a shadow ray between them. So all
 // of them meet one, however small it is. Each pass has photons of its own; at rest their disks shrink from pass to
 // pass such that the mean of the passes converges (Knaus and Zwicker 2011). While the camera or anything
-// else moves, the photons are those of the first pass: no flicker.
+// else moves, each frame begins with the photons of the first pass: no flicker.
 
 #include "gi/core/alias_table.h"
 #include "gi/core/report.h"

@@ -46,10 +46,11 @@ std::vector<PlanItem> explain_sh_grid(World const& world, RenderSettings const& 
                                                          s.caustic_photons, smooth)
                                            : fmt::format("{} smooth triangles, but --caustic-photons 0", smooth)});
     bool const moves = world.static_triangles < world.triangles.size();
-    out.push_back({"photons", true,
-                   fmt::format("{} light paths per update; those of the sky and parallel lights that reach a room "
-                               "through windows are few, then more are needed (--photons)",
-                               s.photons)});
+    out.push_back(
+        {"photons", true,
+         fmt::format("{} light paths per update{}", s.photons,
+                     needs_fine_grid(focus, world.bounds) ? ", and as many that begin on surfaces of the fine grid"
+                                                          : "")});
     out.push_back({"updates of moving parts", moves,
                    moves ? fmt::format("{} triangles can move; the field follows in {} frames",
                                        world.triangles.size() - world.static_triangles, s.field_passes)

@@ -75,7 +75,7 @@ vec3 field_irradiance(FieldCell const& cell, int degree, vec3 normal)
 }
 
 FieldLight::FieldLight(std::span<GridLevel const> levels, CausticMap const* caustics,
-                       ExactVisibility const& visibility, GatherSettings const& settings)
+                       ExactVisibility const& visibility, ShGridSettings const& settings)
     : caustics_(caustics),
       visibility_(visibility),
       degree_(levels.empty() ? 0 : levels[0].field.degree),
@@ -103,7 +103,7 @@ void FieldLight::add_cells(std::size_t level, vec3 position, vec3 normal, float 
         float const d = glm::length(to_center) / kReach;
         if (d >= 1) continue;
         float weight = (2 * d - 3) * square(d) + 1; // w_sh
-        if (settings_.block_leaks) {
+        if (settings_.leak_weights == Switch::on) {
             weight *= glm::clamp(2 * glm::dot(to_center, normal) + 0.1f, 1e-4f, 1.0f);
             weight *= std::max(square(cell->open), 1e-4f) * visibility(*cell, kAbove * normal - to_center);
         }
@@ -143,14 +143,15 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
                 ? bsdf_detail::through_coat(b, point.wo.z, 1 / 1.5f) // the coat's mean angle of incidence
                 : 1.0f;
         vec3 arriving{0};
-        if (settings_.directions == 0) {
+        if (settings_.gather_directions == 0) {
             arriving = field_irradiance(cell, degree_, at.frame.normal);
         } else {
-            for (int k = 0; k < settings_.directions; ++k) {
-                vec2 const u{(float(k) + point.rng.uniform()) / float(settings_.directions), point.rng.uniform()};
+            for (int k = 0; k < settings_.gather_directions; ++k) {
+                vec2 const u{(float(k) + point.rng.uniform()) / float(settings_.gather_directions),
+                             point.rng.uniform()};
                 arriving += field_radiance(cell, degree_, at.frame.to_world(square_to_cosine_hemisphere(u)));
             }
-            arriving *= kPi / float(settings_.directions);
+            arriving *= kPi / float(settings_.gather_directions);
         }
         if (settings_.obscurance_m > 0) {
             float y[FieldCell::kMost];
@@ -202,7 +203,7 @@ void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, Path
         TreePoint& p = points[i];
         if (!(p.wo.z > 0)) continue;
         find_cells(p.at.position, p.at.geometric_normal, cells);
-        int const chosen = p.direct ? settings_.shadow_rays : std::min(settings_.shadow_rays, 1);
+        int const chosen = p.direct ? settings_.field_shadow_rays : std::min(settings_.field_shadow_rays, 1);
         if (chosen == 0) {
             for (NearCell const& near : cells) add(near, near.weight, around[i]);
             seen[i] = cells.empty() ? 0 : 1;
@@ -232,7 +233,9 @@ void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, Path
 
 std::optional<Glyph> FieldLight::glyph(Ray const& ray, float reach) const
 {
-    return settings_.glyphs && !levels_.empty() ? nearest_glyph(levels_[0], degree_, ray, reach) : std::nullopt;
+    return settings_.field_glyphs == Switch::on && !levels_.empty()
+               ? nearest_glyph(levels_[0], degree_, ray, reach)
+               : std::nullopt;
 }
 
 void FieldLight::add(NearCell const& near, float weight, FieldCell& out) const

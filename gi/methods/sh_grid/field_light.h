@@ -16,21 +16,12 @@
 
 namespace gi {
 
-struct GatherSettings {
-    int directions = 0;         ///< N_d: samples of the diffuse lobe; 0 = convolution in closed form
-    int glossy_directions = 64; ///< N_g: samples of a glossy lobe
-    float obscurance_m = 0;     ///< surfaces nearer than this darken the diffuse light (sec. 4.4); 0 = off
-    bool block_leaks = true;
-    bool glyphs = false; ///< draw the finest level's cells
-    int shadow_rays = 4; ///< to cells, which are chosen by their weights; 0 = the weighted mean of all cells
-};
-
 class FieldLight : public SurfaceLight {
 public:
     /// @param levels  the finest first, empty without indirect light; with the other arguments must outlive it
     /// @param caustics  null = none
     FieldLight(std::span<GridLevel const> levels, CausticMap const* caustics, ExactVisibility const& visibility,
-               GatherSettings const& settings);
+               ShGridSettings const& settings);
 
     /// Also adds the light of caustics, which has scattered once, to that layer of the points' samples.
     void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const override;
@@ -66,7 +57,7 @@ private:
     CausticMap const* caustics_;
     ExactVisibility const& visibility_;
     int degree_, coefficients_;
-    GatherSettings settings_;
+    ShGridSettings const& settings_;
     mutable std::atomic<std::uint64_t> unseen_ = 0;
 };
 

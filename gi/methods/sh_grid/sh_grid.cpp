@@ -4,6 +4,8 @@
 #include "gi/methods/sh_grid/field_light.h"
 #include "gi/methods/whitted/whitted.h"
 
+#include <algorithm>
+
 namespace gi {
 namespace {
 
@@ -36,10 +38,15 @@ public:
     std::string options() const override
     {
         RenderSettings chosen = settings_;
-        chosen.sh_grid.voxels = field_.voxels();
-        chosen.sh_grid.photons = int(field_.light_paths());
-        return TreeRenderer::options() + " " +
-               as_options(sh_grid_options(), chosen, {"voxels", "photons", "caustic-photons"});
+        ShGridSettings& own = chosen.sh_grid;
+        own.caustic_photons = int(photon_share() * own.caustic_photons);
+        own.voxels = field_.voxels();
+        own.photons = int(field_.light_paths());
+        std::vector<std::string_view> names{"voxels", "photons", "caustic-photons"};
+        for (RenderOption const& o : sh_grid_options())
+            if (std::ranges::find(names, o.name) == names.end() && o.get(chosen) != o.get(RenderSettings{}))
+                names.push_back(o.name);
+        return TreeRenderer::options() + " " + as_options(sh_grid_options(), chosen, names);
     }
 
 protected:
@@ -49,21 +56,20 @@ protected:
         field_.prepare(*visibility_, index, views, counts);
         auto const levels = field_.levels();
         caustics_.prepare(*visibility_, index, views, levels.size() > 1 ? levels[0].bounds : Bounds{},
-                          double(field_.light_paths()) / settings_.sh_grid.photons, counts);
+                          photon_share(), counts);
         rays_ += double(counts.nearest_rays + counts.shadow_rays);
         work_.paths += counts;
         if (light_) unseen_ += light_->unseen();
         light_.reset();
         if (levels.empty() && caustics_.map() == nullptr) return nullptr;
-        ShGridSettings const& s = settings_.sh_grid;
-        light_.emplace(levels, caustics_.map(), *visibility_,
-                       GatherSettings{s.gather_directions, s.glossy_directions, s.obscurance_m,
-                                      s.leak_weights == Switch::on, s.field_glyphs == Switch::on,
-                                      s.field_shadow_rays});
+        light_.emplace(levels, caustics_.map(), *visibility_, settings_.sh_grid);
         return &*light_;
     }
 
 private:
+    /// Of the photons that the settings ask for: less if a budget allows no more.
+    double photon_share() const { return double(field_.light_paths()) / settings_.sh_grid.photons; }
+
     IndirectField field_;
     Caustics caustics_;
     std::uint64_t unseen_ = 0; ///< see FieldLight::unseen()

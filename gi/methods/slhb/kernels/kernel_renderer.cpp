@@ -73,6 +73,7 @@ template <Space S>
 void KernelRenderer<S>::build_exact()
 {
     bool const needed = narrow_somewhere(world_);
+    if (needed && scene_.has_rays()) return scene_.test_alpha(plan_scene(world_).alpha_tests);
     if (needed == scene_.has_rays()) return;
     StageTimer const timer(report_, "build (BVH)");
     scene_.use_rays(needed, plan_scene(world_).alpha_tests, first_moving_);

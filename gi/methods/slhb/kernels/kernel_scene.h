@@ -32,6 +32,8 @@ public:
         if (changes.geometry && bvh_) bvh_->moved(world_.view());
     }
     bool has_rays() const { return bvh_.has_value(); }
+    /// See WorldBvh. Call if has_rays().
+    void test_alpha(bool alpha_tests) { bvh_->test_alpha(alpha_tests); }
     /// Builds or drops what exact rays go through. @param first_moving  index of the first dynamic triangle
     void use_rays(bool needed, bool alpha_tests, std::size_t first_moving)
     {
