@@ -42,6 +42,7 @@ public:
         double const earlier = renderer_->rays();
         FrameView const whole{camera, settings_.width, settings_.height};
         motion_.see({&whole, 1});
+        if (!moments) renderer_->begin(passes_, {&whole, 1});
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             for (std::uint32_t i = 0; i < paths; ++i) {
                 FrameView eye = whole;
@@ -115,6 +116,7 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
     auto const renderer = start(world, settings, world.triangles.size(), report, &stop);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
     FrameView const eye{camera, settings.width, settings.height};
+    on_threads(settings.threads, [&] { renderer->begin(loop.first_path(), {&eye, 1}); });
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths; ++i)
             renderer->pass(loop.first_path() + sums.paths, {&eye, 1}, {&sums, 1}, nullptr);

@@ -16,6 +16,9 @@ public:
     virtual ~PassRenderer() = default;
     /// See Changes.
     virtual void changed(Changes const& changes) = 0;
+    /// Does before the next pass what need not count as time of passes, from which the loop foretells their end.
+    /// @param index, views  of that pass. Throws Interrupted.
+    virtual void begin(std::uint32_t /*index*/, std::span<FrameView const> /*views*/) {}
     /// Traces one more path for every pixel of all views. @param index  of the pass, over all frames
     /// @param sums  one per view  @param motion  gets the first hits of all views; null = not needed
     virtual void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,

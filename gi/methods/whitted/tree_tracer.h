@@ -6,8 +6,8 @@
 // Trees advance together, one generation at a time: all nearest hits, then all surfaces, then all shadow rays.
 
 #include "gi/core/rng.h"
-#include "gi/render/path_step.h"
 #include "gi/render/exact_visibility.h"
+#include "gi/render/path_step.h"
 #include "gi/render/ray_path.h"
 
 #include <optional>

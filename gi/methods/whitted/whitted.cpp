@@ -30,10 +30,18 @@ void TreeRenderer::changed(Changes const& changes)
     if (changes.geometry) visibility_->moved(world_);
 }
 
+void TreeRenderer::begin(std::uint32_t index, std::span<FrameView const> views)
+{
+    light_of_prepared_ = prepare(index, views);
+    prepared_ = index;
+}
+
 void TreeRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
                         MotionVectors* motion)
 {
-    SurfaceLight const* const light = prepare(index, views);
+    if (prepared_ != index) begin(index, views);
+    prepared_.reset();
+    SurfaceLight const* const light = light_of_prepared_;
     StageTimer const timer(report_, "ray trees");
     for (std::size_t k = 0; k < views.size(); ++k)
         trace_view(views[k], index, light, sums[k],

@@ -7,6 +7,7 @@
 #include "gi/render/render_option.h"
 
 #include <memory>
+#include <optional>
 
 namespace gi {
 
@@ -18,6 +19,7 @@ public:
                  StopRequest const* stop);
 
     void changed(Changes const& changes) override;
+    void begin(std::uint32_t index, std::span<FrameView const> views) override;
     void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
               MotionVectors* motion) override;
     void report_work() override;
@@ -41,6 +43,9 @@ private:
     void trace_view(FrameView const& view, std::uint32_t index, SurfaceLight const* light, Accumulator& sums,
                     std::span<FirstHit> first_hits);
 
+    /// What begin() has prepared: the light of the pass of this index.
+    std::optional<std::uint32_t> prepared_;
+    SurfaceLight const* light_of_prepared_ = nullptr;
     double trees_ = 0; ///< since the last report
 };
 
