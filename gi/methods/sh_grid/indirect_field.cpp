@@ -240,9 +240,10 @@ void IndirectField::fit_budget(Now const& now)
             throw;
         }
         double const surfaces_s = seconds_since(begun) - last_update_s_;
-        // Of a moving world, most surfaces stay, and light follows in parts.
-        double const next_s = moves() ? kLight * last_update_s_ / parts()
-                                      : seconds_since(started_) + kSurfaces * surfaces_s + kLight * last_update_s_;
+        // From frame to frame surfaces stay, and light follows in parts.
+        double const next_s = frames()
+                                  ? kLight * last_update_s_ / parts()
+                                  : seconds_since(started_) + kSurfaces * surfaces_s + kLight * last_update_s_;
         if (doublings == 0 || next_s > most_s) return;
     }
 }
