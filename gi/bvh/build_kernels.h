@@ -92,7 +92,7 @@ struct StartClusters {
 
 /// For each cluster, that neighbour along the curve with which the common box is smallest.
 struct FindNeighbours {
-    static constexpr std::size_t kReach = 8;
+    static constexpr std::size_t kReach = 5;
     View<Box const> boxes;
     bool in_pairs; ///< pairs of neighbours instead
     View<std::uint32_t> nearest;
