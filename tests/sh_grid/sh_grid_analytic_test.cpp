@@ -358,6 +358,31 @@ TEST(ShGrid, GlyphsShowTheField)
     EXPECT_GT(glyphs, 3u);
 }
 
+/// A floor with a narrow glossy lobe: its rays bring what it reflects, the lamp and the walls, once.
+TEST(ShGrid, NarrowGlossyLobesGetRays)
+{
+    Scene scene;
+    Material floor = lambert(vec3{0.4f});
+    floor.specular = 1;
+    floor.roughness = 0.35f;
+    add_box(scene, {-1, -2, -1}, {1, 1, 1}, add_material(scene, lambert(vec3{0.5f})), true);
+    add_quad(scene, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, floor));
+    add_quad(scene, {-0.3f, 0.5f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{4}, true)));
+    World const world = world_of(scene);
+    Camera const eye = look_at({0, 0, 0.9}, {0, -1, -0.6}, 60);
+    RenderSettings s = picture_of(48, 64);
+    s.paths = 64;
+    Report report;
+    Picture const own = render_sh_grid(world, eye, s, {}, {}, report).picture;
+    s.paths = 1024;
+    Picture const truth = render_reference(world, eye, s, {}, {}, report).picture;
+    for (char const* const layer : {"L1", "L2"}) {
+        double const ratio = mean_of(own, layer).mean / mean_of(truth, layer).mean;
+        fmt::print("glossy floor, {}: {:.4f} of the reference\n", layer, ratio);
+        EXPECT_NEAR(ratio, 1, layer == std::string_view("L1") ? 0.01 : 0.05) << layer;
+    }
+}
+
 /// Without light, without surfaces, and with only one triangle.
 TEST(ShGrid, LittleOrNothing)
 {

@@ -162,11 +162,9 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
     }
     bool const glossy = b.model == MaterialModel::phong ? max_component(b.phong_specular) > 0
                                                         : b.f90.x > 0 && !bsdf_detail::specular_is_delta(b);
-    if (!glossy) return out;
+    if (!glossy || point.glossy_traced) return out;
     int const n = point.direct ? settings_.glossy_directions : std::max(1, settings_.glossy_directions / 8);
-    Bsdf lobe = b; // the glossy one alone: its value and density, without the diffuse base
-    lobe.diffuse = vec3{0};
-    lobe.clear = 0;
+    Bsdf const lobe = glossy_lobe(b);
     vec3 sum{0};
     vec2 const shift = point.rng.uniform2();
     for (int k = 0; k < n; ++k) {
@@ -180,10 +178,20 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
     return out + sum / float(n);
 }
 
+vec3 FieldLight::caustic_radiance(TreePoint const& p) const
+{
+    vec3 const all = caustics_->radiance(p.at, p.wo);
+    if (!p.glossy_traced || !(max_component(all) > 0)) return all;
+    ShadingPoint glossy = p.at;
+    glossy.bsdf = glossy_lobe(p.at.bsdf);
+    return glm::max(all - caustics_->radiance(glossy, p.wo), vec3{0});
+}
+
 void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const
 {
     if (caustics_ != nullptr)
-        for (TreePoint const& p : points) layer_of(*p.sample, 1) += p.throughput * caustics_->radiance(p.at, p.wo);
+        for (TreePoint const& p : points)
+            layer_of(*p.sample, p.scatterings + 1) += p.throughput * caustic_radiance(p);
     if (levels_.empty()) {
         std::ranges::fill(out, vec3{0});
         return;

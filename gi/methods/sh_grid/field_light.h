@@ -47,6 +47,8 @@ private:
         float weight;
         std::uint32_t point; ///< its index
     };
+    /// Without what a ray of the glossy lobe brings.
+    vec3 caustic_radiance(TreePoint const& p) const;
     void add(NearCell const& near, float weight, FieldCell& out) const; ///< distances in m
     /// Adds the weighted mean of the cells that are seen, per point, whose rays follow each other.
     /// @param seen  set to 1 for points that see one

@@ -1,7 +1,9 @@
 #pragma once
 // Ray trees from the camera (Whitted 1980): at each surface, direct light by shadow rays, and one ray for each
 // mirror or glass direction, down to a recursion limit and a cut-off weight. Light that has scattered before at
-// another surface that is neither mirror nor glass is left to a SurfaceLight; without one it is missing.
+// another surface that is neither mirror nor glass is left to a SurfaceLight; without one it is missing. With one,
+// the first glossy lobe along a ray that is narrow gets a ray in a random direction, too (Cook, Porter and
+// Carpenter 1984).
 //
 // Trees advance together, one generation at a time: all nearest hits, then all surfaces, then all shadow rays.
 
@@ -16,12 +18,23 @@
 
 namespace gi {
 
+/// The glossy lobe of a surface alone.
+inline Bsdf glossy_lobe(Bsdf const& b)
+{
+    Bsdf lobe = b;
+    lobe.diffuse = vec3{0};
+    lobe.clear = 0;
+    return lobe;
+}
+
 /// A surface in a ray tree.
 struct TreePoint {
     ShadingPoint at;
     vec3 wo; ///< unit, in at.frame
     Pcg32 rng;
-    bool direct; ///< seen by the camera, not in mirrors or through glass
+    bool direct;        ///< seen by the camera, not in mirrors or through glass
+    bool glossy_traced; ///< a ray brings what its glossy lobe reflects
+    int scatterings;    ///< non-delta, between it and the camera
     vec3 throughput;
     PathSample* sample;
 };
@@ -70,19 +83,22 @@ private:
     struct TreeRay {
         Pcg32 rng{0, 0};
         Ray ray;
-        vec3 throughput{1};
+        PathState state;
         PathSample* sample;
     };
     struct ShadowRay {
         RayQuery query;
         vec3 radiance;
+        int scatterings; ///< see layer_of
         PathSample* sample;
     };
     bool draw_glyph(TreeRay const& r, Hit const& hit) const;
     void shade(TreeRay& r, Hit const& hit, int generation, std::vector<TreeRay>& next,
                std::vector<ShadowRay>& shadows, std::vector<TreePoint>& points, TreeCounts& counts) const;
-    void aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int generation,
+    /// @param glossy_traced  a ray of the glossy lobe may find lights, too
+    void aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int generation, bool glossy_traced,
                        std::vector<ShadowRay>& shadows) const;
+    void reflect_glossy(TreeRay& r, ShadingPoint const& at, vec3 wo, std::vector<TreeRay>& next) const;
 };
 
 } // namespace gi
