@@ -137,7 +137,7 @@ void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts con
                 __builtin_prefetch(bytes);
                 __builtin_prefetch(bytes + 64);
                 if (leaf) __builtin_prefetch(bytes + 128);
-                return {index | (leaf ? kIsLeaf : 0), enters[child]};
+                return {index | (leaf ? kIsLeaf : 0), any ? 0 : enters[child]};
             };
             if (met != 0) {
                 BvhEntry nearest = entry(std::countr_zero(met));
@@ -163,7 +163,7 @@ void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts con
         do {
             if (top == 0) return;
             --top;
-        } while (stack[top].distance > hit.distance);
+        } while (!any && stack[top].distance > hit.distance);
         at = stack[top].node;
     }
 }
