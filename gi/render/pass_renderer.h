@@ -37,6 +37,14 @@ public:
 using StartPasses = std::function<std::unique_ptr<PassRenderer>(
     World const&, RenderSettings const&, std::size_t first_moving, Report&, StopRequest const* stop)>;
 
+/// StartPasses of a class whose constructor takes these arguments.
+template <class Renderer>
+std::unique_ptr<PassRenderer> start_passes(World const& world, RenderSettings const& settings,
+                                           std::size_t first_moving, Report& report, StopRequest const* stop)
+{
+    return std::make_unique<Renderer>(world, settings, first_moving, report, stop);
+}
+
 /// Renders one picture. Layers: see RenderResult. The same seed gives the same bits for any number of threads, if
 /// the passes do. @param name  of the method, for checkpoints. Throws InputError if the checkpoint does not fit.
 RenderResult render_passes(char const* name, StartPasses const& start, World const& world, Camera const& camera,

@@ -76,24 +76,18 @@ private:
     std::optional<FieldLight> light_;
 };
 
-std::unique_ptr<PassRenderer> start(World const& world, RenderSettings const& settings, std::size_t first_moving,
-                                    Report& report, StopRequest const* stop)
-{
-    return std::make_unique<ShGridRenderer>(world, settings, first_moving, report, stop);
-}
-
 } // namespace
 
 RenderResult render_sh_grid(World const& world, Camera const& camera, RenderSettings const& settings,
                             StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
-    return render_passes("sh_grid", start, world, camera, settings, stop, progress, report);
+    return render_passes("sh_grid", start_passes<ShGridRenderer>, world, camera, settings, stop, progress, report);
 }
 
 std::unique_ptr<FrameRenderer> start_sh_grid_frames(MovingWorld const& world, Camera const&,
                                                     RenderSettings const& settings, Report& report)
 {
-    return start_pass_frames(start, world, settings, report);
+    return start_pass_frames(start_passes<ShGridRenderer>, world, settings, report);
 }
 
 } // namespace gi

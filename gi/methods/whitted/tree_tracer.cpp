@@ -15,22 +15,25 @@ bool has_narrow_glossy_lobe(Bsdf const& b)
 
 } // namespace
 
-/// Stratified samples of all lights, as no ray continues by a lobe that could hit them.
+/// Stratified samples of all lights; only a ray of the glossy lobe could hit them, too.
 void TreeTracer::aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int generation, bool glossy_traced,
                                std::vector<ShadowRay>& shadows) const
 {
     int const n = generation == 0 ? settings.light_samples : 1;
     auto const pdf = [](BsdfValue const& bsdf, vec3) { return bsdf.pdf; };
     float const share = 1.0f / float(n);
-    ShadingPoint glossy = at;
-    if (glossy_traced) glossy.bsdf = glossy_lobe(at.bsdf);
+    std::optional<ShadingPoint> glossy;
+    if (glossy_traced) {
+        glossy = at;
+        glossy->bsdf = glossy_lobe(at.bsdf);
+    }
     for (int k = 0; k < n; ++k) {
         LightChoice const choice = choose_light(world, (double(k) + r.rng.uniform_double()) / double(n));
         LightSample const sampled = sample_light(world, choice, at.position, r.rng.uniform2());
         vec3 value = unshadowed_light(at, wo, sampled, true, pdf, share);
-        if (glossy_traced) // the rest of the lobe's part: by the ray
-            value = glm::max(value - unshadowed_light(glossy, wo, sampled, true, pdf, share), vec3{0}) +
-                    unshadowed_light(glossy, wo, sampled, false, pdf, share);
+        if (glossy) // the rest of the lobe's part: by the ray
+            value = glm::max(value - unshadowed_light(*glossy, wo, sampled, true, pdf, share), vec3{0}) +
+                    unshadowed_light(*glossy, wo, sampled, false, pdf, share);
         if (!(max_component(value) > 0)) continue;
         RayQuery query = shadow_ray(at.position, at.geometric_normal, at.clearance, sampled);
         query.seed = r.rng.next();
@@ -98,11 +101,12 @@ void TreeTracer::shade(TreeRay& r, Hit const& hit, int generation, std::vector<T
     if (!only_delta(at.bsdf)) {
         bool const glossy = light != nullptr && r.state.scatterings == 0 && wo.z > 0 &&
                             generation < settings.recursion && has_narrow_glossy_lobe(at.bsdf);
-        if (!world.light_select.empty()) aim_at_lights(r, at, wo, generation, glossy, shadows);
-        if (light != nullptr) {
+        int const scatterings = r.state.scatterings;
+        if (!world.light_select.empty() && scatterings <= bounces)
+            aim_at_lights(r, at, wo, generation, glossy, shadows);
+        if (light != nullptr && (scatterings == 0 || scatterings < bounces)) {
             Pcg32 const rng = Pcg32::for_path(r.rng.next(), 0, 0);
-            points.push_back(
-                {at, wo, rng, generation == 0, glossy, r.state.scatterings, r.state.throughput, r.sample});
+            points.push_back({at, wo, rng, generation == 0, glossy, scatterings, r.state.throughput, r.sample});
         }
         if (glossy) reflect_glossy(r, at, wo, next);
     }

@@ -72,6 +72,7 @@ struct TreeTracer {
     std::uint64_t seed;
     PixelFilter filter;
     int width;
+    int bounces;                         ///< indirect ones: limits what rays of glossy lobes bring
     SurfaceLight const* light = nullptr; ///< null = no indirect light
 
     /// Traces the trees number `index` of some pixels to their ends.

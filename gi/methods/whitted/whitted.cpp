@@ -25,6 +25,7 @@ void TreeRenderer::build(StopRequest const* stop)
 
 void TreeRenderer::changed(Changes const& changes)
 {
+    prepared_.reset();
     // Rays with coverage tests use the materials from when the BVH was built.
     if (changes.coverage || (changes.materials && plan_scene(world_).alpha_tests)) return build(nullptr);
     if (changes.geometry) visibility_->moved(world_);
@@ -59,6 +60,7 @@ void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLi
                             .seed = settings_.seed,
                             .filter = settings_.filter,
                             .width = v.width,
+                            .bounces = settings_.bounces,
                             .light = light};
     tbb::combinable<TreeCounts> counts;
     int const columns = (v.width + kTile - 1) / kTile, rows = (v.height + kTile - 1) / kTile;
@@ -105,26 +107,16 @@ std::string TreeRenderer::options() const
     return as_options(whitted_options(), settings_, {"recursion", "cutoff", "shadow-rays"});
 }
 
-namespace {
-
-std::unique_ptr<PassRenderer> start(World const& world, RenderSettings const& settings, std::size_t first_moving,
-                                    Report& report, StopRequest const* stop)
-{
-    return std::make_unique<TreeRenderer>(world, settings, first_moving, report, stop);
-}
-
-} // namespace
-
 RenderResult render_whitted(World const& world, Camera const& camera, RenderSettings const& settings,
                             StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
-    return render_passes("whitted", start, world, camera, settings, stop, progress, report);
+    return render_passes("whitted", start_passes<TreeRenderer>, world, camera, settings, stop, progress, report);
 }
 
 std::unique_ptr<FrameRenderer> start_whitted_frames(MovingWorld const& world, Camera const&,
                                                     RenderSettings const& settings, Report& report)
 {
-    return start_pass_frames(start, world, settings, report);
+    return start_pass_frames(start_passes<TreeRenderer>, world, settings, report);
 }
 
 } // namespace gi
