@@ -15,15 +15,15 @@ World room()
     return world_of(scene);
 }
 
-VirtualLight on_the_floor()
+LightVertex on_the_floor()
 {
-    VirtualLight light{};
+    LightVertex light{};
     light.position = {0.3f, -1, 0.2f};
     light.normal = {0, 1, 0};
     return light;
 }
 
-std::vector<float> draw(World const& world, VirtualLight const& light, std::uint32_t points, std::uint32_t size)
+std::vector<float> draw(World const& world, LightVertex const& light, std::uint32_t points, std::uint32_t size)
 {
     std::vector<float> map(std::size_t(size) * size), scratch;
     draw_imperfect_map(make_point_cloud(world, 1), {0, points}, light, {size}, map, scratch);
@@ -70,7 +70,7 @@ TEST(PointCloud, SubsetsAreSpreadOverTheArea)
 TEST(ImperfectMap, HasTheDistancesOfAConvexRoom)
 {
     World const world = room();
-    VirtualLight const light = on_the_floor();
+    LightVertex const light = on_the_floor();
     Frame const frame = Frame::about(light.normal);
     for (auto const& [points, size, known, right] :
          {std::tuple{4096u, 64u, 0.97, 0.93}, std::tuple{131072u, 128u, 0.97, 0.97}}) {
@@ -114,7 +114,7 @@ TEST(ImperfectMap, LetsLightThroughAConvexRoom)
         Pcg32 rng(3, 4);
         int shadowed = 0, all = 0;
         for (int l = 0; l < 40; ++l) {
-            VirtualLight light{};
+            LightVertex light{};
             light.position = point_of_a_wall(rng, light.normal);
             draw_imperfect_map(cloud, {0, points}, light, grid, map, scratch);
             MappedLight const mapped{light.position, Frame::about(light.normal), map.data()};

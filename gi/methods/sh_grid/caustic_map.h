@@ -14,7 +14,7 @@ struct CausticPhoton {
     vec3 position;        ///< m
     vec3 normal;          ///< unit, geometric, on the lit side
     vec3 from;            ///< unit, towards where the light came from
-    vec3 flux;            ///< W, with the correction for shading normals of VirtualLight::power
+    vec3 flux;            ///< W, with the correction for shading normals of LightVertex::power
     std::uint32_t target; ///< where its path began, see CausticTargets
 };
 

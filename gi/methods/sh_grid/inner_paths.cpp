@@ -1,9 +1,9 @@
 #include "gi/methods/sh_grid/inner_paths.h"
 
 #include "gi/core/rng.h"
+#include "gi/light_paths/emission.h"
 #include "gi/methods/sh_grid/focus.h"
 #include "gi/methods/sh_grid/met_surface.h"
-#include "gi/methods/vpl/emission.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/ray_path.h"
 

@@ -7,8 +7,8 @@
 // Where such light arrives that a picture shows is learned from a first set, with other random numbers.
 
 #include "gi/core/alias_table.h"
+#include "gi/light_paths/light_paths.h"
 #include "gi/methods/sh_grid/radiance_grid.h"
-#include "gi/methods/vpl/virtual_lights.h"
 #include "gi/render/frame_renderer.h"
 
 namespace gi {

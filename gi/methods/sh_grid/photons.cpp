@@ -9,9 +9,9 @@
 
 namespace gi {
 
-void ReachedSides::add(std::span<VirtualLight const> vertices)
+void ReachedSides::add(std::span<LightVertex const> vertices)
 {
-    for (VirtualLight const& v : vertices) {
+    for (LightVertex const& v : vertices) {
         glm::ivec3 const cell = frame.at(v.position);
         if (frame.holds(cell)) of_cell[frame.index(cell)] |= std::uint16_t(1u << side_index(v.normal, v.front));
     }
@@ -51,12 +51,12 @@ SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const
     return out;
 }
 
-void reflect_photons(WorldView const& world, std::span<VirtualLight const> vertices, std::uint64_t seed,
+void reflect_photons(WorldView const& world, std::span<LightVertex const> vertices, std::uint64_t seed,
                      std::vector<Photon>& out)
 {
     std::vector<Photon> photons(vertices.size());
     tbb::parallel_for(std::size_t(0), vertices.size(), [&](std::size_t i) {
-        VirtualLight const& v = vertices[i];
+        LightVertex const& v = vertices[i];
         Pcg32 rng = Pcg32::for_path(seed ^ 0x9403, std::uint32_t(i), 0);
         // Delta lobes are followed by the light paths themselves.
         float const u_lobe = rng.uniform();

@@ -2,8 +2,8 @@
 // Photons as the radiance grids store them (Chang, Park and Ihm, sec. 3.2): where light leaves a surface after a
 // reflection, and in which direction.
 
+#include "gi/light_paths/light_paths.h"
 #include "gi/methods/sh_grid/patches.h"
-#include "gi/methods/vpl/virtual_lights.h"
 
 #include <span>
 
@@ -28,7 +28,7 @@ struct ReachedSides {
     std::vector<std::uint16_t> of_cell;
 
     explicit ReachedSides(GridFrame const& f) : frame(f), of_cell(f.cells()) {}
-    void add(std::span<VirtualLight const> vertices);
+    void add(std::span<LightVertex const> vertices);
     ReachedSides& operator|=(ReachedSides const& o); ///< of the same frame
 };
 
@@ -48,7 +48,7 @@ void move_photons(WorldView const& world, std::size_t first_moving, std::span<Ph
 
 /// Reflects each vertex of light paths once, in a random direction, and appends the photons.
 /// @param world  of the vertices  @param seed  of the directions
-void reflect_photons(WorldView const& world, std::span<VirtualLight const> vertices, std::uint64_t seed,
+void reflect_photons(WorldView const& world, std::span<LightVertex const> vertices, std::uint64_t seed,
                      std::vector<Photon>& out);
 
 } // namespace gi

@@ -28,7 +28,7 @@ struct alignas(64) Lanes {
         sx[k] = r.frame.normal.x, sy[k] = r.frame.normal.y, sz[k] = r.frame.normal.z;
     }
     /// Without branches, so that it vectorises.
-    void meet(VirtualLight const& light, std::size_t count)
+    void meet(LightVertex const& light, std::size_t count)
     {
         vec3 const p = light.position, n = light.normal;
         for (std::size_t k = 0; k < count; ++k) {
@@ -56,7 +56,7 @@ vec3 at_receiver(Receiver const& r, vec3 direction)
 }
 
 /// pi f of a virtual light towards a receiver. @param direction  from the receiver
-vec3 at_light(VirtualLight const& light, vec3 direction)
+vec3 at_light(LightVertex const& light, vec3 direction)
 {
     if (light.matt) return light.bsdf.diffuse;
     vec3 const leaves = light.frame.to_local(-direction);
@@ -80,8 +80,8 @@ struct Waiting {
 
 } // namespace
 
-void gather(ReceiverTile const& tile, std::span<VirtualLight const> lights, VisibilityTerm const& term,
-            float bound, std::span<vec3> radiance, PathCounts& paths, GatherCounts& counts)
+void gather(ReceiverTile const& tile, std::span<LightVertex const> lights, VisibilityTerm const& term, float bound,
+            std::span<vec3> radiance, PathCounts& paths, GatherCounts& counts)
 {
     if (lights.empty() || tile.receivers.empty()) return;
     thread_local Waiting waiting;
@@ -94,7 +94,7 @@ void gather(ReceiverTile const& tile, std::span<VirtualLight const> lights, Visi
         std::size_t const count = std::min(Lanes::kMost, all - first);
         for (std::size_t k = 0; k < count; ++k) lanes.set(k, tile.receivers[first + k]);
         for (std::uint32_t l = 0; l < lights.size(); ++l) {
-            VirtualLight const& light = lights[l];
+            LightVertex const& light = lights[l];
             lanes.meet(light, count);
             for (std::size_t k = 0; k < count; ++k) {
                 if (!(lanes.cos[k] > 0)) continue;

@@ -102,8 +102,8 @@ void fill_holes(float* map, std::uint32_t size, int levels)
 
 } // namespace
 
-void draw_imperfect_map(PointCloud const& cloud, PointSubset subset, VirtualLight const& light,
-                        HemisphereGrid grid, std::span<float> map, std::vector<float>& scratch)
+void draw_imperfect_map(PointCloud const& cloud, PointSubset subset, LightVertex const& light, HemisphereGrid grid,
+                        std::span<float> map, std::vector<float>& scratch)
 {
     scratch.resize(map.size() + map.size() / 3 + kLanes); // 1 + 1/4 + 1/16 + ...
     std::fill(scratch.begin(), scratch.end(), kInf);

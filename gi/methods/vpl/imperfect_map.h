@@ -12,8 +12,8 @@
 // the point), over at most 5 x 5 texels. Holes between disks are filled from coarser levels: a texel of the next
 // level is the mean of those of its four texels that are about as near as the nearest of them.
 
+#include "gi/light_paths/light_paths.h"
 #include "gi/methods/vpl/point_cloud.h"
-#include "gi/methods/vpl/virtual_lights.h"
 
 #include <algorithm>
 #include <span>
@@ -47,8 +47,8 @@ struct PointSubset {
 };
 
 /// @param map  grid.size squared  @param scratch  reusable buffer
-void draw_imperfect_map(PointCloud const& cloud, PointSubset subset, VirtualLight const& light,
-                        HemisphereGrid grid, std::span<float> map, std::vector<float>& scratch);
+void draw_imperfect_map(PointCloud const& cloud, PointSubset subset, LightVertex const& light, HemisphereGrid grid,
+                        std::span<float> map, std::vector<float>& scratch);
 
 /// A virtual light with its map.
 struct MappedLight {

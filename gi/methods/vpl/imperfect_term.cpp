@@ -37,7 +37,7 @@ ImperfectTerm::ImperfectTerm(TermSource const& source)
 
 void ImperfectTerm::world_changed() { cloud_ = make_point_cloud(world_, seed_); }
 
-void ImperfectTerm::prepare(std::span<VirtualLight const> lights, std::uint32_t pass)
+void ImperfectTerm::prepare(std::span<LightVertex const> lights, std::uint32_t pass)
 {
     lights_.resize(lights.size());
     std::size_t const texels = std::size_t(grid_.size) * grid_.size;

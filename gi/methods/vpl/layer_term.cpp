@@ -121,7 +121,7 @@ void LayerTerm::of_connections(ReceiverTile const& tile, std::span<Connection co
         shares[k] = 1;
         Connection const& c = connections[k];
         Receiver const& r = tile.receivers[c.receiver];
-        VirtualLight const& light = lights_[c.light];
+        LightVertex const& light = lights_[c.light];
         End const here{r.position, r.geometric_normal, r.triangle, r.front},
             there{light.position, light.normal, light.triangle, light.front};
         std::uint32_t const direction = map.look_up(c.direction);

@@ -24,7 +24,7 @@ public:
     /// directions.
     explicit LayerTerm(TermSource const& source);
 
-    void prepare(std::span<VirtualLight const> lights, std::uint32_t) override { lights_ = lights; }
+    void prepare(std::span<LightVertex const> lights, std::uint32_t) override { lights_ = lights; }
     void world_changed() override;
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
                         PathCounts& counts) const override;
@@ -52,7 +52,7 @@ private:
     std::unique_ptr<AxisSet> axes_;
     std::vector<Direction> directions_;
     DirectionMap nearest_;
-    std::span<VirtualLight const> lights_;
+    std::span<LightVertex const> lights_;
     mutable std::atomic<std::uint64_t> unanswered_ = 0, queries_ = 0;
     std::uint64_t lost_ = 0; ///< layers already reported as lost
 };

@@ -16,7 +16,7 @@ void RayTerm::of_connections(ReceiverTile const& tile, std::span<Connection cons
     rays.clear();
     for (Connection const& c : connections) {
         Receiver const& r = tile.receivers[c.receiver];
-        VirtualLight const& light = lights_[c.light];
+        LightVertex const& light = lights_[c.light];
         vec3 const from = r.position + r.clearance * r.geometric_normal;
         vec3 const way = light.position + light.clearance * light.normal - from;
         float const length = glm::length(way);

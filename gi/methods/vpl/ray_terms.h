@@ -14,12 +14,12 @@ public:
     RayTerm(ExactVisibility const& visibility, float radius_m) : visibility_(visibility), radius_m_(radius_m) {}
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
                         PathCounts& counts) const override;
-    void prepare(std::span<VirtualLight const> lights, std::uint32_t) override { lights_ = lights; }
+    void prepare(std::span<LightVertex const> lights, std::uint32_t) override { lights_ = lights; }
 
 private:
     ExactVisibility const& visibility_;
     float radius_m_;
-    std::span<VirtualLight const> lights_;
+    std::span<LightVertex const> lights_;
 };
 
 /// Ambient occlusion (Zhukov et al. 1998 without their falloff): A(x) = 1/pi times the integral of cos theta over

@@ -56,10 +56,10 @@ void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> 
                                 MotionVectors* motion)
 {
     PathCounts counts;
-    std::vector<VirtualLight> lights;
+    std::vector<LightVertex> lights;
     {
         StageTimer const timer(report_, "virtual lights");
-        lights = trace_light_paths(view(world_), world_.bounds, *visibility_,
+        lights = trace_light_paths(view(world_), world_.bounds, ExactPathRays(*visibility_),
                                    {.count = std::uint32_t(settings_.vpl.light_paths),
                                     .bounces = settings_.bounces,
                                     .seed = settings_.seed,
@@ -79,9 +79,8 @@ void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> 
                    motion == nullptr ? std::span<FirstHit>{} : motion->first_hits(k));
 }
 
-void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index,
-                                      std::span<VirtualLight const> lights, Accumulator& sums,
-                                      std::span<FirstHit> first_hits)
+void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index, std::span<LightVertex const> lights,
+                                      Accumulator& sums, std::span<FirstHit> first_hits)
 {
     CameraPaths const paths{.world = view(world_),
                             .visibility = *visibility_,

@@ -28,7 +28,7 @@ private:
         GatherCounts gather;
     };
     void build();
-    void trace_view(FrameView const& view, std::uint32_t index, std::span<VirtualLight const> lights,
+    void trace_view(FrameView const& view, std::uint32_t index, std::span<LightVertex const> lights,
                     Accumulator& sums, std::span<FirstHit> first_hits);
 
     VisibilityKind kind_;

@@ -3,8 +3,8 @@
 // vpl_*.
 
 #include "gi/core/report.h"
+#include "gi/light_paths/light_paths.h"
 #include "gi/methods/vpl/camera_paths.h"
-#include "gi/methods/vpl/virtual_lights.h"
 #include "gi/render/render_settings.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class VisibilityTerm {
 public:
     virtual ~VisibilityTerm() = default;
     /// Called before a pass. The span of lights stays valid during the pass.
-    virtual void prepare(std::span<VirtualLight const> /*lights*/, std::uint32_t /*pass*/) {}
+    virtual void prepare(std::span<LightVertex const> /*lights*/, std::uint32_t /*pass*/) {}
     /// Called after dynamic triangles have moved.
     virtual void world_changed() {}
     virtual void of_receivers(ReceiverTile const&, std::span<float> shares, PathCounts&) const

@@ -1,4 +1,4 @@
-#include "gi/methods/vpl/emission.h"
+#include "gi/light_paths/emission.h"
 
 namespace gi {
 namespace {
@@ -11,7 +11,8 @@ EmittedLight through_scene(Bounds const& bounds, vec3 travels, vec3 irradiance, 
     Frame const frame = Frame::about(travels);
     vec2 const on_disk = radius * square_to_disk(place);
     vec3 const from = bounds.center() - radius * travels + on_disk.x * frame.tangent + on_disk.y * frame.bitangent;
-    return {{from, travels}, irradiance * (kPi * radius * radius)};
+    float const area = kPi * radius * radius;
+    return {{from, travels}, irradiance * area, 0, area, 0};
 }
 
 EmittedLight emit_punctual(Light const& light, Bounds const& bounds, vec2 place, vec2 direction)
@@ -25,7 +26,7 @@ EmittedLight emit_punctual(Light const& light, Bounds const& bounds, vec2 place,
     vec3 power = light.intensity * (2 * kPi * (1 - lowest));
     if (light.type == LightType::spot) power *= light_detail::cone_attenuation(light, z);
     vec3 const about = light.type == LightType::spot ? light.direction : vec3{0, 0, 1};
-    return {{light.position, Frame::about(about).to_world(local)}, power, light.range};
+    return {{light.position, Frame::about(about).to_world(local)}, power, light.range, 0, 2 * kPi * (1 - lowest)};
 }
 
 EmittedLight emit_triangle(WorldView const& world, std::uint32_t triangle, vec2 place, vec2 direction, float side)
@@ -39,8 +40,13 @@ EmittedLight emit_triangle(WorldView const& world, std::uint32_t triangle, vec2 
     bool const both = surface.is(Surface::kDoubleSided);
     vec3 const normal = shading_detail::triangle_normal(surface) * (both && side < 0.5f ? -1.0f : 1.0f);
     float const area = 0.5f * glm::length(light_detail::area_vector(surface));
-    vec3 const leaves = Frame::about(normal).to_world(square_to_cosine_hemisphere(direction));
-    return {{on.position() + surface.clearance * normal, leaves}, radiance * (kPi * area * (both ? 2.0f : 1.0f))};
+    vec3 const local = square_to_cosine_hemisphere(direction);
+    float const sides = both ? 2.0f : 1.0f;
+    return {{on.position() + surface.clearance * normal, Frame::about(normal).to_world(local)},
+            radiance * (kPi * area * sides),
+            0,
+            sides * area,
+            sides * kPi / std::max(local.z, 1e-3f)};
 }
 
 } // namespace

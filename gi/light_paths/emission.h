@@ -12,6 +12,8 @@ struct EmittedLight {
     Ray ray;
     vec3 power{0};   ///< 0 = no light
     float range = 0; ///< m, of a punctual light (see Light); 0 = unlimited
+    /// Area and solid angle over which samples of this light are spread about this one, m^2 and sr.
+    float area = 0, solid_angle = 0;
 };
 
 /// True for the sky and for parallel lights.

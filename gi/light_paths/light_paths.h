@@ -1,8 +1,8 @@
 #pragma once
-// Virtual point lights (Keller 1997): surface points hit by light paths scatter the light that reached them.
-// Visibility along the light paths is exact.
+// Light paths: from the lights over surfaces, as in photon mapping (Jensen 1996). Their vertices are what photon
+// methods store and what scatters as virtual point lights (Keller 1997).
 
-#include "gi/render/exact_visibility.h"
+#include "gi/light_paths/path_rays.h"
 #include "gi/render/path_sample.h"
 #include "gi/scene/shading/shading_point.h"
 
@@ -11,7 +11,8 @@
 
 namespace gi {
 
-struct VirtualLight {
+/// A surface point that light has reached.
+struct LightVertex {
     vec3 position; ///< m
     vec3 normal;   ///< geometric, unit, on the lit side, the only side from which light leaves
     std::uint32_t triangle;
@@ -20,9 +21,14 @@ struct VirtualLight {
     vec3 power;      ///< power that arrived by this light path, W; includes the correction for shading normals of
                      ///< light travelling from the lights (Veach 1997, eq. 5.19)
     Bsdf bsdf;
-    Frame frame;  ///< about the shading normal
-    vec3 arrived; ///< unit, local: direction from which the light came
-    bool matt;    ///< purely diffuse: the BSDF is `bsdf.diffuse` / pi
+    Frame frame;     ///< about the shading normal
+    vec3 arrived;    ///< unit, local: direction from which the light came
+    bool matt;       ///< purely diffuse: the BSDF is `bsdf.diffuse` / pi
+    bool by_delta;   ///< mirrors or glass lie between it and the surface, or light, that it was scattered by last
+    int scatterings; ///< non-delta, before it: 0 = light that comes from its source, or by mirrors and glass alone
+    /// Area over which the path's light is spread there, m^2: the reciprocal of the path density, the number of
+    /// such paths per m^2 (McGuire and Luebke 2009; Herzog et al. 2007). Mirrors and glass count as flat.
+    float footprint;
 };
 
 /// Where a point of a surface lies relative to a fine grid; `still`: of a triangle that does not move.
@@ -45,9 +51,8 @@ struct LightPaths {
 
 /// Returns virtual lights in the order of the paths, for any number of threads. Empty if there are no lights or
 /// bounces == 0.
-std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const& bounds,
-                                            ExactVisibility const& visibility, LightPaths const& settings,
-                                            PathCounts& counts);
+std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const& bounds, PathRays const& rays,
+                                           LightPaths const& settings, PathCounts& counts);
 
 /// Light that has reached a surface: the start of a path from there.
 struct LightStart {
@@ -58,8 +63,8 @@ struct LightStart {
     int scatterings;      ///< of the light before, at least
 };
 /// As trace_light_paths(), for paths that begin so.
-std::vector<VirtualLight> trace_from_surfaces(WorldView const& world, ExactVisibility const& visibility,
-                                              std::span<LightStart const> starts, LightPaths const& settings,
-                                              PathCounts& counts);
+std::vector<LightVertex> trace_from_surfaces(WorldView const& world, PathRays const& rays,
+                                             std::span<LightStart const> starts, LightPaths const& settings,
+                                             PathCounts& counts);
 
 } // namespace gi

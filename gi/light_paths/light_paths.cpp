@@ -1,7 +1,7 @@
-#include "gi/methods/vpl/virtual_lights.h"
+#include "gi/light_paths/light_paths.h"
 
 #include "gi/core/rng.h"
-#include "gi/methods/vpl/emission.h"
+#include "gi/light_paths/emission.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/scene/shading/warp.h"
 
@@ -20,7 +20,11 @@ struct LightPath {
     int scatterings = 0; ///< non-delta, so far
     bool from_light = true;
     bool from_outside = false, straight = true; ///< see LightPaths::grid_side
-    std::vector<VirtualLight> left;             ///< left along the path
+    bool by_delta = false;                      ///< since the last vertex
+    float paths = 1;                            ///< of this kind that are expected to come so far
+    float area = 0, solid_angle = 0;            ///< over which one of them is spread where it left, m^2, sr
+    float length = 0;                           ///< since then, m
+    std::vector<LightVertex> left;              ///< left along the path
 };
 
 /// Advances from a hit to the next ray. Returns false if the path ends.
@@ -40,6 +44,8 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     if (!(arrived.z > 0) || !(cos_arrived > 0)) return false;
     vec3 const power = p.light.power * (arrived.z / cos_arrived);
     if (!all_finite(power) || !(max_component(power) > 0)) return false;
+    p.length += hit.distance;
+    float const footprint = (p.area + p.solid_angle * square(p.length)) / cos_arrived;
     if (!only_delta(at.bsdf)) {
         if (s.grid_side) {
             GridSide const side = s.grid_side(at.position, hit.triangle);
@@ -55,7 +61,10 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
                           .bsdf = at.bsdf,
                           .frame = at.frame,
                           .arrived = arrived,
-                          .matt = bsdf_detail::is_matt(at.bsdf)});
+                          .matt = bsdf_detail::is_matt(at.bsdf),
+                          .by_delta = p.by_delta,
+                          .scatterings = p.scatterings,
+                          .footprint = footprint});
     }
     float const u_lobe = p.rng.uniform();
     BsdfSample const next = sample(at.bsdf, arrived, at.front, u_lobe, p.rng.uniform2());
@@ -71,6 +80,16 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     float const survival = std::min(1.0f, max_component(weight));
     if (!(survival > 0) || p.rng.uniform() >= survival) return false;
     p.light.power = power * weight / survival;
+    p.by_delta = next.delta;
+    p.paths *= survival;
+    if (next.delta) {
+        p.area /= survival;
+        p.solid_angle /= survival;
+    } else {
+        p.area = footprint / survival;
+        p.solid_angle = 1 / (next.pdf * p.paths);
+        p.length = 0;
+    }
     p.light.ray = {leave(at, leaves), leaves};
     return true;
 }
@@ -94,8 +113,8 @@ void focus_light(LightPaths const& s, Bounds const& bounds, bool through, vec2 p
     light.power *= square(radius / (1.001f * bounds.radius()));
 }
 
-void trace(WorldView const& world, ExactVisibility const& visibility, LightPaths const& s,
-           std::vector<LightPath>& paths, PathCounts& counts)
+void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, std::vector<LightPath>& paths,
+           PathCounts& counts)
 {
     std::vector<LightPath*> active;
     for (LightPath& p : paths)
@@ -110,7 +129,7 @@ void trace(WorldView const& world, ExactVisibility const& visibility, LightPaths
         queries.clear();
         for (LightPath* p : active) queries.push_back({.ray = p->light.ray, .seed = p->rng.next()});
         hits.resize(active.size());
-        visibility.nearest(queries, hits);
+        rays.nearest(queries, hits);
         counts.nearest_rays += active.size();
         std::size_t left = 0;
         for (std::size_t k = 0; k < active.size(); ++k)
@@ -121,13 +140,13 @@ void trace(WorldView const& world, ExactVisibility const& visibility, LightPaths
 
 /// Traces blocks of paths. @param start  (index, path) -> whether there is one
 template <class Start>
-std::vector<VirtualLight> trace_blocks(WorldView const& world, ExactVisibility const& visibility,
-                                       LightPaths const& s, std::uint32_t first, std::uint32_t end,
-                                       PathCounts& counts, Start const& start)
+std::vector<LightVertex> trace_blocks(WorldView const& world, PathRays const& rays, LightPaths const& s,
+                                      std::uint32_t first, std::uint32_t end, PathCounts& counts,
+                                      Start const& start)
 {
     if (first >= end) return {};
     std::uint32_t const blocks = (end - first + kPathsTogether - 1) / kPathsTogether;
-    std::vector<std::vector<VirtualLight>> found(blocks);
+    std::vector<std::vector<LightVertex>> found(blocks);
     std::vector<PathCounts> of_block(blocks);
     tbb::parallel_for(0u, blocks, [&](std::uint32_t block) {
         FlushDenormals const guard;
@@ -135,10 +154,10 @@ std::vector<VirtualLight> trace_blocks(WorldView const& world, ExactVisibility c
         std::uint32_t const begin = first + block * kPathsTogether, last = std::min(end, begin + kPathsTogether);
         std::vector<LightPath> paths(last - begin);
         for (std::uint32_t i = begin; i < last; ++i) start(i, paths[i - begin]);
-        trace(world, visibility, s, paths, of_block[block]);
+        trace(world, rays, s, paths, of_block[block]);
         for (LightPath const& p : paths) found[block].insert(found[block].end(), p.left.begin(), p.left.end());
     });
-    std::vector<VirtualLight> all;
+    std::vector<LightVertex> all;
     for (std::uint32_t b = 0; b < blocks; ++b) {
         all.insert(all.end(), found[b].begin(), found[b].end());
         counts += of_block[b];
@@ -148,12 +167,11 @@ std::vector<VirtualLight> trace_blocks(WorldView const& world, ExactVisibility c
 
 } // namespace
 
-std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const& bounds,
-                                            ExactVisibility const& visibility, LightPaths const& s,
-                                            PathCounts& counts)
+std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const& bounds, PathRays const& rays,
+                                           LightPaths const& s, PathCounts& counts)
 {
     if (s.bounces < 1 || world.light_select.empty()) return {};
-    return trace_blocks(world, visibility, s, s.first, std::min(s.count, s.last), counts,
+    return trace_blocks(world, rays, s, s.first, std::min(s.count, s.last), counts,
                         [&](std::uint32_t i, LightPath& p) {
                             p.rng = Pcg32::for_path(s.seed ^ 0x7619, i, s.pass);
                             // Stratified over the lights, so that every light gets its share of the paths in each
@@ -163,18 +181,21 @@ std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const
                             vec2 const place = p.rng.uniform2(), direction = p.rng.uniform2();
                             p.light = emit_light(world, choice, bounds, place, direction, p.rng.uniform());
                             p.light.power /= float(s.count);
+                            p.paths = float(s.count) * world.light_select.probability(choice.light);
+                            p.area = p.light.area / p.paths;
+                            p.solid_angle = p.light.solid_angle / p.paths;
                             p.from_outside = comes_from_afar(world, choice);
                             if (!s.focus.empty() && p.from_outside)
                                 focus_light(s, bounds, p.rng.uniform() < 0.5f, place, p.light);
                         });
 }
 
-std::vector<VirtualLight> trace_from_surfaces(WorldView const& world, ExactVisibility const& visibility,
-                                              std::span<LightStart const> starts, LightPaths const& s,
-                                              PathCounts& counts)
+std::vector<LightVertex> trace_from_surfaces(WorldView const& world, PathRays const& rays,
+                                             std::span<LightStart const> starts, LightPaths const& s,
+                                             PathCounts& counts)
 {
     if (s.bounces < 1) return {};
-    return trace_blocks(world, visibility, s, 0, std::uint32_t(starts.size()), counts,
+    return trace_blocks(world, rays, s, 0, std::uint32_t(starts.size()), counts,
                         [&](std::uint32_t i, LightPath& p) {
                             LightStart const& start = starts[i];
                             p.rng = Pcg32::for_path(s.seed ^ 0x57a8, start.number, s.pass);
@@ -182,6 +203,7 @@ std::vector<VirtualLight> trace_from_surfaces(WorldView const& world, ExactVisib
                             if (start.scatterings >= s.bounces) return;
                             p.scatterings = start.scatterings;
                             p.light.power = start.power;
+                            p.paths = float(s.count);
                             if (!advance(world, s, p, start.hit)) p.light.power = vec3{0};
                         });
 }
