@@ -91,6 +91,22 @@ KernelSizes sizes_by_density(std::span<Photon const> photons, float largest, std
     return out;
 }
 
+void sort_along_curve(std::vector<Photon>& photons)
+{
+    Bounds box;
+    for (Photon const& p : photons) box = joined(box, {p.position, p.position});
+    vec3 const scale = 1023.0f / glm::max(box.high - box.low, vec3{1e-30f});
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    for (std::uint32_t i = 0; i < photons.size(); ++i) {
+        glm::uvec3 const cell(glm::clamp((photons[i].position - box.low) * scale, 0.0f, 1023.0f));
+        order.emplace_back(morton(cell.x, cell.y, cell.z), i);
+    }
+    std::ranges::sort(order);
+    std::vector<Photon> sorted;
+    for (auto const& [key, i] : order) sorted.push_back(photons[i]);
+    photons = std::move(sorted);
+}
+
 KernelSizes sizes_by_footprint(std::span<Photon const> photons, float largest, float photons_each)
 {
     KernelSizes out{largest, std::vector<std::uint8_t>(photons.size())};
@@ -115,23 +131,12 @@ PhotonMap::PhotonMap(std::span<Photon const> photons, KernelSizes const& sizes, 
             layers_.emplace_back(std::move(part), factor * std::ldexp(sizes.largest, -k));
 }
 
-vec3 PhotonMap::radiance(ShadingPoint const& at, vec3 wo) const
+vec3 PhotonMap::radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const
 {
-    vec3 sum{0}, diffuse{0};
-    bool const matt = bsdf_detail::is_matt(at.bsdf);
+    PhotonSum sum(at, wo, without_glossy);
     for (PhotonCells const& layer : layers_)
-        layer.search(at.position, [&](Photon const& p) {
-            float const kernel =
-                PhotonKernel::at(p.position, p.normal, layer.radius(), at.position, at.geometric_normal);
-            if (!(kernel > 0)) return;
-            vec3 const light = kernel * p.flux;
-            vec3 const wi = at.frame.to_local(p.from);
-            if (!matt)
-                sum += light * evaluate(at.bsdf, wo, wi).f;
-            else if (wi.z > 0)
-                diffuse += light;
-        });
-    return matt ? kInvPi * at.bsdf.diffuse * diffuse : sum;
+        layer.search(at.position, [&](Photon const& p) { sum.add({p.position, layer.radius(), p.normal, 0}, p); });
+    return sum.radiance();
 }
 
 float PhotonMap::mean_radius() const

@@ -26,23 +26,59 @@ KernelSizes sizes_by_density(std::span<Photon const> photons, float largest, std
 /// how curved mirrors and glass focus.
 KernelSizes sizes_by_footprint(std::span<Photon const> photons, float largest, float photons_each);
 
-/// What lies on the same surface as a photon. Kernels are flat, else the light of a table would lie on the paper
-/// on it.
+/// Where a photon's light lies: on what is on the same surface as it. Kernels are flat, else the light of a table
+/// would lie on the paper on it.
 struct PhotonKernel {
     static constexpr float kSameWay = 0.8f;   ///< least cosine between normals
     static constexpr float kFromPlane = 0.2f; ///< greatest distance from the plane, radii
 
-    /// Epanechnikov's kernel, 1/m^2; 0 outside. @param position, normal  of a surface
-    GI_FN static float at(vec3 photon, vec3 photon_normal, float radius, vec3 position, vec3 normal)
+    vec3 position;        ///< m
+    float radius;         ///< m
+    vec3 normal;          ///< unit
+    std::uint32_t photon; ///< its index
+
+    /// Epanechnikov's kernel, 1/m^2; 0 outside.
+    GI_FN float at(vec3 place, vec3 normal_there) const
     {
-        vec3 const way = photon - position;
+        vec3 const way = position - place;
         float const share = 1 - glm::dot(way, way) / square(radius);
-        if (!(share > 0) || glm::dot(photon_normal, normal) < kSameWay ||
-            std::abs(glm::dot(way, normal)) > kFromPlane * radius)
+        if (!(share > 0) || glm::dot(normal, normal_there) < kSameWay ||
+            std::abs(glm::dot(way, normal_there)) > kFromPlane * radius)
             return 0;
         return share * (2 * kInvPi) / square(radius);
     }
 };
+
+/// Radiance that leaves a point towards wo, W/(m^2 sr), photon by photon: by all its non-delta lobes, or without
+/// the glossy one.
+struct PhotonSum {
+    ShadingPoint const& at;
+    vec3 wo; ///< unit, in at.frame
+    bool matt, without_glossy;
+    vec3 sum{0};
+
+    GI_FN PhotonSum(ShadingPoint const& at_, vec3 wo_, bool without_glossy_)
+        : at(at_), wo(wo_), matt(bsdf_detail::is_matt(at_.bsdf)), without_glossy(without_glossy_)
+    {
+    }
+    GI_FN void add(PhotonKernel const& k, Photon const& p)
+    {
+        float const kernel = k.at(at.position, at.geometric_normal);
+        if (!(kernel > 0)) return;
+        vec3 const wi = at.frame.to_local(p.from), light = kernel * p.flux;
+        if (matt) {
+            if (wi.z > 0) sum += light;
+            return;
+        }
+        vec3 f = evaluate(at.bsdf, wo, wi).f;
+        if (without_glossy) f -= evaluate(glossy_lobe(at.bsdf), wo, wi).f;
+        sum += light * glm::max(f, vec3{0});
+    }
+    GI_FN vec3 radiance() const { return matt ? kInvPi * at.bsdf.diffuse * sum : sum; }
+};
+
+/// Brings neighbours together in memory.
+void sort_along_curve(std::vector<Photon>& photons);
 
 /// Photons in cubic cells, by a hash of these.
 class PhotonCells {
@@ -72,8 +108,8 @@ public:
     /// @param factor  of all radii
     PhotonMap(std::span<Photon const> photons, KernelSizes const& sizes, float factor = 1);
 
-    /// Radiance that leaves towards wo by all non-delta lobes, W/(m^2 sr). @param wo  unit, in at.frame
-    vec3 radiance(ShadingPoint const& at, vec3 wo) const;
+    /// See PhotonSum.
+    vec3 radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const;
     bool empty() const { return count_ == 0; }
     std::size_t count() const { return count_; }
     dvec3 flux() const { return flux_; } ///< W

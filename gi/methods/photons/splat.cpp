@@ -11,21 +11,21 @@ ScreenMap screen_map(FrameView const& v, dvec3 world_origin)
     ScreenMap out{rays.origin, mat3{1}, rays.orthographic, {v.width, v.height}};
     // In metres of the scene determinants of small pixels would underflow.
     glm::dmat3 const from{dvec3(rays.step_x), dvec3(rays.step_y),
-                     dvec3(rays.orthographic ? rays.forward : rays.corner)};
+                          dvec3(rays.orthographic ? rays.forward : rays.corner)};
     out.to = mat3(glm::inverse(from));
     if (rays.orthographic) out.origin += rays.corner;
     return out;
 }
 
-PhotonTiles::PhotonTiles(ScreenMap const& screen, View<Photon const> photons, View<float const> radii)
-    : screen_(screen), photons_(photons), radii_(radii)
+PhotonTiles::PhotonTiles(ScreenMap const& screen, View<PhotonKernel const> kernels, View<Photon const> photons)
+    : screen_(screen), kernels_(kernels), photons_(photons)
 {
     std::size_t const tiles = std::size_t(screen.columns()) * std::size_t(screen.rows());
     std::vector<std::uint32_t> counts(tiles + 1);
-    launch(Space::host, "count tiles", photons.size(), CountTiles{screen, photons, radii, counts});
+    launch(Space::host, "count tiles", kernels.size(), CountTiles{screen, kernels, counts});
     exclusive_scan(Space::host, {counts.data(), counts.size()}, counts);
     list_.resize(counts.back());
-    launch(Space::host, "fill tiles", photons.size(), FillTiles{screen, photons, radii, counts, list_});
+    launch(Space::host, "fill tiles", kernels.size(), FillTiles{screen, kernels, counts, list_});
     counts.pop_back();
     ends_ = std::move(counts);
     launch(Space::host, "sort tiles", tiles, SortTiles{ends_, list_});

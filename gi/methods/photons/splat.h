@@ -11,15 +11,15 @@ ScreenMap screen_map(FrameView const& view, dvec3 world_origin);
 
 class PhotonTiles {
 public:
-    /// @param photons, radii  must outlive it
-    PhotonTiles(ScreenMap const& screen, View<Photon const> photons, View<float const> radii);
-    TilesView view() const { return {screen_, ends_, list_, photons_, radii_}; }
+    /// @param kernels, photons  must outlive it
+    PhotonTiles(ScreenMap const& screen, View<PhotonKernel const> kernels, View<Photon const> photons);
+    TilesView view() const { return {screen_, ends_, list_, kernels_, photons_}; }
     std::size_t entries() const { return list_.size(); }
 
 private:
     ScreenMap screen_;
+    View<PhotonKernel const> kernels_;
     View<Photon const> photons_;
-    View<float const> radii_;
     std::vector<std::uint32_t> ends_, list_;
 };
 

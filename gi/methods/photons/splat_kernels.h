@@ -21,14 +21,18 @@ struct ScreenMap {
 
     GI_FN int columns() const { return (size.x + kTile - 1) / kTile; }
     GI_FN int rows() const { return (size.y + kTile - 1) / kTile; }
-    /// Tile on which a point is seen if nothing is in front; -1 = beside the screen.
-    GI_FN int tile_of(vec3 position) const
+    /// Pixel on which a point is seen if nothing is in front; -1 = beside the screen.
+    GI_FN glm::ivec2 pixel_of(vec3 position) const
     {
         vec3 const p = to * (position - origin);
-        if (!orthographic && !(p.z > 0)) return -1;
+        if (!orthographic && !(p.z > 0)) return glm::ivec2{-1};
         vec2 const at = orthographic ? vec2(p) : vec2(p) / p.z;
-        if (!(at.x >= 0 && at.y >= 0 && at.x < float(size.x) && at.y < float(size.y))) return -1;
-        return int(at.y) / kTile * columns() + int(at.x) / kTile;
+        bool const on = at.x >= 0 && at.y >= 0 && at.x < float(size.x) && at.y < float(size.y);
+        return on ? glm::ivec2(at) : glm::ivec2{-1};
+    }
+    GI_FN std::size_t tile_of(glm::ivec2 pixel) const
+    {
+        return std::size_t(pixel.y / kTile * columns() + pixel.x / kTile);
     }
 };
 
@@ -67,13 +71,12 @@ GI_FN inline TileRange tiles_of(ScreenMap const& screen, vec3 center, float radi
 /// Item = photon. Counts it in each of its tiles.
 struct CountTiles {
     ScreenMap screen;
-    View<Photon const> photons;
-    View<float const> radii;
+    View<PhotonKernel const> kernels;
     View<std::uint32_t> counts; ///< per tile
 
     GI_FN void operator()(std::size_t i) const
     {
-        TileRange const r = tiles_of(screen, photons[i].position, radii[i]);
+        TileRange const r = tiles_of(screen, kernels[i].position, kernels[i].radius);
         for (int y = r.first.y; y < r.last.y; ++y)
             for (int x = r.first.x; x < r.last.x; ++x)
                 atomic_add(counts[std::size_t(y * screen.columns() + x)], 1);
@@ -83,14 +86,13 @@ struct CountTiles {
 /// Item = photon. Writes it to the lists of its tiles, in any order.
 struct FillTiles {
     ScreenMap screen;
-    View<Photon const> photons;
-    View<float const> radii;
+    View<PhotonKernel const> kernels;
     View<std::uint32_t> next; ///< per tile: first free place
     View<std::uint32_t> list;
 
     GI_FN void operator()(std::size_t i) const
     {
-        TileRange const r = tiles_of(screen, photons[i].position, radii[i]);
+        TileRange const r = tiles_of(screen, kernels[i].position, kernels[i].radius);
         for (int y = r.first.y; y < r.last.y; ++y)
             for (int x = r.first.x; x < r.last.x; ++x)
                 list[atomic_add(next[std::size_t(y * screen.columns() + x)], 1)] = std::uint32_t(i);
@@ -130,32 +132,16 @@ struct SortTiles {
 struct TilesView {
     ScreenMap screen;
     View<std::uint32_t const> ends; ///< per tile
-    View<std::uint32_t const> list;
+    View<std::uint32_t const> list; ///< indices of kernels
+    View<PhotonKernel const> kernels;
     View<Photon const> photons;
-    View<float const> radii;
-};
 
-/// Radiance that leaves a point towards wo by all non-delta lobes of `lobes`, W/(m^2 sr). @param tile  of the
-/// point
-GI_FN inline vec3 splat_radiance(TilesView const& tiles, std::size_t tile, ShadingPoint const& at,
-                                 Bsdf const& lobes, vec3 wo)
-{
-    vec3 sum{0}, diffuse{0};
-    bool const matt = bsdf_detail::is_matt(lobes);
-    for (std::uint32_t k = tile == 0 ? 0 : tiles.ends[tile - 1]; k < tiles.ends[tile]; ++k) {
-        std::uint32_t const i = tiles.list[k];
-        Photon const& p = tiles.photons[i];
-        float const kernel =
-            PhotonKernel::at(p.position, p.normal, tiles.radii[i], at.position, at.geometric_normal);
-        if (!(kernel > 0)) continue;
-        vec3 const wi = at.frame.to_local(p.from), light = kernel * p.flux;
-        if (!matt)
-            sum += light * evaluate(lobes, wo, wi).f;
-        else if (wi.z > 0)
-            diffuse += light;
+    GI_FN View<std::uint32_t const> of_tile(std::size_t tile) const
+    {
+        std::uint32_t const begin = tile == 0 ? 0 : ends[tile - 1];
+        return {list.data + begin, ends[tile] - begin};
     }
-    return matt ? kInvPi * lobes.diffuse * diffuse : sum;
-}
+};
 
 /// A pixel's surface, as a G-buffer holds it.
 struct SplatSurface {
@@ -173,7 +159,13 @@ struct SplatPixels {
     GI_FN void operator()(std::size_t i) const
     {
         SplatSurface const& s = surfaces[i];
-        radiance[i] = s.tile < 0 ? vec3{0} : splat_radiance(tiles, std::size_t(s.tile), s.at, s.at.bsdf, s.wo);
+        PhotonSum sum(s.at, s.wo, false);
+        if (s.tile >= 0)
+            for (std::uint32_t const k : tiles.of_tile(std::size_t(s.tile))) {
+                PhotonKernel const& kernel = tiles.kernels[k];
+                sum.add(kernel, tiles.photons[kernel.photon]);
+            }
+        radiance[i] = sum.radiance();
     }
 };
 
