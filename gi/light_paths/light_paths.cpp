@@ -121,6 +121,13 @@ std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const&
         });
 }
 
+std::vector<LightVertex> trace_onwards(WorldView const& world, PathRays const& rays,
+                                       std::span<LightPath const> paths, LightPaths const& s, PathCounts& counts)
+{
+    return trace_blocks(world, rays, s, 0, std::uint32_t(paths.size()), counts,
+                        [&](std::uint32_t i, TracedPath& p) { static_cast<LightPath&>(p) = paths[i]; });
+}
+
 std::vector<LightVertex> trace_from_surfaces(WorldView const& world, PathRays const& rays,
                                              std::span<LightStart const> starts, LightPaths const& s,
                                              PathCounts& counts)

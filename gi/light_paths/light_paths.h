@@ -2,7 +2,7 @@
 // Light paths: from the lights over surfaces, as in photon mapping (Jensen 1996). Their vertices are what photon
 // methods store and what scatters as virtual point lights (Keller 1997).
 
-#include "gi/light_paths/light_vertex.h"
+#include "gi/light_paths/light_path_step.h"
 #include "gi/light_paths/path_rays.h"
 #include "gi/render/path_sample.h"
 #include "gi/scene/shading/shading_point.h"
@@ -35,6 +35,11 @@ struct LightPaths {
 /// bounces == 0.
 std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const& bounds, PathRays const& rays,
                                            LightPaths const& settings, PathCounts& counts);
+
+/// As trace_light_paths(), for paths that are under way; those without power have ended.
+std::vector<LightVertex> trace_onwards(WorldView const& world, PathRays const& rays,
+                                       std::span<LightPath const> paths, LightPaths const& settings,
+                                       PathCounts& counts);
 
 /// Light that has reached a surface: the start of a path from there.
 struct LightStart {

@@ -1,6 +1,8 @@
 #include "gi/methods/photons/photon_renderer.h"
 
+#include "gi/light_paths/bounce_map.h"
 #include "gi/light_paths/options.h"
+#include "gi/scene/model/plan.h"
 
 #include <algorithm>
 
@@ -20,6 +22,7 @@ void PhotonRenderer::changed(Changes const& c)
     TreeRenderer::changed(c);
     caustics_.changed(c);
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds || c.materials || c.coverage;
+    soup_moved_ = soup_moved_ || c.geometry;
     light_changed_ = light_changed_ || c.lights || c.emitters || c.environment;
 }
 
@@ -80,6 +83,14 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     {
         StageTimer const timer(report_, "light paths");
         ExactPathRays const rays(*visibility_);
+        bool const by_map = settings_.photons.first_bounce == FirstBounce::map;
+        if (by_map) {
+            if (!soup_)
+                soup_ = make_soup(world_);
+            else if (soup_moved_)
+                update_soup(world_, first_moving_, *soup_);
+            soup_moved_ = false;
+        }
         for (std::uint32_t first = 0; first < paths_; first += kTogether) {
             LightPaths const some{.count = paths_,
                                   .first = first,
@@ -88,8 +99,13 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
                                   .seed = settings_.seed,
                                   .pass = *first_index_ + sets_,
                                   .stop = &stop};
-            for (LightVertex const& v : trace_light_paths(view(world_), world_.bounds, rays, some, counts))
+            std::vector<LightVertex> const vertices =
+                by_map ? trace_bounce_maps(view(world_), world_.bounds, *soup_, plan_scene(world_).alpha_tests,
+                                           rays, some, counts)
+                       : trace_light_paths(view(world_), world_.bounds, rays, some, counts);
+            for (LightVertex const& v : vertices)
                 if (stores(v)) photons.push_back(to_photon(v));
+            if (by_map) break; // the whole set
         }
     }
     {

@@ -8,6 +8,7 @@
 #include "gi/light_paths/caustics.h"
 #include "gi/light_paths/photon.h"
 #include "gi/methods/whitted/whitted.h"
+#include "gi/raster/triangle_soup.h"
 
 #include <chrono>
 #include <optional>
@@ -69,6 +70,8 @@ private:
     std::vector<Camera> cameras_;              ///< of the last call
     std::uint32_t paths_;                      ///< of a set
     std::uint32_t sets_ = 0;                   ///< since the last change
+    std::optional<TriangleSoup> soup_;         ///< what bounce maps draw
+    bool soup_moved_ = false;
     std::size_t stored_ = 0;
     dvec3 flux_{0}, emitted_{0};
 };
