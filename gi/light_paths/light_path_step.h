@@ -12,9 +12,10 @@ namespace gi {
 struct LightPath {
     Pcg32 rng{0, 0};
     EmittedLight light;
-    vec2 place{0};            ///< random, of the light's start
-    int scatterings = 0;      ///< non-delta, so far
-    std::uint32_t number = 0; ///< see LightVertex::path
+    vec2 place{0};                        ///< random, of the light's start
+    int scatterings = 0;                  ///< non-delta, so far
+    std::uint32_t number = 0;             ///< see LightVertex::path
+    std::uint32_t triangle = kNoTriangle; ///< that it leaves
     bool from_light = true, from_surface = false;
     bool from_outside = false, straight = true; ///< see LightPaths::grid_side
     bool by_delta = false;                      ///< since the last vertex
@@ -144,6 +145,7 @@ GI_FN bool advance(WorldView const& world, LightPathRules const& s, LightPath& p
         p.solid_angle = 1 / (next.pdf * p.paths);
         p.length = 0;
     }
+    p.triangle = hit.triangle;
     p.light.ray = {leave(at, leaves), leaves};
     return true;
 }

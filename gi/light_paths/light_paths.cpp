@@ -60,7 +60,7 @@ void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, st
     std::vector<TracedPath*> active;
     for (TracedPath& p : paths)
         if (max_component(p.light.power) > 0) active.push_back(&p);
-    std::vector<RayQuery> queries;
+    std::vector<PathQuery> queries;
     std::vector<Hit> hits;
     for (int surface = 0; !active.empty(); ++surface) {
         if (surface == kLongestPath) {
@@ -68,11 +68,15 @@ void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, st
             return;
         }
         queries.clear();
-        for (TracedPath* p : active) queries.push_back({.ray = p->light.ray, .seed = p->rng.next()});
+        for (TracedPath* p : active)
+            queries.push_back({{.ray = p->light.ray, .seed = p->rng.next()},
+                               p->triangle,
+                               p->triangle != kNoTriangle && !p->by_delta});
         hits.resize(active.size());
         rays.nearest(queries, hits);
         counts.nearest_rays += active.size();
         std::size_t left = 0;
+        for (std::size_t k = 0; k < active.size(); ++k) active[k]->light.ray = queries[k].ray.ray;
         for (std::size_t k = 0; k < active.size(); ++k)
             if (advance(world, s, *active[k], hits[k])) active[left++] = active[k];
         active.resize(left);

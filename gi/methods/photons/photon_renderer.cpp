@@ -2,6 +2,7 @@
 
 #include "gi/light_paths/bounce_map.h"
 #include "gi/light_paths/options.h"
+#include "gi/methods/photons/look_up_rays.h"
 #include "gi/scene/model/plan.h"
 
 #include <algorithm>
@@ -23,6 +24,7 @@ void PhotonRenderer::changed(Changes const& c)
     caustics_.changed(c);
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds || c.materials || c.coverage;
     soup_moved_ = soup_moved_ || c.geometry;
+    axes_moved_ = axes_moved_ || c.geometry;
     light_changed_ = light_changed_ || c.lights || c.emitters || c.environment;
 }
 
@@ -81,8 +83,8 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
     std::vector<Photon> photons;
     {
+        PathRays const& rays = path_rays(stop);
         StageTimer const timer(report_, "light paths");
-        ExactPathRays const rays(*visibility_);
         bool const by_map = settings_.photons.first_bounce == FirstBounce::map;
         if (by_map) {
             if (!soup_)
@@ -118,6 +120,27 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     stored_ = photons.size();
     flux_ = dvec3{0};
     for (Photon const& p : photons) flux_ += dvec3(p.flux);
+}
+
+PathRays const& PhotonRenderer::path_rays(BuildStop const&)
+{
+    switch (settings_.photons.rays) {
+    case PhotonRays::look_ups: {
+        StageTimer const timer(report_, "hit buffers");
+        if (!axes_)
+            axes_.emplace(world_, with_stored_axes(settings_.slhb), settings_.seed, first_moving_, stop_);
+        else if (axes_moved_)
+            axes_->moved();
+        axes_moved_ = false;
+        rays_of_paths_ = std::make_unique<LookUpRays>(world_, *axes_, *visibility_);
+        break;
+    }
+    case PhotonRays::impostors:
+    case PhotonRays::exact:
+        rays_of_paths_ = std::make_unique<ExactPathRays>(*visibility_);
+        break;
+    }
+    return *rays_of_paths_;
 }
 
 void PhotonRenderer::report_work()
