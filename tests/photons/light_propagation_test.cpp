@@ -142,34 +142,36 @@ FreeSpaceError free_space_error(LightPropagation const& light, GridFrame const& 
     return {mean / exact, worst};
 }
 
-/// Free space: the flux through shells is kept. The irradiance of surfaces that face the light is known to be too
-/// high, as light turns back on its way, and far too even.
+/// Free space: the flux through shells is kept. The irradiance of surfaces that face the light is about right in
+/// the mean, but far too even over the directions; with cosine lobes it is several times too high, as light turns
+/// back.
 TEST(LightPropagation, FreeSpace)
 {
     GridFrame const frame = cube(33, 3.3f);
-    for (LobesAbout const lobes : {LobesAbout::travel, LobesAbout::face_normals})
+    for (Reprojection const by : {Reprojection::beams, Reprojection::cosine_lobes})
         for (int const source : {0, 1, 2}) {
-            LightPropagation light({.cells = 33, .cascades = 1, .steps = 400, .lobes = lobes});
+            LightPropagation light({.cells = 33, .cascades = 1, .steps = 200, .by = by});
             vec3 const n = source == 1 ? vec3{0, 0, 1} : glm::normalize(vec3{1, 1, 1});
             light.propagate(std::span{&frame, 1}, source == 0 ? point_light(frame, vec3{0}, 10)
                                                               : std::vector{in_cell(frame, vec3{0}, n, 10)});
-            fmt::print("lobes {}, {}: share of the flux through shells of 2, 5, 10 cells:",
-                       lobes == LobesAbout::travel ? "along the way" : "along normals",
+            fmt::print("{}, {}: share of the flux through shells of 2, 5, 10 cells:",
+                       by == Reprojection::beams ? "beams" : "cosine lobes",
                        source == 0   ? "point light"
                        : source == 1 ? "cosine, +z"
                                      : "cosine, diagonal");
             for (int const reach : {2, 5, 10}) {
                 double const flux = flux_through_shell(light, frame, glm::ivec3{16}, reach) / 10;
                 fmt::print(" {:.3f}", flux);
-                EXPECT_NEAR(flux, 1, lobes == LobesAbout::travel ? 0.07 : reach == 10 ? 0.25 : 0.05);
+                // Cosine lobes are slow: a third is still on its way.
+                EXPECT_NEAR(flux, 1, by == Reprojection::beams ? 0.2 : reach == 10 ? 0.4 : 0.1);
             }
             fmt::print("; irradiance at 4, 8, 12 cells, mean and worst:");
             for (float const far : {0.4f, 0.8f, 1.2f}) {
                 FreeSpaceError const off = free_space_error(light, frame, source == 0, n, far);
                 fmt::print(" {:.2f} {:.2f}", off.mean, off.worst);
-                EXPECT_GT(off.mean, 0.9);
-                EXPECT_LT(off.mean, lobes == LobesAbout::travel ? 1.7 : 2.5);
-                EXPECT_LT(off.worst, source != 0 ? 0.7 : lobes == LobesAbout::travel ? 0.9 : 1.7);
+                EXPECT_GT(off.mean, 0.85);
+                EXPECT_LT(off.mean, by == Reprojection::beams ? 1.1 : 3.5);
+                EXPECT_LT(off.worst, by == Reprojection::beams ? 0.8 : 2.5);
             }
             fmt::print("\n");
         }
@@ -220,7 +222,8 @@ TEST(LightPropagation, ClosedRoomTakesAllLight)
             double ceiling = double(light.irradiance({1.1f, 2, 0.9f}, {0, -1, 0}).x);
             fmt::print("{} cells, {} steps: {:.3f} of the flux at the walls, {:.3f} of the ceiling's irradiance\n",
                        cells, steps, flux / 4, ceiling / (4 / kPiD / 4));
-            EXPECT_NEAR(flux / 4, 1, 0.15);
+            EXPECT_NEAR(flux / 4, 1, steps == 0 ? 0.1 : 0.01);
+            EXPECT_NEAR(ceiling / (4 / kPiD / 4), 0.2, 0.15); // the known error: much light turns back
             EXPECT_NEAR(light.levels()[0].injected_w, 12, 1e-4);
             EXPECT_EQ(light.levels()[0].outside_w, 0);
         }
@@ -252,14 +255,14 @@ TEST(LightPropagation, WallsBlock)
 TEST(LightPropagation, NestedLatticesAgree)
 {
     Bounds const bounds{vec3{-2}, vec3{2}};
-    std::vector<GridFrame> const nested = nested_frames(bounds, vec3{0}, 32, 2),
-                                 one = nested_frames(bounds, vec3{0}, 61, 1);
+    std::vector<GridFrame> const nested = nested_frames(bounds, vec3{0}, 22, 2),
+                                 one = nested_frames(bounds, vec3{0}, 41, 1);
     ASSERT_NEAR(one[0].cell, nested[0].cell, 1e-6f);
     double worst = 0, level = 0;
     for (vec3 const place : {vec3{0.1f, 0.1f, 0.1f}, vec3{-1.7f, 0.1f, 0.1f}}) {
         std::vector<ReflectedLight> const lights{{place, {1, 0, 0}, vec3{5}}};
-        LightPropagation fine({.cells = 61, .cascades = 1, .steps = 300}),
-            both({.cells = 32, .cascades = 2, .steps = 300});
+        LightPropagation fine({.cells = 41, .cascades = 1, .steps = 150}),
+            both({.cells = 22, .cascades = 2, .steps = 150});
         fine.propagate(one, lights);
         both.propagate(nested, lights);
         double off = 0, sum = 0;
@@ -276,7 +279,7 @@ TEST(LightPropagation, NestedLatticesAgree)
         level = std::max(level, sum);
     }
     EXPECT_GT(level, 0.1);
-    EXPECT_LT(worst, 0.25);
+    EXPECT_LT(worst, 0.3);
 }
 
 TEST(LightPropagation, NestedGridsFollowByWholeCells)

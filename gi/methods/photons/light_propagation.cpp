@@ -119,9 +119,9 @@ void LightPropagation::propagate(Level& level, Level const* coarser, std::span<R
     for (int step = 0; step < steps; ++step) {
         launch(Space::host, "scale faces of cells", n, ScaleFaces{now, scales});
         DenseView<ShColor> const around = step == 0 && coarser != nullptr ? coarser->view() : DenseView<ShColor>{};
-        launch(Space::host, "propagate light", n,
-               Propagate{
-                   {frame, now}, scales, level.corners, level.open, around, settings_.lobes, next, level.total});
+        launch(
+            Space::host, "propagate light", n,
+            Propagate{{frame, now}, scales, level.corners, level.open, around, settings_.by, next, level.total});
         std::swap(now, next);
     }
 }

@@ -8,7 +8,8 @@
 // A cell keeps the sum over all steps of the intensity of its point light, W/sr. What is asked is a radiance. The
 // factors between them, for cells of side s:
 //   irradiance of a normal n = flux that propagation would send through a face of the cell with that normal / s^2
-// The net flux through any plane along the grid is then exact. In coefficients, degree 0 counts by 2/3 and degree
+// The net flux through any plane along the grid is then that of the propagation, and walls of a closed room take
+// all light. In coefficients, degree 0 counts by 2/3 and degree
 // 1 by 0.831 of intensity / s^2 (a beam along an axis through the cell). 2/3 is also the mean over all directions
 // of the ratio of a straight way to one from cell to cell. What stays wrong: light spreads over more directions
 // with every step, so that shadows and the rays of small lights are blurred, and four coefficients cannot tell a
@@ -30,7 +31,7 @@ struct PropagationSettings {
     int cells = 32;   ///< of each lattice along the scene's longest side, 8 to kMostCells
     int cascades = 3; ///< nested lattices, 1 to 8
     int steps = 0;    ///< from cell to cell; 0 = twice the cells
-    LobesAbout lobes = LobesAbout::travel;
+    Reprojection by = Reprojection::beams;
     bool blocked = true;  ///< by surfaces
     int glossy_cells = 4; ///< looked up along a glossy direction
 };

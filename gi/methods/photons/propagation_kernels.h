@@ -2,11 +2,11 @@
 // Propagation of light from cell to cell (Kaplanyan and Dachsbacher 2010, sec. 4.3), as kernels for CPU and CUDA.
 //
 // A cell holds the intensity of a point light at its centre. Each of its six neighbours gets the flux through the
-// neighbour's five other faces; of each of these, a light at the neighbour's centre with a clamped cosine about
-// the face's normal and the same flux. The flux through a face is the exact integral of the four coefficients over
-// the face's solid angle (the paper multiplies its solid angle with the intensity towards its middle). The four
-// coefficients of a cosine lobe are below 0 behind it: such fluxes count as 0, and the others of the cell are
-// scaled so that their sum is the cell's flux. So propagation in free space keeps each channel's flux.
+// neighbour's five other faces, which becomes light of the neighbour (Reprojection). The flux through a face is
+// the exact integral of the four coefficients over the face's solid angle (the paper multiplies its solid angle
+// with the intensity towards its middle). Four coefficients of a lobe are below 0 behind it: such fluxes count as
+// 0, and the others of the cell are scaled so that their sum is the cell's flux. So propagation in free space
+// keeps each channel's flux.
 
 #include "gi/methods/photons/sh_lattice.h"
 
@@ -76,10 +76,31 @@ struct OpenFaces {
     }
 };
 
-/// What the lobes of lights point to that come from a neighbour: the faces' normals (Kaplanyan and Dachsbacher),
-/// or the way on which their light came, from the neighbour's centre to the faces' middles. With normals, light
-/// forgets its direction within a few steps.
-enum class LobesAbout : std::uint8_t { travel, face_normals };
+/// How the flux through a face becomes light of the cell behind it:
+///   beams         one along the mean way from the neighbour's centre to the face, so that light keeps its
+///                 direction as far as four coefficients can
+///   cosine_lobes  a clamped cosine about the face's normal (Kaplanyan and Dachsbacher): light forgets its
+///                 direction within a few steps, and much of it turns back
+enum class Reprojection : std::uint8_t { beams, cosine_lobes };
+
+/// Adds flux through a face to the cell behind it. @param side  see face_flux()
+GI_FN inline void add_through_face(Reprojection by, vec3 flux, int axis, float sign, int side, ShColor& to)
+{
+    int const across = (axis + 1 + side / 2) % 3;
+    float const outwards = (side & 1) != 0 ? 1.0f : -1.0f;
+    vec3 way{0};
+    if (side == 4)
+        way[axis] = by == Reprojection::beams ? sign * (kFarAlong / kFarSolidAngle) : sign;
+    else if (by == Reprojection::beams) {
+        way[axis] = sign * (kSideAlong / kSideSolidAngle);
+        way[across] = outwards * (kSideOutwards / kSideSolidAngle);
+    } else
+        way[across] = outwards;
+    if (by == Reprojection::beams)
+        to.add_beam(flux, way);
+    else
+        to.add_cosine_lobe(flux, way);
+}
 
 /// One step of all light: gathers what a cell's six neighbours send.
 struct Propagate {
@@ -89,7 +110,7 @@ struct Propagate {
     View<vec3 const> open; ///< none = nothing blocks
     DenseView<ShColor>
         around; ///< of the coarser grid: all light that ever was in a cell; comes in over the border
-    LobesAbout about;
+    Reprojection by;
     View<ShColor> moved, total; ///< per cell: the step's light; its sum over the steps
 
     GI_FN void operator()(std::size_t i) const
@@ -118,13 +139,7 @@ struct Propagate {
             if (!open.empty()) scale *= open[corners.index(face)][axis];
             for (int side = 0; side < 5; ++side) {
                 vec3 const flux = scale * glm::max(face_flux(light, axis, sign, side), vec3{0});
-                constexpr float kAlong = 0.894427191f, kAside = 0.447213595f; // of (2, 1)
-                bool const travel = about == LobesAbout::travel && side < 4;
-                vec3 lobe{0};
-                if (side == 4 || travel) lobe[axis] = travel ? kAlong * sign : sign;
-                if (side < 4)
-                    lobe[(axis + 1 + side / 2) % 3] = (travel ? kAside : 1.0f) * ((side & 1) != 0 ? 1.0f : -1.0f);
-                sum.add_cosine_lobe(flux, lobe);
+                add_through_face(by, flux, axis, sign, side, sum);
             }
         }
         moved[i] = sum;

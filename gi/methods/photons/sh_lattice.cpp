@@ -8,11 +8,11 @@
 
 namespace gi {
 
-std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int levels)
+std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int levels, int border)
 {
     vec3 const extent = bounds.high - bounds.low;
     float const longest = std::max(max_component(extent), 1e-5f * (1 + max_component(glm::abs(bounds.center()))));
-    float const coarsest = longest / float(cells - 3); // a border on both sides, and whole cells
+    float const coarsest = longest / float(cells - 1 - 2 * border); // the box does not begin with a cell
     std::vector<GridFrame> out;
     for (int level = 0; level < levels; ++level) {
         GridFrame f;
@@ -20,8 +20,8 @@ std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cell
         for (int axis = 0; axis < 3; ++axis) {
             // In cells from the world's origin.
             double const side = double(f.cell);
-            double const low = std::floor(double(bounds.low[axis]) / side) - 1,
-                         high = std::ceil(double(bounds.high[axis]) / side) + 1;
+            double const low = std::floor(double(bounds.low[axis]) / side) - border,
+                         high = std::ceil(double(bounds.high[axis]) / side) + border;
             f.size[axis] = int(std::min(high - low, double(cells)));
             double const wanted = std::floor(double(center[axis]) / side) - f.size[axis] / 2;
             f.low[axis] = float(std::clamp(wanted, low, high - f.size[axis]) * side);

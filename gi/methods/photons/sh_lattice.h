@@ -64,11 +64,12 @@ void for_grids_at(Frames const& grids, vec3 position, Function const& of)
     }
 }
 
-/// Nested grids around a point, the finest first; the last one holds the whole box and a border of a cell, the
-/// cells of each other one are half as wide as the next one's. All are placed by whole cells from the world's
-/// origin, so that light does not swim when the point moves; they stay in the last one.
-/// @param cells  along the longest side, at least 4  @param levels  at least 1  @param bounds  not empty
-std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int levels);
+/// Nested grids around a point, the finest first; the last one holds the whole box and a border, the cells of each
+/// other one are half as wide as the next one's. All are placed by whole cells from the world's origin, so that
+/// light does not swim when the point moves; they stay in the last one.
+/// @param cells  along the longest side, at least 2 + 2 border  @param border  cells beyond the box
+/// @param levels  at least 1  @param bounds  not empty
+std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int levels, int border = 1);
 
 /// Bytes of dense lattices of `cell_bytes` a cell over grids.
 std::uint64_t dense_bytes(std::span<GridFrame const> frames, std::size_t cell_bytes);
