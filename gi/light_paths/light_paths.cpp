@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <tbb/parallel_for.h>
+#include <utility>
 
 namespace gi {
 namespace {
@@ -17,8 +18,9 @@ constexpr std::uint32_t kPathsTogether = 64;
 struct LightPath {
     Pcg32 rng{0, 0};
     EmittedLight light;
-    int scatterings = 0; ///< non-delta, so far
-    bool from_light = true;
+    int scatterings = 0;      ///< non-delta, so far
+    std::uint32_t number = 0; ///< see LightVertex::path
+    bool from_light = true, from_surface = false;
     bool from_outside = false, straight = true; ///< see LightPaths::grid_side
     bool by_delta = false;                      ///< since the last vertex
     float paths = 1;                            ///< of this kind that are expected to come so far
@@ -26,6 +28,25 @@ struct LightPath {
     float length = 0;                           ///< since then, m
     std::vector<LightVertex> left;              ///< left along the path
 };
+
+/// Chooses one of the delta lobes by how much each reflects or transmits.
+BsdfSample sample_delta_lobe(ShadingPoint const& at, vec3 arrived, float u)
+{
+    BsdfSample lobes[3];
+    int const n = delta_lobes(at.bsdf, arrived, at.front, lobes);
+    float sum = 0;
+    for (int k = 0; k < n; ++k) sum += max_component(lobes[k].weight);
+    float left = u * sum;
+    for (int k = 0; k < n; ++k) {
+        float const share = max_component(lobes[k].weight);
+        if (left < share) {
+            lobes[k].weight *= sum / share;
+            return lobes[k];
+        }
+        left -= share;
+    }
+    return {};
+}
 
 /// Advances from a hit to the next ray. Returns false if the path ends.
 bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit const& hit)
@@ -46,7 +67,8 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     if (!all_finite(power) || !(max_component(power) > 0)) return false;
     p.length += hit.distance;
     float const footprint = (p.area + p.solid_angle * square(p.length)) / cos_arrived;
-    if (!only_delta(at.bsdf)) {
+    bool const starts = std::exchange(p.from_surface, false);
+    if (!only_delta(at.bsdf) && !(starts && s.delta_only)) {
         if (s.grid_side) {
             GridSide const side = s.grid_side(at.position, hit.triangle);
             if (p.from_outside && p.straight && side == GridSide::inside_still) return false;
@@ -64,10 +86,12 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
                           .matt = bsdf_detail::is_matt(at.bsdf),
                           .by_delta = p.by_delta,
                           .scatterings = p.scatterings,
-                          .footprint = footprint});
+                          .footprint = footprint,
+                          .path = p.number});
     }
     float const u_lobe = p.rng.uniform();
-    BsdfSample const next = sample(at.bsdf, arrived, at.front, u_lobe, p.rng.uniform2());
+    BsdfSample const next = s.delta_only ? sample_delta_lobe(at, arrived, u_lobe)
+                                         : sample(at.bsdf, arrived, at.front, u_lobe, p.rng.uniform2());
     p.straight = !next.delta;
     if (!next.delta && ++p.scatterings >= s.bounces) return false;
     vec3 const leaves = at.frame.to_world(next.wi);
@@ -173,6 +197,7 @@ std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const&
     if (s.bounces < 1 || world.light_select.empty()) return {};
     return trace_blocks(world, rays, s, s.first, std::min(s.count, s.last), counts,
                         [&](std::uint32_t i, LightPath& p) {
+                            p.number = i;
                             p.rng = Pcg32::for_path(s.seed ^ 0x7619, i, s.pass);
                             // Stratified over the lights, so that every light gets its share of the paths in each
                             // pass.
@@ -198,6 +223,8 @@ std::vector<LightVertex> trace_from_surfaces(WorldView const& world, PathRays co
     return trace_blocks(world, rays, s, 0, std::uint32_t(starts.size()), counts,
                         [&](std::uint32_t i, LightPath& p) {
                             LightStart const& start = starts[i];
+                            p.number = i;
+                            p.from_surface = true;
                             p.rng = Pcg32::for_path(s.seed ^ 0x57a8, start.number, s.pass);
                             p.light.ray.direction = start.direction;
                             if (start.scatterings >= s.bounces) return;

@@ -29,6 +29,7 @@ struct LightVertex {
     /// Area over which the path's light is spread there, m^2: the reciprocal of the path density, the number of
     /// such paths per m^2 (McGuire and Luebke 2009; Herzog et al. 2007). Mirrors and glass count as flat.
     float footprint;
+    std::uint32_t path; ///< number of its path, or index of its start
 };
 
 /// Where a point of a surface lies relative to a fine grid; `still`: of a triangle that does not move.
@@ -43,6 +44,7 @@ struct LightPaths {
     /// Half of the sky's and the parallel lights' paths go through the sphere around this box, the others past it;
     /// empty = all go through the whole scene.
     Bounds focus{};
+    bool delta_only = false; ///< paths end where they would be scattered other than by mirrors and glass
     /// If set, paths that come from outside of a fine grid or from afar, not by mirrors or glass, end at its still
     /// surfaces without a trace, as other paths start there (LightStart).
     std::function<GridSide(vec3 position, std::uint32_t triangle)> grid_side{};
