@@ -193,7 +193,8 @@ LightVertex vertex_at(vec3 position, vec3 normal, vec3 power, float albedo)
             .matt = true,
             .by_delta = false,
             .scatterings = 0,
-            .footprint = 1};
+            .footprint = 1,
+            .path = 0};
 }
 
 /// In a closed room all light that leaves a wall arrives at walls: their irradiance times their area is the flux.

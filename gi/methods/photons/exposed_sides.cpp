@@ -16,7 +16,7 @@ constexpr float kLeastShare = 0.02f, kSurelyExposed = 0.2f;
 ExposedSides::ExposedSides(World const& world, ExactVisibility const& visibility, BuildStop const& stop)
 {
     constexpr std::size_t kTogether = std::size_t(1) << 18; // triangles
-    frame_ = nested_frames(world.bounds, world.bounds.center(), kExposureCells, 1)[0];
+    frame_ = frames_off_walls(world.bounds, world.bounds.center(), kExposureCells, 1)[0];
     frame_.size = (frame_.size + 3) / 4 * 4;
     GridFrame blocks = frame_;
     blocks.cell *= 4;

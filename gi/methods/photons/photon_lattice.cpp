@@ -11,31 +11,24 @@
 namespace gi {
 namespace {
 
-/// Frames over the scene, so placed that walls along the axes do not lie between two cells.
-std::vector<GridFrame> photon_frames(Bounds const& bounds, vec3 center, int cells, int cascades)
-{
-    float const about = max_component(bounds.high - bounds.low) / float(cells);
-    vec3 const shift = bounds.low - about * vec3{0.37f, 0.41f, 0.43f};
-    std::vector<GridFrame> frames =
-        nested_frames({bounds.low - shift, bounds.high - shift}, center - shift, cells, cascades, 0);
-    for (GridFrame& f : frames) f.low += shift;
-    return frames;
-}
-
 void find_pieces(World const& world, GridFrame const& exposure, BuildStop const& stop,
                  PhotonLattices::Level& level)
 {
     constexpr std::size_t kTogether = std::size_t(1)
                                       << 18; // of triangles, which bounds the memory of their pieces
+    // A cell is a block of 4 x 4 x 4 voxels if it is larger than those of the exposure, else a voxel.
+    bool const large = level.frame.cell > exposure.cell;
     GridFrame blocks = level.frame;
-    blocks.cell *= 4;
-    blocks.size = (blocks.size + 3) / 4;
+    if (!large) {
+        blocks.cell *= 4;
+        blocks.size = (blocks.size + 3) / 4;
+    }
     for (std::size_t first = 0; first < world.triangles.size(); first += kTogether) {
         VoxelGrid grid{SparseCells<BlockVoxels>(blocks), {}};
         add_triangles(world, first, std::min(world.triangles.size(), first + kTogether), grid, stop);
         for (SurfacePiece const& p : grid.pieces) {
-            glm::ivec3 const c = 4 * blocks.cell_of(grid.blocks.cells[p.block]) +
-                                 glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
+            glm::ivec3 c = blocks.cell_of(grid.blocks.cells[p.block]);
+            if (!large) c = 4 * c + glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
             if (!level.frame.holds(c)) continue;
             glm::ivec3 const e = glm::clamp(exposure.at(p.point), glm::ivec3{0}, exposure.size - 1);
             level.pieces.push_back({level.cells.place_at(c), exposure.index(e), p.area * p.normal});
@@ -70,7 +63,7 @@ std::uint64_t PhotonLattices::bytes(PhotonLatticeSettings const& s, Bounds const
     if (bounds.empty()) return 0;
     std::uint64_t sum = 0;
     for (int const cells : s.cells)
-        for (GridFrame const& f : photon_frames(bounds, bounds.center(), cells, s.cascades))
+        for (GridFrame const& f : frames_off_walls(bounds, bounds.center(), cells, s.cascades))
             sum += sparse_bytes(f, area_m2, 2 * sizeof(PhotonCell) + 2 * sizeof(Level::Piece));
     return sum;
 }
@@ -83,7 +76,7 @@ void PhotonLattices::place(World const& world, ExactVisibility const& visibility
     sky_shines_ = world.environment != nullptr;
     exposed_ = ExposedSides(world, visibility, stop);
     for (std::size_t k = 0; k < 3; ++k)
-        for (GridFrame const& f : photon_frames(world.bounds, camera, settings_.cells[k], settings_.cascades)) {
+        for (GridFrame const& f : frames_off_walls(world.bounds, camera, settings_.cells[k], settings_.cascades)) {
             levels_[k].push_back({f, SparseCells<PhotonCell>(f), {}});
             find_pieces(world, exposed_.frame(), stop, levels_[k].back());
         }

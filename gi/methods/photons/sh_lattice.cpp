@@ -31,6 +31,16 @@ std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cell
     return out;
 }
 
+std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int cells, int levels)
+{
+    float const about = max_component(bounds.high - bounds.low) / float(cells);
+    vec3 const shift = bounds.low - about * vec3{0.37f, 0.41f, 0.43f};
+    std::vector<GridFrame> frames =
+        nested_frames({bounds.low - shift, bounds.high - shift}, center - shift, cells, levels, 0);
+    for (GridFrame& f : frames) f.low += shift;
+    return frames;
+}
+
 std::uint64_t dense_bytes(std::span<GridFrame const> frames, std::size_t cell_bytes)
 {
     std::uint64_t sum = 0;

@@ -71,6 +71,10 @@ void for_grids_at(Frames const& grids, vec3 position, Function const& of)
 /// @param levels  at least 1  @param bounds  not empty
 std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int levels, int border = 1);
 
+/// The same without a border, and so placed, relative to the box, that walls along the axes do not lie between two
+/// cells: for light that is kept where surfaces are.
+std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int cells, int levels);
+
 /// Bytes of dense lattices of `cell_bytes` a cell over grids.
 std::uint64_t dense_bytes(std::span<GridFrame const> frames, std::size_t cell_bytes);
 /// Upper bound of the bytes of a sparse lattice whose surfaces have a total area. @param area_m2  of a side
