@@ -177,24 +177,19 @@ TEST(LightPropagation, FreeSpace)
         }
 }
 
-LightVertex vertex_at(vec3 position, vec3 normal, vec3 power, float albedo)
+Photon photon_at(vec3 position, vec3 normal, vec3 flux, float albedo)
 {
-    Bsdf bsdf;
-    bsdf.diffuse = vec3{albedo};
     return {.position = position,
             .normal = normal,
-            .triangle = 0,
-            .clearance = 1e-5f,
-            .front = true,
-            .power = power,
-            .bsdf = bsdf,
-            .frame = Frame::about(normal),
-            .arrived = {0, 0, 1},
-            .matt = true,
-            .by_delta = false,
-            .scatterings = 0,
+            .from = normal,
+            .flux = flux,
+            .reflected = vec3{albedo},
             .footprint = 1,
-            .path = 0};
+            .triangle = 0,
+            .path = 0,
+            .scatterings = 0,
+            .by_delta = false,
+            .front = true};
 }
 
 /// In a closed room all light that leaves a wall arrives at walls: their irradiance times their area is the flux.
@@ -206,8 +201,8 @@ TEST(LightPropagation, ClosedRoomTakesAllLight)
     for (int const cells : {16, 32})
         for (int const steps : {0, 400}) {
             LightPropagation light({.cells = cells, .cascades = 1, .steps = steps});
-            std::vector<LightVertex> const vertices{vertex_at({1.1f, 0, 0.9f}, {0, 1, 0}, vec3{8}, 0.5f)};
-            light.update(world, Geometry::changed, vertices, vec3{0});
+            std::vector<Photon> const photons{photon_at({1.1f, 0, 0.9f}, {0, 1, 0}, vec3{8}, 0.5f)};
+            light.update(world, Geometry::changed, photons, vec3{0});
             double flux = 0;
             int const n = 40;
             for (int side = 0; side < 6; ++side)
@@ -242,8 +237,8 @@ TEST(LightPropagation, WallsBlock)
             vec3 const along = {turned, 0, 1};
             if (wall != 0) add_quad(scene, {2 - 2 * turned, 0, 0}, {0, 4, 0}, 4.0f * along, matt);
             LightPropagation light({.cells = 32, .cascades = 1});
-            std::vector<LightVertex> const vertices{vertex_at({0, 2, 2}, {1, 0, 0}, vec3{8}, 1)};
-            light.update(world_of(scene), Geometry::changed, vertices, vec3{0});
+            std::vector<Photon> const photons{photon_at({0, 2, 2}, {1, 0, 0}, vec3{8}, 1)};
+            light.update(world_of(scene), Geometry::changed, photons, vec3{0});
             behind[wall] = double(light.irradiance({4, 2, 2}, {-1, 0, 0}).x);
         }
         fmt::print("wall turned by {}: {:.4f} of the light behind it\n", turned, behind[1] / behind[0]);
@@ -319,9 +314,9 @@ TEST(LightPropagation, NothingToShow)
     ASSERT_EQ(world.triangles.size(), 1u);
     light.update(world, Geometry::changed, {}, vec3{1e6f, 0, 0});
     EXPECT_EQ(light.irradiance(vec3{0.1f}, {0, 1, 0}), vec3{0});
-    LightVertex outside = vertex_at(vec3{1e9f}, {0, 1, 0}, vec3{1}, 1),
-                broken = vertex_at(vec3{0}, {0, 1, 0}, vec3{0}, 1);
-    broken.power = vec3{std::nanf("")};
+    Photon outside = photon_at(vec3{1e9f}, {0, 1, 0}, vec3{1}, 1),
+           broken = photon_at(vec3{0}, {0, 1, 0}, vec3{0}, 1);
+    broken.flux = vec3{std::nanf("")};
     light.update(world, Geometry::same, std::vector{outside, broken}, vec3{0});
     EXPECT_EQ(light.irradiance(vec3{0.1f}, {0, 1, 0}), vec3{0});
     EXPECT_NEAR(light.levels().back().outside_w, 3, 1e-5);

@@ -13,7 +13,7 @@ namespace {
 struct TracedScene {
     World world;
     ExactVisibility visibility;
-    std::vector<LightVertex> vertices;
+    std::vector<Photon> photons;
 
     TracedScene(Scene scene, std::uint32_t paths, int bounces)
         : world(world_of(std::move(scene))), visibility(world, false, 0)
@@ -22,7 +22,9 @@ struct TracedScene {
         LightPaths settings;
         settings.count = paths;
         settings.bounces = bounces;
-        vertices = trace_light_paths(view(world), world.bounds, ExactPathRays(visibility), settings, counts);
+        for (LightVertex const& v :
+             trace_light_paths(view(world), world.bounds, ExactPathRays(visibility), settings, counts))
+            photons.push_back(to_photon(v));
     }
 };
 
@@ -30,7 +32,8 @@ PhotonLattices lattices_of(TracedScene const& scene, PhotonLatticeSettings const
 {
     PhotonLattices out(settings);
     out.place(scene.world, scene.visibility, vec3{0});
-    out.update(scene.vertices);
+    out.update(scene.photons);
+    out.update_caustics(scene.photons);
     return out;
 }
 
@@ -74,8 +77,8 @@ TEST(PhotonLattices, Furnace)
                 PhotonLattices const light =
                     lattices_of(traced, {.cells = {cells, cells, 32}, .smooth = {true, true, true}, .by = by});
                 double mean = 0, off = 0, n = 0;
-                for (std::size_t i = 0; i < traced.vertices.size(); i += 37) {
-                    LightVertex const& v = traced.vertices[i];
+                for (std::size_t i = 0; i < traced.photons.size(); i += 37) {
+                    Photon const& v = traced.photons[i];
                     double const e = double(luminance(light.irradiance(v.position, v.normal))) / kPiD;
                     mean += e;
                     off += std::abs(e - 1);
@@ -176,30 +179,27 @@ TEST(PhotonLattices, PhotonsByFrequency)
     Scene scene;
     add_box(scene, {0, 0, 0}, {2, 2, 2}, add_material(scene, lambert(vec3{0.5f})), true);
     TracedScene traced(scene, 0, 1);
-    EXPECT_TRUE(traced.vertices.empty());
-    LightVertex v{.position = {1, 0, 1},
-                  .normal = {0, 1, 0},
-                  .triangle = 0,
-                  .clearance = 1e-5f,
-                  .front = true,
-                  .power = vec3{1},
-                  .bsdf = {},
-                  .frame = Frame::about({0, 1, 0}),
-                  .arrived = {0, 0, 1},
-                  .matt = true,
-                  .by_delta = false,
-                  .scatterings = 0,
-                  .footprint = 1,
-                  .path = 0};
+    EXPECT_TRUE(traced.photons.empty());
+    Photon v{.position = {1, 0, 1},
+             .normal = {0, 1, 0},
+             .from = {0, 1, 0},
+             .flux = vec3{1},
+             .reflected = vec3{0.5f},
+             .footprint = 1,
+             .triangle = 0,
+             .path = 0,
+             .scatterings = 0,
+             .by_delta = false,
+             .front = true};
     for (int const side : {0, 1, 2, 3, 4, 5}) { // so that light has reached all sides
-        LightVertex w = v;
+        Photon w = v;
         w.position = vec3{1};
         w.position[side / 2] = side % 2 != 0 ? 2 : 0;
         w.normal = vec3{0};
         w.normal[side / 2] = side % 2 != 0 ? -1 : 1;
-        traced.vertices.push_back(w);
+        traced.photons.push_back(w);
     }
-    std::size_t const direct = traced.vertices.size();
+    std::size_t const direct = traced.photons.size();
     struct Case {
         int scatterings;
         bool by_delta;
@@ -207,10 +207,10 @@ TEST(PhotonLattices, PhotonsByFrequency)
     };
     for (Case const c : {Case{0, false, -1}, Case{0, true, 2}, Case{1, false, 1}, Case{1, true, 1},
                          Case{2, false, 0}, Case{7, true, 0}}) {
-        traced.vertices.resize(direct);
-        v.scatterings = c.scatterings;
+        traced.photons.resize(direct);
+        v.scatterings = std::uint16_t(c.scatterings);
         v.by_delta = c.by_delta;
-        traced.vertices.push_back(v);
+        traced.photons.push_back(v);
         PhotonLattices const light = lattices_of(traced, {});
         for (int f = 0; f < 3; ++f)
             EXPECT_EQ(light.irradiance(Frequency(f), v.position, v.normal).x > 0, f == c.found);
@@ -230,14 +230,14 @@ TEST(PhotonLattices, NothingToShow)
     EXPECT_EQ(light.irradiance(vec3{0}, {0, 1, 0}), vec3{0});
     TracedScene const nothing(Scene{}, 100, 3);
     light.place(nothing.world, nothing.visibility, vec3{0});
-    light.update(nothing.vertices);
+    light.update(nothing.photons);
     EXPECT_EQ(light.radiance(vec3{0}, {0, 1, 0}), vec3{0});
     Scene scene;
     add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 0.5f}, add_material(scene, lambert(vec3{0.5f})));
     scene.meshes.back().triangles.resize(1);
     TracedScene triangle(scene, 100, 3);
     light.place(triangle.world, triangle.visibility, vec3{1e9f});
-    light.update(triangle.vertices);
+    light.update(triangle.photons);
     for (vec3 const at : {vec3{0.1f, 0, 0.1f}, vec3{1e20f}, vec3{-1e9f}}) {
         EXPECT_EQ(light.irradiance(at, {0, 1, 0}), vec3{0});
         EXPECT_EQ(light.radiance(at, {0, 1, 0}), vec3{0});

@@ -37,9 +37,14 @@ ExposedSides::ExposedSides(World const& world, ExactVisibility const& visibility
     shares_.assign(12 * frame_.cells(), 0);
 }
 
-bool ExposedSides::add(std::span<LightVertex const> vertices, bool sky_shines)
+bool ExposedSides::add(std::span<Photon const> photons, bool sky_shines)
 {
-    reached_.add(vertices);
+    for (Photon const& p : photons) {
+        glm::ivec3 const cell = frame_.at(p.position);
+        if (frame_.holds(cell))
+            reached_.of_cell[frame_.index(cell)] |=
+                std::uint16_t(1u << ReachedSides::side_index(p.normal, p.front));
+    }
     std::vector<float> whole(shares_.size()), exposed(shares_.size());
     for (PatchSample const& s : samples_) {
         std::uint32_t const cell = s.patch / 6;

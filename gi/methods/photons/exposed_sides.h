@@ -6,6 +6,7 @@
 // A side of a surface counts as reached if one of a few rays from it meets a side that light has reached, mirrors
 // or glass; or the sky, if that shines or light has reached the side itself (see sh_grid's exposure.h).
 
+#include "gi/light_paths/photon.h"
 #include "gi/methods/sh_grid/exposure.h"
 
 namespace gi {
@@ -17,7 +18,7 @@ public:
     ExposedSides(World const& world, ExactVisibility const& visibility, BuildStop const& stop);
 
     /// Adds what light has reached. Returns true if shares have changed.
-    bool add(std::span<LightVertex const> vertices, bool sky_shines);
+    bool add(std::span<Photon const> photons, bool sky_shines);
     GridFrame const& frame() const { return frame_; }
     /// Share of the area of sides in a cell, 0 to 1. @param side  see ReachedSides::side_index()
     float share(std::uint32_t cell, std::uint32_t side) const { return shares_[12 * std::size_t(cell) + side]; }

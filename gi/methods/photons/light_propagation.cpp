@@ -60,15 +60,12 @@ bool same(GridFrame const& a, GridFrame const& b)
 
 } // namespace
 
-std::vector<ReflectedLight> reflected_lights(std::span<LightVertex const> vertices)
+std::vector<ReflectedLight> reflected_lights(std::span<Photon const> photons)
 {
     std::vector<ReflectedLight> out;
-    for (LightVertex const& v : vertices) {
-        vec3 const specular = v.bsdf.model == MaterialModel::phong      ? v.bsdf.phong_specular
-                              : !bsdf_detail::specular_is_delta(v.bsdf) ? v.bsdf.f0
-                                                                        : vec3{0};
-        vec3 const flux = v.power * glm::min(v.bsdf.diffuse + specular, vec3{1});
-        if (max_component(flux) > 0 && all_finite(flux)) out.push_back({v.position, v.normal, flux});
+    for (Photon const& p : photons) {
+        vec3 const flux = p.flux * p.reflected;
+        if (max_component(flux) > 0 && all_finite(flux)) out.push_back({p.position, p.normal, flux});
     }
     return out;
 }
@@ -133,15 +130,15 @@ void LightPropagation::propagate(std::span<GridFrame const> frames, std::span<Re
         propagate(levels_[k], k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights);
 }
 
-void LightPropagation::update(World const& world, Geometry geometry, std::span<LightVertex const> vertices,
-                              vec3 camera, BuildStop const& stop)
+void LightPropagation::update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
+                              BuildStop const& stop)
 {
     if (world.bounds.empty()) return levels_.clear();
     std::vector<GridFrame> const frames = nested_frames(world.bounds, camera, settings_.cells, settings_.cascades);
     std::vector<Level> former;
     std::swap(former, levels_);
     place(frames);
-    std::vector<ReflectedLight> const lights = reflected_lights(vertices);
+    std::vector<ReflectedLight> const lights = reflected_lights(photons);
     for (std::size_t k = levels_.size(); k-- > 0;) {
         Level& level = levels_[k];
         if (settings_.blocked) {

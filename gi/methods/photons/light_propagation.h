@@ -18,7 +18,8 @@
 // Unlike the paper: surfaces block by their projected areas along the three axes, not by spherical harmonics:
 // of a surface with two sides four coefficients know its area alone, and floors would block light along them.
 
-#include "gi/light_paths/light_paths.h"
+#include "gi/core/progress.h"
+#include "gi/light_paths/photon.h"
 #include "gi/methods/photons/propagation_kernels.h"
 
 #include <memory>
@@ -42,8 +43,8 @@ struct ReflectedLight {
     vec3 flux;             ///< W, reflected
     GI_FN void add_to(ShColor& cell) const { cell.add_cosine_lobe(flux, normal); }
 };
-/// Of vertices of light paths. Glossy lobes count as diffuse; mirrors and glass do not: light paths follow them.
-std::vector<ReflectedLight> reflected_lights(std::span<LightVertex const> vertices);
+/// Light that photons reflect diffusely.
+std::vector<ReflectedLight> reflected_lights(std::span<Photon const> photons);
 
 enum class Geometry : std::uint8_t { same, changed };
 
@@ -53,7 +54,7 @@ public:
     explicit LightPropagation(PropagationSettings const& settings);
 
     /// Throws Interrupted. @param world  its bounds may be empty  @param geometry  since the last call
-    void update(World const& world, Geometry geometry, std::span<LightVertex const> vertices, vec3 camera,
+    void update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
                 BuildStop const& stop = BuildStop(nullptr));
     /// Irradiance of a surface, W/m^2. @param normal  unit, on the side asked for
     vec3 irradiance(vec3 position, vec3 normal) const;

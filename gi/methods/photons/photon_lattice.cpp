@@ -82,7 +82,7 @@ void PhotonLattices::place(World const& world, ExactVisibility const& visibility
         }
 }
 
-void PhotonLattices::inject(Level& level, std::span<LightVertex const* const> photons, bool smooth, bool last)
+void PhotonLattices::inject(Level& level, std::span<Photon const* const> photons, bool smooth, bool last)
 {
     std::ranges::fill(level.cells.values, PhotonCell{});
     for (Level::Piece const& p : level.pieces) {
@@ -99,9 +99,8 @@ void PhotonLattices::inject(Level& level, std::span<LightVertex const* const> ph
     std::vector<LatticePhoton> items(n);
     std::vector<vec3> positions(n);
     for (std::size_t i = 0; i < n; ++i) {
-        LightVertex const& v = *photons[i];
-        items[i] = {v.power, v.frame.to_world(v.arrived), v.normal, 0};
-        positions[i] = v.position;
+        items[i] = {photons[i]->flux, photons[i]->from, photons[i]->normal, 0};
+        positions[i] = photons[i]->position;
     }
     std::vector<std::uint64_t> keys(n);
     launch(Space::host, "find cells of photons", n, FindPhotonCells{level.cells.view(), positions, items, keys});
@@ -119,19 +118,31 @@ void PhotonLattices::inject(Level& level, std::span<LightVertex const* const> ph
     std::swap(level.cells.values, smoothed);
 }
 
-void PhotonLattices::update(std::span<LightVertex const> vertices)
+void PhotonLattices::update(std::span<Photon const> photons)
 {
     injected_w_ = lost_w_ = 0;
     if (levels_[0].empty()) return;
-    exposed_.add(vertices, sky_shines_);
-    std::array<std::vector<LightVertex const*>, 3> photons;
-    for (LightVertex const& v : vertices) {
-        if (!all_finite(v.power) || (v.scatterings == 0 && !v.by_delta)) continue;
-        photons[v.scatterings == 0 ? 2 : v.scatterings == 1 ? 1 : 0].push_back(&v);
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-        for (Level& level : levels_[k])
-            inject(level, photons[k], settings_.smooth[k], &level == &levels_[k].back());
+    exposed_.add(photons, sky_shines_);
+    std::vector<Photon const*> once, more;
+    for (Photon const& p : photons)
+        if (p.scatterings > 0 && all_finite(p.flux)) (p.scatterings == 1 ? once : more).push_back(&p);
+    inject(Frequency::low, more);
+    inject(Frequency::middle, once);
+}
+
+void PhotonLattices::update_caustics(std::span<Photon const> photons)
+{
+    if (levels_[0].empty()) return;
+    std::vector<Photon const*> caustics;
+    for (Photon const& p : photons)
+        if (p.scatterings == 0 && p.by_delta && all_finite(p.flux)) caustics.push_back(&p);
+    inject(Frequency::high, caustics);
+}
+
+void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons)
+{
+    std::vector<Level>& levels = levels_[std::size_t(f)];
+    for (Level& level : levels) inject(level, photons, settings_.smooth[std::size_t(f)], &level == &levels.back());
 }
 
 vec3 PhotonLattices::irradiance(Frequency of, vec3 position, vec3 normal) const

@@ -95,8 +95,12 @@ public:
     /// nested lattices. Throws Interrupted.
     void place(World const& world, ExactVisibility const& visibility, vec3 camera,
                BuildStop const& stop = BuildStop(nullptr));
-    /// Replaces the light. What light has reached is remembered. @param vertices  of all scatterings
-    void update(std::span<LightVertex const> vertices);
+    /// Replaces light of one and more scatterings. What light has reached is remembered. @param photons  of all
+    /// scatterings
+    void update(std::span<Photon const> photons);
+    /// Replaces the caustics: those of the photons that have come by mirrors and glass alone. To be called after
+    /// update().
+    void update_caustics(std::span<Photon const> photons);
 
     /// Of light of one and more scatterings and of caustics, W/m^2. @param normal  unit, on the side asked for
     vec3 irradiance(vec3 position, vec3 normal) const;
@@ -122,7 +126,8 @@ public:
     static std::uint64_t bytes(PhotonLatticeSettings const& settings, Bounds const& bounds, double area_m2);
 
 private:
-    void inject(Level& level, std::span<LightVertex const* const> photons, bool smooth, bool last);
+    void inject(Frequency f, std::span<Photon const* const> photons);
+    void inject(Level& level, std::span<Photon const* const> photons, bool smooth, bool last);
 
     PhotonLatticeSettings settings_;
     ExposedSides exposed_;
