@@ -149,6 +149,7 @@ struct PhotonSettings {
     Reprojection reprojection = Reprojection::beams;
     int low_cells = 16, middle_cells = 32, high_cells = 128; ///< of the lattices of isllpm
     int lattice_cascades = 1;                                ///< nested ones of each of them
+    Switch lattice_smoothing = Switch::on;                   ///< of the low and the middle one
     IrradianceBy irradiance_by = IrradianceBy::normals;
 };
 

@@ -108,6 +108,8 @@ public:
         : PhotonRenderer(world, settings, first_moving, report, stop),
           of_lattices_{
               .cells = {settings.photons.low_cells, settings.photons.middle_cells, settings.photons.high_cells},
+              .smooth = {settings.photons.lattice_smoothing == Switch::on,
+                         settings.photons.lattice_smoothing == Switch::on, false},
               .cascades = settings.photons.lattice_cascades,
               .by = settings.photons.irradiance_by},
           lattices_(of_lattices_),
