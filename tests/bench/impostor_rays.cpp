@@ -38,9 +38,12 @@ double seconds(Work const& work)
 std::vector<RayQuery> rays_of_light(World const& world, ExactVisibility const& visibility, std::size_t n)
 {
     std::vector<RayQuery> rays;
-    Reached const reached = reach(world, visibility, n / 6 + 64, 3);
-    for (Flight const& f : reached.flights)
-        if (rays.size() < n) rays.push_back({.ray = {f.from, f.direction}, .seed = std::uint32_t(rays.size())});
+    std::vector<Flight> const all = reach(world, visibility, n / 8 + 64, 3).flights;
+    n = std::min(n, all.size());
+    for (std::size_t k = 0; k < n; ++k) {
+        Flight const& f = all[k * all.size() / n];
+        rays.push_back({.ray = {f.from, f.direction}, .seed = std::uint32_t(k)});
+    }
     return rays;
 }
 
@@ -124,7 +127,7 @@ void measure(std::string const& name, std::size_t n, ImpostorPlacement const& pl
             if (!is || !found) continue;
             double const off =
                 std::abs(double(b.distance) - double(a.distance)) / double(std::max(a.distance, 1e-30f));
-            error += off;
+            error += std::min(off, 1.0);
             errors.push_back(off);
             ++both;
             if (a.triangle != b.triangle && off > 0.02) ++wrong;
