@@ -1,6 +1,8 @@
 #include "gi/methods/registry.h"
 
 #include "gi/core/error.h"
+#include "gi/light_paths/options.h"
+#include "gi/methods/photons/methods.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/sh_grid/sh_grid.h"
 #include "gi/methods/slhb/frames.h"
@@ -33,6 +35,8 @@ constexpr std::array kMethods{
            start_whitted_frames, whitted_options},
     Method{"sh_grid", "ray trees, with indirect light from photons in a field of spherical harmonics",
            render_sh_grid, start_sh_grid_frames, sh_grid_options},
+    Method{"ispm", "ray trees, with indirect light from photons splatted in image space", render_ispm,
+           start_ispm_frames},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),
@@ -86,6 +90,7 @@ RenderOptionTable const& render_options()
 {
     static RenderOptionTable const all = [] {
         RenderOptionTable table = common_options();
+        table.insert(table.end(), photon_options().begin(), photon_options().end());
         std::vector<RenderOptionTable const*> added;
         for (Method const& m : methods()) {
             if (m.options == nullptr || std::ranges::find(added, &m.options()) != added.end()) continue;

@@ -130,15 +130,19 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     }
     if (method == "sh_grid") {
         ShGridSettings const& o = s.sh_grid;
-        for (int const v :
-             {o.voxels, o.photons, o.caustic_photons, o.reflections, o.degree, o.directions, o.gather_directions,
-              o.glossy_directions, o.field_shadow_rays, o.field_passes, int(o.field_rays), int(o.radiance_by),
-              int(o.multilevel), int(o.leak_weights), int(o.field_glyphs)})
+        for (int const v : {o.voxels, o.degree, o.directions, o.gather_directions, o.glossy_directions,
+                            o.field_shadow_rays, o.field_passes, int(o.field_rays), int(o.radiance_by),
+                            int(o.multilevel), int(o.leak_weights), int(o.field_glyphs)})
             h.add(std::uint64_t(v));
         h.add(o.obscurance_m);
-        h.add(o.caustic_radius_m);
     }
-    if (method == "whitted" || method == "sh_grid") {
+    if (!method.starts_with("vpl_") && method != "slhb" && method != "reference") {
+        PhotonSettings const& o = s.photons;
+        for (int const v : {o.paths, o.caustic_paths, o.reflections, int(o.rays), int(o.first_bounce),
+                            int(o.frozen), int(o.kernel_by)})
+            h.add(std::uint64_t(v));
+        h.add(o.caustic_radius_m);
+        h.add(o.kernel_size);
         for (int const v : {s.whitted.recursion, s.whitted.light_samples}) h.add(std::uint64_t(v));
         h.add(s.whitted.cutoff);
     }

@@ -120,21 +120,38 @@ enum class RadianceBy : std::uint8_t {
     direction ///< by the directions of photons, as the paper does
 };
 
+/// What finds the surfaces that photons meet.
+enum class PhotonRays : std::uint8_t { exact, look_ups, impostors };
+/// How the light of lamps finds its first surfaces.
+enum class FirstBounce : std::uint8_t { rays, map };
+/// What the size of photons' kernels follows.
+enum class KernelBy : std::uint8_t { density, footprint };
+
+/// Settings of light paths and photons: sh_grid and the methods of gi/methods/photons.
+struct PhotonSettings {
+    static constexpr int kMostPaths = 1 << 24;
+    int paths = 262144;         ///< light paths per set of photons
+    int caustic_paths = 65536;  ///< light paths per pass that begin on mirrors and glass; 0 = no caustics
+    float caustic_radius_m = 0; ///< of the first kernels of caustics; 0 = by their density
+    int reflections = 64;       ///< of a photon, at most
+    PhotonRays rays = PhotonRays::exact;
+    FirstBounce first_bounce = FirstBounce::rays;
+    Switch frozen = Switch::off; ///< light is computed once and kept, whatever changes
+    KernelBy kernel_by = KernelBy::density;
+    float kernel_size = 1; ///< factor of kernels' radii
+};
+
 /// Settings of the method sh_grid, see gi/methods/sh_grid.
 struct ShGridSettings {
     static constexpr int kMostVoxels = 1024;
-    int voxels = 128;            ///< along the longest side; the field has a quarter of them
-    int photons = 262144;        ///< light paths per update
-    int caustic_photons = 65536; ///< light paths per pass that begin on mirrors and glass; 0 = no caustics
-    float caustic_radius_m = 0;  ///< of the first disks that photons of caustics light; 0 = by their density
-    int reflections = 64;        ///< of a photon, at most
-    int degree = 2;              ///< of the spherical harmonics
-    int directions = 400;        ///< per cell of the field
-    int gather_directions = 0;   ///< samples of the diffuse lobe; 0 = convolution in closed form
-    int glossy_directions = 8;   ///< samples of glossy lobes
-    float obscurance_m = 0;      ///< surfaces nearer than this darken diffuse light; 0 = off
-    int field_shadow_rays = 4;   ///< from a surface to cells of the field; 0 = none, weights alone
-    int field_passes = 3;        ///< passes over which the field follows a change of the scene
+    int voxels = 128;          ///< along the longest side; the field has a quarter of them
+    int degree = 2;            ///< of the spherical harmonics
+    int directions = 400;      ///< per cell of the field
+    int gather_directions = 0; ///< samples of the diffuse lobe; 0 = convolution in closed form
+    int glossy_directions = 8; ///< samples of glossy lobes
+    float obscurance_m = 0;    ///< surfaces nearer than this darken diffuse light; 0 = off
+    int field_shadow_rays = 4; ///< from a surface to cells of the field; 0 = none, weights alone
+    int field_passes = 3;      ///< passes over which the field follows a change of the scene
     FieldRays field_rays = FieldRays::exact;
     RadianceBy radiance_by = RadianceBy::normal;
     Switch multilevel = Switch::off;   ///< read coarser grids of radiance where directions are sparse
@@ -170,6 +187,7 @@ struct RenderSettings {
     SlhbSettings slhb{};
     VirtualLightSettings vpl{};
     WhittedSettings whitted{};
+    PhotonSettings photons{};
     ShGridSettings sh_grid{};
     bool resume = false; ///< continue from the checkpoint if it exists and fits
     PathShare share{};   ///< for single pictures only; frame sequences and checkpoints need all paths

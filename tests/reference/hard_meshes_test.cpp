@@ -51,7 +51,7 @@ Outcome try_to_load(fs::path const& file)
         Picture const picture = render_reference(world, camera, settings, {}, {}, report).picture;
         for (float const v : picture.find("color")->data) EXPECT_TRUE(std::isfinite(v)) << file;
         settings.sh_grid.voxels = 32;
-        settings.sh_grid.photons = 1000;
+        settings.photons.paths = 1000;
         Picture const gridded = render_sh_grid(world, camera, settings, {}, {}, report).picture;
         for (float const v : gridded.find("color")->data) EXPECT_TRUE(std::isfinite(v)) << file;
     } catch (InputError const& e) {

@@ -1,7 +1,7 @@
 // Light by way of mirrors and glass in the method sh_grid: closed forms, and pictures of the reference.
 
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/sh_grid/caustics.h"
+#include "gi/light_paths/caustics.h"
 #include "gi/methods/sh_grid/field_rays.h"
 #include "gi/methods/sh_grid/sh_grid.h"
 #include "tests/support/scenes.h"
@@ -55,7 +55,7 @@ TEST(ShGridCaustics, SunOverAMirrorOnAWall)
     EXPECT_NEAR(seen / truth, 1, 0.02);
     EXPECT_NEAR(report.counts().at("caustic photons: flux, W (luminance)"), 2 * kReflectance, 0.02);
     // Without, it is dark, but for rounding: the sun grazes the wall.
-    s.sh_grid.caustic_photons = 0;
+    s.photons.caustic_paths = 0;
     EXPECT_LT(mean_of(render_sh_grid(world_of(scene), eye, s, {}, {}, report).picture, "L1").mean, 1e-9);
 }
 
@@ -98,7 +98,7 @@ TEST(ShGridCaustics, EdgesGetSharper)
     for (int k = 0; k < 2; ++k) {
         Report report;
         RenderSettings s = caustic_settings(kSize, k == 0 ? 4 : 64, 32);
-        s.sh_grid.caustic_photons = 16384;
+        s.photons.caustic_paths = 16384;
         Picture const p =
             render_sh_grid(world, orthographic({0, 0, 0.5}, {0, 0, 0}, 0.6), s, {}, {}, report).picture;
         for (int x = 0; x < kSize; ++x) // the mean of a column hides the noise
@@ -121,7 +121,7 @@ TEST(ShGridCaustics, FurnaceWithAMirrorWall)
     for (int const photons : {0, 65536}) {
         Report report;
         RenderSettings s = caustic_settings(32, 8, 64);
-        s.sh_grid.caustic_photons = photons;
+        s.photons.caustic_paths = photons;
         Picture const p =
             render_sh_grid(world_of(scene), look_at({0, 0, 0}, {0, 0, 1}, 80), s, {}, {}, report).picture;
         double const once = 2 * mean_of(p, "L1").mean, more = 2 * mean_of(p, "L2").mean;
@@ -156,7 +156,7 @@ TEST(ShGridCaustics, EnergyOfTheReference)
         s.paths = 8;
         s.whitted.recursion = 16;
         for (int const photons : {0, 65536}) {
-            s.sh_grid.caustic_photons = photons;
+            s.photons.caustic_paths = photons;
             Picture const trees = render_sh_grid(world, eye, s, {}, {}, report).picture;
             double const l1 = mean_of(trees, "L1").mean / mean_of(paths, "L1").mean,
                          l2 = mean_of(trees, "L2").mean / mean_of(paths, "L2").mean;
@@ -228,7 +228,7 @@ TEST(ShGridCaustics, NothingSmoothCostsNothing)
     RenderSettings s = caustic_settings(16, 2, 32);
     Picture const with = render_sh_grid(world, eye, s, {}, {}, report).picture;
     for (auto const& [stage, seconds] : report.times()) EXPECT_NE(stage, "caustic photons");
-    s.sh_grid.caustic_photons = 0;
+    s.photons.caustic_paths = 0;
     EXPECT_EQ(with.find("color")->data, render_sh_grid(world, eye, s, {}, {}, report).picture.find("color")->data);
 }
 

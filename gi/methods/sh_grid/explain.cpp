@@ -1,6 +1,6 @@
 #include "gi/methods/sh_grid/explain.h"
 
-#include "gi/methods/sh_grid/caustics.h"
+#include "gi/light_paths/caustics.h"
 #include "gi/methods/sh_grid/field.h"
 #include "gi/methods/sh_grid/focus.h"
 
@@ -40,15 +40,16 @@ std::vector<PlanItem> explain_sh_grid(World const& world, RenderSettings const& 
         out.push_back({"fine grid of what is shown", false, extents});
     }
     std::size_t const smooth = find_caustic_targets(world, {}).triangles.size();
-    out.push_back({"caustics", smooth > 0 && s.caustic_photons > 0,
-                   smooth == 0             ? std::string("nothing mirrors or refracts without scattering")
-                   : s.caustic_photons > 0 ? fmt::format("{} light paths per pass begin on {} smooth triangles",
-                                                         s.caustic_photons, smooth)
-                                           : fmt::format("{} smooth triangles, but --caustic-photons 0", smooth)});
+    out.push_back({"caustics", smooth > 0 && settings.photons.caustic_paths > 0,
+                   smooth == 0 ? std::string("nothing mirrors or refracts without scattering")
+                   : settings.photons.caustic_paths > 0
+                       ? fmt::format("{} light paths per pass begin on {} smooth triangles",
+                                     settings.photons.caustic_paths, smooth)
+                       : fmt::format("{} smooth triangles, but --caustic-photons 0", smooth)});
     bool const moves = world.static_triangles < world.triangles.size();
     out.push_back(
         {"photons", true,
-         fmt::format("{} light paths per update{}", s.photons,
+         fmt::format("{} light paths per update{}", settings.photons.paths,
                      needs_fine_grid(focus, world.bounds) ? ", and as many that begin on surfaces of the fine grid"
                                                           : "")});
     out.push_back({"updates of moving parts", moves,

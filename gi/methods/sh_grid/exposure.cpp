@@ -30,7 +30,7 @@ constexpr float kRaysWrong = 1.25f;
 
 /// The voxels of a cell in which photons leave a patch's side.
 BlockVoxels lit_voxels(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
-                       std::span<Photon const> photons, SortedPhotons const& sorted, std::size_t patch,
+                       std::span<ReflectedPhoton const> photons, SortedPhotons const& sorted, std::size_t patch,
                        std::size_t side)
 {
     GridFrame const& frame = blocks.frame;
@@ -154,7 +154,7 @@ void look_around(World const& world, ExactVisibility const& visibility, GridFram
 
 ExposedAreas exposed_areas(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
                            std::span<PatchSample const> samples, ReachedSides const& reached,
-                           std::span<Photon const> photons, SortedPhotons const& sorted, bool sky_shines,
+                           std::span<ReflectedPhoton const> photons, SortedPhotons const& sorted, bool sky_shines,
                            RadianceBy by)
 {
     ExposedAreas out;

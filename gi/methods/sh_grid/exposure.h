@@ -49,7 +49,7 @@ struct ExposedAreas {
 /// more if photons show a larger lit share of a patch.
 ExposedAreas exposed_areas(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
                            std::span<PatchSample const> samples, ReachedSides const& reached,
-                           std::span<Photon const> photons, SortedPhotons const& sorted, bool sky_shines,
+                           std::span<ReflectedPhoton const> photons, SortedPhotons const& sorted, bool sky_shines,
                            RadianceBy by);
 
 } // namespace gi

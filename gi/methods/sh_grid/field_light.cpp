@@ -2,6 +2,7 @@
 
 #include "gi/methods/sh_grid/field_glyphs.h"
 #include "gi/methods/slhb/directions/direction_map.h"
+#include "gi/methods/whitted/caustic_light.h"
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
@@ -74,7 +75,7 @@ vec3 field_irradiance(FieldCell const& cell, int degree, vec3 normal)
     return glm::max(sum, vec3{0});
 }
 
-FieldLight::FieldLight(std::span<GridLevel const> levels, CausticMap const* caustics,
+FieldLight::FieldLight(std::span<GridLevel const> levels, PhotonMap const* caustics,
                        ExactVisibility const& visibility, ShGridSettings const& settings)
     : caustics_(caustics),
       visibility_(visibility),
@@ -178,20 +179,9 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
     return out + sum / float(n);
 }
 
-vec3 FieldLight::caustic_radiance(TreePoint const& p) const
-{
-    vec3 const all = caustics_->radiance(p.at, p.wo);
-    if (!p.glossy_traced || !(max_component(all) > 0)) return all;
-    ShadingPoint glossy = p.at;
-    glossy.bsdf = glossy_lobe(p.at.bsdf);
-    return glm::max(all - caustics_->radiance(glossy, p.wo), vec3{0});
-}
-
 void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const
 {
-    if (caustics_ != nullptr)
-        for (TreePoint const& p : points)
-            layer_of(*p.sample, p.scatterings + 1) += p.throughput * caustic_radiance(p);
+    if (caustics_ != nullptr) add_caustics(*caustics_, points);
     if (levels_.empty()) {
         std::ranges::fill(out, vec3{0});
         return;

@@ -8,7 +8,7 @@
 // maps, Donnelly and Lauritzen 2006). Exact shadow rays to a few cells, chosen by these weights, decide: the mean
 // is that of the cells that they reach.
 
-#include "gi/methods/sh_grid/caustic_map.h"
+#include "gi/light_paths/photon_map.h"
 #include "gi/methods/sh_grid/indirect_field.h"
 #include "gi/methods/whitted/tree_tracer.h"
 
@@ -20,7 +20,7 @@ class FieldLight : public SurfaceLight {
 public:
     /// @param levels  the finest first, empty without indirect light; with the other arguments must outlive it
     /// @param caustics  null = none
-    FieldLight(std::span<GridLevel const> levels, CausticMap const* caustics, ExactVisibility const& visibility,
+    FieldLight(std::span<GridLevel const> levels, PhotonMap const* caustics, ExactVisibility const& visibility,
                ShGridSettings const& settings);
 
     /// Also adds the light of caustics, which has scattered once, to that layer of the points' samples.
@@ -47,8 +47,6 @@ private:
         float weight;
         std::uint32_t point; ///< its index
     };
-    /// Without what a ray of the glossy lobe brings.
-    vec3 caustic_radiance(TreePoint const& p) const;
     void add(NearCell const& near, float weight, FieldCell& out) const; ///< distances in m
     /// Adds the weighted mean of the cells that are seen, per point, whose rays follow each other.
     /// @param seen  set to 1 for points that see one
@@ -56,7 +54,7 @@ private:
                      std::span<std::uint8_t> seen) const;
 
     std::vector<CellsView<FieldCell>> levels_;
-    CausticMap const* caustics_;
+    PhotonMap const* caustics_;
     ExactVisibility const& visibility_;
     int degree_, coefficients_;
     ShGridSettings const& settings_;

@@ -36,7 +36,7 @@ void find_moving_surfaces(World const& world, ExactVisibility const& visibility,
     level.blocks = std::move(grid.blocks);
 }
 
-void make_radiance_grid(std::span<Photon const> photons, bool sky_shines, RadianceBy by, GridLevel& level)
+void make_radiance_grid(std::span<ReflectedPhoton const> photons, bool sky_shines, RadianceBy by, GridLevel& level)
 {
     ReachedSides reached(level.blocks.frame);
     for (ReachedSides const& part : level.reached) reached |= part;

@@ -29,6 +29,7 @@ void find_moving_surfaces(World const& world, ExactVisibility const& visibility,
                           GridLevel& level);
 
 /// Brings the radiance grids up to date. @param photons  where surfaces are now
-void make_radiance_grid(std::span<Photon const> photons, bool sky_shines, RadianceBy by, GridLevel& level);
+void make_radiance_grid(std::span<ReflectedPhoton const> photons, bool sky_shines, RadianceBy by,
+                        GridLevel& level);
 
 } // namespace gi

@@ -34,7 +34,7 @@ IndirectField::IndirectField(World const& world, RenderSettings const& settings,
       report_(report),
       stop_(stop),
       voxels_(settings.sh_grid.voxels),
-      light_paths_(std::uint32_t(settings.sh_grid.photons)),
+      light_paths_(std::uint32_t(settings.photons.paths)),
       photons_(world, settings, first_moving_)
 {
 }
@@ -96,10 +96,10 @@ void IndirectField::place_levels(ExactVisibility const& visibility, std::span<Fr
 void IndirectField::make_radiance_grids()
 {
     StageTimer const timer(report_, "radiance grids");
-    std::vector<Photon> const photons = photons_.photons();
+    std::vector<ReflectedPhoton> const photons = photons_.photons();
     for (GridLevel& level : levels_) make_radiance_grid(photons, sky_shines(), by(), level);
     stored_ = dvec3{0};
-    for (Photon const& p : photons) stored_ += dvec3(p.flux);
+    for (ReflectedPhoton const& p : photons) stored_ += dvec3(p.flux);
     photon_count_ = photons.size();
 }
 
@@ -229,7 +229,7 @@ void IndirectField::fit_budget(Now const& now)
         levels_.clear();
         surfaces_changed_ = light_changed_ = update_all_ = true;
         voxels_ = asked.voxels >> doublings;
-        light_paths_ = std::max(1u, std::uint32_t(asked.photons) >> 2 * doublings);
+        light_paths_ = std::max(1u, std::uint32_t(settings_.photons.paths) >> 2 * doublings);
         auto const begun = Clock::now();
         try {
             update(now);

@@ -22,13 +22,6 @@ RenderOptionTable const& sh_grid_options()
               "voxels along the scene's longest side, the field has a quarter of them; with a --budget fewer, if\n"
               "they would take more than half of it",
               &S::voxels),
-        field("photons", {1, 1 << 24}, "light paths per update of the field; fewer as --voxels are", &S::photons),
-        field("caustic-photons", {0, 1 << 24},
-              "light paths per pass that begin on mirrors and glass, fewer as --photons are; 0 = no caustics",
-              &S::caustic_photons),
-        field("caustic-radius", {0, 1e9},
-              "m; of the first disks that photons of caustics light, 0 = by their density", &S::caustic_radius_m),
-        field("reflections", {1, 64}, "of a photon, at most", &S::reflections),
         field("field-degree", {1, 4}, "of the spherical harmonics", &S::degree),
         field("field-directions", {16, 65536}, "directions per cell of the field", &S::directions),
         field("gather-directions", {0, 4096}, "samples of the diffuse lobe; 0 = convolution in closed form",

@@ -9,13 +9,13 @@ namespace gi {
 struct FindPhotonPatches {
     CellsView<BlockVoxels> blocks;
     PatchesView patches;
-    View<Photon const> photons;
+    View<ReflectedPhoton const> photons;
     View<std::uint64_t> keys;    ///< 2 x patch + side, or 2 x kNoCell: nowhere
     View<std::uint32_t> indices; ///< of the photons
 
     GI_FN void operator()(std::size_t i) const
     {
-        Photon const& photon = photons[i];
+        ReflectedPhoton const& photon = photons[i];
         std::uint64_t const patch = patch_at(blocks, patches, photon.position, photon.triangle),
                             side = photon.front ? 0 : 1;
         keys[i] = 2 * std::uint64_t(patch) + (patch != kNoCell ? side : 0);

@@ -5,9 +5,9 @@
 namespace gi {
 namespace {
 
-void append(std::vector<std::vector<Photon>> const& parts, std::vector<Photon>& out)
+void append(std::vector<std::vector<ReflectedPhoton>> const& parts, std::vector<ReflectedPhoton>& out)
 {
-    for (std::vector<Photon> const& part : parts) out.insert(out.end(), part.begin(), part.end());
+    for (std::vector<ReflectedPhoton> const& part : parts) out.insert(out.end(), part.begin(), part.end());
 }
 
 } // namespace
@@ -34,7 +34,7 @@ LightPaths PhotonSets::light_paths_of(int part, Trace const& trace) const
     return {.count = light_paths_,
             .first = std::uint32_t(all * std::uint64_t(part) / n),
             .last = std::uint32_t(all * std::uint64_t(part + 1) / n),
-            .bounces = std::min(settings_.sh_grid.reflections, settings_.bounces),
+            .bounces = std::min(settings_.photons.reflections, settings_.bounces),
             .seed = settings_.seed,
             .pass = first_index_ + sets_,
             .stop = &trace.stop};
@@ -42,11 +42,11 @@ LightPaths PhotonSets::light_paths_of(int part, Trace const& trace) const
 
 /// Traces a part of a set of light paths. @param vertices  (LightPaths) -> theirs
 template <class Vertices>
-std::vector<Photon> PhotonSets::trace_part(Trace const& trace, int part, LightPaths paths, std::uint64_t stream,
-                                           Vertices const& vertices)
+std::vector<ReflectedPhoton> PhotonSets::trace_part(Trace const& trace, int part, LightPaths paths,
+                                                    std::uint64_t stream, Vertices const& vertices)
 {
     constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
-    std::vector<Photon> found;
+    std::vector<ReflectedPhoton> found;
     std::uint32_t const end = paths.last;
     for (; paths.first < end; paths.first += kTogether) {
         paths.last = std::min(end - paths.first, kTogether) + paths.first;
@@ -80,7 +80,7 @@ void PhotonSets::trace_inner(Trace const& trace, int first_part, int end_part)
 {
     if (trace.levels.size() < 2) return;
     GridLevel &fine = trace.levels[0], &coarse = trace.levels[1];
-    std::vector<Photon> outside;
+    std::vector<ReflectedPhoton> outside;
     append(from_lights_, outside);
     WorldView const world = view(world_);
     move_photons(world, first_moving_, outside);
@@ -141,9 +141,9 @@ void PhotonSets::trace_next(Trace const& trace)
     if (--parts_left_ == 0) ++sets_;
 }
 
-std::vector<Photon> PhotonSets::photons() const
+std::vector<ReflectedPhoton> PhotonSets::photons() const
 {
-    std::vector<Photon> all;
+    std::vector<ReflectedPhoton> all;
     append(from_lights_, all);
     append(from_inside_, all);
     move_photons(view(world_), first_moving_, all);

@@ -33,15 +33,15 @@ public:
     void trace_next(Trace const& trace);
     int parts_left() const { return parts_left_; }
     /// Photons of all parts, moved with their triangles.
-    std::vector<Photon> photons() const;
+    std::vector<ReflectedPhoton> photons() const;
     std::uint32_t sets() const { return sets_; } ///< traced since the last restart or motion
 
 private:
     int parts() const { return settings_.sh_grid.field_passes; }
     LightPaths light_paths_of(int part, Trace const& trace) const;
     template <class Vertices>
-    std::vector<Photon> trace_part(Trace const& trace, int part, LightPaths paths, std::uint64_t stream,
-                                   Vertices const& vertices);
+    std::vector<ReflectedPhoton> trace_part(Trace const& trace, int part, LightPaths paths, std::uint64_t stream,
+                                            Vertices const& vertices);
     void trace_from_lights(Trace const& trace, int part);
     void trace_inner(Trace const& trace, int first_part, int end_part);
     void trace_parts(Trace const& trace, int first_part, int end_part);
@@ -53,7 +53,7 @@ private:
     int parts_left_ = 0, next_part_ = 0;
     std::optional<InnerPaths> inner_paths_; ///< with a fine grid
     /// By part: of paths from the lights, and from surfaces of the fine grid.
-    std::vector<std::vector<Photon>> from_lights_, from_inside_;
+    std::vector<std::vector<ReflectedPhoton>> from_lights_, from_inside_;
 };
 
 } // namespace gi

@@ -23,10 +23,10 @@ ReachedSides& ReachedSides::operator|=(ReachedSides const& o)
     return *this;
 }
 
-void move_photons(WorldView const& world, std::size_t first_moving, std::span<Photon> photons)
+void move_photons(WorldView const& world, std::size_t first_moving, std::span<ReflectedPhoton> photons)
 {
     tbb::parallel_for(std::size_t(0), photons.size(), [&](std::size_t i) {
-        Photon& p = photons[i];
+        ReflectedPhoton& p = photons[i];
         if (p.triangle < first_moving) return;
         Surface const& s = world.surfaces[p.triangle];
         vec3 const across = glm::cross(s.edge1, s.edge2);
@@ -37,13 +37,13 @@ void move_photons(WorldView const& world, std::size_t first_moving, std::span<Ph
 }
 
 SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
-                           std::span<Photon const> photons)
+                           std::span<ReflectedPhoton const> photons)
 {
     std::size_t const n = photons.size(), sides = 2 * patches.count();
     SortedPhotons out{std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(sides + 1)};
     std::vector<std::uint64_t> keys(n), scratch_keys(n);
     std::vector<std::uint32_t> scratch_order(n);
-    View<Photon const> const all{photons.data(), n};
+    View<ReflectedPhoton const> const all{photons.data(), n};
     launch(Space::host, "find photon patches", n,
            FindPhotonPatches{blocks.view(), patches.view(), all, keys, out.order});
     sort_pairs(Space::host, keys, out.order, scratch_keys, scratch_order);
@@ -52,9 +52,9 @@ SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const
 }
 
 void reflect_photons(WorldView const& world, std::span<LightVertex const> vertices, std::uint64_t seed,
-                     std::vector<Photon>& out)
+                     std::vector<ReflectedPhoton>& out)
 {
-    std::vector<Photon> photons(vertices.size());
+    std::vector<ReflectedPhoton> photons(vertices.size());
     tbb::parallel_for(std::size_t(0), vertices.size(), [&](std::size_t i) {
         LightVertex const& v = vertices[i];
         Pcg32 rng = Pcg32::for_path(seed ^ 0x9403, std::uint32_t(i), 0);
@@ -71,7 +71,7 @@ void reflect_photons(WorldView const& world, std::span<LightVertex const> vertic
                       v.front,
                       barycentric_at(world.surfaces[v.triangle], v.position)};
     });
-    for (Photon const& p : photons)
+    for (ReflectedPhoton const& p : photons)
         if (max_component(p.flux) > 0 && all_finite(p.flux)) out.push_back(p);
 }
 

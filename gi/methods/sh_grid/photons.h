@@ -9,7 +9,7 @@
 
 namespace gi {
 
-struct Photon {
+struct ReflectedPhoton {
     vec3 position;
     vec3 normal;    ///< unit, geometric, on the side that the light leaves
     vec3 direction; ///< unit, in which it leaves
@@ -41,14 +41,14 @@ struct SortedPhotons {
     bool hit(std::size_t side) const { return count(side) > 0; }
 };
 SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
-                           std::span<Photon const> photons);
+                           std::span<ReflectedPhoton const> photons);
 
 /// Moves photons with the triangles from first_moving on, to where these are now.
-void move_photons(WorldView const& world, std::size_t first_moving, std::span<Photon> photons);
+void move_photons(WorldView const& world, std::size_t first_moving, std::span<ReflectedPhoton> photons);
 
 /// Reflects each vertex of light paths once, in a random direction, and appends the photons.
 /// @param world  of the vertices  @param seed  of the directions
 void reflect_photons(WorldView const& world, std::span<LightVertex const> vertices, std::uint64_t seed,
-                     std::vector<Photon>& out);
+                     std::vector<ReflectedPhoton>& out);
 
 } // namespace gi

@@ -19,7 +19,7 @@ SparseCells<CellLight> coarser(SparseCells<CellLight> const& fine)
 } // namespace
 
 RadianceGrids make_radiance_grids(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
-                                  ExposedAreas const& areas, std::span<Photon const> photons,
+                                  ExposedAreas const& areas, std::span<ReflectedPhoton const> photons,
                                   SortedPhotons const& sorted, RadianceBy by)
 {
     std::size_t const cells = blocks.values.size();

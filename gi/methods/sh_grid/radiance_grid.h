@@ -77,7 +77,7 @@ struct RadianceGrids {
 
 /// Grids with the photons' flux: each patch's and cell's summed in their order.
 RadianceGrids make_radiance_grids(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
-                                  ExposedAreas const& areas, std::span<Photon const> photons,
+                                  ExposedAreas const& areas, std::span<ReflectedPhoton const> photons,
                                   SortedPhotons const& sorted, RadianceBy by);
 
 } // namespace gi

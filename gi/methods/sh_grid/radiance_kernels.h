@@ -7,7 +7,7 @@ namespace gi {
 
 /// Sums the photons of a cell and of its patches.
 struct SumPhotons {
-    View<Photon const> photons;
+    View<ReflectedPhoton const> photons;
     View<std::uint32_t const> order, firsts;
     View<std::uint32_t const> first_patch[2]; ///< of fixed and moving patches, per cell, and one more
     View<CellArea const> areas;
@@ -23,7 +23,7 @@ struct SumPhotons {
             if (cell + 1 >= first.size()) continue;
             for (std::uint32_t side = 2 * first[cell]; side < 2 * first[cell + 1]; ++side)
                 for (std::uint32_t k = firsts[side]; k < firsts[side + 1]; ++k) {
-                    Photon const& photon = photons[order[k]];
+                    ReflectedPhoton const& photon = photons[order[k]];
                     vec3 const flux = photon.flux;
                     patches[side / 2].flux[side % 2] += flux;
                     light.flux.add(by == RadianceBy::normal ? photon.normal : photon.direction, flux);

@@ -1,6 +1,7 @@
 #include "gi/methods/sh_grid/sh_grid.h"
 
-#include "gi/methods/sh_grid/caustics.h"
+#include "gi/light_paths/caustics.h"
+#include "gi/light_paths/options.h"
 #include "gi/methods/sh_grid/field_light.h"
 #include "gi/methods/whitted/whitted.h"
 
@@ -38,15 +39,18 @@ public:
     std::string options() const override
     {
         RenderSettings chosen = settings_;
-        ShGridSettings& own = chosen.sh_grid;
-        own.caustic_photons = int(photon_share() * own.caustic_photons);
-        own.voxels = field_.voxels();
-        own.photons = int(field_.light_paths());
-        std::vector<std::string_view> names{"voxels", "photons", "caustic-photons"};
+        PhotonSettings& photons = chosen.photons;
+        photons.caustic_paths = int(photon_share() * photons.caustic_paths);
+        photons.paths = int(field_.light_paths());
+        chosen.sh_grid.voxels = field_.voxels();
+        std::vector<std::string_view> names{"voxels"};
         for (RenderOption const& o : sh_grid_options())
             if (std::ranges::find(names, o.name) == names.end() && o.get(chosen) != o.get(RenderSettings{}))
                 names.push_back(o.name);
-        return TreeRenderer::options() + " " + as_options(sh_grid_options(), chosen, names);
+        return TreeRenderer::options() + " " +
+               as_options(photon_options(), chosen,
+                          {"photons", "caustic-photons", "caustic-radius", "reflections"}) +
+               " " + as_options(sh_grid_options(), chosen, names);
     }
 
 protected:
@@ -68,7 +72,7 @@ protected:
 
 private:
     /// Of the photons that the settings ask for: less if a budget allows no more.
-    double photon_share() const { return double(field_.light_paths()) / settings_.sh_grid.photons; }
+    double photon_share() const { return double(field_.light_paths()) / settings_.photons.paths; }
 
     IndirectField field_;
     Caustics caustics_;

@@ -8,8 +8,8 @@ RenderOption ray_trees(char const* name, OptionValues values, char const* meanin
 {
     return {make_option<RenderSettings>(
                 name, std::move(values), meaning, [member](auto& s) -> auto& { return s.whitted.*member; }),
-            "Methods whitted and sh_grid",
-            {"whitted", "sh_grid"}};
+            "Ray trees",
+            {"whitted", "sh_grid", "ispm", "lpv", "isllpm", "multi_image"}};
 }
 
 } // namespace

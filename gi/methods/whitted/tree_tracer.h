@@ -18,15 +18,6 @@
 
 namespace gi {
 
-/// The glossy lobe of a surface alone.
-inline Bsdf glossy_lobe(Bsdf const& b)
-{
-    Bsdf lobe = b;
-    lobe.diffuse = vec3{0};
-    lobe.clear = 0;
-    return lobe;
-}
-
 /// A surface in a ray tree.
 struct TreePoint {
     ShadingPoint at;

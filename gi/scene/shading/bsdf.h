@@ -61,6 +61,14 @@ GI_FN BsdfValue evaluate(Bsdf const& bsdf, vec3 wo, vec3 wi);
 GI_FN BsdfSample sample(Bsdf const& bsdf, vec3 wo, bool front, float u_lobe, vec2 u);
 /// The delta lobes' directions, each with all of its light; pdf and chances do not matter. Returns their number.
 GI_FN int delta_lobes(Bsdf const& bsdf, vec3 wo, bool front, BsdfSample lobes[3]);
+/// The glossy lobe of a surface alone.
+GI_FN inline Bsdf glossy_lobe(Bsdf const& b)
+{
+    Bsdf lobe = b;
+    lobe.diffuse = vec3{0};
+    lobe.clear = 0;
+    return lobe;
+}
 /// True when every lobe is delta or black, so that sampling lights is useless.
 GI_FN bool only_delta(Bsdf const& bsdf);
 

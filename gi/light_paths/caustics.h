@@ -16,7 +16,7 @@
 
 #include "gi/core/alias_table.h"
 #include "gi/core/report.h"
-#include "gi/methods/sh_grid/caustic_map.h"
+#include "gi/light_paths/photon_map.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/frame_renderer.h"
 #include "gi/render/path_sample.h"
@@ -51,13 +51,14 @@ public:
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
                  Bounds const& focus, double share, PathCounts& counts);
     /// Null if the world has no smooth surface, no light reached one, or nothing is to be traced.
-    CausticMap const* map() const { return map_.empty() ? nullptr : &map_; }
+    PhotonMap const* map() const { return map_.empty() ? nullptr : &map_; }
+    std::span<Photon const> photons() const { return photons_; } ///< of the map
     void report_counts();
 
 private:
     void trace(ExactVisibility const& visibility, PathCounts& counts);
-    std::vector<CausticPhoton> photons_of_set(ExactVisibility const& visibility, PathCounts& counts);
-    void learn_chances(std::span<CausticPhoton const> photons);
+    std::vector<Photon> photons_of_set(ExactVisibility const& visibility, PathCounts& counts);
+    void learn_chances(std::span<Photon const> photons);
 
     World const& world_;
     RenderSettings const& settings_;
@@ -69,11 +70,11 @@ private:
     bool surfaces_changed_ = true, light_changed_ = true;
     CausticTargets targets_;
     std::optional<bool> learned_; ///< whether chances follow the photons of a first set, because these were few
-    CausticMap map_;
+    std::vector<Photon> photons_;
+    PhotonMap map_;
     std::uint32_t paths_ = 0; ///< of a set
     std::uint32_t sets_ = 0;  ///< of photons since the last change
     float shrunk_ = 1;        ///< factor of the disks' radii
-    std::uint64_t cut_ = 0;   ///< paths
 };
 
 } // namespace gi

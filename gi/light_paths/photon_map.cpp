@@ -1,4 +1,4 @@
-#include "gi/methods/sh_grid/caustic_map.h"
+#include "gi/light_paths/photon_map.h"
 
 #include "gi/core/morton.h"
 #include "gi/core/rng.h"
@@ -9,14 +9,14 @@
 
 namespace gi {
 
-PhotonCells::PhotonCells(std::vector<CausticPhoton> const& photons, float radius)
+PhotonCells::PhotonCells(std::vector<Photon> photons, float radius)
     : radius_(radius),
       photons_(photons.size()),
       first_(std::bit_ceil(std::max<std::size_t>(photons.size(), 1)) + 1)
 {
     std::vector<std::uint32_t> bucket_of;
     bucket_of.reserve(photons.size());
-    for (CausticPhoton const& p : photons) {
+    for (Photon const& p : photons) {
         bucket_of.push_back(bucket(cell_of(p.position)));
         ++first_[bucket_of.back() + 1];
         low_ = glm::min(low_, p.position - radius);
@@ -48,22 +48,13 @@ void PhotonCells::search(vec3 position, F const& f) const
     std::ranges::sort(buckets); // two cells may share one
     for (int k = 0; k < 8; ++k) {
         if (k > 0 && buckets[k] == buckets[k - 1]) continue;
-        for (std::uint32_t i = first_[buckets[k]]; i < first_[buckets[k] + 1]; ++i) {
-            vec3 const way = photons_[i].position - position;
-            float const squared = glm::dot(way, way);
-            if (squared < square(radius_)) f(photons_[i], squared);
-        }
+        for (std::uint32_t i = first_[buckets[k]]; i < first_[buckets[k] + 1]; ++i) f(photons_[i]);
     }
 }
 
-namespace {
-
-constexpr int kLayers = 12; ///< of disks, each half as wide as those before
-
-/// Of each photon the smallest disks of whose area, as a cell of an octree about it, at least kEnough photons are.
-std::vector<int> disk_layers(std::vector<CausticPhoton> const& photons, float largest)
+KernelSizes sizes_by_density(std::span<Photon const> photons, float largest, std::size_t enough)
 {
-    constexpr std::size_t kEnough = 16;
+    constexpr int kLayers = KernelSizes::kLayers;
     struct Place {
         std::uint64_t key; ///< of the finest cell, along a Morton curve
         std::uint32_t photon;
@@ -82,60 +73,73 @@ std::vector<int> disk_layers(std::vector<CausticPhoton> const& photons, float la
     constexpr float kCells = 2097152; // of a Morton curve, along an axis
     for (std::uint32_t i = 0; i < photons.size(); ++i) {
         vec3 const at = (photons[i].position - middle) * per_m + kCells / 2;
-        // Others are so far away that the largest disks will do.
+        // Others are so far away that the largest kernels will do.
         if (!(min_component(at) >= 0) || !(max_component(at) < kCells)) continue;
         glm::uvec3 const cell(at);
         places.push_back({morton(cell.x, cell.y, cell.z), i});
     }
     std::ranges::sort(places, {}, &Place::key);
-    std::vector<int> out(photons.size());
+    KernelSizes out{largest, std::vector<std::uint8_t>(photons.size())};
     for (int layer = 1; layer < kLayers; ++layer) {
         int const shift = 3 * (kLayers - 1 - layer);
         for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
             while (end < places.size() && places[end].key >> shift == places[begin].key >> shift) ++end;
-            for (std::size_t k = begin; end - begin >= kEnough && k < end; ++k) out[places[k].photon] = layer;
+            for (std::size_t k = begin; end - begin >= enough && k < end; ++k)
+                out.layer[places[k].photon] = std::uint8_t(layer);
         }
     }
     return out;
 }
 
-} // namespace
-
-CausticMap::CausticMap(std::vector<CausticPhoton> const& photons, CausticDisks const& disks)
-    : count_(photons.size())
+void sort_along_curve(std::vector<Photon>& photons)
 {
-    std::vector<int> const layer =
-        disks.same ? std::vector<int>(photons.size()) : disk_layers(photons, disks.largest);
-    std::vector<std::vector<CausticPhoton>> parts(kLayers);
-    for (std::size_t i = 0; i < photons.size(); ++i) {
-        parts[std::size_t(layer[i])].push_back(photons[i]);
-        flux_ += dvec3(photons[i].flux);
+    Bounds box;
+    for (Photon const& p : photons) box = joined(box, {p.position, p.position});
+    vec3 const scale = 1023.0f / glm::max(box.high - box.low, vec3{1e-30f});
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    for (std::uint32_t i = 0; i < photons.size(); ++i) {
+        glm::uvec3 const cell(glm::clamp((photons[i].position - box.low) * scale, 0.0f, 1023.0f));
+        order.emplace_back(morton(cell.x, cell.y, cell.z), i);
     }
-    for (int k = 0; k < kLayers; ++k)
-        if (auto const& part = parts[std::size_t(k)]; !part.empty())
-            layers_.emplace_back(part, disks.factor * std::ldexp(disks.largest, -k));
+    std::ranges::sort(order);
+    std::vector<Photon> sorted;
+    for (auto const& [key, i] : order) sorted.push_back(photons[i]);
+    photons = std::move(sorted);
 }
 
-vec3 CausticMap::radiance(ShadingPoint const& at, vec3 wo) const
+KernelSizes sizes_by_footprint(std::span<Photon const> photons, float largest, float photons_each)
 {
-    constexpr float kSameWay = 0.8f;   // least cosine of a photon's normal with the surface's
-    constexpr float kFromPlane = 0.2f; // radii; else the light of a table would lie on the paper on it
-    vec3 out{0};
-    for (PhotonCells const& layer : layers_) {
-        vec3 sum{0};
-        float const r2 = square(layer.radius());
-        layer.search(at.position, [&](CausticPhoton const& p, float squared) {
-            float const height = glm::dot(p.position - at.position, at.geometric_normal);
-            if (glm::dot(p.normal, at.geometric_normal) >= kSameWay &&
-                std::abs(height) <= kFromPlane * layer.radius())
-                sum += (1 - squared / r2) * p.flux * evaluate(at.bsdf, wo, at.frame.to_local(p.from)).f;
-        });
-        out += sum * (2 * kInvPi / r2); // Epanechnikov's kernel
+    KernelSizes out{largest, std::vector<std::uint8_t>(photons.size())};
+    for (std::size_t i = 0; i < photons.size(); ++i) {
+        float const radius = std::sqrt(photons_each * photons[i].footprint * kInvPi);
+        float const halvings = radius > 0 ? std::round(std::log2(largest / radius)) : KernelSizes::kLayers;
+        out.layer[i] = std::uint8_t(glm::clamp(halvings, 0.0f, float(KernelSizes::kLayers - 1)));
     }
     return out;
 }
 
-float CausticMap::mean_radius() const
+PhotonMap::PhotonMap(std::span<Photon const> photons, KernelSizes const& sizes, float factor)
+    : count_(photons.size())
+{
+    std::vector<std::vector<Photon>> parts(KernelSizes::kLayers);
+    for (std::size_t i = 0; i < photons.size(); ++i) {
+        parts[sizes.layer[i]].push_back(photons[i]);
+        flux_ += dvec3(photons[i].flux);
+    }
+    for (int k = 0; k < KernelSizes::kLayers; ++k)
+        if (auto& part = parts[std::size_t(k)]; !part.empty())
+            layers_.emplace_back(std::move(part), factor * std::ldexp(sizes.largest, -k));
+}
+
+vec3 PhotonMap::radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const
+{
+    PhotonSum sum(at, wo, without_glossy);
+    for (PhotonCells const& layer : layers_)
+        layer.search(at.position, [&](Photon const& p) { sum.add({p.position, layer.radius(), p.normal, 0}, p); });
+    return sum.radiance();
+}
+
+float PhotonMap::mean_radius() const
 {
     double sum = 0;
     for (PhotonCells const& layer : layers_) sum += double(layer.radius()) * double(layer.size());

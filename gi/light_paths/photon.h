@@ -1,0 +1,29 @@
+#pragma once
+// Photons: light that has reached a surface, as photon maps store it (Jensen 1996; Norén and Sjölin 2010, table
+// 3).
+
+#include "gi/light_paths/light_paths.h"
+
+namespace gi {
+
+struct Photon {
+    vec3 position;   ///< m
+    vec3 normal;     ///< unit, geometric, on the lit side
+    vec3 from;       ///< unit, towards where the light came from
+    vec3 flux;       ///< W, with the correction for shading normals of LightVertex::power
+    vec3 reflected;  ///< share of the flux that leaves by diffuse reflection, as radiant exitance
+    float footprint; ///< see LightVertex
+    std::uint32_t triangle;
+    std::uint32_t path;        ///< see LightVertex
+    std::uint16_t scatterings; ///< see LightVertex
+    bool by_delta;             ///< see LightVertex
+    bool front;                ///< it lies on the counter-clockwise side
+};
+
+inline Photon to_photon(LightVertex const& v)
+{
+    return {v.position, v.normal, v.frame.to_world(v.arrived),  v.power,    v.bsdf.diffuse, v.footprint,
+            v.triangle, v.path,   std::uint16_t(v.scatterings), v.by_delta, v.front};
+}
+
+} // namespace gi

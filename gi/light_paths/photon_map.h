@@ -1,0 +1,124 @@
+#pragma once
+// Photon map (Jensen 1996): light that has reached surfaces, spread over disks. Each photon has a kernel of its
+// own size: small ones in a bright line, large ones where light is thin.
+
+#include "gi/light_paths/photon.h"
+
+#include <span>
+#include <vector>
+
+namespace gi {
+
+/// Radii of kernels are a largest one, halved so often.
+struct KernelSizes {
+    static constexpr int kLayers = 12; ///< different radii
+
+    float largest;                   ///< m, > 0
+    std::vector<std::uint8_t> layer; ///< per photon, below kLayers: how often it is halved
+
+    float radius(std::size_t photon) const { return std::ldexp(largest, -int(layer[photon])); }
+};
+
+/// Of each photon the smallest kernel of whose area, as a cell of an octree about it, at least `enough` photons
+/// are: follows the density that light has, also where it is focused.
+KernelSizes sizes_by_density(std::span<Photon const> photons, float largest, std::size_t enough = 16);
+/// Kernels with about `photons_each` photons by the paths' footprints (McGuire and Luebke 2009), which do not see
+/// how curved mirrors and glass focus.
+KernelSizes sizes_by_footprint(std::span<Photon const> photons, float largest, float photons_each);
+
+/// Where a photon's light lies: on what is on the same surface as it. Kernels are flat, else the light of a table
+/// would lie on the paper on it.
+struct PhotonKernel {
+    static constexpr float kSameWay = 0.8f;   ///< least cosine between normals
+    static constexpr float kFromPlane = 0.2f; ///< greatest distance from the plane, radii
+
+    vec3 position;        ///< m
+    float radius;         ///< m
+    vec3 normal;          ///< unit
+    std::uint32_t photon; ///< its index
+
+    /// Epanechnikov's kernel, 1/m^2; 0 outside.
+    GI_FN float at(vec3 place, vec3 normal_there) const
+    {
+        vec3 const way = position - place;
+        float const share = 1 - glm::dot(way, way) / square(radius);
+        if (!(share > 0) || glm::dot(normal, normal_there) < kSameWay ||
+            std::abs(glm::dot(way, normal_there)) > kFromPlane * radius)
+            return 0;
+        return share * (2 * kInvPi) / square(radius);
+    }
+};
+
+/// Radiance that leaves a point towards wo, W/(m^2 sr), photon by photon: by all its non-delta lobes, or without
+/// the glossy one.
+struct PhotonSum {
+    ShadingPoint const& at;
+    vec3 wo; ///< unit, in at.frame
+    bool matt, without_glossy;
+    vec3 sum{0};
+
+    GI_FN PhotonSum(ShadingPoint const& at_, vec3 wo_, bool without_glossy_)
+        : at(at_), wo(wo_), matt(bsdf_detail::is_matt(at_.bsdf)), without_glossy(without_glossy_)
+    {
+    }
+    GI_FN void add(PhotonKernel const& k, Photon const& p)
+    {
+        float const kernel = k.at(at.position, at.geometric_normal);
+        if (!(kernel > 0)) return;
+        vec3 const wi = at.frame.to_local(p.from), light = kernel * p.flux;
+        if (matt) {
+            if (wi.z > 0) sum += light;
+            return;
+        }
+        vec3 f = evaluate(at.bsdf, wo, wi).f;
+        if (without_glossy) f -= evaluate(glossy_lobe(at.bsdf), wo, wi).f;
+        sum += light * glm::max(f, vec3{0});
+    }
+    GI_FN vec3 radiance() const { return matt ? kInvPi * at.bsdf.diffuse * sum : sum; }
+};
+
+/// Brings neighbours together in memory.
+void sort_along_curve(std::vector<Photon>& photons);
+
+/// Photons in cubic cells, by a hash of these.
+class PhotonCells {
+public:
+    /// @param radius  of searches, m, > 0
+    PhotonCells(std::vector<Photon> photons, float radius);
+
+    float radius() const { return radius_; }
+    std::size_t size() const { return photons_.size(); }
+    /// Calls f(photon) for those that are nearer than the radius, and some others.
+    template <class F>
+    void search(vec3 position, F const& f) const;
+
+private:
+    std::uint32_t bucket(glm::ivec3 cell) const;
+    glm::ivec3 cell_of(vec3 position) const;
+
+    float radius_;
+    vec3 low_{kInf}, high_{-kInf};     ///< of what may find photons
+    std::vector<Photon> photons_;      ///< by the bucket of their cell, which is two radii wide
+    std::vector<std::uint32_t> first_; ///< per bucket, and one more
+};
+
+class PhotonMap {
+public:
+    PhotonMap() = default;
+    /// @param factor  of all radii
+    PhotonMap(std::span<Photon const> photons, KernelSizes const& sizes, float factor = 1);
+
+    /// See PhotonSum.
+    vec3 radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const;
+    bool empty() const { return count_ == 0; }
+    std::size_t count() const { return count_; }
+    dvec3 flux() const { return flux_; } ///< W
+    float mean_radius() const;           ///< m, over photons
+
+private:
+    std::vector<PhotonCells> layers_; ///< of kernels of one size each
+    std::size_t count_ = 0;
+    dvec3 flux_{0};
+};
+
+} // namespace gi

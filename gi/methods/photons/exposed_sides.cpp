@@ -1,0 +1,78 @@
+#include "gi/methods/photons/exposed_sides.h"
+
+#include "gi/methods/photons/sh_lattice.h"
+
+#include <algorithm>
+
+namespace gi {
+namespace {
+
+constexpr int kExposureCells = 48; // along the longest side
+/// Few rays tell. Less than this share counts as none, else as at least the other one.
+constexpr float kLeastShare = 0.02f, kSurelyExposed = 0.2f;
+
+} // namespace
+
+ExposedSides::ExposedSides(World const& world, ExactVisibility const& visibility, BuildStop const& stop)
+{
+    constexpr std::size_t kTogether = std::size_t(1) << 18; // triangles
+    frame_ = frames_off_walls(world.bounds, world.bounds.center(), kExposureCells, 1)[0];
+    frame_.size = (frame_.size + 3) / 4 * 4;
+    GridFrame blocks = frame_;
+    blocks.cell *= 4;
+    blocks.size /= 4;
+    for (std::size_t first = 0; first < world.triangles.size(); first += kTogether) {
+        VoxelGrid grid{SparseCells<BlockVoxels>(blocks), {}};
+        add_triangles(world, first, std::min(world.triangles.size(), first + kTogether), grid, stop);
+        std::vector<std::uint32_t> patch_of;
+        for (SurfacePiece const& p : grid.pieces) {
+            glm::ivec3 const cell = 4 * blocks.cell_of(grid.blocks.cells[p.block]) +
+                                    glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
+            patch_of.push_back(6 * frame_.index(cell) + main_axis(p.normal));
+        }
+        choose_samples(grid.pieces, patch_of, samples_);
+    }
+    look_around(world, visibility, frame_, RayWorld::all, stop, samples_);
+    reached_ = ReachedSides(frame_);
+    shares_.assign(12 * frame_.cells(), 0);
+}
+
+bool ExposedSides::add(std::span<Photon const> photons, bool sky_shines)
+{
+    for (Photon const& p : photons) {
+        glm::ivec3 const cell = frame_.at(p.position);
+        if (frame_.holds(cell))
+            reached_.of_cell[frame_.index(cell)] |=
+                std::uint16_t(1u << ReachedSides::side_index(p.normal, p.front));
+    }
+    std::vector<float> whole(shares_.size()), exposed(shares_.size());
+    for (PatchSample const& s : samples_) {
+        std::uint32_t const cell = s.patch / 6;
+        for (std::size_t k = 0; k < 2; ++k) {
+            vec3 const normal = k == 0 ? s.normal : -s.normal;
+            std::uint32_t const side = ReachedSides::side_index(normal, k == 0);
+            bool const lit = (reached_.of_cell[cell] >> side & 1) != 0;
+            auto const lets_light_in = [&](std::uint32_t code) {
+                if (code == PatchSample::kNear) return false;
+                if (code == PatchSample::kSky) return sky_shines || lit;
+                return code == PatchSample::kMirrorOrGlass || (reached_.of_cell[code / 16] >> code % 16 & 1) != 0;
+            };
+            whole[12 * std::size_t(cell) + side] += s.area;
+            if (std::ranges::any_of(s.met[k], lets_light_in)) exposed[12 * std::size_t(cell) + side] += s.area;
+        }
+    }
+    bool changed = false;
+    hidden_m2_ = 0;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        if (!(whole[i] > 0)) continue;
+        bool const lit = (reached_.of_cell[i / 12] >> i % 12 & 1) != 0;
+        float share = exposed[i] / whole[i];
+        share = share < kLeastShare && !lit ? 0.0f : std::max(share, kSurelyExposed);
+        changed = changed || share != shares_[i];
+        shares_[i] = share;
+        hidden_m2_ += double((1 - share) * whole[i]);
+    }
+    return changed;
+}
+
+} // namespace gi

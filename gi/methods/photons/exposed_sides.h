@@ -1,0 +1,36 @@
+#pragma once
+// How much of the sides of surfaces light can reach, by coarse cells and directions of their normals. Light that
+// arrives in a cell is spread over this area alone: not over the inside of walls and furniture, nor over a floor
+// below a table's foot.
+//
+// A side of a surface counts as reached if one of a few rays from it meets a side that light has reached, mirrors
+// or glass; or the sky, if that shines or light has reached the side itself (see sh_grid's exposure.h).
+
+#include "gi/light_paths/photon.h"
+#include "gi/methods/sh_grid/exposure.h"
+
+namespace gi {
+
+class ExposedSides {
+public:
+    ExposedSides() = default;
+    /// Sends the rays. Throws Interrupted. @param bounds  of the world, not empty
+    ExposedSides(World const& world, ExactVisibility const& visibility, BuildStop const& stop);
+
+    /// Adds what light has reached. Returns true if shares have changed.
+    bool add(std::span<Photon const> photons, bool sky_shines);
+    GridFrame const& frame() const { return frame_; }
+    /// Share of the area of sides in a cell, 0 to 1. @param side  see ReachedSides::side_index()
+    float share(std::uint32_t cell, std::uint32_t side) const { return shares_[12 * std::size_t(cell) + side]; }
+    /// Of both sides, m^2; shares apply to parts of it.
+    double hidden_m2() const { return hidden_m2_; }
+
+private:
+    GridFrame frame_;
+    std::vector<PatchSample> samples_;
+    ReachedSides reached_{GridFrame{}};
+    std::vector<float> shares_; ///< 12 per cell
+    double hidden_m2_ = 0;
+};
+
+} // namespace gi

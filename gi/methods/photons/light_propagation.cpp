@@ -1,0 +1,201 @@
+#include "gi/methods/photons/light_propagation.h"
+
+#include "gi/core/error.h"
+#include "gi/kernel/launch.h"
+#include "gi/methods/photons/lattice_kernels.h"
+#include "gi/methods/photons/propagation_kernels.h"
+#include "gi/methods/sh_grid/voxels.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace gi {
+namespace {
+
+constexpr float kRadianceOfDegree0 = kNearSolidAngle / kPi, kRadianceOfDegree1 = kNearAlong / (2 * kPi / 3);
+
+/// Radiance by the direction from which light comes, of a cell's intensity by that in which it travels.
+ShColor arriving_radiance(ShColor of, float cell_m)
+{
+    float const by = 1 / square(cell_m);
+    of.c[0] *= by * kRadianceOfDegree0;
+    for (int k = 1; k < 4; ++k) of.c[k] *= -by * kRadianceOfDegree1;
+    return of;
+}
+
+/// Adds projected areas of triangles, by the cells of the corners. A voxel of the voxeliser is such a cell.
+void add_blockers(World const& world, BuildStop const& stop, LightPropagation::Level& level)
+{
+    constexpr std::size_t kTogether = std::size_t(1)
+                                      << 18; // of triangles, which bounds the memory of their pieces
+    GridFrame blocks = level.corners;
+    blocks.cell *= 4;
+    blocks.size = (blocks.size + 3) / 4;
+    float const of_face = 1 / square(level.frame.cell);
+    for (std::size_t first = 0; first < world.triangles.size(); first += kTogether) {
+        VoxelGrid grid{SparseCells<BlockVoxels>(blocks), {}};
+        add_triangles(world, first, std::min(world.triangles.size(), first + kTogether), grid, stop);
+        for (SurfacePiece const& p : grid.pieces) {
+            glm::ivec3 const c = 4 * blocks.cell_of(grid.blocks.cells[p.block]) +
+                                 glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
+            if (level.corners.holds(c))
+                level.blocked[level.corners.index(c)] += of_face * p.area * glm::abs(p.normal);
+        }
+    }
+}
+
+void check(PropagationSettings const& s)
+{
+    if (s.cells < 8 || s.cells > PropagationSettings::kMostCells || s.cascades < 1 || s.cascades > 8 ||
+        s.steps < 0)
+        throw InputError(fmt::format("{} nested lattices of {} cells a side", s.cascades, s.cells),
+                         fmt::format("1 to 8 of 8 to {} are supported", PropagationSettings::kMostCells),
+                         "choose others");
+}
+
+bool same(GridFrame const& a, GridFrame const& b)
+{
+    return a.low == b.low && a.cell == b.cell && a.size == b.size;
+}
+
+} // namespace
+
+std::vector<ReflectedLight> reflected_lights(std::span<Photon const> photons)
+{
+    std::vector<ReflectedLight> out;
+    for (Photon const& p : photons) {
+        vec3 const flux = p.flux * p.reflected;
+        if (max_component(flux) > 0 && all_finite(flux)) out.push_back({p.position, p.normal, flux});
+    }
+    return out;
+}
+
+LightPropagation::LightPropagation(PropagationSettings const& settings) : settings_(settings) { check(settings); }
+
+std::uint64_t LightPropagation::bytes(PropagationSettings const& s, Bounds const& bounds)
+{
+    if (bounds.empty()) return 0;
+    // Light of two steps, their sum, factors of faces, what blocks and what is open at the corners.
+    return dense_bytes(nested_frames(bounds, bounds.center(), s.cells, s.cascades),
+                       3 * sizeof(ShColor) + 3 * sizeof(vec3));
+}
+
+void LightPropagation::place(std::span<GridFrame const> frames)
+{
+    levels_.assign(frames.size(), {});
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+        Level& level = levels_[k];
+        level.frame = level.corners = frames[k];
+        level.corners.low -= 0.5f * frames[k].cell;
+        level.corners.size += 1;
+        level.total.resize(frames[k].cells());
+    }
+}
+
+void LightPropagation::propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights)
+{
+    GridFrame const& frame = level.frame;
+    std::size_t const n = frame.cells();
+    level.total.assign(n, {});
+    level.injected_w = level.outside_w = 0;
+    std::vector<std::uint64_t> keys(lights.size());
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        // Half a cell along the normal, so that the light does not fall on its own surface.
+        glm::ivec3 const cell = frame.at(lights[i].position + 0.5f * frame.cell * lights[i].normal);
+        bool const in = frame.holds(cell);
+        keys[i] = in ? frame.index(cell) : n;
+        (in ? level.injected_w : level.outside_w) += double(glm::dot(lights[i].flux, vec3{1}));
+    }
+    ItemsByCell const sorted = sort_by_cell(keys, n);
+    View<ReflectedLight const> const all{lights.data(), lights.size()};
+    launch(Space::host, "inject virtual lights", n,
+           SumItems<ReflectedLight, ShColor>{all, sorted.order, sorted.firsts, level.total});
+    std::vector<ShColor> now = level.total, next(n);
+    std::vector<vec3> scales(n);
+    int const steps = settings_.steps > 0 ? settings_.steps : 2 * settings_.cells;
+    for (int step = 0; step < steps; ++step) {
+        launch(Space::host, "scale faces of cells", n, ScaleFaces{now, scales});
+        DenseView<ShColor> const around = step == 0 && coarser != nullptr ? coarser->view() : DenseView<ShColor>{};
+        launch(
+            Space::host, "propagate light", n,
+            Propagate{{frame, now}, scales, level.corners, level.open, around, settings_.by, next, level.total});
+        std::swap(now, next);
+    }
+}
+
+void LightPropagation::propagate(std::span<GridFrame const> frames, std::span<ReflectedLight const> lights)
+{
+    place(frames);
+    for (std::size_t k = levels_.size(); k-- > 0;)
+        propagate(levels_[k], k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights);
+}
+
+void LightPropagation::update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
+                              BuildStop const& stop)
+{
+    if (world.bounds.empty()) return levels_.clear();
+    std::vector<GridFrame> const frames = nested_frames(world.bounds, camera, settings_.cells, settings_.cascades);
+    std::vector<Level> former;
+    std::swap(former, levels_);
+    place(frames);
+    std::vector<ReflectedLight> const lights = reflected_lights(photons);
+    for (std::size_t k = levels_.size(); k-- > 0;) {
+        Level& level = levels_[k];
+        if (settings_.blocked) {
+            if (geometry == Geometry::same && k < former.size() && same(former[k].frame, level.frame)) {
+                std::swap(level.open, former[k].open);
+                std::swap(level.blocked, former[k].blocked);
+            } else {
+                level.blocked.resize(level.corners.cells());
+                level.open.resize(level.corners.cells());
+                add_blockers(world, stop, level);
+                launch(Space::host, "open faces of cells", level.corners.cells(),
+                       OpenFaces{level.corners, level.blocked, level.open});
+            }
+        }
+        if (stop.given_up()) throw Interrupted();
+        propagate(level, k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights);
+    }
+}
+
+vec3 LightPropagation::irradiance(vec3 position, vec3 normal) const
+{
+    vec3 sum{0};
+    for_grids_at(levels_, position, [&](std::size_t k, float weight) {
+        GridFrame const& frame = levels_[k].frame;
+        vec3 const at = position + 0.5f * frame.cell * normal;
+        ShColor const light = arriving_radiance(trilinear<ShColor>(levels_[k].view(), at), frame.cell);
+        sum += weight * glm::max(gi::irradiance(light, normal), vec3{0});
+    });
+    return sum;
+}
+
+vec3 LightPropagation::radiance(vec3 position, vec3 direction) const
+{
+    if (levels_.empty()) return vec3{0};
+    vec3 sum{0}, at = position;
+    float weights = 0, open = 1;
+    for (int step = 0; step < settings_.glossy_cells && open > 0.01f; ++step) {
+        std::size_t finest = 0;
+        while (finest + 1 < levels_.size() && weight_in(levels_[finest].frame, at) <= 0) ++finest;
+        float const cell = levels_[finest].frame.cell;
+        at += (step == 0 ? 0.75f : 1.0f) * cell * direction;
+        if (!levels_[finest].frame.holds(levels_[finest].frame.at(at))) break;
+        if (step > 0 && !levels_[finest].blocked.empty()) {
+            DenseView<vec3> const blocked{levels_[finest].corners, levels_[finest].blocked};
+            open *= std::max(
+                0.0f, 1 - glm::dot(trilinear<vec3>(blocked, at - 0.5f * cell * direction), glm::abs(direction)));
+        }
+        vec3 here{0};
+        for_grids_at(levels_, at, [&](std::size_t k, float weight) {
+            ShColor const light =
+                arriving_radiance(trilinear<ShColor>(levels_[k].view(), at), levels_[k].frame.cell);
+            here += weight * glm::max(evaluate(light, direction), vec3{0});
+        });
+        sum += open * here;
+        weights += open;
+    }
+    return weights > 0 ? sum / weights : vec3{0};
+}
+
+} // namespace gi

@@ -1,0 +1,88 @@
+#pragma once
+// Light propagation volumes (Kaplanyan and Dachsbacher 2010, "Cascaded Light Propagation Volumes for Real-Time
+// Indirect Illumination"; Noren and Sjolin, sec. 4): surface points that light has reached scatter it as virtual
+// lights into the cells of a lattice; from there it goes on from cell to cell, and surfaces in between block it.
+// Nested lattices, finer near the camera, each with light of its own virtual lights, and what comes in over its
+// border from the coarser one.
+//
+// A cell keeps the sum over all steps of the intensity of its point light, W/sr. What is asked is a radiance. The
+// factors between them, for cells of side s:
+//   irradiance of a normal n = flux that propagation would send through a face of the cell with that normal / s^2
+// The net flux through any plane along the grid is then that of the propagation, and walls of a closed room take
+// all light. In coefficients, degree 0 counts by 2/3 and degree
+// 1 by 0.831 of intensity / s^2 (a beam along an axis through the cell). 2/3 is also the mean over all directions
+// of the ratio of a straight way to one from cell to cell. What stays wrong: light spreads over more directions
+// with every step, so that shadows and the rays of small lights are blurred, and four coefficients cannot tell a
+// beam from a wide lobe.
+//
+// Unlike the paper: surfaces block by their projected areas along the three axes, not by spherical harmonics:
+// of a surface with two sides four coefficients know its area alone, and floors would block light along them.
+
+#include "gi/core/progress.h"
+#include "gi/light_paths/photon.h"
+#include "gi/methods/photons/propagation_kernels.h"
+
+#include <memory>
+
+namespace gi {
+
+struct PropagationSettings {
+    static constexpr int kMostCells = 128;
+
+    int cells = 32;   ///< of each lattice along the scene's longest side, 8 to kMostCells
+    int cascades = 3; ///< nested lattices, 1 to 8
+    int steps = 0;    ///< from cell to cell; 0 = twice the cells
+    Reprojection by = Reprojection::beams;
+    bool blocked = true;  ///< by surfaces
+    int glossy_cells = 4; ///< looked up along a glossy direction
+};
+
+/// A virtual light: light that leaves a surface in a cosine lobe.
+struct ReflectedLight {
+    vec3 position, normal; ///< m; unit, on the lit side
+    vec3 flux;             ///< W, reflected
+    GI_FN void add_to(ShColor& cell) const { cell.add_cosine_lobe(flux, normal); }
+};
+/// Light that photons reflect diffusely.
+std::vector<ReflectedLight> reflected_lights(std::span<Photon const> photons);
+
+enum class Geometry : std::uint8_t { same, changed };
+
+class LightPropagation {
+public:
+    /// Throws InputError for settings out of range.
+    explicit LightPropagation(PropagationSettings const& settings);
+
+    /// Throws Interrupted. @param world  its bounds may be empty  @param geometry  since the last call
+    void update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
+                BuildStop const& stop = BuildStop(nullptr));
+    /// Irradiance of a surface, W/m^2. @param normal  unit, on the side asked for
+    vec3 irradiance(vec3 position, vec3 normal) const;
+    /// Radiance that comes from a direction, W/(m^2 sr): the mean over some cells along it, as far as surfaces let
+    /// light through (the paper's sec. 5.1). @param direction  unit
+    vec3 radiance(vec3 position, vec3 direction) const;
+
+    struct Level {
+        GridFrame frame, corners;
+        std::vector<vec3> blocked; ///< per corner, see OpenFaces
+        std::vector<vec3> open;
+        std::vector<ShColor> total;
+        double injected_w = 0, outside_w = 0; ///< sums over channels, virtual lights in it and beyond it
+        DenseView<ShColor> view() const { return {frame, total}; }
+    };
+    std::vector<Level> const& levels() const { return levels_; }
+    /// Memory of lattices that update() would make for a world.
+    static std::uint64_t bytes(PropagationSettings const& settings, Bounds const& bounds);
+
+    /// For tests: without a scene. Frames finest first.
+    void propagate(std::span<GridFrame const> frames, std::span<ReflectedLight const> lights);
+
+private:
+    void place(std::span<GridFrame const> frames);
+    void propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights);
+
+    PropagationSettings settings_;
+    std::vector<Level> levels_;
+};
+
+} // namespace gi

@@ -1,0 +1,16 @@
+#pragma once
+// Methods whose indirect light comes from photons, at the points of ray trees (gi/methods/whitted):
+//   ispm         image-space photon mapping (McGuire and Luebke 2009): photons splatted over the surfaces on
+//   screen
+
+#include "gi/render/frame_renderer.h"
+
+namespace gi {
+
+/// See RenderFunction and StartFrames.
+RenderResult render_ispm(World const& world, Camera const& camera, RenderSettings const& settings,
+                         StopRequest const& stop, RenderProgress const& progress, Report& report);
+std::unique_ptr<FrameRenderer> start_ispm_frames(MovingWorld const& world, Camera const& camera,
+                                                 RenderSettings const& settings, Report& report);
+
+} // namespace gi

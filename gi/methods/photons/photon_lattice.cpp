@@ -1,0 +1,177 @@
+#include "gi/methods/photons/photon_lattice.h"
+
+#include "gi/core/error.h"
+#include "gi/kernel/launch.h"
+#include "gi/methods/photons/lattice_kernels.h"
+#include "gi/methods/photons/photon_cell_kernels.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace gi {
+namespace {
+
+void find_pieces(World const& world, GridFrame const& exposure, BuildStop const& stop,
+                 PhotonLattices::Level& level)
+{
+    constexpr std::size_t kTogether = std::size_t(1)
+                                      << 18; // of triangles, which bounds the memory of their pieces
+    // A cell is a block of 4 x 4 x 4 voxels if it is larger than those of the exposure, else a voxel.
+    bool const large = level.frame.cell > exposure.cell;
+    GridFrame blocks = level.frame;
+    if (!large) {
+        blocks.cell *= 4;
+        blocks.size = (blocks.size + 3) / 4;
+    }
+    for (std::size_t first = 0; first < world.triangles.size(); first += kTogether) {
+        VoxelGrid grid{SparseCells<BlockVoxels>(blocks), {}};
+        add_triangles(world, first, std::min(world.triangles.size(), first + kTogether), grid, stop);
+        for (SurfacePiece const& p : grid.pieces) {
+            glm::ivec3 c = blocks.cell_of(grid.blocks.cells[p.block]);
+            if (!large) c = 4 * c + glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
+            if (!level.frame.holds(c)) continue;
+            glm::ivec3 const e = glm::clamp(exposure.at(p.point), glm::ivec3{0}, exposure.size - 1);
+            level.pieces.push_back({level.cells.place_at(c), exposure.index(e), p.area * p.normal});
+        }
+    }
+}
+
+} // namespace
+
+double surface_area(World const& world)
+{
+    double sum = 0;
+    for (Surface const& s : world.surfaces) {
+        double const area = 0.5 * double(glm::length(glm::cross(s.edge1, s.edge2)));
+        sum += std::isfinite(area) ? area : 0;
+    }
+    return sum;
+}
+
+PhotonLattices::PhotonLattices(PhotonLatticeSettings const& settings) : settings_(settings)
+{
+    for (int const cells : settings.cells)
+        if (cells < 4 || cells > PhotonLatticeSettings::kMostCells || settings.cascades < 1 ||
+            settings.cascades > 4)
+            throw InputError(fmt::format("{} nested lattices of {} cells a side", settings.cascades, cells),
+                             fmt::format("1 to 4 of 4 to {} are supported", PhotonLatticeSettings::kMostCells),
+                             "choose others");
+}
+
+std::uint64_t PhotonLattices::bytes(PhotonLatticeSettings const& s, Bounds const& bounds, double area_m2)
+{
+    if (bounds.empty()) return 0;
+    std::uint64_t sum = 0;
+    for (int const cells : s.cells)
+        for (GridFrame const& f : frames_off_walls(bounds, bounds.center(), cells, s.cascades))
+            sum += sparse_bytes(f, area_m2, 2 * sizeof(PhotonCell) + 2 * sizeof(Level::Piece));
+    return sum;
+}
+
+void PhotonLattices::place(World const& world, ExactVisibility const& visibility, vec3 camera,
+                           BuildStop const& stop)
+{
+    for (auto& levels : levels_) levels.clear();
+    if (world.bounds.empty()) return;
+    sky_shines_ = world.environment != nullptr;
+    exposed_ = ExposedSides(world, visibility, stop);
+    for (std::size_t k = 0; k < 3; ++k)
+        for (GridFrame const& f : frames_off_walls(world.bounds, camera, settings_.cells[k], settings_.cascades)) {
+            levels_[k].push_back({f, SparseCells<PhotonCell>(f), {}});
+            find_pieces(world, exposed_.frame(), stop, levels_[k].back());
+        }
+}
+
+void PhotonLattices::inject(Level& level, std::span<Photon const* const> photons, bool smooth, bool last)
+{
+    std::ranges::fill(level.cells.values, PhotonCell{});
+    for (Level::Piece const& p : level.pieces) {
+        float const area = glm::length(p.area);
+        if (!(area > 0)) continue;
+        vec3 const normal = p.area / area;
+        for (float const side : {1.0f, -1.0f}) {
+            float const lit =
+                area * exposed_.share(p.exposure_cell, ReachedSides::side_index(side * normal, side > 0));
+            level.cells.values[p.place].area += lit * vec4(1, side * normal.x, side * normal.y, side * normal.z);
+        }
+    }
+    std::size_t const n = photons.size(), cells = level.cells.values.size();
+    std::vector<LatticePhoton> items(n);
+    std::vector<vec3> positions(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        items[i] = {photons[i]->flux, photons[i]->from, photons[i]->normal, 0};
+        positions[i] = photons[i]->position;
+    }
+    std::vector<std::uint64_t> keys(n);
+    launch(Space::host, "find cells of photons", n, FindPhotonCells{level.cells.view(), positions, items, keys});
+    for (std::size_t i = 0; last && i < n; ++i) {
+        double const flux = double(glm::dot(items[i].flux, vec3{1}));
+        (keys[i] < cells ? injected_w_ : lost_w_) += flux;
+    }
+    ItemsByCell const sorted = sort_by_cell(keys, cells);
+    launch(Space::host, "inject photons", cells,
+           SumItems<LatticePhoton, PhotonCell>{items, sorted.order, sorted.firsts, level.cells.values});
+    if (!smooth) return;
+    std::vector<PhotonCell> smoothed(cells);
+    launch(Space::host, "smooth lattice", cells,
+           SmoothCells<PhotonCell>{level.cells.view(), level.cells.cells, smoothed});
+    std::swap(level.cells.values, smoothed);
+}
+
+void PhotonLattices::update(std::span<Photon const> photons)
+{
+    injected_w_ = lost_w_ = 0;
+    if (levels_[0].empty()) return;
+    exposed_.add(photons, sky_shines_);
+    std::vector<Photon const*> once, more;
+    for (Photon const& p : photons)
+        if (p.scatterings > 0 && all_finite(p.flux)) (p.scatterings == 1 ? once : more).push_back(&p);
+    inject(Frequency::low, more);
+    inject(Frequency::middle, once);
+}
+
+void PhotonLattices::update_caustics(std::span<Photon const> photons)
+{
+    if (levels_[0].empty()) return;
+    std::vector<Photon const*> caustics;
+    for (Photon const& p : photons)
+        if (p.scatterings == 0 && p.by_delta && all_finite(p.flux)) caustics.push_back(&p);
+    inject(Frequency::high, caustics);
+}
+
+void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons)
+{
+    std::vector<Level>& levels = levels_[std::size_t(f)];
+    for (Level& level : levels) inject(level, photons, settings_.smooth[std::size_t(f)], &level == &levels.back());
+}
+
+vec3 PhotonLattices::irradiance(Frequency of, vec3 position, vec3 normal) const
+{
+    vec3 sum{0};
+    std::vector<Level> const& levels = levels_[std::size_t(of)];
+    for_grids_at(levels, position, [&](std::size_t k, float weight) {
+        sum += weight *
+               cell_irradiance(trilinear<PhotonCell>(levels[k].cells.view(), position), normal, settings_.by);
+    });
+    return sum;
+}
+
+vec3 PhotonLattices::irradiance(vec3 position, vec3 normal) const
+{
+    return irradiance(Frequency::low, position, normal) + irradiance(Frequency::middle, position, normal) +
+           irradiance(Frequency::high, position, normal);
+}
+
+vec3 PhotonLattices::radiance(vec3 position, vec3 direction) const
+{
+    vec3 sum{0};
+    for (std::vector<Level> const& levels : levels_)
+        for_grids_at(levels, position, [&](std::size_t k, float weight) {
+            PhotonCell const cell = trilinear<PhotonCell>(levels[k].cells.view(), position);
+            if (cell.area.x > 0)
+                sum += weight * glm::max(evaluate(cell.arrived, direction) / cell.area.x, vec3{0});
+        });
+    return sum;
+}
+
+} // namespace gi

@@ -1,0 +1,142 @@
+#pragma once
+// Photons in lattices (Noren and Sjolin, "Image Space Light Lattice Photon Mapping", sec. 5.3 and 5.4): light that
+// arrives at surfaces, as spherical harmonics of degree 1 by the cells of lattices of three resolutions: diffuse
+// light of two and more scatterings in the coarsest, of one in the middle one, caustics in the finest.
+//
+// The paper projects flux by its directions and reads the sum at the normal; it does not say what of. We divide by
+// area, in one of two ways (IrradianceBy). Let photons p of a cell have flux F_p, come from directions w_p and lie
+// on surfaces of normal m_p; the cell's exposed surfaces have areas A_j and normals n_j.
+//   directions: each photon is a beam of radiance F_p / P(w_p), P(w) = sum_j A_j (1/4 + n_j . w / 2), the
+//   projected
+//     area to degree 1; irradiance is its convolution with the cosine, likewise to degree 1:
+//       E(n) = sum_p F_p (1/4 + n . w_p / 2) / P(w_p)
+//     As both have the same kernel, E is exact for flat surfaces, whatever comes from where, and sum_j A_j E(n_j)
+//     is the flux of the photons.
+//   normals: photons count by how near their surface's normal is, as the areas do:
+//       E(n) = sum_p F_p (1 + n . m_p) / sum_j A_j (1 + n . n_j)
+//     The two sides of a thin wall do not mix at all.
+// Sums over cells (smoothing, trilinear look-up) add numerators and denominators, so that cells count by their
+// area.
+//
+// Memory: per cell with surfaces 116 bytes, twice with smoothing; per piece of a surface in a cell 20 bytes.
+
+#include "gi/methods/photons/exposed_sides.h"
+#include "gi/methods/photons/sh_lattice.h"
+
+#include <array>
+
+namespace gi {
+
+enum class IrradianceBy : std::uint8_t { normals, directions };
+enum class Frequency : std::uint8_t { low, middle, high };
+
+struct PhotonLatticeSettings {
+    static constexpr int kMostCells = 512;
+
+    std::array<int, 3> cells{16, 32, 128}; ///< by Frequency, along the scene's longest side, 4 to kMostCells
+    std::array<bool, 3> smooth{true, true, false}; ///< over 3 x 3 x 3 cells
+    int cascades = 1;                              ///< nested lattices of each frequency, 1 to 4
+    IrradianceBy by = IrradianceBy::normals;
+};
+
+struct PhotonCell {
+    ShColor arrived;  ///< radiance by the direction from which it comes, times area.x; W/sr
+    ShColor received; ///< flux by the normals of the surfaces, W
+    vec4 area{0};     ///< m^2; sums of A_j and of A_j n_j
+
+    GI_FN PhotonCell& operator+=(PhotonCell const& o)
+    {
+        arrived += o.arrived;
+        received += o.received;
+        area += o.area;
+        return *this;
+    }
+};
+GI_FN inline PhotonCell operator*(float by, PhotonCell c)
+{
+    c.arrived *= vec3{by};
+    c.received *= vec3{by};
+    c.area *= by;
+    return c;
+}
+
+/// A photon, as lattices store it.
+struct LatticePhoton {
+    vec3 flux;      ///< W
+    vec3 direction; ///< unit, from which it comes
+    vec3 normal;    ///< unit, geometric, on the side where it arrives
+    float weight;   ///< area.x / P(direction) of its cell
+    GI_FN void add_to(PhotonCell& cell) const
+    {
+        cell.arrived.add_beam(weight * flux, direction);
+        cell.received.add_beam(flux, normal);
+    }
+};
+
+/// Irradiance, W/m^2, not below 0. @param cell  a sum over cells with any weights
+GI_FN inline vec3 cell_irradiance(PhotonCell const& cell, vec3 normal, IrradianceBy by)
+{
+    vec3 const along{cell.area.y, cell.area.z, cell.area.w};
+    float const area = cell.area.x;
+    if (!(area > 0)) return vec3{0};
+    if (by == IrradianceBy::directions) return glm::max(irradiance(cell.arrived, normal) / area, vec3{0});
+    float const facing = area + glm::dot(along, normal);
+    if (!(facing > 1e-3f * area)) return vec3{0};
+    vec3 const flux = cell.received.c[0] / ShColor::kY0 + cell.received.along(normal) / ShColor::kY1;
+    return glm::max(flux, vec3{0}) / facing;
+}
+
+class PhotonLattices {
+public:
+    /// Throws InputError for settings out of range.
+    explicit PhotonLattices(PhotonLatticeSettings const& settings);
+
+    /// To be called before the first update(), and when geometry has changed or the camera has moved by a cell of
+    /// nested lattices. Throws Interrupted.
+    void place(World const& world, ExactVisibility const& visibility, vec3 camera,
+               BuildStop const& stop = BuildStop(nullptr));
+    /// Replaces light of one and more scatterings. What light has reached is remembered. @param photons  of all
+    /// scatterings
+    void update(std::span<Photon const> photons);
+    /// Replaces the caustics: those of the photons that have come by mirrors and glass alone. To be called after
+    /// update().
+    void update_caustics(std::span<Photon const> photons);
+
+    /// Of light of one and more scatterings and of caustics, W/m^2. @param normal  unit, on the side asked for
+    vec3 irradiance(vec3 position, vec3 normal) const;
+    vec3 irradiance(Frequency of, vec3 position, vec3 normal) const;
+    /// Radiance that comes from a direction. @param direction  unit
+    vec3 radiance(vec3 position, vec3 direction) const;
+
+    struct Level {
+        GridFrame frame;
+        SparseCells<PhotonCell> cells;
+        /// The part of a surface in a cell.
+        struct Piece {
+            std::uint32_t place, exposure_cell;
+            vec3 area; ///< m^2, times the normal of the front
+        };
+        std::vector<Piece> pieces;
+    };
+    std::span<Level const> levels(Frequency f) const { return levels_[std::size_t(f)]; }
+    double injected_w() const { return injected_w_; } ///< sum over channels
+    double lost_w() const { return lost_w_; }         ///< of photons where no surface was found
+    double hidden_m2() const { return exposed_.hidden_m2(); }
+    /// Upper bound of the memory that place() and update() take. @param area_m2  of all triangles
+    static std::uint64_t bytes(PhotonLatticeSettings const& settings, Bounds const& bounds, double area_m2);
+
+private:
+    void inject(Frequency f, std::span<Photon const* const> photons);
+    void inject(Level& level, std::span<Photon const* const> photons, bool smooth, bool last);
+
+    PhotonLatticeSettings settings_;
+    ExposedSides exposed_;
+    bool sky_shines_ = false;
+    std::array<std::vector<Level>, 3> levels_; ///< finest first
+    double injected_w_ = 0, lost_w_ = 0;
+};
+
+/// Area of a world's triangles, m^2.
+double surface_area(World const& world);
+
+} // namespace gi

@@ -1,0 +1,172 @@
+#include "gi/methods/photons/photon_renderer.h"
+
+#include "gi/light_paths/bounce_map.h"
+#include "gi/light_paths/options.h"
+#include "gi/methods/photons/look_up_rays.h"
+#include "gi/scene/model/plan.h"
+
+#include <algorithm>
+
+namespace gi {
+
+PhotonRenderer::PhotonRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
+                               Report& report, StopRequest const* stop)
+    : TreeRenderer(world, settings, first_moving, report, stop),
+      stop_(stop),
+      caustics_(world, settings, report, stop),
+      paths_(std::uint32_t(settings.photons.paths))
+{
+}
+
+void PhotonRenderer::changed(Changes const& c)
+{
+    TreeRenderer::changed(c);
+    caustics_.changed(c);
+    surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds || c.materials || c.coverage;
+    soup_moved_ = soup_moved_ || c.geometry;
+    axes_moved_ = axes_moved_ || c.geometry;
+    light_changed_ = light_changed_ || c.lights || c.emitters || c.environment;
+}
+
+SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<FrameView const> views)
+{
+    PathCounts counts;
+    if (!first_index_) first_index_ = index;
+    bool const any = !world_.light_select.empty() && !world_.bounds.empty();
+    if (any && settings_.bounces > 0) update(views, counts);
+    if (any && has_caustics() && !(settings_.photons.frozen == Switch::on && caustics_.map() != nullptr))
+        caustics_.prepare(*visibility_, index, views, {}, share(), counts);
+    rays_ += double(counts.nearest_rays + counts.shadow_rays);
+    work_.paths += counts;
+    return any ? light(views, caustics_.map()) : nullptr;
+}
+
+void PhotonRenderer::update(std::span<FrameView const> views, PathCounts& counts)
+{
+    if (settings_.photons.frozen == Switch::on && has_light_) return;
+    bool const new_cameras = !std::ranges::equal(views, cameras_, {}, &FrameView::camera);
+    cameras_.clear();
+    for (FrameView const& v : views) cameras_.push_back(v.camera);
+    bool const fresh = light_changed_ || surfaces_changed_;
+    if (fresh || (new_cameras && sets_ > 1))
+        sets_ = 0;
+    else if (new_cameras && has_light_)
+        return;
+    BuildStop const stop(stop_);
+    try {
+        if (!has_light_ && settings_.budget_s > 0)
+            fit_budget(views, stop, counts);
+        else
+            trace_set(views, stop, counts);
+    } catch (Interrupted const&) {
+        if (!has_light_) throw;
+    }
+}
+
+/// Finds from a small set how large one may be: some fit into a picture's budget, one into a frame's.
+void PhotonRenderer::fit_budget(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts)
+{
+    std::uint32_t const asked = paths_;
+    paths_ = std::clamp(asked / 64, 1u, 4096u);
+    auto const begun = Clock::now();
+    trace_set(views, stop, counts);
+    double const took_s = std::chrono::duration<double>(Clock::now() - begun).count();
+    double const most_s = settings_.budget_s / (frames() ? 3 : 8);
+    paths_ = std::uint32_t(std::clamp(double(paths_) * most_s / took_s, double(paths_), double(asked)));
+    sets_ = 0;
+    surfaces_changed_ = true; // what was made for the small set
+    trace_set(views, stop, counts);
+}
+
+void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts)
+{
+    constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
+    std::vector<Photon> photons;
+    {
+        PathRays const& rays = path_rays(stop);
+        StageTimer const timer(report_, "light paths");
+        bool const by_map = settings_.photons.first_bounce == FirstBounce::map;
+        if (by_map) {
+            if (!soup_)
+                soup_ = make_soup(world_);
+            else if (soup_moved_)
+                update_soup(world_, first_moving_, *soup_);
+            soup_moved_ = false;
+        }
+        for (std::uint32_t first = 0; first < paths_; first += kTogether) {
+            LightPaths const some{.count = paths_,
+                                  .first = first,
+                                  .last = std::min(paths_ - first, kTogether) + first,
+                                  .bounces = bounces() + 1,
+                                  .seed = settings_.seed,
+                                  .pass = *first_index_ + sets_,
+                                  .stop = &stop};
+            std::vector<LightVertex> const vertices =
+                by_map ? trace_bounce_maps(view(world_), world_.bounds, *soup_, plan_scene(world_).alpha_tests,
+                                           rays, some, counts)
+                       : trace_light_paths(view(world_), world_.bounds, rays, some, counts);
+            for (LightVertex const& v : vertices)
+                if (stores(v)) photons.push_back(to_photon(v));
+            if (by_map) break; // the whole set
+        }
+    }
+    {
+        StageTimer const timer(report_, std::string(timer_name()));
+        take({photons, sets_, paths_, surfaces_changed_, *visibility_, views, stop, counts});
+    }
+    ++sets_;
+    light_changed_ = surfaces_changed_ = false;
+    has_light_ = true;
+    stored_ = photons.size();
+    flux_ = dvec3{0};
+    for (Photon const& p : photons) flux_ += dvec3(p.flux);
+}
+
+PathRays const& PhotonRenderer::path_rays(BuildStop const&)
+{
+    switch (settings_.photons.rays) {
+    case PhotonRays::look_ups: {
+        StageTimer const timer(report_, "hit buffers");
+        if (!axes_)
+            axes_.emplace(world_, with_stored_axes(settings_.slhb), settings_.seed, first_moving_, stop_);
+        else if (axes_moved_)
+            axes_->moved();
+        axes_moved_ = false;
+        rays_of_paths_ = std::make_unique<LookUpRays>(world_, *axes_, *visibility_);
+        break;
+    }
+    case PhotonRays::impostors:
+    case PhotonRays::exact:
+        rays_of_paths_ = std::make_unique<ExactPathRays>(*visibility_);
+        break;
+    }
+    return *rays_of_paths_;
+}
+
+void PhotonRenderer::report_work()
+{
+    TreeRenderer::report_work();
+    if (has_light_) {
+        report_.count("light paths of a set of photons", double(paths_));
+        report_.count("photons of the last set", double(stored_));
+        report_.count("sets of photons since the last change", double(sets_));
+        report_.count("flux of the photons, W (luminance)", double(luminance(vec3(flux_))));
+    }
+    report_light(report_);
+    caustics_.report_counts();
+}
+
+std::string PhotonRenderer::options() const
+{
+    RenderSettings chosen = settings_;
+    chosen.photons.paths = int(paths_);
+    chosen.photons.caustic_paths = int(share() * chosen.photons.caustic_paths);
+    std::vector<std::string_view> names{"photons"};
+    if (has_caustics()) names.push_back("caustic-photons");
+    for (RenderOption const& o : photon_options())
+        if (std::ranges::find(names, o.name) == names.end() && o.get(chosen) != o.get(RenderSettings{}))
+            names.push_back(o.name);
+    return TreeRenderer::options() + " " + as_options(photon_options(), chosen, names);
+}
+
+} // namespace gi

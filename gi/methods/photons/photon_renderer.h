@@ -1,0 +1,84 @@
+#pragma once
+// What the photon methods have in common: when photons are traced and how many, caustics, frozen light.
+//
+// Each pass of a picture has photons of its own, so that the mean of the passes converges to what the method can
+// tell. In frames every change begins with the first set again (the same random numbers: no flicker); while
+// nothing changes, each frame has the next.
+
+#include "gi/light_paths/caustics.h"
+#include "gi/light_paths/photon.h"
+#include "gi/methods/slhb/directions/stored_axes.h"
+#include "gi/methods/whitted/whitted.h"
+#include "gi/raster/triangle_soup.h"
+
+#include <chrono>
+#include <optional>
+
+namespace gi {
+
+/// One set of photons.
+struct PhotonSet {
+    std::span<Photon const> photons;
+    std::uint32_t number;  ///< since the last change; 0 = what earlier sets gave is no longer true
+    std::uint32_t paths;   ///< light paths of the set
+    bool surfaces_changed; ///< since the set before: geometry, materials or coverage
+    ExactVisibility const& visibility;
+    std::span<FrameView const> views;
+    BuildStop const& stop;
+    PathCounts& counts;
+};
+
+class PhotonRenderer : public TreeRenderer {
+public:
+    /// See StartPasses.
+    PhotonRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
+                   StopRequest const* stop);
+
+    void changed(Changes const& changes) override;
+    void report_work() override;
+    std::string options() const override;
+
+protected:
+    /// Vertices of light paths that the method stores.
+    virtual bool stores(LightVertex const& v) const { return v.scatterings > 0; }
+    /// Whether light that comes by mirrors and glass alone has photons of its own.
+    virtual bool has_caustics() const { return true; }
+    /// Indirect bounces that the method's light paths give, at most.
+    virtual int bounces() const { return std::min(settings_.photons.reflections, settings_.bounces); }
+    virtual std::string_view timer_name() const = 0; ///< of take()
+    /// Makes light of a set of photons. Throws Interrupted if a stop is requested, and then keeps what it had.
+    virtual void take(PhotonSet const& set) = 0;
+    /// The light of a pass, after take(). @param caustics  null = none
+    virtual SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) = 0;
+    /// Reports what is specific to the method.
+    virtual void report_light(Report&) {}
+
+    SurfaceLight const* prepare(std::uint32_t index, std::span<FrameView const> views) override;
+    std::span<Photon const> caustic_photons() const { return caustics_.photons(); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    bool frames() const { return stop_ == nullptr; }
+    void update(std::span<FrameView const> views, PathCounts& counts);
+    void trace_set(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
+    void fit_budget(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
+    /// What finds surfaces, made or brought up to date.
+    PathRays const& path_rays(BuildStop const& stop);
+    double share() const { return double(paths_) / settings_.photons.paths; }
+
+    StopRequest const* stop_;
+    Caustics caustics_;
+    bool light_changed_ = true, surfaces_changed_ = true, has_light_ = false;
+    std::optional<std::uint32_t> first_index_; ///< of the passes
+    std::vector<Camera> cameras_;              ///< of the last call
+    std::uint32_t paths_;                      ///< of a set
+    std::uint32_t sets_ = 0;                   ///< since the last change
+    std::optional<TriangleSoup> soup_;         ///< what bounce maps draw
+    bool soup_moved_ = false, axes_moved_ = false;
+    std::optional<StoredAxes> axes_; ///< of look-ups
+    std::unique_ptr<PathRays> rays_of_paths_;
+    std::size_t stored_ = 0;
+    dvec3 flux_{0}, emitted_{0};
+};
+
+} // namespace gi
