@@ -18,13 +18,13 @@ ImpostorScene ImpostorRays::scene() const
     return {.maps = impostors_.view(), .world = view(world_), .alpha_tests = alpha_tests_};
 }
 
-void ImpostorRays::nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const
+void ImpostorRays::nearest(std::span<PathQuery> queries, std::span<Hit> hits) const
 {
     ImpostorScene const s = scene();
     for (std::size_t k = 0; k < queries.size(); ++k) hits[k] = gi::follow(s, queries[k], settings_).hit;
 }
 
-void ImpostorRays::follow(std::span<RayQuery const> queries, std::span<ImpostorHit> hits) const
+void ImpostorRays::follow(std::span<PathQuery const> queries, std::span<ImpostorHit> hits) const
 {
     ImpostorScene const s = scene();
     for (std::size_t k = 0; k < queries.size(); ++k) hits[k] = gi::follow(s, queries[k], settings_);

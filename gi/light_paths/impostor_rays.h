@@ -12,9 +12,9 @@ public:
     /// @param world, impostors  must outlive it
     ImpostorRays(World const& world, Impostors const& impostors, ImpostorSettings const& settings = {});
 
-    void nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const override;
+    void nearest(std::span<PathQuery> queries, std::span<Hit> hits) const override;
     /// The same, and how it was found.
-    void follow(std::span<RayQuery const> queries, std::span<ImpostorHit> hits) const;
+    void follow(std::span<PathQuery const> queries, std::span<ImpostorHit> hits) const;
 
 private:
     ImpostorScene scene() const;

@@ -12,6 +12,7 @@
 
 #include "gi/bvh/triangle_test.h"
 #include "gi/light_paths/impostor_search.h"
+#include "gi/light_paths/path_query.h"
 #include "gi/render/coverage_test.h"
 
 namespace gi {
@@ -23,6 +24,7 @@ struct Walk {
     Hit crossing;                           ///< by distances alone
     Hit hidden;                             ///< a guess where the ray vanishes behind something
     bool to_sky = false;                    ///< where it vanished first the sky was behind
+    std::uint32_t left = kNoTriangle;       ///< triangle that the ray leaves
     std::uint32_t tested = kNoTriangle;     ///< last triangle
     std::uint32_t tested_too = kNoTriangle; ///< the one before
 };
@@ -253,7 +255,7 @@ private:
                 meet(scene, q, shear, texel.triangle, found);
                 set_limit();
             }
-            bool const behind = end_depth > 0 && passed(texel.triangle, end);
+            bool const behind = end_depth > 0 && texel.triangle != found.left && passed(texel.triangle, end);
             if (before && behind && found.crossing.triangle == kNoTriangle) {
                 if (depth <= 0 || !passed(texel.triangle, s))
                     cross(texel, depth < 0 ? s + depth / (depth - end_depth) * (end - s) : s, join);
@@ -351,7 +353,7 @@ GI_FN inline Hit at_end(ImpostorScene const& scene, std::uint32_t k, RayQuery co
     return {texel.triangle, barycentric_at(surface, q.ray.origin + on * q.ray.direction), on};
 }
 
-GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q,
+GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q, std::uint32_t left,
                                      ImpostorSettings const& settings)
 {
     ImpostorsView const& maps = scene.maps;
@@ -360,6 +362,7 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
     if (!seen) k = nearest_impostor(maps, q.ray.origin);
     RayShear const shear(q.ray.direction);
     Walk walk;
+    walk.left = left;
     ImpostorHit found{.maps = 1};
     for (float t = 0;;) {
         MapWalk one(scene, q, shear, settings, k, seen || found.maps > 1, int(found.maps) < settings.most_maps, t,
@@ -387,15 +390,16 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
 
 } // namespace impostor_detail
 
-/// Follows a ray. @param q  of finite coordinates
-GI_FN inline ImpostorHit follow(ImpostorScene const& scene, RayQuery q, ImpostorSettings const& settings)
+/// Follows a ray. @param path  of finite coordinates
+GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& path, ImpostorSettings const& settings)
 {
     using namespace impostor_detail;
     if (scene.maps.centres.empty()) return {};
+    RayQuery q = path.ray;
     float const start = q.start;
     q.ray.origin += start * q.ray.direction;
     q.reach -= start;
-    ImpostorHit found = settings.search == ImpostorSearch::walk       ? search_walk(scene, q, settings)
+    ImpostorHit found = settings.search == ImpostorSearch::walk       ? search_walk(scene, q, path.triangle, settings)
                         : settings.search == ImpostorSearch::cascaded ? search_cascaded(scene, q, settings)
                         : settings.search == ImpostorSearch::all      ? search_all(scene, q, settings)
                                                                       : search_first_guess(scene, q, settings);
@@ -407,7 +411,7 @@ GI_FN inline ImpostorHit follow(ImpostorScene const& scene, RayQuery q, Impostor
 struct FollowByImpostors {
     ImpostorScene scene;
     ImpostorSettings settings;
-    View<RayQuery const> queries;
+    View<PathQuery const> queries;
     View<ImpostorHit> hits;
 
     GI_FN void operator()(std::size_t i) const { hits[i] = follow(scene, queries[i], settings); }

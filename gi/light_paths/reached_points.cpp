@@ -81,12 +81,12 @@ Reached walk_on(World const& world, ExactVisibility const& visibility, std::vect
             // Flights from lights afar and from cameras are no measure of the space between surfaces.
             if (bounce > 0) {
                 float const length = hits[k].triangle != kNoTriangle ? hits[k].distance : kInf;
-                reached.flights.push_back({ray.origin, ray.direction, length});
+                reached.flights.push_back({ray.origin, ray.direction, length, reached.points[left + k].triangle});
                 reached.points[left + k].free = length;
             }
             if (hits[k].triangle == kNoTriangle || bounce == kBounces) continue;
             ShadingPoint const at = shading_point(w, hits[k].triangle, hits[k].barycentric, ray.direction);
-            reached.points.push_back({at.position, at.geometric_normal, at.clearance});
+            reached.points.push_back({at.position, at.geometric_normal, at.clearance, hits[k].triangle});
             vec3 const next =
                 Frame::about(at.geometric_normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
             rays.push_back({leave(at, next), next});

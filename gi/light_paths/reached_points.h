@@ -12,6 +12,7 @@ namespace gi {
 struct ReachedPoint {
     vec3 position, normal; ///< m; unit, geometric, on the side that was met
     float clearance;       ///< m, see ShadingPoint
+    std::uint32_t triangle;
     float free = kInf;     ///< m; length of the flight that left it, kInf = into the open
 };
 
@@ -19,6 +20,7 @@ struct ReachedPoint {
 struct Flight {
     vec3 from, direction; ///< m; unit
     float length;         ///< m; kInf = into the open
+    std::uint32_t leaves; ///< triangle
 };
 
 struct Reached {
