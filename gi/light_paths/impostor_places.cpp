@@ -5,6 +5,7 @@
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
+#include <span>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -37,21 +38,21 @@ float clearance_about(ExactVisibility const& visibility, vec3 place, float farth
     return least;
 }
 
-/// How well a place sees each point, 0 to 1.
-std::vector<float> worth_of(ExactVisibility const& visibility, vec3 place, Reached const& walks)
+/// How well a place sees each point, 0 to 1. @param open  m, taken for the length of flights into the open
+std::vector<float> worth_of(ExactVisibility const& visibility, vec3 place, std::span<ReachedPoint const> points,
+                            float open)
 {
-    float const mean = walks.mean_length;
-    float const clearance = clearance_about(visibility, place, mean);
+    float const clearance = clearance_about(visibility, place, open);
     std::vector<RayQuery> queries;
-    std::vector<std::uint8_t> blocked(walks.points.size());
+    std::vector<std::uint8_t> blocked(points.size());
     std::vector<float> worth;
-    for (ReachedPoint const& p : walks.points) {
+    for (ReachedPoint const& p : points) {
         vec3 const to = place - p.position;
-        float const distance = glm::length(to);
+        float const distance = glm::length(to), free = std::min(p.free, open);
         float const cosine = distance > 0 ? glm::dot(to, p.normal) / distance : 0;
         vec3 const direction = distance > 0 ? to / distance : p.normal;
         queries.push_back({.ray = {p.position + p.clearance * p.normal, direction}, .reach = distance});
-        float const w = cosine / (1 + distance / mean) * clearance / (clearance + mean / 8);
+        float const w = cosine / (1 + distance / free) * clearance / (clearance + free / 8);
         worth.push_back(w > 0 ? w : 0);
     }
     visibility.occluded(queries, blocked);
@@ -72,14 +73,15 @@ std::vector<vec3> place_impostors(World const& world, ExactVisibility const& vis
     Pcg32 rng(11, 6);
     keep_some(walks.points, settings.points, rng);
     keep_some(walks.flights, settings.candidates, rng);
+    float const open = world.bounds.radius();
     std::vector<vec3> places;
     for (Flight const& f : walks.flights) {
         float const share = 0.25f + 0.5f * rng.uniform();
-        places.push_back(f.from + share * std::min(f.length, 2 * walks.mean_length) * f.direction);
+        places.push_back(f.from + share * std::min(f.length, open) * f.direction);
     }
     std::vector<std::vector<float>> worth(places.size());
     tbb::parallel_for(std::size_t(0), places.size(),
-                      [&](std::size_t k) { worth[k] = worth_of(visibility, places[k], walks); });
+                      [&](std::size_t k) { worth[k] = worth_of(visibility, places[k], walks.points, open); });
 
     std::vector<float> best(walks.points.size(), 0.0f);
     std::vector<vec3> chosen;

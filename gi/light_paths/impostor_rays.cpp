@@ -24,7 +24,7 @@ void ImpostorRays::nearest(std::span<PathQuery> queries, std::span<Hit> hits) co
     for (std::size_t k = 0; k < queries.size(); ++k) hits[k] = gi::follow(s, queries[k].ray, settings_).hit;
 }
 
-void ImpostorRays::follow(std::span<RayQuery const> queries, std::span<ImpostorHit> hits) const
+void ImpostorRays::follow(std::span<PathQuery const> queries, std::span<ImpostorHit> hits) const
 {
     ImpostorScene const s = scene();
     for (std::size_t k = 0; k < queries.size(); ++k) hits[k] = gi::follow(s, queries[k], settings_);

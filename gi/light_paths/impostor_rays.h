@@ -14,7 +14,7 @@ public:
 
     void nearest(std::span<PathQuery> queries, std::span<Hit> hits) const override;
     /// The same, and how it was found.
-    void follow(std::span<RayQuery const> queries, std::span<ImpostorHit> hits) const;
+    void follow(std::span<PathQuery const> queries, std::span<ImpostorHit> hits) const;
 
 private:
     ImpostorScene scene() const;

@@ -23,7 +23,7 @@ struct ImpostorSettings {
     float energy_change = 0.05f; ///< relative; smaller ones end the subdivision
     /// Points nearer to the ray's origin than this many texels there are no candidates: a ray that leaves a
     /// surface has least energy at its own origin. 0 = the energy as printed.
-    float skip_texels = 3;
+    float skip_texels = 20;
     // Of the walk:
     int most_maps = 2; ///< impostors that a ray may use
     float jump = 3;    ///< texels; surfaces of neighbouring texels whose distances differ by more do not join
@@ -143,7 +143,8 @@ GI_FN inline ImpostorHit search_all(ImpostorScene const& scene, RayQuery const& 
         float const t = refine(scene.maps, k, q.ray, first_guess(scene.maps, k, q.ray), settings.iterations);
         if (!(t < kFarthest)) continue;
         vec3 const p = surface_point(scene.maps, k, q.ray.origin + t * q.ray.direction - scene.maps.centres[k]);
-        float const skip = least_along(scene.maps, k, q.ray.origin, settings.skip_texels);
+        constexpr float kSkip = 3; // texels; a longer one would lose what is near
+        float const skip = least_along(scene.maps, k, q.ray.origin, kSkip);
         float const e = energy(p - q.ray.origin, q.ray.direction, skip);
         if (e < least) {
             least = e;

@@ -12,6 +12,7 @@
 
 #include "gi/bvh/triangle_test.h"
 #include "gi/light_paths/impostor_search.h"
+#include "gi/light_paths/path_query.h"
 #include "gi/render/coverage_test.h"
 
 namespace gi {
@@ -23,6 +24,7 @@ struct Walk {
     Hit crossing;                           ///< by distances alone
     Hit hidden;                             ///< a guess where the ray vanishes behind something
     bool to_sky = false;                    ///< where it vanished first the sky was behind
+    std::uint32_t left = kNoTriangle;       ///< triangle that the ray leaves
     std::uint32_t tested = kNoTriangle;     ///< last triangle
     std::uint32_t tested_too = kNoTriangle; ///< the one before
 };
@@ -66,15 +68,20 @@ struct FaceArc {
 
 /// Steps along an arc from cell to cell of a face of n^2 cells: its texels or its blocks.
 struct CellSteps {
+    static constexpr float kRounding = 1e-5f;
+
     FaceArc const& arc;
     int n, i, j;
-    float scale, next_u, next_v; ///< s at the edges ahead
+    float since, scale, next_u, next_v; ///< s at the start and at the edges ahead
 
-    GI_FN CellSteps(FaceArc const& on, float s, int cells) : arc(on), n(cells), scale(2 / float(cells))
+    /// Starts in the cell at s, which rounding cannot put outside of `many` columns from first_i on and as many
+    /// rows.
+    GI_FN CellSteps(FaceArc const& on, float s, int cells, int first_i, int first_j, int many)
+        : arc(on), n(cells), since(s), scale(2 / float(cells))
     {
         float const along = 0.5f * float(n) / (arc.w0 + s * arc.w1), middle = 0.5f * float(n);
-        i = glm::clamp(int(middle + along * (arc.u0 + s * arc.u1)), 0, n - 1);
-        j = glm::clamp(int(middle + along * (arc.v0 + s * arc.v1)), 0, n - 1);
+        i = glm::clamp(int(middle + along * (arc.u0 + s * arc.u1)), first_i, first_i + many - 1);
+        j = glm::clamp(int(middle + along * (arc.v0 + s * arc.v1)), first_j, first_j + many - 1);
         next_u = edge(arc.u0, arc.u1, i + (arc.u_up ? 1 : 0));
         next_v = edge(arc.v0, arc.v1, j + (arc.v_up ? 1 : 0));
     }
@@ -97,7 +104,8 @@ private:
     {
         float const at = scale * float(k) - 1;
         float const s = (at * arc.w0 - x0) / (x1 - at * arc.w1);
-        return s >= 0 ? s : 2.0f; // never, if it does not move that way
+        // An edge behind the start is one of a coordinate that does not change: never.
+        return s >= since - kRounding ? s : 2.0f;
     }
 };
 
@@ -180,7 +188,8 @@ struct MapWalk {
         for (int faces = 0; faces < kMostFaces && s < 1; ++faces) {
             float const start = s + kProbe;
             FaceArc const face(arc, maps.cube_texel(arc.at(start)).face);
-            for (CellSteps blocks(face, start, maps.blocks_across()); blocks.inside() && s < 1; blocks.step())
+            int const across = maps.blocks_across();
+            for (CellSteps blocks(face, start, across, 0, 0, across); blocks.inside() && s < 1; blocks.step())
                 if (!pass_block(face, blocks, glm::max(blocks.end(), s))) return;
             s = glm::max(s, start);
         }
@@ -211,11 +220,9 @@ private:
             length = end_length;
             return s < limit;
         }
-        CellSteps texels(face, s + kProbe, int(maps.resolution));
         constexpr int kBlock = ImpostorsView::kBlock;
         int const i = at.i * kBlock, j = at.j * kBlock;
-        texels.i = glm::clamp(texels.i, i, i + kBlock - 1);
-        texels.j = glm::clamp(texels.j, j, j + kBlock - 1);
+        CellSteps texels(face, s + kProbe, int(maps.resolution), i, j, kBlock);
         for (; texels.i >= i && texels.j >= j && texels.i < i + kBlock && texels.j < j + kBlock && s < end;
              texels.step())
             if (!pass_texel({face.face, texels.i, texels.j}, glm::clamp(texels.end(), s, end))) return false;
@@ -248,14 +255,15 @@ private:
                 meet(scene, q, shear, texel.triangle, found);
                 set_limit();
             }
-            if (before && end_depth > 0 && found.crossing.triangle == kNoTriangle) {
-                if (depth <= 0)
-                    cross(texel, s + depth / (depth - end_depth) * (end - s), join);
+            bool const behind = end_depth > 0 && texel.triangle != found.left && passed(texel.triangle, end);
+            if (before && behind && found.crossing.triangle == kNoTriangle) {
+                if (depth <= 0 || !passed(texel.triangle, s))
+                    cross(texel, depth < 0 ? s + depth / (depth - end_depth) * (end - s) : s, join);
                 else if (!enter_behind(texel, join))
                     return false;
             } else if (end_depth < -width * end_length) {
                 before = true;
-            } else if (leaving && !before && depth > join * (1 - s) && !vanish()) {
+            } else if (leaving && !before && behind && depth > join * (1 - s) && !vanish()) {
                 return false;
             }
         }
@@ -263,6 +271,17 @@ private:
         length = end_length;
         if (s >= limit) return false;
         return found.crossing.triangle == kNoTriangle || more-- > 0;
+    }
+
+    /// True if the ray at s is beyond the plane of a triangle as seen from the centre: where a surface is seen at
+    /// a small angle, this tells more than the distance at the middle of its texel.
+    GI_FN bool passed(std::uint32_t triangle, float at) const
+    {
+        Surface const& surface = scene.world.surfaces[triangle];
+        vec3 const normal = glm::cross(surface.edge1, surface.edge2);
+        float const plane = glm::dot(normal, surface.corner - scene.maps.centres[k]);
+        float const beyond = glm::dot(normal, arc.at(at)) - plane * (1 - at);
+        return plane > 0 ? beyond > 0 : beyond < 0;
     }
 
     /// A crossing at share `where`.
@@ -334,7 +353,7 @@ GI_FN inline Hit at_end(ImpostorScene const& scene, std::uint32_t k, RayQuery co
     return {texel.triangle, barycentric_at(surface, q.ray.origin + on * q.ray.direction), on};
 }
 
-GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q,
+GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q, std::uint32_t left,
                                      ImpostorSettings const& settings)
 {
     ImpostorsView const& maps = scene.maps;
@@ -343,6 +362,7 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
     if (!seen) k = nearest_impostor(maps, q.ray.origin);
     RayShear const shear(q.ray.direction);
     Walk walk;
+    walk.left = left;
     ImpostorHit found{.maps = 1};
     for (float t = 0;;) {
         MapWalk one(scene, q, shear, settings, k, seen || found.maps > 1, int(found.maps) < settings.most_maps, t,
@@ -370,15 +390,16 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
 
 } // namespace impostor_detail
 
-/// Follows a ray. @param q  of finite coordinates
-GI_FN inline ImpostorHit follow(ImpostorScene const& scene, RayQuery q, ImpostorSettings const& settings)
+/// Follows a ray. @param path  of finite coordinates
+GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& path, ImpostorSettings const& settings)
 {
     using namespace impostor_detail;
     if (scene.maps.centres.empty()) return {};
+    RayQuery q = path.ray;
     float const start = q.start;
     q.ray.origin += start * q.ray.direction;
     q.reach -= start;
-    ImpostorHit found = settings.search == ImpostorSearch::walk       ? search_walk(scene, q, settings)
+    ImpostorHit found = settings.search == ImpostorSearch::walk       ? search_walk(scene, q, path.triangle, settings)
                         : settings.search == ImpostorSearch::cascaded ? search_cascaded(scene, q, settings)
                         : settings.search == ImpostorSearch::all      ? search_all(scene, q, settings)
                                                                       : search_first_guess(scene, q, settings);
@@ -390,7 +411,7 @@ GI_FN inline ImpostorHit follow(ImpostorScene const& scene, RayQuery q, Impostor
 struct FollowByImpostors {
     ImpostorScene scene;
     ImpostorSettings settings;
-    View<RayQuery const> queries;
+    View<PathQuery const> queries;
     View<ImpostorHit> hits;
 
     GI_FN void operator()(std::size_t i) const { hits[i] = follow(scene, queries[i], settings); }

@@ -1,16 +1,10 @@
 #pragma once
 // What finds the next surface of a light path. Exact rays are one way; look-ups and distance impostors are others.
 
+#include "gi/light_paths/path_query.h"
 #include "gi/render/exact_visibility.h"
 
 namespace gi {
-
-/// A ray of a light path.
-struct PathQuery {
-    RayQuery ray;
-    std::uint32_t triangle = kNoTriangle; ///< that it leaves
-    bool any_direction = false;           ///< a direction nearby would do as well: none of a mirror or a lens
-};
 
 class PathRays {
 public:

@@ -68,33 +68,31 @@ Reached walk_on(World const& world, ExactVisibility const& visibility, std::vect
 {
     WorldView const w = view(world);
     Reached reached;
-    double sum = 0;
-    std::size_t ended = 0;
-    for (int bounce = 0; bounce < kBounces && !rays.empty(); ++bounce) {
+    std::size_t left = 0; // index of the point that the first ray left
+    for (int bounce = 0; bounce <= kBounces && !rays.empty(); ++bounce) {
         std::vector<RayQuery> queries;
         for (Ray const& r : rays) queries.push_back({.ray = r, .seed = rng.next()});
         std::vector<Hit> hits(queries.size());
         visibility.nearest(queries, hits);
         rays.clear();
+        std::size_t const points = reached.points.size();
         for (std::size_t k = 0; k < hits.size(); ++k) {
             Ray const& ray = queries[k].ray;
-            bool const met = hits[k].triangle != kNoTriangle;
             // Flights from lights afar and from cameras are no measure of the space between surfaces.
-            if (bounce > 0) reached.flights.push_back({ray.origin, ray.direction, met ? hits[k].distance : kInf});
-            if (!met) continue;
             if (bounce > 0) {
-                sum += double(hits[k].distance);
-                ++ended;
+                float const length = hits[k].triangle != kNoTriangle ? hits[k].distance : kInf;
+                reached.flights.push_back({ray.origin, ray.direction, length, reached.points[left + k].triangle});
+                reached.points[left + k].free = length;
             }
+            if (hits[k].triangle == kNoTriangle || bounce == kBounces) continue;
             ShadingPoint const at = shading_point(w, hits[k].triangle, hits[k].barycentric, ray.direction);
-            reached.points.push_back({at.position, at.geometric_normal, at.clearance});
+            reached.points.push_back({at.position, at.geometric_normal, at.clearance, hits[k].triangle});
             vec3 const next =
                 Frame::about(at.geometric_normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
             rays.push_back({leave(at, next), next});
         }
+        left = points;
     }
-    reached.mean_length = ended > 0 ? float(sum / double(ended)) : 0;
-    if (!(reached.mean_length > 0)) reached.mean_length = 0.5f * world.bounds.radius();
     return reached;
 }
 

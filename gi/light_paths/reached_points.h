@@ -12,18 +12,20 @@ namespace gi {
 struct ReachedPoint {
     vec3 position, normal; ///< m; unit, geometric, on the side that was met
     float clearance;       ///< m, see ShadingPoint
+    std::uint32_t triangle;
+    float free = kInf;     ///< m; length of the flight that left it, kInf = into the open
 };
 
 /// Free flight between two surfaces.
 struct Flight {
     vec3 from, direction; ///< m; unit
     float length;         ///< m; kInf = into the open
+    std::uint32_t leaves; ///< triangle
 };
 
 struct Reached {
     std::vector<ReachedPoint> points;
-    std::vector<Flight> flights; ///< cosine-distributed, from the points
-    float mean_length = 0;       ///< of flights that ended at a surface, m; half the world's radius if none did
+    std::vector<Flight> flights; ///< cosine-distributed, one from each point
 };
 
 /// @param walks  from lights, and as many from cameras  @param seed  the same points for the same one

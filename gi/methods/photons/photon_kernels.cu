@@ -3,6 +3,7 @@
 #include "gi/methods/photons/light_propagation.h"
 #include "gi/methods/photons/photon_cell_kernels.h"
 #include "gi/methods/photons/propagation_kernels.h"
+#include "gi/methods/photons/screen_volume_kernels.h"
 #include "gi/methods/photons/splat_kernels.h"
 
 namespace gi {
@@ -12,6 +13,10 @@ template void launch_device(char const*, std::size_t, SumItems<ReflectedLight, S
 template void launch_device(char const*, std::size_t, FindPhotonCells const&);
 template void launch_device(char const*, std::size_t, SumItems<LatticePhoton, PhotonCell> const&);
 template void launch_device(char const*, std::size_t, SmoothCells<PhotonCell> const&);
+template void launch_device(char const*, std::size_t, FindScreenSurfaces const&);
+template void launch_device(char const*, std::size_t, FindPhotonPixels const&);
+template void launch_device(char const*, std::size_t, SumItems<ScreenPhoton, ShColor> const&);
+template void launch_device(char const*, std::size_t, GatherScreen const&);
 template void launch_device(char const*, std::size_t, ScaleFaces const&);
 template void launch_device(char const*, std::size_t, OpenFaces const&);
 template void launch_device(char const*, std::size_t, Propagate const&);
