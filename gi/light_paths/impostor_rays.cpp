@@ -21,7 +21,7 @@ ImpostorScene ImpostorRays::scene() const
 void ImpostorRays::nearest(std::span<PathQuery> queries, std::span<Hit> hits) const
 {
     ImpostorScene const s = scene();
-    for (std::size_t k = 0; k < queries.size(); ++k) hits[k] = gi::follow(s, queries[k].ray, settings_).hit;
+    for (std::size_t k = 0; k < queries.size(); ++k) hits[k] = gi::follow(s, queries[k], settings_).hit;
 }
 
 void ImpostorRays::follow(std::span<PathQuery const> queries, std::span<ImpostorHit> hits) const

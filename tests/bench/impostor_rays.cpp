@@ -51,12 +51,9 @@ constexpr std::size_t kTogether = 64;
 
 void by_groups(PathRays const& by, std::span<PathQuery> rays, std::span<Hit> hits)
 {
-    std::vector<PathQuery> queries;
     for (std::size_t first = 0; first < rays.size(); first += kTogether) {
         std::size_t const n = std::min(kTogether, rays.size() - first);
-        queries.clear();
-        for (RayQuery const& r : rays.subspan(first, n)) queries.push_back({r});
-        by.nearest(queries, hits.subspan(first, n));
+        by.nearest(rays.subspan(first, n), hits.subspan(first, n));
     }
 }
 
