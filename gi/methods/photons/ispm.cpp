@@ -1,3 +1,4 @@
+#include "gi/light_paths/kernel_cover.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/photons/photon_renderer.h"
 #include "gi/methods/photons/splat.h"
@@ -111,6 +112,9 @@ protected:
         kernels_.clear();
         for (std::uint32_t i = 0; i < photons_.size(); ++i)
             kernels_.push_back({photons_[i].position, shrunk_ * sizes.radius(i), photons_[i].normal, i});
+        std::vector<float> const shares =
+            covered_shares(view(world_), set.visibility, photons_, kernels_, set.stop, set.counts);
+        for (std::size_t i = 0; i < photons_.size(); ++i) photons_[i].flux /= shares[i];
         map_ = PhotonMap(photons_, sizes, shrunk_);
     }
     SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) override
