@@ -1,8 +1,6 @@
 #include "gi/light_paths/bounce_map.h"
 
-#include "gi/core/rng.h"
 #include "gi/raster/draw_nearest.h"
-#include "gi/render/coverage_test.h"
 
 #include <algorithm>
 #include <tbb/parallel_for.h>
@@ -10,26 +8,14 @@
 namespace gi {
 namespace {
 
-/// Keeps what covers a texel; partial coverage is a random decision.
-struct KeepCovered {
-    WorldView world;
-    std::uint32_t seed;
-
-    template <class Grid>
-    GI_FN bool operator()(Grid const& grid, std::uint32_t triangle, std::uint32_t texel, float depth) const
-    {
-        vec3 const at = grid.point(texel % grid.width, texel / grid.width, depth);
-        return covers(world, triangle, barycentric_at(world.surfaces[triangle], at), seed ^ texel * 0x9e3779b9u);
-    }
-};
-
 template <class Grid>
 std::vector<NearestTexel> draw(WorldView const& world, TriangleSoup const& soup, Grid const& grid,
-                               bool alpha_tests, std::uint32_t seed)
+                               CutOuts const& cut_outs, std::uint32_t seed)
 {
     SoupView const triangles = view(soup);
-    return download(alpha_tests ? draw_nearest<Space::host>(triangles, grid, KeepCovered{world, seed})
-                                : draw_nearest<Space::host>(triangles, grid));
+    return download(cut_outs.none()
+                        ? draw_nearest<Space::host>(triangles, grid)
+                        : draw_nearest<Space::host>(triangles, grid, KeepUncut{world, cut_outs.marked(), seed}));
 }
 
 /// The six faces of a cube around a point, without those that only light's dark side sees.
@@ -123,21 +109,20 @@ std::vector<LightView> light_views(WorldView const& world, Bounds const& bounds,
 }
 
 std::vector<NearestTexel> draw_light_view(WorldView const& world, TriangleSoup const& soup, LightView const& v,
-                                          bool alpha_tests, std::uint32_t seed)
+                                          CutOuts const& cut_outs, std::uint32_t seed)
 {
-    return v.parallel ? draw(world, soup, v.grid, alpha_tests, seed)
-                      : draw(world, soup, v.face, alpha_tests, seed);
+    return v.parallel ? draw(world, soup, v.grid, cut_outs, seed) : draw(world, soup, v.face, cut_outs, seed);
 }
 
 std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
-                                           bool alpha_tests, PathRays const& rays, LightPaths const& s,
+                                           CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s,
                                            PathCounts& counts)
 {
     std::vector<LightVertex> all;
     if (s.bounces < 1) return all;
     for (LightView const& v : light_views(world, bounds, s)) {
         if (s.stop != nullptr && s.stop->given_up()) throw Interrupted();
-        std::vector<NearestTexel> const seen = draw_light_view(world, soup, v, alpha_tests, s.pass ^ v.first);
+        std::vector<NearestTexel> const seen = draw_light_view(world, soup, v, cut_outs, s.pass ^ v.first);
         std::size_t const n = seen.size();
         std::vector<BounceTexel> texels(n);
         std::vector<LightPath> paths(n);

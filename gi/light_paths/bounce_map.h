@@ -8,7 +8,7 @@
 
 #include "gi/light_paths/light_path_step.h"
 #include "gi/light_paths/light_paths.h"
-#include "gi/raster/nearest_map.h"
+#include "gi/raster/cut_outs.h"
 
 namespace gi {
 
@@ -141,10 +141,10 @@ std::vector<LightView> light_views(WorldView const& world, Bounds const& bounds,
                                    int views = 32);
 /// What is seen in a view. @param soup  of the world
 std::vector<NearestTexel> draw_light_view(WorldView const& world, TriangleSoup const& soup, LightView const& view,
-                                          bool alpha_tests, std::uint32_t seed);
+                                          CutOuts const& cut_outs, std::uint32_t seed);
 /// As trace_light_paths(), with first surfaces from bounce maps: the vertices of a whole set.
 std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
-                                           bool alpha_tests, PathRays const& rays, LightPaths const& s,
+                                           CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s,
                                            PathCounts& counts);
 
 } // namespace gi

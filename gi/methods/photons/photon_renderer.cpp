@@ -3,7 +3,6 @@
 #include "gi/light_paths/bounce_map.h"
 #include "gi/light_paths/options.h"
 #include "gi/methods/photons/look_up_rays.h"
-#include "gi/scene/model/plan.h"
 
 #include <algorithm>
 
@@ -102,8 +101,7 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
                                   .pass = *first_index_ + sets_,
                                   .stop = &stop};
             std::vector<LightVertex> const vertices =
-                by_map ? trace_bounce_maps(view(world_), world_.bounds, *soup_, plan_scene(world_).alpha_tests,
-                                           rays, some, counts)
+                by_map ? trace_bounce_maps(view(world_), world_.bounds, *soup_, CutOuts(world_), rays, some, counts)
                        : trace_light_paths(view(world_), world_.bounds, rays, some, counts);
             for (LightVertex const& v : vertices)
                 if (stores(v)) photons.push_back(to_photon(v));
