@@ -37,6 +37,10 @@ constexpr std::array kMethods{
            render_sh_grid, start_sh_grid_frames, sh_grid_options},
     Method{"ispm", "ray trees, with indirect light from photons splatted in image space", render_ispm,
            start_ispm_frames},
+    Method{"lpv", "ray trees, with indirect light that propagates through a lattice", render_lpv,
+           start_lpv_frames},
+    Method{"isllpm", "ray trees, with indirect light from photons in lattices", render_isllpm,
+           start_isllpm_frames},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),

@@ -126,6 +126,10 @@ enum class PhotonRays : std::uint8_t { exact, look_ups, impostors };
 enum class FirstBounce : std::uint8_t { rays, map };
 /// What the size of photons' kernels follows.
 enum class KernelBy : std::uint8_t { density, footprint };
+/// How flux through a face of a cell becomes light of the cell behind it, see propagation_kernels.h.
+enum class Reprojection : std::uint8_t { beams, cosine_lobes };
+/// How irradiance follows from photons in a cell, see photon_lattice.h.
+enum class IrradianceBy : std::uint8_t { normals, directions };
 
 /// Settings of light paths and photons: sh_grid and the methods of gi/methods/photons.
 struct PhotonSettings {
@@ -138,7 +142,15 @@ struct PhotonSettings {
     FirstBounce first_bounce = FirstBounce::rays;
     Switch frozen = Switch::off; ///< light is computed once and kept, whatever changes
     KernelBy kernel_by = KernelBy::density;
-    float kernel_size = 1; ///< factor of kernels' radii
+    float kernel_size = 1;        ///< factor of kernels' radii
+    int propagation_cells = 32;   ///< of each lattice of lpv, along the scene's longest side
+    int propagation_cascades = 3; ///< nested lattices of lpv
+    int propagation_steps = 0;    ///< from cell to cell; 0 = twice the cells
+    Reprojection reprojection = Reprojection::beams;
+    int low_cells = 16, middle_cells = 32, high_cells = 128; ///< of the lattices of isllpm
+    int lattice_cascades = 1;                                ///< nested ones of each of them
+    Switch lattice_smoothing = Switch::on;                   ///< of the low and the middle one
+    IrradianceBy irradiance_by = IrradianceBy::normals;
 };
 
 /// Settings of the method sh_grid, see gi/methods/sh_grid.

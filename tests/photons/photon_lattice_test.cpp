@@ -217,7 +217,8 @@ TEST(PhotonLattices, PhotonsByFrequency)
         EXPECT_NEAR(light.injected_w(), c.found < 0 ? 0 : 3, 1e-5);
         EXPECT_EQ(light.irradiance(v.position, {0, -1, 0}), vec3{0}); // the other side
         if (c.found >= 0) {
-            EXPECT_GT(light.radiance(v.position, {0, 1, 0}).x, light.radiance(v.position, {1, 0, 0}).x);
+            Frequency const f = Frequency(c.found);
+            EXPECT_GT(light.radiance(f, v.position, {0, 1, 0}).x, light.radiance(f, v.position, {1, 0, 0}).x);
         }
     }
 }

@@ -136,6 +136,7 @@ void PhotonLattices::update_caustics(std::span<Photon const> photons)
     std::vector<Photon const*> caustics;
     for (Photon const& p : photons)
         if (p.scatterings == 0 && p.by_delta && all_finite(p.flux)) caustics.push_back(&p);
+    if (!caustics.empty()) exposed_.add(photons, sky_shines_);
     inject(Frequency::high, caustics);
 }
 
@@ -156,21 +157,14 @@ vec3 PhotonLattices::irradiance(Frequency of, vec3 position, vec3 normal) const
     return sum;
 }
 
-vec3 PhotonLattices::irradiance(vec3 position, vec3 normal) const
-{
-    return irradiance(Frequency::low, position, normal) + irradiance(Frequency::middle, position, normal) +
-           irradiance(Frequency::high, position, normal);
-}
-
-vec3 PhotonLattices::radiance(vec3 position, vec3 direction) const
+vec3 PhotonLattices::radiance(Frequency of, vec3 position, vec3 direction) const
 {
     vec3 sum{0};
-    for (std::vector<Level> const& levels : levels_)
-        for_grids_at(levels, position, [&](std::size_t k, float weight) {
-            PhotonCell const cell = trilinear<PhotonCell>(levels[k].cells.view(), position);
-            if (cell.area.x > 0)
-                sum += weight * glm::max(evaluate(cell.arrived, direction) / cell.area.x, vec3{0});
-        });
+    std::vector<Level> const& levels = levels_[std::size_t(of)];
+    for_grids_at(levels, position, [&](std::size_t k, float weight) {
+        PhotonCell const cell = trilinear<PhotonCell>(levels[k].cells.view(), position);
+        if (cell.area.x > 0) sum += weight * glm::max(evaluate(cell.arrived, direction) / cell.area.x, vec3{0});
+    });
     return sum;
 }
 

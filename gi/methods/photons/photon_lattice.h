@@ -22,12 +22,12 @@
 
 #include "gi/methods/photons/exposed_sides.h"
 #include "gi/methods/photons/sh_lattice.h"
+#include "gi/render/render_settings.h"
 
 #include <array>
 
 namespace gi {
 
-enum class IrradianceBy : std::uint8_t { normals, directions };
 enum class Frequency : std::uint8_t { low, middle, high };
 
 struct PhotonLatticeSettings {
@@ -102,11 +102,19 @@ public:
     /// update().
     void update_caustics(std::span<Photon const> photons);
 
-    /// Of light of one and more scatterings and of caustics, W/m^2. @param normal  unit, on the side asked for
-    vec3 irradiance(vec3 position, vec3 normal) const;
+    /// Of a lattice, W/m^2. @param normal  unit, on the side asked for
     vec3 irradiance(Frequency of, vec3 position, vec3 normal) const;
     /// Radiance that comes from a direction. @param direction  unit
-    vec3 radiance(vec3 position, vec3 direction) const;
+    vec3 radiance(Frequency of, vec3 position, vec3 direction) const;
+    /// Of light of one and more scatterings, not of caustics.
+    vec3 irradiance(vec3 position, vec3 normal) const
+    {
+        return irradiance(Frequency::low, position, normal) + irradiance(Frequency::middle, position, normal);
+    }
+    vec3 radiance(vec3 position, vec3 direction) const
+    {
+        return radiance(Frequency::low, position, direction) + radiance(Frequency::middle, position, direction);
+    }
 
     struct Level {
         GridFrame frame;

@@ -9,6 +9,7 @@
 // keeps each channel's flux.
 
 #include "gi/methods/photons/sh_lattice.h"
+#include "gi/render/render_settings.h"
 
 namespace gi {
 
@@ -76,14 +77,12 @@ struct OpenFaces {
     }
 };
 
-/// How the flux through a face becomes light of the cell behind it:
+/// Adds flux through a face to the cell behind it:
 ///   beams         one along the mean way from the neighbour's centre to the face, so that light keeps its
 ///                 direction as far as four coefficients can
 ///   cosine_lobes  a clamped cosine about the face's normal (Kaplanyan and Dachsbacher): light forgets its
 ///                 direction within a few steps, and much of it turns back
-enum class Reprojection : std::uint8_t { beams, cosine_lobes };
-
-/// Adds flux through a face to the cell behind it. @param side  see face_flux()
+/// @param side  see face_flux()
 GI_FN inline void add_through_face(Reprojection by, vec3 flux, int axis, float sign, int side, ShColor& to)
 {
     int const across = (axis + 1 + side / 2) % 3;

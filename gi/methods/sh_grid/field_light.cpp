@@ -3,6 +3,7 @@
 #include "gi/methods/sh_grid/field_glyphs.h"
 #include "gi/methods/slhb/directions/direction_map.h"
 #include "gi/methods/whitted/caustic_light.h"
+#include "gi/methods/whitted/lobe_light.h"
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
@@ -136,13 +137,8 @@ void FieldLight::find_cells(vec3 position, vec3 normal, std::vector<NearCell>& o
 vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
 {
     ShadingPoint const& at = point.at;
-    Bsdf const& b = at.bsdf;
     vec3 out{0};
-    if (max_component(b.diffuse) > 0) {
-        float through =
-            b.model == MaterialModel::metal_rough
-                ? bsdf_detail::through_coat(b, point.wo.z, 1 / 1.5f) // the coat's mean angle of incidence
-                : 1.0f;
+    if (max_component(at.bsdf.diffuse) > 0) {
         vec3 arriving{0};
         if (settings_.gather_directions == 0) {
             arriving = field_irradiance(cell, degree_, at.frame.normal);
@@ -157,26 +153,12 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
         if (settings_.obscurance_m > 0) {
             float y[FieldCell::kMost];
             spherical_harmonics(at.frame.normal, degree_, y);
-            through *= glm::clamp(series(cell.distance, y, coefficients_) / settings_.obscurance_m, 0.0f, 1.0f);
+            arriving *= glm::clamp(series(cell.distance, y, coefficients_) / settings_.obscurance_m, 0.0f, 1.0f);
         }
-        out += through * b.diffuse * kInvPi * arriving;
+        out += diffuse_response(point) * arriving;
     }
-    bool const glossy = b.model == MaterialModel::phong ? max_component(b.phong_specular) > 0
-                                                        : b.f90.x > 0 && !bsdf_detail::specular_is_delta(b);
-    if (!glossy || point.glossy_traced) return out;
     int const n = point.direct ? settings_.glossy_directions : std::max(1, settings_.glossy_directions / 8);
-    Bsdf const lobe = glossy_lobe(b);
-    vec3 sum{0};
-    vec2 const shift = point.rng.uniform2();
-    for (int k = 0; k < n; ++k) {
-        vec2 const u = glm::fract(shift + float(k) * vec2{1 / float(n), 0.61803399f}); // a lattice
-        vec3 const wi = bsdf_detail::sample_specular(b, point.wo, u);
-        if (!(wi.z > 0)) continue;
-        BsdfValue const value = evaluate(lobe, point.wo, wi);
-        if (value.pdf > 0)
-            sum += value.f * (wi.z / value.pdf) * field_radiance(cell, degree_, at.frame.to_world(wi));
-    }
-    return out + sum / float(n);
+    return out + glossy_radiance(point, n, [&](vec3 wi) { return field_radiance(cell, degree_, wi); });
 }
 
 void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const

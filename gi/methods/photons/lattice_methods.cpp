@@ -1,0 +1,178 @@
+// The methods lpv and isllpm: what their lattices send from the points of ray trees.
+
+#include "gi/core/error.h"
+#include "gi/methods/photons/light_propagation.h"
+#include "gi/methods/photons/methods.h"
+#include "gi/methods/photons/photon_lattice.h"
+#include "gi/methods/photons/photon_renderer.h"
+#include "gi/methods/whitted/lobe_light.h"
+
+#include <fmt/format.h>
+
+namespace gi {
+namespace {
+
+constexpr std::uint64_t kMostLatticeBytes = std::uint64_t(8) << 30;
+
+void check_lattice_bytes(std::uint64_t bytes)
+{
+    if (bytes > kMostLatticeBytes)
+        throw InputError(fmt::format("lattices of {:.1f} GiB", double(bytes) / double(1 << 30)),
+                         fmt::format("at most {} GiB are supported", kMostLatticeBytes >> 30),
+                         "choose fewer cells");
+}
+
+int glossy_directions(TreePoint const& p) { return p.direct ? 8 : 1; }
+
+/// Of a lattice with irradiance(position, normal) and radiance(position, direction).
+template <class Lattice>
+class LatticeLight : public SurfaceLight {
+public:
+    explicit LatticeLight(Lattice const& lattice) : lattice_(lattice) {}
+    void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts&) const override
+    {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            TreePoint& p = points[i];
+            out[i] = vec3{0};
+            if (!(p.wo.z > 0)) continue;
+            if constexpr (std::is_same_v<Lattice, PhotonLattices>)
+                layer_of(*p.sample, p.scatterings + 1) += p.throughput * caustics(p);
+            if (max_component(p.at.bsdf.diffuse) > 0)
+                out[i] = diffuse_response(p) * lattice_.irradiance(p.at.position, p.at.frame.normal);
+            out[i] += glossy_radiance(p, glossy_directions(p),
+                                      [&](vec3 wi) { return lattice_.radiance(p.at.position, wi); });
+        }
+    }
+
+private:
+    vec3 caustics(TreePoint& p) const
+    {
+        vec3 const from = p.at.position;
+        vec3 const diffuse = diffuse_response(p) * lattice_.irradiance(Frequency::high, from, p.at.frame.normal);
+        return diffuse + glossy_radiance(p, glossy_directions(p),
+                                         [&](vec3 wi) { return lattice_.radiance(Frequency::high, from, wi); });
+    }
+
+    Lattice const& lattice_;
+};
+
+vec3 camera_of(std::span<FrameView const> views, World const& world)
+{
+    return views.empty() ? world.bounds.center()
+                         : vec3(dvec3(views[0].camera.world_from_camera[3]) - world.origin);
+}
+
+class PropagationRenderer : public PhotonRenderer {
+public:
+    PropagationRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
+                        Report& report, StopRequest const* stop)
+        : PhotonRenderer(world, settings, first_moving, report, stop),
+          of_propagation_{.cells = settings.photons.propagation_cells,
+                          .cascades = settings.photons.propagation_cascades,
+                          .steps = settings.photons.propagation_steps,
+                          .by = settings.photons.reprojection},
+          propagation_(of_propagation_),
+          light_(propagation_)
+    {
+        check_lattice_bytes(LightPropagation::bytes(of_propagation_, world.bounds));
+    }
+
+protected:
+    bool stores(LightVertex const&) const override { return true; }
+    bool has_caustics() const override { return false; }
+    int bounces() const override { return PhotonRenderer::bounces() - 1; } // the last is the lattice's
+    std::string_view timer_name() const override { return "light propagation"; }
+    void take(PhotonSet const& set) override
+    {
+        propagation_.update(world_, set.surfaces_changed ? Geometry::changed : Geometry::same, set.photons,
+                            camera_of(set.views, world_), set.stop);
+    }
+    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const*) override { return &light_; }
+    void report_light(Report& report) override
+    {
+        report.count("lattices, MiB", double(LightPropagation::bytes(of_propagation_, world_.bounds)) / (1 << 20));
+        if (!propagation_.levels().empty())
+            report.count("finest cells, m", double(propagation_.levels().front().frame.cell));
+    }
+
+private:
+    PropagationSettings of_propagation_;
+    LightPropagation propagation_;
+    LatticeLight<LightPropagation> light_;
+};
+
+class LatticeRenderer : public PhotonRenderer {
+public:
+    LatticeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
+                    StopRequest const* stop)
+        : PhotonRenderer(world, settings, first_moving, report, stop),
+          of_lattices_{
+              .cells = {settings.photons.low_cells, settings.photons.middle_cells, settings.photons.high_cells},
+              .smooth = {settings.photons.lattice_smoothing == Switch::on,
+                         settings.photons.lattice_smoothing == Switch::on, false},
+              .cascades = settings.photons.lattice_cascades,
+              .by = settings.photons.irradiance_by},
+          lattices_(of_lattices_),
+          light_(lattices_)
+    {
+        check_lattice_bytes(PhotonLattices::bytes(of_lattices_, world.bounds, surface_area(world)));
+    }
+
+protected:
+    bool stores(LightVertex const&) const override { return true; } // all tell what light reaches
+    std::string_view timer_name() const override { return "light lattices"; }
+    void take(PhotonSet const& set) override
+    {
+        if (set.surfaces_changed || (set.number == 0 && of_lattices_.cascades > 1))
+            lattices_.place(world_, set.visibility, camera_of(set.views, world_), set.stop);
+        lattices_.update(set.photons);
+    }
+    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const* caustics) override
+    {
+        lattices_.update_caustics(caustics != nullptr ? caustic_photons() : std::span<Photon const>{});
+        return &light_;
+    }
+    void report_light(Report& report) override
+    {
+        std::size_t cells = 0;
+        for (Frequency const f : {Frequency::low, Frequency::middle, Frequency::high})
+            for (PhotonLattices::Level const& level : lattices_.levels(f)) cells += level.cells.values.size();
+        report.count("cells with surfaces", double(cells));
+        report.count("hidden area of surfaces, m^2", lattices_.hidden_m2());
+        report.count("flux of photons in no cell, W (sum of channels)", lattices_.lost_w());
+    }
+
+private:
+    PhotonLatticeSettings of_lattices_;
+    PhotonLattices lattices_;
+    LatticeLight<PhotonLattices> light_;
+};
+
+} // namespace
+
+RenderResult render_lpv(World const& world, Camera const& camera, RenderSettings const& settings,
+                        StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_passes("lpv", start_passes<PropagationRenderer>, world, camera, settings, stop, progress,
+                         report);
+}
+
+std::unique_ptr<FrameRenderer> start_lpv_frames(MovingWorld const& world, Camera const&,
+                                                RenderSettings const& settings, Report& report)
+{
+    return start_pass_frames(start_passes<PropagationRenderer>, world, settings, report);
+}
+
+RenderResult render_isllpm(World const& world, Camera const& camera, RenderSettings const& settings,
+                           StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_passes("isllpm", start_passes<LatticeRenderer>, world, camera, settings, stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_isllpm_frames(MovingWorld const& world, Camera const&,
+                                                   RenderSettings const& settings, Report& report)
+{
+    return start_pass_frames(start_passes<LatticeRenderer>, world, settings, report);
+}
+
+} // namespace gi
