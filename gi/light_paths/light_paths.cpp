@@ -1,13 +1,11 @@
 #include "gi/light_paths/light_paths.h"
 
-#include "gi/core/rng.h"
-#include "gi/light_paths/emission.h"
+#include "gi/light_paths/light_path_step.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
 #include <tbb/parallel_for.h>
-#include <utility>
 
 namespace gi {
 namespace {
@@ -15,107 +13,26 @@ namespace {
 /// Number of paths that advance together, so that rays are traced in packets.
 constexpr std::uint32_t kPathsTogether = 64;
 
-struct LightPath {
-    Pcg32 rng{0, 0};
-    EmittedLight light;
-    int scatterings = 0;      ///< non-delta, so far
-    std::uint32_t number = 0; ///< see LightVertex::path
-    bool from_light = true, from_surface = false;
-    bool from_outside = false, straight = true; ///< see LightPaths::grid_side
-    bool by_delta = false;                      ///< since the last vertex
-    float paths = 1;                            ///< of this kind that are expected to come so far
-    float area = 0, solid_angle = 0;            ///< over which one of them is spread where it left, m^2, sr
-    float length = 0;                           ///< since then, m
-    std::vector<LightVertex> left;              ///< left along the path
+/// A path and what it has left.
+struct TracedPath : LightPath {
+    std::vector<LightVertex> left;
 };
 
-/// Chooses one of the delta lobes by how much each reflects or transmits.
-BsdfSample sample_delta_lobe(ShadingPoint const& at, vec3 arrived, float u)
-{
-    BsdfSample lobes[3];
-    int const n = delta_lobes(at.bsdf, arrived, at.front, lobes);
-    float sum = 0;
-    for (int k = 0; k < n; ++k) sum += max_component(lobes[k].weight);
-    float left = u * sum;
-    for (int k = 0; k < n; ++k) {
-        float const share = max_component(lobes[k].weight);
-        if (left < share) {
-            lobes[k].weight *= sum / share;
-            return lobes[k];
-        }
-        left -= share;
-    }
-    return {};
-}
-
 /// Advances from a hit to the next ray. Returns false if the path ends.
-bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit const& hit)
+bool advance(WorldView const& world, LightPaths const& s, TracedPath& p, Hit const& hit)
 {
-    if (hit.triangle == kNoTriangle) return false;
-    vec3 const direction = p.light.ray.direction;
-    ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, direction);
-    if (p.from_light && p.light.range > 0) {
-        Light window;
-        window.range = p.light.range;
-        p.light.power *= light_detail::distance_attenuation(window, hit.distance) * square(hit.distance);
-    }
-    p.from_light = false;
-    vec3 const arrived = at.frame.to_local(-direction);
-    float const cos_arrived = std::abs(glm::dot(direction, at.geometric_normal));
-    if (!(arrived.z > 0) || !(cos_arrived > 0)) return false;
-    vec3 const power = p.light.power * (arrived.z / cos_arrived);
-    if (!all_finite(power) || !(max_component(power) > 0)) return false;
-    p.length += hit.distance;
-    float const footprint = (p.area + p.solid_angle * square(p.length)) / cos_arrived;
-    bool const starts = std::exchange(p.from_surface, false);
-    if (!only_delta(at.bsdf) && !(starts && s.delta_only)) {
-        if (s.grid_side) {
-            GridSide const side = s.grid_side(at.position, hit.triangle);
-            if (p.from_outside && p.straight && side == GridSide::inside_still) return false;
-            p.from_outside = side == GridSide::outside;
-        }
-        p.left.push_back({.position = at.position,
-                          .normal = at.geometric_normal,
-                          .triangle = hit.triangle,
-                          .clearance = at.clearance,
-                          .front = at.front,
-                          .power = power,
-                          .bsdf = at.bsdf,
-                          .frame = at.frame,
-                          .arrived = arrived,
-                          .matt = bsdf_detail::is_matt(at.bsdf),
-                          .by_delta = p.by_delta,
-                          .scatterings = p.scatterings,
-                          .footprint = footprint,
-                          .path = p.number});
-    }
-    float const u_lobe = p.rng.uniform();
-    BsdfSample const next = s.delta_only ? sample_delta_lobe(at, arrived, u_lobe)
-                                         : sample(at.bsdf, arrived, at.front, u_lobe, p.rng.uniform2());
-    p.straight = !next.delta;
-    if (!next.delta && ++p.scatterings >= s.bounces) return false;
-    vec3 const leaves = at.frame.to_world(next.wi);
-    float const cos_leaves = glm::dot(leaves, at.geometric_normal);
-    if ((cos_leaves > 0) != (next.wi.z > 0) || next.wi.z == 0) return false;
-    // The sampled weight is that of a camera path: it contains the cosine with the shading normal on this side.
-    vec3 weight = next.weight * std::abs(cos_leaves / next.wi.z);
-    // Refraction scales radiance, but not power.
-    if (next.transmitted && !at.bsdf.thin) weight *= square(at.front ? at.bsdf.ior : 1 / at.bsdf.ior);
-    float const survival = std::min(1.0f, max_component(weight));
-    if (!(survival > 0) || p.rng.uniform() >= survival) return false;
-    p.light.power = power * weight / survival;
-    p.by_delta = next.delta;
-    p.paths *= survival;
-    if (next.delta) {
-        p.area /= survival;
-        p.solid_angle /= survival;
-    } else {
-        p.area = footprint / survival;
-        p.solid_angle = 1 / (next.pdf * p.paths);
-        p.length = 0;
-    }
-    p.light.ray = {leave(at, leaves), leaves};
-    return true;
+    auto const keep = [&](vec3 position, std::uint32_t triangle) {
+        if (!s.grid_side) return true;
+        GridSide const side = s.grid_side(position, triangle);
+        if (p.from_outside && p.straight && side == GridSide::inside_still) return false;
+        p.from_outside = side == GridSide::outside;
+        return true;
+    };
+    LightVertex vertex;
+    bool has_vertex = false;
+    bool const goes_on = advance(world, {s.bounces, s.delta_only}, p, hit, keep, vertex, has_vertex);
+    if (has_vertex) p.left.push_back(vertex);
+    return goes_on;
 }
 
 /// Sends a ray from the sky, or of a parallel light, through the sphere around the focus, or lets it pass beside.
@@ -137,13 +54,13 @@ void focus_light(LightPaths const& s, Bounds const& bounds, bool through, vec2 p
     light.power *= square(radius / (1.001f * bounds.radius()));
 }
 
-void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, std::vector<LightPath>& paths,
+void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, std::vector<TracedPath>& paths,
            PathCounts& counts)
 {
-    std::vector<LightPath*> active;
-    for (LightPath& p : paths)
+    std::vector<TracedPath*> active;
+    for (TracedPath& p : paths)
         if (max_component(p.light.power) > 0) active.push_back(&p);
-    std::vector<RayQuery> queries;
+    std::vector<PathQuery> queries;
     std::vector<Hit> hits;
     for (int surface = 0; !active.empty(); ++surface) {
         if (surface == kLongestPath) {
@@ -151,11 +68,15 @@ void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, st
             return;
         }
         queries.clear();
-        for (LightPath* p : active) queries.push_back({.ray = p->light.ray, .seed = p->rng.next()});
+        for (TracedPath* p : active)
+            queries.push_back({{.ray = p->light.ray, .seed = p->rng.next()},
+                               p->triangle,
+                               p->triangle != kNoTriangle && !p->by_delta});
         hits.resize(active.size());
         rays.nearest(queries, hits);
         counts.nearest_rays += active.size();
         std::size_t left = 0;
+        for (std::size_t k = 0; k < active.size(); ++k) active[k]->light.ray = queries[k].ray.ray;
         for (std::size_t k = 0; k < active.size(); ++k)
             if (advance(world, s, *active[k], hits[k])) active[left++] = active[k];
         active.resize(left);
@@ -176,10 +97,10 @@ std::vector<LightVertex> trace_blocks(WorldView const& world, PathRays const& ra
         FlushDenormals const guard;
         if (s.stop != nullptr && s.stop->given_up()) throw Interrupted();
         std::uint32_t const begin = first + block * kPathsTogether, last = std::min(end, begin + kPathsTogether);
-        std::vector<LightPath> paths(last - begin);
+        std::vector<TracedPath> paths(last - begin);
         for (std::uint32_t i = begin; i < last; ++i) start(i, paths[i - begin]);
         trace(world, rays, s, paths, of_block[block]);
-        for (LightPath const& p : paths) found[block].insert(found[block].end(), p.left.begin(), p.left.end());
+        for (TracedPath const& p : paths) found[block].insert(found[block].end(), p.left.begin(), p.left.end());
     });
     std::vector<LightVertex> all;
     for (std::uint32_t b = 0; b < blocks; ++b) {
@@ -195,24 +116,20 @@ std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const&
                                            LightPaths const& s, PathCounts& counts)
 {
     if (s.bounces < 1 || world.light_select.empty()) return {};
-    return trace_blocks(world, rays, s, s.first, std::min(s.count, s.last), counts,
-                        [&](std::uint32_t i, LightPath& p) {
-                            p.number = i;
-                            p.rng = Pcg32::for_path(s.seed ^ 0x7619, i, s.pass);
-                            // Stratified over the lights, so that every light gets its share of the paths in each
-                            // pass.
-                            double const u = (double(i) + p.rng.uniform_double()) / double(s.count);
-                            LightChoice const choice = choose_light(world, u);
-                            vec2 const place = p.rng.uniform2(), direction = p.rng.uniform2();
-                            p.light = emit_light(world, choice, bounds, place, direction, p.rng.uniform());
-                            p.light.power /= float(s.count);
-                            p.paths = float(s.count) * world.light_select.probability(choice.light);
-                            p.area = p.light.area / p.paths;
-                            p.solid_angle = p.light.solid_angle / p.paths;
-                            p.from_outside = comes_from_afar(world, choice);
-                            if (!s.focus.empty() && p.from_outside)
-                                focus_light(s, bounds, p.rng.uniform() < 0.5f, place, p.light);
-                        });
+    return trace_blocks(
+        world, rays, s, s.first, std::min(s.count, s.last), counts, [&](std::uint32_t i, TracedPath& p) {
+            LightChoice const choice = start_at_light(world, bounds, {s.count, s.seed, s.pass}, i, p);
+            p.from_outside = comes_from_afar(world, choice);
+            if (!s.focus.empty() && p.from_outside)
+                focus_light(s, bounds, p.rng.uniform() < 0.5f, p.place, p.light);
+        });
+}
+
+std::vector<LightVertex> trace_onwards(WorldView const& world, PathRays const& rays,
+                                       std::span<LightPath const> paths, LightPaths const& s, PathCounts& counts)
+{
+    return trace_blocks(world, rays, s, 0, std::uint32_t(paths.size()), counts,
+                        [&](std::uint32_t i, TracedPath& p) { static_cast<LightPath&>(p) = paths[i]; });
 }
 
 std::vector<LightVertex> trace_from_surfaces(WorldView const& world, PathRays const& rays,
@@ -221,7 +138,7 @@ std::vector<LightVertex> trace_from_surfaces(WorldView const& world, PathRays co
 {
     if (s.bounces < 1) return {};
     return trace_blocks(world, rays, s, 0, std::uint32_t(starts.size()), counts,
-                        [&](std::uint32_t i, LightPath& p) {
+                        [&](std::uint32_t i, TracedPath& p) {
                             LightStart const& start = starts[i];
                             p.number = i;
                             p.from_surface = true;

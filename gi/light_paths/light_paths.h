@@ -2,6 +2,7 @@
 // Light paths: from the lights over surfaces, as in photon mapping (Jensen 1996). Their vertices are what photon
 // methods store and what scatters as virtual point lights (Keller 1997).
 
+#include "gi/light_paths/light_path_step.h"
 #include "gi/light_paths/path_rays.h"
 #include "gi/render/path_sample.h"
 #include "gi/scene/shading/shading_point.h"
@@ -10,27 +11,6 @@
 #include <vector>
 
 namespace gi {
-
-/// A surface point that light has reached.
-struct LightVertex {
-    vec3 position; ///< m
-    vec3 normal;   ///< geometric, unit, on the lit side, the only side from which light leaves
-    std::uint32_t triangle;
-    float clearance; ///< m, see ShadingPoint
-    bool front;      ///< the lit side is the counter-clockwise one
-    vec3 power;      ///< power that arrived by this light path, W; includes the correction for shading normals of
-                     ///< light travelling from the lights (Veach 1997, eq. 5.19)
-    Bsdf bsdf;
-    Frame frame;     ///< about the shading normal
-    vec3 arrived;    ///< unit, local: direction from which the light came
-    bool matt;       ///< purely diffuse: the BSDF is `bsdf.diffuse` / pi
-    bool by_delta;   ///< mirrors or glass lie between it and the surface, or light, that it was scattered by last
-    int scatterings; ///< non-delta, before it: 0 = light that comes from its source, or by mirrors and glass alone
-    /// Area over which the path's light is spread there, m^2: the reciprocal of the path density, the number of
-    /// such paths per m^2 (McGuire and Luebke 2009; Herzog et al. 2007). Mirrors and glass count as flat.
-    float footprint;
-    std::uint32_t path; ///< number of its path, or index of its start
-};
 
 /// Where a point of a surface lies relative to a fine grid; `still`: of a triangle that does not move.
 enum class GridSide : std::uint8_t { outside, inside_moving, inside_still };
@@ -55,6 +35,11 @@ struct LightPaths {
 /// bounces == 0.
 std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const& bounds, PathRays const& rays,
                                            LightPaths const& settings, PathCounts& counts);
+
+/// As trace_light_paths(), for paths that are under way; those without power have ended.
+std::vector<LightVertex> trace_onwards(WorldView const& world, PathRays const& rays,
+                                       std::span<LightPath const> paths, LightPaths const& settings,
+                                       PathCounts& counts);
 
 /// Light that has reached a surface: the start of a path from there.
 struct LightStart {

@@ -35,7 +35,7 @@ RenderOptionTable const& photon_options()
             "photon-rays", {"exact", "look-ups", "impostors"},
             "what finds the surfaces that photons meet: exact rays, look-ups in hit buffers, distance impostors",
             &P::rays, {"ispm", "lpv", "isllpm"}),
-        photons("first-bounce", {"auto", "rays", "map"},
+        photons("first-bounce", {"rays", "map"},
                 "find the first surfaces of light paths by rays, or rasterise them as seen from the lights",
                 &P::first_bounce, {"ispm", "lpv", "isllpm", "multi_image"}),
         photons("frozen-light", {"on", "off"},

@@ -1,6 +1,7 @@
 #include "gi/raster/raster_kernels.h"
 
 #include "gi/kernel/launch.cuh"
+#include "gi/raster/cut_outs.h"
 
 namespace gi {
 
@@ -8,6 +9,8 @@ template void launch_device(char const*, std::size_t, CountLayers const&);
 template void launch_device(char const*, std::size_t, FillLayers const&);
 template void launch_device(char const*, std::size_t, DrawNearest<RasterGrid, KeepAll> const&);
 template void launch_device(char const*, std::size_t, DrawNearest<PerspectiveGrid, KeepAll> const&);
+template void launch_device(char const*, std::size_t, DrawNearest<RasterGrid, KeepUncut> const&);
+template void launch_device(char const*, std::size_t, DrawNearest<PerspectiveGrid, KeepUncut> const&);
 template void launch_device(char const*, std::size_t, UnpackNearest const&);
 
 } // namespace gi

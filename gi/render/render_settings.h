@@ -123,7 +123,7 @@ enum class RadianceBy : std::uint8_t {
 /// What finds the surfaces that photons meet.
 enum class PhotonRays : std::uint8_t { exact, look_ups, impostors };
 /// How the light of lamps finds its first surfaces.
-enum class FirstBounce : std::uint8_t { automatic, rays, map };
+enum class FirstBounce : std::uint8_t { rays, map };
 /// What the size of photons' kernels follows.
 enum class KernelBy : std::uint8_t { density, footprint };
 /// How flux through a face of a cell becomes light of the cell behind it, see propagation_kernels.h.
@@ -139,7 +139,7 @@ struct PhotonSettings {
     float caustic_radius_m = 0; ///< of the first kernels of caustics; 0 = by their density
     int reflections = 64;       ///< of a photon, at most
     PhotonRays rays = PhotonRays::exact;
-    FirstBounce first_bounce = FirstBounce::automatic;
+    FirstBounce first_bounce = FirstBounce::rays;
     Switch frozen = Switch::off; ///< light is computed once and kept, whatever changes
     KernelBy kernel_by = KernelBy::density;
     float kernel_size = 1;        ///< factor of kernels' radii

@@ -1,6 +1,8 @@
 #include "gi/methods/photons/photon_renderer.h"
 
+#include "gi/light_paths/bounce_map.h"
 #include "gi/light_paths/options.h"
+#include "gi/methods/photons/look_up_rays.h"
 
 #include <algorithm>
 
@@ -20,6 +22,8 @@ void PhotonRenderer::changed(Changes const& c)
     TreeRenderer::changed(c);
     caustics_.changed(c);
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds || c.materials || c.coverage;
+    soup_moved_ = soup_moved_ || c.geometry;
+    axes_moved_ = axes_moved_ || c.geometry;
     light_changed_ = light_changed_ || c.lights || c.emitters || c.environment;
 }
 
@@ -78,8 +82,16 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
     std::vector<Photon> photons;
     {
+        PathRays const& rays = path_rays(stop);
         StageTimer const timer(report_, "light paths");
-        ExactPathRays const rays(*visibility_);
+        bool const by_map = settings_.photons.first_bounce == FirstBounce::map;
+        if (by_map) {
+            if (!soup_)
+                soup_ = make_soup(world_);
+            else if (soup_moved_)
+                update_soup(world_, first_moving_, *soup_);
+            soup_moved_ = false;
+        }
         for (std::uint32_t first = 0; first < paths_; first += kTogether) {
             LightPaths const some{.count = paths_,
                                   .first = first,
@@ -88,8 +100,12 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
                                   .seed = settings_.seed,
                                   .pass = *first_index_ + sets_,
                                   .stop = &stop};
-            for (LightVertex const& v : trace_light_paths(view(world_), world_.bounds, rays, some, counts))
+            std::vector<LightVertex> const vertices =
+                by_map ? trace_bounce_maps(view(world_), world_.bounds, *soup_, CutOuts(world_), rays, some, counts)
+                       : trace_light_paths(view(world_), world_.bounds, rays, some, counts);
+            for (LightVertex const& v : vertices)
                 if (stores(v)) photons.push_back(to_photon(v));
+            if (by_map) break; // the whole set
         }
     }
     {
@@ -102,6 +118,27 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     stored_ = photons.size();
     flux_ = dvec3{0};
     for (Photon const& p : photons) flux_ += dvec3(p.flux);
+}
+
+PathRays const& PhotonRenderer::path_rays(BuildStop const&)
+{
+    switch (settings_.photons.rays) {
+    case PhotonRays::look_ups: {
+        StageTimer const timer(report_, "hit buffers");
+        if (!axes_)
+            axes_.emplace(world_, with_stored_axes(settings_.slhb), settings_.seed, first_moving_, stop_);
+        else if (axes_moved_)
+            axes_->moved();
+        axes_moved_ = false;
+        rays_of_paths_ = std::make_unique<LookUpRays>(world_, *axes_, *visibility_);
+        break;
+    }
+    case PhotonRays::impostors:
+    case PhotonRays::exact:
+        rays_of_paths_ = std::make_unique<ExactPathRays>(*visibility_);
+        break;
+    }
+    return *rays_of_paths_;
 }
 
 void PhotonRenderer::report_work()

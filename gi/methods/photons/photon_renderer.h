@@ -7,7 +7,9 @@
 
 #include "gi/light_paths/caustics.h"
 #include "gi/light_paths/photon.h"
+#include "gi/methods/slhb/directions/stored_axes.h"
 #include "gi/methods/whitted/whitted.h"
+#include "gi/raster/triangle_soup.h"
 
 #include <chrono>
 #include <optional>
@@ -60,6 +62,8 @@ private:
     void update(std::span<FrameView const> views, PathCounts& counts);
     void trace_set(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     void fit_budget(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
+    /// What finds surfaces, made or brought up to date.
+    PathRays const& path_rays(BuildStop const& stop);
     double share() const { return double(paths_) / settings_.photons.paths; }
 
     StopRequest const* stop_;
@@ -69,6 +73,10 @@ private:
     std::vector<Camera> cameras_;              ///< of the last call
     std::uint32_t paths_;                      ///< of a set
     std::uint32_t sets_ = 0;                   ///< since the last change
+    std::optional<TriangleSoup> soup_;         ///< what bounce maps draw
+    bool soup_moved_ = false, axes_moved_ = false;
+    std::optional<StoredAxes> axes_; ///< of look-ups
+    std::unique_ptr<PathRays> rays_of_paths_;
     std::size_t stored_ = 0;
     dvec3 flux_{0}, emitted_{0};
 };

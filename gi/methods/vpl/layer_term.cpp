@@ -1,20 +1,10 @@
 #include "gi/methods/vpl/layer_term.h"
 
-#include "gi/methods/slhb/directions/grid_bounds.h"
 #include "gi/methods/slhb/hit_buffer/query_batch.h"
 
 #include <cmath>
 
 namespace gi {
-namespace {
-
-/// Rows of the table of nearest axes: about 16 texels per direction.
-std::uint32_t map_size(std::size_t directions)
-{
-    return std::uint32_t(std::ceil(4 * std::sqrt(double(directions))));
-}
-
-} // namespace
 
 /// One end of a connection.
 struct LayerTerm::End {
@@ -43,43 +33,8 @@ struct LayerTerm::Walks {
 };
 
 LayerTerm::LayerTerm(TermSource const& source)
-    : world_(source.world),
-      slhb_(source.settings.slhb),
-      seed_(source.settings.seed),
-      first_moving_(source.first_moving),
-      soup_(make_soup(source.world)),
-      cut_outs_(source.world)
+    : world_(source.world), axes_(source.world, source.settings.slhb, source.settings.seed, source.first_moving)
 {
-    build(source.world.bounds);
-}
-
-void LayerTerm::build(Bounds const& bounds)
-{
-    bounds_ = bounds;
-    axes_ = std::make_unique<AxisSet>(AxisSet::Source{.bounds = bounds_,
-                                                      .soup = soup_,
-                                                      .cut_outs = cut_outs_,
-                                                      .resolution = std::uint32_t(slhb_.resolution),
-                                                      .most_layers = std::uint32_t(slhb_.most_layers),
-                                                      .packed = false,
-                                                      .seed = seed_,
-                                                      .first_moving = first_moving_});
-    DirectionSet set = make_directions(slhb_.directions);
-    axes_->store(set);
-    axes_->update_axes();
-    for (std::size_t a = 0; a < set.axes.size(); ++a) set.axes[a] = dvec3(axes_->axis(a)); // rotated by the seed
-    nearest_ = make_direction_map(set, SphereMapping::octahedral, map_size(set.size()));
-    directions_.clear();
-    for (std::size_t k = 0; k < set.size(); ++k)
-        directions_.push_back({vec3(set.direction(k)), axes_->pool().grids[k / 2].texel});
-}
-
-void LayerTerm::world_changed()
-{
-    update_soup(world_, first_moving_, soup_);
-    if (grow(bounds_, world_.bounds)) return build(bounds_);
-    axes_->moved();
-    axes_->update_axes();
 }
 
 /// Adds the walk; returns false if its axis does not leave `from`.
@@ -87,7 +42,7 @@ bool LayerTerm::leave(End const& from, End const& to, std::uint32_t direction, s
                       Walks& walks) const
 {
     bool const up = direction % 2 == 0;
-    Direction const& d = directions_[direction];
+    StoredAxes::Direction const& d = axes_.direction(direction);
     float const cos_from = glm::dot(from.normal, d.along);
     constexpr float kGrazing = 0.02f;
     if (!(cos_from > kGrazing)) return false;
@@ -95,17 +50,14 @@ bool LayerTerm::leave(End const& from, End const& to, std::uint32_t direction, s
     float const length = glm::dot(way, d.along);
     float const beside = std::sqrt(std::max(0.0f, glm::dot(way, way) - square(length)));
     float const cos_to = std::abs(glm::dot(to.normal, d.along));
-    auto const slope = [](float cosine) {
-        return std::sqrt(std::max(0.0f, 1 - square(cosine))) / std::max(cosine, 1e-3f);
-    };
-    float const own = d.texel + (d.texel + beside) * slope(cos_to);
+    float const own = d.texel + (d.texel + beside) * slope_of(cos_to);
     std::size_t const k = walks.count++;
     walks.batch.set(k,
                     {.position = from.position,
                      .triangle = from.triangle,
                      .along = from.front == up, // the axis leaves on that side
                      .up = up,
-                     .slope = slope(cos_from)},
+                     .slope = slope_of(cos_from)},
                     direction / 2);
     walks.ends[k] = {from.position, d.along, length - std::min(0.5f * length, own), to.triangle, connection};
     return true;
@@ -116,7 +68,6 @@ void LayerTerm::of_connections(ReceiverTile const& tile, std::span<Connection co
 {
     thread_local Walks walks;
     walks.start(connections.size());
-    DirectionMapView const map = view(nearest_);
     for (std::uint32_t k = 0; k < connections.size(); ++k) {
         shares[k] = 1;
         Connection const& c = connections[k];
@@ -124,13 +75,13 @@ void LayerTerm::of_connections(ReceiverTile const& tile, std::span<Connection co
         LightVertex const& light = lights_[c.light];
         End const here{r.position, r.geometric_normal, r.triangle, r.front},
             there{light.position, light.normal, light.triangle, light.front};
-        std::uint32_t const direction = map.look_up(c.direction);
+        std::uint32_t const direction = axes_.nearest(c.direction);
         if (!leave(here, there, direction, k, walks) && !leave(there, here, direction ^ 1, k, walks))
             unanswered_.fetch_add(1, std::memory_order_relaxed);
     }
     QueryBatch& batch = walks.batch;
     batch.resize(walks.count);
-    nearest_layers(axes_->pool(), world_.surfaces, batch);
+    nearest_layers(axes_.pool(), world_.surfaces, batch);
     queries_.fetch_add(walks.count, std::memory_order_relaxed);
     for (std::size_t k = 0; k < walks.count; ++k) {
         Walks::Far const& far = walks.ends[k];
@@ -144,8 +95,8 @@ void LayerTerm::report_work(Report& report)
 {
     report.count("look-ups in hit buffers", double(queries_));
     report.lose("connections without a suitable axis, taken as unoccluded", unanswered_.exchange(0));
-    report.lose("layers beyond the limit of a texel", axes_->lost() - lost_);
-    lost_ = axes_->lost();
+    report.lose("layers beyond the limit of a texel", axes_.lost() - lost_);
+    lost_ = axes_.lost();
 }
 
 } // namespace gi

@@ -9,10 +9,8 @@
 // o; a hit there may be on the far end's own surface. So hits do not block within texel + (texel + that distance)
 // * slope of the far surface against the axis, up to half the length of the connection.
 
-#include "gi/methods/slhb/directions/axis_set.h"
-#include "gi/methods/slhb/directions/direction_map.h"
+#include "gi/methods/slhb/directions/stored_axes.h"
 #include "gi/methods/vpl/visibility_term.h"
-#include "gi/raster/triangle_soup.h"
 
 #include <atomic>
 
@@ -25,33 +23,19 @@ public:
     explicit LayerTerm(TermSource const& source);
 
     void prepare(std::span<LightVertex const> lights, std::uint32_t) override { lights_ = lights; }
-    void world_changed() override;
+    void world_changed() override { axes_.moved(); }
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
                         PathCounts& counts) const override;
     void report_work(Report& report) override;
 
 private:
-    /// A direction of the set; index 2 k is along axis k, 2 k + 1 against it.
-    struct Direction {
-        vec3 along;  ///< unit
-        float texel; ///< texel size of its buffer, m
-    };
     struct End;
     struct Walks;
-    void build(Bounds const& bounds);
     bool leave(End const& from, End const& to, std::uint32_t direction, std::uint32_t connection,
                Walks& walks) const;
 
     World const& world_;
-    SlhbSettings slhb_;
-    std::uint64_t seed_;
-    std::size_t first_moving_;
-    TriangleSoup soup_;
-    CutOuts cut_outs_;
-    Bounds bounds_; ///< of the grids
-    std::unique_ptr<AxisSet> axes_;
-    std::vector<Direction> directions_;
-    DirectionMap nearest_;
+    StoredAxes axes_;
     std::span<LightVertex const> lights_;
     mutable std::atomic<std::uint64_t> unanswered_ = 0, queries_ = 0;
     std::uint64_t lost_ = 0; ///< layers already reported as lost

@@ -1,5 +1,6 @@
 #include "gi/methods/vpl/visibility.h"
 
+#include "gi/methods/slhb/directions/stored_axes.h"
 #include "gi/methods/slhb/settings.h"
 #include "gi/methods/vpl/renderer.h"
 
@@ -28,8 +29,7 @@ std::string options_of(VisibilityKind kind, RenderSettings const& s)
 /// Returns the settings with defaults chosen.
 RenderSettings chosen(RenderSettings settings)
 {
-    if (settings.slhb.directions.empty()) settings.slhb.directions = "icosahedron:320";
-    if (settings.slhb.resolution == 0) settings.slhb.resolution = 128;
+    settings.slhb = with_stored_axes(settings.slhb);
     settings.vpl.points = settings.vpl.points_per_map();
     settings.vpl.points_percent = 0;
     return settings;

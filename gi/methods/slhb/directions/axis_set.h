@@ -4,9 +4,9 @@
 
 #include "gi/core/progress.h"
 #include "gi/methods/slhb/directions/cosine_tables.h"
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
 #include "gi/methods/slhb/hit_buffer/moving_layers.h"
 #include "gi/methods/slhb/hit_buffer/query_batch.h"
+#include "gi/raster/cut_outs.h"
 
 #include <functional>
 

@@ -1,16 +1,14 @@
 #include "gi/methods/slhb/hit_buffer/layer_kernels.h"
 
 #include "gi/kernel/launch.cuh"
+#include "gi/raster/cut_outs.h"
 #include "gi/raster/raster_kernels.h"
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
 
 namespace gi {
 
 template void launch_device(char const*, std::size_t, SortLayers const&);
 template void launch_device(char const*, std::size_t, TrimLayers<KeepAll> const&);
 template void launch_device(char const*, std::size_t, TrimLayers<KeepUncut> const&);
-template void launch_device(char const*, std::size_t, DrawNearest<RasterGrid, KeepUncut> const&);
-template void launch_device(char const*, std::size_t, DrawNearest<PerspectiveGrid, KeepUncut> const&);
 template void launch_device(char const*, std::size_t, PackLayers const&);
 template void launch_device(char const*, std::size_t, AnswerQueries const&);
 

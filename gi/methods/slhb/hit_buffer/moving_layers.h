@@ -5,7 +5,7 @@
 // dynamic geometry, not on the scene.
 
 #include "gi/methods/slhb/hit_buffer/axis_pool.h"
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
+#include "gi/raster/cut_outs.h"
 
 #include <span>
 

@@ -3,8 +3,8 @@
 // axis.
 
 #include "gi/methods/slhb/directions/axis_set.h"
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
 #include "gi/methods/slhb/hit_buffer/query.h"
+#include "gi/raster/cut_outs.h"
 #include "gi/render/path_step.h"
 
 namespace gi {

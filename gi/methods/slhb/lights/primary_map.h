@@ -2,8 +2,8 @@
 // The first surfaces of a pass: one G-buffer of the whole picture, in which all pixels use the same subpixel
 // position; it differs between passes, so that their mean contains the pixel filter.
 
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
 #include "gi/methods/slhb/tracer/tracer.h"
+#include "gi/raster/cut_outs.h"
 #include "gi/scene/model/projection.h"
 
 #include <optional>

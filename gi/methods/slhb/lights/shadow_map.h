@@ -8,8 +8,8 @@
 // Percentage-closer filtering: one of the four surrounding texels is chosen at random, which averages to the
 // bilinear filter over paths.
 
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
 #include "gi/methods/slhb/lights/shadow_look.h"
+#include "gi/raster/cut_outs.h"
 #include "gi/scene/shading/light_sampling.h"
 
 #include <array>

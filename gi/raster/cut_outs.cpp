@@ -1,4 +1,4 @@
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
+#include "gi/raster/cut_outs.h"
 
 #include <algorithm>
 

@@ -1,0 +1,149 @@
+#include "gi/light_paths/bounce_map.h"
+
+#include "gi/raster/draw_nearest.h"
+
+#include <algorithm>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+template <class Grid>
+std::vector<NearestTexel> draw(WorldView const& world, TriangleSoup const& soup, Grid const& grid,
+                               CutOuts const& cut_outs, std::uint32_t seed)
+{
+    SoupView const triangles = view(soup);
+    return download(cut_outs.none()
+                        ? draw_nearest<Space::host>(triangles, grid)
+                        : draw_nearest<Space::host>(triangles, grid, KeepUncut{world, cut_outs.marked(), seed}));
+}
+
+/// The six faces of a cube around a point, without those that only light's dark side sees.
+void add_cube(LightView const& v, vec3 eye, float near_m, std::uint32_t resolution, Frame const& turn,
+              std::vector<LightView>& out)
+{
+    mat3 const rotation{turn.tangent, turn.bitangent, turn.normal};
+    for (int face = 0; face < 6; ++face) {
+        LightView seen = v;
+        PerspectiveGrid& g = seen.face;
+        g = cube_face(eye, face, resolution, near_m);
+        g.to_x = rotation * g.to_x;
+        g.to_y = rotation * g.to_y;
+        g.forward = rotation * g.forward;
+        g.inverse = rotation * g.inverse;
+        bool lit = v.normal == vec3{0} || v.both_sides;
+        for (int corner = 0; corner < 4 && !lit; ++corner)
+            lit = glm::dot(
+                      g.direction((corner & 1) != 0 ? resolution - 1 : 0, (corner & 2) != 0 ? resolution - 1 : 0),
+                      v.normal) > 0;
+        if (lit) out.push_back(seen);
+    }
+}
+
+/// Views from a point of an emitting triangle or a punctual light, or along a direction. @param texels  of all
+void add_views(WorldView const& world, Bounds const& bounds, LightChoice choice, std::uint32_t views, float texels,
+               Pcg32& rng, std::vector<LightView>& out)
+{
+    LightView v;
+    float const share = 1 / (choice.probability * float(views));
+    v.paths = texels * float(views) * world.light_select.probability(choice.light);
+    auto const parallel = [&](vec3 travels, vec3 irradiance) {
+        v.parallel = true;
+        v.grid =
+            make_grid(bounds, travels, std::uint32_t(std::sqrt(texels)), rng.uniform2(), 2 * kPi * rng.uniform());
+        v.light = irradiance * square(v.grid.texel);
+        v.area = square(v.grid.texel) / std::max(1.0f, v.paths / texels); // its views lie over each other
+        out.push_back(v);
+    };
+    auto const cube = [&](vec3 eye, float near_m, float faces) {
+        float const side = std::sqrt(texels / faces);
+        float const z = 1 - 2 * rng.uniform(), r = std::sqrt(std::max(0.0f, 1 - z * z));
+        vec2 const turn = azimuth(rng.uniform());
+        add_cube(v, eye, near_m, std::uint32_t(std::max(side, 1.0f)), Frame::about({r * turn.x, r * turn.y, z}),
+                 out);
+    };
+    if (light_detail::is_environment(world, choice)) {
+        LightSample const s = sample_light(world, choice, bounds.center(), rng.uniform2());
+        if (s.pdf > 0) parallel(-s.direction, s.radiance / (s.pdf * float(views)));
+        return;
+    }
+    std::size_t const lights = world.lights.size();
+    if (choice.light < lights) {
+        Light const& light = world.lights[choice.light];
+        if (light.type == LightType::directional) return parallel(light.direction, light.intensity * share);
+        v.light = light.intensity * share;
+        v.spot = light;
+        v.is_spot = light.type == LightType::spot;
+        return cube(light.position, 1e-6f * bounds.radius(), 6);
+    }
+    std::uint32_t const triangle = world.emitters[choice.light - lights];
+    vec2 const place = rng.uniform2();
+    EmittedLight const e = emit_light(world, choice, bounds, place, vec2{0.5f}, 0.5f);
+    Surface const& surface = world.surfaces[triangle];
+    vec3 const eye = shading_detail::SurfacePoint{surface, square_to_triangle(place)}.position();
+    v.both_sides = surface.is(Surface::kDoubleSided);
+    v.normal = shading_detail::triangle_normal(surface);
+    v.area = e.area / v.paths;
+    v.light = e.power / ((v.both_sides ? 2 : 1) * kPi * float(views));
+    cube(eye, surface.clearance, v.both_sides ? 6 : 4);
+}
+
+} // namespace
+
+std::vector<LightView> light_views(WorldView const& world, Bounds const& bounds, LightPaths const& s, int views)
+{
+    std::vector<LightView> out;
+    if (world.light_select.empty() || bounds.empty()) return out;
+    auto const n = std::uint32_t(std::clamp(views, 1, int(std::max(1u, s.count / 64))));
+    for (std::uint32_t k = 0; k < n; ++k) {
+        Pcg32 rng = Pcg32::for_path(s.seed ^ 0xb0c3a9, k, s.pass);
+        LightChoice const choice = choose_light(world, (double(k) + rng.uniform_double()) / double(n));
+        if (choice.probability > 0) add_views(world, bounds, choice, n, float(s.count) / float(n), rng, out);
+    }
+    std::uint32_t first = 0;
+    for (LightView& v : out) {
+        v.first = first;
+        first += v.width() * v.height();
+    }
+    return out;
+}
+
+std::vector<NearestTexel> draw_light_view(WorldView const& world, TriangleSoup const& soup, LightView const& v,
+                                          CutOuts const& cut_outs, std::uint32_t seed)
+{
+    return v.parallel ? draw(world, soup, v.grid, cut_outs, seed) : draw(world, soup, v.face, cut_outs, seed);
+}
+
+std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
+                                           CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s,
+                                           PathCounts& counts)
+{
+    std::vector<LightVertex> all;
+    if (s.bounces < 1) return all;
+    for (LightView const& v : light_views(world, bounds, s)) {
+        if (s.stop != nullptr && s.stop->given_up()) throw Interrupted();
+        std::vector<NearestTexel> const seen = draw_light_view(world, soup, v, cut_outs, s.pass ^ v.first);
+        std::size_t const n = seen.size();
+        std::vector<BounceTexel> texels(n);
+        std::vector<LightPath> paths(n);
+        std::vector<LightVertex> vertices(n);
+        std::vector<std::uint8_t> has_vertex(n);
+        launch(Space::host, "bounce map", n,
+               BounceTexels{world,
+                            v,
+                            {s.count, s.seed, s.pass},
+                            {s.bounces, s.delta_only},
+                            seen,
+                            texels,
+                            paths,
+                            vertices,
+                            has_vertex});
+        for (std::size_t k = 0; k < n; ++k)
+            if (has_vertex[k] != 0) all.push_back(vertices[k]);
+        std::vector<LightVertex> const rest = trace_onwards(world, rays, paths, s, counts);
+        all.insert(all.end(), rest.begin(), rest.end());
+    }
+    return all;
+}
+
+} // namespace gi

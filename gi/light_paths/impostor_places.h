@@ -1,0 +1,31 @@
+#pragma once
+// Where distance impostors are put so that together they see what light can reach.
+//
+// Random walks of exact rays from the lights and the cameras (from all surfaces, where there are neither) meet
+// surfaces with the density of diffuse light: uniform over the area of a closed room, and denser where the cameras
+// are than in the far parts of a large world. Places between two surfaces of a walk are candidates. They are
+// chosen one by one: each time the one that adds most to sum over surface points of max over chosen places of
+//     visible * cos(normal, place) / (1 + distance / mean free path) * clearance / (clearance + mean free path /
+//     8),
+// so that points which no place sees count most, then those that are seen badly. Clearance is the distance of the
+// place to the nearest surface, as a few rays tell. This greedy choice reaches at least 1 - 1/e of what is
+// possible (Nemhauser et al. 1978).
+
+#include "gi/render/exact_visibility.h"
+
+#include <vector>
+
+namespace gi {
+
+struct ImpostorPlacement {
+    std::uint32_t count = 16;  ///< most places
+    float least_gain = 0.002f; ///< of the sum; a place that adds less is not taken, nor are later ones
+    std::uint32_t candidates = 256, points = 1024;
+};
+
+/// @return  centres in the world's coordinates, m; the same for the same world. Empty if the world is, or if rays
+/// meet nothing.
+std::vector<vec3> place_impostors(World const& world, ExactVisibility const& visibility,
+                                  ImpostorPlacement const& settings = {});
+
+} // namespace gi

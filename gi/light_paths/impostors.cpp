@@ -1,0 +1,72 @@
+#include "gi/light_paths/impostors.h"
+
+#include "gi/core/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+
+float impostor_near(World const& world, vec3 centre)
+{
+    float const coordinates =
+        glm::max(world.bounds.radius(),
+                 glm::max(max_component(glm::abs(centre)), max_component(glm::abs(world.bounds.center()))));
+    return glm::max(1e-6f * coordinates, 1e-20f);
+}
+
+Impostors::Impostors(World const& world, std::vector<vec3> centres, std::uint32_t resolution, std::uint32_t seed,
+                     std::size_t first_moving)
+    : centres_(std::move(centres)),
+      resolution_(resolution),
+      seed_(seed),
+      soup_(make_soup(world)),
+      cut_outs_(world),
+      first_moving_(std::min(first_moving, world.triangles.size()))
+{
+    constexpr std::uint32_t kFinest = 4096;
+    constexpr std::uint32_t kBlock = ImpostorsView::kBlock;
+    if (resolution < kBlock || resolution > kFinest || resolution % kBlock != 0)
+        throw InputError(fmt::format("impostors of {} texels along an edge are not possible", resolution),
+                         "their faces have 8 to 4096, in steps of 8", "choose such a resolution");
+    for (vec3 const c : centres_)
+        if (!all_finite(c) || !(max_component(glm::abs(c)) < kFarthest))
+            throw InputError(fmt::format("an impostor cannot be at ({}, {}, {})", c.x, c.y, c.z),
+                             "its centre must be finite", "give a point of the scene");
+    texels_.resize(centres_.size() * 6 * resolution_ * resolution_);
+    draw(world, 0, first_moving_, false);
+    if (first_moving_ == soup_.count) return;
+    still_ = texels_;
+    draw(world, first_moving_, soup_.count, true);
+}
+
+void Impostors::moved(World const& world)
+{
+    if (first_moving_ == soup_.count) return;
+    update_soup(world, first_moving_, soup_);
+    texels_ = still_;
+    draw(world, first_moving_, soup_.count, true);
+}
+
+void Impostors::draw(World const& world, std::size_t first, std::size_t last, bool keep_nearer)
+{
+    std::size_t const face = std::size_t(resolution_) * resolution_;
+    tbb::parallel_for(std::size_t(0), 6 * centres_.size(), [&](std::size_t k) {
+        static thread_local Fragments fragments;
+        static thread_local NearestMap map;
+        vec3 const centre = centres_[k / 6];
+        PerspectiveGrid const grid = cube_face(centre, int(k % 6), resolution_, impostor_near(world, centre));
+        clear(map, resolution_, resolution_);
+        fragments.count = 0;
+        rasterize(soup_, first, last, grid, fragments);
+        cut_outs_.remove(fragments, grid, seed_);
+        resolve(fragments, 1, map);
+        StoreImpostorFace const store{grid, map.texels, {texels_.data() + k * face, face}, keep_nearer};
+        for (std::size_t i = 0; i < face; ++i) store(i);
+    });
+    blocks_.resize(texels_.size() / (ImpostorsView::kBlock * ImpostorsView::kBlock));
+    launch_host(blocks_.size(), BoundImpostorBlocks{texels_, blocks_});
+}
+
+} // namespace gi

@@ -1,0 +1,77 @@
+#pragma once
+// Draws distance impostors of a world with the project's rasteriser: six faces around each centre, hidden surfaces
+// removed. Of surfaces that are partly transparent a texel holds what is there at its centre; where coverage is
+// partial that is a random decision for each texel, and not, as for exact rays, for each ray.
+
+#include "gi/kernel/launch.h"
+#include "gi/light_paths/impostor_kernels.h"
+#include "gi/raster/cut_outs.h"
+#include "gi/raster/draw_nearest.h"
+
+#include <span>
+
+namespace gi {
+
+/// Distance at which the faces' views begin, m: as near as floats can tell from the centre.
+float impostor_near(World const& world, vec3 centre);
+
+/// Impostors in host memory, which follow moving geometry.
+class Impostors {
+public:
+    /// @param centres  finite, in the world's coordinates; else InputError  @param resolution  texels along an
+    /// edge of a face, 1 to 4096  @param seed  of the random decisions about partial coverage  @param world  must
+    /// outlive it
+    /// @param first_moving  index of the first triangle that may move; all later ones may move too
+    Impostors(World const& world, std::vector<vec3> centres, std::uint32_t resolution, std::uint32_t seed = 0,
+              std::size_t first_moving = ~std::size_t(0));
+
+    /// Draws the triangles that may move again. Materials must not have changed.
+    void moved(World const& world);
+
+    ImpostorsView view() const { return {centres_, texels_, blocks_, resolution_}; }
+
+private:
+    void draw(World const& world, std::size_t first, std::size_t last, bool keep_nearer);
+
+    std::vector<vec3> centres_;
+    std::vector<ImpostorTexel> texels_, still_; ///< still_: of what does not move; empty if nothing does
+    std::vector<ImpostorBlock> blocks_;
+    std::uint32_t resolution_, seed_;
+    TriangleSoup soup_;
+    CutOuts cut_outs_;
+    std::size_t first_moving_;
+};
+
+/// Impostors in space S, drawn by kernels there.
+template <Space S>
+struct ImpostorsOn {
+    Buffer<vec3, S> centres;
+    Buffer<ImpostorTexel, S> texels;
+    Buffer<ImpostorBlock, S> blocks;
+    std::uint32_t resolution = 0;
+
+    ImpostorsView view() const { return {centres.view(), texels.view(), blocks.view(), resolution}; }
+};
+
+/// @param soup, keep  in space S; see DrawNearest  @param resolution  as for Impostors
+template <Space S, class Keep = KeepAll>
+ImpostorsOn<S> draw_impostors(World const& world, SoupView const& soup, std::vector<vec3> const& centres,
+                              std::uint32_t resolution, Keep const& keep = {})
+{
+    constexpr std::size_t kTexels = std::size_t(ImpostorsView::kBlock) * ImpostorsView::kBlock;
+    std::size_t const face = std::size_t(resolution) * resolution, texels = centres.size() * 6 * face;
+    ImpostorsOn<S> out{upload<S>(centres), Buffer<ImpostorTexel, S>(texels),
+                       Buffer<ImpostorBlock, S>(texels / kTexels), resolution};
+    for (std::size_t k = 0; k < 6 * centres.size(); ++k) {
+        vec3 const centre = centres[k / 6];
+        PerspectiveGrid const grid = cube_face(centre, int(k % 6), resolution, impostor_near(world, centre));
+        Buffer<NearestTexel, S> const drawn = draw_nearest<S>(soup, grid, keep);
+        launch(S, "store impostor", face,
+               StoreImpostorFace{grid, drawn.view(), {out.texels.view().data + k * face, face}});
+    }
+    launch(S, "bound impostor blocks", out.blocks.size(),
+           BoundImpostorBlocks{std::as_const(out.texels).view(), out.blocks.view()});
+    return out;
+}
+
+} // namespace gi

@@ -1,0 +1,8 @@
+#include "gi/kernel/launch.cuh"
+#include "gi/light_paths/trace_kernel.h"
+
+namespace gi {
+
+template void launch_device(char const*, std::size_t, TraceLightPaths const&);
+
+} // namespace gi

@@ -1,0 +1,30 @@
+#pragma once
+// Light paths through layered hit buffers (gi/methods/slhb): a ray that leaves a surface by a broad lobe follows
+// the nearest of a set of stored directions and is a look-up. Rays from lights, by mirrors and by glass are exact,
+// and those whose direction leaves their surface edge-on.
+
+#include "gi/light_paths/path_rays.h"
+#include "gi/methods/slhb/directions/stored_axes.h"
+
+#include <atomic>
+
+namespace gi {
+
+class LookUpRays : public PathRays {
+public:
+    /// All arguments must outlive it.
+    LookUpRays(World const& world, StoredAxes const& axes, ExactVisibility const& exact)
+        : world_(world), axes_(axes), exact_(exact)
+    {
+    }
+    void nearest(std::span<PathQuery> queries, std::span<Hit> hits) const override;
+    std::uint64_t look_ups() const { return look_ups_; }
+
+private:
+    World const& world_;
+    StoredAxes const& axes_;
+    ExactPathRays exact_;
+    mutable std::atomic<std::uint64_t> look_ups_ = 0;
+};
+
+} // namespace gi

@@ -1,0 +1,84 @@
+#pragma once
+// Scenes and measures of the tests of distance impostors.
+
+#include "gi/core/rng.h"
+#include "gi/light_paths/impostor_rays.h"
+#include "gi/scene/shading/warp.h"
+#include "tests/support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace gi::test {
+
+inline World box_room(vec3 low, vec3 high)
+{
+    Scene scene;
+    add_box(scene, low, high, add_material(scene, lambert(vec3{0.5f})), true);
+    return world_of(scene);
+}
+
+inline vec3 random_direction(Pcg32& rng)
+{
+    float const z = 1 - 2 * rng.uniform(), r = std::sqrt(std::max(0.0f, 1 - z * z)),
+                turn = 2 * kPi * rng.uniform();
+    return {r * std::cos(turn), r * std::sin(turn), z};
+}
+
+/// Cosine-distributed rays that leave random surface points, of the sides that their normals show.
+inline std::vector<RayQuery> rays_from_surfaces(World const& world, std::size_t n, std::uint64_t seed)
+{
+    std::vector<double> area;
+    double sum = 0;
+    for (Surface const& s : world.surfaces)
+        area.push_back(sum += double(glm::length(glm::cross(s.edge1, s.edge2))));
+    Pcg32 rng(seed, 1);
+    std::vector<RayQuery> rays;
+    for (std::size_t i = 0; i < n; ++i) {
+        auto const at = std::ranges::upper_bound(area, rng.uniform_double() * sum);
+        Surface const& s = world.surfaces[std::min(std::size_t(at - area.begin()), area.size() - 1)];
+        vec2 const w = square_to_triangle(rng.uniform2());
+        vec3 const normal = shading_detail::triangle_normal(s);
+        vec3 const d = Frame::about(normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
+        rays.push_back({.ray = {s.corner + w.x * s.edge1 + w.y * s.edge2 + s.clearance * normal, d},
+                        .seed = std::uint32_t(i)});
+    }
+    return rays;
+}
+
+/// How the answers of a search differ from those of exact rays.
+struct Accuracy {
+    double wrong = 0; ///< share: a surface where there is none, the reverse, or another triangle and > 2 % off
+    double error = 0; ///< mean of min(1, |distance - exact| / exact)
+    double maps = 0;  ///< per ray
+    double exact = 0; ///< share of ImpostorHit::exact
+};
+
+inline Accuracy accuracy(World const& world, Impostors const& impostors, ImpostorSettings const& settings,
+                         ExactVisibility const& visibility, std::span<RayQuery const> rays)
+{
+    std::vector<Hit> truth(rays.size());
+    visibility.nearest(rays, truth);
+    std::vector<ImpostorHit> found(rays.size());
+    ImpostorRays(world, impostors, settings).follow(rays, found);
+    Accuracy a;
+    std::size_t both = 0;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        a.maps += found[k].maps;
+        a.exact += found[k].exact;
+        bool const is = truth[k].triangle != kNoTriangle, hit = found[k].hit.triangle != kNoTriangle;
+        double const off = is && hit ? std::abs(double(found[k].hit.distance) / double(truth[k].distance) - 1) : 0;
+        if (is && hit) {
+            ++both;
+            a.error += std::min(off, 1.0);
+        }
+        a.wrong += is != hit || (is && truth[k].triangle != found[k].hit.triangle && !(off <= 0.02));
+    }
+    auto const n = double(std::max<std::size_t>(rays.size(), 1));
+    a.wrong /= n;
+    a.maps /= n;
+    a.exact /= n;
+    a.error /= double(std::max<std::size_t>(both, 1));
+    return a;
+}
+
+} // namespace gi::test

@@ -1,0 +1,296 @@
+// Light paths against closed forms: flux in closed rooms, form factors, path density; by rays, bounce maps and
+// look-ups.
+
+#include "gi/kernel/launch.h"
+#include "gi/light_paths/bounce_map.h"
+#include "gi/light_paths/trace_kernel.h"
+#include "gi/methods/photons/look_up_rays.h"
+#include "gi/scene/model/world_on.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+LightPaths paths_of(std::uint32_t count, int bounces, std::uint32_t pass = 0)
+{
+    LightPaths s;
+    s.count = count;
+    s.bounces = bounces;
+    s.pass = pass;
+    return s;
+}
+
+enum class Way { rays, maps, look_ups };
+
+std::vector<LightVertex> trace(Way way, World const& world, LightPaths const& s)
+{
+    ExactVisibility const visibility(world, false, 0);
+    ExactPathRays const exact(visibility);
+    PathCounts counts;
+    if (way == Way::maps)
+        return trace_bounce_maps(view(world), world.bounds, make_soup(world), CutOuts(world), exact, s, counts);
+    if (way == Way::rays) return trace_light_paths(view(world), world.bounds, exact, s, counts);
+    StoredAxes const axes(world, with_stored_axes({}), s.seed, ~std::size_t(0));
+    return trace_light_paths(view(world), world.bounds, LookUpRays(world, axes, visibility), s, counts);
+}
+
+char const* name(Way way) { return way == Way::rays ? "rays" : way == Way::maps ? "bounce maps" : "look-ups"; }
+
+Light punctual(LightType type, vec3 position)
+{
+    Light l;
+    l.type = type;
+    l.position = position;
+    l.direction = glm::normalize(vec3{0.3f, -1, 0.2f});
+    l.intensity = vec3{2};
+    l.cos_inner = 0.9f;
+    l.cos_outer = 0.7f;
+    return l;
+}
+
+/// A closed room with one light: all of its flux meets a wall, then so much as the walls reflect, and so on.
+TEST(LightPathsAnalytic, FluxInClosedRooms)
+{
+    constexpr float kAlbedo = 0.6f;
+    for (int kind = 0; kind < 4; ++kind) {
+        Scene scene;
+        int const wall = add_material(scene, lambert(vec3{kAlbedo}));
+        add_box(scene, {-1, -1, -1}, {1.5f, 1, 1}, wall, true);
+        double flux = 0;
+        if (kind == 0) {
+            add_light(scene, punctual(LightType::point, {0.2f, 0.1f, -0.3f}));
+            flux = 4 * double(kPi) * 2;
+        } else if (kind == 1) {
+            add_light(scene, punctual(LightType::spot, {0.2f, 0.8f, -0.3f}));
+            constexpr int kSteps = 200000;
+            Light const& l = scene.lights.back();
+            for (int k = 0; k < kSteps; ++k) {
+                double const z = 0.7 + 0.3 * (k + 0.5) / kSteps;
+                flux += 2 * 2 * double(kPi) * 0.3 / kSteps * double(light_detail::cone_attenuation(l, float(z)));
+            }
+        } else {
+            Material shining = emitter(vec3{3}, kind == 3);
+            shining.base_color = vec3{kAlbedo};
+            int const lamp = add_material(scene, shining);
+            add_quad(scene, {-0.2f, 0.5f, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, lamp); // shines downwards
+            flux = 3 * double(kPi) * 0.16 * (kind == 3 ? 2 : 1);
+        }
+        World const world = world_of(scene);
+        for (Way const way : {Way::rays, Way::maps}) {
+            std::array<double, 5> found{};
+            constexpr int kSets = 4;
+            for (std::uint32_t set = 0; set < kSets; ++set)
+                for (LightVertex const& v : trace(way, world, paths_of(1 << 18, 5, set)))
+                    if (v.scatterings < 5) found[std::size_t(v.scatterings)] += double(v.power.x) / kSets;
+            double expected = flux;
+            for (std::size_t k = 0; k < found.size(); ++k, expected *= double(kAlbedo)) {
+                fmt::print("light {} by {}: {} scatterings {:.5f} of the flux\n", kind, name(way), k,
+                           found[k] / expected);
+                EXPECT_NEAR(found[k] / expected, 1, k == 0 ? 0.001 : 0.012) << kind << name(way) << k;
+            }
+        }
+    }
+}
+
+/// Share of a plate's light that reaches a parallel one, and a perpendicular one: by photons within three standard
+/// errors.
+TEST(LightPathsAnalytic, FormFactors)
+{
+    // Squares of side 1 at distance 1; squares of side 1 with a common edge.
+    double const factors[] = {0.19982489569838746, 0.20004377607540316};
+    for (int k = 0; k < 2; ++k)
+        for (Way const way : {Way::rays, Way::maps}) {
+            Scene scene;
+            int const matt = add_material(scene, lambert(vec3{0.5f})),
+                      lamp = add_material(scene, emitter(vec3{1}));
+            add_quad(scene, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}, lamp); // faces +Y
+            vec3 const u = k == 0 ? vec3{1, 0, 0} : vec3{0, 1, 0};
+            add_quad(scene, {0, k == 0 ? 1 : 0, 0}, u, {0, 0, 1}, matt);
+            World const world = world_of(scene);
+            std::vector<double> shares;
+            for (std::uint32_t set = 0; set < 16; ++set) {
+                double flux = 0;
+                for (LightVertex const& v : trace(way, world, paths_of(1 << 14, 1, set)))
+                    flux += double(v.power.x);
+                shares.push_back(flux / double(kPi));
+            }
+            double mean = 0, square_sum = 0;
+            for (double const s : shares) mean += s / 16;
+            for (double const s : shares) square_sum += (s - mean) * (s - mean);
+            double const error = std::sqrt(square_sum / (16 * 15));
+            fmt::print("form factor {} by {}: {:.5f} +- {:.5f}, in closed form {:.5f}\n", k, name(way), mean,
+                       error, factors[k]);
+            EXPECT_NEAR(mean, factors[k], 3 * error);
+            EXPECT_LT(error, 0.006);
+        }
+}
+
+/// Look-ups follow stored directions: what they bring is right but for these and the texels.
+TEST(LightPathsAnalytic, LookUpsKeepFlux)
+{
+    Scene scene;
+    int const wall = add_material(scene, lambert(vec3{0.6f}));
+    add_box(scene, {-1, -1, -1}, {1.5f, 1, 1}, wall, true);
+    add_light(scene, punctual(LightType::point, {0.2f, 0.1f, -0.3f}));
+    World const world = world_of(scene);
+    double floor[2] = {}, all[2] = {};
+    for (Way const way : {Way::rays, Way::look_ups})
+        for (LightVertex const& v : trace(way, world, paths_of(1 << 18, 6))) {
+            std::size_t const k = way == Way::rays ? 0 : 1;
+            all[k] += double(v.power.x);
+            if (v.scatterings > 0 && v.normal.y > 0.5f) floor[k] += double(v.power.x);
+        }
+    fmt::print("look-ups: {:.4f} of the flux of rays, {:.4f} of that on the floor\n", all[1] / all[0],
+               floor[1] / floor[0]);
+    EXPECT_NEAR(all[1] / all[0], 1, 0.01);
+    EXPECT_NEAR(floor[1] / floor[0], 1, 0.03);
+}
+
+/// The density of a point light's paths on a plane, and behind a mirror, is that of its rays.
+TEST(LightPathsAnalytic, PathDensity)
+{
+    Scene scene;
+    int const floor = add_material(scene, lambert(vec3{0.5f})), glass = add_material(scene, mirror(vec3{1}));
+    add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, floor);
+    add_quad(scene, {-0.2f, 2, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, glass); // reflects down
+    add_light(scene, punctual(LightType::point, {0, 1, 0}));
+    World const world = world_of(scene);
+    constexpr std::uint32_t kPaths = 1 << 18;
+    double direct = 0, mirrored = 0, light = 0, image = 0;
+    for (LightVertex const& v : trace(Way::rays, world, paths_of(kPaths, 1))) {
+        EXPECT_EQ(v.scatterings, 0);
+        double const r2 = double(v.position.x * v.position.x + v.position.z * v.position.z),
+                     d = v.by_delta ? 3 : 1;
+        double const area = 4 * double(kPi) * std::pow(d * d + r2, 1.5) / (d * kPaths);
+        EXPECT_NEAR(double(v.footprint), area, 2e-3 * area);
+        // As many photons as their footprints fit into a disk, and a square.
+        if (!v.by_delta && r2 < 0.25) {
+            direct += double(v.footprint);
+            light += 1;
+        }
+        if (v.by_delta) {
+            mirrored += double(v.footprint);
+            image += 1;
+        }
+    }
+    EXPECT_NEAR(direct, double(kPi) * 0.25, 0.01);
+    EXPECT_NEAR(mirrored, 0.6 * 2 * 0.6 * 2, 0.06);
+    EXPECT_GT(light, 1000);
+    EXPECT_GT(image, 400);
+}
+
+/// Of each texel how its path goes on: by mirror, glass, matt surface, or not at all.
+TEST(LightPathsAnalytic, BounceMap)
+{
+    Scene scene;
+    int const materials[] = {add_material(scene, lambert(vec3{1})), add_material(scene, mirror(vec3{1})),
+                             add_material(scene, glass(1.5f, false)), add_material(scene, lambert(vec3{0}))};
+    for (int k = 0; k < 4; ++k) // quarters of a floor, facing +Y
+        add_quad(scene, {float(k % 2) - 1, 0, float(k / 2)}, {1, 0, 0}, {0, 0, -1}, materials[k]);
+    add_light(scene, punctual(LightType::point, {0, 1, 0}));
+    World const world = world_of(scene);
+    LightPaths const s = paths_of(1 << 16, 3);
+    std::array<std::array<int, 4>, 4> kinds{};
+    for (LightView const& v : light_views(view(world), world.bounds, s, 4)) {
+        std::vector<NearestTexel> const seen =
+            draw_light_view(view(world), make_soup(world), v, CutOuts(world), 1);
+        std::size_t const n = seen.size();
+        std::vector<BounceTexel> texels(n);
+        std::vector<LightPath> paths(n);
+        std::vector<LightVertex> vertices(n);
+        std::vector<std::uint8_t> has_vertex(n);
+        launch(
+            Space::host, "bounce map", n,
+            BounceTexels{
+                view(world), v, {s.count, 0, 0}, {s.bounces, false}, seen, texels, paths, vertices, has_vertex});
+        for (std::size_t k = 0; k < n; ++k) {
+            BounceTexel const& t = texels[k];
+            if (t.triangle == kNoTriangle) continue;
+            std::size_t const quarter = t.triangle / 2;
+            ++kinds[quarter][std::size_t(t.bounce)];
+            vec3 const arrives =
+                glm::normalize(v.face.direction(std::uint32_t(k) % v.width(), std::uint32_t(k) / v.width()));
+            EXPECT_NEAR(t.depth, 1 / -arrives.y, 1e-3f * t.depth);
+            if (t.bounce == Bounce::mirrored && quarter == 1) {
+                EXPECT_LT(glm::length(t.direction - glm::reflect(arrives, vec3{0, 1, 0})), 1e-4f);
+            }
+            if (t.bounce == Bounce::transmitted) {
+                EXPECT_NEAR(t.direction.x * t.direction.x + t.direction.z * t.direction.z,
+                            (arrives.x * arrives.x + arrives.z * arrives.z) / (t.ior * t.ior), 1e-4f);
+            }
+            if (t.bounce == Bounce::scattered) {
+                EXPECT_GT(t.direction.y, 0);
+                EXPECT_GT(t.path_density, 0);
+            }
+            if (t.bounce != Bounce::none) {
+                EXPECT_GT(max_component(t.power), 0);
+            }
+        }
+    }
+    auto const count = [&](std::size_t quarter, Bounce b) { return kinds[quarter][std::size_t(b)]; };
+    EXPECT_GT(count(0, Bounce::scattered), 1000);
+    EXPECT_EQ(count(0, Bounce::mirrored) + count(0, Bounce::transmitted), 0);
+    EXPECT_GT(count(1, Bounce::mirrored), 1000);
+    EXPECT_EQ(count(1, Bounce::scattered) + count(1, Bounce::transmitted), 0);
+    EXPECT_GT(count(2, Bounce::transmitted), 1000);
+    EXPECT_GT(count(2, Bounce::mirrored), 10);
+    EXPECT_EQ(count(2, Bounce::scattered), 0);
+    EXPECT_GT(count(3, Bounce::none), 1000);
+    EXPECT_EQ(count(3, Bounce::scattered), 0);
+}
+
+/// The kernel traces the same paths.
+TEST(LightPathsAnalytic, KernelTracesTheSame)
+{
+    Scene scene;
+    int const wall = add_material(scene, lambert(vec3{0.7f})),
+              glass_ball = add_material(scene, glass(1.5f, false));
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, wall, true);
+    add_sphere(scene, {0.2f, -0.5f, 0}, 0.4f, 3, glass_ball, true);
+    add_light(scene, punctual(LightType::point, {0, 0.8f, 0}));
+    World const world = world_of(scene);
+    constexpr std::uint32_t kPaths = 20000, kSlots = 8;
+    std::vector<LightVertex> const expected = trace(Way::rays, world, paths_of(kPaths, 5));
+    WorldBvh<Space::host> const bvh(view(world), false, ~std::size_t(0));
+    std::vector<LightVertex> vertices(kPaths * kSlots);
+    std::vector<std::uint32_t> counts(kPaths);
+    launch(Space::host, "trace light paths", kPaths,
+           TraceLightPaths{
+               view(world), world.bounds, bvh.rays(), {kPaths, 0, 0}, {5, false}, 0, kSlots, vertices, counts});
+    std::size_t next = 0, differ = 0;
+    for (std::uint32_t path = 0; path < kPaths; ++path) {
+        std::size_t const first = next;
+        while (next < expected.size() && expected[next].path == path) ++next;
+        bool same = counts[path] == next - first;
+        for (std::uint32_t k = 0; same && k < counts[path]; ++k) {
+            LightVertex const &a = expected[first + k], &b = vertices[path * kSlots + k];
+            same = a.triangle == b.triangle && glm::length(a.position - b.position) < 1e-3f &&
+                   a.scatterings == b.scatterings &&
+                   glm::length(a.power - b.power) <= 1e-3f * max_component(a.power);
+        }
+        differ += !same;
+    }
+    EXPECT_EQ(next, expected.size());
+    EXPECT_GT(expected.size(), kPaths);
+    EXPECT_LE(differ, kPaths / 100);
+}
+
+TEST(LightPathsAnalytic, NothingToTrace)
+{
+    Scene scene;
+    World const empty = world_of(scene);
+    for (Way const way : {Way::rays, Way::maps}) EXPECT_TRUE(trace(way, empty, paths_of(100, 3)).empty());
+    add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, add_material(scene, lambert(vec3{1})));
+    World const dark = world_of(scene);
+    for (Way const way : {Way::rays, Way::maps}) EXPECT_TRUE(trace(way, dark, paths_of(100, 3)).empty());
+    add_light(scene, punctual(LightType::point, {5, -1, 5})); // sees the back of the only surface
+    World const lit = world_of(scene);
+    for (Way const way : {Way::rays, Way::maps})
+        for (LightVertex const& v : trace(way, lit, paths_of(1, 3))) EXPECT_TRUE(all_finite(v.power));
+}
+
+} // namespace
+} // namespace gi::test

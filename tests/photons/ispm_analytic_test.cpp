@@ -1,0 +1,174 @@
+// Pictures of the method ispm: furnaces, convergence as photons grow, and splatting against the photon map.
+
+#include "gi/kernel/launch.h"
+#include "gi/light_paths/light_paths.h"
+#include "gi/methods/photons/methods.h"
+#include "gi/methods/photons/splat.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+/// Mean and mean difference of L2, over what it must be, in a closed thing that glows evenly (radiance 1, albedo a
+/// half: L2 is a half).
+std::pair<double, double> furnace(bool sphere, RenderSettings s)
+{
+    Scene scene;
+    Material m = emitter(vec3{1}, true);
+    m.base_color = vec3{0.5f};
+    int const wall = add_material(scene, m);
+    if (sphere)
+        add_sphere(scene, vec3{0}, 1, 5, wall, false);
+    else
+        add_box(scene, {-1, -1, -1}, {1, 1, 1}, wall, true);
+    s.width = s.height = 48;
+    Report report;
+    Picture const p =
+        render_ispm(world_of(scene), look_at({0, 0, 0.3}, {0, -0.2, -1}, 90), s, {}, {}, report).picture;
+    double mean = 0, off = 0;
+    std::vector<float> const& values = p.find("L2")->data;
+    for (float const v : values) {
+        mean += 2 * double(v) / double(values.size());
+        off += std::abs(2 * double(v) - 1) / double(values.size());
+    }
+    return {mean, off};
+}
+
+/// Kernels reach beyond the edges of a box and lose light there; a sphere has none.
+TEST(Ispm, Furnace)
+{
+    for (KernelBy const by : {KernelBy::density, KernelBy::footprint})
+        for (bool const sphere : {false, true}) {
+            RenderSettings s;
+            s.paths = 8;
+            s.photons.kernel_by = by;
+            auto const [mean, off] = furnace(sphere, s);
+            fmt::print("{}, kernels by {}: mean {:.4f}, off by {:.4f}\n", sphere ? "sphere" : "box",
+                       by == KernelBy::density ? "density" : "footprint", mean, off);
+            EXPECT_NEAR(mean, 1, sphere ? 0.01 : 0.05);
+            EXPECT_LT(off, 0.12);
+        }
+}
+
+/// As photons grow, noise and blur fall together. With a power of -1/3 (the mean squared error, -2/3) away from
+/// edges, more slowly with them.
+TEST(Ispm, ConvergesWithPhotons)
+{
+    for (bool const sphere : {true, false}) {
+        double first = 0, last = 0;
+        for (int k = 0; k < 4; ++k) {
+            RenderSettings s;
+            s.paths = 1;
+            s.photons.paths = 4096 << 3 * k;
+            double const off = furnace(sphere, s).second;
+            fmt::print("{}: {} light paths, off by {:.4f}\n", sphere ? "sphere" : "box", s.photons.paths, off);
+            (k == 0 ? first : last) = off;
+        }
+        double const slope = std::log2(last / first) / 9;
+        fmt::print("{}: slope {:.3f}\n", sphere ? "sphere" : "box", slope);
+        EXPECT_LT(slope, sphere ? -0.25 : -0.15);
+    }
+}
+
+/// The kernel adds the same photons on a screen as a search in the photon map finds, wherever it looks from.
+TEST(Ispm, SplattingIsThePhotonMap)
+{
+    Scene scene;
+    int const wall = add_material(scene, lambert(vec3{0.7f}));
+    Material shiny = lambert(vec3{0.4f});
+    shiny.roughness = 0.4f;
+    shiny.specular = 1;
+    int const floor = add_material(scene, shiny);
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, wall, true);
+    add_box(scene, {-0.4f, -1, -0.4f}, {0.4f, -0.5f, 0.4f}, floor, false);
+    Light lamp;
+    lamp.position = {0, 0.8f, 0};
+    lamp.intensity = vec3{1};
+    add_light(scene, lamp);
+    World const world = world_of(scene);
+    ExactVisibility const visibility(world, false, 0);
+    LightPaths paths;
+    paths.count = 20000;
+    paths.bounces = 4;
+    PathCounts counts;
+    std::vector<Photon> photons;
+    for (LightVertex const& v :
+         trace_light_paths(view(world), world.bounds, ExactPathRays(visibility), paths, counts))
+        photons.push_back(to_photon(v));
+    sort_along_curve(photons);
+    KernelSizes const sizes = sizes_by_density(photons, 0.2f);
+    PhotonMap const map(photons, sizes);
+    std::vector<PhotonKernel> kernels;
+    for (std::uint32_t i = 0; i < photons.size(); ++i)
+        kernels.push_back({photons[i].position, sizes.radius(i), photons[i].normal, i});
+    View<Photon const> const all{photons.data(), photons.size()};
+    View<PhotonKernel const> const near{kernels.data(), kernels.size()};
+
+    Camera skewed = look_at({0.1, 0.3, 0.9}, {0, -0.7, 0}, 80);
+    skewed.off_axis = ViewTangents{-0.5, 1.2, -1, 0.4};
+    Camera const cameras[] = {look_at({0.1, 0.3, 0.9}, {0, -0.7, 0}, 80), skewed,
+                              look_at({-0.99, -0.99, 0.99}, {0, 0, 0}, 100),
+                              orthographic({0, 0.9, 0}, {0, 0, 0}, 1.5)};
+    for (Camera const& camera : cameras) {
+        FrameView const eye{camera, 70, 50};
+        PhotonTiles const tiles(screen_map(eye, world.origin), near, all);
+        CameraRays const rays = camera_rays(camera, eye.width, eye.height, world.origin);
+        std::vector<SplatSurface> surfaces;
+        std::vector<vec3> expected;
+        for (int y = 0; y < eye.height; ++y)
+            for (int x = 0; x < eye.width; ++x) {
+                RayQuery const q{.ray = rays.through({float(x) + 0.5f, float(y) + 0.5f})};
+                Hit hit;
+                visibility.nearest({&q, 1}, {&hit, 1});
+                if (hit.triangle == kNoTriangle) continue;
+                SplatSurface s{shading_point(view(world), hit.triangle, hit.barycentric, q.ray.direction), {}, -1};
+                s.wo = s.at.frame.to_local(-q.ray.direction);
+                glm::ivec2 const pixel = tiles.view().screen.pixel_of(s.at.position);
+                ASSERT_EQ(pixel, (glm::ivec2{x, y}));
+                s.tile = std::int32_t(tiles.view().screen.tile_of(pixel));
+                surfaces.push_back(s);
+                expected.push_back(map.radiance(s.at, s.wo, false));
+            }
+        ASSERT_GT(surfaces.size(), 3000u);
+        std::vector<vec3> found(surfaces.size());
+        launch(Space::host, "splat pixels", surfaces.size(), SplatPixels{tiles.view(), surfaces, found});
+        double sum = 0;
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            ASSERT_LT(glm::length(found[k] - expected[k]), 1e-3f * max_component(expected[k]) + 1e-6f);
+            sum += double(found[k].x);
+        }
+        EXPECT_GT(sum / double(found.size()), 0.01);
+    }
+}
+
+/// Nothing to see, nothing to light, one triangle, one photon: no photons and no harm.
+TEST(Ispm, HardCases)
+{
+    RenderSettings s;
+    s.width = s.height = 16;
+    s.paths = 2;
+    s.photons.paths = 1;
+    Camera const camera = look_at({0, 1, 2}, {0, 0, 0}, 60);
+    Scene scene;
+    for (int step = 0; step < 4; ++step) {
+        if (step == 1)
+            add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0.5f})));
+        if (step == 2) {
+            Light lamp;
+            lamp.position = {0, -5, 0}; // below the floor
+            lamp.intensity = vec3{1};
+            add_light(scene, lamp);
+        }
+        if (step == 3) scene.lights.back().position = {0, 1e6f, 0};
+        Report report;
+        Picture const p = render_ispm(world_of(scene), camera, s, {}, {}, report).picture;
+        for (float const v : p.find("color")->data) ASSERT_TRUE(std::isfinite(v));
+        EXPECT_EQ(mean_of(p, "L2").mean, 0) << step;
+    }
+}
+
+} // namespace
+} // namespace gi::test
