@@ -99,11 +99,11 @@ TEST(Ispm, SplattingIsThePhotonMap)
          trace_light_paths(view(world), world.bounds, ExactPathRays(visibility), paths, counts))
         photons.push_back(to_photon(v));
     sort_along_curve(photons);
-    KernelSizes const sizes = sizes_by_density(photons, 0.2f);
-    PhotonMap const map(photons, sizes);
+    std::vector<float> const radii = radii_by_density(photons, 0.2f, 16, 1);
+    PhotonMap const map(photons, radii);
     std::vector<PhotonKernel> kernels;
     for (std::uint32_t i = 0; i < photons.size(); ++i)
-        kernels.push_back({photons[i].position, sizes.radius(i), photons[i].normal, i});
+        kernels.push_back({photons[i].position, radii[i], photons[i].normal, i});
     View<Photon const> const all{photons.data(), photons.size()};
     View<PhotonKernel const> const near{kernels.data(), kernels.size()};
 
