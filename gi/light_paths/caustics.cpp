@@ -22,40 +22,11 @@ float area_of(WorldView const& world, std::uint32_t triangle)
     return 0.5f * glm::length(light_detail::area_vector(world.surfaces[triangle]));
 }
 
-/// Light that reaches a smooth triangle.
-struct CausticStart {
-    LightStart light;
-    RayQuery shadow; ///< nothing may be in its way
-    std::uint32_t target;
-};
-
-/// A point of a smooth triangle and a sample of the lights; no power without light.
-CausticStart start_caustic(WorldView const& world, CausticTargets const& targets, std::uint32_t i,
-                           std::uint32_t count, Pcg32 rng)
-{
-    double which = (double(i) + rng.uniform_double()) / double(count);
-    std::uint32_t const k = view(targets.choice).sample(which), triangle = targets.triangles[k];
-    vec2 const place = square_to_triangle(rng.uniform2());
-    vec3 const position = shading_detail::SurfacePoint{world.surfaces[triangle], place}.position();
-    LightChoice const choice = choose_light(world, rng.uniform_double());
-    LightSample const light = sample_light(world, choice, position, rng.uniform2());
-    CausticStart out{{{triangle, place, light.distance}, -light.direction, vec3{0}, i, 0}, {}, k};
-    if (!(light.pdf > 0)) return out;
-    ShadingPoint const at = shading_point(world, triangle, place, -light.direction);
-    float const chance = view(targets.choice).probability(k) * float(count);
-    vec3 const power = light.radiance * (std::abs(glm::dot(light.direction, at.geometric_normal)) / light.pdf) *
-                       (area_of(world, triangle) * coverage(world, triangle, place) / chance);
-    out.shadow = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
-    out.shadow.seed = rng.next();
-    if (out.shadow.reach > 0 && all_finite(power)) out.light.power = power;
-    return out;
-}
-
 } // namespace
 
-CausticTargets find_caustic_targets(World const& world, Bounds const& focus)
+StartTargets find_caustic_targets(World const& world, Bounds const& focus)
 {
-    CausticTargets out;
+    StartTargets out;
     std::vector<float> share;
     for (Bsdf const& b : world.bsdfs) share.push_back(smooth_share(b));
     if (world.light_select.empty() || std::ranges::none_of(share, [](float s) { return s > 0; })) return out;
@@ -134,66 +105,23 @@ void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, s
 
 std::vector<Photon> Caustics::photons_of_set(ExactVisibility const& visibility, PathCounts& counts)
 {
-    constexpr std::uint32_t kTogether = 4096; // bounds memory, and the time to a stop
-    // Chances that follow from random numbers need others, else there were a bias.
-    std::uint64_t const stream = learned_.value_or(false) ? 0xca58 : 0xca57;
     BuildStop const stop(stop_);
     WorldView const w = view(world_);
-    std::uint32_t const blocks = (paths_ + kTogether - 1) / kTogether, pass = *first_index_ + sets_;
-    std::vector<std::vector<CausticStart>> found(blocks);
-    std::vector<std::size_t> tested(blocks);
-    tbb::parallel_for(0u, blocks, [&](std::uint32_t block) {
-        FlushDenormals const guard;
-        if (stop.given_up()) throw Interrupted();
-        std::vector<CausticStart>& starts = found[block];
-        for (std::uint32_t i = block * kTogether; i < std::min(paths_, (block + 1) * kTogether); ++i) {
-            CausticStart const s =
-                start_caustic(w, targets_, i, paths_, Pcg32::for_path(settings_.seed ^ stream, i, pass));
-            if (max_component(s.light.power) > 0) starts.push_back(s);
-        }
-        std::vector<RayQuery> shadows;
-        for (CausticStart const& s : starts) shadows.push_back(s.shadow);
-        std::vector<std::uint8_t> blocked(shadows.size());
-        visibility.occluded(shadows, blocked);
-        tested[block] = shadows.size();
-        std::size_t lit = 0;
-        for (std::size_t k = 0; k < starts.size(); ++k)
-            if (blocked[k] == 0) starts[lit++] = starts[k];
-        starts.resize(lit);
-    });
-    for (std::size_t const n : tested) counts.shadow_rays += n;
+    LightPaths paths{.count = paths_,
+                     .bounces = 1,
+                     .seed = settings_.seed,
+                     .pass = *first_index_ + sets_,
+                     .delta_only = true,
+                     .stop = &stop};
+    paths.seed ^= learned_.value_or(false) ? 0xca58u : 0xca57u; // see learn_chances()
+    LitStarts const lit =
+        start_on_surfaces(w, visibility, targets_, {paths_, paths.seed, paths.pass}, stop, counts);
     std::vector<Photon> photons;
-    std::vector<LightStart> lights;
-    ExactPathRays const rays(visibility);
-    for (std::vector<CausticStart> const& starts : found) {
-        lights.clear();
-        for (CausticStart const& s : starts) lights.push_back(s.light);
-        LightPaths const paths{.count = paths_,
-                               .bounces = 1,
-                               .seed = settings_.seed ^ stream,
-                               .pass = pass,
-                               .delta_only = true,
-                               .stop = &stop};
-        for (LightVertex const& v : trace_from_surfaces(w, rays, lights, paths, counts)) {
-            photons.push_back(to_photon(v));
-            photons.back().path = starts[v.path].target;
-        }
+    for (LightVertex const& v : trace_from_surfaces(w, ExactPathRays(visibility), lit.starts, paths, counts)) {
+        photons.push_back(to_photon(v));
+        photons.back().path = lit.targets[v.path];
     }
     return photons;
-}
-
-/// Half of the paths then begin where others brought light.
-void Caustics::learn_chances(std::span<Photon const> photons)
-{
-    std::vector<float> weights(targets_.triangles.size());
-    double sum = 0;
-    for (Photon const& p : photons) {
-        weights[p.path] += luminance(p.flux);
-        sum += double(luminance(p.flux));
-    }
-    for (std::uint32_t k = 0; k < weights.size(); ++k)
-        weights[k] = float(double(weights[k]) / sum) + view(targets_.choice).probability(k);
-    targets_.choice = make_alias_table(weights);
 }
 
 void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
@@ -206,7 +134,9 @@ void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
     if (!learned_) {
         learned_ = !photons.empty() && photons.size() < few;
         if (*learned_) {
-            learn_chances(photons);
+            std::vector<float> light(targets_.triangles.size());
+            for (Photon const& p : photons) light[p.path] += luminance(p.flux);
+            learn_chances(light, targets_);
             photons = photons_of_set(visibility, counts);
         }
     }

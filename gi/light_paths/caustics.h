@@ -14,8 +14,8 @@
 // pass such that the mean of the passes converges (Knaus and Zwicker 2011). While the camera or anything
 // else moves, each frame begins with the photons of the first pass: no flicker.
 
-#include "gi/core/alias_table.h"
 #include "gi/core/report.h"
+#include "gi/light_paths/lit_starts.h"
 #include "gi/light_paths/photon_map.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/frame_renderer.h"
@@ -27,16 +27,11 @@
 
 namespace gi {
 
-/// Triangles that mirror or refract without scattering, as far as no texture changes them, and the chance of each.
-struct CausticTargets {
-    std::vector<std::uint32_t> triangles;
-    AliasTable choice; ///< empty = there are none
-};
-
-/// Chances are in proportion to how much a material reflects and transmits, half by area, and half one triangle
+/// Triangles that mirror or refract without scattering, as far as no texture changes them. Chances are in
+/// proportion to how much a material reflects and transmits, half by area, and half one triangle
 /// like another: small curved things, which focus light, have many. @param focus  gets at least half of the paths
 /// if smooth triangles lie there; empty = there is none
-CausticTargets find_caustic_targets(World const& world, Bounds const& focus);
+StartTargets find_caustic_targets(World const& world, Bounds const& focus);
 
 class Caustics {
 public:
@@ -58,7 +53,6 @@ public:
 private:
     void trace(ExactVisibility const& visibility, PathCounts& counts);
     std::vector<Photon> photons_of_set(ExactVisibility const& visibility, PathCounts& counts);
-    void learn_chances(std::span<Photon const> photons);
 
     World const& world_;
     RenderSettings const& settings_;
@@ -68,7 +62,7 @@ private:
     std::vector<Camera> cameras_;              ///< of the last call
     Bounds focus_;
     bool surfaces_changed_ = true, light_changed_ = true;
-    CausticTargets targets_;
+    StartTargets targets_;
     std::optional<bool> learned_; ///< whether chances follow the photons of a first set, because these were few
     std::vector<Photon> photons_;
     PhotonMap map_;

@@ -242,7 +242,7 @@ TEST(ShGridCaustics, HalfOfThePathsGoToTheFocus)
     set_environment(scene, vec3{1});
     World const world = world_of(scene);
     Bounds const focus{vec3{-1}, vec3{1}};
-    CausticTargets const targets = find_caustic_targets(world, focus);
+    StartTargets const targets = find_caustic_targets(world, focus);
     double in_focus = 0, all = 0;
     for (std::size_t k = 0; k < targets.triangles.size(); ++k) {
         double const chance = double(targets.choice.entries[k].probability);

@@ -1,0 +1,28 @@
+#pragma once
+// Light paths that begin on surfaces with the light that comes to them: a point there, a sample of the lights, a
+// shadow ray between the two. So however small a part of the lights' power they get, paths meet them.
+
+#include "gi/core/alias_table.h"
+#include "gi/light_paths/light_paths.h"
+
+namespace gi {
+
+/// Triangles, and the chance of each.
+struct StartTargets {
+    std::vector<std::uint32_t> triangles;
+    AliasTable choice; ///< empty = there are none
+};
+
+struct LitStarts {
+    std::vector<LightStart> starts;
+    std::vector<std::uint32_t> targets; ///< of each of them
+};
+
+LitStarts start_on_surfaces(WorldView const& world, ExactVisibility const& visibility, StartTargets const& targets,
+                            LightPathSet const& set, BuildStop const& stop, PathCounts& counts);
+
+/// Half of the paths then begin where others brought light. Chances that follow from random numbers need others
+/// afterwards, else there were a bias. @param light  per target  Returns false without light.
+bool learn_chances(std::span<float const> light, StartTargets& targets);
+
+} // namespace gi
