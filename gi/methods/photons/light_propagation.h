@@ -64,7 +64,7 @@ public:
 
     struct Level {
         GridFrame frame, corners;
-        std::vector<vec3> blocked; ///< per corner, see OpenFaces
+        std::vector<Blocker> blocked; ///< per corner, see OpenFaces
         std::vector<vec3> open;
         std::vector<ShColor> total;
         double injected_w = 0, outside_w = 0; ///< sums over channels, virtual lights in it and beyond it
