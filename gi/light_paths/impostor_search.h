@@ -4,16 +4,10 @@
 // and its direction as seen from the impostor (Fei and Wang), or by a walk through the texels (impostor_walk.h).
 
 #include "gi/light_paths/impostor_maps.h"
+#include "gi/render/render_settings.h"
 #include "gi/scene/shading/shading_point.h"
 
 namespace gi {
-
-enum class ImpostorSearch : std::uint8_t {
-    first_guess, ///< iteration in the nearest impostor
-    all,         ///< iteration in every impostor; the one of least energy counts
-    cascaded,    ///< guess by the fan of the nearest impostor, then iteration in that nearest to the guess
-    walk ///< along the ray through the texels of an impostor, and of others where the ray is hidden from it
-};
 
 struct ImpostorSettings {
     ImpostorSearch search = ImpostorSearch::walk;

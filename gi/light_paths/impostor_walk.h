@@ -391,7 +391,8 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
 } // namespace impostor_detail
 
 /// Follows a ray. @param path  of finite coordinates
-GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& path, ImpostorSettings const& settings)
+GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& path,
+                                ImpostorSettings const& settings)
 {
     using namespace impostor_detail;
     if (scene.maps.centres.empty()) return {};
@@ -399,7 +400,7 @@ GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& pat
     float const start = q.start;
     q.ray.origin += start * q.ray.direction;
     q.reach -= start;
-    ImpostorHit found = settings.search == ImpostorSearch::walk       ? search_walk(scene, q, path.triangle, settings)
+    ImpostorHit found = settings.search == ImpostorSearch::walk ? search_walk(scene, q, path.triangle, settings)
                         : settings.search == ImpostorSearch::cascaded ? search_cascaded(scene, q, settings)
                         : settings.search == ImpostorSearch::all      ? search_all(scene, q, settings)
                                                                       : search_first_guess(scene, q, settings);

@@ -13,7 +13,7 @@ struct ReachedPoint {
     vec3 position, normal; ///< m; unit, geometric, on the side that was met
     float clearance;       ///< m, see ShadingPoint
     std::uint32_t triangle;
-    float free = kInf;     ///< m; length of the flight that left it, kInf = into the open
+    float free = kInf; ///< m; length of the flight that left it, kInf = into the open
 };
 
 /// Free flight between two surfaces.

@@ -41,6 +41,8 @@ constexpr std::array kMethods{
            start_lpv_frames},
     Method{"isllpm", "ray trees, with indirect light from photons in lattices", render_isllpm,
            start_isllpm_frames},
+    Method{"multi_image", "ray trees, with indirect light from photons that follow distance impostors",
+           render_multi_image, start_multi_image_frames},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),

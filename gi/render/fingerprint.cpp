@@ -138,10 +138,28 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     }
     if (!method.starts_with("vpl_") && method != "slhb" && method != "reference") {
         PhotonSettings const& o = s.photons;
-        for (int const v : {o.paths, o.caustic_paths, o.reflections, int(o.rays), int(o.first_bounce),
-                            int(o.frozen), int(o.kernel_by), o.propagation_cells, o.propagation_cascades,
-                            o.propagation_steps, int(o.reprojection), o.low_cells, o.middle_cells, o.high_cells,
-                            o.lattice_cascades, int(o.lattice_smoothing), int(o.irradiance_by)})
+        for (int const v : {o.paths,
+                            o.caustic_paths,
+                            o.reflections,
+                            int(o.rays),
+                            int(o.first_bounce),
+                            int(o.frozen),
+                            int(o.kernel_by),
+                            o.propagation_cells,
+                            o.propagation_cascades,
+                            o.propagation_steps,
+                            int(o.reprojection),
+                            o.low_cells,
+                            o.middle_cells,
+                            o.high_cells,
+                            o.lattice_cascades,
+                            int(o.lattice_smoothing),
+                            int(o.irradiance_by),
+                            o.impostors,
+                            o.impostor_texels,
+                            int(o.impostor_search),
+                            o.volume_cells,
+                            o.screen_gathers})
             h.add(std::uint64_t(v));
         h.add(o.caustic_radius_m);
         h.add(o.kernel_size);

@@ -130,6 +130,13 @@ enum class KernelBy : std::uint8_t { density, footprint };
 enum class Reprojection : std::uint8_t { beams, cosine_lobes };
 /// How irradiance follows from photons in a cell, see photon_lattice.h.
 enum class IrradianceBy : std::uint8_t { normals, directions };
+/// How rays are followed through distance impostors, see gi/light_paths/impostor_search.h.
+enum class ImpostorSearch : std::uint8_t {
+    first_guess, ///< iteration in the nearest impostor
+    all,         ///< iteration in every impostor; the one of least energy counts
+    cascaded,    ///< guess by the fan of the nearest impostor, then iteration in that nearest to the guess
+    walk ///< along the ray through the texels of an impostor, and of others where the ray is hidden from it
+};
 
 /// Settings of light paths and photons: sh_grid and the methods of gi/methods/photons.
 struct PhotonSettings {
@@ -151,6 +158,11 @@ struct PhotonSettings {
     int lattice_cascades = 1;                                 ///< nested ones of each of them
     Switch lattice_smoothing = Switch::on;                    ///< of the low and the middle one
     IrradianceBy irradiance_by = IrradianceBy::normals;
+    int impostors = 16;        ///< distance impostors, at most
+    int impostor_texels = 128; ///< along an edge of a face, rounded up to a multiple of 8
+    ImpostorSearch impostor_search = ImpostorSearch::walk;
+    int volume_cells = 64;  ///< of the light gathering volume of multi_image, along the scene's longest side
+    int screen_gathers = 8; ///< steps that spread caustics over the pixels of multi_image
 };
 
 /// Settings of the method sh_grid, see gi/methods/sh_grid.

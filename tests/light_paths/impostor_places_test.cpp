@@ -133,11 +133,11 @@ TEST(ImpostorPlaces, AreAboveAPlane)
     EXPECT_EQ(share_seen(world, places), 1);
     Impostors const impostors(world, places, 64);
     ExactVisibility const visibility(world, false, 1);
-    std::vector<RayQuery> rays;
+    std::vector<PathQuery> rays;
     Pcg32 rng(4, 4);
     for (int k = 0; k < 1000; ++k) {
         vec3 d = random_direction(rng);
-        rays.push_back({.ray = {{20 * rng.uniform() - 10, 2, 20 * rng.uniform() - 10}, d}});
+        rays.push_back({{.ray = {{20 * rng.uniform() - 10, 2, 20 * rng.uniform() - 10}, d}}});
     }
     EXPECT_LT(accuracy(world, impostors, {}, visibility, rays).wrong, 0.01);
 }
@@ -147,7 +147,7 @@ TEST(ImpostorPlaces, AreNoneInAnEmptyScene)
     World const world = world_of(Scene{});
     EXPECT_TRUE(places_of(world).empty());
     Impostors const impostors(world, {}, 64);
-    RayQuery const query{.ray = {{0, 0, 0}, {0, 1, 0}}};
+    PathQuery query{{.ray = {{0, 0, 0}, {0, 1, 0}}}};
     Hit hit{.triangle = 3};
     ImpostorRays(world, impostors).nearest({&query, 1}, {&hit, 1});
     EXPECT_EQ(hit.triangle, kNoTriangle);
@@ -170,12 +170,12 @@ TEST(ImpostorPlaces, SeeOneTriangle)
     ASSERT_GE(places.size(), 1u);
     Impostors const impostors(world, places, 64);
     ExactVisibility const visibility(world, false, 1);
-    std::vector<RayQuery> rays;
+    std::vector<PathQuery> rays;
     Pcg32 rng(4, 5);
     for (int k = 0; k < 1000; ++k) {
         vec3 const from = vec3{0.3f} + 2.0f * random_direction(rng);
         vec3 const to = vec3{0.3f} + 0.5f * random_direction(rng);
-        rays.push_back({.ray = {from, glm::normalize(to - from)}});
+        rays.push_back({{.ray = {from, glm::normalize(to - from)}}});
     }
     EXPECT_LT(accuracy(world, impostors, {}, visibility, rays).wrong, 0.05);
 }
@@ -193,9 +193,9 @@ TEST(ImpostorPlaces, DoNotDependOnTheScale)
         std::vector<vec3> const places = places_of(world);
         counts.push_back(places.size());
         ExactVisibility const visibility(world, false, 1);
-        std::vector<RayQuery> rays;
+        std::vector<PathQuery> rays;
         for (Flight const& f : reach(world, visibility, 1000, 7).flights)
-            rays.push_back({.ray = {f.from, f.direction}});
+            rays.push_back({{.ray = {f.from, f.direction}}, f.leaves});
         ASSERT_GT(rays.size(), 1000u);
         EXPECT_LT(accuracy(world, Impostors(world, places, 64), {}, visibility, rays).wrong, 0.01) << scale;
     }

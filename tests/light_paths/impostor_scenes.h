@@ -25,22 +25,23 @@ inline vec3 random_direction(Pcg32& rng)
 }
 
 /// Cosine-distributed rays that leave random surface points, of the sides that their normals show.
-inline std::vector<RayQuery> rays_from_surfaces(World const& world, std::size_t n, std::uint64_t seed)
+inline std::vector<PathQuery> rays_from_surfaces(World const& world, std::size_t n, std::uint64_t seed)
 {
     std::vector<double> area;
     double sum = 0;
     for (Surface const& s : world.surfaces)
         area.push_back(sum += double(glm::length(glm::cross(s.edge1, s.edge2))));
     Pcg32 rng(seed, 1);
-    std::vector<RayQuery> rays;
+    std::vector<PathQuery> rays;
     for (std::size_t i = 0; i < n; ++i) {
         auto const at = std::ranges::upper_bound(area, rng.uniform_double() * sum);
         Surface const& s = world.surfaces[std::min(std::size_t(at - area.begin()), area.size() - 1)];
         vec2 const w = square_to_triangle(rng.uniform2());
         vec3 const normal = shading_detail::triangle_normal(s);
         vec3 const d = Frame::about(normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
-        rays.push_back({.ray = {s.corner + w.x * s.edge1 + w.y * s.edge2 + s.clearance * normal, d},
-                        .seed = std::uint32_t(i)});
+        rays.push_back({{.ray = {s.corner + w.x * s.edge1 + w.y * s.edge2 + s.clearance * normal, d},
+                         .seed = std::uint32_t(i)},
+                        std::uint32_t(&s - world.surfaces.data())});
     }
     return rays;
 }
@@ -54,10 +55,11 @@ struct Accuracy {
 };
 
 inline Accuracy accuracy(World const& world, Impostors const& impostors, ImpostorSettings const& settings,
-                         ExactVisibility const& visibility, std::span<RayQuery const> rays)
+                         ExactVisibility const& visibility, std::span<PathQuery const> rays)
 {
     std::vector<Hit> truth(rays.size());
-    visibility.nearest(rays, truth);
+    std::vector<PathQuery> copies(rays.begin(), rays.end());
+    ExactPathRays(visibility).nearest(copies, truth);
     std::vector<ImpostorHit> found(rays.size());
     ImpostorRays(world, impostors, settings).follow(rays, found);
     Accuracy a;

@@ -33,9 +33,10 @@ TEST(ImpostorSearch, ErrsByLessThanATexelInAConvexRoom)
     World const world = box_room({-3, 0, -2}, {3, 2.5f, 2});
     ExactVisibility const visibility(world, false, 1);
     Impostors const impostors(world, {{-1.5f, 1.2f, 0.3f}, {1.4f, 1.3f, -0.2f}}, 64);
-    std::vector<RayQuery> const rays = rays_from_surfaces(world, 4000, 5);
+    std::vector<PathQuery> const rays = rays_from_surfaces(world, 4000, 5);
     std::vector<Hit> truth(rays.size());
-    visibility.nearest(rays, truth);
+    std::vector<PathQuery> copies = rays;
+    ExactPathRays(visibility).nearest(copies, truth);
     for (ImpostorSearch const search : kSearches) {
         // With few steps the secant rule does not come to the end.
         std::vector<ImpostorHit> found(rays.size());
@@ -43,7 +44,7 @@ TEST(ImpostorSearch, ErrsByLessThanATexelInAConvexRoom)
         std::size_t within = 0;
         for (std::size_t k = 0; k < rays.size(); ++k) {
             float const off = std::abs(found[k].hit.distance - truth[k].distance);
-            vec3 const at = rays[k].ray.origin + truth[k].distance * rays[k].ray.direction;
+            vec3 const at = rays[k].ray.ray.origin + truth[k].distance * rays[k].ray.ray.direction;
             vec3 const normal = shading_detail::triangle_normal(world.surfaces[truth[k].triangle]);
             float footprint = 0;
             for (vec3 const centre : impostors.view().centres) {
@@ -53,7 +54,7 @@ TEST(ImpostorSearch, ErrsByLessThanATexelInAConvexRoom)
             }
             float const limit = search == ImpostorSearch::walk
                                     ? 1e-4f
-                                    : footprint / std::abs(glm::dot(rays[k].ray.direction, normal));
+                                    : footprint / std::abs(glm::dot(rays[k].ray.ray.direction, normal));
             within += found[k].hit.triangle != kNoTriangle && off <= limit;
         }
         // The last few are near edges, where a texel holds another wall, or guessed at their own origin.
@@ -75,12 +76,11 @@ TEST(ImpostorSearch, FanFindsWhatTheFirstGuessMisses)
     Impostors const impostors(world, {{0, 0, 0}, {0, -3.5f, 1}}, 128);
     for (vec3 const from : {vec3{4, 2, 0}, vec3{4, 1, 0}, vec3{0.75f, 0.75f, 0}}) {
         vec3 const direction = from.y == 1 ? vec3{1, -1, 0} : vec3{2, -3, 0};
-        std::vector<RayQuery> rays;
+        std::vector<PathQuery> rays;
         for (int k = 0; k < 27; ++k) { // and its neighbours
             vec3 const aside = vec3{k % 3, k / 3 % 3, k / 9} - 1.0f;
-            rays.push_back(
-                {.ray = {from + 0.03f * aside,
-                         glm::normalize(glm::normalize(direction) + 0.01f * vec3{aside.z, aside.x, aside.y})}});
+            vec3 const turned = glm::normalize(direction) + 0.01f * vec3{aside.z, aside.x, aside.y};
+            rays.push_back({{.ray = {from + 0.03f * aside, glm::normalize(turned)}}});
         }
         auto const of = [&](ImpostorSettings const& s) { return accuracy(world, impostors, s, visibility, rays); };
         EXPECT_EQ(of({.search = ImpostorSearch::first_guess}).wrong, 1);
@@ -99,7 +99,7 @@ TEST(ImpostorSearch, PrintedEnergyFindsTheOriginOfTheRay)
     World const world = box_room({-3, 0, -2}, {3, 2.5f, 2});
     ExactVisibility const visibility(world, false, 1);
     Impostors const impostors(world, {{0, 1.2f, 0}}, 128);
-    std::vector<RayQuery> const rays = rays_from_surfaces(world, 2000, 6);
+    std::vector<PathQuery> const rays = rays_from_surfaces(world, 2000, 6);
     double const printed =
         accuracy(world, impostors, {.search = ImpostorSearch::cascaded, .skip_texels = 0}, visibility, rays).wrong;
     double const skipped =
@@ -154,7 +154,7 @@ TEST(ImpostorSearch, RespectsReachAndStart)
         ImpostorRays const rays(world, impostors, {.search = search});
         RayQuery const near{.ray = {{0, 0, 0}, {1, 0, 0}}, .reach = 0.8f}, far{.ray = near.ray, .reach = 1.2f},
             late{.ray = {{-2, 0, 0}, {1, 0, 0}}, .start = 1.5f};
-        RayQuery const queries[] = {near, far, late};
+        PathQuery queries[] = {{near}, {far}, {late}};
         Hit hits[3];
         rays.nearest(queries, hits);
         EXPECT_EQ(hits[0].triangle, kNoTriangle) << int(search);
@@ -179,7 +179,7 @@ TEST(ImpostorSearch, PassesWhereAMaterialIsCutOut)
     Impostors const impostors(world, {{-0.1f, 0.05f, 0}}, 64);
     for (ImpostorSearch const search : kSearches) {
         ImpostorRays const rays(world, impostors, {.search = search});
-        RayQuery const queries[] = {{.ray = {{0, 0, -0.3f}, {1, 0, 0}}}, {.ray = {{0, 0, 0.3f}, {1, 0, 0}}}};
+        PathQuery queries[] = {{{.ray = {{0, 0, -0.3f}, {1, 0, 0}}}}, {{.ray = {{0, 0, 0.3f}, {1, 0, 0}}}}};
         Hit hits[2];
         rays.nearest(queries, hits);
         EXPECT_NEAR(hits[0].distance, 1, 0.03) << int(search);
@@ -252,7 +252,7 @@ void check_kernels()
     // The same maps for both, so that differences are those of the search.
     ImpostorsOn<S> const same{upload<S>(centres), upload<S>(std::vector(maps.texels.begin(), maps.texels.end())),
                               upload<S>(std::vector(maps.blocks.begin(), maps.blocks.end())), 64};
-    Buffer<RayQuery, S> const queries = upload<S>(rays);
+    Buffer<PathQuery, S> const queries = upload<S>(rays);
     for (ImpostorSearch const search : kSearches) {
         ImpostorSettings const settings{.search = search};
         Buffer<ImpostorHit, S> hits(rays.size());

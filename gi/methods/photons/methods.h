@@ -4,6 +4,8 @@
 //   screen
 //   lpv          light propagation volumes (Kaplanyan and Dachsbacher 2010): virtual lights, whose light goes from
 //                cell to cell of a lattice
+//   multi_image  multi-image-based photon tracing (Fei and Wang): light paths through distance impostors, a light
+//                gathering volume, and one in screen space for caustics
 //   isllpm       image-space light lattice photon mapping (Noren and Sjolin): photons in lattices
 
 #include "gi/render/frame_renderer.h"
@@ -23,5 +25,9 @@ RenderResult render_isllpm(World const& world, Camera const& camera, RenderSetti
                            StopRequest const& stop, RenderProgress const& progress, Report& report);
 std::unique_ptr<FrameRenderer> start_isllpm_frames(MovingWorld const& world, Camera const& camera,
                                                    RenderSettings const& settings, Report& report);
+RenderResult render_multi_image(World const& world, Camera const& camera, RenderSettings const& settings,
+                                StopRequest const& stop, RenderProgress const& progress, Report& report);
+std::unique_ptr<FrameRenderer> start_multi_image_frames(MovingWorld const& world, Camera const& camera,
+                                                        RenderSettings const& settings, Report& report);
 
 } // namespace gi

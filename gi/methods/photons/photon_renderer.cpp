@@ -1,6 +1,8 @@
 #include "gi/methods/photons/photon_renderer.h"
 
 #include "gi/light_paths/bounce_map.h"
+#include "gi/light_paths/impostor_places.h"
+#include "gi/light_paths/impostor_rays.h"
 #include "gi/light_paths/options.h"
 #include "gi/methods/photons/look_up_rays.h"
 
@@ -24,6 +26,8 @@ void PhotonRenderer::changed(Changes const& c)
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds || c.materials || c.coverage;
     soup_moved_ = soup_moved_ || c.geometry;
     axes_moved_ = axes_moved_ || c.geometry;
+    impostors_moved_ = impostors_moved_ || c.geometry;
+    if (c.materials || c.coverage) impostors_.reset();
     light_changed_ = light_changed_ || c.lights || c.emitters || c.environment;
 }
 
@@ -101,8 +105,9 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
                                   .pass = *first_index_ + sets_,
                                   .stop = &stop};
             std::vector<LightVertex> const vertices =
-                by_map ? trace_bounce_maps(view(world_), world_.bounds, *soup_, CutOuts(world_), rays, some, counts)
-                       : trace_light_paths(view(world_), world_.bounds, rays, some, counts);
+                by_map
+                    ? trace_bounce_maps(view(world_), world_.bounds, *soup_, CutOuts(world_), rays, some, counts)
+                    : trace_light_paths(view(world_), world_.bounds, rays, some, counts);
             for (LightVertex const& v : vertices)
                 if (stores(v)) photons.push_back(to_photon(v));
             if (by_map) break; // the whole set
@@ -122,7 +127,7 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
 
 PathRays const& PhotonRenderer::path_rays(BuildStop const&)
 {
-    switch (settings_.photons.rays) {
+    switch (rays_kind()) {
     case PhotonRays::look_ups: {
         StageTimer const timer(report_, "hit buffers");
         if (!axes_)
@@ -133,7 +138,21 @@ PathRays const& PhotonRenderer::path_rays(BuildStop const&)
         rays_of_paths_ = std::make_unique<LookUpRays>(world_, *axes_, *visibility_);
         break;
     }
-    case PhotonRays::impostors:
+    case PhotonRays::impostors: {
+        StageTimer const timer(report_, "impostors");
+        if (!impostors_) {
+            auto const texels = std::uint32_t((settings_.photons.impostor_texels + 7) / 8 * 8);
+            ImpostorPlacement const placement{.count = std::uint32_t(settings_.photons.impostors)};
+            impostors_.emplace(world_, place_impostors(world_, *visibility_, placement), texels,
+                               std::uint32_t(settings_.seed), first_moving_);
+        } else if (impostors_moved_) {
+            impostors_->moved(world_);
+        }
+        impostors_moved_ = false;
+        ImpostorSettings const by{.search = settings_.photons.impostor_search};
+        rays_of_paths_ = std::make_unique<ImpostorRays>(world_, *impostors_, by);
+        break;
+    }
     case PhotonRays::exact:
         rays_of_paths_ = std::make_unique<ExactPathRays>(*visibility_);
         break;
@@ -150,6 +169,7 @@ void PhotonRenderer::report_work()
         report_.count("sets of photons since the last change", double(sets_));
         report_.count("flux of the photons, W (luminance)", double(luminance(vec3(flux_))));
     }
+    if (impostors_) report_.count("impostors", double(impostors_->view().count()));
     report_light(report_);
     caustics_.report_counts();
 }

@@ -6,6 +6,7 @@
 // nothing changes, each frame has the next.
 
 #include "gi/light_paths/caustics.h"
+#include "gi/light_paths/impostors.h"
 #include "gi/light_paths/photon.h"
 #include "gi/methods/slhb/directions/stored_axes.h"
 #include "gi/methods/whitted/whitted.h"
@@ -45,6 +46,7 @@ protected:
     virtual bool has_caustics() const { return true; }
     /// Indirect bounces that the method's light paths give, at most.
     virtual int bounces() const { return std::min(settings_.photons.reflections, settings_.bounces); }
+    virtual PhotonRays rays_kind() const { return settings_.photons.rays; }
     virtual std::string_view timer_name() const = 0; ///< of take()
     /// Makes light of a set of photons. Throws Interrupted if a stop is requested, and then keeps what it had.
     virtual void take(PhotonSet const& set) = 0;
@@ -74,8 +76,9 @@ private:
     std::uint32_t paths_;                      ///< of a set
     std::uint32_t sets_ = 0;                   ///< since the last change
     std::optional<TriangleSoup> soup_;         ///< what bounce maps draw
-    bool soup_moved_ = false, axes_moved_ = false;
+    bool soup_moved_ = false, axes_moved_ = false, impostors_moved_ = false;
     std::optional<StoredAxes> axes_; ///< of look-ups
+    std::optional<Impostors> impostors_;
     std::unique_ptr<PathRays> rays_of_paths_;
     std::size_t stored_ = 0;
     dvec3 flux_{0}, emitted_{0};

@@ -1,0 +1,158 @@
+// The method multi_image (Fei and Wang): photons by distance impostors. Diffuse light is gathered in one lattice
+// over the scene, the light gathering volume (LGV), caustics in the pixels of the camera (SSLGV). Points that no
+// pixel shows, as in mirrors, take caustics from the photon map.
+//
+// Unlike the paper: the LGV is divided by the area of the surfaces in each cell, not by the scene's area over the
+// number of photons, and gathers from 26 neighbours instead of 6 (PhotonLattices).
+
+#include "gi/methods/photons/methods.h"
+#include "gi/methods/photons/photon_lattice.h"
+#include "gi/methods/photons/photon_renderer.h"
+#include "gi/methods/photons/screen_volume.h"
+#include "gi/methods/whitted/caustic_light.h"
+#include "gi/methods/whitted/lobe_light.h"
+
+#include <algorithm>
+
+namespace gi {
+namespace {
+
+class MultiImageLight : public SurfaceLight {
+public:
+    /// @param caustics  null = none
+    MultiImageLight(PhotonLattices const& volume, std::vector<ScreenVolume> const& screens,
+                    PhotonMap const* caustics)
+        : volume_(volume), screens_(screens), caustics_(caustics)
+    {
+    }
+    void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts&) const override
+    {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            TreePoint& p = points[i];
+            out[i] = vec3{0};
+            if (!(p.wo.z > 0)) continue;
+            if (caustics_ != nullptr) layer_of(*p.sample, p.scatterings + 1) += p.throughput * caustics(p);
+            if (max_component(p.at.bsdf.diffuse) > 0)
+                out[i] = diffuse_response(p) * volume_.irradiance(p.at.position, p.at.frame.normal);
+            out[i] +=
+                glossy_radiance(p, p.direct ? 8 : 1, [&](vec3 wi) { return volume_.radiance(p.at.position, wi); });
+        }
+    }
+
+private:
+    vec3 caustics(TreePoint const& p) const
+    {
+        // Four coefficients are too few for what a glossy lobe shows of a caustic.
+        if (bsdf_detail::is_matt(p.at.bsdf) || p.glossy_traced)
+            for (ScreenVolume const& s : screens_) {
+                vec3 irradiance;
+                if (s.view().irradiance_at(p.at.position, p.at.geometric_normal, p.at.frame.normal, irradiance))
+                    return diffuse_response(p) * irradiance;
+            }
+        return caustics_->radiance(p.at, p.wo, p.glossy_traced);
+    }
+
+    PhotonLattices const& volume_;
+    std::vector<ScreenVolume> const& screens_;
+    PhotonMap const* caustics_;
+};
+
+class MultiImageRenderer : public PhotonRenderer {
+public:
+    MultiImageRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
+                       Report& report, StopRequest const* stop)
+        : PhotonRenderer(world, settings, first_moving, report, stop),
+          volume_({.cells = {settings.photons.volume_cells, settings.photons.volume_cells, 4}})
+    {
+    }
+    void changed(Changes const& c) override
+    {
+        PhotonRenderer::changed(c);
+        soup_moved_ = soup_moved_ || c.geometry;
+        if (c.materials || c.coverage) cut_outs_.reset();
+        if (c.geometry || c.materials || c.coverage) cameras_.clear();
+    }
+
+protected:
+    bool stores(LightVertex const&) const override { return true; } // all tell what light reaches
+    PhotonRays rays_kind() const override { return PhotonRays::impostors; }
+    std::string_view timer_name() const override { return "light gathering volume"; }
+    void take(PhotonSet const& set) override
+    {
+        if (set.surfaces_changed) volume_.place(world_, set.visibility, world_.bounds.center(), set.stop);
+        volume_.update(set.photons);
+    }
+    SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) override
+    {
+        if (caustics != nullptr) {
+            place_screens(views);
+            StageTimer const timer(report_, "caustics on screen");
+            for (ScreenVolume& s : screens_) s.update(caustic_photons());
+        }
+        light_.emplace(volume_, screens_, caustics);
+        return &*light_;
+    }
+    void report_light(Report& report) override
+    {
+        std::size_t cells = 0;
+        for (Frequency const f : {Frequency::low, Frequency::middle})
+            for (PhotonLattices::Level const& level : volume_.levels(f)) cells += level.cells.values.size();
+        report.count("cells with surfaces", double(cells));
+        report.count("flux of photons in no cell, W (sum of channels)", volume_.lost_w());
+        dvec3 on{0}, off{0};
+        for (ScreenVolume const& s : screens_) {
+            on += s.injected_w();
+            off += s.lost_w();
+        }
+        report.count("flux of caustics on screen, W (luminance)", double(luminance(vec3(on))));
+        report.count("flux of caustics elsewhere, W (luminance)", double(luminance(vec3(off))));
+    }
+
+private:
+    void place_screens(std::span<FrameView const> views)
+    {
+        bool const same = std::ranges::equal(views, cameras_, [](FrameView const& v, FrameView const& w) {
+            return v.camera == w.camera && v.width == w.width && v.height == w.height;
+        });
+        if (same) return;
+        StageTimer const timer(report_, "surfaces on screen");
+        cameras_.assign(views.begin(), views.end());
+        if (!soup_)
+            soup_ = make_soup(world_);
+        else if (soup_moved_)
+            update_soup(world_, first_moving_, *soup_);
+        soup_moved_ = false;
+        if (!cut_outs_) cut_outs_.emplace(world_);
+        screens_.clear();
+        for (FrameView const& v : views) {
+            if (v.camera.orthographic) continue;
+            screens_.emplace_back(ScreenVolumeSettings{.gathers = settings_.photons.screen_gathers});
+            screens_.back().place(world_, *soup_, *cut_outs_, v, std::uint32_t(settings_.seed));
+        }
+    }
+
+    PhotonLattices volume_;
+    std::optional<TriangleSoup> soup_;
+    std::optional<CutOuts> cut_outs_;
+    bool soup_moved_ = false;
+    std::vector<FrameView> cameras_; ///< of screens_
+    std::vector<ScreenVolume> screens_;
+    std::optional<MultiImageLight> light_;
+};
+
+} // namespace
+
+RenderResult render_multi_image(World const& world, Camera const& camera, RenderSettings const& settings,
+                                StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_passes("multi_image", start_passes<MultiImageRenderer>, world, camera, settings, stop, progress,
+                         report);
+}
+
+std::unique_ptr<FrameRenderer> start_multi_image_frames(MovingWorld const& world, Camera const&,
+                                                        RenderSettings const& settings, Report& report)
+{
+    return start_pass_frames(start_passes<MultiImageRenderer>, world, settings, report);
+}
+
+} // namespace gi
