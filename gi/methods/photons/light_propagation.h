@@ -26,7 +26,6 @@
 #include "gi/light_paths/photon.h"
 #include "gi/methods/photons/propagation_kernels.h"
 
-
 namespace gi {
 
 struct PropagationSettings {
