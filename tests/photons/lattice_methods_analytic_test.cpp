@@ -54,9 +54,9 @@ TEST(LatticeMethods, Furnace)
             double const mean = 2 * mean_of_layer(p, "L2");
             fmt::print("{}, {}: mean {:.4f}, off by {:.4f}\n", propagates ? "lpv" : "isllpm",
                        round ? "sphere" : "box", mean, off);
-            // Surfaces that are not along the lattice let light of lpv through, and block it twice.
-            EXPECT_NEAR(mean, 1, !propagates ? 0.01 : round ? 0.3 : 0.1);
-            EXPECT_LT(off, !propagates ? 0.04 : round ? 0.4 : 0.25);
+            // Surfaces that are not along the lattice let light of lpv through, and block it twice: half is lost.
+            EXPECT_NEAR(mean, 1, !propagates ? 0.01 : round ? 0.5 : 0.1);
+            EXPECT_LT(off, !propagates ? 0.1 : round ? 0.5 : 0.1);
         }
 }
 

@@ -101,6 +101,29 @@ TEST(PhotonLattices, Furnace)
     }
 }
 
+/// The same in nested lattices, for surfaces in the fine one, at its border and beyond.
+TEST(PhotonLattices, NestedLatticesInAFurnace)
+{
+    Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, glowing_wall(1, 0.5f)), true);
+    TracedScene const traced(scene, 400000, 20);
+    PhotonLattices light({.cells = {16, 16, 16}, .cascades = 3});
+    light.place(traced.world, traced.visibility, vec3{0.2f, -1, 0.3f});
+    light.update(traced.photons);
+    ASSERT_EQ(light.levels(Frequency::low).size(), 3u);
+    double mean = 0, off = 0, n = 0;
+    for (std::size_t i = 0; i < traced.photons.size(); i += 37) {
+        Photon const& p = traced.photons[i];
+        double const e = double(luminance(light.irradiance(p.position, p.normal))) / kPiD;
+        mean += e;
+        off += std::abs(e - 1);
+        ++n;
+    }
+    fmt::print("nested: mean {:.4f}, off by {:.4f}\n", mean / n, off / n);
+    EXPECT_NEAR(mean / n, 1, 0.01);
+    EXPECT_LT(off / n, 0.05);
+}
+
 /// A floor in parallel light lights a wall at a right angle to it: the wall's irradiance against quadrature.
 TEST(PhotonLattices, FormFactorOfTwoPlates)
 {

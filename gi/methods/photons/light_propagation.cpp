@@ -39,7 +39,8 @@ void add_blockers(World const& world, BuildStop const& stop, LightPropagation::L
             glm::ivec3 const c = 4 * blocks.cell_of(grid.blocks.cells[p.block]) +
                                  glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
             if (level.corners.holds(c))
-                level.blocked[level.corners.index(c)] += of_face * p.area * glm::abs(p.normal);
+                level.blocked[level.corners.index(c)] +=
+                    {of_face * p.area * glm::abs(p.normal), of_face * p.area * glm::abs(p.normal) * p.point};
         }
     }
 }
@@ -84,6 +85,28 @@ void check(PropagationSettings const& s)
                          "choose others");
 }
 
+/// A point before a surface, past the faces that it and others nearby block. In the lattice, surfaces lie at the
+/// corners nearest to them; points keep to their side of these. Then half a cell along the normal's largest
+/// component.
+vec3 in_front(LightPropagation::Level const& level, vec3 position, vec3 normal)
+{
+    constexpr float kBlocks = 0.2f; // so much of a face
+    float const cell = level.frame.cell, step = cell / std::max(max_component(glm::abs(normal)), 0.5f);
+    vec3 at = position + 0.1f * step * normal;
+    glm::ivec3 const corner = level.corners.at(at);
+    if (!level.blocked.empty() && level.corners.holds(corner)) {
+        Blocker const& near = level.blocked[level.corners.index(corner)];
+        vec3 const center = level.corners.center(corner);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (near.area[axis] < kBlocks) continue;
+            bool const above = at[axis] * near.area[axis] >= near.moment[axis];
+            at[axis] = above ? std::max(at[axis], center[axis] + 0.01f * cell)
+                             : std::min(at[axis], center[axis] - 0.01f * cell);
+        }
+    }
+    return at + 0.4f * step * normal;
+}
+
 bool same(GridFrame const& a, GridFrame const& b)
 {
     return a.low == b.low && a.cell == b.cell && a.size == b.size;
@@ -108,7 +131,7 @@ std::uint64_t LightPropagation::bytes(PropagationSettings const& s, Bounds const
     if (bounds.empty()) return 0;
     // Light of two steps, their sum, factors of faces, what blocks and what is open at the corners.
     return dense_bytes(nested_frames(bounds, bounds.center(), s.cells, s.cascades),
-                       3 * sizeof(ShColor) + 3 * sizeof(vec3));
+                       3 * sizeof(ShColor) + 2 * sizeof(vec3) + sizeof(Blocker));
 }
 
 void LightPropagation::place(std::span<GridFrame const> frames)
@@ -131,8 +154,7 @@ void LightPropagation::propagate(Level& level, Level const* coarser, std::span<R
     level.injected_w = level.outside_w = 0;
     std::vector<std::uint64_t> keys(lights.size());
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        // Half a cell along the normal, so that the light does not fall on its own surface.
-        glm::ivec3 const cell = frame.at(lights[i].position + 0.5f * frame.cell * lights[i].normal);
+        glm::ivec3 const cell = frame.at(in_front(level, lights[i].position, lights[i].normal));
         bool const in = frame.holds(cell);
         keys[i] = in ? frame.index(cell) : n;
         (in ? level.injected_w : level.outside_w) += double(glm::dot(lights[i].flux, vec3{1}));
@@ -194,7 +216,7 @@ vec3 LightPropagation::irradiance(vec3 position, vec3 normal) const
     vec3 sum{0};
     for_grids_at(levels_, position, [&](std::size_t k, float weight) {
         GridFrame const& frame = levels_[k].frame;
-        vec3 const at = position + 0.5f * frame.cell * normal;
+        vec3 const at = in_front(levels_[k], position, normal);
         ShColor const light = arriving_radiance(open_mean(levels_[k], at), frame.cell);
         sum += weight * glm::max(gi::irradiance(light, normal), vec3{0});
     });
@@ -213,9 +235,9 @@ vec3 LightPropagation::radiance(vec3 position, vec3 direction) const
         at += (step == 0 ? 0.75f : 1.0f) * cell * direction;
         if (!levels_[finest].frame.holds(levels_[finest].frame.at(at))) break;
         if (step > 0 && !levels_[finest].blocked.empty()) {
-            DenseView<vec3> const blocked{levels_[finest].corners, levels_[finest].blocked};
-            open *= std::max(
-                0.0f, 1 - glm::dot(trilinear<vec3>(blocked, at - 0.5f * cell * direction), glm::abs(direction)));
+            DenseView<Blocker> const blocked{levels_[finest].corners, levels_[finest].blocked};
+            vec3 const area = trilinear<Blocker>(blocked, at - 0.5f * cell * direction).area;
+            open *= std::max(0.0f, 1 - glm::dot(area, glm::abs(direction)));
         }
         vec3 here{0};
         for_grids_at(levels_, at, [&](std::size_t k, float weight) {

@@ -90,8 +90,8 @@ void PhotonLattices::inject(Level& level, std::span<Photon const* const> photons
         if (!(area > 0)) continue;
         vec3 const normal = p.area / area;
         for (float const side : {1.0f, -1.0f}) {
-            float const lit =
-                area * exposed_.share(p.exposure_cell, ReachedSides::side_index(side * normal, side > 0));
+            std::uint32_t const k = ReachedSides::side_index(side * normal, side > 0);
+            float const lit = area * exposed_.share(p.exposure_cell, k);
             level.cells.values[p.place].area += lit * vec4(1, side * normal.x, side * normal.y, side * normal.z);
         }
     }
@@ -146,13 +146,34 @@ void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons)
     for (Level& level : levels) inject(level, photons, settings_.smooth[std::size_t(f)], &level == &levels.back());
 }
 
+template <class Function>
+void PhotonLattices::for_cells_at(Frequency f, vec3 position, Function const& of) const
+{
+    constexpr float kEnough = 16; // photons: a finer lattice then counts by a half
+    std::vector<Level> const& levels = levels_[std::size_t(f)];
+    float const together = settings_.smooth[std::size_t(f)] ? 27 : 1; // cells
+    float left = 1;
+    for (std::size_t k = 0; k < levels.size() && left > 0; ++k) {
+        bool const last = k + 1 == levels.size();
+        float weight = last ? 1 : weight_in(levels[k].frame, position);
+        PhotonCell const cell =
+            weight > 0 ? trilinear<PhotonCell>(levels[k].cells.view(), position) : PhotonCell{};
+        if (!last && weight > 0) {
+            PhotonCell const coarser = trilinear<PhotonCell>(levels[k + 1].cells.view(), position);
+            float const expected =
+                coarser.area.x > 0 ? together * coarser.photons * cell.area.x / coarser.area.x : 0;
+            weight *= expected / (expected + kEnough);
+        }
+        if (weight > 0) of(cell, left * weight);
+        left -= left * weight;
+    }
+}
+
 vec3 PhotonLattices::irradiance(Frequency of, vec3 position, vec3 normal) const
 {
     vec3 sum{0};
-    std::vector<Level> const& levels = levels_[std::size_t(of)];
-    for_grids_at(levels, position, [&](std::size_t k, float weight) {
-        sum += weight *
-               cell_irradiance(trilinear<PhotonCell>(levels[k].cells.view(), position), normal, settings_.by);
+    for_cells_at(of, position, [&](PhotonCell const& cell, float weight) {
+        sum += weight * cell_irradiance(cell, normal, settings_.by);
     });
     return sum;
 }
@@ -160,9 +181,7 @@ vec3 PhotonLattices::irradiance(Frequency of, vec3 position, vec3 normal) const
 vec3 PhotonLattices::radiance(Frequency of, vec3 position, vec3 direction) const
 {
     vec3 sum{0};
-    std::vector<Level> const& levels = levels_[std::size_t(of)];
-    for_grids_at(levels, position, [&](std::size_t k, float weight) {
-        PhotonCell const cell = trilinear<PhotonCell>(levels[k].cells.view(), position);
+    for_cells_at(of, position, [&](PhotonCell const& cell, float weight) {
         if (cell.area.x > 0) sum += weight * glm::max(evaluate(cell.arrived, direction) / cell.area.x, vec3{0});
     });
     return sum;

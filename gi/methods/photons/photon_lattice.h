@@ -18,7 +18,10 @@
 // Sums over cells (smoothing, trilinear look-up) add numerators and denominators, so that cells count by their
 // area.
 //
-// Memory: per cell with surfaces 116 bytes, twice with smoothing; per piece of a surface in a cell 20 bytes.
+// Of nested lattices, a finer one counts by the photons that its cell is expected to hold, by its area and the
+// photons of the coarser one: few photons in the corner of a cell would be a bright dot.
+//
+// Memory: per cell with surfaces 120 bytes, twice with smoothing; per piece of a surface in a cell 20 bytes.
 
 #include "gi/methods/photons/exposed_sides.h"
 #include "gi/methods/photons/sh_lattice.h"
@@ -43,12 +46,14 @@ struct PhotonCell {
     ShColor arrived;  ///< radiance by the direction from which it comes, times area.x; W/sr
     ShColor received; ///< flux by the normals of the surfaces, W
     vec4 area{0};     ///< m^2; sums of A_j and of A_j n_j
+    float photons = 0;
 
     GI_FN PhotonCell& operator+=(PhotonCell const& o)
     {
         arrived += o.arrived;
         received += o.received;
         area += o.area;
+        photons += o.photons;
         return *this;
     }
 };
@@ -57,6 +62,7 @@ GI_FN inline PhotonCell operator*(float by, PhotonCell c)
     c.arrived *= vec3{by};
     c.received *= vec3{by};
     c.area *= by;
+    c.photons *= by;
     return c;
 }
 
@@ -70,6 +76,7 @@ struct LatticePhoton {
     {
         cell.arrived.add_beam(weight * flux, direction);
         cell.received.add_beam(flux, normal);
+        cell.photons += 1;
     }
 };
 
@@ -134,6 +141,9 @@ public:
     static std::uint64_t bytes(PhotonLatticeSettings const& settings, Bounds const& bounds, double area_m2);
 
 private:
+    /// Calls of(cell, weight) for the nested lattices at a point.
+    template <class Function>
+    void for_cells_at(Frequency f, vec3 position, Function const& of) const;
     void inject(Frequency f, std::span<Photon const* const> photons);
     void inject(Level& level, std::span<Photon const* const> photons, bool smooth, bool last);
 

@@ -54,13 +54,27 @@ struct ScaleFaces {
     }
 };
 
+/// Surfaces about a corner of the lattice's cells, along the three axes.
+struct Blocker {
+    vec3 area{0};   ///< projected, over that of a face
+    vec3 moment{0}; ///< sum of such areas times their coordinate, m
+
+    GI_FN Blocker& operator+=(Blocker const& o)
+    {
+        area += o.area;
+        moment += o.moment;
+        return *this;
+    }
+};
+GI_FN inline Blocker operator*(float by, Blocker const& b) { return {by * b.area, by * b.moment}; }
+
 /// Shares of the light that passes the low faces of cells, x, y and z. The surfaces' areas, projected on the axes
 /// and divided by a face's, lie in cells about the corners of the lattice's cells: the mean of the four at the
 /// corners of a face is what blocks it.
 struct OpenFaces {
-    GridFrame frame;          ///< of the corners: one more a side than cells
-    View<vec3 const> blocked; ///< per corner
-    View<vec3> open;          ///< per cell, and one more a side
+    GridFrame frame;             ///< of the corners: one more a side than cells
+    View<Blocker const> blocked; ///< per corner
+    View<vec3> open;             ///< per cell, and one more a side
 
     GI_FN void operator()(std::size_t i) const
     {
@@ -71,7 +85,7 @@ struct OpenFaces {
                 glm::ivec3 corner = at;
                 corner[(axis + 1) % 3] += k & 1;
                 corner[(axis + 2) % 3] += k >> 1;
-                if (frame.holds(corner)) out[axis] -= 0.25f * blocked[frame.index(corner)][axis];
+                if (frame.holds(corner)) out[axis] -= 0.25f * blocked[frame.index(corner)].area[axis];
             }
         open[i] = glm::max(out, vec3{0});
     }
