@@ -9,22 +9,22 @@
 
 namespace gi {
 
-PhotonCells::PhotonCells(std::vector<Photon> photons, float radius)
+PhotonCells::PhotonCells(std::vector<Entry> const& entries, float radius)
     : radius_(radius),
-      photons_(photons.size()),
-      first_(std::bit_ceil(std::max<std::size_t>(photons.size(), 1)) + 1)
+      entries_(entries.size()),
+      first_(std::bit_ceil(std::max<std::size_t>(entries.size(), 1)) + 1)
 {
     std::vector<std::uint32_t> bucket_of;
-    bucket_of.reserve(photons.size());
-    for (Photon const& p : photons) {
-        bucket_of.push_back(bucket(cell_of(p.position)));
+    bucket_of.reserve(entries.size());
+    for (Entry const& e : entries) {
+        bucket_of.push_back(bucket(cell_of(e.kernel.position)));
         ++first_[bucket_of.back() + 1];
-        low_ = glm::min(low_, p.position - radius);
-        high_ = glm::max(high_, p.position + radius);
+        low_ = glm::min(low_, e.kernel.position - radius);
+        high_ = glm::max(high_, e.kernel.position + radius);
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     std::vector<std::uint32_t> next = first_;
-    for (std::size_t i = 0; i < photons.size(); ++i) photons_[next[bucket_of[i]]++] = photons[i];
+    for (std::size_t i = 0; i < entries.size(); ++i) entries_[next[bucket_of[i]]++] = entries[i];
 }
 
 std::uint32_t PhotonCells::bucket(glm::ivec3 cell) const
@@ -48,13 +48,15 @@ void PhotonCells::search(vec3 position, F const& f) const
     std::ranges::sort(buckets); // two cells may share one
     for (int k = 0; k < 8; ++k) {
         if (k > 0 && buckets[k] == buckets[k - 1]) continue;
-        for (std::uint32_t i = first_[buckets[k]]; i < first_[buckets[k] + 1]; ++i) f(photons_[i]);
+        for (std::uint32_t i = first_[buckets[k]]; i < first_[buckets[k] + 1]; ++i) f(entries_[i]);
     }
 }
 
-KernelSizes sizes_by_density(std::span<Photon const> photons, float largest, std::size_t enough)
+std::vector<float> radii_by_density(std::span<Photon const> photons, float largest, std::size_t enough,
+                                    std::uint64_t seed)
 {
-    constexpr int kLayers = KernelSizes::kLayers;
+    constexpr int kLevels = 12, kTrees = 4;
+    constexpr float kCells = 2097152; // of a Morton curve, along an axis
     struct Place {
         std::uint64_t key; ///< of the finest cell, along a Morton curve
         std::uint32_t photon;
@@ -67,27 +69,40 @@ KernelSizes sizes_by_density(std::span<Photon const> photons, float largest, std
         std::nth_element(along.begin(), median, along.end());
         if (median != along.end()) middle[axis] = *median;
     }
-    float const per_m = std::ldexp(1 / (largest * std::sqrt(kPi)), kLayers - 1);
+    // The area of a cell's side is that of a kernel.
+    float const per_m = std::ldexp(1 / (largest * std::sqrt(kPi)), kLevels - 1);
+    std::vector<std::uint16_t> halvings(photons.size());
     std::vector<Place> places;
-    places.reserve(photons.size());
-    constexpr float kCells = 2097152; // of a Morton curve, along an axis
-    for (std::uint32_t i = 0; i < photons.size(); ++i) {
-        vec3 const at = (photons[i].position - middle) * per_m + kCells / 2;
-        // Others are so far away that the largest kernels will do.
-        if (!(min_component(at) >= 0) || !(max_component(at) < kCells)) continue;
-        glm::uvec3 const cell(at);
-        places.push_back({morton(cell.x, cell.y, cell.z), i});
-    }
-    std::ranges::sort(places, {}, &Place::key);
-    KernelSizes out{largest, std::vector<std::uint8_t>(photons.size())};
-    for (int layer = 1; layer < kLayers; ++layer) {
-        int const shift = 3 * (kLayers - 1 - layer);
-        for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
-            while (end < places.size() && places[end].key >> shift == places[begin].key >> shift) ++end;
-            for (std::size_t k = begin; end - begin >= enough && k < end; ++k)
-                out.layer[places[k].photon] = std::uint8_t(layer);
+    for (int tree = 0; tree < kTrees; ++tree) {
+        Pcg32 rng = Pcg32::for_path(seed ^ 0x0c7e, std::uint32_t(tree), 0);
+        vec3 const shift = std::ldexp(1.0f, kLevels - 1) * vec3{rng.uniform(), rng.uniform(), rng.uniform()};
+        places.clear();
+        for (std::uint32_t i = 0; i < photons.size(); ++i) {
+            vec3 const at = (photons[i].position - middle) * per_m + kCells / 2 + shift;
+            // Others are so far away that the largest kernels will do.
+            if (!(min_component(at) >= 0) || !(max_component(at) < kCells)) continue;
+            glm::uvec3 const cell(at);
+            places.push_back({morton(cell.x, cell.y, cell.z), i});
+        }
+        std::ranges::sort(places, {}, &Place::key);
+        for (int level = 1; level < kLevels; ++level) {
+            int const bits = 3 * (kLevels - 1 - level);
+            for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+                while (end < places.size() && places[end].key >> bits == places[begin].key >> bits) ++end;
+                for (std::size_t k = begin; end - begin >= enough && k < end; ++k) ++halvings[places[k].photon];
+            }
         }
     }
+    std::vector<float> out;
+    for (std::uint16_t const h : halvings) out.push_back(largest * std::exp2(-float(h) / kTrees));
+    return out;
+}
+
+std::vector<float> radii_by_footprint(std::span<Photon const> photons, float largest, float photons_each)
+{
+    std::vector<float> out;
+    for (Photon const& p : photons)
+        out.push_back(glm::clamp(std::sqrt(photons_each * p.footprint * kInvPi), 1e-4f * largest, largest));
     return out;
 }
 
@@ -107,43 +122,31 @@ void sort_along_curve(std::vector<Photon>& photons)
     photons = std::move(sorted);
 }
 
-KernelSizes sizes_by_footprint(std::span<Photon const> photons, float largest, float photons_each)
+PhotonMap::PhotonMap(std::span<Photon const> photons, std::span<float const> radii) : count_(photons.size())
 {
-    KernelSizes out{largest, std::vector<std::uint8_t>(photons.size())};
-    for (std::size_t i = 0; i < photons.size(); ++i) {
-        float const radius = std::sqrt(photons_each * photons[i].footprint * kInvPi);
-        float const halvings = radius > 0 ? std::round(std::log2(largest / radius)) : KernelSizes::kLayers;
-        out.layer[i] = std::uint8_t(glm::clamp(halvings, 0.0f, float(KernelSizes::kLayers - 1)));
+    constexpr int kLayers = 24;
+    float largest = 0;
+    for (float const r : radii) largest = std::max(largest, r);
+    std::vector<std::vector<PhotonCells::Entry>> parts(kLayers);
+    for (std::uint32_t i = 0; i < photons.size(); ++i) {
+        Photon const& p = photons[i];
+        auto const layer =
+            std::size_t(glm::clamp(std::floor(std::log2(largest / radii[i])), 0.0f, kLayers - 1.0f));
+        parts[layer].push_back({p, {p.position, radii[i], p.normal, i}});
+        flux_ += dvec3(p.flux);
+        radii_ += double(radii[i]);
     }
-    return out;
-}
-
-PhotonMap::PhotonMap(std::span<Photon const> photons, KernelSizes const& sizes, float factor)
-    : count_(photons.size())
-{
-    std::vector<std::vector<Photon>> parts(KernelSizes::kLayers);
-    for (std::size_t i = 0; i < photons.size(); ++i) {
-        parts[sizes.layer[i]].push_back(photons[i]);
-        flux_ += dvec3(photons[i].flux);
-    }
-    for (int k = 0; k < KernelSizes::kLayers; ++k)
-        if (auto& part = parts[std::size_t(k)]; !part.empty())
-            layers_.emplace_back(std::move(part), factor * std::ldexp(sizes.largest, -k));
+    for (int k = 0; k < kLayers; ++k)
+        if (auto const& part = parts[std::size_t(k)]; !part.empty())
+            layers_.emplace_back(part, std::ldexp(largest, -k));
 }
 
 vec3 PhotonMap::radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const
 {
     PhotonSum sum(at, wo, without_glossy);
     for (PhotonCells const& layer : layers_)
-        layer.search(at.position, [&](Photon const& p) { sum.add({p.position, layer.radius(), p.normal, 0}, p); });
+        layer.search(at.position, [&](PhotonCells::Entry const& e) { sum.add(e.kernel, e.photon); });
     return sum.radiance();
-}
-
-float PhotonMap::mean_radius() const
-{
-    double sum = 0;
-    for (PhotonCells const& layer : layers_) sum += double(layer.radius()) * double(layer.size());
-    return count_ == 0 ? 0 : float(sum / double(count_));
 }
 
 } // namespace gi

@@ -9,22 +9,14 @@
 
 namespace gi {
 
-/// Radii of kernels are a largest one, halved so often.
-struct KernelSizes {
-    static constexpr int kLayers = 12; ///< different radii
-
-    float largest;                   ///< m, > 0
-    std::vector<std::uint8_t> layer; ///< per photon, below kLayers: how often it is halved
-
-    float radius(std::size_t photon) const { return std::ldexp(largest, -int(layer[photon])); }
-};
-
-/// Of each photon the smallest kernel of whose area, as a cell of an octree about it, at least `enough` photons
-/// are: follows the density that light has, also where it is focused.
-KernelSizes sizes_by_density(std::span<Photon const> photons, float largest, std::size_t enough = 16);
-/// Kernels with about `photons_each` photons by the paths' footprints (McGuire and Luebke 2009), which do not see
-/// how curved mirrors and glass focus.
-KernelSizes sizes_by_footprint(std::span<Photon const> photons, float largest, float photons_each);
+/// Of each photon the radius of a kernel with at least about `enough` photons, m, by how many are in the cells of
+/// octrees about it: follows the density that light has, also where it is focused. The mean of some octrees, each
+/// shifted by a random vector, as radii that change in steps would show.
+std::vector<float> radii_by_density(std::span<Photon const> photons, float largest, std::size_t enough,
+                                    std::uint64_t seed);
+/// Radii of kernels with about `photons_each` photons by the paths' footprints (McGuire and Luebke 2009), which do
+/// not see how curved mirrors and glass focus, nor how lights share a surface.
+std::vector<float> radii_by_footprint(std::span<Photon const> photons, float largest, float photons_each);
 
 /// Where a photon's light lies: on what is on the same surface as it. Kernels are flat, else the light of a table
 /// would lie on the paper on it.
@@ -83,12 +75,14 @@ void sort_along_curve(std::vector<Photon>& photons);
 /// Photons in cubic cells, by a hash of these.
 class PhotonCells {
 public:
-    /// @param radius  of searches, m, > 0
-    PhotonCells(std::vector<Photon> photons, float radius);
+    struct Entry {
+        Photon photon;
+        PhotonKernel kernel;
+    };
+    /// @param radius  of searches, m, > 0, as large as that of any kernel
+    PhotonCells(std::vector<Entry> const& entries, float radius);
 
-    float radius() const { return radius_; }
-    std::size_t size() const { return photons_.size(); }
-    /// Calls f(photon) for those that are nearer than the radius, and some others.
+    /// Calls f(entry) for those whose kernels may reach a position, and some others.
     template <class F>
     void search(vec3 position, F const& f) const;
 
@@ -98,25 +92,26 @@ private:
 
     float radius_;
     vec3 low_{kInf}, high_{-kInf};     ///< of what may find photons
-    std::vector<Photon> photons_;      ///< by the bucket of their cell, which is two radii wide
+    std::vector<Entry> entries_;       ///< by the bucket of their cell, which is two radii wide
     std::vector<std::uint32_t> first_; ///< per bucket, and one more
 };
 
 class PhotonMap {
 public:
     PhotonMap() = default;
-    /// @param factor  of all radii
-    PhotonMap(std::span<Photon const> photons, KernelSizes const& sizes, float factor = 1);
+    /// @param radii  of the photons' kernels, m, > 0
+    PhotonMap(std::span<Photon const> photons, std::span<float const> radii);
 
     /// See PhotonSum.
     vec3 radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const;
     bool empty() const { return count_ == 0; }
     std::size_t count() const { return count_; }
-    dvec3 flux() const { return flux_; } ///< W
-    float mean_radius() const;           ///< m, over photons
+    dvec3 flux() const { return flux_; }                                                   ///< W
+    float mean_radius() const { return count_ == 0 ? 0 : float(radii_ / double(count_)); } ///< m
 
 private:
-    std::vector<PhotonCells> layers_; ///< of kernels of one size each
+    std::vector<PhotonCells> layers_; ///< of kernels of similar size
+    double radii_ = 0;                ///< sum, m
     std::size_t count_ = 0;
     dvec3 flux_{0};
 };

@@ -150,13 +150,13 @@ struct PhotonSettings {
     Switch frozen = Switch::off; ///< light is computed once and kept, whatever changes
     KernelBy kernel_by = KernelBy::density;
     float kernel_size = 1;        ///< factor of kernels' radii
-    int propagation_cells = 32;   ///< of each lattice of lpv, along the scene's longest side
-    int propagation_cascades = 3; ///< nested lattices of lpv
+    int propagation_cells = 16;   ///< of each lattice of lpv, along the scene's longest side
+    int propagation_cascades = 1; ///< nested lattices of lpv
     int propagation_steps = 0;    ///< from cell to cell; 0 = twice the cells
     Reprojection reprojection = Reprojection::beams;
-    int low_cells = 16, middle_cells = 32, high_cells = 128; ///< of the lattices of isllpm
-    int lattice_cascades = 1;                                ///< nested ones of each of them
-    Switch lattice_smoothing = Switch::on;                   ///< of the low and the middle one
+    int low_cells = 64, middle_cells = 128, high_cells = 128; ///< of the lattices of isllpm
+    int lattice_cascades = 1;                                 ///< nested ones of each of them
+    Switch lattice_smoothing = Switch::on;                    ///< of the low and the middle one
     IrradianceBy irradiance_by = IrradianceBy::normals;
     int impostors = 16;        ///< distance impostors, at most
     int impostor_texels = 128; ///< along an edge of a face, rounded up to a multiple of 8

@@ -37,7 +37,7 @@ std::pair<double, double> furnace(bool sphere, RenderSettings s)
     return {mean, off};
 }
 
-/// Kernels reach beyond the edges of a box and lose light there; a sphere has none.
+/// Kernels that reach beyond the edges of a box lose no light.
 TEST(Ispm, Furnace)
 {
     for (KernelBy const by : {KernelBy::density, KernelBy::footprint})
@@ -48,13 +48,13 @@ TEST(Ispm, Furnace)
             auto const [mean, off] = furnace(sphere, s);
             fmt::print("{}, kernels by {}: mean {:.4f}, off by {:.4f}\n", sphere ? "sphere" : "box",
                        by == KernelBy::density ? "density" : "footprint", mean, off);
-            EXPECT_NEAR(mean, 1, sphere ? 0.01 : 0.05);
+            EXPECT_NEAR(mean, 1, 0.01);
             EXPECT_LT(off, 0.12);
         }
 }
 
-/// As photons grow, noise and blur fall together. With a power of -1/3 (the mean squared error, -2/3) away from
-/// edges, more slowly with them.
+/// As photons grow, noise and blur fall together, with a power of -1/3 (the mean squared error, -2/3): away from
+/// edges and at them.
 TEST(Ispm, ConvergesWithPhotons)
 {
     for (bool const sphere : {true, false}) {
@@ -69,7 +69,7 @@ TEST(Ispm, ConvergesWithPhotons)
         }
         double const slope = std::log2(last / first) / 9;
         fmt::print("{}: slope {:.3f}\n", sphere ? "sphere" : "box", slope);
-        EXPECT_LT(slope, sphere ? -0.25 : -0.15);
+        EXPECT_LT(slope, -0.25);
     }
 }
 
@@ -99,11 +99,11 @@ TEST(Ispm, SplattingIsThePhotonMap)
          trace_light_paths(view(world), world.bounds, ExactPathRays(visibility), paths, counts))
         photons.push_back(to_photon(v));
     sort_along_curve(photons);
-    KernelSizes const sizes = sizes_by_density(photons, 0.2f);
-    PhotonMap const map(photons, sizes);
+    std::vector<float> const radii = radii_by_density(photons, 0.2f, 16, 1);
+    PhotonMap const map(photons, radii);
     std::vector<PhotonKernel> kernels;
     for (std::uint32_t i = 0; i < photons.size(); ++i)
-        kernels.push_back({photons[i].position, sizes.radius(i), photons[i].normal, i});
+        kernels.push_back({photons[i].position, radii[i], photons[i].normal, i});
     View<Photon const> const all{photons.data(), photons.size()};
     View<PhotonKernel const> const near{kernels.data(), kernels.size()};
 

@@ -1,3 +1,4 @@
+#include "gi/light_paths/kernel_cover.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/photons/photon_renderer.h"
 #include "gi/methods/photons/splat.h"
@@ -105,13 +106,19 @@ protected:
         if (!(largest > 0)) photons_.clear(); // they all lie at one point: no area to spread them over
         // As many photons in a kernel as make noise and blur fall at the same pace: a power of 2/3 of all.
         float const each = 24 * std::pow(float(set.paths) / 65536, kAlpha);
-        KernelSizes const sizes = settings_.photons.kernel_by == KernelBy::density
-                                      ? sizes_by_density(photons_, largest, std::size_t(std::max(1.0f, each)))
-                                      : sizes_by_footprint(photons_, largest, each);
+        std::vector<float> radii = settings_.photons.kernel_by == KernelBy::density
+                                       ? radii_by_density(photons_, largest, std::size_t(std::max(1.0f, each)),
+                                                          settings_.seed + set.number)
+                                       : radii_by_footprint(photons_, largest, each);
         kernels_.clear();
-        for (std::uint32_t i = 0; i < photons_.size(); ++i)
-            kernels_.push_back({photons_[i].position, shrunk_ * sizes.radius(i), photons_[i].normal, i});
-        map_ = PhotonMap(photons_, sizes, shrunk_);
+        for (std::uint32_t i = 0; i < photons_.size(); ++i) {
+            radii[i] *= shrunk_;
+            kernels_.push_back({photons_[i].position, radii[i], photons_[i].normal, i});
+        }
+        std::vector<float> const shares =
+            covered_shares(view(world_), set.visibility, photons_, kernels_, set.stop, set.counts);
+        for (std::size_t i = 0; i < photons_.size(); ++i) photons_[i].flux /= shares[i];
+        map_ = PhotonMap(photons_, radii);
     }
     SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) override
     {

@@ -44,6 +44,37 @@ void add_blockers(World const& world, BuildStop const& stop, LightPropagation::L
     }
 }
 
+/// Mean of the eight cells around a point by trilinear weights, those behind surfaces without weight: seen from
+/// the cell that holds the point, on the way along the axes. @param at  not in a surface
+ShColor open_mean(LightPropagation::Level const& level, vec3 at)
+{
+    GridFrame const& frame = level.frame;
+    vec3 const in = glm::clamp((at - frame.low) / frame.cell, -2.0f, 1e6f);
+    glm::ivec3 const base = glm::ivec3(glm::floor(in));
+    vec3 const part = in - vec3(base) - 0.5f;
+    glm::ivec3 const way = glm::mix(glm::ivec3{-1}, glm::ivec3{1}, glm::greaterThanEqual(part, vec3{0}));
+    vec3 beside = glm::abs(part);
+    for (int axis = 0; axis < 3 && !level.open.empty(); ++axis) {
+        glm::ivec3 face = base;
+        face[axis] += way[axis] > 0 ? 1 : 0;
+        if (level.corners.holds(face)) beside[axis] *= level.open[level.corners.index(face)][axis];
+    }
+    ShColor sum;
+    float weights = 0;
+    for (int k = 0; k < 8; ++k) {
+        glm::ivec3 cell = base;
+        float weight = 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            bool const other = (k >> axis & 1) != 0;
+            cell[axis] += other ? way[axis] : 0;
+            weight *= other ? beside[axis] : 1 - std::abs(part[axis]);
+        }
+        weights += weight;
+        if (frame.holds(cell)) sum += weight * level.total[frame.index(cell)];
+    }
+    return (1 / weights) * sum;
+}
+
 void check(PropagationSettings const& s)
 {
     if (s.cells < 8 || s.cells > PropagationSettings::kMostCells || s.cascades < 1 || s.cascades > 8 ||
@@ -164,7 +195,7 @@ vec3 LightPropagation::irradiance(vec3 position, vec3 normal) const
     for_grids_at(levels_, position, [&](std::size_t k, float weight) {
         GridFrame const& frame = levels_[k].frame;
         vec3 const at = position + 0.5f * frame.cell * normal;
-        ShColor const light = arriving_radiance(trilinear<ShColor>(levels_[k].view(), at), frame.cell);
+        ShColor const light = arriving_radiance(open_mean(levels_[k], at), frame.cell);
         sum += weight * glm::max(gi::irradiance(light, normal), vec3{0});
     });
     return sum;
@@ -188,8 +219,7 @@ vec3 LightPropagation::radiance(vec3 position, vec3 direction) const
         }
         vec3 here{0};
         for_grids_at(levels_, at, [&](std::size_t k, float weight) {
-            ShColor const light =
-                arriving_radiance(trilinear<ShColor>(levels_[k].view(), at), levels_[k].frame.cell);
+            ShColor const light = arriving_radiance(open_mean(levels_[k], at), levels_[k].frame.cell);
             here += weight * glm::max(evaluate(light, direction), vec3{0});
         });
         sum += open * here;

@@ -29,8 +29,8 @@ namespace gi {
 struct PropagationSettings {
     static constexpr int kMostCells = 128;
 
-    int cells = 32;   ///< of each lattice along the scene's longest side, 8 to kMostCells
-    int cascades = 3; ///< nested lattices, 1 to 8
+    int cells = 16;   ///< of each lattice along the scene's longest side, 8 to kMostCells
+    int cascades = 1; ///< nested lattices, 1 to 8
     int steps = 0;    ///< from cell to cell; 0 = twice the cells
     Reprojection by = Reprojection::beams;
     bool blocked = true;  ///< by surfaces

@@ -33,7 +33,7 @@ enum class Frequency : std::uint8_t { low, middle, high };
 struct PhotonLatticeSettings {
     static constexpr int kMostCells = 512;
 
-    std::array<int, 3> cells{16, 32, 128}; ///< by Frequency, along the scene's longest side, 4 to kMostCells
+    std::array<int, 3> cells{64, 128, 128}; ///< by Frequency, along the scene's longest side, 4 to kMostCells
     std::array<bool, 3> smooth{true, true, false}; ///< over 3 x 3 x 3 cells
     int cascades = 1;                              ///< nested lattices of each frequency, 1 to 4
     IrradianceBy by = IrradianceBy::normals;
