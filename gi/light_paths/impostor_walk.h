@@ -341,8 +341,8 @@ private:
     }
 };
 
-/// For a ray that went on too near to the surface it left: where it would meet the plane of what lies in its
-/// direction.
+/// For a ray that was hidden all along, or went on too near to the surface it left: where it would meet the plane
+/// of what lies in its direction.
 GI_FN inline Hit at_end(ImpostorScene const& scene, std::uint32_t k, RayQuery const& q)
 {
     ImpostorTexel const texel = scene.maps.look(k, q.ray.direction);
@@ -354,7 +354,7 @@ GI_FN inline Hit at_end(ImpostorScene const& scene, std::uint32_t k, RayQuery co
 }
 
 GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q, std::uint32_t left, vec3 side,
-                                     ImpostorSettings const& settings)
+                                     bool known, ImpostorSettings const& settings)
 {
     ImpostorsView const& maps = scene.maps;
     std::uint32_t k = nearest_seeing(maps, q.ray.origin, kNoImpostor, side);
@@ -382,7 +382,7 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
     found.hit = found.exact                             ? walk.exact
                 : walk.crossing.triangle != kNoTriangle ? walk.crossing
                 : walk.hidden.triangle != kNoTriangle   ? walk.hidden
-                : walk.to_sky || !seen                  ? Hit{}
+                : walk.to_sky || !known                 ? Hit{}
                                                         : at_end(scene, k, q);
     if (found.hit.distance > q.reach) found.hit = {};
     return found;
@@ -399,7 +399,7 @@ GI_FN inline vec3 side_left(WorldView const& world, PathQuery const& path)
 }
 
 /// True if a centre is on a side of a point. If none is, as on the outside of a closed room, nothing is known of
-/// what is there, and rays meet nothing.
+/// what is there.
 GI_FN inline bool any_on_side(ImpostorsView const& maps, vec3 point, vec3 side)
 {
     for (vec3 const& centre : maps.centres)
@@ -417,12 +417,14 @@ GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& pat
     if (scene.maps.centres.empty()) return {};
     RayQuery q = path.ray;
     vec3 const side = side_left(scene.world, path);
-    if (path.triangle != kNoTriangle && !any_on_side(scene.maps, q.ray.origin, side)) return {};
+    bool const known = path.triangle == kNoTriangle || any_on_side(scene.maps, q.ray.origin, side);
+    // A walk may come out of a nook; the others have no way to tell.
+    if (!known && settings.search != ImpostorSearch::walk) return {};
     float const start = q.start;
     q.ray.origin += start * q.ray.direction;
     q.reach -= start;
     ImpostorHit found = settings.search == ImpostorSearch::walk
-                            ? search_walk(scene, q, path.triangle, side, settings)
+                            ? search_walk(scene, q, path.triangle, side, known, settings)
                         : settings.search == ImpostorSearch::cascaded ? search_cascaded(scene, q, settings)
                         : settings.search == ImpostorSearch::all      ? search_all(scene, q, settings)
                                                                       : search_first_guess(scene, q, settings);

@@ -115,7 +115,7 @@ struct Expected {
 void check_accuracy(World const& world, Expected const& expected)
 {
     ExactVisibility const visibility(world, false, 0);
-    Impostors const impostors(world, place_impostors(world, visibility), 128);
+    Impostors const impostors(world, place_impostors(world, visibility, {.count = 16}), 128);
     std::vector<PathQuery> const rays = light_rays(world, visibility, 12000);
     ASSERT_GT(rays.size(), 4000u);
     Accuracy const guess = accuracy(world, impostors, {.search = ImpostorSearch::first_guess}, visibility, rays);
