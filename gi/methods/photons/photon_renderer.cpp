@@ -5,6 +5,7 @@
 #include "gi/light_paths/impostor_rays.h"
 #include "gi/light_paths/options.h"
 #include "gi/methods/photons/look_up_rays.h"
+#include "gi/methods/sh_grid/focus.h"
 
 #include <algorithm>
 
@@ -35,13 +36,33 @@ SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<Frame
 {
     PathCounts counts;
     if (!first_index_) first_index_ = index;
-    bool const any = !world_.light_select.empty() && !world_.bounds.empty();
+    bool const any = !world_.light_select.empty() && !world_.bounds.empty(),
+               frozen = settings_.photons.frozen == Switch::on;
+    if (any && !(frozen && has_light_)) find_focus(views);
     if (any && settings_.bounces > 0) update(views, counts);
-    if (any && has_caustics() && !(settings_.photons.frozen == Switch::on && caustics_.map() != nullptr))
-        caustics_.prepare(*visibility_, index, views, {}, share(), counts);
+    if (any && has_caustics() && !(frozen && caustics_.map() != nullptr))
+        caustics_.prepare(*visibility_, index, views, focus_, share(), counts);
     rays_ += double(counts.nearest_rays + counts.shadow_rays);
     work_.paths += counts;
     return any ? light(views, caustics_.map()) : nullptr;
+}
+
+/// A room in a large world gets half of the light from afar. Stays while it holds most of what cameras show, as a
+/// change begins all light anew.
+void PhotonRenderer::find_focus(std::span<FrameView const> views)
+{
+    constexpr int kCells = 64;
+    constexpr double kLeastShown = 0.9;
+    bool const moved = surfaces_changed_ || !std::ranges::equal(views, cameras_, {}, &FrameView::camera);
+    if (!moved) return;
+    std::vector<vec3> const points = shown_points(world_, *visibility_, views);
+    if (points.empty()) return;
+    if (!focus_.empty() && share_in(focus_, points) >= kLeastShown && holds(world_.bounds, focus_)) return;
+    Bounds const shown = focus_of(points, kCells);
+    Bounds const focus = needs_fine_grid(shown, world_.bounds) ? shown : Bounds{};
+    if (focus.empty() && focus_.empty()) return;
+    focus_ = focus;
+    surfaces_changed_ = true;
 }
 
 void PhotonRenderer::update(std::span<FrameView const> views, PathCounts& counts)
@@ -71,13 +92,14 @@ void PhotonRenderer::fit_budget(std::span<FrameView const> views, BuildStop cons
 {
     std::uint32_t const asked = paths_;
     paths_ = std::clamp(asked / 64, 1u, 4096u);
+    trace_set(views, stop, counts); // also builds what is built once
+    sets_ = 0;
     auto const begun = Clock::now();
     trace_set(views, stop, counts);
     double const took_s = std::chrono::duration<double>(Clock::now() - begun).count();
     double const most_s = settings_.budget_s / (frames() ? 3 : 8);
     paths_ = std::uint32_t(std::clamp(double(paths_) * most_s / took_s, double(paths_), double(asked)));
     sets_ = 0;
-    surfaces_changed_ = true; // what was made for the small set
     trace_set(views, stop, counts);
 }
 
@@ -103,6 +125,7 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
                                   .bounces = bounces() + 1,
                                   .seed = settings_.seed,
                                   .pass = *first_index_ + sets_,
+                                  .focus = focus_,
                                   .stop = &stop};
             std::vector<LightVertex> const vertices =
                 by_map

@@ -61,6 +61,7 @@ protected:
 private:
     using Clock = std::chrono::steady_clock;
     bool frames() const { return stop_ == nullptr; }
+    void find_focus(std::span<FrameView const> views);
     void update(std::span<FrameView const> views, PathCounts& counts);
     void trace_set(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     void fit_budget(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
@@ -73,6 +74,7 @@ private:
     bool light_changed_ = true, surfaces_changed_ = true, has_light_ = false;
     std::optional<std::uint32_t> first_index_; ///< of the passes
     std::vector<Camera> cameras_;              ///< of the last call
+    Bounds focus_;                             ///< what cameras show, if the world is much larger; else empty
     std::uint32_t paths_;                      ///< of a set
     std::uint32_t sets_ = 0;                   ///< since the last change
     std::optional<TriangleSoup> soup_;         ///< what bounce maps draw
