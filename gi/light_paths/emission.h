@@ -16,6 +16,7 @@ struct EmittedLight {
     float range = 0; ///< m, of a punctual light (see Light); 0 = unlimited
     /// Area and solid angle over which samples of this light are spread about this one, m^2 and sr.
     float area = 0, solid_angle = 0;
+    std::uint32_t triangle = 0xffffffffu; ///< that emits it; the greatest number = none
 };
 
 namespace emission_detail {
@@ -64,7 +65,8 @@ GI_FN inline EmittedLight emit_triangle(WorldView const& world, std::uint32_t tr
             radiance * (kPi * area * sides),
             0,
             sides * area,
-            sides * kPi / glm::max(local.z, 1e-3f)};
+            sides * kPi / glm::max(local.z, 1e-3f),
+            triangle};
 }
 
 } // namespace emission_detail

@@ -104,14 +104,16 @@ GI_FN inline std::uint32_t nearest_impostor(ImpostorsView const& maps, vec3 poin
 }
 
 /// The nearest one of those that see the point, other than `but`; kNoImpostor if none does.
-GI_FN inline std::uint32_t nearest_seeing(ImpostorsView const& maps, vec3 point, std::uint32_t but = kNoImpostor)
+/// @param side  if the point lies on a surface, its normal on the side from which it is to be seen, of any length
+GI_FN inline std::uint32_t nearest_seeing(ImpostorsView const& maps, vec3 point, std::uint32_t but = kNoImpostor,
+                                          vec3 side = vec3{0})
 {
     std::uint32_t best = kNoImpostor;
     float least = kInf;
     for (std::uint32_t k = 0; k < maps.count(); ++k) {
         vec3 const to = point - maps.centres[k];
         float const squared = glm::dot(to, to);
-        if (squared < least && k != but && sees(maps, k, point)) {
+        if (squared < least && k != but && glm::dot(to, side) <= 0 && sees(maps, k, point)) {
             least = squared;
             best = k;
         }

@@ -18,7 +18,7 @@
 namespace gi {
 
 struct ImpostorPlacement {
-    std::uint32_t count = 16;  ///< most places
+    std::uint32_t count = 32;  ///< most places
     float least_gain = 0.002f; ///< of the sum; a place that adds less is not taken, nor are later ones
     std::uint32_t candidates = 256, points = 1024;
 };

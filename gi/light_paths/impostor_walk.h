@@ -353,11 +353,11 @@ GI_FN inline Hit at_end(ImpostorScene const& scene, std::uint32_t k, RayQuery co
     return {texel.triangle, barycentric_at(surface, q.ray.origin + on * q.ray.direction), on};
 }
 
-GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q, std::uint32_t left,
-                                     ImpostorSettings const& settings)
+GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q, std::uint32_t left, vec3 side,
+                                     bool known, ImpostorSettings const& settings)
 {
     ImpostorsView const& maps = scene.maps;
-    std::uint32_t k = nearest_seeing(maps, q.ray.origin);
+    std::uint32_t k = nearest_seeing(maps, q.ray.origin, kNoImpostor, side);
     bool const seen = k != kNoImpostor;
     if (!seen) k = nearest_impostor(maps, q.ray.origin);
     RayShear const shear(q.ray.direction);
@@ -382,10 +382,29 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
     found.hit = found.exact                             ? walk.exact
                 : walk.crossing.triangle != kNoTriangle ? walk.crossing
                 : walk.hidden.triangle != kNoTriangle   ? walk.hidden
-                : walk.to_sky                           ? Hit{}
+                : walk.to_sky || !known                 ? Hit{}
                                                         : at_end(scene, k, q);
     if (found.hit.distance > q.reach) found.hit = {};
     return found;
+}
+
+/// The normal of the triangle that a ray leaves, on the side on which it leaves it, of any length; 0 = it leaves
+/// none.
+GI_FN inline vec3 side_left(WorldView const& world, PathQuery const& path)
+{
+    if (path.triangle == kNoTriangle) return vec3{0};
+    Surface const& surface = world.surfaces[path.triangle];
+    vec3 const normal = glm::cross(surface.edge1, surface.edge2);
+    return glm::dot(normal, path.ray.ray.direction) > 0 ? normal : -normal;
+}
+
+/// True if a centre is on a side of a point. If none is, as on the outside of a closed room, nothing is known of
+/// what is there.
+GI_FN inline bool any_on_side(ImpostorsView const& maps, vec3 point, vec3 side)
+{
+    for (vec3 const& centre : maps.centres)
+        if (glm::dot(centre - point, side) >= 0) return true;
+    return false;
 }
 
 } // namespace impostor_detail
@@ -397,10 +416,15 @@ GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& pat
     using namespace impostor_detail;
     if (scene.maps.centres.empty()) return {};
     RayQuery q = path.ray;
+    vec3 const side = side_left(scene.world, path);
+    bool const known = path.triangle == kNoTriangle || any_on_side(scene.maps, q.ray.origin, side);
+    // A walk may come out of a nook; the others have no way to tell.
+    if (!known && settings.search != ImpostorSearch::walk) return {};
     float const start = q.start;
     q.ray.origin += start * q.ray.direction;
     q.reach -= start;
-    ImpostorHit found = settings.search == ImpostorSearch::walk ? search_walk(scene, q, path.triangle, settings)
+    ImpostorHit found = settings.search == ImpostorSearch::walk
+                            ? search_walk(scene, q, path.triangle, side, known, settings)
                         : settings.search == ImpostorSearch::cascaded ? search_cascaded(scene, q, settings)
                         : settings.search == ImpostorSearch::all      ? search_all(scene, q, settings)
                                                                       : search_first_guess(scene, q, settings);

@@ -70,7 +70,7 @@ void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, st
         queries.clear();
         for (TracedPath* p : active)
             queries.push_back({{.ray = p->light.ray, .seed = p->rng.next()},
-                               p->triangle,
+                               p->triangle != kNoTriangle ? p->triangle : p->light.triangle,
                                p->triangle != kNoTriangle && !p->by_delta});
         hits.resize(active.size());
         rays.nearest(queries, hits);

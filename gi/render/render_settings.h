@@ -158,7 +158,7 @@ struct PhotonSettings {
     int lattice_cascades = 1;                                 ///< nested ones of each of them
     Switch lattice_smoothing = Switch::on;                    ///< of the low and the middle one
     IrradianceBy irradiance_by = IrradianceBy::normals;
-    int impostors = 16;        ///< distance impostors, at most
+    int impostors = 32;        ///< distance impostors, at most
     int impostor_texels = 128; ///< along an edge of a face, rounded up to a multiple of 8
     ImpostorSearch impostor_search = ImpostorSearch::walk;
     int volume_cells = 64;  ///< of the light gathering volume of multi_image, along the scene's longest side

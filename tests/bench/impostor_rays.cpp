@@ -1,7 +1,7 @@
 // Distance impostors beside exact rays (Embree): rays that leave surfaces, cosine-distributed, as light paths do
 // after their first vertex; on one thread, by turns in one process, in groups of 64.
 //   bench_impostor_rays [--rays N] [--count N] [--resolution N] [SCENE...]
-//       default: 100,000 rays; 16 impostors of 128 texels along an edge; cornell, atrium
+//       default: 100,000 rays; 32 impostors of 128 texels along an edge; cornell, atrium
 //
 // Columns: wrong: share of the rays that exact rays answer otherwise: a surface where there is none or the
 // reverse, or another triangle and a distance that is off by more than 2 % of the exact one. error: mean of

@@ -115,7 +115,7 @@ struct Expected {
 void check_accuracy(World const& world, Expected const& expected)
 {
     ExactVisibility const visibility(world, false, 0);
-    Impostors const impostors(world, place_impostors(world, visibility), 128);
+    Impostors const impostors(world, place_impostors(world, visibility, {.count = 16}), 128);
     std::vector<PathQuery> const rays = light_rays(world, visibility, 12000);
     ASSERT_GT(rays.size(), 4000u);
     Accuracy const guess = accuracy(world, impostors, {.search = ImpostorSearch::first_guess}, visibility, rays);
@@ -128,10 +128,12 @@ void check_accuracy(World const& world, Expected const& expected)
     EXPECT_LT(walk.wrong, expected.walk_below);
     EXPECT_LT(walk.error, 0.5 * std::min({guess.error, all.error, cascaded.error}));
     EXPECT_GT(walk.exact, expected.exact_above);
-    EXPECT_EQ(guess.maps, 1);
-    EXPECT_EQ(all.maps, impostors.view().count());
+    // Rays into space that no centre sees use none.
+    EXPECT_LE(guess.maps, 1);
+    EXPECT_GT(guess.maps, 0.95);
+    EXPECT_NEAR(all.maps, guess.maps * impostors.view().count(), 1e-6);
     for (Accuracy const& few : {cascaded, walk}) {
-        EXPECT_GT(few.maps, 1);
+        EXPECT_GT(few.maps, guess.maps);
         EXPECT_LE(few.maps, 2);
     }
 }
