@@ -21,9 +21,9 @@ namespace gi {
 
 struct Bounds {
     vec3 low{kInf}, high{-kInf};
-    bool empty() const { return !(low.x <= high.x); }
-    vec3 center() const { return 0.5f * (low + high); }
-    float radius() const { return empty() ? 0.0f : 0.5f * glm::length(high - low); }
+    GI_FN bool empty() const { return !(low.x <= high.x); }
+    GI_FN vec3 center() const { return 0.5f * (low + high); }
+    GI_FN float radius() const { return empty() ? 0.0f : 0.5f * glm::length(high - low); }
 };
 
 inline Bounds joined(Bounds const& a, Bounds const& b)
