@@ -62,7 +62,10 @@ public:
     MultiImageRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                        Report& report, StopRequest const* stop)
         : PhotonRenderer(world, settings, first_moving, report, stop),
-          volume_({.cells = {settings.photons.volume_cells, settings.photons.volume_cells, 4}})
+          volume_({.cells = {settings.photons.volume_cells, settings.photons.volume_cells, 4},
+                   .smooth = {false, false, false},
+                   .gathers = settings.photons.volume_gathers,
+                   .cascades = settings.photons.lattice_cascades})
     {
     }
     void changed(Changes const& c) override
@@ -79,7 +82,9 @@ protected:
     std::string_view timer_name() const override { return "light gathering volume"; }
     void take(PhotonSet const& set) override
     {
-        if (set.surfaces_changed) volume_.place(world_, set.visibility, world_.bounds.center(), set.stop);
+        if (set.surfaces_changed || (set.number == 0 && settings_.photons.lattice_cascades > 1))
+            volume_.place(world_, set.visibility,
+                          {camera_of(set.views, world_), set.focus, first_moving_, set.only_moved}, set.stop);
         volume_.update(set.photons);
     }
     SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) override
@@ -97,6 +102,7 @@ protected:
         std::size_t cells = 0;
         for (Frequency const f : {Frequency::low, Frequency::middle})
             for (PhotonLattices::Level const& level : volume_.levels(f)) cells += level.cells.values.size();
+        report.count("nested lattices", double(volume_.levels(Frequency::low).size()));
         report.count("cells with surfaces", double(cells));
         report.count("flux of photons in no cell, W (sum of channels)", volume_.lost_w());
         dvec3 on{0}, off{0};
