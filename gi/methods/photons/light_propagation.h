@@ -55,7 +55,7 @@ public:
     /// Throws InputError for settings out of range.
     explicit LightPropagation(PropagationSettings const& settings);
 
-    /// Throws Interrupted. @param world  its bounds may be empty  @param geometry  since the last call
+    /// Throws Interrupted, and then keeps what it had. @param world  its bounds may be empty  @param geometry  since the last call
     void update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
                 BuildStop const& stop = BuildStop(nullptr));
     /// Irradiance of a surface, W/m^2. @param normal  unit, on the side asked for
@@ -81,7 +81,8 @@ public:
 
 private:
     void place(std::span<GridFrame const> frames);
-    void propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights);
+    void propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights,
+                   BuildStop const& stop);
 
     PropagationSettings settings_;
     std::vector<Level> levels_;

@@ -4,6 +4,7 @@
 #include "gi/light_paths/impostor_places.h"
 #include "gi/light_paths/impostor_rays.h"
 #include "gi/light_paths/options.h"
+#include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/look_up_rays.h"
 #include "gi/methods/sh_grid/focus.h"
 
@@ -18,6 +19,8 @@ PhotonRenderer::PhotonRenderer(World const& world, RenderSettings const& setting
       caustics_(world, settings, report, stop),
       paths_(std::uint32_t(settings.photons.paths))
 {
+    if (settings.photons.rays == PhotonRays::impostors)
+        check_impostors(settings.photons, first_moving < world.triangles.size());
 }
 
 void PhotonRenderer::changed(Changes const& c)
@@ -40,8 +43,10 @@ SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<Frame
                frozen = settings_.photons.frozen == Switch::on;
     if (any && !(frozen && has_light_)) find_focus(views);
     if (any && settings_.bounces > 0) update(views, counts);
-    if (any && has_caustics() && !(frozen && caustics_.map() != nullptr))
+    if (any && has_caustics() && !(frozen && caustics_known_)) {
         caustics_.prepare(*visibility_, index, views, focus_, share(), counts);
+        caustics_known_ = true;
+    }
     rays_ += double(counts.nearest_rays + counts.shadow_rays);
     work_.paths += counts;
     return any ? light(views, caustics_.map()) : nullptr;
@@ -148,7 +153,7 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     for (Photon const& p : photons) flux_ += dvec3(p.flux);
 }
 
-PathRays const& PhotonRenderer::path_rays(BuildStop const&)
+PathRays const& PhotonRenderer::path_rays(BuildStop const& stop)
 {
     switch (rays_kind()) {
     case PhotonRays::look_ups: {
@@ -164,10 +169,10 @@ PathRays const& PhotonRenderer::path_rays(BuildStop const&)
     case PhotonRays::impostors: {
         StageTimer const timer(report_, "impostors");
         if (!impostors_) {
-            auto const texels = std::uint32_t((settings_.photons.impostor_texels + 7) / 8 * 8);
             ImpostorPlacement const placement{.count = std::uint32_t(settings_.photons.impostors)};
-            impostors_.emplace(world_, place_impostors(world_, *visibility_, placement), texels,
-                               std::uint32_t(settings_.seed), first_moving_);
+            impostors_.emplace(world_, place_impostors(world_, *visibility_, placement, stop),
+                               impostor_resolution(settings_.photons), std::uint32_t(settings_.seed),
+                               first_moving_, stop);
         } else if (impostors_moved_) {
             impostors_->moved(world_);
         }

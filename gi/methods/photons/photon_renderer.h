@@ -72,6 +72,7 @@ private:
     StopRequest const* stop_;
     Caustics caustics_;
     bool light_changed_ = true, surfaces_changed_ = true, has_light_ = false;
+    bool caustics_known_ = false;              ///< there may be none
     std::optional<std::uint32_t> first_index_; ///< of the passes
     std::vector<Camera> cameras_;              ///< of the last call
     Bounds focus_;                             ///< what cameras show, if the world is much larger; else empty
