@@ -64,7 +64,7 @@ std::vector<float> worth_of(ExactVisibility const& visibility, vec3 place, std::
 } // namespace
 
 std::vector<vec3> place_impostors(World const& world, ExactVisibility const& visibility,
-                                  ImpostorPlacement const& settings)
+                                  ImpostorPlacement const& settings, BuildStop const& stop)
 {
     if (world.triangles.empty() || settings.count == 0) return {};
     constexpr std::size_t kWalks = 2048;
@@ -80,8 +80,10 @@ std::vector<vec3> place_impostors(World const& world, ExactVisibility const& vis
         places.push_back(f.from + share * std::min(f.length, open) * f.direction);
     }
     std::vector<std::vector<float>> worth(places.size());
-    tbb::parallel_for(std::size_t(0), places.size(),
-                      [&](std::size_t k) { worth[k] = worth_of(visibility, places[k], walks.points, open); });
+    tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t k) {
+        if (stop.given_up()) throw Interrupted();
+        worth[k] = worth_of(visibility, places[k], walks.points, open);
+    });
 
     std::vector<float> best(walks.points.size(), 0.0f);
     std::vector<vec3> chosen;

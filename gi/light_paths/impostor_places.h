@@ -24,8 +24,9 @@ struct ImpostorPlacement {
 };
 
 /// @return  centres in the world's coordinates, m; the same for the same world. Empty if the world is, or if rays
-/// meet nothing.
+/// meet nothing. Throws Interrupted.
 std::vector<vec3> place_impostors(World const& world, ExactVisibility const& visibility,
-                                  ImpostorPlacement const& settings = {});
+                                  ImpostorPlacement const& settings = {},
+                                  BuildStop const& stop = BuildStop(nullptr));
 
 } // namespace gi

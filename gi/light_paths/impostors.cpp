@@ -8,6 +8,19 @@
 
 namespace gi {
 
+std::uint32_t impostor_resolution(int texels)
+{
+    constexpr int kBlock = ImpostorsView::kBlock;
+    return std::uint32_t((texels + kBlock - 1) / kBlock * kBlock);
+}
+
+std::uint64_t impostor_bytes(int count, int texels, bool moves)
+{
+    std::uint64_t const side = impostor_resolution(texels), all = std::uint64_t(count) * 6 * side * side;
+    return all * sizeof(ImpostorTexel) * (moves ? 2 : 1) +
+           all / (ImpostorsView::kBlock * ImpostorsView::kBlock) * sizeof(ImpostorBlock);
+}
+
 float impostor_near(World const& world, vec3 centre)
 {
     float const coordinates =
@@ -17,7 +30,7 @@ float impostor_near(World const& world, vec3 centre)
 }
 
 Impostors::Impostors(World const& world, std::vector<vec3> centres, std::uint32_t resolution, std::uint32_t seed,
-                     std::size_t first_moving)
+                     std::size_t first_moving, BuildStop const& stop)
     : centres_(std::move(centres)),
       resolution_(resolution),
       seed_(seed),
@@ -35,10 +48,10 @@ Impostors::Impostors(World const& world, std::vector<vec3> centres, std::uint32_
             throw InputError(fmt::format("an impostor cannot be at ({}, {}, {})", c.x, c.y, c.z),
                              "its centre must be finite", "give a point of the scene");
     texels_.resize(centres_.size() * 6 * resolution_ * resolution_);
-    draw(world, 0, first_moving_, false);
+    draw(world, 0, first_moving_, false, stop);
     if (first_moving_ == soup_.count) return;
     still_ = texels_;
-    draw(world, first_moving_, soup_.count, true);
+    draw(world, first_moving_, soup_.count, true, stop);
 }
 
 void Impostors::moved(World const& world)
@@ -46,15 +59,17 @@ void Impostors::moved(World const& world)
     if (first_moving_ == soup_.count) return;
     update_soup(world, first_moving_, soup_);
     texels_ = still_;
-    draw(world, first_moving_, soup_.count, true);
+    draw(world, first_moving_, soup_.count, true, BuildStop(nullptr));
 }
 
-void Impostors::draw(World const& world, std::size_t first, std::size_t last, bool keep_nearer)
+void Impostors::draw(World const& world, std::size_t first, std::size_t last, bool keep_nearer,
+                     BuildStop const& stop)
 {
     std::size_t const face = std::size_t(resolution_) * resolution_;
     tbb::parallel_for(std::size_t(0), 6 * centres_.size(), [&](std::size_t k) {
         static thread_local Fragments fragments;
         static thread_local NearestMap map;
+        if (stop.given_up()) throw Interrupted();
         vec3 const centre = centres_[k / 6];
         PerspectiveGrid const grid = cube_face(centre, int(k % 6), resolution_, impostor_near(world, centre));
         clear(map, resolution_, resolution_);

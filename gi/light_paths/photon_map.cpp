@@ -53,7 +53,7 @@ void PhotonCells::search(vec3 position, F const& f) const
 }
 
 std::vector<float> radii_by_density(std::span<Photon const> photons, float largest, std::size_t enough,
-                                    std::uint64_t seed)
+                                    std::uint64_t seed, BuildStop const& stop)
 {
     constexpr int kLevels = 12, kTrees = 4;
     constexpr float kCells = 2097152; // of a Morton curve, along an axis
@@ -74,6 +74,7 @@ std::vector<float> radii_by_density(std::span<Photon const> photons, float large
     std::vector<std::uint16_t> halvings(photons.size());
     std::vector<Place> places;
     for (int tree = 0; tree < kTrees; ++tree) {
+        if (stop.given_up()) throw Interrupted();
         Pcg32 rng = Pcg32::for_path(seed ^ 0x0c7e, std::uint32_t(tree), 0);
         vec3 const shift = std::ldexp(1.0f, kLevels - 1) * vec3{rng.uniform(), rng.uniform(), rng.uniform()};
         places.clear();

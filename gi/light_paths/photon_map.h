@@ -11,9 +11,9 @@ namespace gi {
 
 /// Of each photon the radius of a kernel with at least about `enough` photons, m, by how many are in the cells of
 /// octrees about it: follows the density that light has, also where it is focused. The mean of some octrees, each
-/// shifted by a random vector, as radii that change in steps would show.
+/// shifted by a random vector, as radii that change in steps would show. Throws Interrupted.
 std::vector<float> radii_by_density(std::span<Photon const> photons, float largest, std::size_t enough,
-                                    std::uint64_t seed);
+                                    std::uint64_t seed, BuildStop const& stop = BuildStop(nullptr));
 /// Radii of kernels with about `photons_each` photons by the paths' footprints (McGuire and Luebke 2009), which do
 /// not see how curved mirrors and glass focus, nor how lights share a surface.
 std::vector<float> radii_by_footprint(std::span<Photon const> photons, float largest, float photons_each);

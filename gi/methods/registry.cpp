@@ -2,8 +2,10 @@
 
 #include "gi/core/error.h"
 #include "gi/light_paths/options.h"
+#include "gi/methods/photons/explain.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/reference/reference.h"
+#include "gi/methods/sh_grid/explain.h"
 #include "gi/methods/sh_grid/sh_grid.h"
 #include "gi/methods/slhb/frames.h"
 #include "gi/methods/slhb/settings.h"
@@ -30,19 +32,19 @@ constexpr std::array kMethods{
     Method{"reference", "path tracing with exact rays: slow, unbiased, for comparison", render_reference,
            start_reference_frames},
     Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
-           start_slhb_frames, slhb_options},
+           start_slhb_frames, slhb_options, explain_settings},
     Method{"whitted", "ray trees: direct light, mirrors and glass, no diffuse interreflection", render_whitted,
            start_whitted_frames, whitted_options},
     Method{"sh_grid", "ray trees, with indirect light from photons in a field of spherical harmonics",
-           render_sh_grid, start_sh_grid_frames, sh_grid_options},
+           render_sh_grid, start_sh_grid_frames, sh_grid_options, explain_sh_grid},
     Method{"ispm", "ray trees, with indirect light from photons splatted in image space", render_ispm,
-           start_ispm_frames},
-    Method{"lpv", "ray trees, with indirect light that propagates through a lattice", render_lpv,
-           start_lpv_frames},
-    Method{"isllpm", "ray trees, with indirect light from photons in lattices", render_isllpm,
-           start_isllpm_frames},
+           start_ispm_frames, nullptr, explain_ispm},
+    Method{"lpv", "ray trees, with indirect light that propagates through a lattice", render_lpv, start_lpv_frames,
+           nullptr, explain_lpv},
+    Method{"isllpm", "ray trees, with indirect light from photons in lattices", render_isllpm, start_isllpm_frames,
+           nullptr, explain_isllpm},
     Method{"multi_image", "ray trees, with indirect light from photons that follow distance impostors",
-           render_multi_image, start_multi_image_frames},
+           render_multi_image, start_multi_image_frames, nullptr, explain_multi_image},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),

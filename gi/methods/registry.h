@@ -4,6 +4,7 @@
 
 #include "gi/render/frame_renderer.h"
 #include "gi/render/render_option.h"
+#include "gi/scene/model/plan.h"
 
 #include <span>
 #include <string_view>
@@ -13,12 +14,16 @@ namespace gi {
 using RenderFunction = RenderResult (*)(World const&, Camera const&, RenderSettings const&, StopRequest const&,
                                         RenderProgress const&, Report&);
 
+/// What a method builds for a world and what it does not, each with the reason; traces a few rays at most.
+using ExplainMethod = std::vector<PlanItem> (*)(World const&, RenderSettings const&, Camera const&);
+
 struct Method {
     std::string_view name;
     std::string_view summary; ///< one line for --help
     RenderFunction render;
     StartFrames frames;
     RenderOptionTable const& (*options)() = nullptr; ///< of its own; nullptr = none
+    ExplainMethod explain = nullptr;                 ///< nullptr = it has no plan by the scene
 };
 
 std::span<Method const> methods();

@@ -60,6 +60,15 @@ RenderOptionTable const& common_options()
     return all;
 }
 
+std::string changed_options(RenderOptionTable const& table, RenderSettings const& settings,
+                            std::vector<std::string_view> names)
+{
+    for (RenderOption const& o : table)
+        if (std::ranges::find(names, o.name) == names.end() && o.get(settings) != o.get(RenderSettings{}))
+            names.push_back(o.name);
+    return as_options(table, settings, names);
+}
+
 void check_picture_size(int width, int height)
 {
     constexpr double kBytesPerPixel = 300; // sums in double and all layers in float

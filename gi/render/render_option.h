@@ -30,6 +30,10 @@ RenderOptionTable const& common_options();
 std::string as_options(RenderOptionTable const& table, RenderSettings const& settings,
                        std::vector<std::string_view> const& names);
 
+/// The same of all options whose values are not the defaults, and of those named.
+std::string changed_options(RenderOptionTable const& table, RenderSettings const& settings,
+                            std::vector<std::string_view> names);
+
 /// Throws InputError if a picture of this size does not fit into memory.
 void check_picture_size(int width, int height);
 

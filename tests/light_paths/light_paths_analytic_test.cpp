@@ -4,7 +4,7 @@
 #include "gi/kernel/launch.h"
 #include "gi/light_paths/bounce_map.h"
 #include "gi/light_paths/trace_kernel.h"
-#include "gi/methods/photons/look_up_rays.h"
+#include "gi/methods/path_rays/look_up_rays.h"
 #include "gi/scene/model/world_on.h"
 #include "tests/support/scenes.h"
 

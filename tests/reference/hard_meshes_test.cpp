@@ -3,7 +3,7 @@
 
 #include "gi/core/error.h"
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/sh_grid/sh_grid.h"
+#include "gi/methods/registry.h"
 #include "gi/scene/load/load.h"
 #include "tests/support/data.h"
 #include "tests/support/scenes.h"
@@ -51,9 +51,15 @@ Outcome try_to_load(fs::path const& file)
         Picture const picture = render_reference(world, camera, settings, {}, {}, report).picture;
         for (float const v : picture.find("color")->data) EXPECT_TRUE(std::isfinite(v)) << file;
         settings.sh_grid.voxels = 32;
-        settings.photons.paths = 1000;
-        Picture const gridded = render_sh_grid(world, camera, settings, {}, {}, report).picture;
-        for (float const v : gridded.find("color")->data) EXPECT_TRUE(std::isfinite(v)) << file;
+        settings.photons.paths = settings.photons.caustic_paths = 1000;
+        settings.photons.impostors = 4;
+        settings.photons.impostor_texels = 32;
+        settings.photons.low_cells = settings.photons.middle_cells = settings.photons.high_cells =
+            settings.photons.volume_cells = 16;
+        for (char const* const name : {"sh_grid", "ispm", "lpv", "isllpm", "multi_image"}) {
+            Picture const p = find_method(name).render(world, camera, settings, {}, {}, report).picture;
+            for (float const v : p.find("color")->data) EXPECT_TRUE(std::isfinite(v)) << file << ", " << name;
+        }
     } catch (InputError const& e) {
         outcome = Outcome::refused;
         EXPECT_NE(std::string(e.what()).find(file.filename().string()), std::string::npos) << e.what();

@@ -33,6 +33,24 @@ TEST(OtherCommands, InfoTellsWhatIsBuiltAndWhy)
     EXPECT_TRUE(j["report"].contains("losses"));
 }
 
+TEST(OtherCommands, InfoTellsWhatMethodsBuild)
+{
+    TemporaryFolder const folder;
+    auto const all = Json::parse(run_well("info cornell --json", folder.path()).out);
+    for (char const* const method : {"slhb", "sh_grid", "ispm", "lpv", "isllpm", "multi_image"}) {
+        Json const& plan = all["plan_" + std::string(method)];
+        ASSERT_FALSE(plan.empty()) << method;
+        for (Json const& item : plan) EXPECT_FALSE(item["reason"].get<std::string>().empty()) << item;
+    }
+    auto const some = Json::parse(run_well("info --method lpv,multi_image cornell --json", folder.path()).out);
+    EXPECT_TRUE(some.contains("plan_lpv") && some.contains("plan_multi_image"));
+    EXPECT_FALSE(some.contains("plan_slhb") || some.contains("plan_ispm"));
+    std::string const text = run_well("info mirror --method ispm", folder.path()).out;
+    EXPECT_NE(text.find("What method ispm builds"), std::string::npos) << text;
+    EXPECT_NE(text.find("smooth triangles"), std::string::npos) << text;
+    EXPECT_EQ(text.find("What method slhb builds"), std::string::npos) << text;
+}
+
 TEST(OtherCommands, GeneratedScenesAreScenes)
 {
     TemporaryFolder const folder;

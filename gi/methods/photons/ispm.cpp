@@ -94,31 +94,35 @@ protected:
     {
         constexpr float kAlpha = 2.0f / 3; // Knaus and Zwicker 2011: how slowly kernels shrink
         constexpr float kLargest = 0.05f;  // radius over the longest side of what photons reach
-        photons_.assign(set.photons.begin(), set.photons.end());
-        sort_along_curve(photons_); // lists of tiles then read neighbours one after the other
-        screens_.clear();
-        cameras_.clear();
-        shrunk_ = set.number == 0 ? settings_.photons.kernel_size
-                                  : shrunk_ * std::sqrt((float(set.number) - 1 + kAlpha) / float(set.number));
+        std::vector<Photon> photons(set.photons.begin(), set.photons.end());
+        sort_along_curve(photons); // lists of tiles then read neighbours one after the other
+        float const shrunk = set.number == 0
+                                 ? settings_.photons.kernel_size
+                                 : shrunk_ * std::sqrt((float(set.number) - 1 + kAlpha) / float(set.number));
         Bounds box;
-        for (Photon const& p : photons_) box = joined(box, {p.position, p.position});
+        for (Photon const& p : photons) box = joined(box, {p.position, p.position});
         float const largest = box.empty() ? 0 : kLargest * max_component(box.high - box.low);
-        if (!(largest > 0)) photons_.clear(); // they all lie at one point: no area to spread them over
+        if (!(largest > 0)) photons.clear(); // they all lie at one point: no area to spread them over
         // As many photons in a kernel as make noise and blur fall at the same pace: a power of 2/3 of all.
         float const each = 24 * std::pow(float(set.paths) / 65536, kAlpha);
         std::vector<float> radii = settings_.photons.kernel_by == KernelBy::density
-                                       ? radii_by_density(photons_, largest, std::size_t(std::max(1.0f, each)),
-                                                          settings_.seed + set.number)
-                                       : radii_by_footprint(photons_, largest, each);
-        kernels_.clear();
-        for (std::uint32_t i = 0; i < photons_.size(); ++i) {
-            radii[i] *= shrunk_;
-            kernels_.push_back({photons_[i].position, radii[i], photons_[i].normal, i});
+                                       ? radii_by_density(photons, largest, std::size_t(std::max(1.0f, each)),
+                                                          settings_.seed + set.number, set.stop)
+                                       : radii_by_footprint(photons, largest, each);
+        std::vector<PhotonKernel> kernels;
+        for (std::uint32_t i = 0; i < photons.size(); ++i) {
+            radii[i] *= shrunk;
+            kernels.push_back({photons[i].position, radii[i], photons[i].normal, i});
         }
         std::vector<float> const shares =
-            covered_shares(view(world_), set.visibility, photons_, kernels_, set.stop, set.counts);
-        for (std::size_t i = 0; i < photons_.size(); ++i) photons_[i].flux /= shares[i];
-        map_ = PhotonMap(photons_, radii);
+            covered_shares(view(world_), set.visibility, photons, kernels, set.stop, set.counts);
+        for (std::size_t i = 0; i < photons.size(); ++i) photons[i].flux /= shares[i];
+        screens_.clear(); // nothing is interrupted from here on
+        cameras_.clear();
+        map_ = PhotonMap(photons, radii);
+        photons_ = std::move(photons);
+        kernels_ = std::move(kernels);
+        shrunk_ = shrunk;
     }
     SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) override
     {

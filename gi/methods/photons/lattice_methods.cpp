@@ -1,26 +1,12 @@
 // The methods lpv and isllpm: what their lattices send from the points of ray trees.
 
-#include "gi/core/error.h"
-#include "gi/methods/photons/light_propagation.h"
+#include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"
-#include "gi/methods/photons/photon_lattice.h"
 #include "gi/methods/photons/photon_renderer.h"
 #include "gi/methods/whitted/lobe_light.h"
 
-#include <fmt/format.h>
-
 namespace gi {
 namespace {
-
-constexpr std::uint64_t kMostLatticeBytes = PhotonLatticeSettings::kMostBytes;
-
-void check_lattice_bytes(std::uint64_t bytes)
-{
-    if (bytes > kMostLatticeBytes)
-        throw InputError(fmt::format("lattices of {:.1f} GiB", double(bytes) / double(1 << 30)),
-                         fmt::format("at most {} GiB are supported", kMostLatticeBytes >> 30),
-                         "choose fewer cells");
-}
 
 int glossy_directions(TreePoint const& p) { return p.direct ? 8 : 1; }
 
@@ -61,14 +47,11 @@ public:
     PropagationRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                         Report& report, StopRequest const* stop)
         : PhotonRenderer(world, settings, first_moving, report, stop),
-          of_propagation_{.cells = settings.photons.propagation_cells,
-                          .cascades = settings.photons.propagation_cascades,
-                          .steps = settings.photons.propagation_steps,
-                          .by = settings.photons.reprojection},
+          of_propagation_(propagation_of(settings.photons)),
           propagation_(of_propagation_),
           light_(propagation_)
     {
-        check_lattice_bytes(LightPropagation::bytes(of_propagation_, world.bounds));
+        check_bytes(LightPropagation::bytes(of_propagation_, world.bounds), "lattices", "choose fewer cells");
     }
 
 protected:
@@ -100,16 +83,12 @@ public:
     LatticeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
                     StopRequest const* stop)
         : PhotonRenderer(world, settings, first_moving, report, stop),
-          of_lattices_{
-              .cells = {settings.photons.low_cells, settings.photons.middle_cells, settings.photons.high_cells},
-              .smooth = {settings.photons.lattice_smoothing == Switch::on,
-                         settings.photons.lattice_smoothing == Switch::on, false},
-              .cascades = settings.photons.lattice_cascades,
-              .by = settings.photons.irradiance_by},
+          of_lattices_(lattices_of(settings.photons)),
           lattices_(of_lattices_),
           light_(lattices_)
     {
-        check_lattice_bytes(PhotonLattices::bytes(of_lattices_, world.bounds, surface_area(world)));
+        check_bytes(PhotonLattices::bytes(of_lattices_, world.bounds, surface_area(world)), "lattices",
+                    "choose fewer cells");
     }
 
 protected:

@@ -143,7 +143,8 @@ void LightPropagation::place(std::span<GridFrame const> frames)
     }
 }
 
-void LightPropagation::propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights)
+void LightPropagation::propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights,
+                                 BuildStop const& stop)
 {
     GridFrame const& frame = level.frame;
     std::size_t const n = frame.cells();
@@ -164,6 +165,7 @@ void LightPropagation::propagate(Level& level, Level const* coarser, std::span<R
     std::vector<vec3> scales(n);
     int const steps = settings_.steps > 0 ? settings_.steps : 2 * settings_.cells;
     for (int step = 0; step < steps; ++step) {
+        if (stop.given_up()) throw Interrupted();
         launch(Space::host, "scale faces of cells", n, ScaleFaces{now, scales});
         DenseView<ShColor> const around = step == 0 && coarser != nullptr ? coarser->view() : DenseView<ShColor>{};
         launch(
@@ -177,7 +179,7 @@ void LightPropagation::propagate(std::span<GridFrame const> frames, std::span<Re
 {
     place(frames);
     for (std::size_t k = levels_.size(); k-- > 0;)
-        propagate(levels_[k], k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights);
+        propagate(levels_[k], k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights, BuildStop(nullptr));
 }
 
 void LightPropagation::update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
@@ -192,23 +194,25 @@ void LightPropagation::update(World const& world, Geometry geometry, std::span<P
     std::swap(former, levels_);
     place(frames);
     std::vector<ReflectedLight> const lights = reflected_lights(photons);
-    for (std::size_t k = levels_.size(); k-- > 0;) {
-        Level& level = levels_[k];
-        if (settings_.blocked) {
-            if (geometry == Geometry::same && k < former.size() && same(former[k].frame, level.frame)) {
-                std::swap(level.open, former[k].open);
-                std::swap(level.blocked, former[k].blocked);
-            } else {
-                level.blocked.resize(level.corners.cells());
-                level.open.resize(level.corners.cells());
-                add_blockers(world, stop, level);
-                launch(Space::host, "open faces of cells", level.corners.cells(),
-                       OpenFaces{level.corners, level.blocked, level.open});
+    for (std::size_t k = levels_.size(); k-- > 0;) try {
+            Level& level = levels_[k];
+            if (settings_.blocked) {
+                if (geometry == Geometry::same && k < former.size() && same(former[k].frame, level.frame)) {
+                    level.open = former[k].open;
+                    level.blocked = former[k].blocked;
+                } else {
+                    level.blocked.resize(level.corners.cells());
+                    level.open.resize(level.corners.cells());
+                    add_blockers(world, stop, level);
+                    launch(Space::host, "open faces of cells", level.corners.cells(),
+                           OpenFaces{level.corners, level.blocked, level.open});
+                }
             }
+            propagate(level, k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights, stop);
+        } catch (Interrupted const&) {
+            levels_ = std::move(former);
+            throw;
         }
-        if (stop.given_up()) throw Interrupted();
-        propagate(level, k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights);
-    }
 }
 
 vec3 LightPropagation::irradiance(vec3 position, vec3 normal) const

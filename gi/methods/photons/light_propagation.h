@@ -55,7 +55,8 @@ public:
     /// Throws InputError for settings out of range.
     explicit LightPropagation(PropagationSettings const& settings);
 
-    /// Throws Interrupted. @param world  its bounds may be empty  @param geometry  since the last call
+    /// Throws Interrupted, and then keeps what it had. @param world  its bounds may be empty
+    /// @param geometry  since the last call
     /// @param focus  what cameras show, if the world is much larger; else empty
     void update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
                 Bounds const& focus = {}, BuildStop const& stop = BuildStop(nullptr));
@@ -82,7 +83,8 @@ public:
 
 private:
     void place(std::span<GridFrame const> frames);
-    void propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights);
+    void propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights,
+                   BuildStop const& stop);
 
     PropagationSettings settings_;
     std::vector<Level> levels_;

@@ -5,8 +5,8 @@
 // Unlike the paper: the LGV is divided by the area of the surfaces in each cell, not by the scene's area over the
 // number of photons, and gathers from 26 neighbours instead of 6 (PhotonLattices).
 
+#include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"
-#include "gi/methods/photons/photon_lattice.h"
 #include "gi/methods/photons/photon_renderer.h"
 #include "gi/methods/photons/screen_volume.h"
 #include "gi/methods/whitted/caustic_light.h"
@@ -61,12 +61,11 @@ class MultiImageRenderer : public PhotonRenderer {
 public:
     MultiImageRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                        Report& report, StopRequest const* stop)
-        : PhotonRenderer(world, settings, first_moving, report, stop),
-          volume_({.cells = {settings.photons.volume_cells, settings.photons.volume_cells, 4},
-                   .smooth = {false, false, false},
-                   .gathers = settings.photons.volume_gathers,
-                   .cascades = settings.photons.lattice_cascades})
+        : PhotonRenderer(world, settings, first_moving, report, stop), volume_(volume_of(settings.photons))
     {
+        check_bytes(PhotonLattices::bytes(volume_of(settings.photons), world.bounds, surface_area(world)),
+                    "a light gathering volume", "choose fewer --volume-cells");
+        check_impostors(settings.photons, first_moving < world.triangles.size());
     }
     void changed(Changes const& c) override
     {

@@ -1,10 +1,8 @@
 #include "gi/methods/photons/photon_renderer.h"
 
 #include "gi/light_paths/bounce_map.h"
-#include "gi/light_paths/impostor_places.h"
-#include "gi/light_paths/impostor_rays.h"
 #include "gi/light_paths/options.h"
-#include "gi/methods/photons/look_up_rays.h"
+#include "gi/methods/photons/limits.h"
 #include "gi/methods/sh_grid/focus.h"
 
 #include <algorithm>
@@ -22,8 +20,11 @@ PhotonRenderer::PhotonRenderer(World const& world, RenderSettings const& setting
     : TreeRenderer(world, settings, first_moving, report, stop),
       stop_(stop),
       caustics_(world, settings, report, stop),
+      light_rays_(world, settings, first_moving, report, stop),
       paths_(std::uint32_t(settings.photons.paths))
 {
+    if (settings.photons.rays == PhotonRays::impostors)
+        check_impostors(settings.photons, first_moving < world.triangles.size());
 }
 
 void PhotonRenderer::changed(Changes const& c)
@@ -33,9 +34,7 @@ void PhotonRenderer::changed(Changes const& c)
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds || c.materials || c.coverage;
     more_than_moved_ = more_than_moved_ || c.materials || c.coverage;
     soup_moved_ = soup_moved_ || c.geometry;
-    axes_moved_ = axes_moved_ || c.geometry;
-    impostors_moved_ = impostors_moved_ || c.geometry;
-    if (c.materials || c.coverage) impostors_.reset();
+    light_rays_.changed(c);
     light_changed_ = light_changed_ || c.lights || c.emitters || c.environment;
 }
 
@@ -47,8 +46,10 @@ SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<Frame
                frozen = settings_.photons.frozen == Switch::on;
     if (any && !(frozen && has_light_)) find_focus(views);
     if (any && settings_.bounces > 0) update(views, counts);
-    if (any && has_caustics() && !(frozen && caustics_.map() != nullptr))
+    if (any && has_caustics() && !(frozen && caustics_known_)) {
         caustics_.prepare(*visibility_, index, views, focus_, share(), counts);
+        caustics_known_ = true;
+    }
     rays_ += double(counts.nearest_rays + counts.shadow_rays);
     work_.paths += counts;
     return any ? light(views, caustics_.map()) : nullptr;
@@ -115,7 +116,7 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
     std::vector<Photon> photons;
     {
-        PathRays const& rays = path_rays(stop);
+        PathRays const& rays = light_rays_.of(rays_kind(), *visibility_);
         StageTimer const timer(report_, "light paths");
         bool const by_map = settings_.photons.first_bounce == FirstBounce::map;
         if (by_map) {
@@ -156,41 +157,6 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     for (Photon const& p : photons) flux_ += dvec3(p.flux);
 }
 
-PathRays const& PhotonRenderer::path_rays(BuildStop const&)
-{
-    switch (rays_kind()) {
-    case PhotonRays::look_ups: {
-        StageTimer const timer(report_, "hit buffers");
-        if (!axes_)
-            axes_.emplace(world_, with_stored_axes(settings_.slhb), settings_.seed, first_moving_, stop_);
-        else if (axes_moved_)
-            axes_->moved();
-        axes_moved_ = false;
-        rays_of_paths_ = std::make_unique<LookUpRays>(world_, *axes_, *visibility_);
-        break;
-    }
-    case PhotonRays::impostors: {
-        StageTimer const timer(report_, "impostors");
-        if (!impostors_) {
-            auto const texels = std::uint32_t((settings_.photons.impostor_texels + 7) / 8 * 8);
-            ImpostorPlacement const placement{.count = std::uint32_t(settings_.photons.impostors)};
-            impostors_.emplace(world_, place_impostors(world_, *visibility_, placement), texels,
-                               std::uint32_t(settings_.seed), first_moving_);
-        } else if (impostors_moved_) {
-            impostors_->moved(world_);
-        }
-        impostors_moved_ = false;
-        ImpostorSettings const by{.search = settings_.photons.impostor_search};
-        rays_of_paths_ = std::make_unique<ImpostorRays>(world_, *impostors_, by);
-        break;
-    }
-    case PhotonRays::exact:
-        rays_of_paths_ = std::make_unique<ExactPathRays>(*visibility_);
-        break;
-    }
-    return *rays_of_paths_;
-}
-
 void PhotonRenderer::report_work()
 {
     TreeRenderer::report_work();
@@ -200,7 +166,7 @@ void PhotonRenderer::report_work()
         report_.count("sets of photons since the last change", double(sets_));
         report_.count("flux of the photons, W (luminance)", double(luminance(vec3(flux_))));
     }
-    if (impostors_) report_.count("impostors", double(impostors_->view().count()));
+    light_rays_.report_counts();
     report_light(report_);
     caustics_.report_counts();
 }
@@ -212,10 +178,7 @@ std::string PhotonRenderer::options() const
     chosen.photons.caustic_paths = int(share() * chosen.photons.caustic_paths);
     std::vector<std::string_view> names{"photons"};
     if (has_caustics()) names.push_back("caustic-photons");
-    for (RenderOption const& o : photon_options())
-        if (std::ranges::find(names, o.name) == names.end() && o.get(chosen) != o.get(RenderSettings{}))
-            names.push_back(o.name);
-    return TreeRenderer::options() + " " + as_options(photon_options(), chosen, names);
+    return TreeRenderer::options() + " " + changed_options(photon_options(), chosen, names);
 }
 
 } // namespace gi

@@ -8,7 +8,7 @@
 #include "gi/light_paths/caustics.h"
 #include "gi/light_paths/impostors.h"
 #include "gi/light_paths/photon.h"
-#include "gi/methods/slhb/directions/stored_axes.h"
+#include "gi/methods/path_rays/light_rays.h"
 #include "gi/methods/whitted/whitted.h"
 #include "gi/raster/triangle_soup.h"
 
@@ -70,23 +70,20 @@ private:
     void update(std::span<FrameView const> views, PathCounts& counts);
     void trace_set(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     void fit_budget(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
-    /// What finds surfaces, made or brought up to date.
-    PathRays const& path_rays(BuildStop const& stop);
     double share() const { return double(paths_) / settings_.photons.paths; }
 
     StopRequest const* stop_;
     Caustics caustics_;
+    LightRays light_rays_;
     bool light_changed_ = true, surfaces_changed_ = true, more_than_moved_ = true, has_light_ = false;
+    bool caustics_known_ = false;              ///< there may be none
     std::optional<std::uint32_t> first_index_; ///< of the passes
     std::vector<Camera> cameras_;              ///< of the last call
     Bounds focus_;                             ///< what cameras show, if the world is much larger; else empty
     std::uint32_t paths_;                      ///< of a set
     std::uint32_t sets_ = 0;                   ///< since the last change
     std::optional<TriangleSoup> soup_;         ///< what bounce maps draw
-    bool soup_moved_ = false, axes_moved_ = false, impostors_moved_ = false;
-    std::optional<StoredAxes> axes_; ///< of look-ups
-    std::optional<Impostors> impostors_;
-    std::unique_ptr<PathRays> rays_of_paths_;
+    bool soup_moved_ = false;
     std::size_t stored_ = 0;
     dvec3 flux_{0}, emitted_{0};
 };

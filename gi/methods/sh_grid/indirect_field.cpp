@@ -35,12 +35,14 @@ IndirectField::IndirectField(World const& world, RenderSettings const& settings,
       stop_(stop),
       voxels_(settings.sh_grid.voxels),
       light_paths_(std::uint32_t(settings.photons.paths)),
-      photons_(world, settings, first_moving_)
+      photons_(world, settings, first_moving_),
+      light_rays_(world, settings, first_moving_, report, stop)
 {
 }
 
 void IndirectField::changed(Changes const& c)
 {
+    light_rays_.changed(c);
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds;
     materials_changed_ = materials_changed_ || c.materials;
     coverage_changed_ = coverage_changed_ || c.coverage;
@@ -261,8 +263,9 @@ void IndirectField::update(Now const& now)
     place_levels(now.visibility, now.views, now.stop);
     auto const begun = Clock::now();
     auto const trace_photons = [&](bool whole) {
+        PathRays const& rays = light_rays_.of(settings_.photons.rays, now.visibility);
         StageTimer const timer(report_, "photons");
-        PhotonSets::Trace const trace{levels_, now.visibility, now.views, now.stop, now.counts};
+        PhotonSets::Trace const trace{levels_, now.visibility, rays, now.views, now.stop, now.counts};
         whole ? photons_.trace_all(trace) : photons_.trace_next(trace);
     };
     if (light_changed_ || surfaces_changed_) {
@@ -322,6 +325,7 @@ void IndirectField::report_counts()
         report_.count(grid + ": area that no light can reach, both sides, m^2", level.hidden_m2);
     }
     if (levels_.empty()) return;
+    light_rays_.report_counts();
     report_.count("photons of the last set", double(photon_count_));
     report_.count("sets of photons", double(photons_.sets()));
     report_.count("flux of the photons, W (luminance)", watt(stored_));

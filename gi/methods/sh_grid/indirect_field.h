@@ -3,6 +3,7 @@
 // A world that is much larger than what is shown has two levels: a fine grid around the latter, and one of all.
 
 #include "gi/core/report.h"
+#include "gi/methods/path_rays/light_rays.h"
 #include "gi/methods/sh_grid/focus.h"
 #include "gi/methods/sh_grid/photon_sets.h"
 #include "gi/render/path_sample.h"
@@ -82,6 +83,7 @@ private:
     std::vector<GridLevel> levels_;
     bool surfaces_changed_ = true, light_changed_ = true, coverage_changed_ = false, materials_changed_ = false;
     PhotonSets photons_;
+    LightRays light_rays_;
     std::size_t photon_count_ = 0;
     dvec3 stored_{0}; ///< flux of photons, W
     bool has_field_ = false;

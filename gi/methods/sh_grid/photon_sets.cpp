@@ -71,7 +71,7 @@ void PhotonSets::trace_from_lights(Trace const& trace, int part)
         };
     }
     from_lights_[std::size_t(part)] = trace_part(trace, part, paths, 0, [&](LightPaths const& some) {
-        return trace_light_paths(view(world_), world_.bounds, ExactPathRays(trace.visibility), some, trace.counts);
+        return trace_light_paths(view(world_), world_.bounds, trace.rays, some, trace.counts);
     });
 }
 
@@ -103,8 +103,8 @@ void PhotonSets::trace_inner(Trace const& trace, int first_part, int end_part)
     for (int part = first_part; part < end_part; ++part)
         from_inside_[std::size_t(part)] =
             trace_part(trace, part, light_paths_of(part, trace), 1u << 25, [&](LightPaths const& some) {
-                return trace_from_surfaces(world, ExactPathRays(trace.visibility),
-                                           inner_paths_->trace(inner, some, trace.counts), some, trace.counts);
+                return trace_from_surfaces(world, trace.rays, inner_paths_->trace(inner, some, trace.counts), some,
+                                           trace.counts);
             });
 }
 

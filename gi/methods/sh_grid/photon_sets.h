@@ -15,6 +15,7 @@ public:
     struct Trace {
         std::span<GridLevel> levels; ///< the finest first
         ExactVisibility const& visibility;
+        PathRays const& rays; ///< of light paths
         std::span<FrameView const> views;
         BuildStop const& stop;
         PathCounts& counts;

@@ -43,14 +43,9 @@ public:
         photons.caustic_paths = int(photon_share() * photons.caustic_paths);
         photons.paths = int(field_.light_paths());
         chosen.sh_grid.voxels = field_.voxels();
-        std::vector<std::string_view> names{"voxels"};
-        for (RenderOption const& o : sh_grid_options())
-            if (std::ranges::find(names, o.name) == names.end() && o.get(chosen) != o.get(RenderSettings{}))
-                names.push_back(o.name);
         return TreeRenderer::options() + " " +
-               as_options(photon_options(), chosen,
-                          {"photons", "caustic-photons", "caustic-radius", "reflections"}) +
-               " " + as_options(sh_grid_options(), chosen, names);
+               changed_options(photon_options(), chosen, {"photons", "caustic-photons"}) + " " +
+               changed_options(sh_grid_options(), chosen, {"voxels"});
     }
 
 protected:

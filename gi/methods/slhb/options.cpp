@@ -22,7 +22,7 @@ RenderOptionTable make_table()
     RenderOption directions = slhb("directions", {"", "icosahedron:80", "icosahedron:320", "icosahedron:1280"},
                                    "stored directions, FAMILY:COUNT (default icosahedron:320)", &S::directions,
                                    {{streamed, kAllDirections}, {temporal, kAllDirections}},
-                                   {"slhb", "vpl_slhb", "ispm", "lpv", "isllpm"});
+                                   {"slhb", "vpl_slhb", "sh_grid", "ispm", "lpv", "isllpm"});
     directions.takes_other_words = true;
     directions.set = [](RenderSettings& s, std::string const& text, std::string const&) {
         if (!text.empty()) make_directions(text); // throws
@@ -51,7 +51,7 @@ RenderOptionTable make_table()
              &S::cache),
         directions,
         slhb("hit-buffer", {0, 8192}, "size of a hit buffer, texels on a side (default: by the plan)",
-             &S::resolution, {}, {"slhb", "vpl_slhb", "ispm", "lpv", "isllpm"}),
+             &S::resolution, {}, {"slhb", "vpl_slhb", "sh_grid", "ispm", "lpv", "isllpm"}),
         slhb("axes", {0, 64}, "axes per bounce in a pass (default: by the plan); schedules streamed and temporal",
              &S::axes, {{stored, "all axes of --directions are used"}}),
         slhb("fresh-axes", {0, 64}, "axes replaced per pass (default: an eighth of them); schedule temporal",

@@ -209,7 +209,7 @@ std::string as_options(RenderSettings const& chosen)
     return chosen.space == Space::device ? own + " " + as_options(common_options(), all, {"device"}) : own;
 }
 
-std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, Camera const& camera)
+std::vector<PlanItem> explain_settings(World const& world, RenderSettings const& asked, Camera const& camera)
 {
     TriangleSoup const soup = make_soup(world);
     Costs const costs(world, layers_per_texel(world, soup));

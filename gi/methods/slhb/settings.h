@@ -23,7 +23,7 @@ RenderOptionTable const& slhb_options();
 std::string as_options(RenderSettings const& chosen);
 
 /// Returns the decisions of choose_settings for a scene, with reasons, as items of the plan.
-std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, Camera const& camera);
+std::vector<PlanItem> explain_settings(World const& world, RenderSettings const& asked, Camera const& camera);
 
 /// True if some path may have to continue with an exact ray, or the camera needs them (orthographic cameras are
 /// not rasterised yet).

@@ -1,9 +1,8 @@
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
-#include "gi/methods/sh_grid/explain.h"
+#include "gi/methods/registry.h"
 #include "gi/methods/slhb/directions/direction_picture.h"
 #include "gi/methods/slhb/directions/direction_quality.h"
-#include "gi/methods/slhb/settings.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/model/summary.h"
@@ -23,9 +22,34 @@ namespace {
 
 struct InfoOptions {
     std::string scene, directions, png;
+    std::vector<std::string> methods;
     std::optional<double> time_s;
     bool json = false;
 };
+
+struct MethodPlan {
+    std::string_view method;
+    std::vector<gi::PlanItem> items;
+};
+
+/// The methods of these names, or all that plan what they build. Throws InputError for one that does not.
+std::vector<gi::Method const*> methods_with_plans(std::vector<std::string> const& names)
+{
+    std::vector<gi::Method const*> out;
+    std::string known;
+    for (gi::Method const& m : gi::methods()) {
+        if (m.explain == nullptr) continue;
+        if (names.empty()) out.push_back(&m);
+        known += (known.empty() ? "" : ", ") + std::string(m.name);
+    }
+    for (std::string const& name : names) {
+        out.push_back(&gi::find_method(name));
+        if (out.back()->explain == nullptr)
+            throw gi::InputError("info --method " + name, "what it builds does not depend on the scene",
+                                 "choose one of: " + known);
+    }
+    return out;
+}
 
 /// Prints a direction set, how uniform it is, and the errors of its look-up maps.
 int run_directions(InfoOptions const& o)
@@ -85,26 +109,28 @@ int run(InfoOptions const& o)
     if (o.scene.empty() == o.directions.empty())
         throw gi::InputError("info needs a SCENE or --directions", "it was given both or none",
                              "give one of them");
+    if (!o.directions.empty() && !o.methods.empty())
+        throw gi::InputError("--method with --directions", "a set of directions is not rendered", "leave one out");
     if (!o.directions.empty()) return run_directions(o);
     if (!o.png.empty()) throw gi::InputError("--png without --directions", "info draws no scenes", "use render");
+    std::vector<gi::Method const*> const asked = methods_with_plans(o.methods);
     gi::Report report;
     auto const scene = std::make_shared<gi::Scene const>(gi::load_scene(o.scene, report));
     gi::World const world = gi::build_world(scene, o.time_s, report);
     gi::SceneSummary const summary = gi::summarise(world);
     gi::ScenePlan const plan = gi::plan_scene(world);
     gi::Camera const camera = choose_camera(world, {}).camera;
-    std::vector<gi::PlanItem> const slhb = gi::explain_settings({}, world, camera),
-                                    sh_grid = gi::explain_sh_grid(world, {}, camera);
+    std::vector<MethodPlan> methods;
+    for (gi::Method const* const m : asked) methods.push_back({m->name, m->explain(world, {}, camera)});
     if (o.json) {
         nlohmann::ordered_json j;
         j["scene"] = o.scene;
         for (gi::SummaryLine const& line : summary.lines) j["content"][line.what] = line.value;
-        auto const add_plan = [&](char const* name, std::vector<gi::PlanItem> const& items) {
+        auto const add_plan = [&](std::string const& name, std::vector<gi::PlanItem> const& items) {
             for (gi::PlanItem const& item : items)
                 j[name].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
         };
-        add_plan("plan_slhb", slhb);
-        add_plan("plan_sh_grid", sh_grid);
+        for (MethodPlan const& m : methods) add_plan("plan_" + std::string(m.method), m.items);
         add_plan("plan", plan.items);
         j["report"] = to_json(report);
         std::fputs(to_text(j).c_str(), stdout);
@@ -112,14 +138,14 @@ int run(InfoOptions const& o)
     }
     fmt::print("{}\n", o.scene);
     for (gi::SummaryLine const& line : summary.lines) fmt::print("  {:<22} {}\n", line.what, line.value);
-    auto const print_plan = [](char const* title, std::vector<gi::PlanItem> const& items) {
+    auto const print_plan = [](std::string const& title, std::vector<gi::PlanItem> const& items) {
         fmt::print("{}\n", title);
         for (gi::PlanItem const& item : items)
             fmt::print("  {:<4} {:<38} {}\n", item.build ? "yes" : "no", item.what, item.reason);
     };
     print_plan("What is built for the scene", plan.items);
-    print_plan("What method slhb builds, at 512 x 512 pixels", slhb);
-    print_plan("What method sh_grid builds", sh_grid);
+    for (MethodPlan const& m : methods)
+        print_plan(fmt::format("What method {} builds, at 512 x 512 pixels", m.method), m.items);
     std::fflush(stdout);
     print_losses(report);
     return 0;
@@ -137,11 +163,16 @@ void add_info(CLI::App& app, int& exit_code)
                   "instead of a scene: a direction set FAMILY:COUNT; families are\n"
                   "icosahedron, octahedron, tetrahedron, uv_grid, halton, fibonacci");
     c->add_option("--png", o->png, "with --directions: PNG file for a drawing of them");
+    c->add_option("--method", o->methods,
+                  "say what these methods build, NAME[,NAME...]; without it: all whose plan depends on the scene")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     c->add_option("--time", o->time_s, "animation time, s")->check(in_range(-1e9, 1e9));
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
   lightwell info atrium
   lightwell info cornell --json
+  lightwell info mirror --method ispm,lpv
   lightwell info --directions icosahedron:320 --png icosahedron.png
 
 The lines below "environment map" give the irradiance (red, green, blue) of unshadowed surfaces that face up, down

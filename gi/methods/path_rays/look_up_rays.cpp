@@ -1,4 +1,4 @@
-#include "gi/methods/photons/look_up_rays.h"
+#include "gi/methods/path_rays/look_up_rays.h"
 
 #include "gi/methods/slhb/hit_buffer/query_batch.h"
 #include "gi/scene/shading/shading_point.h"

@@ -1,0 +1,45 @@
+#pragma once
+// What finds the surfaces of light paths, as the settings choose it: exact rays, look-ups in hit buffers, distance
+// impostors. Built when first asked for, kept, and updated when the world has changed.
+
+#include "gi/core/report.h"
+#include "gi/light_paths/impostor_rays.h"
+#include "gi/methods/path_rays/look_up_rays.h"
+#include "gi/render/render_settings.h"
+#include "gi/scene/motion/moving_world.h"
+
+#include <optional>
+
+namespace gi {
+
+class LightRays {
+public:
+    /// All arguments must outlive it. @param first_moving  index of the first triangle that may move
+    /// @param stop  checked while hit buffers are built; null = never
+    LightRays(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
+              StopRequest const* stop)
+        : world_(world), settings_(settings), first_moving_(first_moving), report_(report), stop_(stop)
+    {
+    }
+    /// Follows the world.
+    void changed(Changes const& changes);
+    /// For the world as it is now. Throws Interrupted. @param exact  of the world
+    PathRays const& of(PhotonRays kind, ExactVisibility const& exact);
+    void report_counts();
+
+private:
+    void build_look_ups(ExactVisibility const& exact);
+    void build_impostors(ExactVisibility const& exact);
+
+    World const& world_;
+    RenderSettings const& settings_;
+    std::size_t first_moving_;
+    Report& report_;
+    StopRequest const* stop_;
+    bool axes_moved_ = false, impostors_moved_ = false;
+    std::optional<StoredAxes> axes_; ///< of look-ups
+    std::optional<Impostors> impostors_;
+    std::unique_ptr<PathRays> rays_;
+};
+
+} // namespace gi

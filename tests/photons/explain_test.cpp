@@ -1,0 +1,117 @@
+// What the photon methods say that they build, and why.
+
+#include "gi/methods/photons/explain.h"
+
+#include "gi/methods/photons/limits.h"
+#include "tests/photons/photon_methods.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+using Explain = std::vector<PlanItem> (*)(World const&, RenderSettings const&, Camera const&);
+constexpr Explain kExplain[] = {explain_ispm, explain_lpv, explain_isllpm, explain_multi_image};
+
+/// The item; one with the reason "missing" if there is none.
+PlanItem item(std::vector<PlanItem> const& items, std::string const& what)
+{
+    auto const found = std::ranges::find(items, what, &PlanItem::what);
+    return found != items.end() ? *found : PlanItem{what, false, "missing"};
+}
+
+bool says(PlanItem const& item, std::string const& words) { return item.reason.find(words) != std::string::npos; }
+
+TEST(ExplainPhotons, NothingIsBuiltForNothing)
+{
+    Scene scene;
+    Camera const camera = in_the_room();
+    for (Explain const explain : kExplain) {
+        auto const items = explain(world_of(scene), {}, camera);
+        ASSERT_EQ(items.size(), 1u);
+        EXPECT_FALSE(items[0].build);
+        EXPECT_EQ(items[0].reason, "there are no surfaces");
+    }
+    add_box(scene, vec3{-1}, vec3{1}, add_material(scene, lambert(vec3{0.5f})), true);
+    for (Explain const explain : kExplain)
+        EXPECT_EQ(explain(world_of(scene), {}, camera)[0].reason, "there is no light");
+    RenderSettings direct;
+    direct.bounces = 0;
+    for (Explain const explain : kExplain)
+        EXPECT_TRUE(says(explain(world_of(room_with_mirror()), direct, camera)[0], "--bounces"));
+}
+
+TEST(ExplainPhotons, EachItemHasItsReason)
+{
+    World const world = world_of(room_with_mirror());
+    RenderSettings s = small_photon_picture(64, 5000);
+    for (Explain const explain : kExplain) {
+        auto const items = explain(world, s, in_the_room());
+        EXPECT_TRUE(item(items, "light paths").build);
+        EXPECT_TRUE(says(item(items, "light paths"), "5000 for a set"));
+        EXPECT_FALSE(item(items, "bounce maps").build);
+        EXPECT_TRUE(says(item(items, "new photons when something moves"), "nothing moves"));
+        EXPECT_TRUE(says(item(items, "light from afar towards what is shown"), "no sky"));
+        for (PlanItem const& i : items) EXPECT_FALSE(i.reason.empty()) << i.what;
+    }
+    EXPECT_FALSE(item(explain_ispm(world, s, in_the_room()), "distance impostors").build);
+    EXPECT_FALSE(item(explain_lpv(world, s, in_the_room()), "caustics").build);
+    EXPECT_TRUE(says(item(explain_isllpm(world, s, in_the_room()), "caustics"), "1250 light paths"));
+    EXPECT_TRUE(says(item(explain_isllpm(world, s, in_the_room()), "caustics"), "2 smooth triangles"));
+    auto const by_impostors = explain_multi_image(world, s, in_the_room());
+    EXPECT_TRUE(says(item(by_impostors, "distance impostors"), "at most 8 cube maps of 6 x 64 x 64"));
+    EXPECT_TRUE(item(by_impostors, "caustics in screen space").build);
+    EXPECT_TRUE(says(
+        item(explain_multi_image(world, s, orthographic({0, 0, 0.9}, {0, 0, 0}, 1)), "caustics in screen space"),
+        "orthographic"));
+    s.photons.caustic_paths = 0;
+    EXPECT_TRUE(says(item(explain_ispm(world, s, in_the_room()), "caustics"), "--caustic-photons 0"));
+    s.photons.frozen = Switch::on;
+    EXPECT_TRUE(
+        says(item(explain_ispm(world, s, in_the_room()), "new photons when something moves"), "--frozen-light"));
+    s.photons.first_bounce = FirstBounce::map;
+    s.photons.rays = PhotonRays::look_ups;
+    EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "bounce maps").build);
+    EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "hit buffers of light paths").build);
+    EXPECT_TRUE(says(item(explain_lpv(world, s, in_the_room()), "nested lattices"), "--propagation-cascades 1"));
+    s.photons.propagation_cascades = 3;
+    EXPECT_TRUE(item(explain_lpv(world, s, in_the_room()), "nested lattices").build);
+}
+
+TEST(ExplainPhotons, CausticsNeedSomethingSmooth)
+{
+    Scene scene;
+    add_box(scene, vec3{-1}, vec3{1}, add_material(scene, lambert(vec3{0.5f})), true);
+    Light lamp;
+    lamp.intensity = vec3{1};
+    add_light(scene, lamp);
+    World const world = world_of(scene);
+    for (Explain const explain : {explain_ispm, explain_isllpm, explain_multi_image}) {
+        PlanItem const caustics = item(explain(world, {}, in_the_room()), "caustics");
+        EXPECT_FALSE(caustics.build);
+        EXPECT_TRUE(says(caustics, "no smooth surface")) << caustics.reason;
+    }
+    EXPECT_FALSE(item(explain_isllpm(world, {}, in_the_room()), "lattice of caustics").build);
+    EXPECT_FALSE(item(explain_multi_image(world, {}, in_the_room()), "caustics in screen space").build);
+}
+
+TEST(ExplainPhotons, MemoryThatWouldBeRefused)
+{
+    World const world = world_of(room_with_mirror());
+    RenderSettings s;
+    EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "memory of lattices").build);
+    s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = 512;
+    s.photons.lattice_cascades = 4;
+    PlanItem const memory = item(explain_isllpm(world, s, in_the_room()), "memory of lattices");
+    EXPECT_FALSE(memory.build);
+    EXPECT_TRUE(says(memory, "refused")) << memory.reason;
+    PhotonSettings p;
+    p.impostors = 2;
+    p.impostor_texels = 9; // rounded up to 16
+    EXPECT_EQ(impostor_bytes(p, false), 2u * 6 * 16 * 16 * 8 + 2u * 6 * 4 * 8);
+    EXPECT_EQ(impostor_bytes(p, true), 2u * 2 * 6 * 16 * 16 * 8 + 2u * 6 * 4 * 8);
+}
+
+} // namespace
+} // namespace gi::test

@@ -1,0 +1,154 @@
+// Frames of the photon methods: they follow what changes, or keep their light if it is frozen; views; threads.
+
+#include "tests/photons/photon_methods.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+MovingWorld moving_world(Report& report)
+{
+    return {std::make_shared<Scene const>(room_with_mirror()), 0.0, report};
+}
+
+/// Seconds so far of what traces or stores light.
+double light_time(Report const& report)
+{
+    double sum = 0;
+    for (auto const& [stage, seconds] : report.times())
+        if (stage == "light paths" || stage == "caustic photons" || stage == "impostors" ||
+            stage == "photon map" || stage == "light propagation" || stage == "light lattices" ||
+            stage == "light gathering volume")
+            sum += seconds;
+    return sum;
+}
+
+TEST(PhotonFrames, FollowLights)
+{
+    for (PhotonMethod const& m : kPhotonMethods) {
+        Report report;
+        MovingWorld moving = moving_world(report);
+        auto const frames = m.start(moving, in_the_room(), small_photon_picture(16, 8192), report);
+        double const lit = indirect(frames->frame(in_the_room(), {}, {}, {}).picture);
+        EXPECT_GT(lit, 0) << m.name;
+        Light half = moving.world().lights.at(0);
+        half.intensity *= 0.5f;
+        frames->changed(moving.set_light(0, half));
+        EXPECT_NEAR(indirect(frames->frame(in_the_room(), {}, {}, {}).picture) / lit, 0.5, 0.02) << m.name;
+        half.intensity = vec3{0};
+        frames->changed(moving.set_light(0, half));
+        EXPECT_EQ(indirect(frames->frame(in_the_room(), {}, {}, {}).picture), 0) << m.name;
+    }
+}
+
+/// Light that is frozen is traced once, whatever the camera and the scene do, and a camera that comes back sees
+/// what one sees that has never moved.
+TEST(PhotonFrames, FrozenLight)
+{
+    Camera const here = in_the_room(), there = look_at({-0.8, 0.5, -0.8}, {0.5, -0.5, 0.5}, 70);
+    for (PhotonMethod const& m : kPhotonMethods)
+        for (bool const frozen : {true, false}) {
+            RenderSettings s = small_photon_picture(16, 8192);
+            s.photons.frozen = frozen ? Switch::on : Switch::off;
+            s.photons.propagation_cascades = s.photons.lattice_cascades = 2;
+            Picture last[2];
+            for (bool const walks : {false, true}) {
+                Report report;
+                MovingWorld moving = moving_world(report);
+                auto const frames = m.start(moving, here, s, report);
+                double const first = indirect(frames->frame(here, {}, {}, {}).picture);
+                double const after_first = light_time(report);
+                EXPECT_GT(after_first, 0);
+                for (int k = 0; k < 3; ++k) frames->frame(walks ? there : here, {}, {}, {});
+                last[walks ? 1 : 0] = frames->frame(here, {}, {}, {}).picture;
+                EXPECT_NEAR(indirect(last[walks ? 1 : 0]) / first, 1, 0.05) << m.name;
+                // A frozen method may time what it no longer does.
+                EXPECT_EQ(light_time(report) == after_first, frozen) << m.name;
+                Light off = moving.world().lights.at(0);
+                off.intensity = vec3{0};
+                frames->changed(moving.set_light(0, off));
+                double const dark = indirect(frames->frame(here, {}, {}, {}).picture);
+                EXPECT_EQ(dark > 0.9 * first, frozen) << m.name;
+            }
+            EXPECT_EQ(last[0].find("color")->data == last[1].find("color")->data, frozen) << m.name;
+        }
+}
+
+/// Glass that no light reaches has no caustics: that, too, is found out once.
+TEST(PhotonFrames, FrozenLightWithoutCaustics)
+{
+    Scene scene;
+    add_box(scene, vec3{-1}, vec3{1}, add_material(scene, lambert(vec3{0.5f})), true);
+    add_box(scene, vec3{2}, vec3{3}, add_material(scene, mirror(vec3{0.9f})), false);
+    Light lamp;
+    lamp.position = {0.2f, 0.3f, 0.1f};
+    lamp.intensity = vec3{1};
+    add_light(scene, lamp);
+    for (PhotonMethod const& m : kPhotonMethods) {
+        RenderSettings s = small_photon_picture(8, 4096);
+        s.photons.frozen = Switch::on;
+        Report report;
+        MovingWorld moving(std::make_shared<Scene const>(scene), 0.0, report);
+        auto const frames = m.start(moving, in_the_room(), s, report);
+        frames->frame(in_the_room(), {}, {}, {});
+        double const after_first = light_time(report);
+        for (int k = 0; k < 3; ++k) frames->frame(in_the_room(1 - 0.1 * k), {}, {}, {});
+        EXPECT_EQ(light_time(report), after_first) << m.name;
+    }
+}
+
+TEST(PhotonFrames, AnyNumberOfThreadsGivesTheSameBits)
+{
+    World const world = world_of(room_with_mirror());
+    for (PhotonMethod const& m : kPhotonMethods)
+        for (PhotonRays const rays : {PhotonRays::exact, PhotonRays::look_ups, PhotonRays::impostors})
+            for (FirstBounce const first : {FirstBounce::rays, FirstBounce::map}) {
+                if (first == FirstBounce::map && rays != PhotonRays::exact) continue;
+                RenderSettings s = small_photon_picture(24, 8192);
+                s.paths = 2;
+                s.photons.rays = rays;
+                s.photons.first_bounce = first;
+                s.slhb.directions = "icosahedron:20";
+                s.slhb.resolution = 64;
+                s.threads = 1;
+                Report report;
+                Picture const one = m.render(world, in_the_room(), s, {}, {}, report).picture;
+                EXPECT_GT(indirect(one), 0) << m.name;
+                for (int const threads : {2, 3}) {
+                    s.threads = threads;
+                    Picture const other = m.render(world, in_the_room(), s, {}, {}, report).picture;
+                    for (Layer const& layer : one.layers)
+                        EXPECT_TRUE(layer.data == other.find(layer.name)->data)
+                            << layer.name << " of " << m.name << " by " << threads << " threads";
+                }
+            }
+}
+
+/// Two eyes share photons; each sees what it would see alone, but for noise.
+TEST(PhotonFrames, ViewsAreWhatOneViewWouldBe)
+{
+    Report report;
+    MovingWorld const moving = moving_world(report);
+    Camera const left = in_the_room(), right = look_at({0.26, 0.1, 0.9}, {0.06, -0.5, -0.4}, 80);
+    for (PhotonMethod const& m : kPhotonMethods) {
+        RenderSettings const s = small_photon_picture(32, 65536);
+        FrameView const both[] = {{left, 32, 32}, {right, 24, 24, 0}};
+        auto const together = m.start(moving, left, s, report)->views(both, 4, VertexSharing::none, {});
+        ASSERT_EQ(together.size(), 2u);
+        for (int k = 0; k < 2; ++k) {
+            auto const alone = m.start(moving, left, s, report)->views({both + k, 1}, 4, VertexSharing::none, {});
+            for (char const* const layer : {"L1", "L2"}) {
+                double const a = mean_of(together[std::size_t(k)].picture, layer).mean,
+                             b = mean_of(alone[0].picture, layer).mean;
+                EXPECT_GT(b, 0);
+                EXPECT_NEAR(a / b, 1, 0.01) << m.name << ", " << layer << " of view " << k;
+            }
+            EXPECT_NE(together[std::size_t(k)].picture.find("motion"), nullptr) << m.name;
+        }
+    }
+}
+
+} // namespace
+} // namespace gi::test

@@ -1,0 +1,194 @@
+// Scenes and settings that could break the photon methods: each becomes a picture of finite numbers or is refused.
+
+#include "gi/core/error.h"
+#include "tests/photons/photon_methods.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <thread>
+
+namespace gi::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Picture picture_of(PhotonMethod const& m, Scene const& scene, Camera const& camera, RenderSettings const& s)
+{
+    Report report;
+    Picture p = m.render(world_of(scene), camera, s, {}, {}, report).picture;
+    for (Layer const& layer : p.layers) {
+        bool const finite = std::ranges::all_of(layer.data, [](float v) { return std::isfinite(v); });
+        EXPECT_TRUE(finite) << m.name << ", " << layer.name;
+    }
+    return p;
+}
+
+Light point_light(vec3 position, float intensity = 1)
+{
+    Light lamp;
+    lamp.type = LightType::point;
+    lamp.position = position;
+    lamp.intensity = vec3{intensity};
+    return lamp;
+}
+
+TEST(PhotonMethods, NothingToSeeOrNoLightIsDark)
+{
+    Camera const camera = look_at({0, 0, 3}, {0, 0, 0}, 60);
+    for (PhotonMethod const& m : kPhotonMethods)
+        for (bool const lit : {false, true})
+            for (bool const surface : {false, true}) {
+                if (lit && surface) continue;
+                Scene scene;
+                if (surface)
+                    add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_material(scene, lambert(vec3{0.5f})));
+                if (lit) add_light(scene, point_light({0, 0, 1}));
+                Picture const p = picture_of(m, scene, camera, small_photon_picture(8, 256));
+                EXPECT_EQ(mean_of(p).mean, 0) << m.name;
+            }
+}
+
+/// One triangle, lit from the front: all that it reflects leaves.
+TEST(PhotonMethods, OneTriangle)
+{
+    Scene scene;
+    add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_material(scene, lambert(vec3{0.8f})));
+    scene.meshes.back().triangles.resize(1);
+    add_light(scene, point_light({0.2f, -0.2f, 1}));
+    for (PhotonMethod const& m : kPhotonMethods) {
+        Picture const p = picture_of(m, scene, look_at({0, 0, 3}, {0, 0, 0}, 60), small_photon_picture(16, 4096));
+        double const direct = mean_of(p, "L1").mean;
+        EXPECT_GT(direct, 0) << m.name;
+        EXPECT_LE(indirect(p), 1e-3 * direct) << m.name;
+    }
+}
+
+/// Light stays on its side of the walls of a closed box; walls have no thickness. Of lpv a part leaks.
+TEST(PhotonMethods, ClosedBox)
+{
+    vec3 const inside{0.1f, 0.2f, 0.3f}, outside{0.2f, 0.1f, 3}, far{1e4f, 0, 0};
+    Camera const in = look_at({-0.5, 0.2, 0.8}, {0.2, -0.3, -1}, 80), out = look_at({0.5, 1, 4}, {0, 0, 0}, 50);
+    auto const scene_with = [](Light const& lamp) {
+        Scene scene;
+        int const wall = add_material(scene, lambert(vec3{0.6f}));
+        scene.materials.back().double_sided = true;
+        add_box(scene, vec3{-1}, vec3{1}, wall, true);
+        add_light(scene, lamp);
+        return scene;
+    };
+    for (PhotonMethod const& m : kPhotonMethods) {
+        RenderSettings const s = small_photon_picture(16, 16384);
+        double const lit = indirect(picture_of(m, scene_with(point_light(inside)), in, s));
+        EXPECT_GT(lit, 0) << m.name;
+        double const from_outside = indirect(picture_of(m, scene_with(point_light(inside)), out, s)) / lit,
+                     lamp_outside = indirect(picture_of(m, scene_with(point_light(outside, 10)), in, s)) / lit,
+                     lamp_far = indirect(picture_of(m, scene_with(point_light(far, 1e8f)), in, s)) / lit;
+        fmt::print("{}: seen from outside {:.4f}, light outside {:.4f}, far outside {:.4f} of that inside\n",
+                   m.name, from_outside, lamp_outside, lamp_far);
+        for (double const leak : {from_outside, lamp_outside, lamp_far}) EXPECT_LT(leak, 0.01) << m.name;
+    }
+}
+
+/// The same picture at any scale, mirror and caustics too.
+TEST(PhotonMethods, AnyScale)
+{
+    for (PhotonMethod const& m : kPhotonMethods) {
+        RenderSettings const s = small_photon_picture(16, 8192);
+        Picture const one = picture_of(m, room_with_mirror(), in_the_room(), s);
+        for (float const scale : {1e-3f, 1e5f}) {
+            Picture const other = picture_of(m, room_with_mirror(scale), in_the_room(double(scale)), s);
+            for (char const* const layer : {"L1", "L2"}) {
+                std::vector<float> const &a = one.find(layer)->data, &b = other.find(layer)->data;
+                double off = 0, sum = 0;
+                for (std::size_t i = 0; i < a.size(); ++i) {
+                    off += std::abs(double(a[i] - b[i]));
+                    sum += double(a[i]);
+                }
+                fmt::print("{}, {} at {:g} m: off by {:.5f}\n", m.name, layer, double(scale), off / sum);
+                EXPECT_LT(off / sum, 0.02) << m.name << ", " << layer << " at " << scale;
+            }
+        }
+    }
+}
+
+/// Two equal floors at the same place are one.
+TEST(PhotonMethods, CoplanarSurfaces)
+{
+    for (PhotonMethod const& m : kPhotonMethods) {
+        double light[2];
+        for (int const floors : {1, 2}) {
+            Scene scene;
+            int const matt = add_material(scene, lambert(vec3{0.7f}));
+            for (int k = 0; k < floors; ++k) add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, matt);
+            add_quad(scene, {-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, matt);
+            add_light(scene, point_light({0.2f, 1, 0.2f}));
+            light[floors - 1] = indirect(
+                picture_of(m, scene, look_at({0, 1, 3}, {0, 0.5, 0}, 50), small_photon_picture(16, 16384)));
+        }
+        fmt::print("{}: two floors {:.4f} of one\n", m.name, light[1] / light[0]);
+        EXPECT_GT(light[0], 0);
+        EXPECT_NEAR(light[1] / light[0], 1, 0.05) << m.name;
+    }
+}
+
+/// Memory is refused before it is spent.
+TEST(PhotonMethods, LatticesAndImpostorsBeyondMemory)
+{
+    World const world = world_of(room_with_mirror());
+    auto const refused = [&](char const* name, RenderSettings const& s) {
+        for (PhotonMethod const& m : kPhotonMethods) {
+            if (std::string(m.name) != name) continue;
+            Report report;
+            try {
+                m.render(world, in_the_room(), s, {}, {}, report);
+                ADD_FAILURE() << name << " took it";
+            } catch (InputError const& e) {
+                EXPECT_NE(std::string(e.what()).find("GiB"), std::string::npos) << e.what();
+            }
+        }
+    };
+    RenderSettings s = small_photon_picture(8, 256);
+    s.photons.impostors = 256;
+    s.photons.impostor_texels = 2048;
+    refused("multi_image", s);
+    s.photons.rays = PhotonRays::impostors;
+    for (char const* const name : {"ispm", "lpv", "isllpm"}) refused(name, s);
+    s = small_photon_picture(8, 256);
+    s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = 512;
+    s.photons.lattice_cascades = 4;
+    refused("isllpm", s);
+}
+
+/// A stop while light paths are traced, or what they need is built, is obeyed soon.
+TEST(PhotonStops, WhileLightPathsAreTraced)
+{
+    World const world = world_of(room_with_mirror());
+    for (PhotonMethod const& m : kPhotonMethods)
+        for (double const after_s : {0.2, 1.0}) {
+            RenderSettings s = small_photon_picture(8, PhotonSettings::kMostPaths);
+            StopRequest stop;
+            Clock::time_point asked;
+            std::thread asks([&] {
+                std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
+                asked = Clock::now();
+                stop.request();
+            });
+            bool interrupted = false;
+            Report report;
+            try {
+                m.render(world, in_the_room(), s, stop, {}, report);
+            } catch (Interrupted const&) {
+                interrupted = true;
+            }
+            double const took = std::chrono::duration<double>(Clock::now() - asked).count();
+            asks.join();
+            fmt::print("{}: stopped {:.3f} s after the request\n", m.name, took);
+            EXPECT_TRUE(interrupted) << m.name << " had rendered already";
+            EXPECT_LT(took, 0.2) << m.name;
+        }
+}
+
+} // namespace
+} // namespace gi::test

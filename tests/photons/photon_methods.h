@@ -1,0 +1,61 @@
+#pragma once
+// All methods of gi/methods/photons, for tests that hold for each of them, and small scenes.
+
+#include "gi/methods/photons/methods.h"
+#include "tests/support/scenes.h"
+
+namespace gi::test {
+
+struct PhotonMethod {
+    char const* name;
+    RenderResult (*render)(World const&, Camera const&, RenderSettings const&, StopRequest const&,
+                           RenderProgress const&, Report&);
+    std::unique_ptr<FrameRenderer> (*start)(MovingWorld const&, Camera const&, RenderSettings const&, Report&);
+};
+
+inline constexpr PhotonMethod kPhotonMethods[] = {{"ispm", render_ispm, start_ispm_frames},
+                                                  {"lpv", render_lpv, start_lpv_frames},
+                                                  {"isllpm", render_isllpm, start_isllpm_frames},
+                                                  {"multi_image", render_multi_image, start_multi_image_frames}};
+
+/// A small picture with coarse lattices and few impostors.
+inline RenderSettings small_photon_picture(int size, int paths)
+{
+    RenderSettings s;
+    s.width = s.height = size;
+    s.paths = 1;
+    s.photons.paths = paths;
+    s.photons.caustic_paths = paths / 4;
+    s.photons.propagation_cells = 12;
+    s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = s.photons.volume_cells = 16;
+    s.photons.impostors = 8;
+    s.photons.impostor_texels = 64;
+    return s;
+}
+
+/// A closed room, 2 m wide, with a point light, a mirror that throws a caustic and a block in it.
+/// @param scale  of all lengths; radiance stays the same
+inline Scene room_with_mirror(float scale = 1)
+{
+    Scene scene;
+    add_box(scene, vec3{-scale}, vec3{scale}, add_material(scene, lambert({0.7f, 0.6f, 0.5f})), true);
+    add_box(scene, scale * vec3{-0.7f, -0.999f, -0.6f}, scale * vec3{-0.2f, -0.3f, -0.1f},
+            add_material(scene, lambert({0.2f, 0.5f, 0.7f})), false);
+    add_quad(scene, scale * vec3{0.4f, -0.9f, -0.4f}, scale * vec3{0.3f, 0.1f, 0.5f}, scale * vec3{-0.1f, 0.8f, 0},
+             add_material(scene, mirror(vec3{0.9f})));
+    Light lamp;
+    lamp.type = LightType::point;
+    lamp.position = scale * vec3{0.1f, 0.7f, 0.2f};
+    lamp.intensity = vec3{scale * scale};
+    add_light(scene, lamp);
+    return scene;
+}
+
+inline Camera in_the_room(double scale = 1)
+{
+    return look_at(scale * dvec3{0.2, 0.1, 0.9}, scale * dvec3{0, -0.5, -0.4}, 80);
+}
+
+inline double indirect(Picture const& p) { return mean_of(p, "L2").mean; }
+
+} // namespace gi::test
