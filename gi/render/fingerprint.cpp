@@ -155,6 +155,7 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
                             o.lattice_cascades,
                             int(o.lattice_smoothing),
                             int(o.irradiance_by),
+                            int(o.caustics_by),
                             o.impostors,
                             o.impostor_texels,
                             int(o.impostor_search),

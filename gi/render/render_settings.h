@@ -128,6 +128,8 @@ enum class FirstBounce : std::uint8_t { rays, map };
 enum class KernelBy : std::uint8_t { density, footprint };
 /// How flux through a face of a cell becomes light of the cell behind it, see propagation_kernels.h.
 enum class Reprojection : std::uint8_t { beams, cosine_lobes };
+/// What shows caustics at surfaces: a fine lattice, or kernels of photons.
+enum class CausticsBy : std::uint8_t { lattice, kernels };
 /// How irradiance follows from photons in a cell, see photon_lattice.h.
 enum class IrradianceBy : std::uint8_t { normals, directions };
 /// How rays are followed through distance impostors, see gi/light_paths/impostor_search.h.
@@ -158,6 +160,7 @@ struct PhotonSettings {
     int lattice_cascades = 0; ///< nested ones of each of them, and of multi_image; 0 = by what is shown
     Switch lattice_smoothing = Switch::on; ///< of the low and the middle one
     IrradianceBy irradiance_by = IrradianceBy::normals;
+    CausticsBy caustics_by = CausticsBy::lattice; ///< of isllpm
     int impostors = 32;        ///< distance impostors, at most
     int impostor_texels = 128; ///< along an edge of a face, rounded up to a multiple of 8
     ImpostorSearch impostor_search = ImpostorSearch::walk;

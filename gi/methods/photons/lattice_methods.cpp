@@ -3,6 +3,7 @@
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/photons/photon_renderer.h"
+#include "gi/methods/whitted/caustic_light.h"
 #include "gi/methods/whitted/lobe_light.h"
 
 namespace gi {
@@ -15,14 +16,17 @@ template <class Lattice>
 class LatticeLight : public SurfaceLight {
 public:
     explicit LatticeLight(Lattice const& lattice) : lattice_(lattice) {}
+    /// Null = by the lattice, if it has any.
+    void take_caustics(PhotonMap const* map) { caustic_map_ = map; }
     void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts&) const override
     {
+        if (caustic_map_ != nullptr) add_caustics(*caustic_map_, points);
         for (std::size_t i = 0; i < points.size(); ++i) {
             TreePoint& p = points[i];
             out[i] = vec3{0};
             if (!(p.wo.z > 0)) continue;
             if constexpr (std::is_same_v<Lattice, PhotonLattices>)
-                layer_of(*p.sample, p.scatterings + 1) += p.throughput * caustics(p);
+                if (caustic_map_ == nullptr) layer_of(*p.sample, p.scatterings + 1) += p.throughput * caustics(p);
             if (max_component(p.at.bsdf.diffuse) > 0)
                 out[i] = diffuse_response(p) * lattice_.irradiance(p.at.position, p.at.frame.normal);
             out[i] += glossy_radiance(p, glossy_directions(p),
@@ -40,6 +44,7 @@ private:
     }
 
     Lattice const& lattice_;
+    PhotonMap const* caustic_map_ = nullptr;
 };
 
 class PropagationRenderer : public PhotonRenderer {
@@ -103,7 +108,10 @@ protected:
     }
     SurfaceLight const* light(std::span<FrameView const>, PhotonMap const* caustics) override
     {
-        lattices_.update_caustics(caustics != nullptr ? caustic_photons() : std::span<Photon const>{});
+        bool const by_kernels = settings_.photons.caustics_by == CausticsBy::kernels;
+        light_.take_caustics(by_kernels ? caustics : nullptr);
+        lattices_.update_caustics(caustics != nullptr && !by_kernels ? caustic_photons()
+                                                                     : std::span<Photon const>{});
         return &light_;
     }
     void report_light(Report& report) override
