@@ -148,13 +148,12 @@ void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
     shrunk_ = sets_ == 0 ? 1.0f : shrunk_ * std::sqrt((float(sets_) + kAlpha) / (float(sets_) + 1));
     ++sets_;
     map_ = {};
-    if (!photons.empty() && largest > 0) { // else they all lie at one point: no area to spread them over
-        std::vector<float> radii = chosen > 0 ? std::vector<float>(photons.size(), largest)
-                                              : radii_by_density(photons, largest, 16, settings_.seed + sets_);
-        for (float& r : radii) r *= shrunk_;
-        map_ = PhotonMap(photons, radii);
-    }
     photons_ = std::move(photons);
+    if (photons_.empty() || !(largest > 0)) return; // all at one point: no area to spread them over
+    std::vector<float> radii = chosen > 0 ? std::vector<float>(photons_.size(), largest)
+                                          : radii_by_density(photons_, largest, 16, settings_.seed + sets_);
+    for (float& r : radii) r *= shrunk_;
+    map_ = PhotonMap(photons_, radii);
 }
 
 void Caustics::report_counts()

@@ -9,22 +9,22 @@
 
 namespace gi {
 
-PhotonCells::PhotonCells(std::vector<Entry> const& entries, float radius)
+PhotonCells::PhotonCells(std::vector<PhotonKernel> const& kernels, float radius)
     : radius_(radius),
-      entries_(entries.size()),
-      first_(std::bit_ceil(std::max<std::size_t>(entries.size(), 1)) + 1)
+      kernels_(kernels.size()),
+      first_(std::bit_ceil(std::max<std::size_t>(kernels.size(), 1)) + 1)
 {
     std::vector<std::uint32_t> bucket_of;
-    bucket_of.reserve(entries.size());
-    for (Entry const& e : entries) {
-        bucket_of.push_back(bucket(cell_of(e.kernel.position)));
+    bucket_of.reserve(kernels.size());
+    for (PhotonKernel const& k : kernels) {
+        bucket_of.push_back(bucket(cell_of(k.position)));
         ++first_[bucket_of.back() + 1];
-        low_ = glm::min(low_, e.kernel.position - radius);
-        high_ = glm::max(high_, e.kernel.position + radius);
+        low_ = glm::min(low_, k.position - radius);
+        high_ = glm::max(high_, k.position + radius);
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     std::vector<std::uint32_t> next = first_;
-    for (std::size_t i = 0; i < entries.size(); ++i) entries_[next[bucket_of[i]]++] = entries[i];
+    for (std::size_t i = 0; i < kernels.size(); ++i) kernels_[next[bucket_of[i]]++] = kernels[i];
 }
 
 std::uint32_t PhotonCells::bucket(glm::ivec3 cell) const
@@ -48,7 +48,7 @@ void PhotonCells::search(vec3 position, F const& f) const
     std::ranges::sort(buckets); // two cells may share one
     for (int k = 0; k < 8; ++k) {
         if (k > 0 && buckets[k] == buckets[k - 1]) continue;
-        for (std::uint32_t i = first_[buckets[k]]; i < first_[buckets[k] + 1]; ++i) f(entries_[i]);
+        for (std::uint32_t i = first_[buckets[k]]; i < first_[buckets[k] + 1]; ++i) f(kernels_[i]);
     }
 }
 
@@ -123,17 +123,17 @@ void sort_along_curve(std::vector<Photon>& photons)
     photons = std::move(sorted);
 }
 
-PhotonMap::PhotonMap(std::span<Photon const> photons, std::span<float const> radii) : count_(photons.size())
+PhotonMap::PhotonMap(std::span<Photon const> photons, std::span<float const> radii) : photons_(photons)
 {
     constexpr int kLayers = 24;
     float largest = 0;
     for (float const r : radii) largest = std::max(largest, r);
-    std::vector<std::vector<PhotonCells::Entry>> parts(kLayers);
+    std::vector<std::vector<PhotonKernel>> parts(kLayers);
     for (std::uint32_t i = 0; i < photons.size(); ++i) {
         Photon const& p = photons[i];
         auto const layer =
             std::size_t(glm::clamp(std::floor(std::log2(largest / radii[i])), 0.0f, kLayers - 1.0f));
-        parts[layer].push_back({p, {p.position, radii[i], p.normal, i}});
+        parts[layer].push_back({p.position, radii[i], p.normal, i});
         flux_ += dvec3(p.flux);
         radii_ += double(radii[i]);
     }
@@ -146,7 +146,7 @@ vec3 PhotonMap::radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) c
 {
     PhotonSum sum(at, wo, without_glossy);
     for (PhotonCells const& layer : layers_)
-        layer.search(at.position, [&](PhotonCells::Entry const& e) { sum.add(e.kernel, e.photon); });
+        layer.search(at.position, [&](PhotonKernel const& k) { sum.add(k, photons_[k.photon]); });
     return sum.radiance();
 }
 

@@ -75,14 +75,10 @@ void sort_along_curve(std::vector<Photon>& photons);
 /// Photons in cubic cells, by a hash of these.
 class PhotonCells {
 public:
-    struct Entry {
-        Photon photon;
-        PhotonKernel kernel;
-    };
     /// @param radius  of searches, m, > 0, as large as that of any kernel
-    PhotonCells(std::vector<Entry> const& entries, float radius);
+    PhotonCells(std::vector<PhotonKernel> const& kernels, float radius);
 
-    /// Calls f(entry) for those whose kernels may reach a position, and some others.
+    /// Calls f(kernel) for those that may reach a position, and some others.
     template <class F>
     void search(vec3 position, F const& f) const;
 
@@ -91,28 +87,28 @@ private:
     glm::ivec3 cell_of(vec3 position) const;
 
     float radius_;
-    vec3 low_{kInf}, high_{-kInf};     ///< of what may find photons
-    std::vector<Entry> entries_;       ///< by the bucket of their cell, which is two radii wide
-    std::vector<std::uint32_t> first_; ///< per bucket, and one more
+    vec3 low_{kInf}, high_{-kInf};      ///< of what may find photons
+    std::vector<PhotonKernel> kernels_; ///< by the bucket of their cell, which is two radii wide
+    std::vector<std::uint32_t> first_;  ///< per bucket, and one more
 };
 
 class PhotonMap {
 public:
     PhotonMap() = default;
-    /// @param radii  of the photons' kernels, m, > 0
+    /// @param photons  must outlive it  @param radii  of their kernels, m, > 0
     PhotonMap(std::span<Photon const> photons, std::span<float const> radii);
 
     /// See PhotonSum.
     vec3 radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const;
-    bool empty() const { return count_ == 0; }
-    std::size_t count() const { return count_; }
-    dvec3 flux() const { return flux_; }                                                   ///< W
-    float mean_radius() const { return count_ == 0 ? 0 : float(radii_ / double(count_)); } ///< m
+    bool empty() const { return photons_.empty(); }
+    std::size_t count() const { return photons_.size(); }
+    dvec3 flux() const { return flux_; }                                                ///< W
+    float mean_radius() const { return empty() ? 0 : float(radii_ / double(count())); } ///< m
 
 private:
     std::vector<PhotonCells> layers_; ///< of kernels of similar size
     double radii_ = 0;                ///< sum, m
-    std::size_t count_ = 0;
+    std::span<Photon const> photons_;
     dvec3 flux_{0};
 };
 

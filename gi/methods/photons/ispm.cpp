@@ -119,8 +119,8 @@ protected:
         for (std::size_t i = 0; i < photons.size(); ++i) photons[i].flux /= shares[i];
         screens_.clear(); // nothing is interrupted from here on
         cameras_.clear();
-        map_ = PhotonMap(photons, radii);
         photons_ = std::move(photons);
+        map_ = PhotonMap(photons_, radii);
         kernels_ = std::move(kernels);
         shrunk_ = shrunk;
     }
