@@ -47,8 +47,11 @@ RenderOptionTable const& photon_options()
         photons("kernel-size", {0.01, 100}, "factor of the radii of photons' kernels", &P::kernel_size, {"ispm"}),
         photons("propagation-cells", {8, 128}, "of each lattice in which light propagates, along the longest side",
                 &P::propagation_cells, {"lpv"}),
-        photons("propagation-cascades", {1, 8}, "nested lattices, each finer one half as wide, about the camera",
-                &P::propagation_cascades, {"lpv"}),
+        photons(
+            "propagation-cascades", {0, 8},
+            "nested lattices, each finer one half as wide, about the camera; 0 = about what it shows, as many\n"
+            "as needed so that the finest just holds it",
+            &P::propagation_cascades, {"lpv"}),
         photons("propagation-steps", {0, 1024}, "from cell to cell; 0 = twice the cells", &P::propagation_steps,
                 {"lpv"}),
         photons("reprojection", {"beams", "cosine-lobes"},
@@ -59,8 +62,11 @@ RenderOptionTable const& photon_options()
         photons("middle-cells", {4, 512}, "of the lattice of diffuse light of one reflection", &P::middle_cells,
                 {"isllpm"}),
         photons("high-cells", {4, 512}, "of the lattice of caustics", &P::high_cells, {"isllpm"}),
-        photons("lattice-cascades", {1, 4}, "nested lattices, each finer one half as wide, about the camera",
-                &P::lattice_cascades, {"isllpm"}),
+        photons(
+            "lattice-cascades", {0, 8},
+            "nested lattices, each finer one half as wide, about the camera; 0 = about what it shows, as many\n"
+            "as needed so that the finest just holds it",
+            &P::lattice_cascades, {"isllpm", "multi_image"}),
         photons("lattice-smoothing", {"on", "off"},
                 "mean over 3 x 3 x 3 cells of the lattices of diffuse light: less noise, more blur",
                 &P::lattice_smoothing, {"isllpm"}),
@@ -75,6 +81,8 @@ RenderOptionTable const& photon_options()
                 &P::impostor_search, {"ispm", "lpv", "isllpm", "multi_image"}),
         photons("volume-cells", {4, 512}, "of the light gathering volume, along the scene's longest side",
                 &P::volume_cells, {"multi_image"}),
+        photons("volume-gathers", {0, 64}, "steps that spread diffuse light over the six neighbours of a cell",
+                &P::volume_gathers, {"multi_image"}),
         photons("screen-gathers", {0, 1000}, "steps that spread caustics over neighbouring pixels",
                 &P::screen_gathers, {"multi_image"}),
         photons("irradiance-by", {"normals", "directions"},

@@ -159,6 +159,7 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
                             o.impostor_texels,
                             int(o.impostor_search),
                             o.volume_cells,
+                            o.volume_gathers,
                             o.screen_gathers})
             h.add(std::uint64_t(v));
         h.add(o.caustic_radius_m);

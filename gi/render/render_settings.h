@@ -151,17 +151,18 @@ struct PhotonSettings {
     KernelBy kernel_by = KernelBy::density;
     float kernel_size = 1;        ///< factor of kernels' radii
     int propagation_cells = 16;   ///< of each lattice of lpv, along the scene's longest side
-    int propagation_cascades = 1; ///< nested lattices of lpv
+    int propagation_cascades = 0; ///< nested lattices of lpv; 0 = by what is shown
     int propagation_steps = 0;    ///< from cell to cell; 0 = twice the cells
     Reprojection reprojection = Reprojection::beams;
     int low_cells = 64, middle_cells = 128, high_cells = 128; ///< of the lattices of isllpm
-    int lattice_cascades = 1;                                 ///< nested ones of each of them
-    Switch lattice_smoothing = Switch::on;                    ///< of the low and the middle one
+    int lattice_cascades = 0; ///< nested ones of each of them, and of multi_image; 0 = by what is shown
+    Switch lattice_smoothing = Switch::on; ///< of the low and the middle one
     IrradianceBy irradiance_by = IrradianceBy::normals;
     int impostors = 32;        ///< distance impostors, at most
     int impostor_texels = 128; ///< along an edge of a face, rounded up to a multiple of 8
     ImpostorSearch impostor_search = ImpostorSearch::walk;
     int volume_cells = 64;  ///< of the light gathering volume of multi_image, along the scene's longest side
+    int volume_gathers = 2; ///< steps that spread light over neighbouring cells of that volume
     int screen_gathers = 8; ///< steps that spread caustics over the pixels of multi_image
 };
 

@@ -238,7 +238,7 @@ def load(
 
     Args:
         scene: a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or the name of a built-in
-            scene: "atrium", "cornell", "mirror", "avatar".
+            scene: "atrium", "cornell", "mirror", "ring", "avatar".
         time_s: time in the scene's animation, s; None = at rest.
         environment: an HDR or EXR file, an environment map that replaces the scene's.
         environment_rotate_deg: rotation of the environment map about +Y, counter-clockwise seen from above.

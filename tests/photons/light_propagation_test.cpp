@@ -300,7 +300,7 @@ TEST(LightPropagation, NestedGridsFollowByWholeCells)
 TEST(LightPropagation, NothingToShow)
 {
     EXPECT_THROW(LightPropagation({.cells = 2}), InputError);
-    EXPECT_THROW(LightPropagation({.cells = 32, .cascades = 0}), InputError);
+    EXPECT_THROW(LightPropagation({.cells = 32, .cascades = 9}), InputError);
     LightPropagation light({});
     EXPECT_EQ(light.irradiance(vec3{0}, {0, 1, 0}), vec3{0}); // before any update
     EXPECT_EQ(light.radiance(vec3{0}, {0, 1, 0}), vec3{0});

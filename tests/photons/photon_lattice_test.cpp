@@ -31,7 +31,7 @@ struct TracedScene {
 PhotonLattices lattices_of(TracedScene const& scene, PhotonLatticeSettings const& settings)
 {
     PhotonLattices out(settings);
-    out.place(scene.world, scene.visibility, vec3{0});
+    out.place(scene.world, scene.visibility, {.camera = vec3{0}});
     out.update(scene.photons);
     out.update_caustics(scene.photons);
     return out;
@@ -108,7 +108,7 @@ TEST(PhotonLattices, NestedLatticesInAFurnace)
     add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, glowing_wall(1, 0.5f)), true);
     TracedScene const traced(scene, 400000, 20);
     PhotonLattices light({.cells = {16, 16, 16}, .cascades = 3});
-    light.place(traced.world, traced.visibility, vec3{0.2f, -1, 0.3f});
+    light.place(traced.world, traced.visibility, {.camera = vec3{0.2f, -1, 0.3f}});
     light.update(traced.photons);
     ASSERT_EQ(light.levels(Frequency::low).size(), 3u);
     double mean = 0, off = 0, n = 0;
@@ -253,14 +253,14 @@ TEST(PhotonLattices, NothingToShow)
     PhotonLattices light({.cascades = 2});
     EXPECT_EQ(light.irradiance(vec3{0}, {0, 1, 0}), vec3{0});
     TracedScene const nothing(Scene{}, 100, 3);
-    light.place(nothing.world, nothing.visibility, vec3{0});
+    light.place(nothing.world, nothing.visibility, {.camera = vec3{0}});
     light.update(nothing.photons);
     EXPECT_EQ(light.radiance(vec3{0}, {0, 1, 0}), vec3{0});
     Scene scene;
     add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 0.5f}, add_material(scene, lambert(vec3{0.5f})));
     scene.meshes.back().triangles.resize(1);
     TracedScene triangle(scene, 100, 3);
-    light.place(triangle.world, triangle.visibility, vec3{1e9f});
+    light.place(triangle.world, triangle.visibility, {.camera = vec3{1e9f}});
     light.update(triangle.photons);
     for (vec3 const at : {vec3{0.1f, 0, 0.1f}, vec3{1e20f}, vec3{-1e9f}}) {
         EXPECT_EQ(light.irradiance(at, {0, 1, 0}), vec3{0});

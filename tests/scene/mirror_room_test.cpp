@@ -60,9 +60,32 @@ TEST(GeneratedAvatar, HasTheJointsThatTrackersNeed)
     }
 }
 
-TEST(GeneratedAvatar, BothAreBuiltIn)
+/// Its ring's sides face away from the metal, its spheres outwards.
+TEST(GeneratedRing, FacesAndLights)
+{
+    World const world = world_of(generate_ring());
+    EXPECT_EQ(world.emitters.size(), 2u);
+    std::size_t ring = 0;
+    for (Surface const& s : world.surfaces) {
+        if (world.materials[s.material].metallic < 1) continue;
+        ++ring;
+        vec3 const normal = glm::normalize(glm::cross(s.edge1, s.edge2)),
+                   at = s.corner + (s.edge1 + s.edge2) / 3.0f;
+        vec3 out = at - vec3{0.34f, at.y, -0.42f};
+        float const radius = glm::length(out);
+        out /= radius;
+        float const facing =
+            std::abs(normal.y) > 0.5f ? normal.y : (radius > 0.1925f ? 1.0f : -1.0f) * glm::dot(normal, out);
+        EXPECT_GT(facing, 0.99f);
+    }
+    EXPECT_EQ(ring, 768u);
+}
+
+TEST(GeneratedAvatar, AllAreBuiltIn)
 {
     Report report;
+    EXPECT_EQ(load_scene("ring", report).nodes.size(), generate_ring().nodes.size());
+    EXPECT_EQ(parse_scene_file("models: [{generate: {kind: ring}}]", "", "test", report).cameras.size(), 1u);
     EXPECT_EQ(load_scene("mirror", report).nodes.size(), generate_mirror().nodes.size());
     EXPECT_EQ(load_scene("avatar", report).skins.size(), 1u);
     EXPECT_EQ(parse_scene_file("models: [{generate: {kind: mirror}}]", "", "test", report).cameras.size(), 1u);

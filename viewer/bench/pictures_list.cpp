@@ -26,7 +26,7 @@ bool fits_file_names(std::string const& name)
 
 bool is_built_in(std::string const& name)
 {
-    constexpr std::array<std::string_view, 4> kKnown{"atrium", "cornell", "mirror", "avatar"};
+    constexpr std::array<std::string_view, 5> kKnown{"atrium", "cornell", "mirror", "ring", "avatar"};
     return std::ranges::find(kKnown, name) != kKnown.end();
 }
 
@@ -73,7 +73,7 @@ private:
     {
         if (is_built_in(at.text())) return at.text();
         throw at.error("there is no built-in scene '" + at.text().substr(0, 64) + "'", "it cannot be generated",
-                       "choose atrium, cornell, mirror or avatar");
+                       "choose atrium, cornell, mirror, ring or avatar");
     }
 
     fs::path const& folder_;

@@ -191,7 +191,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
 {
     c.add_option(
          "SCENE", o.scene,
-         "glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or atrium, cornell, mirror, avatar")
+         "glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or atrium, cornell, mirror, ring, avatar")
         ->required();
     std::string known;
     for (gi::Method const& m : gi::methods()) known += fmt::format("\n  {}: {}", m.name, m.summary);

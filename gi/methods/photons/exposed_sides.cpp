@@ -1,7 +1,5 @@
 #include "gi/methods/photons/exposed_sides.h"
 
-#include "gi/methods/photons/sh_lattice.h"
-
 #include <algorithm>
 
 namespace gi {
@@ -13,17 +11,41 @@ constexpr float kLeastShare = 0.02f, kSurelyExposed = 0.2f;
 
 } // namespace
 
-ExposedSides::ExposedSides(World const& world, ExactVisibility const& visibility, BuildStop const& stop)
+std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int levels)
+{
+    std::vector<GridFrame> frames = frames_off_walls(bounds, center, kExposureCells, levels);
+    for (GridFrame& f : frames) f.size = (f.size + 3) / 4 * 4;
+    return frames;
+}
+
+ExposedSides::ExposedSides(World const& world, GridFrame const& frame, std::size_t first_moving,
+                           ExactVisibility const& visibility, BuildStop const& stop)
+    : frame_(frame), reached_(frame), shares_(12 * frame.cells())
+{
+    first_moving = std::min(first_moving, world.triangles.size());
+    sample(world, 0, first_moving, visibility, stop);
+    still_ = samples_.size();
+    sample(world, first_moving, world.triangles.size(), visibility, stop);
+}
+
+void ExposedSides::moved(World const& world, std::size_t first_moving, ExactVisibility const& visibility,
+                         BuildStop const& stop)
+{
+    samples_.resize(still_);
+    sample(world, std::min(first_moving, world.triangles.size()), world.triangles.size(), visibility, stop);
+}
+
+void ExposedSides::sample(World const& world, std::size_t first, std::size_t last,
+                          ExactVisibility const& visibility, BuildStop const& stop)
 {
     constexpr std::size_t kTogether = std::size_t(1) << 18; // triangles
-    frame_ = frames_off_walls(world.bounds, world.bounds.center(), kExposureCells, 1)[0];
-    frame_.size = (frame_.size + 3) / 4 * 4;
     GridFrame blocks = frame_;
     blocks.cell *= 4;
     blocks.size /= 4;
-    for (std::size_t first = 0; first < world.triangles.size(); first += kTogether) {
+    std::size_t const begin = samples_.size();
+    for (; first < last; first += kTogether) {
         VoxelGrid grid{SparseCells<BlockVoxels>(blocks), {}};
-        add_triangles(world, first, std::min(world.triangles.size(), first + kTogether), grid, stop);
+        add_triangles(world, first, std::min(last, first + kTogether), grid, stop);
         std::vector<std::uint32_t> patch_of;
         for (SurfacePiece const& p : grid.pieces) {
             glm::ivec3 const cell = 4 * blocks.cell_of(grid.blocks.cells[p.block]) +
@@ -32,9 +54,7 @@ ExposedSides::ExposedSides(World const& world, ExactVisibility const& visibility
         }
         choose_samples(grid.pieces, patch_of, samples_);
     }
-    look_around(world, visibility, frame_, RayWorld::all, stop, samples_);
-    reached_ = ReachedSides(frame_);
-    shares_.assign(12 * frame_.cells(), 0);
+    look_around(world, visibility, frame_, RayWorld::all, stop, std::span(samples_).subspan(begin));
 }
 
 bool ExposedSides::add(std::span<Photon const> photons, bool sky_shines)

@@ -7,6 +7,7 @@
 // or glass; or the sky, if that shines or light has reached the side itself (see sh_grid's exposure.h).
 
 #include "gi/light_paths/photon.h"
+#include "gi/methods/photons/sh_lattice.h"
 #include "gi/methods/sh_grid/exposure.h"
 
 namespace gi {
@@ -14,8 +15,14 @@ namespace gi {
 class ExposedSides {
 public:
     ExposedSides() = default;
-    /// Sends the rays. Throws Interrupted. @param bounds  of the world, not empty
-    ExposedSides(World const& world, ExactVisibility const& visibility, BuildStop const& stop);
+    /// Sends the rays. Throws Interrupted. @param frame  its sizes are multiples of 4
+    /// @param first_moving  index of the first triangle that may move
+    ExposedSides(World const& world, GridFrame const& frame, std::size_t first_moving,
+                 ExactVisibility const& visibility, BuildStop const& stop);
+    /// Sends rays again from the triangles that may move; what the others meet stays what it was. Throws
+    /// Interrupted.
+    void moved(World const& world, std::size_t first_moving, ExactVisibility const& visibility,
+               BuildStop const& stop);
 
     /// Adds what light has reached. Returns true if shares have changed.
     bool add(std::span<Photon const> photons, bool sky_shines);
@@ -26,11 +33,18 @@ public:
     double hidden_m2() const { return hidden_m2_; }
 
 private:
+    void sample(World const& world, std::size_t first, std::size_t last, ExactVisibility const& visibility,
+                BuildStop const& stop);
+
     GridFrame frame_;
     std::vector<PatchSample> samples_;
+    std::size_t still_ = 0; ///< samples of triangles that do not move; the others follow
     ReachedSides reached_{GridFrame{}};
     std::vector<float> shares_; ///< 12 per cell
     double hidden_m2_ = 0;
 };
+
+/// Grids of 48 cells along the longest side for nested lattices of a world, finest first.
+std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int levels);
 
 } // namespace gi

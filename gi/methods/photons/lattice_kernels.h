@@ -58,4 +58,30 @@ struct SmoothCells {
     }
 };
 
+/// One step of gathering from the six neighbours. Two cells exchange the same share of what they hold, so that the
+/// sum over all cells stays.
+template <class Cell>
+struct GatherCells {
+    static constexpr float kShare = 1.0f / 7; ///< in the middle of a volume all seven count alike
+
+    CellsView<Cell> in;
+    View<std::uint32_t const> cells; ///< per value: its cell
+    View<Cell> out;                  ///< per value
+
+    GI_FN void operator()(std::size_t i) const
+    {
+        glm::ivec3 const at = in.frame.cell_of(cells[i]);
+        Cell sum = in.values[i];
+        for (int k = 0; k < 6; ++k) {
+            glm::ivec3 next = at;
+            next[k / 2] += 2 * (k % 2) - 1;
+            Cell const* const near = in.find(next);
+            if (near == nullptr) continue;
+            sum += kShare * *near;
+            sum += -kShare * in.values[i];
+        }
+        out[i] = sum;
+    }
+};
+
 } // namespace gi

@@ -42,12 +42,6 @@ private:
     Lattice const& lattice_;
 };
 
-vec3 camera_of(std::span<FrameView const> views, World const& world)
-{
-    return views.empty() ? world.bounds.center()
-                         : vec3(dvec3(views[0].camera.world_from_camera[3]) - world.origin);
-}
-
 class PropagationRenderer : public PhotonRenderer {
 public:
     PropagationRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
@@ -68,7 +62,7 @@ protected:
     void take(PhotonSet const& set) override
     {
         propagation_.update(world_, set.surfaces_changed ? Geometry::changed : Geometry::same, set.photons,
-                            camera_of(set.views, world_), set.stop);
+                            camera_of(set.views, world_), set.focus, set.stop);
     }
     SurfaceLight const* light(std::span<FrameView const>, PhotonMap const*) override { return &light_; }
     void report_light(Report& report) override
@@ -103,7 +97,8 @@ protected:
     void take(PhotonSet const& set) override
     {
         if (set.surfaces_changed || (set.number == 0 && of_lattices_.cascades > 1))
-            lattices_.place(world_, set.visibility, camera_of(set.views, world_), set.stop);
+            lattices_.place(world_, set.visibility,
+                            {camera_of(set.views, world_), set.focus, first_moving_, set.only_moved}, set.stop);
         lattices_.update(set.photons);
     }
     SurfaceLight const* light(std::span<FrameView const>, PhotonMap const* caustics) override
@@ -116,6 +111,7 @@ protected:
         std::size_t cells = 0;
         for (Frequency const f : {Frequency::low, Frequency::middle, Frequency::high})
             for (PhotonLattices::Level const& level : lattices_.levels(f)) cells += level.cells.values.size();
+        report.count("nested lattices", double(lattices_.levels(Frequency::low).size()));
         report.count("cells with surfaces", double(cells));
         report.count("hidden area of surfaces, m^2", lattices_.hidden_m2());
         report.count("flux of photons in no cell, W (sum of channels)", lattices_.lost_w());

@@ -78,10 +78,11 @@ ShColor open_mean(LightPropagation::Level const& level, vec3 at)
 
 void check(PropagationSettings const& s)
 {
-    if (s.cells < 8 || s.cells > PropagationSettings::kMostCells || s.cascades < 1 || s.cascades > 8 ||
-        s.steps < 0)
+    if (s.cells < 8 || s.cells > PropagationSettings::kMostCells || s.cascades < 0 ||
+        s.cascades > PropagationSettings::kMostCascades || s.steps < 0)
         throw InputError(fmt::format("{} nested lattices of {} cells a side", s.cascades, s.cells),
-                         fmt::format("1 to 8 of 8 to {} are supported", PropagationSettings::kMostCells),
+                         fmt::format("0 (by what is shown) to {} of 8 to {} are supported",
+                                     PropagationSettings::kMostCascades, PropagationSettings::kMostCells),
                          "choose others");
 }
 
@@ -107,11 +108,6 @@ vec3 in_front(LightPropagation::Level const& level, vec3 position, vec3 normal)
     return at + 0.4f * step * normal;
 }
 
-bool same(GridFrame const& a, GridFrame const& b)
-{
-    return a.low == b.low && a.cell == b.cell && a.size == b.size;
-}
-
 } // namespace
 
 std::vector<ReflectedLight> reflected_lights(std::span<Photon const> photons)
@@ -130,8 +126,9 @@ std::uint64_t LightPropagation::bytes(PropagationSettings const& s, Bounds const
 {
     if (bounds.empty()) return 0;
     // Light of two steps, their sum, factors of faces, what blocks and what is open at the corners.
-    return dense_bytes(nested_frames(bounds, bounds.center(), s.cells, s.cascades),
-                       3 * sizeof(ShColor) + 2 * sizeof(vec3) + sizeof(Blocker));
+    return dense_bytes(
+        nested_frames(bounds, bounds.center(), s.cells, s.cascades > 0 ? s.cascades : s.kMostCascades),
+        3 * sizeof(ShColor) + 2 * sizeof(vec3) + sizeof(Blocker));
 }
 
 void LightPropagation::place(std::span<GridFrame const> frames)
@@ -186,33 +183,37 @@ void LightPropagation::propagate(std::span<GridFrame const> frames, std::span<Re
 }
 
 void LightPropagation::update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
-                              BuildStop const& stop)
+                              Bounds const& focus, BuildStop const& stop)
 {
     if (world.bounds.empty()) return levels_.clear();
-    std::vector<GridFrame> const frames = nested_frames(world.bounds, camera, settings_.cells, settings_.cascades);
+    bool const by_focus = settings_.cascades == 0;
+    std::vector<GridFrame> const frames = nested_frames(
+        world.bounds, by_focus ? center_of(focus, camera) : camera, settings_.cells,
+        by_focus ? nested_levels(world.bounds, focus, PropagationSettings::kMostCascades) : settings_.cascades);
     std::vector<Level> former;
     std::swap(former, levels_);
     place(frames);
     std::vector<ReflectedLight> const lights = reflected_lights(photons);
-    for (std::size_t k = levels_.size(); k-- > 0;) try {
+    try {
+        for (std::size_t k = levels_.size(); k-- > 0;) {
             Level& level = levels_[k];
-            if (settings_.blocked) {
-                if (geometry == Geometry::same && k < former.size() && same(former[k].frame, level.frame)) {
-                    level.open = former[k].open;
-                    level.blocked = former[k].blocked;
-                } else {
-                    level.blocked.resize(level.corners.cells());
-                    level.open.resize(level.corners.cells());
-                    add_blockers(world, stop, level);
-                    launch(Space::host, "open faces of cells", level.corners.cells(),
-                           OpenFaces{level.corners, level.blocked, level.open});
-                }
+            if (settings_.blocked && geometry == Geometry::same && k < former.size() &&
+                same(former[k].frame, level.frame)) {
+                level.open = former[k].open;
+                level.blocked = former[k].blocked;
+            } else if (settings_.blocked) {
+                level.blocked.resize(level.corners.cells());
+                level.open.resize(level.corners.cells());
+                add_blockers(world, stop, level);
+                launch(Space::host, "open faces of cells", level.corners.cells(),
+                       OpenFaces{level.corners, level.blocked, level.open});
             }
             propagate(level, k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights, stop);
-        } catch (Interrupted const&) {
-            levels_ = std::move(former);
-            throw;
         }
+    } catch (Interrupted const&) {
+        levels_ = std::move(former);
+        throw;
+    }
 }
 
 vec3 LightPropagation::irradiance(vec3 position, vec3 normal) const

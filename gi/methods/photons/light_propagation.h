@@ -2,8 +2,8 @@
 // Light propagation volumes (Kaplanyan and Dachsbacher 2010, "Cascaded Light Propagation Volumes for Real-Time
 // Indirect Illumination"; Noren and Sjolin, sec. 4): surface points that light has reached scatter it as virtual
 // lights into the cells of a lattice; from there it goes on from cell to cell, and surfaces in between block it.
-// Nested lattices, finer near the camera, each with light of its own virtual lights, and what comes in over its
-// border from the coarser one.
+// Nested lattices, finer near the camera or what it shows, each with light of its own virtual lights, and what
+// comes in over its border from the coarser one.
 //
 // A cell keeps the sum over all steps of the intensity of its point light, W/sr. What is asked is a radiance. The
 // factors between them, for cells of side s:
@@ -29,10 +29,10 @@
 namespace gi {
 
 struct PropagationSettings {
-    static constexpr int kMostCells = 128;
+    static constexpr int kMostCells = 128, kMostCascades = 8;
 
     int cells = 16;   ///< of each lattice along the scene's longest side, 8 to kMostCells
-    int cascades = 1; ///< nested lattices, 1 to 8
+    int cascades = 0; ///< nested lattices about the camera, up to kMostCascades; 0 = about what is shown
     int steps = 0;    ///< from cell to cell; 0 = twice the cells
     Reprojection by = Reprojection::beams;
     bool blocked = true;  ///< by surfaces
@@ -55,9 +55,11 @@ public:
     /// Throws InputError for settings out of range.
     explicit LightPropagation(PropagationSettings const& settings);
 
-    /// Throws Interrupted, and then keeps what it had. @param world  its bounds may be empty  @param geometry  since the last call
+    /// Throws Interrupted, and then keeps what it had. @param world  its bounds may be empty
+    /// @param geometry  since the last call
+    /// @param focus  what cameras show, if the world is much larger; else empty
     void update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
-                BuildStop const& stop = BuildStop(nullptr));
+                Bounds const& focus = {}, BuildStop const& stop = BuildStop(nullptr));
     /// Irradiance of a surface, W/m^2. @param normal  unit, on the side asked for
     vec3 irradiance(vec3 position, vec3 normal) const;
     /// Radiance that comes from a direction, W/(m^2 sr): the mean over some cells along it, as far as surfaces let

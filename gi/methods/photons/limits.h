@@ -21,7 +21,7 @@ std::uint32_t impostor_resolution(PhotonSettings const& settings);
 /// Upper bound of the memory of distance impostors. @param moves  whether some triangles can move
 std::uint64_t impostor_bytes(PhotonSettings const& settings, bool moves);
 
-inline constexpr std::uint64_t kMostBytes = std::uint64_t(8) << 30;
+inline constexpr std::uint64_t kMostBytes = PhotonLatticeSettings::kMostBytes;
 /// Throws InputError for more than kMostBytes. @param what  "lattices"  @param instead  "choose fewer cells"
 void check_bytes(std::uint64_t bytes, std::string_view what, std::string_view instead);
 void check_impostors(PhotonSettings const& settings, bool moves);

@@ -3,7 +3,7 @@
 // pixel shows, as in mirrors, take caustics from the photon map.
 //
 // Unlike the paper: the LGV is divided by the area of the surfaces in each cell, not by the scene's area over the
-// number of photons, and gathers from 26 neighbours instead of 6 (PhotonLattices).
+// number of photons (PhotonLattices).
 
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"
@@ -81,7 +81,9 @@ protected:
     std::string_view timer_name() const override { return "light gathering volume"; }
     void take(PhotonSet const& set) override
     {
-        if (set.surfaces_changed) volume_.place(world_, set.visibility, world_.bounds.center(), set.stop);
+        if (set.surfaces_changed || (set.number == 0 && settings_.photons.lattice_cascades > 1))
+            volume_.place(world_, set.visibility,
+                          {camera_of(set.views, world_), set.focus, first_moving_, set.only_moved}, set.stop);
         volume_.update(set.photons);
     }
     SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) override
@@ -99,6 +101,7 @@ protected:
         std::size_t cells = 0;
         for (Frequency const f : {Frequency::low, Frequency::middle})
             for (PhotonLattices::Level const& level : volume_.levels(f)) cells += level.cells.values.size();
+        report.count("nested lattices", double(volume_.levels(Frequency::low).size()));
         report.count("cells with surfaces", double(cells));
         report.count("flux of photons in no cell, W (sum of channels)", volume_.lost_w());
         dvec3 on{0}, off{0};

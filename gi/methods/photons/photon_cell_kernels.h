@@ -11,10 +11,13 @@ struct FindPhotonCells {
     View<vec3 const> positions;
     View<LatticePhoton> photons;
     View<std::uint64_t> keys; ///< index of the cell's value, or kNoCell
+    bool beyond = true;       ///< photons beyond the grid belong to cells at its border
 
     GI_FN void operator()(std::size_t i) const
     {
         glm::ivec3 const at = cells.frame.at(positions[i]);
+        keys[i] = kNoCell;
+        if (!beyond && !cells.frame.holds(at)) return;
         std::uint32_t best = kNoCell;
         float nearest = 1e30f;
         for (int k = 0; k < 27; ++k) {
@@ -28,8 +31,8 @@ struct FindPhotonCells {
             nearest = c == at ? -1 : distance;
             best = place;
         }
-        keys[i] = best;
         if (best == kNoCell) return;
+        keys[i] = best;
         vec4 const area = cells.values[best].area;
         float const projected =
             0.25f * area.x + 0.5f * glm::dot(vec3(area.y, area.z, area.w), photons[i].direction);

@@ -11,8 +11,8 @@
 namespace gi {
 namespace {
 
-void find_pieces(World const& world, GridFrame const& exposure, BuildStop const& stop,
-                 PhotonLattices::Level& level)
+void find_pieces(World const& world, std::size_t begin, std::size_t last, GridFrame const& exposure,
+                 BuildStop const& stop, PhotonLattices::Level& level)
 {
     constexpr std::size_t kTogether = std::size_t(1)
                                       << 18; // of triangles, which bounds the memory of their pieces
@@ -23,9 +23,9 @@ void find_pieces(World const& world, GridFrame const& exposure, BuildStop const&
         blocks.cell *= 4;
         blocks.size = (blocks.size + 3) / 4;
     }
-    for (std::size_t first = 0; first < world.triangles.size(); first += kTogether) {
+    for (std::size_t first = begin; first < last; first += kTogether) {
         VoxelGrid grid{SparseCells<BlockVoxels>(blocks), {}};
-        add_triangles(world, first, std::min(world.triangles.size(), first + kTogether), grid, stop);
+        add_triangles(world, first, std::min(last, first + kTogether), grid, stop);
         for (SurfacePiece const& p : grid.pieces) {
             glm::ivec3 c = blocks.cell_of(grid.blocks.cells[p.block]);
             if (!large) c = 4 * c + glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
@@ -34,6 +34,16 @@ void find_pieces(World const& world, GridFrame const& exposure, BuildStop const&
             level.pieces.push_back({level.cells.place_at(c), exposure.index(e), p.area * p.normal});
         }
     }
+}
+
+void forget_moving(PhotonLattices::Level& level)
+{
+    level.pieces.resize(level.still_pieces);
+    for (std::size_t i = level.still_cells; i < level.cells.cells.size(); ++i)
+        level.cells.place[level.cells.cells[i]] = kNoCell;
+    level.cells.cells.resize(level.still_cells);
+    level.cells.values.resize(level.still_cells);
+    level.areas.clear();
 }
 
 } // namespace
@@ -51,10 +61,11 @@ double surface_area(World const& world)
 PhotonLattices::PhotonLattices(PhotonLatticeSettings const& settings) : settings_(settings)
 {
     for (int const cells : settings.cells)
-        if (cells < 4 || cells > PhotonLatticeSettings::kMostCells || settings.cascades < 1 ||
-            settings.cascades > 4)
+        if (cells < 4 || cells > PhotonLatticeSettings::kMostCells || settings.cascades < 0 ||
+            settings.cascades > PhotonLatticeSettings::kMostCascades)
             throw InputError(fmt::format("{} nested lattices of {} cells a side", settings.cascades, cells),
-                             fmt::format("1 to 4 of 4 to {} are supported", PhotonLatticeSettings::kMostCells),
+                             fmt::format("0 (by what is shown) to {} of 4 to {} are supported",
+                                         PhotonLatticeSettings::kMostCascades, PhotonLatticeSettings::kMostCells),
                              "choose others");
 }
 
@@ -63,39 +74,86 @@ std::uint64_t PhotonLattices::bytes(PhotonLatticeSettings const& s, Bounds const
     if (bounds.empty()) return 0;
     std::uint64_t sum = 0;
     for (int const cells : s.cells)
-        for (GridFrame const& f : frames_off_walls(bounds, bounds.center(), cells, s.cascades))
+        for (GridFrame const& f : frames_off_walls(bounds, bounds.center(), cells, std::max(s.cascades, 1)))
             sum += sparse_bytes(f, area_m2, 2 * sizeof(PhotonCell) + 2 * sizeof(Level::Piece));
     return sum;
 }
 
-void PhotonLattices::place(World const& world, ExactVisibility const& visibility, vec3 camera,
+void PhotonLattices::place(World const& world, ExactVisibility const& visibility, LatticePlace const& where,
                            BuildStop const& stop)
 {
-    for (auto& levels : levels_) levels.clear();
-    if (world.bounds.empty()) return;
+    if (world.bounds.empty()) {
+        for (auto& levels : levels_) levels.clear();
+        return;
+    }
     sky_shines_ = world.environment != nullptr;
-    exposed_ = ExposedSides(world, visibility, stop);
-    for (std::size_t k = 0; k < 3; ++k)
-        for (GridFrame const& f : frames_off_walls(world.bounds, camera, settings_.cells[k], settings_.cascades)) {
-            levels_[k].push_back({f, SparseCells<PhotonCell>(f), {}});
-            find_pieces(world, exposed_.frame(), stop, levels_[k].back());
+    PhotonLatticeSettings s = settings_;
+    vec3 center = where.camera;
+    if (s.cascades == 0) {
+        center = center_of(where.focus, world.bounds.center());
+        s.cascades = nested_levels(world.bounds, where.focus, s.kMostCascades);
+        while (s.cascades > 1 && bytes(s, world.bounds, surface_area(world)) > s.kMostBytes) --s.cascades;
+    }
+    std::array<std::vector<GridFrame>, 3> frames;
+    bool stays = where.only_moved;
+    for (std::size_t k = 0; k < 3; ++k) {
+        frames[k] = frames_off_walls(world.bounds, center, s.cells[k], s.cascades);
+        stays = stays && std::ranges::equal(frames[k], levels_[k], same, {}, &Level::frame);
+    }
+    if (!stays) {
+        exposed_.clear();
+        for (GridFrame const& f : exposure_frames(world.bounds, center, s.cascades))
+            exposed_.emplace_back(world, f, where.first_moving, visibility, stop);
+        return place_anew(world, where.first_moving, frames, stop);
+    }
+    for (ExposedSides& e : exposed_) e.moved(world, where.first_moving, visibility, stop);
+    std::size_t const triangles = world.triangles.size();
+    for (auto& levels : levels_)
+        for (std::size_t i = 0; i < levels.size(); ++i) {
+            forget_moving(levels[i]);
+            find_pieces(world, std::min(where.first_moving, triangles), triangles, exposed_[i].frame(), stop,
+                        levels[i]);
         }
 }
 
-void PhotonLattices::inject(Level& level, std::span<Photon const* const> photons, bool smooth, bool last)
+void PhotonLattices::place_anew(World const& world, std::size_t first_moving,
+                                std::array<std::vector<GridFrame>, 3> const& frames, BuildStop const& stop)
 {
-    std::ranges::fill(level.cells.values, PhotonCell{});
-    for (Level::Piece const& p : level.pieces) {
-        float const area = glm::length(p.area);
-        if (!(area > 0)) continue;
-        vec3 const normal = p.area / area;
-        for (float const side : {1.0f, -1.0f}) {
-            std::uint32_t const k = ReachedSides::side_index(side * normal, side > 0);
-            float const lit = area * exposed_.share(p.exposure_cell, k);
-            level.cells.values[p.place].area += lit * vec4(1, side * normal.x, side * normal.y, side * normal.z);
+    std::size_t const triangles = world.triangles.size();
+    first_moving = std::min(first_moving, triangles);
+    for (std::size_t k = 0; k < 3; ++k) {
+        levels_[k].clear();
+        for (std::size_t i = 0; i < frames[k].size(); ++i) {
+            Level& level = levels_[k].emplace_back();
+            level.frame = frames[k][i];
+            level.cells = SparseCells<PhotonCell>(level.frame);
+            find_pieces(world, 0, first_moving, exposed_[i].frame(), stop, level);
+            level.still_pieces = level.pieces.size();
+            level.still_cells = level.cells.cells.size();
+            find_pieces(world, first_moving, triangles, exposed_[i].frame(), stop, level);
         }
     }
+}
+
+void PhotonLattices::inject(Level& level, ExposedSides const& exposed, std::span<Photon const* const> photons,
+                            bool last)
+{
     std::size_t const n = photons.size(), cells = level.cells.values.size();
+    if (level.areas.empty()) {
+        level.areas.assign(cells, vec4{0});
+        for (Level::Piece const& p : level.pieces) {
+            float const area = glm::length(p.area);
+            if (!(area > 0)) continue;
+            vec3 const normal = p.area / area;
+            for (float const side : {1.0f, -1.0f}) {
+                std::uint32_t const k = ReachedSides::side_index(side * normal, side > 0);
+                float const lit = area * exposed.share(p.exposure_cell, k);
+                level.areas[p.place] += lit * vec4(1, side * normal.x, side * normal.y, side * normal.z);
+            }
+        }
+    }
+    std::ranges::fill(level.cells.values, PhotonCell{});
+    for (std::size_t i = 0; i < cells; ++i) level.cells.values[i].area = level.areas[i];
     std::vector<LatticePhoton> items(n);
     std::vector<vec3> positions(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -103,7 +161,8 @@ void PhotonLattices::inject(Level& level, std::span<Photon const* const> photons
         positions[i] = photons[i]->position;
     }
     std::vector<std::uint64_t> keys(n);
-    launch(Space::host, "find cells of photons", n, FindPhotonCells{level.cells.view(), positions, items, keys});
+    launch(Space::host, "find cells of photons", n,
+           FindPhotonCells{level.cells.view(), positions, items, keys, last});
     for (std::size_t i = 0; last && i < n; ++i) {
         double const flux = double(glm::dot(items[i].flux, vec3{1}));
         (keys[i] < cells ? injected_w_ : lost_w_) += flux;
@@ -111,18 +170,35 @@ void PhotonLattices::inject(Level& level, std::span<Photon const* const> photons
     ItemsByCell const sorted = sort_by_cell(keys, cells);
     launch(Space::host, "inject photons", cells,
            SumItems<LatticePhoton, PhotonCell>{items, sorted.order, sorted.firsts, level.cells.values});
-    if (!smooth) return;
-    std::vector<PhotonCell> smoothed(cells);
-    launch(Space::host, "smooth lattice", cells,
-           SmoothCells<PhotonCell>{level.cells.view(), level.cells.cells, smoothed});
-    std::swap(level.cells.values, smoothed);
+}
+
+void PhotonLattices::spread(Level& level, Frequency f)
+{
+    std::vector<PhotonCell> next(level.cells.values.size());
+    if (settings_.smooth[std::size_t(f)]) {
+        launch(Space::host, "smooth lattice", next.size(),
+               SmoothCells<PhotonCell>{level.cells.view(), level.cells.cells, next});
+        std::swap(level.cells.values, next);
+    }
+    for (int step = 0; f != Frequency::high && step < settings_.gathers; ++step) {
+        launch(Space::host, "gather in lattice", next.size(),
+               GatherCells<PhotonCell>{level.cells.view(), level.cells.cells, next});
+        std::swap(level.cells.values, next);
+    }
+}
+
+void PhotonLattices::see_photons(std::span<Photon const> photons)
+{
+    for (std::size_t i = 0; i < exposed_.size(); ++i)
+        if (exposed_[i].add(photons, sky_shines_))
+            for (auto& levels : levels_) levels[i].areas.clear();
 }
 
 void PhotonLattices::update(std::span<Photon const> photons)
 {
     injected_w_ = lost_w_ = 0;
     if (levels_[0].empty()) return;
-    exposed_.add(photons, sky_shines_);
+    see_photons(photons);
     std::vector<Photon const*> once, more;
     for (Photon const& p : photons)
         if (p.scatterings > 0 && all_finite(p.flux)) (p.scatterings == 1 ? once : more).push_back(&p);
@@ -136,14 +212,25 @@ void PhotonLattices::update_caustics(std::span<Photon const> photons)
     std::vector<Photon const*> caustics;
     for (Photon const& p : photons)
         if (p.scatterings == 0 && p.by_delta && all_finite(p.flux)) caustics.push_back(&p);
-    if (!caustics.empty()) exposed_.add(photons, sky_shines_);
+    if (!caustics.empty()) see_photons(photons);
     inject(Frequency::high, caustics);
 }
 
 void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons)
 {
     std::vector<Level>& levels = levels_[std::size_t(f)];
-    for (Level& level : levels) inject(level, photons, settings_.smooth[std::size_t(f)], &level == &levels.back());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        inject(levels[i], exposed_[i], photons, i + 1 == levels.size());
+        spread(levels[i], f);
+    }
+}
+
+/// Number of cells whose photons count together in one: the reciprocal of the sum of the squares of their weights.
+float PhotonLattices::cells_together(Frequency f) const
+{
+    // Of a random walk of n steps over a surface with a variance of 2/7 per step and axis: 4 pi 2/7 n.
+    float const gathered = f == Frequency::high ? 1 : 1 + 3.6f * float(settings_.gathers);
+    return settings_.smooth[std::size_t(f)] ? 27 : gathered;
 }
 
 template <class Function>
@@ -151,7 +238,7 @@ void PhotonLattices::for_cells_at(Frequency f, vec3 position, Function const& of
 {
     constexpr float kEnough = 16; // photons: a finer lattice then counts by a half
     std::vector<Level> const& levels = levels_[std::size_t(f)];
-    float const together = settings_.smooth[std::size_t(f)] ? 27 : 1; // cells
+    float const together = cells_together(f);
     float left = 1;
     for (std::size_t k = 0; k < levels.size() && left > 0; ++k) {
         bool const last = k + 1 == levels.size();

@@ -34,11 +34,15 @@ namespace gi {
 enum class Frequency : std::uint8_t { low, middle, high };
 
 struct PhotonLatticeSettings {
-    static constexpr int kMostCells = 512;
+    static constexpr int kMostCells = 512, kMostCascades = 8;
+    static constexpr std::uint64_t kMostBytes = std::uint64_t(8) << 30;
 
     std::array<int, 3> cells{64, 128, 128}; ///< by Frequency, along the scene's longest side, 4 to kMostCells
     std::array<bool, 3> smooth{true, true, false}; ///< over 3 x 3 x 3 cells
-    int cascades = 1;                              ///< nested lattices of each frequency, 1 to 4
+    int gathers = 0;                               ///< steps of gathering from six neighbours, of diffuse light
+    /// Nested lattices of each frequency about the camera, up to kMostCascades; 0 = about what is shown, as many
+    /// as needed so that the finest just holds it.
+    int cascades = 0;
     IrradianceBy by = IrradianceBy::normals;
 };
 
@@ -93,14 +97,22 @@ GI_FN inline vec3 cell_irradiance(PhotonCell const& cell, vec3 normal, Irradianc
     return glm::max(flux, vec3{0}) / facing;
 }
 
+/// Where nested lattices are.
+struct LatticePlace {
+    vec3 camera{0};                             ///< m
+    Bounds focus{};                             ///< what cameras show, if the world is much larger; else empty
+    std::size_t first_moving = ~std::size_t(0); ///< index of the first triangle that may move
+    bool only_moved = false; ///< since the call before nothing has changed but triangles that may move
+};
+
 class PhotonLattices {
 public:
     /// Throws InputError for settings out of range.
     explicit PhotonLattices(PhotonLatticeSettings const& settings);
 
-    /// To be called before the first update(), and when geometry has changed or the camera has moved by a cell of
-    /// nested lattices. Throws Interrupted.
-    void place(World const& world, ExactVisibility const& visibility, vec3 camera,
+    /// To be called before the first update(), and when surfaces have changed or the camera has moved by a cell of
+    /// nested lattices. Throws Interrupted, and is then to be called again without `only_moved`.
+    void place(World const& world, ExactVisibility const& visibility, LatticePlace const& where,
                BuildStop const& stop = BuildStop(nullptr));
     /// Replaces light of one and more scatterings. What light has reached is remembered. @param photons  of all
     /// scatterings
@@ -132,11 +144,13 @@ public:
             vec3 area; ///< m^2, times the normal of the front
         };
         std::vector<Piece> pieces;
+        std::size_t still_pieces = 0, still_cells = 0; ///< of triangles that do not move; the others follow
+        std::vector<vec4> areas;                       ///< per cell, see PhotonCell; empty = not yet known
     };
     std::span<Level const> levels(Frequency f) const { return levels_[std::size_t(f)]; }
     double injected_w() const { return injected_w_; } ///< sum over channels
     double lost_w() const { return lost_w_; }         ///< of photons where no surface was found
-    double hidden_m2() const { return exposed_.hidden_m2(); }
+    double hidden_m2() const { return exposed_.empty() ? 0 : exposed_.back().hidden_m2(); }
     /// Upper bound of the memory that place() and update() take. @param area_m2  of all triangles
     static std::uint64_t bytes(PhotonLatticeSettings const& settings, Bounds const& bounds, double area_m2);
 
@@ -144,11 +158,16 @@ private:
     /// Calls of(cell, weight) for the nested lattices at a point.
     template <class Function>
     void for_cells_at(Frequency f, vec3 position, Function const& of) const;
+    void place_anew(World const& world, std::size_t first_moving,
+                    std::array<std::vector<GridFrame>, 3> const& frames, BuildStop const& stop);
+    void see_photons(std::span<Photon const> photons);
     void inject(Frequency f, std::span<Photon const* const> photons);
-    void inject(Level& level, std::span<Photon const* const> photons, bool smooth, bool last);
+    void inject(Level& level, ExposedSides const& exposed, std::span<Photon const* const> photons, bool last);
+    void spread(Level& level, Frequency f);
+    float cells_together(Frequency f) const;
 
     PhotonLatticeSettings settings_;
-    ExposedSides exposed_;
+    std::vector<ExposedSides> exposed_; ///< per nested lattice, finest first
     bool sky_shines_ = false;
     std::array<std::vector<Level>, 3> levels_; ///< finest first
     double injected_w_ = 0, lost_w_ = 0;

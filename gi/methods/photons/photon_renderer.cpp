@@ -12,6 +12,12 @@
 
 namespace gi {
 
+vec3 camera_of(std::span<FrameView const> views, World const& world)
+{
+    return views.empty() ? world.bounds.center()
+                         : vec3(dvec3(views[0].camera.world_from_camera[3]) - world.origin);
+}
+
 PhotonRenderer::PhotonRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                                Report& report, StopRequest const* stop)
     : TreeRenderer(world, settings, first_moving, report, stop),
@@ -28,6 +34,7 @@ void PhotonRenderer::changed(Changes const& c)
     TreeRenderer::changed(c);
     caustics_.changed(c);
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds || c.materials || c.coverage;
+    more_than_moved_ = more_than_moved_ || c.materials || c.coverage;
     soup_moved_ = soup_moved_ || c.geometry;
     axes_moved_ = axes_moved_ || c.geometry;
     impostors_moved_ = impostors_moved_ || c.geometry;
@@ -143,10 +150,11 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     }
     {
         StageTimer const timer(report_, std::string(timer_name()));
-        take({photons, sets_, paths_, surfaces_changed_, *visibility_, views, stop, counts});
+        take({photons, sets_, paths_, surfaces_changed_, !more_than_moved_, focus_, *visibility_, views, stop,
+              counts});
     }
     ++sets_;
-    light_changed_ = surfaces_changed_ = false;
+    light_changed_ = surfaces_changed_ = more_than_moved_ = false;
     has_light_ = true;
     stored_ = photons.size();
     flux_ = dvec3{0};

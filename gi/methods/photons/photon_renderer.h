@@ -23,11 +23,16 @@ struct PhotonSet {
     std::uint32_t number;  ///< since the last change; 0 = what earlier sets gave is no longer true
     std::uint32_t paths;   ///< light paths of the set
     bool surfaces_changed; ///< since the set before: geometry, materials or coverage
+    bool only_moved;       ///< of these, geometry alone
+    Bounds focus;          ///< what cameras show, if the world is much larger; else empty
     ExactVisibility const& visibility;
     std::span<FrameView const> views;
     BuildStop const& stop;
     PathCounts& counts;
 };
+
+/// Where the first camera is, m in the world's coordinates; the world's centre without cameras.
+vec3 camera_of(std::span<FrameView const> views, World const& world);
 
 class PhotonRenderer : public TreeRenderer {
 public:
@@ -71,7 +76,7 @@ private:
 
     StopRequest const* stop_;
     Caustics caustics_;
-    bool light_changed_ = true, surfaces_changed_ = true, has_light_ = false;
+    bool light_changed_ = true, surfaces_changed_ = true, more_than_moved_ = true, has_light_ = false;
     bool caustics_known_ = false;              ///< there may be none
     std::optional<std::uint32_t> first_index_; ///< of the passes
     std::vector<Camera> cameras_;              ///< of the last call

@@ -41,6 +41,15 @@ std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int c
     return frames;
 }
 
+int nested_levels(Bounds const& bounds, Bounds const& focus, int most)
+{
+    if (bounds.empty() || focus.empty()) return 1;
+    float const whole = max_component(bounds.high - bounds.low), part = max_component(focus.high - focus.low);
+    int levels = 1;
+    while (levels < most && std::ldexp(whole, -levels) >= part) ++levels;
+    return levels;
+}
+
 std::uint64_t dense_bytes(std::span<GridFrame const> frames, std::size_t cell_bytes)
 {
     std::uint64_t sum = 0;

@@ -44,6 +44,11 @@ GI_FN Cell trilinear(Lattice const& in, vec3 position)
     return sum;
 }
 
+inline bool same(GridFrame const& a, GridFrame const& b)
+{
+    return a.low == b.low && a.cell == b.cell && a.size == b.size;
+}
+
 /// Weight of a nested grid at a point: 1 inside, 0 outside and in the outer half of its border cells, linear over
 /// a cell in between.
 GI_FN inline float weight_in(GridFrame const& frame, vec3 position)
@@ -74,6 +79,12 @@ std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cell
 /// The same without a border, and so placed, relative to the box, that walls along the axes do not lie between two
 /// cells: for light that is kept where surfaces are.
 std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int cells, int levels);
+
+/// Number of nested grids about the centre of a focus of which the finest just holds it, at most `most`; 1 if it
+/// is empty.
+int nested_levels(Bounds const& bounds, Bounds const& focus, int most);
+/// The centre of a focus, or a point if it is empty.
+inline vec3 center_of(Bounds const& focus, vec3 otherwise) { return focus.empty() ? otherwise : focus.center(); }
 
 /// Bytes of dense lattices of `cell_bytes` a cell over grids.
 std::uint64_t dense_bytes(std::span<GridFrame const> frames, std::size_t cell_bytes);

@@ -23,6 +23,9 @@ Scene generate_cornell();
 /// behind it are two steps.
 Scene generate_mirror();
 
+/// A box of 1 m with a mirroring ring, a glass sphere and matt balls under a small lamp: caustics.
+Scene generate_ring();
+
 /// A skinned mannequin with a face, 1.77 m tall, standing on y = 0 and facing +Z, with the clip "walk", for use as
 /// an avatar with `lightwell view --avatar`.
 Scene generate_avatar();

@@ -15,11 +15,12 @@ Scene load_scene(std::string const& file_or_name, Report& report)
         if (file_or_name == "atrium") return generate_atrium({});
         if (file_or_name == "cornell") return generate_cornell();
         if (file_or_name == "mirror") return generate_mirror();
+        if (file_or_name == "ring") return generate_ring();
         if (file_or_name == "avatar") return generate_avatar();
         throw InputError("there is no scene '" + file_or_name + "'",
                          "no such file, and no built-in scene of that name",
                          "give a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of frames, or one of: atrium, "
-                         "cornell, mirror, avatar");
+                         "cornell, mirror, ring, avatar");
     }
     if (std::filesystem::is_directory(file, error)) return load_mesh_sequence(file, report);
     if (file.filename() == "sequence.json")

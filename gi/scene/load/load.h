@@ -1,7 +1,7 @@
 #pragma once
 // Loads scenes of all formats. The extension selects the reader: .gltf/.glb tinygltf, .yaml/.yml scene files,
 // everything else Assimp; a folder of OBJ or PLY files (or its sequence.json) is a mesh sequence. A name without a
-// file ("atrium", "cornell", "mirror", "avatar") selects a generated scene.
+// file ("atrium", "cornell", "mirror", "ring", "avatar") selects a generated scene.
 
 #include "gi/core/report.h"
 #include "gi/scene/model/camera_path.h"

@@ -85,7 +85,7 @@ private:
         if (known == keys_of_generated().end())
             throw g.at("kind").error("there is no built-in scene '" + kind.substr(0, 64) + "'",
                                      "it cannot be generated",
-                                     "choose atrium, cornell, mirror, avatar, boxes or sphere");
+                                     "choose atrium, cornell, mirror, ring, avatar, boxes or sphere");
         for (std::string const& key : g.keys())
             if (!known->second.contains(key))
                 throw g.at(key).error(kind + " has no key '" + key + "'", "it would be ignored", "remove it");
@@ -109,6 +109,7 @@ private:
         if (kind == "sphere") return generate_sphere(triangles(), seed);
         if (kind == "cornell") return generate_cornell();
         if (kind == "mirror") return generate_mirror();
+        if (kind == "ring") return generate_ring();
         if (kind == "avatar") return generate_avatar();
         AtriumOptions o;
         double const most = folder_.empty() ? 1 : 50;

@@ -33,6 +33,7 @@ std::map<std::string, std::set<std::string>> const& keys_of_generated()
         {"boxes", {"kind", "triangles", "seed"}},
         {"cornell", {"kind"}},
         {"mirror", {"kind"}},
+        {"ring", {"kind"}},
         {"sphere", {"kind", "triangles", "seed"}},
     };
     return keys;

@@ -137,6 +137,7 @@ A scene with a sky is saved as three files: F.glb, F_sky.exr and F.yaml, which r
     atrium->add_flag("--no-figure", o->no_figure, "leave out the walking figure");
     add("cornell", "the Cornell box with its published measurements", [] { return gi::generate_cornell(); });
     add("mirror", "a room with a mirror in front of the camera", [] { return gi::generate_mirror(); });
+    add("ring", "a box with a mirroring ring and a glass sphere", [] { return gi::generate_ring(); });
     add("avatar", "a skinned mannequin, for view --avatar", [] { return gi::generate_avatar(); });
     CLI::App* const boxes =
         add("boxes", "randomly turned boxes on a grid", [o] { return gi::generate_boxes(o->triangles, o->seed); });

@@ -158,7 +158,7 @@ void add_info(CLI::App& app, int& exit_code)
     auto const o = std::make_shared<InfoOptions>();
     CLI::App* const c = app.add_subcommand("info", about("info"));
     c->add_option("SCENE", o->scene,
-                  "scene file, folder of OBJ or PLY frames, or atrium, cornell, mirror, avatar");
+                  "scene file, folder of OBJ or PLY frames, or atrium, cornell, mirror, ring, avatar");
     c->add_option("--directions", o->directions,
                   "instead of a scene: a direction set FAMILY:COUNT; families are\n"
                   "icosahedron, octahedron, tetrahedron, uv_grid, halton, fibonacci");
