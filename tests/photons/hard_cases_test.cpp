@@ -194,5 +194,30 @@ TEST(PhotonStops, WhileLightPathsAreTraced)
         }
 }
 
+/// Passes with photons of their own take longer than the first one, whose photons there are already: a stop is
+/// obeyed within about one of them all the same.
+TEST(PhotonStops, BetweenPasses)
+{
+    World const world = world_of(room_with_mirror());
+    for (PhotonMethod const& m : kPhotonMethods) {
+        RenderSettings s = small_photon_picture(8, 65536);
+        s.paths = 100000;
+        StopRequest stop;
+        Clock::time_point asked;
+        std::thread asks([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+            asked = Clock::now();
+            stop.request();
+        });
+        Report report;
+        RenderResult const r = m.render(world, in_the_room(), s, stop, {}, report);
+        double const took = std::chrono::duration<double>(Clock::now() - asked).count();
+        asks.join();
+        fmt::print("{}: {} passes, stopped {:.3f} s after the request\n", m.name, r.paths, took);
+        EXPECT_EQ(r.end, RenderEnd::interrupted);
+        EXPECT_LT(took, 0.5) << m.name;
+    }
+}
+
 } // namespace
 } // namespace gi::test
