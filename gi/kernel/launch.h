@@ -14,13 +14,20 @@ namespace gi {
 template <class Kernel>
 void launch_device(char const* name, std::size_t n, Kernel const& kernel);
 
+/// Not inlined: TBB would contain several copies, which compilers may round differently, and which copy runs an
+/// item would be a matter of timing.
+template <class Kernel>
+[[gnu::noinline]] void run_items(Kernel const& kernel, std::size_t begin, std::size_t end)
+{
+    for (std::size_t i = begin; i != end; ++i) kernel(i);
+}
+
 template <class Kernel>
 void launch_host(std::size_t n, Kernel const& kernel)
 {
     static_assert(std::is_trivially_copyable_v<Kernel>);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](auto const& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) kernel(i);
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n),
+                      [&](auto const& range) { run_items(kernel, range.begin(), range.end()); });
 }
 
 /// @param name appears in errors and timings

@@ -19,6 +19,19 @@ std::optional<tbb::global_control> limit_threads(int threads)
     return limit;
 }
 
+/// Calls pass() up to `most` times, at least once; ends when a stop is requested or half a second is over, as
+/// passes that make light of their own may take much longer than those from which PassLoop foretells their time.
+template <class Pass>
+void run_some(std::uint32_t most, StopRequest const& stop, Pass const& pass)
+{
+    constexpr auto kLong = std::chrono::milliseconds(500);
+    auto const begun = std::chrono::steady_clock::now();
+    for (std::uint32_t i = 0; i < most; ++i) {
+        if (i > 0 && (stop.requested() || std::chrono::steady_clock::now() - begun > kLong)) return;
+        pass();
+    }
+}
+
 class PassFrames : public FrameRenderer {
 public:
     PassFrames(StartPasses const& start, MovingWorld const& world, RenderSettings const& settings, Report& report)
@@ -44,7 +57,7 @@ public:
         motion_.see({&whole, 1});
         if (!moments) renderer_->begin(passes_, {&whole, 1});
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
-            for (std::uint32_t i = 0; i < paths; ++i) {
+            run_some(paths, stop, [&] {
                 FrameView eye = whole;
                 if (moments) {
                     Moment const now = moments(sums.paths);
@@ -52,7 +65,7 @@ public:
                     eye.camera = now.camera;
                 }
                 renderer_->pass(passes_++, {&eye, 1}, {&sums, 1}, &motion_);
-            }
+            });
         });
         finish(result, earlier);
         result.picture = loop.sums().picture(world_.world());
@@ -118,8 +131,9 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
     FrameView const eye{camera, settings.width, settings.height};
     on_threads(settings.threads, [&] { renderer->begin(loop.first_path(), {&eye, 1}); });
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
-        for (std::uint32_t i = 0; i < paths; ++i)
+        run_some(paths, stop, [&] {
             renderer->pass(loop.first_path() + sums.paths, {&eye, 1}, {&sums, 1}, nullptr);
+        });
     });
     renderer->report_work();
     result.rays = renderer->rays();

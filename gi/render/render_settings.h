@@ -103,7 +103,7 @@ struct VirtualLightSettings {
     }
 };
 
-/// Settings of the methods whitted and sh_grid, see gi/methods/whitted.
+/// Settings of ray trees: the method whitted and those that add indirect light to it, see gi/methods/whitted.
 struct WhittedSettings {
     int recursion = 8;         ///< mirrors and glass along a ray tree; rays beyond are cut and counted
     float cutoff = 1.0f / 256; ///< rays that would contribute less than this share are cut and counted

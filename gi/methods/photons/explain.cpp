@@ -17,9 +17,14 @@ using Items = std::vector<PlanItem>;
 
 std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.3g} MB", double(bytes) * 1e-6); }
 
-std::string cells_of(GridFrame const& f)
+/// @param frames  nested ones, the finest first
+std::string cells_of(std::vector<GridFrame> const& frames)
 {
-    return fmt::format("{} x {} x {} cells of {:.3g} m", f.size.x, f.size.y, f.size.z, double(f.cell));
+    GridFrame const& f = frames.back();
+    std::string const coarsest =
+        fmt::format("{} x {} x {} cells of {:.3g} m", f.size.x, f.size.y, f.size.z, double(f.cell));
+    return frames.size() > 1 ? coarsest + fmt::format(", the finest of {:.3g} m", double(frames[0].cell))
+                             : coarsest;
 }
 
 struct LightPathPlan {
@@ -36,25 +41,45 @@ std::string why_no_paths(World const& world, LightPathPlan const& plan)
     return {};
 }
 
-PlanItem focus_item(World const& world, RenderSettings const& s, Camera const& camera)
+/// What the camera shows of a world, as the methods use it.
+struct Shown {
+    Bounds focus; ///< empty unless the world is much larger
+    std::string extents;
+};
+
+Shown what_is_shown(World const& world, RenderSettings const& s, Camera const& camera)
+{
+    ExactVisibility const visibility(world, plan_scene(world).alpha_tests, s.threads);
+    FrameView const view{camera, s.width, s.height};
+    Bounds const shown = focus_of(shown_points(world, visibility, {&view, 1}), 64);
+    return {needs_fine_grid(shown, world.bounds) ? shown : Bounds{},
+            fmt::format("what the camera shows is {:.3g} of {:.3g} m long", double(longest_side(shown)),
+                        double(longest_side(world.bounds)))};
+}
+
+/// With the number of nested lattices that there will be.
+PhotonLatticeSettings with_cascades(PhotonLatticeSettings of, World const& world, Shown const& shown)
+{
+    if (of.cascades > 0) return of;
+    of.cascades = nested_levels(world.bounds, shown.focus, of.kMostCascades);
+    while (of.cascades > 1 && PhotonLattices::bytes(of, world.bounds, surface_area(world)) > of.kMostBytes)
+        --of.cascades;
+    return of;
+}
+
+PlanItem focus_item(World const& world, Shown const& shown)
 {
     char const* const what = "light from afar towards what is shown";
     bool const afar = world.environment != nullptr || std::ranges::any_of(world.lights, [](Light const& l) {
                           return l.type == LightType::directional;
                       });
     if (!afar) return {what, false, "there is no sky and no parallel light"};
-    ExactVisibility const visibility(world, plan_scene(world).alpha_tests, s.threads);
-    FrameView const view{camera, s.width, s.height};
-    Bounds const shown = focus_of(shown_points(world, visibility, {&view, 1}), 64);
-    std::string const extents = fmt::format("what the camera shows is {:.3g} of {:.3g} m long",
-                                            double(longest_side(shown)), double(longest_side(world.bounds)));
-    if (!needs_fine_grid(shown, world.bounds)) return {what, false, extents};
-    return {what, true, extents + "; it gets half of this light's paths"};
+    if (shown.focus.empty()) return {what, false, shown.extents};
+    return {what, true, shown.extents + "; it gets half of this light's paths"};
 }
 
 /// What all methods have in common.
-Items light_path_items(World const& world, RenderSettings const& s, Camera const& camera,
-                       LightPathPlan const& plan)
+Items light_path_items(World const& world, RenderSettings const& s, Shown const& shown, LightPathPlan const& plan)
 {
     PhotonSettings const& p = s.photons;
     Items out;
@@ -75,7 +100,7 @@ Items light_path_items(World const& world, RenderSettings const& s, Camera const
                    impostors ? fmt::format("at most {} cube maps of 6 x {} x {} texels, {}", p.impostors, side,
                                            side, megabytes(impostor_bytes(p.impostors, p.impostor_texels, moves)))
                              : "surfaces are found in another way (--photon-rays)"});
-    out.push_back(focus_item(world, s, camera));
+    out.push_back(focus_item(world, shown));
     bool const frozen = p.frozen == Switch::on;
     out.push_back({"new photons when something moves", moves && !frozen,
                    frozen ? std::string("--frozen-light on: light is computed once and kept")
@@ -97,13 +122,12 @@ PlanItem caustics_item(World const& world, PhotonSettings const& s)
             fmt::format("{} light paths per pass begin on {} smooth triangles", s.caustic_paths, smooth)};
 }
 
-PlanItem cascades_item(char const* option, int cascades)
+/// @param asked  0 = about what is shown  @param levels  that there are
+PlanItem cascades_item(int asked, int levels, Shown const& shown)
 {
-    return {"nested lattices", cascades > 1,
-            cascades > 1 ? fmt::format("{} of them about the camera, the cells of each half as wide as the next "
-                                       "one's",
-                                       cascades)
-                         : fmt::format("{} 1: one lattice over the scene", option)};
+    std::string const many = fmt::format("{} of them, the cells of each half as wide as the next one's", levels);
+    if (asked == 0) return {"nested lattices", levels > 1, (levels > 1 ? many + ": " : "") + shown.extents};
+    return {"nested lattices", levels > 1, levels > 1 ? many + ", about the camera" : "one was asked for"};
 }
 
 PlanItem bytes_item(char const* what, std::uint64_t bytes)
@@ -122,7 +146,8 @@ Items explain_ispm(World const& world, RenderSettings const& s, Camera const& ca
 {
     LightPathPlan const plan{s.photons.rays, reflections(s)};
     if (std::string const why = why_no_paths(world, plan); !why.empty()) return {{"light paths", false, why}};
-    Items out = light_path_items(world, s, camera, plan);
+    Shown const shown = what_is_shown(world, s, camera);
+    Items out = light_path_items(world, s, shown, plan);
     out.push_back(caustics_item(world, s.photons));
     out.push_back({"lists of photons by tiles of the screen", true,
                    fmt::format("tiles of {0} x {0} pixels; what mirrors show is found in the photon map",
@@ -135,13 +160,16 @@ Items explain_lpv(World const& world, RenderSettings const& s, Camera const& cam
     // Of a light path the lattice's propagation is the last bounce.
     LightPathPlan const plan{s.photons.rays, reflections(s)};
     if (std::string const why = why_no_paths(world, plan); !why.empty()) return {{"light paths", false, why}};
-    Items out = light_path_items(world, s, camera, plan);
-    PropagationSettings const of = propagation_of(s.photons);
-    auto const frames = nested_frames(world.bounds, world.bounds.center(), of.cells, of.cascades);
+    Shown const shown = what_is_shown(world, s, camera);
+    Items out = light_path_items(world, s, shown, plan);
+    PropagationSettings of = propagation_of(s.photons);
+    if (of.cascades == 0) of.cascades = nested_levels(world.bounds, shown.focus, of.kMostCascades);
+    auto const frames =
+        nested_frames(world.bounds, center_of(shown.focus, world.bounds.center()), of.cells, of.cascades);
     int const steps = of.steps > 0 ? of.steps : 2 * of.cells;
     out.push_back({"lattice in which light propagates", true,
-                   fmt::format("{}, {} steps from cell to cell", cells_of(frames.back()), steps)});
-    out.push_back(cascades_item("--propagation-cascades", of.cascades));
+                   fmt::format("{}, {} steps from cell to cell", cells_of(frames), steps)});
+    out.push_back(cascades_item(s.photons.propagation_cascades, of.cascades, shown));
     out.push_back(bytes_item("memory of lattices", LightPropagation::bytes(of, world.bounds)));
     out.push_back({"caustics", false, "a lattice in which light propagates is too coarse for them"});
     return out;
@@ -151,19 +179,21 @@ Items explain_isllpm(World const& world, RenderSettings const& s, Camera const& 
 {
     LightPathPlan const plan{s.photons.rays, reflections(s)};
     if (std::string const why = why_no_paths(world, plan); !why.empty()) return {{"light paths", false, why}};
-    Items out = light_path_items(world, s, camera, plan);
-    PhotonLatticeSettings const of = lattices_of(s.photons);
+    Shown const shown = what_is_shown(world, s, camera);
+    Items out = light_path_items(world, s, shown, plan);
+    PhotonLatticeSettings const of = with_cascades(lattices_of(s.photons), world, shown);
     PlanItem const caustics = caustics_item(world, s.photons);
     char const* const names[] = {"lattice of two and more reflections", "lattice of one reflection",
                                  "lattice of caustics"};
     for (std::size_t k = 0; k < 3; ++k) {
-        GridFrame const f = frames_off_walls(world.bounds, world.bounds.center(), of.cells[k], of.cascades).back();
+        auto const frames = frames_off_walls(world.bounds, center_of(shown.focus, world.bounds.center()),
+                                             of.cells[k], of.cascades);
         bool const used = k < 2 || caustics.build;
         out.push_back({names[k], used,
-                       used ? cells_of(f) + (of.smooth[k] ? ", smoothed over 3 x 3 x 3 cells" : "")
+                       used ? cells_of(frames) + (of.smooth[k] ? ", smoothed over 3 x 3 x 3 cells" : "")
                             : caustics.reason + "; it stays empty"});
     }
-    out.push_back(cascades_item("--lattice-cascades", of.cascades));
+    out.push_back(cascades_item(s.photons.lattice_cascades, of.cascades, shown));
     out.push_back(bytes_item("memory of lattices", PhotonLattices::bytes(of, world.bounds, surface_area(world))));
     out.push_back(caustics);
     return out;
@@ -173,10 +203,16 @@ Items explain_multi_image(World const& world, RenderSettings const& s, Camera co
 {
     LightPathPlan const plan{PhotonRays::impostors, reflections(s)};
     if (std::string const why = why_no_paths(world, plan); !why.empty()) return {{"light paths", false, why}};
-    Items out = light_path_items(world, s, camera, plan);
-    PhotonLatticeSettings const of = volume_of(s.photons);
-    out.push_back({"light gathering volume", true,
-                   cells_of(frames_off_walls(world.bounds, world.bounds.center(), of.cells[0], 1)[0])});
+    Shown const shown = what_is_shown(world, s, camera);
+    Items out = light_path_items(world, s, shown, plan);
+    PhotonLatticeSettings const of = with_cascades(volume_of(s.photons), world, shown);
+    out.push_back(
+        {"light gathering volume", true,
+         fmt::format("{}, {} steps of gathering",
+                     cells_of(frames_off_walls(world.bounds, center_of(shown.focus, world.bounds.center()),
+                                               of.cells[0], of.cascades)),
+                     of.gathers)});
+    out.push_back(cascades_item(s.photons.lattice_cascades, of.cascades, shown));
     out.push_back(
         bytes_item("memory of the volume", PhotonLattices::bytes(of, world.bounds, surface_area(world))));
     PlanItem const caustics = caustics_item(world, s.photons);

@@ -194,25 +194,26 @@ void LightPropagation::update(World const& world, Geometry geometry, std::span<P
     std::swap(former, levels_);
     place(frames);
     std::vector<ReflectedLight> const lights = reflected_lights(photons);
-    for (std::size_t k = levels_.size(); k-- > 0;) try {
+    try {
+        for (std::size_t k = levels_.size(); k-- > 0;) {
             Level& level = levels_[k];
-            if (settings_.blocked) {
-                if (geometry == Geometry::same && k < former.size() && same(former[k].frame, level.frame)) {
-                    level.open = former[k].open;
-                    level.blocked = former[k].blocked;
-                } else {
-                    level.blocked.resize(level.corners.cells());
-                    level.open.resize(level.corners.cells());
-                    add_blockers(world, stop, level);
-                    launch(Space::host, "open faces of cells", level.corners.cells(),
-                           OpenFaces{level.corners, level.blocked, level.open});
-                }
+            if (settings_.blocked && geometry == Geometry::same && k < former.size() &&
+                same(former[k].frame, level.frame)) {
+                level.open = former[k].open;
+                level.blocked = former[k].blocked;
+            } else if (settings_.blocked) {
+                level.blocked.resize(level.corners.cells());
+                level.open.resize(level.corners.cells());
+                add_blockers(world, stop, level);
+                launch(Space::host, "open faces of cells", level.corners.cells(),
+                       OpenFaces{level.corners, level.blocked, level.open});
             }
             propagate(level, k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights, stop);
-        } catch (Interrupted const&) {
-            levels_ = std::move(former);
-            throw;
         }
+    } catch (Interrupted const&) {
+        levels_ = std::move(former);
+        throw;
+    }
 }
 
 vec3 LightPropagation::irradiance(vec3 position, vec3 normal) const

@@ -16,7 +16,7 @@ PropagationSettings propagation_of(PhotonSettings const& settings);
 PhotonLatticeSettings lattices_of(PhotonSettings const& settings);
 /// Of the light gathering volume of multi_image.
 PhotonLatticeSettings volume_of(PhotonSettings const& settings);
-inline constexpr std::uint64_t kMostBytes = std::uint64_t(8) << 30;
+inline constexpr std::uint64_t kMostBytes = PhotonLatticeSettings::kMostBytes;
 /// Throws InputError for more than kMostBytes. @param what  "lattices"  @param instead  "choose fewer cells"
 void check_bytes(std::uint64_t bytes, std::string_view what, std::string_view instead);
 void check_impostors(PhotonSettings const& settings, bool moves);

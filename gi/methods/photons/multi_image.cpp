@@ -3,7 +3,7 @@
 // pixel shows, as in mirrors, take caustics from the photon map.
 //
 // Unlike the paper: the LGV is divided by the area of the surfaces in each cell, not by the scene's area over the
-// number of photons, and gathers from 26 neighbours instead of 6 (PhotonLattices).
+// number of photons (PhotonLattices).
 
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"

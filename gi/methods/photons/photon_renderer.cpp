@@ -52,7 +52,7 @@ SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<Frame
     }
     rays_ += double(counts.nearest_rays + counts.shadow_rays);
     work_.paths += counts;
-    return any ? light(views, caustics_.map()) : nullptr;
+    return any || (frozen && has_light_) ? light(views, caustics_.map()) : nullptr;
 }
 
 /// A room in a large world gets half of the light from afar. Stays while it holds most of what cameras show, as a

@@ -136,16 +136,18 @@ int run(InfoOptions const& o)
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
     }
-    fmt::print("{}\n", o.scene);
-    for (gi::SummaryLine const& line : summary.lines) fmt::print("  {:<22} {}\n", line.what, line.value);
-    auto const print_plan = [](std::string const& title, std::vector<gi::PlanItem> const& items) {
-        fmt::print("{}\n", title);
+    std::string text =
+        o.scene + "\n"; // written at once, so that an error is found at the end, as for all commands
+    for (gi::SummaryLine const& line : summary.lines) text += fmt::format("  {:<22} {}\n", line.what, line.value);
+    auto const add_plan = [&](std::string const& title, std::vector<gi::PlanItem> const& items) {
+        text += title + "\n";
         for (gi::PlanItem const& item : items)
-            fmt::print("  {:<4} {:<38} {}\n", item.build ? "yes" : "no", item.what, item.reason);
+            text += fmt::format("  {:<4} {:<38} {}\n", item.build ? "yes" : "no", item.what, item.reason);
     };
-    print_plan("What is built for the scene", plan.items);
+    add_plan("What is built for the scene", plan.items);
     for (MethodPlan const& m : methods)
-        print_plan(fmt::format("What method {} builds, at 512 x 512 pixels", m.method), m.items);
+        add_plan(fmt::format("What method {} builds, at 512 x 512 pixels", m.method), m.items);
+    std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
     print_losses(report);
     return 0;
