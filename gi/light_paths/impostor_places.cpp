@@ -68,12 +68,12 @@ std::vector<vec3> place_impostors(World const& world, ExactVisibility const& vis
 {
     if (world.triangles.empty() || settings.count == 0) return {};
     constexpr std::size_t kWalks = 2048;
-    Reached walks = reach(world, visibility, kWalks, 11);
+    Reached walks = reach(world, visibility, kWalks, 11, settings.focus);
     if (walks.points.empty()) return {};
     Pcg32 rng(11, 6);
     keep_some(walks.points, settings.points, rng);
     keep_some(walks.flights, settings.candidates, rng);
-    float const open = world.bounds.radius();
+    float const open = settings.focus.empty() ? world.bounds.radius() : settings.focus.radius();
     std::vector<vec3> places;
     for (Flight const& f : walks.flights) {
         float const share = 0.25f + 0.5f * rng.uniform();

@@ -170,10 +170,13 @@ PathRays const& PhotonRenderer::path_rays(BuildStop const&)
         break;
     }
     case PhotonRays::impostors: {
+        if (!holds(impostors_about_, focus_) || !holds(focus_, impostors_about_)) impostors_.reset();
         StageTimer const timer(report_, "impostors");
         if (!impostors_) {
             auto const texels = std::uint32_t((settings_.photons.impostor_texels + 7) / 8 * 8);
-            ImpostorPlacement const placement{.count = std::uint32_t(settings_.photons.impostors)};
+            ImpostorPlacement const placement{.count = std::uint32_t(settings_.photons.impostors),
+                                              .focus = focus_};
+            impostors_about_ = focus_;
             impostors_.emplace(world_, place_impostors(world_, *visibility_, placement), texels,
                                std::uint32_t(settings_.seed), first_moving_);
         } else if (impostors_moved_) {

@@ -86,6 +86,7 @@ private:
     bool soup_moved_ = false, axes_moved_ = false, impostors_moved_ = false;
     std::optional<StoredAxes> axes_; ///< of look-ups
     std::optional<Impostors> impostors_;
+    Bounds impostors_about_; ///< focus_ when they were placed
     std::unique_ptr<PathRays> rays_of_paths_;
     std::size_t stored_ = 0;
     dvec3 flux_{0}, emitted_{0};
