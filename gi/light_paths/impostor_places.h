@@ -31,4 +31,10 @@ struct ImpostorPlacement {
 std::vector<vec3> place_impostors(World const& world, ExactVisibility const& visibility,
                                   ImpostorPlacement const& settings = {});
 
+inline constexpr std::size_t kMostImpostors = 256;
+
+/// Places that a user gives, "x,y,z;x,y,z", m in the scene's coordinates. Throws InputError unless they are 1 to
+/// kMostImpostors places of three finite numbers.
+std::vector<dvec3> read_impostor_places(std::string const& text);
+
 } // namespace gi

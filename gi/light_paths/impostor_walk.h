@@ -54,6 +54,9 @@ GI_FN inline float on_plane(Surface const& s, Ray const& ray, float t, float aro
     return std::abs(at - t) <= around ? at : t;
 }
 
+/// How far from a triangle the guess may be that it goes on there, of the distance from the impostor's centre.
+inline constexpr float kGoesOn = 0.3f;
+
 /// True if a hit's point of its triangle and its point of the ray are so near to each other, m: where a ray meets
 /// the plane of a triangle, but far from the triangle, it is not known to meet anything.
 GI_FN inline bool on_surface(ImpostorScene const& scene, Ray const& ray, Hit const& hit, float within)
@@ -260,15 +263,15 @@ private:
         } else {
             // Where its plane goes on. A ray that goes away from it meets it nowhere.
             Hit const on = on_triangle(last.triangle, here, kFarthest);
-            if (on.distance >= here && on_surface(scene, q.ray, on, join_at(on.distance))) found.hidden = on;
+            if (on.distance >= here && on_surface(scene, q.ray, on, goes_on_at(on.distance))) found.hidden = on;
         }
         return true;
     }
 
-    /// How far surfaces of neighbouring texels that join may be from each other at a point of the ray, m.
-    GI_FN float join_at(float t) const
+    /// See kGoesOn, m.
+    GI_FN float goes_on_at(float t) const
     {
-        return settings.jump * width * glm::length(q.ray.origin + t * q.ray.direction - scene.maps.centres[k]);
+        return kGoesOn * glm::length(q.ray.origin + t * q.ray.direction - scene.maps.centres[k]);
     }
 
     /// The triangle at distance t, or where the ray meets its plane if that is within `around`, m.
@@ -282,8 +285,7 @@ private:
 
 /// For a ray that was hidden all along, or went on too near to the surface it left: where it would meet the plane
 /// of what lies in its direction.
-GI_FN inline Hit at_end(ImpostorScene const& scene, ImpostorSettings const& settings, std::uint32_t k,
-                        RayQuery const& q)
+GI_FN inline Hit at_end(ImpostorScene const& scene, std::uint32_t k, RayQuery const& q)
 {
     ImpostorTexel const texel = scene.maps.look(k, q.ray.direction);
     if (texel.triangle == kNoTriangle) return {};
@@ -291,7 +293,7 @@ GI_FN inline Hit at_end(ImpostorScene const& scene, ImpostorSettings const& sett
     float const guess = first_guess(scene.maps, k, q.ray), on = on_plane(surface, q.ray, guess, texel.distance);
     if (!(on > 0)) return {};
     Hit const hit{texel.triangle, barycentric_at(surface, q.ray.origin + on * q.ray.direction), on};
-    return on_surface(scene, q.ray, hit, settings.jump * scene.maps.texel_width() * texel.distance) ? hit : Hit{};
+    return on_surface(scene, q.ray, hit, kGoesOn * texel.distance) ? hit : Hit{};
 }
 
 GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q, std::uint32_t left, vec3 side,
@@ -324,7 +326,7 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
                 : walk.crossing.triangle != kNoTriangle ? walk.crossing
                 : walk.hidden.triangle != kNoTriangle   ? walk.hidden
                 : walk.to_sky || !known                 ? Hit{}
-                                                        : at_end(scene, settings, k, q);
+                                                        : at_end(scene, k, q);
     if (found.hit.distance > q.reach) found.hit = {};
     return found;
 }

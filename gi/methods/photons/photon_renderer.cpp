@@ -11,6 +11,17 @@
 
 namespace gi {
 
+namespace {
+
+std::vector<vec3> given_places(World const& world, PhotonSettings const& settings)
+{
+    std::vector<vec3> out;
+    for (dvec3 const p : read_impostor_places(settings.impostor_places)) out.push_back(vec3(p - world.origin));
+    return out;
+}
+
+} // namespace
+
 vec3 camera_of(std::span<FrameView const> views, World const& world)
 {
     return views.empty() ? world.bounds.center()
@@ -170,15 +181,18 @@ PathRays const& PhotonRenderer::path_rays(BuildStop const&)
         break;
     }
     case PhotonRays::impostors: {
-        if (!holds(impostors_about_, focus_) || !holds(focus_, impostors_about_)) impostors_.reset();
+        bool const by_hand = !settings_.photons.impostor_places.empty();
+        bool const same_focus = holds(impostors_about_, focus_) && holds(focus_, impostors_about_);
+        if (!by_hand && !same_focus) impostors_.reset();
         StageTimer const timer(report_, "impostors");
         if (!impostors_) {
             auto const texels = std::uint32_t((settings_.photons.impostor_texels + 7) / 8 * 8);
             ImpostorPlacement const placement{.count = std::uint32_t(settings_.photons.impostors),
                                               .focus = focus_};
             impostors_about_ = focus_;
-            impostors_.emplace(world_, place_impostors(world_, *visibility_, placement), texels,
-                               std::uint32_t(settings_.seed), first_moving_);
+            std::vector<vec3> const centres = by_hand ? given_places(world_, settings_.photons)
+                                                      : place_impostors(world_, *visibility_, placement);
+            impostors_.emplace(world_, centres, texels, std::uint32_t(settings_.seed), first_moving_);
         } else if (impostors_moved_) {
             impostors_->moved(world_);
         }
