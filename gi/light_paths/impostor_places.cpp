@@ -1,10 +1,12 @@
 #include "gi/light_paths/impostor_places.h"
 
 #include "gi/core/rng.h"
+#include "gi/core/text.h"
 #include "gi/light_paths/reached_points.h"
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <span>
 #include <tbb/parallel_for.h>
 
@@ -68,12 +70,12 @@ std::vector<vec3> place_impostors(World const& world, ExactVisibility const& vis
 {
     if (world.triangles.empty() || settings.count == 0) return {};
     constexpr std::size_t kWalks = 2048;
-    Reached walks = reach(world, visibility, kWalks, 11);
+    Reached walks = reach(world, visibility, kWalks, 11, settings.focus);
     if (walks.points.empty()) return {};
     Pcg32 rng(11, 6);
     keep_some(walks.points, settings.points, rng);
     keep_some(walks.flights, settings.candidates, rng);
-    float const open = world.bounds.radius();
+    float const open = settings.focus.empty() ? world.bounds.radius() : settings.focus.radius();
     std::vector<vec3> places;
     for (Flight const& f : walks.flights) {
         float const share = 0.25f + 0.5f * rng.uniform();
@@ -106,6 +108,33 @@ std::vector<vec3> place_impostors(World const& world, ExactVisibility const& vis
         for (std::size_t k = 0; k < best.size(); ++k) best[k] = std::max(best[k], worth[most][k]);
     }
     return chosen;
+}
+
+std::vector<dvec3> read_impostor_places(std::string const& text)
+{
+    constexpr char const* kHow = "write x,y,z for each place, in m, and ; between places: 0,1.5,2;4,1.5,2";
+    std::vector<dvec3> places;
+    std::string_view left = text;
+    while (!trimmed(left).empty()) {
+        std::string_view const place = trimmed(take_until(left, ';'));
+        std::vector<std::string_view> const numbers = split_at_commas(place);
+        if (numbers.size() != 3)
+            throw InputError(fmt::format("impostor place '{}'", place), "a place has three coordinates", kHow);
+        dvec3 at;
+        for (int axis = 0; axis < 3; ++axis) {
+            std::string_view const number = numbers[std::size_t(axis)];
+            auto const value = parse_finite(number, double(kFarthest));
+            if (!value)
+                throw InputError(fmt::format("impostor place '{}'", place),
+                                 fmt::format("'{}' is not a finite number", number), kHow);
+            at[axis] = *value;
+        }
+        places.push_back(at);
+    }
+    if (places.empty() || places.size() > kMostImpostors)
+        throw InputError(fmt::format("impostor places '{}'", shortened(text, 60)),
+                         fmt::format("{} places; 1 to {} are supported", places.size(), kMostImpostors), kHow);
+    return places;
 }
 
 } // namespace gi

@@ -54,6 +54,20 @@ GI_FN inline float on_plane(Surface const& s, Ray const& ray, float t, float aro
     return std::abs(at - t) <= around ? at : t;
 }
 
+/// How far from a triangle the guess may be that it goes on there, of the distance from the impostor's centre.
+inline constexpr float kGoesOn = 0.3f;
+
+/// True if a hit's point of its triangle and its point of the ray are so near to each other, m: where a ray meets
+/// the plane of a triangle, but far from the triangle, it is not known to meet anything.
+GI_FN inline bool on_surface(ImpostorScene const& scene, Ray const& ray, Hit const& hit, float within)
+{
+    if (hit.triangle == kNoTriangle) return false;
+    Surface const& s = scene.world.surfaces[hit.triangle];
+    vec3 const there = s.corner + hit.barycentric.x * s.edge1 + hit.barycentric.y * s.edge2;
+    vec3 const off = ray.origin + hit.distance * ray.direction - there;
+    return glm::dot(off, off) <= square(within);
+}
+
 /// A walk through one impostor.
 struct MapWalk {
     // A probe a little behind the edge of a texel lies in the next one.
@@ -247,10 +261,17 @@ private:
         if (last.triangle == kNoTriangle) {
             found.to_sky = true;
         } else {
-            found.hidden = on_triangle(last.triangle, here, kFarthest);
-            found.hidden.distance = glm::max(found.hidden.distance, here);
+            // Where its plane goes on. A ray that goes away from it meets it nowhere.
+            Hit const on = on_triangle(last.triangle, here, kFarthest);
+            if (on.distance >= here && on_surface(scene, q.ray, on, goes_on_at(on.distance))) found.hidden = on;
         }
         return true;
+    }
+
+    /// See kGoesOn, m.
+    GI_FN float goes_on_at(float t) const
+    {
+        return kGoesOn * glm::length(q.ray.origin + t * q.ray.direction - scene.maps.centres[k]);
     }
 
     /// The triangle at distance t, or where the ray meets its plane if that is within `around`, m.
@@ -271,7 +292,8 @@ GI_FN inline Hit at_end(ImpostorScene const& scene, std::uint32_t k, RayQuery co
     Surface const& surface = scene.world.surfaces[texel.triangle];
     float const guess = first_guess(scene.maps, k, q.ray), on = on_plane(surface, q.ray, guess, texel.distance);
     if (!(on > 0)) return {};
-    return {texel.triangle, barycentric_at(surface, q.ray.origin + on * q.ray.direction), on};
+    Hit const hit{texel.triangle, barycentric_at(surface, q.ray.origin + on * q.ray.direction), on};
+    return on_surface(scene, q.ray, hit, kGoesOn * texel.distance) ? hit : Hit{};
 }
 
 GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const& q, std::uint32_t left, vec3 side,

@@ -1,5 +1,7 @@
 #include "gi/light_paths/options.h"
 
+#include "gi/light_paths/impostor_places.h"
+
 namespace gi {
 namespace {
 
@@ -21,7 +23,17 @@ RenderOptionTable const& photon_options()
     Methods const maps{"ispm", "lpv", "isllpm", "multi_image"},
         all{"sh_grid", "ispm", "lpv", "isllpm", "multi_image"},
         caustics{"sh_grid", "ispm", "isllpm", "multi_image"};
+    RenderOption places = photons(
+        "impostor-places", {"", "0,1.5,0", "0,1.5,0;4,1.5,0"},
+        "centres of the distance impostors, x,y,z;x,y,z in m in the scene's coordinates (default: automatic)",
+        &P::impostor_places, {"ispm", "lpv", "isllpm", "multi_image"});
+    places.takes_other_words = true;
+    places.set = [](RenderSettings& s, std::string const& text, std::string const&) {
+        if (!text.empty()) read_impostor_places(text); // throws
+        s.photons.impostor_places = text;
+    };
     static RenderOptionTable const table{
+        places,
         photons("photons", {1, P::kMostPaths},
                 "light paths per set of photons; with a --budget fewer, if they would take more than half of it",
                 &P::paths, all),

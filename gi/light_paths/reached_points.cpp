@@ -19,14 +19,17 @@ vec3 to_sphere(vec2 u)
     return {r * turn.x, r * turn.y, z};
 }
 
-std::vector<Ray> from_lights(World const& world, std::size_t n, Pcg32& rng)
+std::vector<Ray> from_lights(World const& world, Bounds const& focus, std::size_t n, Pcg32& rng)
 {
     WorldView const w = view(world);
     std::vector<Ray> rays;
     for (std::size_t k = 0; k < n; ++k) {
         LightChoice const choice = choose_light(w, rng.uniform_double());
         vec2 const place = rng.uniform2(), direction = rng.uniform2();
-        EmittedLight const light = emit_light(w, choice, world.bounds, place, direction, rng.uniform());
+        bool const through_focus = !focus.empty() && k % 2 != 0 && comes_from_afar(w, choice);
+        EmittedLight light =
+            emit_light(w, choice, through_focus ? focus : world.bounds, place, direction, rng.uniform());
+        if (through_focus) light.ray.origin -= 2 * world.bounds.radius() * light.ray.direction;
         if (max_component(light.power) > 0) rays.push_back(light.ray);
     }
     return rays;
@@ -98,11 +101,12 @@ Reached walk_on(World const& world, ExactVisibility const& visibility, std::vect
 
 } // namespace
 
-Reached reach(World const& world, ExactVisibility const& visibility, std::size_t walks, std::uint64_t seed)
+Reached reach(World const& world, ExactVisibility const& visibility, std::size_t walks, std::uint64_t seed,
+              Bounds const& focus)
 {
     if (world.triangles.empty()) return {};
     Pcg32 rng(seed, 5);
-    std::vector<Ray> rays = from_lights(world, walks, rng);
+    std::vector<Ray> rays = from_lights(world, focus, walks, rng);
     std::vector<Ray> const more = from_cameras(world, walks, rng);
     rays.insert(rays.end(), more.begin(), more.end());
     Reached reached = walk_on(world, visibility, std::move(rays), rng);

@@ -29,6 +29,8 @@ struct Reached {
 };
 
 /// @param walks  from lights, and as many from cameras  @param seed  the same points for the same one
-Reached reach(World const& world, ExactVisibility const& visibility, std::size_t walks, std::uint64_t seed);
+/// @param focus  a small part of the world to which half of the walks from lights afar go; empty = none
+Reached reach(World const& world, ExactVisibility const& visibility, std::size_t walks, std::uint64_t seed,
+              Bounds const& focus = {});
 
 } // namespace gi

@@ -138,6 +138,8 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     }
     if (!method.starts_with("vpl_") && method != "slhb" && method != "reference") {
         PhotonSettings const& o = s.photons;
+        for (char const c : o.impostor_places) h.add(std::uint64_t(c));
+        h.add(std::uint64_t(o.impostor_places.size()));
         for (int const v : {o.paths,
                             o.caustic_paths,
                             o.reflections,

@@ -161,8 +161,9 @@ struct PhotonSettings {
     Switch lattice_smoothing = Switch::on; ///< of the low and the middle one
     IrradianceBy irradiance_by = IrradianceBy::normals;
     CausticsBy caustics_by = CausticsBy::lattice; ///< of isllpm
-    int impostors = 32;        ///< distance impostors, at most
-    int impostor_texels = 128; ///< along an edge of a face, rounded up to a multiple of 8
+    int impostors = 32;                           ///< distance impostors, at most
+    std::string impostor_places; ///< "x,y,z;x,y,z", m in the scene's coordinates; empty = automatic
+    int impostor_texels = 128;   ///< along an edge of a face, rounded up to a multiple of 8
     ImpostorSearch impostor_search = ImpostorSearch::walk;
     int volume_cells = 64;  ///< of the light gathering volume of multi_image, along the scene's longest side
     int volume_gathers = 2; ///< steps that spread light over neighbouring cells of that volume

@@ -1,9 +1,12 @@
 // Where impostors are put, in scenes of all kinds.
 
+#include "gi/core/error.h"
 #include "gi/core/threads.h"
 #include "gi/light_paths/impostor_places.h"
 #include "gi/light_paths/reached_points.h"
 #include "tests/light_paths/impostor_scenes.h"
+
+#include <fmt/format.h>
 
 namespace gi::test {
 namespace {
@@ -210,6 +213,47 @@ TEST(ImpostorPlaces, AreTheSameForAnyNumberOfThreads)
     std::vector<vec3> one, all = places_of(world);
     on_threads(1, [&] { one = places_of(world); });
     EXPECT_EQ(one, all);
+}
+
+TEST(ImpostorPlaces, GivenByHand)
+{
+    std::vector<dvec3> const two = read_impostor_places("0,1.5,-2; 4e1 , 1,2;");
+    ASSERT_EQ(two.size(), 2u);
+    EXPECT_EQ(two[0], dvec3(0, 1.5, -2));
+    EXPECT_EQ(two[1], dvec3(40, 1, 2));
+    std::string many;
+    for (std::size_t k = 0; k <= kMostImpostors; ++k) many += "0,0,0;";
+    for (std::string const& wrong :
+         {std::string(""), std::string(";"), std::string("1,2"), std::string("1,2,3,4"), std::string("1,2,x"),
+          std::string("1,2,"), std::string("1,2,nan"), std::string("inf,2,3"), std::string("1e300,2,3"),
+          std::string("1,2,3;;4,5,6"), many})
+        EXPECT_THROW(read_impostor_places(wrong), InputError) << wrong;
+}
+
+/// A small lit room in a world of 400 m: with a focus, places are in and about the room.
+TEST(ImpostorPlaces, NearTheFocus)
+{
+    Scene scene;
+    int const matt = add_material(scene, lambert(vec3{0.5f}));
+    add_quad(scene, {-200, 0, -200}, {0, 0, 400}, {400, 0, 0}, matt);
+    add_quad(scene, {-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, matt); // a roof
+    Light sun;
+    sun.type = LightType::directional;
+    sun.direction = {0.3f, -1, 0.2f};
+    sun.intensity = vec3{1};
+    add_light(scene, sun);
+    World const world = world_of(scene);
+    Bounds const focus{vec3{-4, -1, -4}, vec3{4, 5, 4}};
+    auto const share_near = [&](std::vector<vec3> const& places) {
+        auto const near = std::ranges::count_if(places, [](vec3 p) { return within(p, vec3{-12}, vec3{12}); });
+        return double(near) / double(places.size());
+    };
+    std::vector<vec3> const about = places_of(world, {.focus = focus}), anywhere = places_of(world);
+    ASSERT_FALSE(about.empty());
+    EXPECT_TRUE(std::ranges::any_of(about, [](vec3 p) { return within(p, {-2, 0, -2}, {2, 2, 2}); }));
+    fmt::print("near the focus: {:.2f} of the places, {:.2f} without one\n", share_near(about),
+               share_near(anywhere));
+    EXPECT_GT(share_near(about), 2 * share_near(anywhere));
 }
 
 } // namespace

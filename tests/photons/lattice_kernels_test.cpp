@@ -151,6 +151,29 @@ void check_photons()
         }
         ASSERT_LT(max_component(glm::abs(smooth[i].arrived.c[0] - mean)), 1e-3f);
     }
+    // Gathering: a cell exchanges a seventh with each neighbour that shares a face. The sums stay.
+    Buffer<PhotonCell, S> on_gathered(summed.size());
+    launch(S, "gather in lattice", summed.size(),
+           GatherCells<PhotonCell>{on, read(of_values), on_gathered.view()});
+    std::vector<PhotonCell> const gathered = download(on_gathered);
+    double before = 0, after = 0, area_before = 0, area_after = 0, moved = 0;
+    for (std::size_t i = 0; i < summed.size(); ++i) {
+        glm::ivec3 const at = cells.frame.cell_of(cells.cells[i]);
+        vec3 flux = summed[i].received.c[0];
+        for (std::size_t j = 0; j < summed.size(); ++j) {
+            glm::ivec3 const away = glm::abs(cells.frame.cell_of(cells.cells[j]) - at);
+            if (away.x + away.y + away.z == 1) flux += (summed[j].received.c[0] - summed[i].received.c[0]) / 7.0f;
+        }
+        ASSERT_LT(max_component(glm::abs(gathered[i].received.c[0] - flux)), 1e-3f);
+        before += double(summed[i].received.c[0].x);
+        after += double(gathered[i].received.c[0].x);
+        area_before += double(summed[i].area.x);
+        area_after += double(gathered[i].area.x);
+        moved += double(std::abs(gathered[i].received.c[0].x - summed[i].received.c[0].x));
+    }
+    EXPECT_NEAR(after / before, 1, 1e-5);
+    EXPECT_NEAR(area_after / area_before, 1, 1e-5);
+    EXPECT_GT(moved, 0.1 * before);
 }
 LIGHTWELL_TEST_BOTH(LatticeKernels, Photons, check_photons);
 

@@ -1,48 +1,13 @@
 // Photons in lattices against closed forms: furnaces, form factors, flux, thin walls.
 
 #include "gi/core/error.h"
-#include "gi/methods/photons/photon_lattice.h"
-#include "tests/support/scenes.h"
+#include "tests/photons/traced_scene.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace gi::test {
 namespace {
-
-struct TracedScene {
-    World world;
-    ExactVisibility visibility;
-    std::vector<Photon> photons;
-
-    TracedScene(Scene scene, std::uint32_t paths, int bounces)
-        : world(world_of(std::move(scene))), visibility(world, false, 0)
-    {
-        PathCounts counts;
-        LightPaths settings;
-        settings.count = paths;
-        settings.bounces = bounces;
-        for (LightVertex const& v :
-             trace_light_paths(view(world), world.bounds, ExactPathRays(visibility), settings, counts))
-            photons.push_back(to_photon(v));
-    }
-};
-
-PhotonLattices lattices_of(TracedScene const& scene, PhotonLatticeSettings const& settings)
-{
-    PhotonLattices out(settings);
-    out.place(scene.world, scene.visibility, {.camera = vec3{0}});
-    out.update(scene.photons);
-    out.update_caustics(scene.photons);
-    return out;
-}
-
-Material glowing_wall(float radiance, float albedo)
-{
-    Material m = emitter(vec3{radiance}, true);
-    m.base_color = vec3{albedo};
-    return m;
-}
 
 void turn(Scene& scene)
 {

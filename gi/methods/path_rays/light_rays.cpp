@@ -12,14 +12,14 @@ void LightRays::changed(Changes const& c)
     if (c.coverage) axes_.reset();
 }
 
-PathRays const& LightRays::of(PhotonRays kind, ExactVisibility const& exact)
+PathRays const& LightRays::of(PhotonRays kind, ExactVisibility const& exact, Bounds const& focus)
 {
     switch (kind) {
     case PhotonRays::look_ups:
         build_look_ups(exact);
         break;
     case PhotonRays::impostors:
-        build_impostors(exact);
+        build_impostors(exact, focus);
         break;
     case PhotonRays::exact:
         rays_ = std::make_unique<ExactPathRays>(exact);
@@ -39,21 +39,29 @@ void LightRays::build_look_ups(ExactVisibility const& exact)
     rays_ = std::make_unique<LookUpRays>(world_, *axes_, exact);
 }
 
-void LightRays::build_impostors(ExactVisibility const& exact)
+void LightRays::build_impostors(ExactVisibility const& exact, Bounds const& focus)
 {
+    PhotonSettings const& s = settings_.photons;
+    bool const by_hand = !s.impostor_places.empty(),
+               same_focus = focus.low == impostors_about_.low && focus.high == impostors_about_.high;
+    if (!by_hand && !same_focus) impostors_.reset();
     StageTimer const timer(report_, "impostors");
     if (!impostors_) {
         BuildStop const stop(stop_);
-        ImpostorPlacement const placement{.count = std::uint32_t(settings_.photons.impostors)};
-        impostors_.emplace(world_, place_impostors(world_, exact, placement, stop),
-                           impostor_resolution(settings_.photons.impostor_texels), std::uint32_t(settings_.seed),
+        impostors_about_ = focus;
+        std::vector<vec3> centres;
+        if (by_hand)
+            for (dvec3 const p : read_impostor_places(s.impostor_places))
+                centres.push_back(vec3(p - world_.origin));
+        else
+            centres = place_impostors(world_, exact, {.count = std::uint32_t(s.impostors), .focus = focus}, stop);
+        impostors_.emplace(world_, centres, impostor_resolution(s.impostor_texels), std::uint32_t(settings_.seed),
                            first_moving_, stop);
     } else if (impostors_moved_) {
         impostors_->moved(world_);
     }
     impostors_moved_ = false;
-    ImpostorSettings const by{.search = settings_.photons.impostor_search};
-    rays_ = std::make_unique<ImpostorRays>(world_, *impostors_, by);
+    rays_ = std::make_unique<ImpostorRays>(world_, *impostors_, ImpostorSettings{.search = s.impostor_search});
 }
 
 void LightRays::report_counts()

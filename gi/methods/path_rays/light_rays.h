@@ -24,12 +24,13 @@ public:
     /// Follows the world.
     void changed(Changes const& changes);
     /// For the world as it is now. Throws Interrupted. @param exact  of the world
-    PathRays const& of(PhotonRays kind, ExactVisibility const& exact);
+    /// @param focus  what cameras show, if the world is much larger; else empty
+    PathRays const& of(PhotonRays kind, ExactVisibility const& exact, Bounds const& focus = {});
     void report_counts();
 
 private:
     void build_look_ups(ExactVisibility const& exact);
-    void build_impostors(ExactVisibility const& exact);
+    void build_impostors(ExactVisibility const& exact, Bounds const& focus);
 
     World const& world_;
     RenderSettings const& settings_;
@@ -39,6 +40,7 @@ private:
     bool axes_moved_ = false, impostors_moved_ = false;
     std::optional<StoredAxes> axes_; ///< of look-ups
     std::optional<Impostors> impostors_;
+    Bounds impostors_about_; ///< the focus when they were placed
     std::unique_ptr<PathRays> rays_;
 };
 

@@ -123,6 +123,7 @@ protected:
         report.count("cells with surfaces", double(cells));
         report.count("hidden area of surfaces, m^2", lattices_.hidden_m2());
         report.count("flux of photons in no cell, W (sum of channels)", lattices_.lost_w());
+        report.count("flux left out in cells of hardly any area, W (sum of channels)", lattices_.dimmed_w());
     }
 
 private:

@@ -2,8 +2,10 @@
 // over the scene, the light gathering volume (LGV), caustics in the pixels of the camera (SSLGV). Points that no
 // pixel shows, as in mirrors, take caustics from the photon map.
 //
-// Unlike the paper: the LGV is divided by the area of the surfaces in each cell, not by the scene's area over the
-// number of photons (PhotonLattices).
+// Unlike the paper: the LGV is divided by the area of the surfaces in each cell (PhotonLattices). The paper's
+// A C_0^2 / (4 N) is alike for all cells, so that radiance grows with the area of surfaces in a cell: it is right
+// for one C_0 by the size of the cells, and not in their corners (tests/photons/light_gathering_volume_test.cpp).
+// Neighbours exchange whole vectors, numerators and denominators alike, instead of what goes in their direction.
 
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"
@@ -104,6 +106,7 @@ protected:
         report.count("nested lattices", double(volume_.levels(Frequency::low).size()));
         report.count("cells with surfaces", double(cells));
         report.count("flux of photons in no cell, W (sum of channels)", volume_.lost_w());
+        report.count("flux left out in cells of hardly any area, W (sum of channels)", volume_.dimmed_w());
         dvec3 on{0}, off{0};
         for (ScreenVolume const& s : screens_) {
             on += s.injected_w();

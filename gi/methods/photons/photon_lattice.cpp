@@ -187,6 +187,18 @@ void PhotonLattices::spread(Level& level, Frequency f)
     }
 }
 
+void PhotonLattices::dim_small_areas(Level& level, bool last)
+{
+    float const least = PhotonLatticeSettings::kLeastArea * square(level.frame.cell);
+    for (PhotonCell& c : level.cells.values) {
+        if (!(c.area.x > 0) || !(c.area.x < least)) continue;
+        float const by = c.area.x / least;
+        if (last) dimmed_w_ += double(1 - by) * double(glm::dot(c.received.integral(), vec3{1}));
+        c.arrived *= vec3{by};
+        c.received *= vec3{by};
+    }
+}
+
 void PhotonLattices::see_photons(std::span<Photon const> photons)
 {
     for (std::size_t i = 0; i < exposed_.size(); ++i)
@@ -196,7 +208,7 @@ void PhotonLattices::see_photons(std::span<Photon const> photons)
 
 void PhotonLattices::update(std::span<Photon const> photons)
 {
-    injected_w_ = lost_w_ = 0;
+    injected_w_ = lost_w_ = dimmed_w_ = 0;
     if (levels_[0].empty()) return;
     see_photons(photons);
     std::vector<Photon const*> once, more;
@@ -222,6 +234,7 @@ void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons)
     for (std::size_t i = 0; i < levels.size(); ++i) {
         inject(levels[i], exposed_[i], photons, i + 1 == levels.size());
         spread(levels[i], f);
+        dim_small_areas(levels[i], i + 1 == levels.size());
     }
 }
 

@@ -35,6 +35,9 @@ enum class Frequency : std::uint8_t { low, middle, high };
 
 struct PhotonLatticeSettings {
     static constexpr int kMostCells = 512, kMostCascades = 8;
+    /// Smaller areas in a cell, of that of its face, count as this: one photon in its corner would be a bright
+    /// dot.
+    static constexpr float kLeastArea = 0.01f;
     static constexpr std::uint64_t kMostBytes = std::uint64_t(8) << 30;
 
     std::array<int, 3> cells{64, 128, 128}; ///< by Frequency, along the scene's longest side, 4 to kMostCells
@@ -150,6 +153,7 @@ public:
     std::span<Level const> levels(Frequency f) const { return levels_[std::size_t(f)]; }
     double injected_w() const { return injected_w_; } ///< sum over channels
     double lost_w() const { return lost_w_; }         ///< of photons where no surface was found
+    double dimmed_w() const { return dimmed_w_; }     ///< left out for kLeastArea
     double hidden_m2() const { return exposed_.empty() ? 0 : exposed_.back().hidden_m2(); }
     /// Upper bound of the memory that place() and update() take. @param area_m2  of all triangles
     static std::uint64_t bytes(PhotonLatticeSettings const& settings, Bounds const& bounds, double area_m2);
@@ -164,13 +168,14 @@ private:
     void inject(Frequency f, std::span<Photon const* const> photons);
     void inject(Level& level, ExposedSides const& exposed, std::span<Photon const* const> photons, bool last);
     void spread(Level& level, Frequency f);
+    void dim_small_areas(Level& level, bool last);
     float cells_together(Frequency f) const;
 
     PhotonLatticeSettings settings_;
     std::vector<ExposedSides> exposed_; ///< per nested lattice, finest first
     bool sky_shines_ = false;
     std::array<std::vector<Level>, 3> levels_; ///< finest first
-    double injected_w_ = 0, lost_w_ = 0;
+    double injected_w_ = 0, lost_w_ = 0, dimmed_w_ = 0;
 };
 
 /// Area of a world's triangles, m^2.

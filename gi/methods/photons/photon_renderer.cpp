@@ -116,7 +116,7 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
     std::vector<Photon> photons;
     {
-        PathRays const& rays = light_rays_.of(rays_kind(), *visibility_);
+        PathRays const& rays = light_rays_.of(rays_kind(), *visibility_, focus_);
         StageTimer const timer(report_, "light paths");
         bool const by_map = settings_.photons.first_bounce == FirstBounce::map;
         if (by_map) {
