@@ -219,6 +219,26 @@ TEST(Impostors, FollowWhatMoves)
     }
 }
 
+/// A ray that vanishes behind something and would meet the plane of what was behind it far beside that surface
+/// meets nothing; near to it, it may go on there.
+TEST(ImpostorSearch, GuessesNothingFarFromATriangle)
+{
+    Scene scene;
+    int const matt = add_material(scene, lambert(vec3{0.5f}));
+    add_quad(scene, {-1, -1, -4}, {3.6f, 0, 0}, {0, 2, 0}, matt);
+    add_quad(scene, {0.6f, -1, -1}, {2.4f, 0, 0}, {0, 2, 0}, matt); // hides its right end
+    World const world = world_of(scene);
+    Impostors const impostors(world, {vec3{0}}, 128);
+    auto const meets = [&](vec3 direction) {
+        PathQuery query{.ray = {.ray = {{1, 0, -3.5f}, glm::normalize(direction)}}};
+        Hit hit;
+        ImpostorRays(world, impostors).nearest({&query, 1}, {&hit, 1});
+        return hit.triangle != kNoTriangle;
+    };
+    EXPECT_FALSE(meets({1, 0, -0.05f})); // 8 m beside it
+    EXPECT_TRUE(meets({1, 0, -0.33f}));
+}
+
 TEST(Impostors, RefuseWhatIsImpossible)
 {
     World const world = box_room({-1, -1, -1}, {1, 1, 1});
