@@ -13,6 +13,7 @@ template void launch_device(char const*, std::size_t, SumItems<ReflectedLight, S
 template void launch_device(char const*, std::size_t, FindPhotonCells const&);
 template void launch_device(char const*, std::size_t, SumItems<LatticePhoton, PhotonCell> const&);
 template void launch_device(char const*, std::size_t, SmoothCells<PhotonCell> const&);
+template void launch_device(char const*, std::size_t, GatherCells<PhotonCell> const&);
 template void launch_device(char const*, std::size_t, FindScreenSurfaces const&);
 template void launch_device(char const*, std::size_t, FindPhotonPixels const&);
 template void launch_device(char const*, std::size_t, SumItems<ScreenPhoton, ShColor> const&);
