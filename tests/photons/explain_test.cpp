@@ -1,5 +1,6 @@
 // What the photon methods say that they build, and why.
 
+#include "gi/light_paths/impostors.h"
 #include "gi/methods/photons/explain.h"
 
 #include "gi/methods/photons/limits.h"
@@ -124,8 +125,8 @@ TEST(ExplainPhotons, MemoryThatWouldBeRefused)
     PhotonSettings p;
     p.impostors = 2;
     p.impostor_texels = 9; // rounded up to 16
-    EXPECT_EQ(impostor_bytes(p, false), 2u * 6 * 16 * 16 * 8 + 2u * 6 * 4 * 8);
-    EXPECT_EQ(impostor_bytes(p, true), 2u * 2 * 6 * 16 * 16 * 8 + 2u * 6 * 4 * 8);
+    EXPECT_EQ(impostor_bytes(p.impostors, p.impostor_texels, false), 2u * 6 * 16 * 16 * 8 + 2u * 6 * 4 * 8);
+    EXPECT_EQ(impostor_bytes(p.impostors, p.impostor_texels, true), 2u * 2 * 6 * 16 * 16 * 8 + 2u * 6 * 4 * 8);
 }
 
 } // namespace
