@@ -145,9 +145,13 @@ void measure(std::string const& name, Options const& o)
         };
         double all = 0;
         std::string shares;
-        for (auto const& [stage, time_s] : report.times()) all += time_s - before[stage];
+        auto const counts = [](std::string const& stage) { // the rest are parts of stages, or sums of them
+            return stage != "trace" && !stage.ends_with("thread seconds");
+        };
         for (auto const& [stage, time_s] : report.times())
-            if (double const share = (time_s - before[stage]) / all; share > 0.005)
+            if (counts(stage)) all += time_s - before[stage];
+        for (auto const& [stage, time_s] : report.times())
+            if (double const share = (time_s - before[stage]) / all; counts(stage) && share > 0.005)
                 shares += fmt::format(" {} {:.0f},", stage, 100 * share);
         double const frame_s = median(seconds);
         fmt::print("  {:<12} {:>8.3f} {:>9.4f} {:>8.2f} {:>9.4f} {:>7.4f} {:>7.3f} {:>9.4f} {}\n", m, first_s,
