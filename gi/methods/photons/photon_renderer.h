@@ -85,7 +85,7 @@ private:
     std::optional<TriangleSoup> soup_;         ///< what bounce maps draw
     bool soup_moved_ = false;
     std::size_t stored_ = 0;
-    dvec3 flux_{0}, emitted_{0};
+    dvec3 flux_{0};
 };
 
 } // namespace gi

@@ -24,11 +24,11 @@ Scene generate_ring()
     polished.metallic = 1;
     polished.roughness = 0;
     int const metal = b.add_material("polished metal", polished);
-    constexpr float kOuter = 0.2f, kInner = 0.185f, kHeight = 0.09f;
+    constexpr float kOuter = 0.2f, kInner = 0.185f, kHigh = 0.09f;
     vec3 const foot{0.34f, 0, -0.42f};
-    b.lathe(metal, foot, {{kOuter, 0}, {kOuter, kHeight}}, 128);
-    b.lathe(metal, foot, {{kInner, kHeight}, {kInner, 0}}, 128);
-    b.lathe(metal, foot, {{kOuter, kHeight}, {kInner, kHeight}}, 128);
+    b.lathe(metal, foot, {{kOuter, 0}, {kOuter, kHigh}}, 128);
+    b.lathe(metal, foot, {{kInner, kHigh}, {kInner, 0}}, 128);
+    b.lathe(metal, foot, {{kOuter, kHigh}, {kInner, kHigh}}, 128);
 
     Material clear = matt(vec3{1});
     clear.transmission = 1;
