@@ -49,7 +49,7 @@ TEST(Ispm, Furnace)
             fmt::print("{}, kernels by {}: mean {:.4f}, off by {:.4f}\n", sphere ? "sphere" : "box",
                        by == KernelBy::density ? "density" : "footprint", mean, off);
             EXPECT_NEAR(mean, 1, 0.01);
-            EXPECT_LT(off, 0.12);
+            EXPECT_LT(off, 0.07);
         }
 }
 
@@ -141,32 +141,6 @@ TEST(Ispm, SplattingIsThePhotonMap)
             sum += double(found[k].x);
         }
         EXPECT_GT(sum / double(found.size()), 0.01);
-    }
-}
-
-/// Nothing to see, nothing to light, one triangle, one photon: no photons and no harm.
-TEST(Ispm, HardCases)
-{
-    RenderSettings s;
-    s.width = s.height = 16;
-    s.paths = 2;
-    s.photons.paths = 1;
-    Camera const camera = look_at({0, 1, 2}, {0, 0, 0}, 60);
-    Scene scene;
-    for (int step = 0; step < 4; ++step) {
-        if (step == 1)
-            add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0.5f})));
-        if (step == 2) {
-            Light lamp;
-            lamp.position = {0, -5, 0}; // below the floor
-            lamp.intensity = vec3{1};
-            add_light(scene, lamp);
-        }
-        if (step == 3) scene.lights.back().position = {0, 1e6f, 0};
-        Report report;
-        Picture const p = render_ispm(world_of(scene), camera, s, {}, {}, report).picture;
-        for (float const v : p.find("color")->data) ASSERT_TRUE(std::isfinite(v));
-        EXPECT_EQ(mean_of(p, "L2").mean, 0) << step;
     }
 }
 

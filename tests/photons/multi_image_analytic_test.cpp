@@ -85,31 +85,5 @@ TEST(MultiImage, LightByAMirror)
     EXPECT_EQ(of_map.counts().at("flux of caustics on screen, W (luminance)"), 0);
 }
 
-/// Nothing to see, nothing to light, one triangle, one photon: no photons and no harm.
-TEST(MultiImage, HardCases)
-{
-    RenderSettings s;
-    s.width = s.height = 16;
-    s.paths = 2;
-    s.photons.paths = 1;
-    Camera const camera = look_at({0, 1, 2}, {0, 0, 0}, 60);
-    Scene scene;
-    for (int step = 0; step < 4; ++step) {
-        if (step == 1)
-            add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0.5f})));
-        if (step == 2) {
-            Light lamp;
-            lamp.position = {0, -5, 0}; // below the floor
-            lamp.intensity = vec3{1};
-            add_light(scene, lamp);
-        }
-        if (step == 3) scene.lights.back().position = {0, 1e6f, 0};
-        Report report;
-        Picture const p = render_multi_image(world_of(scene), camera, s, {}, {}, report).picture;
-        for (float const v : p.find("color")->data) ASSERT_TRUE(std::isfinite(v));
-        EXPECT_EQ(mean_of(p, "L2").mean, 0) << step;
-    }
-}
-
 } // namespace
 } // namespace gi::test

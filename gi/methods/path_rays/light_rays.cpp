@@ -9,7 +9,9 @@ void LightRays::changed(Changes const& c)
     axes_moved_ = axes_moved_ || c.geometry;
     impostors_moved_ = impostors_moved_ || c.geometry;
     if (c.materials || c.coverage) impostors_.reset();
-    if (c.coverage) axes_.reset();
+    if (!c.coverage) return;
+    axes_.reset();
+    lost_ = 0;
 }
 
 PathRays const& LightRays::of(PhotonRays kind, ExactVisibility const& exact, Bounds const& focus)
@@ -67,7 +69,9 @@ void LightRays::build_impostors(ExactVisibility const& exact, Bounds const& focu
 void LightRays::report_counts()
 {
     if (impostors_) report_.count("impostors", double(impostors_->view().count()));
-    if (axes_) report_.lose("layers beyond the limit of a texel", axes_->lost());
+    if (!axes_) return;
+    report_.lose("layers beyond the limit of a texel", axes_->lost() - lost_);
+    lost_ = axes_->lost();
 }
 
 } // namespace gi

@@ -39,6 +39,7 @@ private:
     StopRequest const* stop_;
     bool axes_moved_ = false, impostors_moved_ = false;
     std::optional<StoredAxes> axes_; ///< of look-ups
+    std::uint64_t lost_ = 0;         ///< layers, already reported
     std::optional<Impostors> impostors_;
     Bounds impostors_about_; ///< the focus when they were placed
     std::unique_ptr<PathRays> rays_;

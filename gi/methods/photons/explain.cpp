@@ -1,11 +1,11 @@
 #include "gi/methods/photons/explain.h"
 
 #include "gi/light_paths/caustics.h"
+#include "gi/light_paths/focus.h"
 #include "gi/light_paths/impostors.h"
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/screen_volume.h"
 #include "gi/methods/photons/splat.h"
-#include "gi/methods/sh_grid/focus.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "gi/methods/photons/photon_renderer.h"
 
 #include "gi/light_paths/bounce_map.h"
+#include "gi/light_paths/focus.h"
 #include "gi/light_paths/options.h"
 #include "gi/methods/photons/limits.h"
-#include "gi/methods/sh_grid/focus.h"
 
 #include <algorithm>
 

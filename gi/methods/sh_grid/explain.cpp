@@ -1,8 +1,8 @@
 #include "gi/methods/sh_grid/explain.h"
 
 #include "gi/light_paths/caustics.h"
+#include "gi/light_paths/focus.h"
 #include "gi/methods/sh_grid/field.h"
-#include "gi/methods/sh_grid/focus.h"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 // A world that is much larger than what is shown has two levels: a fine grid around the latter, and one of all.
 
 #include "gi/core/report.h"
+#include "gi/light_paths/focus.h"
 #include "gi/methods/path_rays/light_rays.h"
-#include "gi/methods/sh_grid/focus.h"
 #include "gi/methods/sh_grid/photon_sets.h"
 #include "gi/render/path_sample.h"
 #include "gi/render/render_settings.h"

@@ -2,7 +2,7 @@
 
 #include "gi/core/rng.h"
 #include "gi/light_paths/emission.h"
-#include "gi/methods/sh_grid/focus.h"
+#include "gi/light_paths/focus.h"
 #include "gi/methods/sh_grid/met_surface.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/ray_path.h"

@@ -1,4 +1,4 @@
-#include "gi/methods/sh_grid/focus.h"
+#include "gi/light_paths/focus.h"
 
 #include "gi/core/rng.h"
 #include "gi/scene/shading/shading_point.h"
