@@ -142,6 +142,8 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
             for (LightVertex const& v : vertices)
                 if (stores(v)) photons.push_back(to_photon(v));
             if (by_map) break; // the whole set
+            // Copies of gigabytes, as the array grows, could not be stopped.
+            if (first == 0) photons.reserve(std::size_t(1.05 * double(photons.size()) * paths_ / some.last));
         }
     }
     {
