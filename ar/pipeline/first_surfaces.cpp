@@ -92,6 +92,7 @@ void SurfaceView::rasterise(gi::Camera const& camera, int width, int height, cv:
 {
     if (camera.orthographic) throw std::invalid_argument("first surfaces of an orthographic camera");
     into.region = region;
+    into.world = gi::view(world_);
     into.rays = gi::camera_rays(camera, width, height, world_.origin);
     gi::CameraRays part = into.rays;
     part.corner += float(region.x) * part.step_x + float(region.y) * part.step_y;
@@ -111,7 +112,7 @@ void SurfaceView::rasterise(gi::Camera const& camera, int width, int height, cv:
 FirstSurface SurfaceView::surface_at(SurfaceRaster const& raster, gi::NearestTexel const& texel,
                                      gi::vec2 position) const
 {
-    gi::WorldView const world = gi::view(world_);
+    gi::WorldView const& world = raster.world;
     gi::CameraRays const& rays = raster.rays;
     gi::vec3 const along = rays.corner + position.x * rays.step_x + position.y * rays.step_y;
     float const depth_m = 1 / texel.key;

@@ -30,6 +30,7 @@ struct SurfaceRaster {
     cv::Rect region;     ///< rasterised part of the camera's raster
     gi::CameraRays rays; ///< of the whole raster; point (x, y) is at x + 0.5, y + 0.5
     gi::NearestMap map;  ///< of the region
+    gi::WorldView world; ///< valid until the world changes
 
     gi::NearestTexel const& texel(int x, int y) const
     {

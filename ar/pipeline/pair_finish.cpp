@@ -22,13 +22,14 @@ constexpr double kRenderedSigma_px = 0.5;
 
 } // namespace
 
-PairFinish::PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers)
+PairFinish::PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers,
+                       PixelPoints points)
     : session_(session),
       camera_(camera),
       pinhole_(ar::covering_pinhole(camera, session.render.resolution)),
       warp_(camera, full_pinhole(pinhole_, session))
 {
-    if (session.render.resolution >= 1) session_.finish.upsample = false;
+    if (session.render.resolution >= 1 && points == PixelPoints::many) session_.finish.upsample = false;
     if (session.smoothing < 1) {
         ar::TemporalSettings smooth;
         smooth.weight = float(session.smoothing);

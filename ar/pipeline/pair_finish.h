@@ -27,9 +27,14 @@ struct FinishCounts {
     double camera_sigma_px = 0, added_sigma_px = 0; ///< of the last frame
 };
 
+/// Whether rendered pixels are means over many points, so that they need no borders at full size.
+enum class PixelPoints { one, many };
+
 class PairFinish {
 public:
-    PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers);
+    /// @param points  of each rendered pixel
+    PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers,
+               PixelPoints points = PixelPoints::many);
 
     /// The camera to render with.
     ar::CameraModel const& pinhole() const { return pinhole_; }

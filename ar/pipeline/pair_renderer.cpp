@@ -1,6 +1,7 @@
 #include "ar/pipeline/pair_renderer.h"
 
 #include "ar/pipeline/bridge.h"
+#include "gi/core/error.h"
 #include "gi/filter/filter_names.h"
 #include "gi/methods/registry.h"
 
@@ -39,9 +40,33 @@ gi::World const& PairRenderer::world_with(gi::SceneTime time_s)
     return world_.world();
 }
 
+std::string PairRenderer::choose(PairLight light)
+{
+    std::string const why = light == PairLight::paths ? "the session asks for them" : needs_paths(world_.world());
+    if (light == PairLight::prefiltered && !why.empty())
+        throw gi::InputError("prefiltered light cannot light these scenes", why,
+                             "set light: auto or light: paths");
+    prefiltered_ = why.empty();
+    return why;
+}
+
+PairPictures PairRenderer::prefiltered(gi::Camera const& camera, int width, int height, gi::SceneTime time_s,
+                                       gi::StopRequest const& stop)
+{
+    gi::Changes const changes = turn(gi::PairSide::with, time_s);
+    if (!pairs_)
+        pairs_ = std::make_unique<PrefilteredPairs>(world_.world(), report_);
+    else {
+        if (changes.geometry) pairs_->moved();
+        if (changes.environment) pairs_->relight();
+    }
+    return pairs_->render(camera, width, height, stop);
+}
+
 PairPictures PairRenderer::render(gi::Camera const& camera, int width, int height, std::uint32_t paths,
                                   gi::SceneTime time_s, gi::DenoiseSettings filter, gi::StopRequest const& stop)
 {
+    if (prefiltered_) return prefiltered(camera, width, height, time_s, stop);
     if (!frames_) {
         // Start with all virtual objects in place, so that the bounds of the hit buffers include them.
         turn(gi::PairSide::with, time_s);

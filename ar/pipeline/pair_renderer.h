@@ -2,22 +2,14 @@
 // Renders a local scene with and without its virtual objects, for compositing.
 
 #include "ar/pipeline/local_scene.h"
+#include "ar/pipeline/pair_pictures.h"
+#include "ar/pipeline/prefiltered/prefiltered_pairs.h"
+#include "ar/scene/session_file.h"
 #include "gi/core/report.h"
 #include "gi/filter/denoise.h"
 #include "gi/scene/motion/moving_world.h"
 
-#include <opencv2/core.hpp>
-
 namespace viewer {
-
-/// Pictures of a pinhole camera. `with` and `without`: radiance, CV_32FC3, RGB, from the same random numbers.
-struct PairPictures {
-    cv::Mat with, without;
-    cv::Mat direct;                ///< CV_32FC3: part of `with` from virtual first surfaces
-    cv::Mat coverage;              ///< CV_32FC1: share of the pixel whose first surface is virtual
-    cv::Mat depth_m, real_depth_m; ///< CV_32FC1, along the axis: first surface with and without; 0 = none
-    std::uint32_t paths = 0;       ///< per pixel of each picture
-};
 
 class PairRenderer {
 public:
@@ -26,6 +18,12 @@ public:
 
     /// Sets the place's environment map; null: none.
     void set_environment(std::shared_ptr<gi::EnvironmentMap const> map);
+    /// Chooses how to light, for the scenes as they are. Without a call: paths.
+    /// @return why paths are used; empty = prefiltered light
+    /// @throws gi::InputError prefiltered light is asked for and cannot light these scenes
+    std::string choose(PairLight light);
+    bool is_prefiltered() const { return prefiltered_; }
+    /// @param paths, filter  not used by prefiltered light
     /// @param filter  for both pictures: equal pixels stay equal except near unequal ones. The a-trous filter
     ///                needs variances, and does nothing with one path
     PairPictures render(gi::Camera const& camera, int width, int height, std::uint32_t paths, gi::SceneTime time_s,
@@ -36,6 +34,8 @@ public:
 
 private:
     gi::Changes turn(gi::PairSide side, gi::SceneTime time_s);
+    PairPictures prefiltered(gi::Camera const& camera, int width, int height, gi::SceneTime time_s,
+                             gi::StopRequest const& stop);
 
     LocalScene local_;
     gi::RenderSettings settings_;
@@ -44,6 +44,8 @@ private:
     std::vector<gi::Light> virtual_lights_; ///< the virtual lights, for the side with them
     gi::Changes pending_;                   ///< since the last picture
     std::unique_ptr<gi::FrameRenderer> frames_;
+    bool prefiltered_ = false;
+    std::unique_ptr<PrefilteredPairs> pairs_; ///< made for the first picture by prefiltered light
 };
 
 } // namespace viewer

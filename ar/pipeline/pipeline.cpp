@@ -58,7 +58,6 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       detector_(markers),
       renderer_(local_scene(session, report), session.render.settings, report),
       light_(session),
-      finish_(session, camera.model, markers),
       compositor_(camera.photometry,
                   with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),
       tracker_(session.pose.tracker),
@@ -66,20 +65,23 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       prefix_(std::move(prefix))
 {
     renderer_.set_environment(light_.begin());
+    renderer_.choose(session.render.light);
+    finish_.emplace(session, camera.model, markers,
+                    renderer_.is_prefiltered() ? PixelPoints::one : PixelPoints::many);
     light_picture_ = picture_of_light(light_.map());
 }
 
 ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
                                       gi::StopRequest const& stop)
 {
-    ar::CameraModel const& pinhole = finish_.pinhole();
+    ar::CameraModel const& pinhole = finish_->pinhole();
     ar::Pose const& world_from_camera = found.pose.world_from_camera;
     PairPictures const p =
         renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
                          session_.render.paths, time_s, session_.render.denoise, stop);
     FinishFrame frame{{}, world_from_camera, time_s, exposure.time_s};
-    if (finish_.needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
-    return finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+    if (finish_->needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
+    return (*finish_)(p, frame, finish_->needs_world() ? renderer_.world_with(time_s) : renderer_.world());
 }
 
 void ArPipeline::count_some(char const* what, std::size_t n)
@@ -100,7 +102,7 @@ void ArPipeline::report_poses()
 
 void ArPipeline::report_finish()
 {
-    FinishCounts const& f = finish_.counts();
+    FinishCounts const& f = finish_->counts();
     count_some("enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
     count_some("enlarged pixels among virtual things alone", f.upsample.no_sample);
     count_some("points of virtual things without light", f.unlit);
@@ -166,7 +168,7 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
         r.times.composite_ms = lap();
         report_finish();
     } else {
-        finish_.forget();
+        finish_->forget();
     }
     r.light = light_picture_;
     r.done_s = lap.last_s();

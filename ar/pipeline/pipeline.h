@@ -81,7 +81,7 @@ private:
     ar::MarkerTracker detector_;
     PairRenderer renderer_;
     PlaceLight light_;
-    PairFinish finish_;
+    std::optional<PairFinish> finish_;
     ar::Compositor compositor_;
     ar::PoseTracker tracker_;
     std::uint64_t predicted_ = 0; ///< frames

@@ -92,7 +92,7 @@ private:
 
     void read_render(Yaml const& r)
     {
-        std::vector<std::string> keys{"paths", "resolution", "denoise"};
+        std::vector<std::string> keys{"light", "paths", "resolution", "denoise"};
         for (gi::RenderOption const& o : gi::render_options()) {
             if (!o.live || !o.read_by("slhb") || o.name == "device") continue; // pairs need the CPU
             std::vector<std::string> names = o.former;
@@ -102,6 +102,10 @@ private:
             keys.insert(keys.end(), names.begin(), names.end());
         }
         r.only_keys(keys);
+        if (r.has("light"))
+            session_.render.light = choice<PairLight>(r.at("light"), {{"auto", PairLight::automatic},
+                                                                      {"prefiltered", PairLight::prefiltered},
+                                                                      {"paths", PairLight::paths}});
         if (r.has("denoise")) session_.render.denoise = filter(r.at("denoise"));
         if (r.has("paths")) session_.render.paths = std::uint32_t(r.at("paths").integer(1, 65536));
         if (r.has("resolution")) session_.render.resolution = r.at("resolution").number(0.1, 4);

@@ -28,7 +28,16 @@ struct ArReal : ArPlaced {
     std::vector<ArProxy> proxies;
 };
 
+/// How virtual objects are lit.
+enum class PairLight {
+    automatic,   ///< prefiltered where the scenes allow it
+    prefiltered, ///< by prefiltered light (ar/pipeline/prefiltered): no noise, real-time; matt and broadly glossy
+                 ///< surfaces
+    paths        ///< by paths of the method slhb
+};
+
 struct ArRender {
+    PairLight light = PairLight::automatic;
     std::uint32_t paths = 2;                   ///< per rendered pixel and frame
     double resolution = 0.5;                   ///< rendered pixels per pixel of the camera
     gi::DenoiseSettings denoise;               ///< no effect with fewer than two paths

@@ -1,0 +1,137 @@
+#pragma once
+// Light of an environment map on still (real) and moving (virtual) surfaces, without random numbers: prefiltered
+// irradiance where nothing is in the way, times the share of it that arrives, by occlusion maps along a fixed set
+// of directions; from the directions in which a surface is in the way arrives its light instead.
+//
+//   E(p, n) = E_map(n) sum_k V_k F_k c_k / sum_k F_k c_k  +  pi sum_k (1 - V_k) L_k w_k c_k / sum_k w_k c_k
+//
+// k: parts of the sphere (environment_cells.h), F_k their light, w_k their solid angle, c_k the cosine, V_k
+// visibility, L_k the radiance of what hides the part. E_map is exact to the map's texels, so an open surface has
+// no error of sampling, whatever its normal; only shadows have one. L_k is kept for the still surfaces in small
+// patches, with one bounce between them; of moving surfaces it is estimated from the light that their hidden
+// normal would receive.
+
+#include "ar/pipeline/prefiltered/environment_cells.h"
+#include "ar/pipeline/prefiltered/glossy_table.h"
+#include "ar/pipeline/prefiltered/occlusion_map.h"
+
+namespace viewer {
+
+/// A point of a surface that receives light.
+struct LitPoint {
+    gi::vec3 position;  ///< on the triangle, m
+    gi::vec3 normal;    ///< unit, of shading
+    gi::vec3 geometric; ///< unit, of the triangle, on the same side
+    std::uint32_t triangle;
+    gi::vec3 to_viewer{0}; ///< unit; used with a glossy lobe
+    GlossyLobe lobe;
+};
+
+/// What a point receives, or how that changes.
+struct ReceivedLight {
+    gi::vec3 irradiance{0}; ///< W/m^2
+    gi::vec3 glossy{0};     ///< radiance that its glossy lobe reflects to the viewer
+};
+
+/// Numbers for --stats.
+struct PrefilteredCounts {
+    std::size_t directions = 0, patches = 0;
+};
+
+class PrefilteredLight {
+public:
+    /// Builds everything for the world's present state. @param world  must outlive this object
+    explicit PrefilteredLight(gi::World const& world);
+
+    /// The environment has changed. @return true if the directions have
+    bool relight();
+    /// Moving triangles have moved, or the directions have changed.
+    void moved();
+
+    ReceivedLight on_moving(LitPoint const& at) const;
+    /// How moving surfaces change the light of a still one; exactly 0 where they hide nothing.
+    ReceivedLight change_on_still(LitPoint const& at) const;
+    /// The light of a still surface without the moving ones. @param every  uses each so many-th direction, from
+    ///   `first` on
+    ReceivedLight on_still(LitPoint const& at, std::size_t every = 1, std::size_t first = 0) const;
+    /// Light without anything in the way.
+    ReceivedLight open_light(LitPoint const& at) const;
+    gi::vec3 open(gi::vec3 normal) const;
+
+    PrefilteredCounts counts() const { return {directions_.size(), patches_.size()}; }
+
+private:
+    static constexpr int kSide = 73; ///< nodes, of tables by normal
+    static constexpr std::uint32_t kOpen = 0xffffffffu, kUnknown = 0xfffffffeu;
+
+    struct Direction {
+        gi::vec3 towards;
+        gi::vec3 light;       ///< of its part, W/m^2
+        float solid_angle_sr; ///< of its part
+        gi::vec3 moving;      ///< radiance of a white moving surface in the way
+        bool sharp;           ///< much of the light in few directions: its shadows have an edge
+    };
+    /// A small part of still surfaces.
+    struct Patch {
+        LitPoint at;
+        gi::vec3 albedo;
+    };
+    /// Sums over directions, weighted by cosine or lobe.
+    struct Sums {
+        gi::vec3 light{0};    ///< what arrives of the environment
+        gi::vec3 radiance{0}; ///< of surfaces, times solid angle
+    };
+    /// Of all light, whether it arrives or not.
+    struct All {
+        gi::vec3 light{0};
+        float solid_angle = 0;
+    };
+    class Gather;
+    static constexpr std::size_t kMostDirections = 128;
+
+    template <class Visit>
+    void for_directions(gi::vec3 normal, gi::vec3 way, float least, Visit const& visit) const;
+    void take_lamps(std::vector<EnvironmentTexels::Texel>& texels);
+    void start_maps();
+    void find_patches();
+    void light_patches();
+    std::uint32_t still_in_the_way(std::size_t k, gi::vec3 p, gi::vec3 normal, std::uint32_t triangle) const;
+    float moving_in_the_way(std::size_t k, LitPoint const& at, std::uint32_t& blocker) const;
+    gi::vec3 radiance(std::vector<gi::vec3> const& of, std::uint32_t patch) const
+    {
+        return patch == kUnknown ? mean_radiance_ : of[patch];
+    }
+    gi::vec3 moving_radiance(std::size_t k, std::uint32_t blocker) const
+    {
+        return directions_[k].moving * moving_albedo_[blocker - world_.static_triangles];
+    }
+    static gi::vec3 arrived(gi::vec3 open, gi::vec3 by_radiance, Sums const& sums, All const& all);
+
+    gi::World const& world_;
+    gi::TriangleSoup soup_;
+    gi::CutOuts cut_outs_;
+    EnvironmentCells cells_{{.cells = int(kMostDirections)}};
+    std::vector<Direction> directions_;
+    std::array<std::array<float, kMostDirections>, 3> towards_{}; ///< of the directions, x, y, z
+    std::vector<EnvironmentTexels::Texel> lamps_;    ///< the brightest texels
+    NormalTable<gi::vec3> smooth_irradiance_{kSide}; ///< E_map without them
+    NormalTable<gi::vec3> light_sum_{kSide};         ///< sum of F_k c_k
+    NormalTable<float> angle_sum_{kSide};                         ///< sum of w_k c_k
+    bool has_glossy_;                                             ///< some surface has a glossy lobe
+    GlossyTable glossy_;
+    std::vector<OcclusionMap> still_;  ///< per direction: what is nearest to the light
+    std::vector<OcclusionMap> facing_; ///< per direction: what is nearest to a surface far from the light
+    std::vector<OcclusionMap> moving_;
+    std::vector<std::vector<std::uint32_t>> patch_of_texel_; ///< of facing_
+    std::vector<Patch> patches_;
+    std::vector<std::uint32_t> in_the_way_;             ///< per patch and direction: patch, kOpen, kUnknown
+    std::vector<gi::vec3> patch_light_;                 ///< irradiance per patch without moving surfaces
+    std::vector<gi::vec3> radiance_without_, radiance_; ///< per patch, without and with moving surfaces
+    gi::vec3 mean_radiance_{0};
+    std::vector<gi::vec3> moving_albedo_; ///< per moving triangle
+    gi::Bounds moving_bounds_;            ///< of the maps
+    gi::vec3 moving_centre_{0};
+    float moving_radius_ = 0; ///< m; 0 = nothing moves
+};
+
+} // namespace viewer

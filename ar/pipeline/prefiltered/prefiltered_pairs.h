@@ -1,0 +1,39 @@
+#pragma once
+// Pairs for compositing by prefiltered light: one point a pixel, no paths, no noise.
+
+#include "ar/pipeline/first_surfaces.h"
+#include "ar/pipeline/pair_pictures.h"
+#include "ar/pipeline/prefiltered/prefiltered_light.h"
+#include "gi/core/progress.h"
+#include "gi/core/report.h"
+
+#include <string>
+
+namespace viewer {
+
+/// Why a world cannot be lit by prefiltered light; empty: it can. It knows matt and broadly glossy surfaces under
+/// an environment map.
+std::string needs_paths(gi::World const& world);
+
+class PrefilteredPairs {
+public:
+    /// @param world  with the virtual objects in place, also during calls; it and the report must outlive this
+    PrefilteredPairs(gi::World const& world, gi::Report& report);
+
+    /// Call after the virtual objects have moved, before the next picture.
+    void moved();
+    /// Call after the environment has changed, before the next picture.
+    void relight();
+    PairPictures render(gi::Camera const& camera, int width, int height, gi::StopRequest const& stop);
+
+private:
+    void report_counts();
+
+    gi::World const& world_;
+    gi::Report& report_;
+    PrefilteredLight light_;
+    SurfaceView all_, still_;
+    SurfaceRaster all_raster_, still_raster_; ///< reused
+};
+
+} // namespace viewer
