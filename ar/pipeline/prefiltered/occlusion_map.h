@@ -24,7 +24,7 @@ public:
         return t->primitive == gi::kNoPrimitive ? nullptr : t;
     }
     /// The triangle that hides the light from a point, kNoPrimitive = none.
-    /// @param normal  unit, of the lit triangle
+    /// @param normal  unit, of the lit triangle  @param triangle  the lit one; kNoPrimitive = a point in space
     std::uint32_t blocker(gi::View<gi::Surface const> surfaces, gi::vec3 p, gi::vec3 normal,
                           std::uint32_t triangle) const
     {
@@ -33,7 +33,8 @@ public:
         // Beyond this, the look-up below, which allows for slopes, decides the same.
         constexpr float kFar = 12; // texels
         float const gap = shadow_.grid.depth(p) + t->key;
-        if (std::abs(gap) > kFar * shadow_.grid.texel) return gap > 0 ? t->primitive : gi::kNoPrimitive;
+        bool const is_free = triangle == gi::kNoPrimitive; // a point in space has no slope
+        if (is_free || std::abs(gap) > kFar * shadow_.grid.texel) return gap > 0 ? t->primitive : gi::kNoPrimitive;
         gi::ShadowPlace const place = gi::shadow_detail::look(shadow_, p, normal, gi::vec2(0.5f));
         if (gi::shadow_detail::lit(shadow_, place, surfaces, p, triangle)) return gi::kNoPrimitive;
         return place.texel->primitive;

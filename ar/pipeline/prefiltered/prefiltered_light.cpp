@@ -13,7 +13,7 @@ constexpr double kLampShare = 0.003; ///< of the light, in one texel: too much t
 constexpr std::ptrdiff_t kMostLamps = 24;
 constexpr float kSharpShare = 0.03f; ///< of the light, in one direction
 constexpr std::uint32_t kStillTexels = 96, kMovingTexels = 64, kSharpStillTexels = 512, kSharpMovingTexels = 256;
-/// Of the light that a moving surface's hidden side would receive in the open, roughly what it does receive.
+/// Of the light that moving surfaces would receive without each other, roughly what they do receive.
 constexpr float kOpenness = 0.8f;
 constexpr int kBounces = 2; ///< between still surfaces
 constexpr std::size_t kMostPatches = 20000;
@@ -239,6 +239,7 @@ void PrefilteredLight::moved()
         gi::vec3 const room = gi::vec3(0.15f * b.radius());
         moving_bounds_ = {b.low - room, b.high + room};
     }
+    light_moving();
     tbb::parallel_for(std::size_t(0), directions_.size(), [&](std::size_t k) {
         Direction const& d = directions_[k];
         if (!fits) {
@@ -254,6 +255,29 @@ void PrefilteredLight::moved()
         radiance_[i] =
             gi::kInvPi * p.albedo * glm::max(patch_light_[i] + change_on_still(p.at).irradiance, gi::vec3(0));
     });
+}
+
+void PrefilteredLight::light_moving()
+{
+    // What is seen of a white matt ball amid the moving surfaces: the irradiance of its normals, by the area that
+    // they turn to the viewer.
+    std::size_t const n = directions_.size();
+    std::vector<gi::vec3> received(n);
+    tbb::parallel_for(std::size_t(0), n, [&](std::size_t k) {
+        gi::vec3 const normal = directions_[k].towards;
+        received[k] = on_still({moving_centre_, normal, normal, gi::kNoPrimitive, {}, {}}).irradiance;
+    });
+    for (Direction& seen : directions_) {
+        gi::vec3 sum(0);
+        float area = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            float const a =
+                std::max(-glm::dot(directions_[k].towards, seen.towards), 0.0f) * directions_[k].solid_angle_sr;
+            sum += a * received[k];
+            area += a;
+        }
+        seen.moving = area > 0 ? kOpenness * gi::kInvPi / area * sum : gi::vec3(0);
+    }
 }
 
 std::uint32_t PrefilteredLight::still_in_the_way(std::size_t k, gi::vec3 p, gi::vec3 normal,

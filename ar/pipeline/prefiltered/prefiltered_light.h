@@ -8,8 +8,8 @@
 // k: parts of the sphere (environment_cells.h), F_k their light, w_k their solid angle, c_k the cosine, V_k
 // visibility, L_k the radiance of what hides the part. E_map is exact to the map's texels, so an open surface has
 // no error of sampling, whatever its normal; only shadows have one. L_k is kept for the still surfaces in small
-// patches, with one bounce between them; of moving surfaces it is estimated from the light that their hidden
-// normal would receive.
+// patches, with two bounces between them; of moving surfaces it is their albedo times what a white ball in their
+// middle would show.
 
 #include "ar/pipeline/prefiltered/environment_cells.h"
 #include "ar/pipeline/prefiltered/glossy_table.h"
@@ -95,6 +95,7 @@ private:
     void start_maps();
     void find_patches();
     void light_patches();
+    void light_moving();
     std::uint32_t still_in_the_way(std::size_t k, gi::vec3 p, gi::vec3 normal, std::uint32_t triangle) const;
     float moving_in_the_way(std::size_t k, LitPoint const& at, std::uint32_t& blocker) const;
     gi::vec3 radiance(std::vector<gi::vec3> const& of, std::uint32_t patch) const
@@ -113,9 +114,9 @@ private:
     EnvironmentCells cells_{{.cells = int(kMostDirections)}};
     std::vector<Direction> directions_;
     std::array<std::array<float, kMostDirections>, 3> towards_{}; ///< of the directions, x, y, z
-    std::vector<EnvironmentTexels::Texel> lamps_;    ///< the brightest texels
-    NormalTable<gi::vec3> smooth_irradiance_{kSide}; ///< E_map without them
-    NormalTable<gi::vec3> light_sum_{kSide};         ///< sum of F_k c_k
+    std::vector<EnvironmentTexels::Texel> lamps_;                 ///< the brightest texels
+    NormalTable<gi::vec3> smooth_irradiance_{kSide};              ///< E_map without them
+    NormalTable<gi::vec3> light_sum_{kSide};                      ///< sum of F_k c_k
     NormalTable<float> angle_sum_{kSide};                         ///< sum of w_k c_k
     bool has_glossy_;                                             ///< some surface has a glossy lobe
     GlossyTable glossy_;
