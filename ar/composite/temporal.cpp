@@ -106,8 +106,11 @@ TemporalFilter::TemporalFilter(CameraModel const& camera, TemporalSettings const
 
 void TemporalFilter::forget() { added_ = cv::Mat(); }
 
-RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const& depth, Pose const& pose)
+RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const& depth, Pose const& pose,
+                                        SceneChange change)
 {
+    constexpr float kMostFrames = 256;
+    bool const is_still = change == SceneChange::none;
     cv::Size const size(camera_.size_px.x, camera_.size_px.y);
     check(pair, size);
     if (depth.type() != CV_32FC1 || depth.size() != size)
@@ -118,13 +121,17 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
     cv::Rect const where = added.where;
     counts_ = {};
     RenderedPair out{pair.with.clone(), pair.without, pair.coverage, pair.direct};
-    cv::Mat filtered = added.radiance.clone();
+    cv::Mat filtered = added.radiance.clone(), frames(size, CV_32FC1, cv::Scalar(1));
     if (added_.empty()) {
         counts_.fresh = filtered.total();
     } else {
         counts_.followed = filtered.total() - std::size_t(where.area()); // nothing is there, as before
         PlaceBefore const place_before(camera_, inverse(world_from_camera_) * pose);
-        auto const history = [&](int x, int y, float a) -> std::optional<cv::Vec3f> {
+        struct History {
+            cv::Vec3f added;
+            float frames;
+        };
+        auto const history = [&](int x, int y, float a) -> std::optional<History> {
             glm::dvec3 const before = place_before(x, y, depth.at<float>(y, x));
             double const z = before.z;
             if (!(z >= 0 && before.x > -1 && before.y > -1 && before.x < size.width && before.y < size.height))
@@ -132,7 +139,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
             int const x0 = int(std::floor(before.x)), y0 = int(std::floor(before.y));
             float const fx = float(before.x - x0), fy = float(before.y - y0);
             cv::Vec3f sum(0, 0, 0);
-            float weight = 0;
+            float weight = 0, least_frames = kMostFrames;
             for (int j = 0; j < 2; ++j)
                 for (int i = 0; i < 2; ++i) {
                     float const w = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
@@ -145,9 +152,10 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
                     if (!all_finite(v)) continue;
                     sum += w * v;
                     weight += w;
+                    least_frames = std::min(least_frames, frames_.at<float>(q));
                 }
             if (!(weight > 1e-3f)) return std::nullopt;
-            return sum * (1 / weight);
+            return History{sum * (1 / weight), least_frames};
         };
         Neighbourhood const near = where.empty() ? Neighbourhood{} : around(added, settings_.radius_px);
         std::mutex adding;
@@ -170,14 +178,17 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
                     cv::Vec3f const m = near.mean.at<cv::Vec3f>(y - where.y, x - where.x);
                     cv::Vec3f const square = near.mean_square.at<cv::Vec3f>(y - where.y, x - where.x);
                     cv::Vec3f v;
+                    float const seen = is_still ? std::min(h->frames + 1, kMostFrames) : 1.0f;
+                    float const weight = is_still ? 1 / seen : settings_.weight;
+                    frames.at<float>(y, x) = seen;
                     for (int c = 0; c < 3; ++c) {
                         float const reach = settings_.gamma * std::sqrt(std::max(0.0f, square[c] - m[c] * m[c]));
-                        float held = (*h)[c];
-                        if (held < m[c] - reach || held > m[c] + reach) {
+                        float held = h->added[c];
+                        if (!is_still && (held < m[c] - reach || held > m[c] + reach)) {
                             ++counts.clipped;
                             held = held < m[c] ? m[c] - reach : m[c] + reach;
                         }
-                        v[c] = held + settings_.weight * (now[c] - held);
+                        v[c] = held + weight * (now[c] - held);
                     }
                     if (v == now) continue; // unchanged values keep all their bits
                     filtered.at<cv::Vec3f>(y, x) = v;
@@ -191,6 +202,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
         });
     }
     added_ = filtered;
+    frames_ = frames;
     coverage_ = pair.coverage.clone();
     depth_ = depth.clone();
     world_from_camera_ = pose;

@@ -8,12 +8,19 @@
 // The variance of noise that is independent between frames falls to weight / (2 - weight) where nothing is
 // clipped; a change of light is adopted to 63 % in about 1 / weight frames. Where nothing is added, the result is
 // exactly 0.
+//
+// While objects and light are known to stay as they are, differences are noise, even those of whole faces, whose
+// pixels share light samples: then nothing is clipped, and the result is the mean of all frames since the last
+// change (256 at most).
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/pose.h"
 #include "ar/composite/rendered_pair.h"
 
 namespace ar {
+
+/// What has happened to objects and light since the previous frame, as far as is known; the camera may move.
+enum class SceneChange { none, unknown };
 
 struct TemporalSettings {
     float weight = 0.2f;             ///< of the new frame, (0, 1]
@@ -39,7 +46,8 @@ public:
     /// @param depth   CV_32FC1, metres along the axis, of the visible surface (objects or proxies); 0 =
     /// infinitely far
     /// @return filtered pair with `without` and coverage unchanged. @throws gi::InputError wrong types or sizes
-    RenderedPair operator()(RenderedPair const& pair, cv::Mat const& depth, Pose const& world_from_camera);
+    RenderedPair operator()(RenderedPair const& pair, cv::Mat const& depth, Pose const& world_from_camera,
+                            SceneChange change = SceneChange::unknown);
     /// Discards the history; call after cuts and changes of exposure or scene.
     void forget();
     TemporalCounts const& counts() const { return counts_; } ///< of the last frame
@@ -48,6 +56,7 @@ private:
     CameraModel camera_;
     TemporalSettings settings_;
     cv::Mat added_, coverage_, depth_; ///< of the previous frame; added_ empty = none
+    cv::Mat frames_;                   ///< CV_32FC1: whose mean added_ is, since the last change
     Pose world_from_camera_;
     TemporalCounts counts_;
 };

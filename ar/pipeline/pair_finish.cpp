@@ -48,7 +48,7 @@ ar::RenderedPair PairFinish::smoothed(PairPictures const& p, ar::Pose const& wor
 {
     ar::RenderedPair pair{p.with, p.without, p.coverage, p.direct};
     if (!filter_) return pair;
-    pair = (*filter_)(pair, p.depth_m, world_from_camera);
+    pair = (*filter_)(pair, p.depth_m, world_from_camera, p.change);
     pair.direct = p.direct.clone();
     pair.direct.forEach<cv::Vec3f>([&](cv::Vec3f& direct, int const* at) {
         float const a = p.coverage.at<float>(at[0], at[1]);

@@ -1,6 +1,8 @@
 #pragma once
 // What renderers of pairs make: the place with and without the virtual objects, before compositing.
 
+#include "ar/composite/temporal.h"
+
 #include <cstdint>
 #include <opencv2/core.hpp>
 
@@ -14,6 +16,7 @@ struct PairPictures {
     cv::Mat coverage;              ///< CV_32FC1: share of the pixel whose first surface is virtual
     cv::Mat depth_m, real_depth_m; ///< CV_32FC1, along the axis: first surface with and without; 0 = none
     std::uint32_t paths = 0;       ///< per pixel of each picture; 0 = prefiltered light
+    ar::SceneChange change = ar::SceneChange::unknown; ///< since the previous pair
 };
 
 } // namespace viewer

@@ -17,6 +17,7 @@ PairRenderer::PairRenderer(LocalScene local, gi::RenderSettings const& settings,
 
 void PairRenderer::set_environment(std::shared_ptr<gi::EnvironmentMap const> map)
 {
+    light_changed_ = true;
     pending_.add(world_.set_environment(std::move(map)));
 }
 
@@ -31,6 +32,16 @@ gi::Changes PairRenderer::turn(gi::PairSide side, gi::SceneTime time_s)
         changes.add(world_.set_light(at, light));
     }
     return changes;
+}
+
+ar::SceneChange PairRenderer::change_since_last(gi::SceneTime time_s)
+{
+    gi::Pose const pose = local_pose(local_, time_s, gi::PairSide::with);
+    bool const same = !std::exchange(light_changed_, false) && last_pose_ &&
+                      pose.world_from_node == last_pose_->world_from_node &&
+                      pose.morph_weights == last_pose_->morph_weights;
+    last_pose_ = pose;
+    return same ? ar::SceneChange::none : ar::SceneChange::unknown;
 }
 
 gi::World const& PairRenderer::world_with(gi::SceneTime time_s)
@@ -60,7 +71,9 @@ PairPictures PairRenderer::prefiltered(gi::Camera const& camera, int width, int 
         if (changes.geometry) pairs_->moved();
         if (changes.environment) pairs_->relight();
     }
-    return pairs_->render(camera, width, height, stop);
+    PairPictures p = pairs_->render(camera, width, height, stop);
+    p.change = change_since_last(time_s);
+    return p;
 }
 
 PairPictures PairRenderer::render(gi::Camera const& camera, int width, int height, std::uint32_t paths,
@@ -105,6 +118,7 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
     p.real_depth_m = matrix_of(both.without.picture, "depth");
     p.depth_m = matrix_of(both.with.picture, "depth");
     p.paths = both.with.paths;
+    p.change = change_since_last(time_s);
     return p;
 }
 

@@ -37,6 +37,8 @@ private:
     PairPictures prefiltered(gi::Camera const& camera, int width, int height, gi::SceneTime time_s,
                              gi::StopRequest const& stop);
 
+    ar::SceneChange change_since_last(gi::SceneTime time_s);
+
     LocalScene local_;
     gi::RenderSettings settings_;
     gi::Report& report_;
@@ -44,6 +46,8 @@ private:
     std::vector<gi::Light> virtual_lights_; ///< the virtual lights, for the side with them
     gi::Changes pending_;                   ///< since the last picture
     std::unique_ptr<gi::FrameRenderer> frames_;
+    bool light_changed_ = true;         ///< since the last picture
+    std::optional<gi::Pose> last_pose_; ///< of the last picture
     bool prefiltered_ = false;
     std::unique_ptr<PrefilteredPairs> pairs_; ///< made for the first picture by prefiltered light
 };

@@ -68,6 +68,8 @@ public:
     void add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
              CompositeBy composite = CompositeBy::pipeline);
     ar::Compositor const& compositor() const { return compositor_; }
+    /// By prefiltered light, without paths.
+    bool is_prefiltered() const { return renderer_.is_prefiltered(); }
 
 private:
     ar::RenderedPair rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,

@@ -40,14 +40,29 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     o.pace = ar::Pace::fastest;
     o.frames = settings.frames;
     if (session.tracked) o.poses = recorded_poses(*session.tracked, report);
-    o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) { m.compositor = p.compositor(); };
+    o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) {
+        m.compositor = p.compositor();
+        m.is_prefiltered = p.is_prefiltered();
+    };
     std::vector<ArResult> results; // evaluated afterwards, since that takes longer than a frame
     std::vector<double> shown_s;
     ArSummary fast;
+    std::optional<ar::Frame> first_frame; ///< with a pose
+    ar::Pose first_pose;
+    double first_s = 0;
     run_ar(
         session, o,
-        [&](ArFrameRecord&, ArResult const& r) {
+        [&](ArFrameRecord& f, ArResult const& r) {
             shown_s.push_back(ar::steady_now_s());
+            if (r.pair && !first_frame) {
+                first_frame.emplace();
+                first_frame->sequence = f.sequence;
+                first_frame->exposure = f.exposure;
+                first_frame->size_px = {r.camera.cols, r.camera.rows};
+                first_frame->planes[0] = r.camera;
+                first_pose = r.pose.world_from_camera;
+                first_s = f.captured_s;
+            }
             if (r.pair || !m.last.pair) m.last = r;
             results.emplace_back();
             results.back().rgb = r.rgb;
@@ -59,6 +74,9 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     FrameTruth truth(settings.truth, settings.true_poses);
     for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
     m.errors = truth.errors();
+    if (settings.still_frames > 1 && first_frame)
+        m.flicker =
+            measure_flicker(session, *first_frame, first_pose, first_s, settings.still_frames, stop, report);
     m.refused = fast.refused + fast.source.refused;
     m.fast = settled(std::move(fast.frames));
     if (stop.requested()) return m;

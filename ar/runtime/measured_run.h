@@ -3,6 +3,7 @@
 // are loaded beforehand and played in a loop as a camera would deliver them.
 
 #include "ar/runtime/ar_window.h"
+#include "ar/runtime/flicker.h"
 #include "ar/runtime/frame_truth.h"
 
 namespace viewer {
@@ -14,15 +15,18 @@ struct MeasuredRun {
     std::uint64_t overtaken = 0; ///< at own pace
     std::uint64_t refused = 0;   ///< by the source or by the pipeline, in the fast run
     FrameErrors errors;          ///< of the fast run's composites
+    Flicker flicker;             ///< of the first frame with a pose, shown again and again
     /// The last composite's parts (without a pair if there is no composite), and its compositor.
     ArResult last;
     std::optional<ar::Compositor> compositor;
+    bool is_prefiltered = false; ///< lit by prefiltered light
 };
 
 struct MeasureSettings {
     int frames = 20;                         ///< maximum from files, and the number at own pace
     std::filesystem::path truth, true_poses; ///< folder, file; empty = unknown
     bool in_window = false;                  ///< at own pace
+    int still_frames = 0;                    ///< for the flicker; fewer than 2: not measured
 };
 
 /// @throws gi::InputError if the source was lost, or the session's tracker is live

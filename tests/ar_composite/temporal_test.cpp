@@ -69,6 +69,43 @@ TEST(TemporalFilter, TakesNoiseAwayAndFollowsChanges)
     EXPECT_EQ(lag + 1, 5);
 }
 
+/// A face whose pixels share their noise: all of it is brighter or darker from frame to frame.
+TEST(TemporalFilter, KnowsAStillSceneFromAChangeOfLight)
+{
+    cv::Mat const depth(kFrameSize, CV_32FC1, cv::Scalar(2));
+    TemporalFilter filter(kCamera, {.weight = 0.2f}), unknowing(kCamera, {.weight = 0.2f});
+    auto const face = [](int frame, float light) {
+        RenderedPair pair = unchanged_pair(kFrameSize);
+        pair.with(kShadow) += cv::Scalar::all(light * (1 + (frame % 2 ? 0.15 : -0.15)));
+        return pair;
+    };
+    std::vector<double> still, clipped;
+    for (int i = 0; i < 40; ++i) {
+        double const now =
+            mean_within(filter(face(i, 0.2f), depth, {}, i > 0 ? SceneChange::none : SceneChange::unknown));
+        double const other = mean_within(unknowing(face(i, 0.2f), depth, {}));
+        if (i >= 24) {
+            still.push_back(now);
+            clipped.push_back(other);
+        }
+    }
+    auto const range = [](std::vector<double> const& v) {
+        auto const [low, high] = std::minmax_element(v.begin(), v.end());
+        return (*high - *low) / *high;
+    };
+    std::cout << "a face that flickers by 15 %: " << 100 * range(still) << " % where it is known to be still, "
+              << 100 * range(clipped) << " % where it is not\n";
+    EXPECT_LT(range(still), 0.02);
+    EXPECT_GT(range(clipped), 0.1);
+    EXPECT_NEAR(still.back(), 0.2, 0.004);
+    int lag = 0; // a lamp is switched on
+    for (; lag < 50; ++lag)
+        if (mean_within(filter(face(lag, 0.6f), depth, {}, lag > 0 ? SceneChange::none : SceneChange::unknown)) >
+            0.45)
+            break;
+    EXPECT_LE(lag, 2);
+}
+
 TEST(TemporalFilter, KeepsNothingNothing)
 {
     cv::Mat const depth(kFrameSize, CV_32FC1, cv::Scalar(2));

@@ -130,7 +130,6 @@ PairPictures PrefilteredPairs::render(gi::Camera const& camera, int width, int h
             p.with.at<cv::Vec3f>(y, x) = vector(with);
         }
     });
-    if (stop.requested()) throw gi::Interrupted{};
     return p;
 }
 

@@ -24,6 +24,7 @@ public:
     void moved();
     /// Call after the environment has changed, before the next picture.
     void relight();
+    /// @param stop  on request, rows are left out
     PairPictures render(gi::Camera const& camera, int width, int height, gi::StopRequest const& stop);
 
 private:

@@ -30,7 +30,8 @@ struct BenchArguments {
     std::vector<std::string> sizes{"640x480", "1280x720"};
     std::vector<std::uint32_t> paths{1, 2, 4};
     std::vector<double> resolutions{0.5};
-    int frames = 20;
+    std::vector<std::string> lights{"prefiltered", "paths"};
+    int frames = 20, still_frames = 16;
     std::uint32_t truth_paths = 8;
     bool counter = false, window = false, json = false;
 };
@@ -70,8 +71,8 @@ double found_percent(std::vector<ArFrameRecord> const& frames)
 }
 
 /// Median, 95th percentile and maximum of each stage.
-void add_stages(BenchTable& table, std::string const& size, std::uint32_t paths, double resolution,
-                std::string const& pace, std::vector<ArFrameRecord> const& frames)
+void add_stages(BenchTable& table, std::string const& size, std::string const& light, double paths,
+                double resolution, std::string const& pace, std::vector<ArFrameRecord> const& frames)
 {
     using Record = ArFrameRecord const&;
     std::pair<char const*, double (*)(Record)> const stages[] = {
@@ -92,7 +93,7 @@ void add_stages(BenchTable& table, std::string const& size, std::uint32_t paths,
     for (auto const& [name, value] : stages) {
         Spread const s = spread_of(values_of(frames, value));
         if (s.most > 0)
-            table.add({size, double(paths), resolution, pace, std::string(name), s.median, s.p95, s.most});
+            table.add({size, light, paths, resolution, pace, std::string(name), s.median, s.p95, s.most});
     }
 }
 
@@ -141,32 +142,38 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
              BenchTable& table, BenchTable& stages, gi::StopRequest& stop, gi::Report& report)
 {
     std::string const size = size_text(load_ar_camera(session.camera).model.size_px);
-    auto const one = [&](std::uint32_t paths, double resolution) {
-        session.render.paths = paths;
+    auto const one = [&](PairLight light, std::uint32_t most_paths, double resolution) {
+        session.render.light = light;
+        session.render.paths = most_paths;
         session.render.resolution = resolution;
         MeasuredRun const m = measure_run(session, settings, stop, report);
         if (stop.requested()) {
             if (m.fast.empty() && m.own.empty()) return;
-            table.facts.emplace_back("ended early", fmt::format("{}, {} paths", size, paths));
+            table.facts.emplace_back("ended early", fmt::format("{}, {} paths", size, most_paths));
         }
         bool const swapped = settings.in_window;
         auto const [plain, bytes] = plain_over_ours(m);
-        table.add({size, double(paths), resolution, m.frames_per_s, found_percent(m.fast),
+        std::string const by = m.is_prefiltered ? "prefiltered" : "paths";
+        double const paths = m.is_prefiltered ? 0 : double(most_paths);
+        table.add({size, by, paths, resolution, m.frames_per_s, found_percent(m.fast),
                    cell_of(values_of(
                        m.own, swapped ? [](ArFrameRecord const& f) { return f.swapped_ms; }
                                       : [](ArFrameRecord const& f) { return f.latency_ms; })),
                    double(m.own.size()), double(m.overtaken), cell_of(m.errors.flip_affected),
                    cell_of(m.errors.camera_affected), cell_of(m.errors.flip_elsewhere),
+                   cell_of(m.flicker.blocks_percent), m.flicker.frames > 1 ? Cell(m.flicker.bytes) : Cell(),
                    cell_of(m.errors.position_mm), cell_of(m.errors.rotation_deg), share_of_search(session, m.last),
                    plain, bytes});
-        add_stages(stages, size, paths, resolution, "fast", m.fast);
-        add_stages(stages, size, paths, resolution, "own", m.own);
+        add_stages(stages, size, by, paths, resolution, "fast", m.fast);
+        add_stages(stages, size, by, paths, resolution, "own", m.own);
         if (m.refused > 0) table.facts.emplace_back("frames refused, " + size, fmt::format("{}", m.refused));
     };
-    if (given) return one(session.render.paths, session.render.resolution);
-    for (std::uint32_t const paths : a.paths)
-        for (double const resolution : a.resolutions)
-            if (!stop.requested()) one(paths, resolution);
+    if (given) return one(session.render.light, session.render.paths, session.render.resolution);
+    for (std::string const& light : a.lights)
+        for (std::uint32_t const paths : light == "paths" ? a.paths : std::vector<std::uint32_t>{1})
+            for (double const resolution : a.resolutions)
+                if (!stop.requested())
+                    one(light == "paths" ? PairLight::paths : PairLight::prefiltered, paths, resolution);
 }
 
 void keep(std::vector<BenchTable*> const& tables, BenchArguments const& a)
@@ -187,21 +194,22 @@ int run_bench(BenchArguments const& a)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     char const* const latency = a.window ? "capture_to_swap_ms" : "capture_to_result_ms";
-    BenchTable table = start_table("ar", "Frames per second and latency of augmented reality, with the error",
-                                   {"size", "paths", "resolution", "fast_frames_per_s", "found_percent", latency,
-                                    "own_frames", "own_overtaken", "flip_affected", "flip_of_adding_nothing",
-                                    "flip_elsewhere", "position_mm", "rotation_deg", "search_share_of_detect",
-                                    "plain_opencv_over_composite", "plain_opencv_differs_bytes"});
+    BenchTable table =
+        start_table("ar", "Frames per second and latency of augmented reality, with the error",
+                    {"size", "light", "paths", "resolution", "fast_frames_per_s", "found_percent", latency,
+                     "own_frames", "own_overtaken", "flip_affected", "flip_of_adding_nothing", "flip_elsewhere",
+                     "flicker_percent", "flicker_bytes", "position_mm", "rotation_deg", "search_share_of_detect",
+                     "plain_opencv_over_composite", "plain_opencv_differs_bytes"});
     BenchTable stages =
         start_table("ar_stages", "Stages of a frame",
-                    {"size", "paths", "resolution", "pace", "stage", "median_ms", "p95_ms", "most_ms"});
+                    {"size", "light", "paths", "resolution", "pace", "stage", "median_ms", "p95_ms", "most_ms"});
     if (!a.window)
         table.facts.emplace_back("latency", "without a window: until the composite is ready, not shown");
     table.facts.emplace_back("first frames", "left out: they build lasting structures");
     if (!a.session.empty()) {
         ArSession const session = read_ar_session(a.session);
         fs::path const folder = fs::path(a.session).parent_path();
-        MeasureSettings settings{a.frames, {}, {}, a.window};
+        MeasureSettings settings{a.frames, {}, {}, a.window, a.still_frames};
         if (fs::is_directory(folder / "truth")) settings.truth = folder / "truth";
         if (fs::exists(folder / "poses.csv")) settings.true_poses = folder / "poses.csv";
         measure(a, session, settings, true, table, stages, stop, report);
@@ -210,7 +218,7 @@ int run_bench(BenchArguments const& a)
             auto const [width, height] = parse_size(size);
             fs::path const file = synthetic_session(a, {width, height}, stop, report);
             if (stop.requested()) break;
-            MeasureSettings settings{a.frames, {}, file.parent_path() / "poses.csv", a.window};
+            MeasureSettings settings{a.frames, {}, file.parent_path() / "poses.csv", a.window, a.still_frames};
             if (a.truth_paths > 0) settings.truth = file.parent_path() / "truth";
             measure(a, read_ar_session(file), settings, false, table, stages, stop, report);
             if (stop.requested()) break;
@@ -257,6 +265,12 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
         ->take_all()
         ->excludes(session)
         ->capture_default_str();
+    c->add_option("--light", a->lights, "How virtual objects are lit: prefiltered, paths; comma-separated")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"prefiltered", "paths"}))
+        ->excludes(session)
+        ->capture_default_str();
     c->add_option("--paths", a->paths, "Paths per rendered pixel and side, comma-separated")
         ->delimiter(',')
         ->allow_extra_args(false)
@@ -271,6 +285,10 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
         ->capture_default_str();
     c->add_option("--frames", a->frames, "Frames of each desk or session; with --counter: frames to show")
         ->check(CLI::Range(2, 100000))
+        ->capture_default_str();
+    c->add_option("--still-frames", a->still_frames,
+                  "Times that the first frame is shown again to measure flicker; below 2: not measured")
+        ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     c->add_option("--truth-paths", a->truth_paths,
                   "Paths per pixel of the desks' frames and reference pictures; 0 = no reference pictures")
@@ -288,7 +306,9 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
   lightwell ar bench --counter --size 320x240 --frames 10
 
 Each quality is run twice: as fast as possible (frames per second, error; no frame is skipped) and at the camera's
-own pace of 30 Hz (latency; frames overtaken by newer ones are counted). The same rounds also measure the share
+own pace of 30 Hz (latency; frames overtaken by newer ones are counted). Then the first frame is composited again and
+again, with nothing moving: flicker_percent is the standard deviation of the mean radiance of blocks of 8 x 8 pixels on
+virtual objects, in per cent of it (median over blocks and their range), flicker_bytes that of bytes. The same rounds also measure the share
 of the library's search (OpenCV or apriltag) in marker detection, and the time of compositing by plain OpenCV, one
 whole picture per step, relative to ours.)");
     c->callback([a, &exit_code] { exit_code = run(*a); });
