@@ -13,6 +13,7 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -191,7 +192,8 @@ int run_albedo(AlbedoArguments const& a)
     gi::write_text(out, format_albedos(estimate.entries));
     fmt::print("{}{}\n", describe(estimate, seen), out.string());
     print_losses(report);
-    return 0;
+    return exit_code_of(
+        most_refused(std::uint64_t(seen.found + seen.without_pose), std::uint64_t(seen.refused), "frames"));
 }
 
 } // namespace
@@ -220,7 +222,9 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
         ->capture_default_str();
     c->footer(R"(Examples:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
-  lightwell ar albedo desk/session.yaml --scene --poses desk/poses.csv --views 2 --paths 4)");
+  lightwell ar albedo desk/session.yaml --scene --poses desk/poses.csv --views 2 --paths 4
+
+Exit code 1: most frames were refused.)");
     c->callback([a, &exit_code] { exit_code = run_albedo(*a); });
 }
 

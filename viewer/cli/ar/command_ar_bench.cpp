@@ -11,6 +11,7 @@
 #include "viewer/base/validators.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/cli/ar/ar_chain_check.h"
+#include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/commands.h"
 #include "viewer/report/table_file.h"
 
@@ -26,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BenchArguments {
-    std::string session, folder, out;
+    std::string session, folder, out, require_found;
     std::vector<std::string> sizes{"640x480", "1280x720"};
     std::vector<std::uint32_t> paths{1, 2, 4};
     std::vector<double> resolutions{0.5};
@@ -61,12 +62,10 @@ std::vector<double> values_of(std::vector<ArFrameRecord> const& frames, double (
     return values;
 }
 
-/// Frames whose camera pose was found; nothing is rendered into others.
+/// Frames with a trusted pose of their own.
 double found_percent(std::vector<ArFrameRecord> const& frames)
 {
-    auto const found = std::count_if(frames.begin(), frames.end(),
-                                     [](ArFrameRecord const& f) { return f.world_from_camera.has_value(); });
-    return frames.empty() ? 0 : 100 * double(found) / double(frames.size());
+    return frames.empty() ? 0 : 100 * double(count_found(frames)) / double(frames.size());
 }
 
 /// Median, 95th percentile and maximum of each stage.
@@ -138,7 +137,7 @@ std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
 }
 
 void measure(BenchArguments const& a, ArSession session, MeasureSettings const& settings, bool given,
-             BenchTable& table, BenchTable& stages, gi::StopRequest& stop, gi::Report& report)
+             BenchTable& table, BenchTable& stages, FrameTally& tally, gi::StopRequest& stop, gi::Report& report)
 {
     std::string const size = size_text(load_ar_camera(session.camera).model.size_px);
     auto const one = [&](std::uint32_t paths, double resolution) {
@@ -149,6 +148,9 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
             if (m.fast.empty() && m.own.empty()) return;
             table.facts.emplace_back("ended early", fmt::format("{}, {} paths", size, paths));
         }
+        tally.looked_at += m.fast.size();
+        tally.found += count_found(m.fast);
+        tally.refused += m.refused;
         bool const swapped = settings.in_window;
         auto const [plain, bytes] = plain_over_ours(m);
         table.add({size, double(paths), resolution, m.frames_per_s, found_percent(m.fast),
@@ -183,6 +185,8 @@ void keep(std::vector<BenchTable*> const& tables, BenchArguments const& a)
 
 int run_bench(BenchArguments const& a)
 {
+    auto const required = parse_share("--require-found", a.require_found);
+    FrameTally tally;
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
@@ -204,7 +208,7 @@ int run_bench(BenchArguments const& a)
         MeasureSettings settings{a.frames, {}, {}, a.window};
         if (fs::is_directory(folder / "truth")) settings.truth = folder / "truth";
         if (fs::exists(folder / "poses.csv")) settings.true_poses = folder / "poses.csv";
-        measure(a, session, settings, true, table, stages, stop, report);
+        measure(a, session, settings, true, table, stages, tally, stop, report);
     } else {
         for (std::string const& size : a.sizes) {
             auto const [width, height] = parse_size(size);
@@ -212,14 +216,14 @@ int run_bench(BenchArguments const& a)
             if (stop.requested()) break;
             MeasureSettings settings{a.frames, {}, file.parent_path() / "poses.csv", a.window};
             if (a.truth_paths > 0) settings.truth = file.parent_path() / "truth";
-            measure(a, read_ar_session(file), settings, false, table, stages, stop, report);
+            measure(a, read_ar_session(file), settings, false, table, stages, tally, stop, report);
             if (stop.requested()) break;
         }
         table.facts.emplace_back("paths of frames and truth", fmt::format("{}", std::max(a.truth_paths, 2u)));
     }
     keep({&stages, &table}, a);
     print_losses(report);
-    return stop.requested() ? kInterrupted : 0;
+    return stop.requested() ? kInterrupted : exit_code_of(shortfall(tally, required));
 }
 
 int run_counter(BenchArguments const& a)
@@ -277,6 +281,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     c->add_option("--folder", a->folder, "Folder that keeps desks for later runs (default: the temporary folder)");
+    declare_require_found(*c, a->require_found);
     c->add_flag("--window", a->window, "Show the frames at the camera's pace in a window: latency until the swap");
     c->add_flag("--counter", a->counter,
                 "Instead, check that shown frames and rendering match: frames show their number, and a ball "
@@ -284,13 +289,13 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_option("--out", a->out, "Folder for the tables, as JSON and CSV");
     c->add_flag("--json", a->json, "Print the tables as JSON");
     c->footer(R"(Examples:
-  lightwell ar bench --size 320x240 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
+  lightwell ar bench --size 480x360 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
   lightwell ar bench --counter --size 320x240 --frames 10
 
 Each quality is run twice: as fast as possible (frames per second, error; no frame is skipped) and at the camera's
 own pace of 30 Hz (latency; frames overtaken by newer ones are counted). The same rounds also measure the share
 of the library's search (OpenCV or apriltag) in marker detection, and the time of compositing by plain OpenCV, one
-whole picture per step, relative to ours.)");
+whole picture per step, relative to ours. Exit code 1 as of lightwell ar run.)");
     c->callback([a, &exit_code] { exit_code = run(*a); });
 }
 

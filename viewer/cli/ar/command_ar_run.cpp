@@ -8,6 +8,7 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/ar/ar_recording.h"
 #include "viewer/cli/commands.h"
 
@@ -21,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats, display;
+    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats, display,
+        require_found;
     int frames = 0;
     bool fast = false, window = false, gpu = false;
     std::string monitor, eyes;
@@ -89,11 +91,15 @@ int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions con
     if (summary.frames.frames == 0 && !stop.requested())
         throw gi::InputError("no frame could be used", describe(summary.frames.left),
                              "check the session's frames");
-    return stop.requested() ? kInterrupted : 0;
+    if (stop.requested()) return kInterrupted;
+    PassThroughCounts const& f = summary.frames;
+    return exit_code_of(shortfall({f.frames, f.poses.found(), f.refused + f.left.refused},
+                                  parse_share("--require-found", a.require_found)));
 }
 
 int run_session(RunArguments const& a, bool poses_only)
 {
+    auto const required = parse_share("--require-found", a.require_found);
     ArSession const session = session_of(a);
     check_arguments(a, session);
     if (!a.video.empty()) {
@@ -176,7 +182,9 @@ int run_session(RunArguments const& a, bool poses_only)
     if (summary.frames.empty() && !stop.requested())
         throw gi::InputError("no frame could be used", describe(summary.source), "check the session's frames");
     bool const was_closed = window && window->wants_close();
-    return stop.requested() && !was_closed ? kInterrupted : 0;
+    if (stop.requested()) return was_closed ? 0 : kInterrupted;
+    return exit_code_of(shortfall(
+        {summary.frames.size(), count_found(summary.frames), summary.refused + summary.source.refused}, required));
 }
 
 void add_session_options(CLI::App& c, RunArguments& a)
@@ -189,6 +197,7 @@ void add_session_options(CLI::App& c, RunArguments& a)
     c.add_option("--stats", a.stats, "JSON file: seconds of the renderer's stages, counts, losses");
     c.add_option("--display", a.display,
                  "Display file whose tracker gives the camera pose, instead of markers (docs/displays.md)");
+    declare_require_found(c, a.require_found);
     c.add_option("--true-poses", a.true_poses, "True camera poses (CSV or TUM), to report the pose error");
 }
 
@@ -231,7 +240,8 @@ void add_ar_run(CLI::App& ar, int& exit_code)
   lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json
   lightwell ar run desk/session.yaml --poses desk/poses.csv --video desk.mkv --record-input desk/recorded
 
-A frame is dropped and counted as overtaken if a newer one arrives before it is rendered; never with --fast.)");
+A frame is dropped and counted as overtaken if a newer one arrives before it is rendered; never with --fast.
+Exit code 1: no frame has a trusted pose, most frames were refused, or fewer have one than --require-found.)");
     run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });
 }
 
@@ -242,8 +252,10 @@ void add_ar_track(CLI::App& ar, int& exit_code)
         ar.add_subcommand("track", "Find the camera pose in each frame, with its confidence");
     add_session_options(*track_command, *track);
     track_command->footer(R"(Examples:
-  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth
-  lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv)");
+  lightwell ar synthesize desk --frames 2 --size 480x360 --paths 2 --no-truth
+  lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv --require-found 90%
+
+Exit code 1: no frame has a trusted pose, most frames were refused, or fewer have one than --require-found.)");
     track_command->callback([track, &exit_code] { exit_code = run_session(*track, true); });
 }
 
