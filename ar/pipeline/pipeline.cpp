@@ -66,6 +66,7 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       report_(report),
       prefix_(std::move(prefix))
 {
+    if (session.pose.fused) fusion_.emplace();
     renderer_.set_environment(light_.begin());
     light_picture_ = picture_of_light(light_.map());
 }
@@ -142,6 +143,7 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<K
         r.sighting = detector_.next(gray);
         r.times.detect_ms = lap();
         r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
+        if (fusion_) r.pose = fusion_->next(time_s, r.pose);
         ar::Taken const taken = tracker_.add(time_s, r.pose);
         r.used = trust_.next(time_s, offered_pose(session_.pose, tracker_, time_s, r.pose, taken));
     }

@@ -8,6 +8,7 @@
 #include "ar/pipeline/pair_finish.h"
 #include "ar/pipeline/pair_renderer.h"
 #include "ar/pipeline/place_light.h"
+#include "ar/pose/fused.h"
 #include "ar/pose/tracker.h"
 #include "ar/pose/trust.h"
 
@@ -93,6 +94,7 @@ private:
     PlaceLight light_;
     PairFinish finish_;
     ar::Compositor compositor_;
+    std::optional<ar::PoseFusion> fusion_;
     ar::PoseTracker tracker_;
     ar::PoseTrust trust_;
     cv::Mat light_picture_;

@@ -194,7 +194,7 @@ TEST_F(ArRuns, KeepResultAndInput)
     std::string text = session();
     text.replace(text.find("source: frames"), 14, "source: recorded");
     write(desk() / "again.yaml", text);
-    Outcome const again = run("ar run again.yaml --fast --video again.mkv --out again");
+    Outcome const again = run("ar run again.yaml --fast --poses poses.csv --video again.mkv --out again");
     ASSERT_EQ(again.code, 0) << again.err;
     EXPECT_NE(again.out.find("again.mkv: 3 pictures at 30 Hz, 0 of them repeated"), std::string::npos)
         << again.out;
