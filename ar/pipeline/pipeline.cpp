@@ -66,6 +66,8 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       report_(report),
       prefix_(std::move(prefix))
 {
+    if (!session.pose.features.empty())
+        features_.emplace(ar::read_feature_map(session.pose.features), camera.model);
     if (session.pose.fused) fusion_.emplace();
     renderer_.set_environment(light_.begin());
     light_picture_ = picture_of_light(light_.map());
@@ -94,6 +96,11 @@ void ArPipeline::count_some(char const* what, std::size_t n)
 void ArPipeline::report_poses()
 {
     ar::TrackerCounts const& t = tracker_.counts();
+    if (features_) {
+        ar::FeatureTrackerCounts const& f = features_->counts();
+        count_some("frames recognised anew by features", f.relocated);
+        count_some("frames whose features were not recognised", f.not_relocated);
+    }
     count_some("poses taken", t.taken);
     count_some("poses missed", t.missed);
     count_some("poses refused as jumps", t.jumps_refused);
@@ -140,9 +147,14 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<K
         }
         r.used = trust_.next(time_s, {known->world_from_camera, {}, r.pose.found()});
     } else {
-        r.sighting = detector_.next(gray);
-        r.times.detect_ms = lap();
-        r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
+        if (features_) {
+            r.pose = features_->next(time_s, gray, tracker_.expected(time_s), r.sighting);
+            r.times.detect_ms = lap();
+        } else {
+            r.sighting = detector_.next(gray);
+            r.times.detect_ms = lap();
+            r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
+        }
         if (fusion_) r.pose = fusion_->next(time_s, r.pose);
         ar::Taken const taken = tracker_.add(time_s, r.pose);
         r.used = trust_.next(time_s, offered_pose(session_.pose, tracker_, time_s, r.pose, taken));

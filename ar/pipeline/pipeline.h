@@ -4,6 +4,7 @@
 
 #include "ar/camera/frame.h"
 #include "ar/composite/composite.h"
+#include "ar/features/feature_tracker.h"
 #include "ar/markers/detect.h"
 #include "ar/pipeline/pair_finish.h"
 #include "ar/pipeline/pair_renderer.h"
@@ -94,6 +95,7 @@ private:
     PlaceLight light_;
     PairFinish finish_;
     ar::Compositor compositor_;
+    std::optional<ar::FeatureTracker> features_; ///< instead of the detector
     std::optional<ar::PoseFusion> fusion_;
     ar::PoseTracker tracker_;
     ar::PoseTrust trust_;

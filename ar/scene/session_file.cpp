@@ -151,8 +151,8 @@ private:
     /// Of markers, or of a tracker in their place.
     void read_pose(Yaml const& p)
     {
-        p.only_keys({"tripod", "smoothing", "predict_s", "least_confidence", "hold_s", "fade_s", "fuse", "display",
-                     "tracker", "camera_from_sensor", "world_from_room", "offset_s"});
+        p.only_keys({"tripod", "smoothing", "predict_s", "least_confidence", "hold_s", "fade_s", "fuse",
+                     "features", "display", "tracker", "camera_from_sensor", "world_from_room", "offset_s"});
         ar::TrustSettings& trust = session_.pose.trust;
         if (p.has("hold_s")) trust.hold_s = p.at("hold_s").number(0, 10);
         if (p.has("fade_s")) trust.fade_s = p.at("fade_s").number(0, 10);
@@ -164,7 +164,7 @@ private:
             throw p.at("least_confidence")
                 .error("'least_confidence' beside a tracker", "its poses have no confidence",
                        "remove one of the two");
-        for (char const* key : {"tripod", "smoothing", "predict_s", "fuse"})
+        for (char const* key : {"tripod", "smoothing", "predict_s", "fuse", "features"})
             if (p.has(key))
                 throw p.at(key).error(fmt::format("'{}' beside a tracker", key),
                                       "filter and prediction of trackers are set in the display file",
@@ -193,6 +193,7 @@ private:
                 if (s.has("rotation")) read_one_euro(s.at("rotation"), use.tracker.rotation);
             }
         }
+        if (p.has("features")) use.features = path(p.at("features"));
         if (p.has("fuse")) {
             use.fused = p.at("fuse").boolean();
             if (use.fused && use.tracker.motion == ar::CameraMotion::tripod)

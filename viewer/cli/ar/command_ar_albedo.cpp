@@ -13,6 +13,7 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/cli/ar/ar_camera_path.h"
 #include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/commands.h"
 
@@ -37,43 +38,10 @@ struct SeenFrames {
     int found = 0, without_pose = 0, refused = 0;
 };
 
-/// Camera poses from the --poses file, from a recorded tracker, or from the markers in the frame.
-class CameraPath {
-public:
-    CameraPath(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera, gi::Report& report)
-        : camera_(camera), detector_(ar::read_marker_map(session.markers))
-    {
-        if (!a.poses.empty())
-            poses_ = ar::read_poses(a.poses);
-        else if (session.tracked)
-            poses_ = recorded_poses(*session.tracked, report);
-    }
-    /// Pose and its confidence.
-    std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s)
-    {
-        if (!poses_.empty()) {
-            auto const pose = recorded_pose(poses_, time_s);
-            if (!pose) return std::nullopt;
-            return std::pair(*pose, 1.0);
-        }
-        ar::PoseEstimate const p =
-            ar::estimate_pose(detector_.next(ar::gray_of(frame)), camera_.model, tracker_.expected(time_s));
-        tracker_.add(time_s, p);
-        if (!p.found() || p.ambiguous) return std::nullopt;
-        return std::pair(p.world_from_camera, p.confidence);
-    }
-
-private:
-    ArCamera const& camera_;
-    std::vector<ar::TimedPose> poses_;
-    ar::MarkerTracker detector_;
-    ar::PoseTracker tracker_;
-};
-
 SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera,
                 gi::StopRequest const& stop, gi::Report& report)
 {
-    CameraPath path(a, session, camera, report);
+    CameraPath path(a.poses, session, camera, report);
     ar::OpenOptions open = session.frames.options;
     open.pace = ar::Pace::fastest;
     auto const source = ar::open_source(session.frames.source, open);
