@@ -39,6 +39,8 @@ TEST(ArBench, TellsSpeedWithItsError)
     }
     Json const stages = Json::parse(file_text(folder / "table/ar_stages.json"));
     EXPECT_GT(stages.at("rows").size(), 10u);
+    Json const curve = Json::parse(file_text(folder / "table/ar_confidence.json"));
+    EXPECT_LT(value_of(curve, "position_median_mm", 0), 10);
     EXPECT_TRUE(std::filesystem::exists(folder / "desks"));
 }
 

@@ -137,7 +137,8 @@ std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
 }
 
 void measure(BenchArguments const& a, ArSession session, MeasureSettings const& settings, bool given,
-             BenchTable& table, BenchTable& stages, FrameTally& tally, gi::StopRequest& stop, gi::Report& report)
+             BenchTable& table, BenchTable& stages, BenchTable& curve, FrameTally& tally, gi::StopRequest& stop,
+             gi::Report& report)
 {
     std::string const size = size_text(load_ar_camera(session.camera).model.size_px);
     auto const one = [&](std::uint32_t paths, double resolution) {
@@ -161,6 +162,10 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
                    cell_of(m.errors.camera_affected), cell_of(m.errors.flip_elsewhere),
                    cell_of(m.errors.position_mm), cell_of(m.errors.rotation_deg), share_of_search(session, m.last),
                    plain, bytes});
+        for (ConfidenceBin const& b : confidence_curve(m.errors.poses.estimates()))
+            if (b.frames > 0)
+                curve.add({size, double(paths), resolution, b.low, b.high, double(b.frames), b.median_mm, b.p95_mm,
+                           b.median_deg, b.p95_deg});
         add_stages(stages, size, paths, resolution, "fast", m.fast);
         add_stages(stages, size, paths, resolution, "own", m.own);
         if (m.refused > 0) table.facts.emplace_back("frames refused, " + size, fmt::format("{}", m.refused));
@@ -199,6 +204,10 @@ int run_bench(BenchArguments const& a)
     BenchTable stages =
         start_table("ar_stages", "Stages of a frame",
                     {"size", "paths", "resolution", "pace", "stage", "median_ms", "p95_ms", "most_ms"});
+    BenchTable curve =
+        start_table("ar_confidence", "Errors of estimated camera poses by their confidence",
+                    {"size", "paths", "resolution", "confidence_low", "confidence_high", "frames",
+                     "position_median_mm", "position_p95_mm", "rotation_median_deg", "rotation_p95_deg"});
     if (!a.window)
         table.facts.emplace_back("latency", "without a window: until the composite is ready, not shown");
     table.facts.emplace_back("first frames", "left out: they build lasting structures");
@@ -208,7 +217,7 @@ int run_bench(BenchArguments const& a)
         MeasureSettings settings{a.frames, {}, {}, a.window};
         if (fs::is_directory(folder / "truth")) settings.truth = folder / "truth";
         if (fs::exists(folder / "poses.csv")) settings.true_poses = folder / "poses.csv";
-        measure(a, session, settings, true, table, stages, tally, stop, report);
+        measure(a, session, settings, true, table, stages, curve, tally, stop, report);
     } else {
         for (std::string const& size : a.sizes) {
             auto const [width, height] = parse_size(size);
@@ -216,12 +225,12 @@ int run_bench(BenchArguments const& a)
             if (stop.requested()) break;
             MeasureSettings settings{a.frames, {}, file.parent_path() / "poses.csv", a.window};
             if (a.truth_paths > 0) settings.truth = file.parent_path() / "truth";
-            measure(a, read_ar_session(file), settings, false, table, stages, tally, stop, report);
+            measure(a, read_ar_session(file), settings, false, table, stages, curve, tally, stop, report);
             if (stop.requested()) break;
         }
         table.facts.emplace_back("paths of frames and truth", fmt::format("{}", std::max(a.truth_paths, 2u)));
     }
-    keep({&stages, &table}, a);
+    keep({&stages, &curve, &table}, a);
     print_losses(report);
     return stop.requested() ? kInterrupted : exit_code_of(shortfall(tally, required));
 }

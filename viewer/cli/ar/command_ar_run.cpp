@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct RunArguments {
     std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats, display,
-        require_found;
+        require_found, confidence;
     int frames = 0;
     bool fast = false, window = false, gpu = false;
     std::string monitor, eyes;
@@ -35,7 +35,7 @@ void check_arguments(RunArguments const& a, ArSession const& session)
 {
     std::vector<std::string> read{a.poses, a.true_poses};
     for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
-    check_outputs({a.frame_table, a.stats, a.video}, read);
+    check_outputs({a.frame_table, a.confidence, a.stats, a.video}, read);
     std::vector<fs::path> folders{folder_of_source(session.frames.source), a.truth};
     if (session.hmd && session.hmd->right) folders.push_back(folder_of_source(session.hmd->right->source));
     std::error_code ignored;
@@ -147,6 +147,8 @@ int run_session(RunArguments const& a, bool poses_only)
         if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
         if (tracker) fmt::print("{}", tracker->describe());
         if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
+        if (!a.confidence.empty())
+            gi::write_text(a.confidence, to_csv(confidence_curve(truth.errors().poses.estimates())));
         fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recorded);
         print_losses(report);
     };
@@ -198,7 +200,10 @@ void add_session_options(CLI::App& c, RunArguments& a)
     c.add_option("--display", a.display,
                  "Display file whose tracker gives the camera pose, instead of markers (docs/displays.md)");
     declare_require_found(c, a.require_found);
-    c.add_option("--true-poses", a.true_poses, "True camera poses (CSV or TUM), to report the pose error");
+    CLI::Option* const truth =
+        c.add_option("--true-poses", a.true_poses, "True camera poses, to report the pose error and its jumps");
+    c.add_option("--confidence-table", a.confidence, "CSV file: error of the poses by their confidence")
+        ->needs(truth);
 }
 
 } // namespace
@@ -226,8 +231,8 @@ void add_ar_run(CLI::App& ar, int& exit_code)
         ->needs(hmd);
     run_command->add_option("--truth", run->truth,
                             "Folder of reference pictures, with the virtual objects as real ones, to report FLIP");
-    for (char const* other :
-         {"--window", "--out", "--video", "--record-input", "--table", "--truth", "--true-poses"})
+    for (char const* other : {"--window", "--out", "--video", "--record-input", "--table", "--truth",
+                              "--true-poses", "--confidence-table"})
         hmd->excludes(run_command->get_option(other));
     run_command
         ->add_flag("--gpu", run->gpu, "Composite on the window's GPU: at most 1 different per byte, no counts")
