@@ -16,7 +16,7 @@ public:
           detector_(ar::read_marker_map(session.markers))
     {
         if (!poses.empty())
-            poses_ = ar::read_poses(poses);
+            poses_ = ar::read_poses(poses, ar::CameraAxes::vision, session.frames.options.frames_per_s);
         else if (session.tracked)
             poses_ = recorded_poses(*session.tracked, report);
     }

@@ -111,7 +111,8 @@ int run_session(RunArguments const& a, bool poses_only)
     o.pace = a.fast ? ar::Pace::fastest : ar::Pace::own;
     o.find_poses_only = poses_only;
     if (a.gpu) o.composite = CompositeBy::window;
-    if (!a.poses.empty()) o.poses = ar::read_poses(a.poses);
+    if (!a.poses.empty())
+        o.poses = ar::read_poses(a.poses, ar::CameraAxes::vision, session.frames.options.frames_per_s);
     gi::Report report;
     std::optional<TrackedCamera> tracker;
     if (session.tracked) {
@@ -219,7 +220,9 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     run_command
         ->add_option("--record-input", run->record_input, "Folder to create: the camera's frames as a session")
         ->excludes("--fast");
-    run_command->add_option("--poses", run->poses, "Camera poses (CSV or TUM), instead of using the markers");
+    run_command->add_option(
+        "--poses", run->poses,
+        "Camera poses (CSV, TUM, COLMAP images.txt, Nuke .chan, Blender .json), instead of using the markers");
     CLI::Option* const window =
         run_command->add_flag("--window", run->window, "Show a window: S before/after, H panel, Escape ends");
     run_command->add_option("--monitor", run->monitor, "Full screen on the monitor with this number or name")
