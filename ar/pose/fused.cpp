@@ -143,10 +143,9 @@ PoseEstimate PoseFusion::next(double time_s, PoseEstimate const& estimate)
         h.log_weight += settings_.evidence * std::log(settings_.outlier_density);
         next.push_back(h);
     }
+    double const density = estimate.ambiguous ? settings_.ambiguous_restart_density : settings_.restart_density;
     for (Measured const& m : all)
-        next.push_back(
-            begun(m, settings_.evidence *
-                         (m.log_fit + (hypotheses_.empty() ? 0 : std::log(settings_.restart_density)))));
+        next.push_back(begun(m, settings_.evidence * (m.log_fit + (hypotheses_.empty() ? 0 : std::log(density)))));
     hypotheses_ = std::move(next);
     prune();
 

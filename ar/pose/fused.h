@@ -19,8 +19,8 @@ struct FusionSettings {
     double turning = 1;                      ///< likewise of the angular acceleration, rad^2/s^3
     double speed_m_s = 0.5, speed_rad_s = 1; ///< standard deviations of a new track's velocity
     /// Probability densities, per m^3 rad^3, of a pose that has nothing to do with the camera's, and of one that
-    /// begins a new track.
-    double outlier_density = 1e-2, restart_density = 1e-3;
+    /// begins a new track: a clear one may well (frames may be stills), one of two less so.
+    double outlier_density = 1e-2, restart_density = 0.2, ambiguous_restart_density = 1e-3;
     /// Weight of a frame's evidence: less than 1, since errors of successive frames are not independent.
     double evidence = 0.5;
     std::size_t hypotheses = 8;   ///< kept at most

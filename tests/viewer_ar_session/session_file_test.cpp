@@ -107,6 +107,8 @@ pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
     EXPECT_EQ(cautious.pose.trust.fade_s, 0);
     EXPECT_EQ(parse_ar_session(kLeastSession + "pose: {tracker: head, hold_s: 0.2}\n", "s.yaml").pose.trust.hold_s,
               0.2);
+    EXPECT_EQ(parse_ar_session(kLeastSession + "pose: {features: maps/m.txt}\n", "there/s.yaml").pose.features,
+              "there/maps/m.txt");
     EXPECT_TRUE(parse_ar_session(kLeastSession + "pose: {fuse: true}\n", "s.yaml").pose.fused);
     EXPECT_NE(session_refusal(kLeastSession + "pose: {tripod: true, fuse: true}\n").find("averaged"),
               std::string::npos);
