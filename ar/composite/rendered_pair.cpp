@@ -23,4 +23,15 @@ void check(RenderedPair const& pair, cv::Size size)
     if (!pair.direct.empty()) require(pair.direct, CV_32FC3, "direct");
 }
 
+RenderedPair faded(RenderedPair const& pair, double share)
+{
+    RenderedPair f;
+    f.without = pair.without;
+    cv::subtract(pair.with, pair.without, f.with);
+    cv::scaleAdd(f.with, share, pair.without, f.with);
+    f.coverage = share * pair.coverage;
+    if (!pair.direct.empty()) f.direct = share * pair.direct;
+    return f;
+}
+
 } // namespace ar

@@ -20,4 +20,8 @@ struct RenderedPair {
 /// @throws gi::InputError if types or sizes are not those above, or `size` is not empty and differs
 void check(RenderedPair const& pair, cv::Size size = {});
 
+/// The pair with `share` (0 to 1) of the change by virtual objects: light, shadows and coverage alike. Where the
+/// pair does not differ, the result does not either.
+RenderedPair faded(RenderedPair const& pair, double share);
+
 } // namespace ar

@@ -1,5 +1,6 @@
 #include "ar/pipeline/desk.h"
 
+#include "gi/core/rng.h"
 #include "gi/scene/generate/builder.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/generate/procedural_texture.h"
@@ -79,6 +80,31 @@ void add_table(gi::SceneBuilder& b)
             b.box(wood, {x, kFloor, z}, {x + 0.05f, -0.04f, z + 0.05f});
 }
 
+/// A value in [0, 1) for each cell of a grid.
+float cell_value(vec2 uv, int cells, std::uint64_t seed)
+{
+    auto const x = std::uint64_t(uv.x * float(cells)), y = std::uint64_t(uv.y * float(cells));
+    return float(gi::mix_bits(seed + gi::mix_bits(x + 100003 * y)) >> 40) / float(1 << 24);
+}
+
+void add_cloth(gi::SceneBuilder& b)
+{
+    gi::Material m = matt(vec3{1});
+    float const width = kTableRight - kTableLeft, depth = kTableFront - kTableBack;
+    m.base_color_map.texture = gi::add_procedural_texture(b.scene().textures, 1536, true, [](vec2 uv) {
+        // Squares of 9, 4 and 2 cm, and spots of 6 mm on some of them.
+        float const large = cell_value(uv, 17, 1), middle = cell_value(uv, 37, 2), small = cell_value(uv, 79, 3);
+        float const spots = cell_value(uv, 241, 4) > 0.85f ? 0.35f : 0;
+        float const t = 0.1f + 0.3f * large + 0.25f * middle + 0.2f * small;
+        float const light = glm::clamp(t > 0.5f ? t - spots : t + spots, 0.04f, 0.9f);
+        vec3 const hue = glm::mix(vec3{1, 0.85f, 0.7f}, vec3{0.7f, 0.85f, 1}, cell_value(uv, 17, 5));
+        return vec4(light * hue, 1);
+    });
+    m.base_color_map.row_u = {1 / width, 0};
+    m.base_color_map.row_v = {0, 1 / depth};
+    b.quad(b.add_material("cloth", m), {kTableLeft, 0.0002f, kTableFront}, {width, 0, 0}, {0, 0, -depth});
+}
+
 void add_things(gi::SceneBuilder& b)
 {
     b.box(b.add_material("book", matt({0.12f, 0.2f, 0.45f})), {-0.42f, 0, -0.3f}, {-0.2f, 0.035f, -0.02f});
@@ -90,6 +116,7 @@ void add_things(gi::SceneBuilder& b)
 
 void add_paper(gi::SceneBuilder& b, PaperOnTable const& paper)
 {
+    if (paper.print.empty()) return;
     gi::TexturePool& pool = b.scene().textures;
     gi::Texture texture;
     texture.first = pool.texels.size();
@@ -114,11 +141,12 @@ void add_paper(gi::SceneBuilder& b, PaperOnTable const& paper)
 
 } // namespace
 
-gi::Scene generate_desk(DeskPart part, PaperOnTable const& paper)
+gi::Scene generate_desk(DeskPart part, PaperOnTable const& paper, TableCloth cloth)
 {
     gi::SceneBuilder b;
     if (part == DeskPart::whole) add_room(b);
     add_table(b);
+    if (cloth == TableCloth::printed) add_cloth(b);
     add_things(b);
     add_paper(b, paper);
     return b.finish(part == DeskPart::whole ? "desk" : "desk, near part");

@@ -10,7 +10,7 @@ namespace viewer {
 
 /// A sheet of paper lying on the table, its upper edge away from the camera.
 struct PaperOnTable {
-    cv::Mat print; ///< CV_8UC1, upper row first
+    cv::Mat print; ///< CV_8UC1, upper row first; empty = no paper
     double width_m = 0, depth_m = 0;
     glm::dvec2 near_left_m{0}; ///< x and z of its lower left corner
 };
@@ -21,7 +21,13 @@ enum class DeskPart {
     near,  ///< the table and the objects on it, which receive shadows and light of virtual objects
 };
 
-gi::Scene generate_desk(DeskPart part, PaperOnTable const& paper);
+/// What lies on the table.
+enum class TableCloth {
+    none,
+    printed ///< a cloth with a random pattern of squares of many sizes, for tracking without markers
+};
+
+gi::Scene generate_desk(DeskPart part, PaperOnTable const& paper, TableCloth cloth = TableCloth::none);
 
 /// A figure 0.36 m tall that walks in place, and a red ball; both stand on y = 0.
 gi::Scene generate_statue();

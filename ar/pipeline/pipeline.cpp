@@ -60,10 +60,14 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       light_(session),
       compositor_(camera.photometry,
                   with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),
-      tracker_(session.pose.tracker),
+      tracker_(tracker_settings(session.pose)),
+      trust_(session.pose.trust),
       report_(report),
       prefix_(std::move(prefix))
 {
+    if (!session.pose.features.empty())
+        features_.emplace(ar::read_feature_map(session.pose.features), camera.model);
+    if (session.pose.fused) fusion_.emplace();
     renderer_.set_environment(light_.begin());
     renderer_.choose(session.render.light);
     finish_.emplace(session, camera.model, markers,
@@ -75,13 +79,15 @@ ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const&
                                       gi::StopRequest const& stop)
 {
     ar::CameraModel const& pinhole = finish_->pinhole();
-    ar::Pose const& world_from_camera = found.pose.world_from_camera;
+    ar::Pose const& world_from_camera = *found.used.world_from_camera;
     PairPictures const p =
         renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
                          session_.render.paths, time_s, session_.render.denoise, stop);
     FinishFrame frame{{}, world_from_camera, time_s, exposure.time_s};
     if (finish_->needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
-    return (*finish_)(p, frame, finish_->needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+    ar::RenderedPair const pair =
+        (*finish_)(p, frame, finish_->needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+    return found.used.shown < 1 ? ar::faded(pair, found.used.shown) : pair;
 }
 
 void ArPipeline::count_some(char const* what, std::size_t n)
@@ -92,12 +98,18 @@ void ArPipeline::count_some(char const* what, std::size_t n)
 void ArPipeline::report_poses()
 {
     ar::TrackerCounts const& t = tracker_.counts();
+    if (features_) {
+        ar::FeatureTrackerCounts const& f = features_->counts();
+        count_some("frames recognised anew by features", f.relocated);
+        count_some("frames whose features were not recognised", f.not_relocated);
+    }
     count_some("poses taken", t.taken);
     count_some("poses missed", t.missed);
     count_some("poses refused as jumps", t.jumps_refused);
     count_some("jumps believed", t.jumps_believed);
     count_some("moves of the tripod", t.moves);
-    count_some("poses predicted", predicted_);
+    for (std::size_t k = 0; k < ar::kPoseStates; ++k)
+        count_some(("frames " + ar::name_of(ar::PoseState(k))).c_str(), trust_.counts()[k]);
 }
 
 void ArPipeline::report_finish()
@@ -116,7 +128,7 @@ void ArPipeline::report_finish()
     if (f.added_sigma_px > 0) report_.count("blur that was added (px)", f.added_sigma_px);
 }
 
-ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
+ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<KnownPose> const& known,
                           std::optional<double> begun_s)
 {
     if (frame.size_px != camera_.model.size_px)
@@ -130,18 +142,27 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<a
     cv::Mat const gray = ar::gray_of(frame);
     r.times.decode_ms = lap();
     if (known) {
-        r.pose.failure = ar::PoseFailure::none;
-        r.pose.world_from_camera = *known;
-        r.pose.confidence = 1;
+        if (known->world_from_camera) {
+            r.pose.failure = ar::PoseFailure::none;
+            r.pose.world_from_camera = *known->world_from_camera;
+            r.pose.confidence = 1;
+        }
+        r.used = trust_.next(time_s, {known->world_from_camera, {}, r.pose.found()});
     } else {
-        r.sighting = detector_.next(gray);
-        r.times.detect_ms = lap();
-        r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
-        tracker_.add(time_s, r.pose);
-        if (use_pose(session_.pose, tracker_, time_s, r.pose)) ++predicted_;
-        report_poses();
-        r.times.pose_ms = lap();
+        if (features_) {
+            r.pose = features_->next(time_s, gray, tracker_.expected(time_s), r.sighting);
+            r.times.detect_ms = lap();
+        } else {
+            r.sighting = detector_.next(gray);
+            r.times.detect_ms = lap();
+            r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
+        }
+        if (fusion_) r.pose = fusion_->next(time_s, r.pose);
+        ar::Taken const taken = tracker_.add(time_s, r.pose);
+        r.used = trust_.next(time_s, offered_pose(session_.pose, tracker_, time_s, r.pose, taken));
     }
+    report_poses();
+    r.times.pose_ms = lap();
     r.rgb = r.camera;
     r.done_s = lap.last_s();
     return r;
@@ -152,12 +173,14 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
 {
     Lap lap(r.done_s);
     r.times.wait_ms = lap();
-    if (r.pose.found()) {
-        if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
-                                     r.pose.world_from_camera.rotation, time_s)) {
-            renderer_.set_environment(std::move(map));
-            light_picture_ = picture_of_light(light_.map());
-        }
+    if (r.used.world_from_camera) {
+        // Only a measured pose tells which direction a pixel is light from.
+        if (r.used.state == ar::PoseState::tracked)
+            if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
+                                         r.used.world_from_camera->rotation, time_s)) {
+                renderer_.set_environment(std::move(map));
+                light_picture_ = picture_of_light(light_.map());
+            }
         r.times.light_ms = lap();
         r.pair = rendered(r, frame.exposure, time_s, stop);
         r.times.render_ms = lap();

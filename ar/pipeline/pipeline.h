@@ -4,11 +4,14 @@
 
 #include "ar/camera/frame.h"
 #include "ar/composite/composite.h"
+#include "ar/features/feature_tracker.h"
 #include "ar/markers/detect.h"
 #include "ar/pipeline/pair_finish.h"
 #include "ar/pipeline/pair_renderer.h"
 #include "ar/pipeline/place_light.h"
+#include "ar/pose/fused.h"
 #include "ar/pose/tracker.h"
+#include "ar/pose/trust.h"
 
 namespace viewer {
 
@@ -29,11 +32,20 @@ struct ArCamera {
 /// @throws gi::InputError if the frames' size differs from the calibration's
 void check_size(glm::ivec2 frames_px, ArCamera const& camera);
 
+/// A camera pose that is not estimated from the frame, but comes from a tracker or a file; nothing: that has none
+/// for this frame.
+struct KnownPose {
+    KnownPose(std::optional<ar::Pose> const& world_from_camera_) : world_from_camera(world_from_camera_) {}
+    KnownPose(ar::Pose const& world_from_camera_) : world_from_camera(world_from_camera_) {}
+    std::optional<ar::Pose> world_from_camera;
+};
+
 struct ArResult {
     cv::Mat rgb;    ///< CV_8UC3; without a pose: the camera's frame unchanged
     cv::Mat camera; ///< the camera's frame
     ar::Sighting sighting;
-    ar::PoseEstimate pose;
+    ar::PoseEstimate pose; ///< the frame's own estimate, or the known pose
+    ar::UsedPose used;     ///< what the frame is composited with
     ar::CompositeCounts counts;
     std::optional<ar::RenderedPair> pair; ///< in the camera's lens
     cv::Mat light;                        ///< CV_8UC3 RGB, thumbnail of the environment map used; empty = no map
@@ -58,12 +70,12 @@ public:
 
     /// Finds the camera's pose.
     /// @param time_s   since the first frame: time for animation clips, the camera's motion and the light
-    /// @param known    camera pose to use instead of estimating it from the frame
+    /// @param known    use this camera pose instead of estimating it from the frame
     /// @param begun_s  steady clock, start of the time measurement; nothing = now
     /// @throws gi::InputError the frame cannot be decoded or has another size than the calibration
-    ArResult find(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known = {},
+    ArResult find(ar::Frame const& frame, double time_s, std::optional<KnownPose> const& known = {},
                   std::optional<double> begun_s = {});
-    /// Adds the virtual objects if a camera pose was found.
+    /// Adds the virtual objects, as far as `r.used` shows them.
     /// @param r  result of `find` for the same frame
     void add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
              CompositeBy composite = CompositeBy::pipeline);
@@ -85,8 +97,10 @@ private:
     PlaceLight light_;
     std::optional<PairFinish> finish_;
     ar::Compositor compositor_;
+    std::optional<ar::FeatureTracker> features_; ///< instead of the detector
+    std::optional<ar::PoseFusion> fusion_;
     ar::PoseTracker tracker_;
-    std::uint64_t predicted_ = 0; ///< frames
+    ar::PoseTrust trust_;
     cv::Mat light_picture_;
     gi::Report& report_;
     std::string prefix_;

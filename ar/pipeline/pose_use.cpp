@@ -2,21 +2,33 @@
 
 namespace viewer {
 
-bool use_pose(ArPoseUse const& use, ar::PoseTracker const& track, double time_s, ar::PoseEstimate& pose)
+ar::TrackerSettings tracker_settings(ArPoseUse const& use)
 {
-    bool const found = pose.found();
-    if (!(found ? use.filtered : use.predict_s > 0)) return false;
+    ar::TrackerSettings settings = use.tracker;
+    settings.least_confidence = use.trust.least_confidence;
+    return settings;
+}
+
+ar::OfferedPose offered_pose(ArPoseUse const& use, ar::PoseTracker const& track, double time_s,
+                             ar::PoseEstimate const& estimate, ar::Taken taken)
+{
+    ar::OfferedPose offered;
+    offered.is_estimated = estimate.found();
+    // Of an ambiguous estimate that jumps, the other pose may be the true one.
+    bool const is_doubtful = taken == ar::Taken::jump && estimate.ambiguous;
+    bool const is_confident = estimate.found() && estimate.confidence >= use.trust.least_confidence;
     ar::TrackedPose const tracked = track.at(time_s);
-    // An estimate refused as a jump is replaced, too: the newest accepted one is older.
-    double const oldest_s = found ? use.tracker.predict_s : use.predict_s;
-    bool const stands = use.tracker.motion == ar::CameraMotion::tripod && found;
-    if (!tracked.world_from_camera || (!stands && tracked.age_s > oldest_s)) return false;
-    if (!found) {
-        pose.failure = ar::PoseFailure::none;
-        pose.confidence = tracked.confidence;
+    if (use.filtered && tracked.world_from_camera) {
+        // An estimate refused as a jump is replaced, too: the newest accepted one is older.
+        bool const stands = use.tracker.motion == ar::CameraMotion::tripod && estimate.found();
+        if (stands || (is_confident && tracked.age_s <= use.tracker.predict_s))
+            offered.trusted = tracked.world_from_camera;
+    } else if (is_confident && !is_doubtful) {
+        offered.trusted = estimate.world_from_camera;
     }
-    pose.world_from_camera = *tracked.world_from_camera;
-    return !found;
+    if (use.predict_s > 0 && tracked.world_from_camera && tracked.age_s <= use.predict_s)
+        offered.predicted = tracked.world_from_camera;
+    return offered;
 }
 
 } // namespace viewer

@@ -1,13 +1,18 @@
 #pragma once
-// Selects the pose for a frame: its own estimate, or the tracker's filtered or predicted one.
+// What is known about a frame's pose: its own estimate, if it can be trusted, or the tracker's filtered or
+// predicted pose.
 
 #include "ar/pose/tracker.h"
+#include "ar/pose/trust.h"
 #include "ar/scene/session_file.h"
 
 namespace viewer {
 
-/// @param track  must already have the estimate  @param pose  in: the estimate; out: the pose to use
-/// @return true if the frame had no pose and gets a predicted one
-bool use_pose(ArPoseUse const& use, ar::PoseTracker const& track, double time_s, ar::PoseEstimate& pose);
+/// The tracker's settings, with the session's least confidence.
+ar::TrackerSettings tracker_settings(ArPoseUse const& use);
+
+/// @param track  must already have the estimate  @param taken  its answer
+ar::OfferedPose offered_pose(ArPoseUse const& use, ar::PoseTracker const& track, double time_s,
+                             ar::PoseEstimate const& estimate, ar::Taken taken);
 
 } // namespace viewer

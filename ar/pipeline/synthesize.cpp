@@ -3,6 +3,7 @@
 #include "ar/calibration/calibration_file.h"
 #include "ar/markers/draw.h"
 #include "ar/markers/marker_map_file.h"
+#include "ar/pipeline/quick_view.h"
 #include "ar/pose/pose_file.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
@@ -21,8 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Squares are 25 pixels wide at 1 m in pictures of 640 x 480.
-ar::MarkerMap synthetic_markers()
+ar::MarkerMap synthetic_markers(DeskMarkers which)
 {
+    glm::dquat const flat = glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0));
+    if (which == DeskMarkers::one) return {{{"DICT_4X4_50", 7, 0.07, {flat, {0.05, 0.0005, 0.15}}}}, {}, {}};
     ar::CharucoBoard board;
     board.squares_x = 7;
     board.squares_y = 5;
@@ -30,7 +33,7 @@ ar::MarkerMap synthetic_markers()
     board.marker_m = 0.034;
     board.dictionary = "DICT_4X4_50";
     // Flat on the table, its top away from the camera.
-    board.world_from_board = {glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0)), {-0.1575, 0.0005, 0.32}};
+    board.world_from_board = {flat, {-0.1575, 0.0005, 0.32}};
     return {{}, {board}, {}};
 }
 
@@ -42,7 +45,7 @@ PaperOnTable paper_of(ar::MarkerMap const& map)
     paper.print = ar::draw(sheet, dots_per_m);
     paper.width_m = paper.print.cols / dots_per_m;
     paper.depth_m = paper.print.rows / dots_per_m;
-    glm::dvec3 const corner = map.boards[0].world_from_board * glm::dvec3(-sheet.origin_m, 0);
+    glm::dvec3 const corner = ar::world_from_thing(map, 0) * glm::dvec3(-sheet.origin_m, 0);
     paper.near_left_m = {corner.x, corner.z};
     return paper;
 }
@@ -62,13 +65,20 @@ void write_probe(fs::path const& file, cv::Mat const& probe, gi::Report& report)
     gi::write_exr(file, picture, gi::PixelType::single, report);
 }
 
+std::string quick_text(SynthesizeOptions const& o)
+{
+    if (!o.quick) return o.apart ? ", apart" : "";
+    constexpr char const* names[]{"board", "one", "none"};
+    return fmt::format(", quick, markers: {}{}", names[std::size_t(o.markers)], o.apart ? ", apart" : "");
+}
+
 std::string options_text(SynthesizeOptions const& o)
 {
     return fmt::format(
         "# Made by lightwell ar synthesize: {} x {} px, {} frames at {} Hz, {} paths, {} of the camera's "
         "pixels{}\n",
         o.size_px.x, o.size_px.y, o.frames, o.rate_hz, o.quality.paths, o.quality.resolution,
-        o.quality.denoise ? ", denoised" : "");
+        (o.quality.denoise ? ", denoised" : "") + quick_text(o));
 }
 
 std::string session_text(SynthesizeOptions const& o)
@@ -84,6 +94,8 @@ render: {{paths: 4, resolution: 1}}
 )",
                                          o.rate_hz);
 }
+
+TableCloth cloth_of(SynthesizeOptions const& o) { return o.quick ? TableCloth::printed : TableCloth::none; }
 
 /// Refuses a folder whose frames were made with other options.
 void check_folder(SynthesizeOptions const& o)
@@ -109,14 +121,15 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::
     calibration.noise = noise;
     calibration.provenance = {{"made_by", "lightwell_ar_synthesize"}};
     ar::write_calibration(o.folder / "camera.yaml", calibration);
-    ar::write_marker_map(o.folder / "markers.yaml", markers);
+    ar::write_marker_map(o.folder / "markers.yaml", markers); // defines the world, also where none is printed
     gi::write_text(o.folder / "poses.csv", ar::format_poses(poses));
-    gi::write_glb(o.folder / "near.glb", generate_desk(DeskPart::near, paper), report);
+    gi::write_glb(o.folder / "near.glb", generate_desk(DeskPart::near, paper, cloth_of(o)), report);
     gi::write_glb(o.folder / "statue.glb", generate_statue(), report);
     SyntheticQuality fine = o.quality;
     fine.paths = std::max(4 * fine.paths, 8u);
     cv::Mat const probe =
-        synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, 128, fine, stop, report);
+        o.quick ? quick_sky(128)
+                : synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, 128, fine, stop, report);
     if (stop.requested()) return; // do not keep an unfinished probe
     write_probe(o.folder / "probe.exr", probe, report);
     gi::write_text(o.folder / "session.yaml", session_text(o));
@@ -126,6 +139,12 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::
 
 int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Report& report)
 {
+    if (!o.quick && o.markers != DeskMarkers::board)
+        throw gi::InputError("another print than the board", "the reference renderer's desk has a board",
+                             "add --quick");
+    if (o.quick && o.truth)
+        throw gi::InputError("reference pictures of a quick session", "they would have no shadows",
+                             "add --no-truth");
     check_folder(o);
     std::error_code problem;
     fs::create_directories(o.folder / "frames", problem);
@@ -134,14 +153,17 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
         throw gi::InputError("'" + o.folder.string() + "' cannot be made", problem.message(),
                              "choose another folder");
     SyntheticCamera const camera = synthetic_camera(o.size_px);
-    ar::MarkerMap const markers = synthetic_markers();
-    PaperOnTable const paper = paper_of(markers);
+    ar::MarkerMap const markers = synthetic_markers(o.markers);
+    PaperOnTable const paper = o.markers == DeskMarkers::none ? PaperOnTable{} : paper_of(markers);
     std::vector<ar::TimedPose> poses;
     for (int f = 0; f < o.frames; ++f)
-        poses.push_back({f / o.rate_hz, synthetic_pose(o.frames > 1 ? double(f) / (o.frames - 1) : 0)});
+        poses.push_back({f / o.rate_hz, (o.apart ? synthetic_pose_apart : synthetic_pose)(
+                                            o.frames > 1 ? double(f) / (o.frames - 1) : 0)});
     if (!fs::exists(o.folder / "session.yaml")) write_setup(o, camera, markers, paper, poses, stop, report);
 
-    gi::Scene const empty = generate_desk(DeskPart::whole, paper);
+    gi::Scene const empty = generate_desk(DeskPart::whole, paper, cloth_of(o));
+    std::optional<QuickView> quick;
+    if (o.quick) quick.emplace(empty, report);
     gi::Scene full = empty;
     gi::append(full, generate_statue(), "virtual", glm::translate(gi::dmat4(1), gi::dvec3(-0.02, 0, -0.1)));
     gi::ProgressBar bar("synthesize");
@@ -151,8 +173,10 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
         auto const picture = [&](char const* folder, gi::Scene const& scene) {
             fs::path const file = o.folder / folder / fmt::format("{:06}.png", f);
             if (fs::exists(file)) return;
-            cv::Mat const radiance = synthetic_radiance(scene, poses[f].time_s, camera.model,
-                                                        poses[f].world_from_camera, o.quality, f, stop, report);
+            cv::Mat const radiance =
+                quick ? quick->radiance(camera.model, poses[f].world_from_camera)
+                      : synthetic_radiance(scene, poses[f].time_s, camera.model, poses[f].world_from_camera,
+                                           o.quality, f, stop, report);
             if (!stop.requested()) write_png(file, synthetic_frame(radiance, camera, f));
         };
         picture("frames", empty);

@@ -9,13 +9,21 @@
 
 namespace viewer {
 
+/// What is printed and lies on the table.
+enum class DeskMarkers { board, one, none };
+
 struct SynthesizeOptions {
     std::filesystem::path folder;
     glm::ivec2 size_px{640, 480};
     int frames = 300;
     double rate_hz = 30;
     SyntheticQuality quality;
-    bool truth = true; ///< also write the pictures with the virtual objects
+    /// Rasterised with a sky as the only light, without shadows (ar/pipeline/quick_view.h), and with a printed
+    /// cloth on the table: for tracking. Not with `truth`.
+    bool quick = false;
+    DeskMarkers markers = DeskMarkers::board; ///< others only with `quick`
+    bool apart = false;                       ///< the camera goes another way (synthetic_pose_apart)
+    bool truth = true;                        ///< also write the pictures with the virtual objects
 };
 
 /// Existing frames are kept, so an interrupted run can be continued.

@@ -66,6 +66,18 @@ ar::Pose synthetic_pose(double t)
                    at);
 }
 
+ar::Pose synthetic_pose_apart(double t)
+{
+    double const turn = 2 * glm::pi<double>() * t;
+    double const azimuth = glm::radians(14 * std::sin(1.5 * turn) + 5) + 0.02 * std::sin(6 * turn);
+    double const elevation = glm::radians(36 + 6 * std::cos(1.3 * turn)) + 0.01 * std::sin(8 * turn + 2);
+    double const distance = 0.9 + 0.08 * std::sin(1.7 * turn + 1) + 0.004 * std::sin(13 * turn);
+    glm::dvec3 const at(0.03 * std::sin(2 * turn), 0.06, 0.03 * std::cos(2.5 * turn));
+    return looking(at + distance * glm::dvec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                                              std::cos(elevation) * std::cos(azimuth)),
+                   at);
+}
+
 cv::Mat synthetic_radiance(gi::Scene const& scene, std::optional<double> time_s, ar::CameraModel const& camera,
                            ar::Pose const& world_from_camera, SyntheticQuality const& quality, std::uint64_t seed,
                            gi::StopRequest const& stop, gi::Report& report)

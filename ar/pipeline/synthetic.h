@@ -25,6 +25,8 @@ SyntheticCamera synthetic_camera(glm::ivec2 size_px);
 /// Camera pose around the middle of the table at a distance of about 1 m, above it: smooth, with a little handheld
 /// sway. @param t  0 to 1
 ar::Pose synthetic_pose(double t);
+/// Another way around the table, nearer and faster, for tracking by a map that was made along the first.
+ar::Pose synthetic_pose_apart(double t);
 
 struct SyntheticQuality {
     std::uint32_t paths = 48; ///< of the reference renderer, per pixel of the camera

@@ -206,6 +206,7 @@ void decide(PoseEstimate& e, CameraModel const& camera, Agreed& chosen, std::opt
     }
     if (swap) std::swap(other, chosen.refined);
     e.other = other.world_from_camera;
+    e.other_covariance = scale * *other.covariance;
     e.other_rms_px = rms_px(camera, chosen.points, other.world_from_camera);
     e.other_likelihood = likelihood();
 }
@@ -241,6 +242,12 @@ std::string name_of(PoseFailure failure)
 {
     constexpr char const* names[]{"none", "too few points", "points on a line", "no agreement", "undetermined"};
     return names[std::size_t(failure)];
+}
+
+double confidence_of(double fit, double likelihood, glm::dvec3 const& rotation_sigma_deg)
+{
+    double const turn = std::max({rotation_sigma_deg.x, rotation_sigma_deg.y, rotation_sigma_deg.z});
+    return fit * likelihood / (1 + turn * turn);
 }
 
 PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, std::optional<Pose> const& last)
@@ -285,10 +292,10 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, 
     e.world_from_camera.position_m += all.centre_m;
     if (e.other) e.other->position_m += all.centre_m;
     count(e, sighting, best->points);
-    double const turn = std::max({e.rotation_sigma_deg.x, e.rotation_sigma_deg.y, e.rotation_sigma_deg.z});
     double const own_likelihood = std::max(1 - e.other_likelihood, e.ambiguous && last ? 0.5 : 0);
-    e.confidence = double(e.points_used) / double(e.points_used + e.points_rejected) *
-                   std::min(1.0, 2 / std::sqrt(scale)) * own_likelihood / (1 + turn * turn);
+    e.fit =
+        double(e.points_used) / double(e.points_used + e.points_rejected) * std::min(1.0, 2 / std::sqrt(scale));
+    e.confidence = confidence_of(e.fit, own_likelihood, e.rotation_sigma_deg);
     return e;
 }
 

@@ -36,6 +36,7 @@ struct PoseEstimate {
     glm::dvec3 rotation_sigma_deg{0}; ///< about the camera's axes
     /// Second solution for planar points, if it differs by more than half a degree from the first.
     std::optional<Pose> other;
+    cv::Matx66d other_covariance = cv::Matx66d::zeros(); ///< of the other pose, as `covariance`
     double other_rms_px = 0;
     /// Likelihood of the other pose: exp(-d/2) / (1 + exp(-d/2)), d = difference of their chi^2. 0 to 1; above 0.5
     /// only if `last` selected the pose that fits the picture less well.
@@ -44,9 +45,13 @@ struct PoseEstimate {
     /// 0..1: share of points used, times min(1, 2 / residuals in sigmas), times (1 - other_likelihood; at least
     /// 0.5 where `last` decided), over 1 + (largest standard deviation of the rotation in degrees)^2.
     double confidence = 0;
+    double fit = 0; ///< the first two factors of the confidence
 
     bool found() const { return failure == PoseFailure::none; }
 };
+
+/// PoseEstimate::confidence. @param likelihood  of the pose against others
+double confidence_of(double fit, double likelihood, glm::dvec3 const& rotation_sigma_deg);
 
 /// Takes initial estimates from all points and from single markers (IPPE, SQPnP), and selects by the number of
 /// agreeing points. Then refines robustly, rejects whole markers and single points that disagree (by 5 sigmas;

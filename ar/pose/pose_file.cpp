@@ -1,5 +1,6 @@
 #include "ar/pose/pose_file.h"
 
+#include "ar/pose/pose_import.h"
 #include "gi/core/rotation.h"
 #include "gi/core/text.h"
 
@@ -94,7 +95,7 @@ std::vector<TimedPose> parse_poses(std::string_view text, std::string const& fil
     return poses;
 }
 
-std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes axes)
+std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes axes, double frames_per_s)
 {
     std::error_code error;
     std::uintmax_t const size = std::filesystem::file_size(file, error);
@@ -107,7 +108,18 @@ std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes 
                              "cut it into parts");
     std::ostringstream text;
     text << in.rdbuf();
-    return parse_poses(text.str(), file.string(), axes);
+    std::string const whole = text.str();
+    switch (pose_format(whole, file.string())) {
+    case PoseFormat::colmap:
+        return parse_colmap_images(whole, file.string(), frames_per_s);
+    case PoseFormat::nuke_chan:
+        return parse_chan(whole, file.string(), frames_per_s);
+    case PoseFormat::blender_json:
+        return parse_blender_json(whole, file.string());
+    case PoseFormat::csv_or_tum:
+        break;
+    }
+    return parse_poses(whole, file.string(), axes);
 }
 
 std::string format_poses(std::vector<TimedPose> const& poses)

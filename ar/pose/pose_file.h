@@ -32,7 +32,9 @@ enum class CameraAxes {
 std::vector<TimedPose> parse_poses(std::string_view text, std::string const& file,
                                    CameraAxes axes = CameraAxes::vision);
 /// @throws gi::InputError, also for files above 1 GiB or that cannot be read
-std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes axes = CameraAxes::vision);
+/// and of the other formats of ar/pose/pose_import.h, whose frames are numbered at this rate
+std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes axes = CameraAxes::vision,
+                                  double frames_per_s = 30);
 /// Formats as CSV with full precision.
 std::string format_poses(std::vector<TimedPose> const& poses);
 

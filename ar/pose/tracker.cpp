@@ -64,15 +64,15 @@ void PoseTracker::begin(double captured_s, Pose const& pose)
     jump_seen_ = 0;
 }
 
-void PoseTracker::add(double captured_s, PoseEstimate const& e)
+Taken PoseTracker::add(double captured_s, PoseEstimate const& e)
 {
     if (!e.found() || !(e.confidence >= settings_.least_confidence)) {
         ++counts_.missed;
-        return;
+        return Taken::missed;
     }
     if (!std::isfinite(captured_s) || (newest_s_ && captured_s <= *newest_s_)) {
         ++counts_.late;
-        return;
+        return Taken::late;
     }
     Pose const& pose = e.world_from_camera;
     if (settings_.motion == CameraMotion::tripod) {
@@ -88,7 +88,7 @@ void PoseTracker::add(double captured_s, PoseEstimate const& e)
         jump_s_ = captured_s;
         if (jump_seen_ < settings_.jump_confirmed_by) {
             ++counts_.jumps_refused;
-            return;
+            return Taken::jump;
         }
         ++counts_.jumps_believed;
         begin(captured_s, pose);
@@ -99,6 +99,7 @@ void PoseTracker::add(double captured_s, PoseEstimate const& e)
     }
     confidence_ = e.confidence;
     ++counts_.taken;
+    return Taken::taken;
 }
 
 TrackedPose PoseTracker::at(double time_s) const

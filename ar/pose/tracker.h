@@ -41,6 +41,14 @@ struct TrackedPose {
     double confidence = 0; ///< of the newest estimate; for predicted poses, falling to 0 at lost_after_s
 };
 
+/// What became of an estimate.
+enum class Taken {
+    taken,
+    missed, ///< no pose found, or confidence too low
+    late,   ///< not newer than the one before
+    jump    ///< refused as a jump
+};
+
 struct TrackerCounts {
     std::uint64_t taken = 0;
     std::uint64_t missed = 0; ///< no pose found, or confidence too low
@@ -56,7 +64,7 @@ public:
     /// @throws gi::InputError settings that are not finite or not positive
     explicit PoseTracker(TrackerSettings const& settings = {});
 
-    void add(double captured_s, PoseEstimate const& estimate);
+    Taken add(double captured_s, PoseEstimate const& estimate);
     /// Filtered and predicted pose; for times before the newest estimate, extrapolated backwards equally far.
     TrackedPose at(double time_s) const;
     /// Expected pose at that time, for the argument `last` of `estimate_pose`.

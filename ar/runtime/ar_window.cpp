@@ -95,9 +95,12 @@ void ArWindow::fill_panel(ArFrameRecord const& f)
             ImGui::Text("at %.3f %.3f %.3f m, %d points, %d left out", p.x, p.y, p.z, f.points_used,
                         f.points_rejected);
             ImGui::Text("residual %.2f px, confidence %.2f", f.rms_px, f.confidence);
+        } else if (f.state == ar::PoseState::uncertain) {
+            ImGui::Text("pose not trusted: confidence %.2f", f.confidence);
         } else {
             ImGui::TextUnformatted("no camera: markers out of view?");
         }
+        ImGui::Text("%s, objects shown to %.0f %%", ar::name_of(f.state).c_str(), 100 * f.shown);
         ImGui::Text("decode %.1f  detect %.1f  pose %.1f  render %.1f  composite %.1f ms", f.times.decode_ms,
                     f.times.detect_ms, f.times.pose_ms, f.times.render_ms, f.times.composite_ms);
         ImGui::Text("waited %.1f to be rendered, %.1f to be shown", f.times.wait_ms, f.show_wait_ms);
@@ -170,7 +173,7 @@ void ArWindow::show(ArFrameRecord& record, ArResult const& result)
 {
     take_input();
     if (frames_++ == 0) window_.set_title("Lightwell: augmented reality");
-    if (!record.world_from_camera) ++lost_;
+    if (record.state != ar::PoseState::tracked) ++lost_;
     if (result.light.data != light_.data) {
         light_ = result.light;
         if (!light_.empty()) fill(light_texture_, light_);

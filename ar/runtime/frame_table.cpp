@@ -10,7 +10,7 @@ std::string frame_table(ArSummary const& summary)
         "sequence,captured_s,overtaken,read_ms,age_ms,decode_ms,detect_ms,pose_ms,wait_ms,light_ms,render_ms,"
         "composite_ms,latency_ms,show_wait_ms,present_ms,swapped_ms,"
         "markers,points_used,points_rejected,rms_px,confidence,x_m,y_m,z_m,qx,qy,qz,qw,changed_px,clipped_px,"
-        "negative_values,not_finite_px\n";
+        "negative_values,not_finite_px,state,shown\n";
     for (ArFrameRecord const& f : summary.frames) {
         text += fmt::format("{},{:.6f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},", f.sequence, f.captured_s,
                             f.overtaken, f.read_ms, f.age_ms, f.times.decode_ms, f.times.detect_ms,
@@ -27,8 +27,8 @@ std::string frame_table(ArSummary const& summary)
         } else {
             text += ",,,,,,,";
         }
-        text += fmt::format("{},{},{},{}\n", f.counts.pixels - f.counts.copied, f.counts.clipped,
-                            f.counts.negative, f.counts.not_finite);
+        text += fmt::format("{},{},{},{},{},{:.3f}\n", f.counts.pixels - f.counts.copied, f.counts.clipped,
+                            f.counts.negative, f.counts.not_finite, ar::name_of(f.state), f.shown);
     }
     return text;
 }

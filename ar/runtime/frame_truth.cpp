@@ -20,9 +20,12 @@ FrameTruth::FrameTruth(std::filesystem::path pictures, std::filesystem::path con
 
 void FrameTruth::add(ArFrameRecord const& f, ArResult const& r)
 {
-    if (auto const truth = ar::pose_at(poses_, f.captured_s); truth && f.world_from_camera) {
-        errors_.position_mm.push_back(1e3 * glm::length(f.world_from_camera->position_m - truth->position_m));
-        errors_.rotation_deg.push_back(ar::angle_between_deg(f.world_from_camera->rotation, truth->rotation));
+    auto const truth_pose = ar::pose_at(poses_, f.captured_s);
+    if (truth_pose)
+        errors_.poses.add(f.sequence, *truth_pose, f.estimated, f.confidence, f.state, f.world_from_camera);
+    if (truth_pose && f.world_from_camera) {
+        errors_.position_mm.push_back(1e3 * glm::length(f.world_from_camera->position_m - truth_pose->position_m));
+        errors_.rotation_deg.push_back(ar::angle_between_deg(f.world_from_camera->rotation, truth_pose->rotation));
     }
     if (pictures_.empty()) return;
     cv::Mat truth = cv::imread((pictures_ / fmt::format("{:06}.png", f.sequence)).string(), cv::IMREAD_COLOR);
@@ -55,9 +58,10 @@ std::string describe(FrameErrors const& e)
     line("FLIP elsewhere", e.flip_elsewhere);
     line("  of adding nothing", e.camera_elsewhere);
     if (e.missing > 0) t += fmt::format("no truth of that size: {} frames\n", e.missing);
-    return t.empty()
-               ? t
-               : fmt::format("{:<30} {:>9} {:>9} {:>9}\n", "against the truth", "median", "95 %", "most") + t;
+    std::string const poses = describe(e.poses);
+    return t.empty() ? poses
+                     : fmt::format("{:<30} {:>9} {:>9} {:>9}\n", "against the truth", "median", "95 %", "most") +
+                           t + poses;
 }
 
 } // namespace viewer

@@ -3,13 +3,15 @@
 // true poses.
 
 #include "ar/pose/pose_file.h"
+#include "ar/runtime/pose_truth.h"
 #include "ar/runtime/runner.h"
 
 namespace viewer {
 
 /// One value per frame with known truth.
 struct FrameErrors {
-    std::vector<double> position_mm, rotation_deg;
+    std::vector<double> position_mm, rotation_deg; ///< of the poses that were used
+    PoseTruth poses;
     std::vector<double> flip_affected, flip_elsewhere;     ///< of composites, see TruthErrors
     std::vector<double> camera_affected, camera_elsewhere; ///< of the unchanged camera frame
     std::vector<double> affected_percent;                  ///< of the picture

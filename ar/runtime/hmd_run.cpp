@@ -229,8 +229,8 @@ void run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::St
 std::string describe(ArHmdSummary const& s)
 {
     PassThroughCounts const& f = s.frames;
-    std::string text = fmt::format("{} composites, camera found in {}, {} frames overtaken\nsource: {}{}\n",
-                                   f.frames, f.found, f.overtaken, describe(f.left),
+    std::string text = fmt::format("{} composites, camera found in {}, {} frames overtaken\n{}source: {}{}\n",
+                                   f.frames, f.poses.found(), f.overtaken, describe(f.poses), describe(f.left),
                                    f.end.kind == ar::SourceState::Kind::lost ? "; lost: " + f.end.reason : "");
     if (f.right.delivered > 0) text += fmt::format("right source: {}, {} alone\n", describe(f.right), f.alone);
     if (f.refused > 0) text += fmt::format("refused: {} frames\n", f.refused);

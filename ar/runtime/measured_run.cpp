@@ -54,13 +54,13 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
         session, o,
         [&](ArFrameRecord& f, ArResult const& r) {
             shown_s.push_back(ar::steady_now_s());
-            if (r.pair && !first_frame) {
+            if (r.pair && r.used.world_from_camera && !first_frame) {
                 first_frame.emplace();
                 first_frame->sequence = f.sequence;
                 first_frame->exposure = f.exposure;
                 first_frame->size_px = {r.camera.cols, r.camera.rows};
                 first_frame->planes[0] = r.camera;
-                first_pose = r.pose.world_from_camera;
+                first_pose = *r.used.world_from_camera;
                 first_s = f.captured_s;
             }
             if (r.pair || !m.last.pair) m.last = r;

@@ -153,7 +153,7 @@ void PassThrough::run()
             std::lock_guard const lock(mutex_);
             if (right != nullptr) counts_.right = right->source->counts();
             ++counts_.frames;
-            counts_.found += made->is_found;
+            counts_.poses.add(made->used.state, made->confidence, made->is_estimated);
             newest_ = made;
         } catch (gi::InputError const& e) {
             report_.lose("frames that could not be used", 1, e.what());
@@ -173,19 +173,18 @@ std::shared_ptr<PassThroughFrame> PassThrough::composited(ar::Frame const& frame
     std::optional<ar::Pose> known;
     bool const is_told = !options_.poses.empty() || options_.tracked;
     if (is_told) known = options_.tracked ? options_.tracked(frame) : recorded_pose(options_.poses, time_s);
-    if (is_told && !known) {
-        made->rgb.push_back(ar::rgb_of(frame).clone());
-        if (other != nullptr) made->rgb.push_back(ar::rgb_of(*other).clone());
-        made->done_s = ar::steady_now_s();
-        return made;
-    }
-    ArResult left = sides_[0]->pipeline.find(frame, time_s, known);
+    ArResult left =
+        sides_[0]->pipeline.find(frame, time_s, is_told ? std::optional(KnownPose(known)) : std::nullopt);
     sides_[0]->pipeline.add(left, frame, time_s, stop_);
-    made->is_found = left.pose.found();
+    made->used = left.used;
+    made->is_estimated = left.pose.found();
+    made->confidence = left.pose.confidence;
     made->rgb.push_back(left.rgb.clone());
-    if (other != nullptr && made->is_found) {
-        ar::Pose const world_from_right = left.pose.world_from_camera * session_.hmd->right->left_from_right;
+    if (other != nullptr && left.used.world_from_camera) {
+        ar::Pose const world_from_right = *left.used.world_from_camera * session_.hmd->right->left_from_right;
         ArResult right = sides_[1]->pipeline.find(*other, time_s, world_from_right);
+        right.used = left.used;
+        right.used.world_from_camera = world_from_right;
         sides_[1]->pipeline.add(right, *other, time_s, stop_);
         made->rgb.push_back(right.rgb.clone());
     } else if (other != nullptr) {

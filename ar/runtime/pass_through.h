@@ -4,6 +4,7 @@
 // composited for the same moment of the same world.
 
 #include "ar/capture/frame_source.h"
+#include "ar/runtime/pose_text.h"
 #include "ar/runtime/runner.h"
 #include "gi/core/progress.h"
 
@@ -26,12 +27,15 @@ struct PassThroughOptions {
 struct PassThroughFrame {
     std::uint64_t sequence = 0;
     double captured_s = 0, done_s = 0; ///< steady clock
-    bool is_found = false;             ///< camera pose found; if not, the frames are unchanged
+    ar::UsedPose used;                 ///< of the left camera; without a pose the frames are unchanged
+    bool is_estimated = false;         ///< the frame has an estimate of its own, or a known pose
+    double confidence = 0;             ///< of the frame's own estimate; 0 without one
     std::vector<cv::Mat> rgb;          ///< CV_8UC3, left and right, or one for both
 };
 
 struct PassThroughCounts {
-    std::uint64_t frames = 0, found = 0;
+    std::uint64_t frames = 0;
+    PoseTally poses;
     std::uint64_t overtaken = 0; ///< discarded for a newer one
     std::uint64_t refused = 0;   ///< unusable
     std::uint64_t alone = 0;     ///< left frames without a right frame at the same time

@@ -1,5 +1,6 @@
 // Describes a session's results as text.
 
+#include "ar/runtime/pose_text.h"
 #include "ar/runtime/runner.h"
 #include "gi/core/quantile.h"
 
@@ -15,14 +16,22 @@ Spread spread_of(std::vector<double> values)
     return {gi::quantile_of_sorted(values, 0.5), gi::quantile_of_sorted(values, 0.95), values.back()};
 }
 
+std::size_t count_found(std::vector<ArFrameRecord> const& frames)
+{
+    return std::size_t(std::count_if(frames.begin(), frames.end(),
+                                     [](ArFrameRecord const& f) { return f.state == ar::PoseState::tracked; }));
+}
+
 std::string describe(ArSummary const& s)
 {
     std::size_t const n = s.frames.size();
-    std::size_t const found = std::size_t(
-        std::count_if(s.frames.begin(), s.frames.end(), [](auto const& f) { return bool(f.world_from_camera); }));
+    std::size_t const found = count_found(s.frames);
     std::string text =
         fmt::format("{} frames in {:.2f} s: {:.1f} frames/s; camera found in {} ({:.1f} %)\n", n, s.seconds,
                     n / std::max(s.seconds, 1e-9), found, n > 0 ? 100.0 * double(found) / double(n) : 0);
+    PoseTally poses;
+    for (ArFrameRecord const& f : s.frames) poses.add(f.state, f.confidence, f.estimated.has_value());
+    text += describe(poses);
     text += fmt::format("source: {}{}\n", describe(s.source),
                         s.end.kind == ar::SourceState::Kind::lost ? "; lost: " + s.end.reason : "");
     if (s.overtaken > 0)

@@ -112,14 +112,8 @@ ArResult RunThreads::found_in(FrameInFlight const& w)
 {
     std::optional<double> const begun_s = is_timed_ ? std::optional(w.frame.arrived_s) : std::nullopt;
     if (options_.poses.empty() && !options_.tracked) return pipeline_.find(w.frame, w.time_s, {}, begun_s);
-    if (auto const known = options_.tracked ? options_.tracked(w.frame) : recorded_pose(options_.poses, w.time_s))
-        return pipeline_.find(w.frame, w.time_s, known, begun_s);
-    ArResult r; // pose unknown
-    double const from_s = begun_s ? *begun_s : ar::steady_now_s();
-    r.rgb = r.camera = ar::rgb_of(w.frame);
-    r.done_s = ar::steady_now_s();
-    r.times.decode_ms = 1e3 * (r.done_s - from_s);
-    return r;
+    KnownPose const known = options_.tracked ? options_.tracked(w.frame) : recorded_pose(options_.poses, w.time_s);
+    return pipeline_.find(w.frame, w.time_s, known, begun_s);
 }
 
 void RunThreads::add_all()

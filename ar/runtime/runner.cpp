@@ -33,7 +33,10 @@ ArFrameRecord record_of(FrameInFlight const& w, bool is_timed)
     f.points_rejected = r.pose.points_rejected;
     f.rms_px = r.pose.rms_px;
     f.confidence = r.pose.confidence;
-    if (r.pose.found()) f.world_from_camera = r.pose.world_from_camera;
+    if (r.pose.found()) f.estimated = r.pose.world_from_camera;
+    f.state = r.used.state;
+    f.shown = r.used.shown;
+    f.world_from_camera = r.used.world_from_camera;
     f.counts = r.counts;
     f.show_wait_ms = 1e3 * (ar::steady_now_s() - r.done_s);
     return f;

@@ -49,7 +49,10 @@ struct ArFrameRecord {
     ArTimes times;
     int markers = 0, points_used = 0, points_rejected = 0;
     double rms_px = 0, confidence = 0;
-    std::optional<ar::Pose> world_from_camera;
+    std::optional<ar::Pose> estimated; ///< the frame's own pose, trusted or not
+    ar::PoseState state = ar::PoseState::lost;
+    double shown = 0;                          ///< share of the objects' change that is shown
+    std::optional<ar::Pose> world_from_camera; ///< the pose that was used
     ar::CompositeCounts counts;
 };
 
@@ -82,6 +85,9 @@ struct Spread {
 };
 /// Quantiles as defined in gi/core/quantile.h; zeros for no values.
 Spread spread_of(std::vector<double> values);
+
+/// Number of frames with a trusted pose of their own.
+std::size_t count_found(std::vector<ArFrameRecord> const& frames);
 
 /// Lines of text: median, 95 % quantile and maximum of each stage, frames per second, latency, poses.
 std::string describe(ArSummary const& summary);

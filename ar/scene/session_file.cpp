@@ -155,13 +155,20 @@ private:
     /// Of markers, or of a tracker in their place.
     void read_pose(Yaml const& p)
     {
-        p.only_keys({"tripod", "smoothing", "predict_s", "display", "tracker", "camera_from_sensor",
-                     "world_from_room", "offset_s"});
+        p.only_keys({"tripod", "smoothing", "predict_s", "least_confidence", "hold_s", "fade_s", "fuse",
+                     "features", "display", "tracker", "camera_from_sensor", "world_from_room", "offset_s"});
+        ar::TrustSettings& trust = session_.pose.trust;
+        if (p.has("hold_s")) trust.hold_s = p.at("hold_s").number(0, 10);
+        if (p.has("fade_s")) trust.fade_s = p.at("fade_s").number(0, 10);
         bool is_tracked = false;
         for (char const* key : {"display", "tracker", "camera_from_sensor", "world_from_room", "offset_s"})
             is_tracked |= p.has(key);
         if (!is_tracked) return read_pose_use(p);
-        for (char const* key : {"tripod", "smoothing", "predict_s"})
+        if (p.has("least_confidence"))
+            throw p.at("least_confidence")
+                .error("'least_confidence' beside a tracker", "its poses have no confidence",
+                       "remove one of the two");
+        for (char const* key : {"tripod", "smoothing", "predict_s", "fuse", "features"})
             if (p.has(key))
                 throw p.at(key).error(fmt::format("'{}' beside a tracker", key),
                                       "filter and prediction of trackers are set in the display file",
@@ -190,6 +197,14 @@ private:
                 if (s.has("rotation")) read_one_euro(s.at("rotation"), use.tracker.rotation);
             }
         }
+        if (p.has("features")) use.features = path(p.at("features"));
+        if (p.has("fuse")) {
+            use.fused = p.at("fuse").boolean();
+            if (use.fused && use.tracker.motion == ar::CameraMotion::tripod)
+                throw p.at("fuse").error("fusion of a camera on a tripod", "its poses are averaged",
+                                         "remove one of the two");
+        }
+        if (p.has("least_confidence")) use.trust.least_confidence = p.at("least_confidence").number(0, 1);
         if (p.has("predict_s")) use.predict_s = p.at("predict_s").number(0, 10);
         use.tracker.predict_s = std::max(use.tracker.predict_s, use.predict_s);
         use.tracker.lost_after_s = std::max(use.tracker.lost_after_s, 2 * use.predict_s);

@@ -4,6 +4,7 @@
 #include "ar/capture/open_source.h"
 #include "ar/composite/composite.h"
 #include "ar/pose/tracker.h"
+#include "ar/pose/trust.h"
 #include "ar/scene/hmd_cameras.h"
 #include "ar/scene/proxies.h"
 #include "ar/scene/tracked_pose.h"
@@ -51,9 +52,12 @@ struct ArFinish {
     bool match_blur = false; ///< blur added light as much as the camera's pictures
 };
 
-/// Processing of the poses estimated from frames.
+/// Processing of camera poses. Poses of trackers and files have no confidence and are not filtered.
 struct ArPoseUse {
     ar::TrackerSettings tracker;
+    ar::TrustSettings trust;
+    std::filesystem::path features; ///< map of features instead of markers (ar/features); empty = markers
+    bool fused = false;             ///< fuse the estimates of successive frames (ar/pose/fused.h)
     bool filtered = false; ///< use the tracker's poses (smoothed, or a tripod's mean) instead of each frame's own
     double predict_s = 0;  ///< extrapolate for frames without a pose up to this long after the last one
 };

@@ -104,6 +104,7 @@ std::vector<fs::path> files_read_by(ArSession const& s)
     files.add(files_of_source(s.frames.source));
     files.add(s.camera);
     files.add(s.markers);
+    files.add(s.pose.features);
     files.add(s.light);
     files.add(s.real.scene);
     for (ArProxy const& p : s.real.proxies) files.add(p);

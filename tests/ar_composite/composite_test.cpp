@@ -56,6 +56,37 @@ TEST(Composite, ThatChangesNextToNothingKeepsTheBytes)
     EXPECT_LT(counts.copied, std::size_t(size.area()) / 10);
 }
 
+TEST(Composite, FadesLightShadowsAndCoverageAlike)
+{
+    cv::Size const size(120, 80);
+    cv::Mat const camera = camera_frame(size) * 0.99;
+    RenderedPair pair{random_radiance(size, 1, 0, 1), random_radiance(size, 2, 0, 1), cv::Mat(size, CV_32FC1)};
+    cv::randu(pair.coverage, 0, 1);
+    pair.coverage.rowRange(0, 20) = 0; // shadows and light alone
+    pair.without.rowRange(0, 5).copyTo(pair.with.rowRange(0, 5));
+    Photometry const p = srgb_photometry();
+    CompositeSettings settings;
+    settings.noise.constant = {1e-4f, 1e-4f, 1e-4f};
+    cv::Mat out, full;
+    Compositor(p, settings)(camera, faded(pair, 0), {}, out);
+    EXPECT_TRUE(equal(out, camera)) << "bit for bit";
+    Compositor(p, settings)(camera, faded(pair, 0.4), {}, out);
+    EXPECT_TRUE(equal(out.rowRange(0, 5), camera.rowRange(0, 5))) << "where nothing changes";
+    Compositor quiet{p};
+    quiet(camera, pair, {}, full);
+    quiet(camera, faded(pair, 0.4), {}, out);
+    cv::Mat const from = radiance_of(camera, p), to = radiance_of(full, p), is = radiance_of(out, p);
+    cv::Mat const inside = (full > 0) & (full < 255); // not clamped
+    cv::Mat off = cv::abs(is - (0.6 * from + 0.4 * to)), step = 0.006 + 0.01 * to;
+    std::size_t wrong = 0;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+            for (int c = 0; c < 3; ++c)
+                wrong +=
+                    inside.at<cv::Vec3b>(y, x)[c] > 0 && off.at<cv::Vec3f>(y, x)[c] > step.at<cv::Vec3f>(y, x)[c];
+    EXPECT_EQ(wrong, 0u);
+}
+
 TEST(Composite, IsDebevecsEquation)
 {
     cv::Size const size(120, 80);

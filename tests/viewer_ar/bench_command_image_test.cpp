@@ -43,6 +43,9 @@ TEST(ArBench, TellsSpeedWithItsError)
     }
     Json const stages = Json::parse(file_text(folder / "table/ar_stages.json"));
     EXPECT_GT(stages.at("rows").size(), 10u);
+    Json const curve = Json::parse(file_text(folder / "table/ar_confidence.json"));
+    ASSERT_GT(curve.at("rows").size(), 0u); // by rising confidence
+    EXPECT_LT(value_of(curve, "position_median_mm", curve.at("rows").size() - 1), 10);
     EXPECT_TRUE(std::filesystem::exists(folder / "desks"));
 }
 

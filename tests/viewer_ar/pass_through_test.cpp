@@ -66,7 +66,7 @@ TEST_F(TwoCameras, AreEachCompositedFromWhereTheyAre)
     ASSERT_TRUE(made);
     PassThroughCounts const counts = pass_through.counts();
     EXPECT_EQ(counts.frames, 2u);
-    EXPECT_EQ(counts.found, 2u);
+    EXPECT_EQ(counts.poses.found(), 2u);
     EXPECT_EQ(counts.alone, 0u);
     EXPECT_EQ(made->sequence, 1u);
     ASSERT_EQ(made->rgb.size(), 2u);
@@ -96,7 +96,7 @@ TEST_F(TwoCameras, WithoutAPoseBothPassTheirFrames)
     PassThrough pass_through(session_, options_, report_);
     auto const made = last(pass_through);
     ASSERT_TRUE(made);
-    EXPECT_EQ(pass_through.counts().found, 0u);
+    EXPECT_EQ(pass_through.counts().poses.found(), 0u);
     EXPECT_EQ(cv::norm(made->rgb[0], made->rgb[1], cv::NORM_INF), 0);
 }
 

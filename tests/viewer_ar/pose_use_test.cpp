@@ -7,48 +7,58 @@
 namespace viewer::test {
 namespace {
 
-ar::PoseEstimate estimate(glm::dvec3 position_m)
+ar::PoseEstimate estimate(glm::dvec3 position_m, double confidence = 1)
 {
     ar::PoseEstimate e;
     e.failure = ar::PoseFailure::none;
     e.world_from_camera.position_m = position_m;
-    e.confidence = 1;
+    e.confidence = confidence;
     return e;
 }
 
-/// Ten frames of a camera at rest, then one of a jump.
-ar::Pose shown_of_a_jump(ArPoseUse const& use)
+/// Offered by an estimate after ten frames of a camera at rest.
+ar::OfferedPose offered_after_rest(ArPoseUse const& use, ar::PoseEstimate const& e)
 {
-    ar::PoseTracker track(use.tracker);
+    ar::PoseTracker track(tracker_settings(use));
     for (int k = 0; k < 10; ++k) track.add(k / 30.0, estimate({0, 0, 1}));
-    ar::PoseEstimate jump = estimate({2, 0, 1});
-    track.add(10 / 30.0, jump);
-    EXPECT_EQ(track.counts().jumps_refused, 1u);
-    EXPECT_FALSE(use_pose(use, track, 10 / 30.0, jump));
-    return jump.world_from_camera;
+    ar::Taken const taken = track.add(10 / 30.0, e);
+    return offered_pose(use, track, 10 / 30.0, e, taken);
 }
 
 TEST(PosesShown, AreNotThoseRefusedAsJumps)
 {
     ArPoseUse use;
-    EXPECT_EQ(shown_of_a_jump(use).position_m.x, 2); // as it was estimated
+    ar::PoseEstimate jump = estimate({2, 0, 1});
+    EXPECT_EQ(offered_after_rest(use, jump).trusted->position_m.x, 2)
+        << "a clear one stands: frames may be stills";
+    jump.ambiguous = true;
+    EXPECT_FALSE(offered_after_rest(use, jump).trusted);
     use.filtered = true;
-    EXPECT_NEAR(shown_of_a_jump(use).position_m.x, 0, 1e-9);
+    EXPECT_NEAR(offered_after_rest(use, jump).trusted->position_m.x, 0, 1e-9);
+}
+
+TEST(PosesShown, AreNotThoseOfNoConfidence)
+{
+    ArPoseUse use;
+    for (double const confidence : {0.28, 0.1, 0.008}) {
+        ar::OfferedPose const offered = offered_after_rest(use, estimate({0.1, 0, 1}, confidence));
+        EXPECT_FALSE(offered.trusted);
+        EXPECT_TRUE(offered.is_estimated);
+    }
+    EXPECT_TRUE(offered_after_rest(use, estimate({0, 0, 1}, 0.6)).trusted);
+    use.trust.least_confidence = 0.05;
+    EXPECT_TRUE(offered_after_rest(use, estimate({0, 0, 1}, 0.1)).trusted);
+    use.filtered = true;
+    EXPECT_FALSE(offered_after_rest(use, estimate({0, 0, 1}, 0.01)).trusted);
 }
 
 TEST(PosesShown, ArePredictedOnlyOnRequest)
 {
     ArPoseUse use;
-    ar::PoseTracker track(use.tracker);
-    for (int k = 0; k < 10; ++k) track.add(k / 30.0, estimate({0, 0, 1}));
-    ar::PoseEstimate none;
-    none.failure = ar::PoseFailure::too_few_points;
-    track.add(10 / 30.0, none);
-    EXPECT_FALSE(use_pose(use, track, 10 / 30.0, none));
-    EXPECT_FALSE(none.found());
+    EXPECT_FALSE(offered_after_rest(use, {}).predicted);
     use.predict_s = 0.1;
-    EXPECT_TRUE(use_pose(use, track, 10 / 30.0, none));
-    EXPECT_TRUE(none.found());
+    EXPECT_TRUE(offered_after_rest(use, {}).predicted);
+    EXPECT_FALSE(offered_after_rest(use, {}).is_estimated);
 }
 
 } // namespace

@@ -95,7 +95,8 @@ TEST(ArTracking, FindsTheCamera)
     TemporaryFolder folder;
     run_well("ar synthesize desk --frames 2 --size 640x480 --paths 3 --no-truth", folder.path());
     Outcome const o =
-        run("ar track desk/session.yaml --fast --true-poses desk/poses.csv --table t.csv", folder.path());
+        run("ar track desk/session.yaml --fast --true-poses desk/poses.csv --require-found 100% --table t.csv",
+            folder.path());
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_NE(o.out.find("camera found in 2 (100.0 %)"), std::string::npos) << o.out;
     double const mm = number_behind(o.out, "position error (mm)", 2),
@@ -114,10 +115,40 @@ TEST_F(ArRuns, WithoutMarkersPassFramesOn)
     text.replace(text.find("markers.yaml"), 12, "other.yaml");
     write(desk() / "blind.yaml", text);
     Outcome const o = run("ar run blind.yaml --fast --out blind");
-    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(o.code, 1) << "scripts must notice";
+    EXPECT_NE(o.err.find("the camera was found in none of 3 frames"), std::string::npos) << o.err;
+    EXPECT_NE(o.out.find("poses: 3 lost"), std::string::npos) << o.out;
+    EXPECT_EQ(run("ar run blind.yaml --fast --require-found 0%").code, 0) << "as asked for";
     EXPECT_NE(o.out.find("camera found in 0 (0.0 %)"), std::string::npos) << o.out;
     EXPECT_EQ(cv::norm(picture(desk() / "frames/000001.png"), picture(desk() / "blind/000001.png"), cv::NORM_INF),
               0);
+}
+
+TEST_F(ArRuns, HoldAndFadeWhereThereIsNoPose)
+{
+    std::string const poses = file_text(desk() / "poses.csv");
+    std::size_t const second = poses.find('\n', poses.find('\n') + 1) + 1;
+    write(desk() / "first.csv", poses.substr(0, second)); // 1/30 s a frame: only the first one's pose is known
+    auto const with = [&](std::string const& name, std::string const& keys) {
+        write(desk() / (name + ".yaml"), session() + "pose: {" + keys + "}\n");
+        Outcome const o =
+            run("ar run " + name + ".yaml --fast --poses first.csv --out " + name + " --table " + name + ".csv");
+        EXPECT_EQ(o.code, 0) << o.err;
+        return o.out;
+    };
+    auto const change = [&](std::string const& name, int frame) {
+        std::string const file = fmt::format("{:06}.png", frame);
+        return cv::norm(picture(desk() / "frames" / file), picture(desk() / name / file), cv::NORM_L1);
+    };
+    EXPECT_NE(with("at_once", "hold_s: 0, fade_s: 0").find("poses: 1 tracked, 2 lost"), std::string::npos);
+    EXPECT_EQ(change("at_once", 1) + change("at_once", 2), 0) << "the camera's bytes";
+    EXPECT_NE(with("fading", "hold_s: 0.04, fade_s: 0.05").find("poses: 1 tracked, 1 held, 1 fading"),
+              std::string::npos);
+    EXPECT_NE(with("held", "hold_s: 1").find("poses: 1 tracked, 2 held"), std::string::npos);
+    EXPECT_EQ(change("fading", 1), change("held", 1));
+    double const share = change("fading", 2) / change("held", 2);
+    EXPECT_NEAR(share, 0.5, 0.2) << "0.467 of the light; bytes are not linear in it";
+    EXPECT_NE(file_text(desk() / "fading.csv").find(",fading,0.467"), std::string::npos);
 }
 
 TEST_F(ArRuns, CountFramesThatAreNoFrames)
@@ -132,6 +163,23 @@ TEST_F(ArRuns, CountFramesThatAreNoFrames)
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_NE(o.out.find("2 frames, "), std::string::npos) << o.out;
     EXPECT_NE(o.out.find("1 refused"), std::string::npos) << o.out;
+    // Two of three were found.
+    Outcome const more = run("ar run damaged.yaml --fast --poses poses.csv --require-found 70%");
+    EXPECT_EQ(more.code, 1);
+    EXPECT_NE(more.err.find("found in 2 of 3 frames, 1 were refused (70 % are required)"), std::string::npos)
+        << more.err;
+    EXPECT_EQ(run("ar run damaged.yaml --fast --poses poses.csv --require-found 0.6").code, 0);
+    EXPECT_EQ(run("ar run damaged.yaml --fast --poses poses.csv --require-found many").code, 2);
+    write(desk() / "damaged/000002.png", "no picture");
+    Outcome const most = run("ar run damaged.yaml --fast --poses poses.csv");
+    EXPECT_EQ(most.code, 1);
+    EXPECT_NE(most.err.find("2 of 3 frames were refused"), std::string::npos) << most.err;
+    std::string estimated = file_text(desk() / "damaged.yaml");
+    estimated.replace(estimated.find("near.glb"), 8, "near.glb, albedo: estimate");
+    write(desk() / "estimated.yaml", estimated);
+    Outcome const albedo = run("ar albedo estimated.yaml --poses poses.csv --views 1 --paths 1 --resolution 0.1");
+    EXPECT_EQ(albedo.code, 1);
+    EXPECT_NE(albedo.err.find("2 of 3 frames were refused"), std::string::npos) << albedo.err;
 }
 
 TEST_F(ArRuns, KeepResultAndInput)
@@ -146,7 +194,7 @@ TEST_F(ArRuns, KeepResultAndInput)
     std::string text = session();
     text.replace(text.find("source: frames"), 14, "source: recorded");
     write(desk() / "again.yaml", text);
-    Outcome const again = run("ar run again.yaml --fast --video again.mkv --out again");
+    Outcome const again = run("ar run again.yaml --fast --poses poses.csv --video again.mkv --out again");
     ASSERT_EQ(again.code, 0) << again.err;
     EXPECT_NE(again.out.find("again.mkv: 3 pictures at 30 Hz, 0 of them repeated"), std::string::npos)
         << again.out;

@@ -99,6 +99,27 @@ pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
     ArSession const least = parse_ar_session(kLeastSession, "s.yaml");
     EXPECT_FALSE(least.pose.filtered || least.finish.mattes || least.finish.match_blur);
     EXPECT_TRUE(least.match_noise);
+    EXPECT_EQ(least.pose.trust.least_confidence, 0.5);
+    ArSession const cautious =
+        parse_ar_session(kLeastSession + "pose: {least_confidence: 0.6, hold_s: 0.5, fade_s: 0}\n", "s.yaml");
+    EXPECT_EQ(cautious.pose.trust.least_confidence, 0.6);
+    EXPECT_EQ(cautious.pose.trust.hold_s, 0.5);
+    EXPECT_EQ(cautious.pose.trust.fade_s, 0);
+    EXPECT_EQ(parse_ar_session(kLeastSession + "pose: {tracker: head, hold_s: 0.2}\n", "s.yaml").pose.trust.hold_s,
+              0.2);
+    EXPECT_EQ(parse_ar_session(kLeastSession + "pose: {features: maps/m.txt}\n", "there/s.yaml").pose.features,
+              "there/maps/m.txt");
+    EXPECT_TRUE(parse_ar_session(kLeastSession + "pose: {fuse: true}\n", "s.yaml").pose.fused);
+    EXPECT_NE(session_refusal(kLeastSession + "pose: {tripod: true, fuse: true}\n").find("averaged"),
+              std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "pose: {tracker: head, fuse: true}\n").find("tracker"),
+              std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "pose: {hold_s: -1}\n").find("hold_s"), std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "pose: {least_confidence: 2}\n").find("least_confidence"),
+              std::string::npos);
+    EXPECT_NE(
+        session_refusal(kLeastSession + "pose: {tracker: head, least_confidence: 0.2}\n").find("no confidence"),
+        std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "pose: {tripod: true, smoothing: true}\n").find("averaged"),
               std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "composite: {mattes: 3}\n").find("s.yaml:5:"), std::string::npos);

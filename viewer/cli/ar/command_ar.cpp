@@ -27,6 +27,7 @@ void add_ar(CLI::App& app, int& exit_code)
     add_ar_noise(*ar, exit_code);
     add_ar_colour(*ar, exit_code);
     add_ar_probe(*ar, exit_code);
+    add_ar_map(*ar, exit_code);
     add_ar_albedo(*ar, exit_code);
 }
 

@@ -13,6 +13,8 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/cli/ar/ar_camera_path.h"
+#include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -36,43 +38,10 @@ struct SeenFrames {
     int found = 0, without_pose = 0, refused = 0;
 };
 
-/// Camera poses from the --poses file, from a recorded tracker, or from the markers in the frame.
-class CameraPath {
-public:
-    CameraPath(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera, gi::Report& report)
-        : camera_(camera), detector_(ar::read_marker_map(session.markers))
-    {
-        if (!a.poses.empty())
-            poses_ = ar::read_poses(a.poses);
-        else if (session.tracked)
-            poses_ = recorded_poses(*session.tracked, report);
-    }
-    /// Pose and its confidence.
-    std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s)
-    {
-        if (!poses_.empty()) {
-            auto const pose = recorded_pose(poses_, time_s);
-            if (!pose) return std::nullopt;
-            return std::pair(*pose, 1.0);
-        }
-        ar::PoseEstimate const p =
-            ar::estimate_pose(detector_.next(ar::gray_of(frame)), camera_.model, tracker_.expected(time_s));
-        tracker_.add(time_s, p);
-        if (!p.found() || p.ambiguous) return std::nullopt;
-        return std::pair(p.world_from_camera, p.confidence);
-    }
-
-private:
-    ArCamera const& camera_;
-    std::vector<ar::TimedPose> poses_;
-    ar::MarkerTracker detector_;
-    ar::PoseTracker tracker_;
-};
-
 SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera,
                 gi::StopRequest const& stop, gi::Report& report)
 {
-    CameraPath path(a, session, camera, report);
+    CameraPath path(a.poses, session, camera, report);
     ar::OpenOptions open = session.frames.options;
     open.pace = ar::Pace::fastest;
     auto const source = ar::open_source(session.frames.source, open);
@@ -191,7 +160,8 @@ int run_albedo(AlbedoArguments const& a)
     gi::write_text(out, format_albedos(estimate.entries));
     fmt::print("{}{}\n", describe(estimate, seen), out.string());
     print_losses(report);
-    return 0;
+    return exit_code_of(
+        most_refused(std::uint64_t(seen.found + seen.without_pose), std::uint64_t(seen.refused), "frames"));
 }
 
 } // namespace
@@ -220,7 +190,9 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
         ->capture_default_str();
     c->footer(R"(Examples:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
-  lightwell ar albedo desk/session.yaml --scene --poses desk/poses.csv --views 2 --paths 4)");
+  lightwell ar albedo desk/session.yaml --scene --poses desk/poses.csv --views 2 --paths 4
+
+Exit code 1: most frames were refused.)");
     c->callback([a, &exit_code] { exit_code = run_albedo(*a); });
 }
 

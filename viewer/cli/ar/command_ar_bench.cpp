@@ -11,6 +11,7 @@
 #include "viewer/base/validators.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/cli/ar/ar_chain_check.h"
+#include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/commands.h"
 #include "viewer/report/table_file.h"
 
@@ -26,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BenchArguments {
-    std::string session, folder, out;
+    std::string session, folder, out, require_found;
     std::vector<std::string> sizes{"640x480", "1280x720"};
     std::vector<std::uint32_t> paths{1, 2, 4};
     std::vector<double> resolutions{0.5};
@@ -62,12 +63,10 @@ std::vector<double> values_of(std::vector<ArFrameRecord> const& frames, double (
     return values;
 }
 
-/// Frames whose camera pose was found; nothing is rendered into others.
+/// Frames with a trusted pose of their own.
 double found_percent(std::vector<ArFrameRecord> const& frames)
 {
-    auto const found = std::count_if(frames.begin(), frames.end(),
-                                     [](ArFrameRecord const& f) { return f.world_from_camera.has_value(); });
-    return frames.empty() ? 0 : 100 * double(found) / double(frames.size());
+    return frames.empty() ? 0 : 100 * double(count_found(frames)) / double(frames.size());
 }
 
 /// Median, 95th percentile and maximum of each stage.
@@ -139,7 +138,8 @@ std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
 }
 
 void measure(BenchArguments const& a, ArSession session, MeasureSettings const& settings, bool given,
-             BenchTable& table, BenchTable& stages, gi::StopRequest& stop, gi::Report& report)
+             BenchTable& table, BenchTable& stages, BenchTable& curve, FrameTally& tally, gi::StopRequest& stop,
+             gi::Report& report)
 {
     std::string const size = size_text(load_ar_camera(session.camera).model.size_px);
     auto const one = [&](PairLight light, std::uint32_t most_paths, double resolution) {
@@ -151,6 +151,9 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
             if (m.fast.empty() && m.own.empty()) return;
             table.facts.emplace_back("ended early", fmt::format("{}, {} paths", size, most_paths));
         }
+        tally.looked_at += m.fast.size();
+        tally.found += count_found(m.fast);
+        tally.refused += m.refused;
         bool const swapped = settings.in_window;
         auto const [plain, bytes] = plain_over_ours(m);
         std::string const by = m.is_prefiltered ? "prefiltered" : "paths";
@@ -164,6 +167,10 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
                    cell_of(m.flicker.blocks_percent), m.flicker.frames > 1 ? Cell(m.flicker.bytes) : Cell(),
                    cell_of(m.errors.position_mm), cell_of(m.errors.rotation_deg), share_of_search(session, m.last),
                    plain, bytes});
+        for (ConfidenceBin const& b : confidence_curve(m.errors.poses.estimates()))
+            if (b.frames > 0)
+                curve.add({size, by, paths, resolution, b.low, b.high, double(b.frames), b.median_mm, b.p95_mm,
+                           b.median_deg, b.p95_deg});
         add_stages(stages, size, by, paths, resolution, "fast", m.fast);
         add_stages(stages, size, by, paths, resolution, "own", m.own);
         if (m.refused > 0) table.facts.emplace_back("frames refused, " + size, fmt::format("{}", m.refused));
@@ -190,6 +197,8 @@ void keep(std::vector<BenchTable*> const& tables, BenchArguments const& a)
 
 int run_bench(BenchArguments const& a)
 {
+    auto const required = parse_share("--require-found", a.require_found);
+    FrameTally tally;
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
@@ -203,6 +212,10 @@ int run_bench(BenchArguments const& a)
     BenchTable stages =
         start_table("ar_stages", "Stages of a frame",
                     {"size", "light", "paths", "resolution", "pace", "stage", "median_ms", "p95_ms", "most_ms"});
+    BenchTable curve =
+        start_table("ar_confidence", "Errors of estimated camera poses by their confidence",
+                    {"size", "light", "paths", "resolution", "confidence_low", "confidence_high", "frames",
+                     "position_median_mm", "position_p95_mm", "rotation_median_deg", "rotation_p95_deg"});
     if (!a.window)
         table.facts.emplace_back("latency", "without a window: until the composite is ready, not shown");
     table.facts.emplace_back("first frames", "left out: they build lasting structures");
@@ -212,7 +225,7 @@ int run_bench(BenchArguments const& a)
         MeasureSettings settings{a.frames, {}, {}, a.window, a.still_frames};
         if (fs::is_directory(folder / "truth")) settings.truth = folder / "truth";
         if (fs::exists(folder / "poses.csv")) settings.true_poses = folder / "poses.csv";
-        measure(a, session, settings, true, table, stages, stop, report);
+        measure(a, session, settings, true, table, stages, curve, tally, stop, report);
     } else {
         for (std::string const& size : a.sizes) {
             auto const [width, height] = parse_size(size);
@@ -220,14 +233,14 @@ int run_bench(BenchArguments const& a)
             if (stop.requested()) break;
             MeasureSettings settings{a.frames, {}, file.parent_path() / "poses.csv", a.window, a.still_frames};
             if (a.truth_paths > 0) settings.truth = file.parent_path() / "truth";
-            measure(a, read_ar_session(file), settings, false, table, stages, stop, report);
+            measure(a, read_ar_session(file), settings, false, table, stages, curve, tally, stop, report);
             if (stop.requested()) break;
         }
         table.facts.emplace_back("paths of frames and truth", fmt::format("{}", std::max(a.truth_paths, 2u)));
     }
-    keep({&stages, &table}, a);
+    keep({&stages, &curve, &table}, a);
     print_losses(report);
-    return stop.requested() ? kInterrupted : 0;
+    return stop.requested() ? kInterrupted : exit_code_of(shortfall(tally, required));
 }
 
 int run_counter(BenchArguments const& a)
@@ -295,6 +308,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     c->add_option("--folder", a->folder, "Folder that keeps desks for later runs (default: the temporary folder)");
+    declare_require_found(*c, a->require_found);
     c->add_flag("--window", a->window, "Show the frames at the camera's pace in a window: latency until the swap");
     c->add_flag("--counter", a->counter,
                 "Instead, check that shown frames and rendering match: frames show their number, and a ball "
@@ -302,7 +316,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_option("--out", a->out, "Folder for the tables, as JSON and CSV");
     c->add_flag("--json", a->json, "Print the tables as JSON");
     c->footer(R"(Examples:
-  lightwell ar bench --size 320x240 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
+  lightwell ar bench --size 480x360 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
   lightwell ar bench --counter --size 320x240 --frames 10
 
 Each quality is run twice: as fast as possible (frames per second, error; no frame is skipped) and at the camera's
@@ -310,7 +324,7 @@ own pace of 30 Hz (latency; frames overtaken by newer ones are counted). Then th
 again, with nothing moving: flicker_percent is the standard deviation of the mean radiance of blocks of 8 x 8 pixels on
 virtual objects, in per cent of it (median over blocks and their range), flicker_bytes that of bytes. The same rounds also measure the share
 of the library's search (OpenCV or apriltag) in marker detection, and the time of compositing by plain OpenCV, one
-whole picture per step, relative to ours.)");
+whole picture per step, relative to ours. Exit code 1 as of lightwell ar run.)");
     c->callback([a, &exit_code] { exit_code = run(*a); });
 }
 

@@ -10,6 +10,7 @@
 #include "viewer/base/validators.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/ar/ar_arguments.h"
+#include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -197,7 +198,8 @@ int run_calibrate(CalibrateOptions const& o)
                collector.enough() ? "" : "; to improve it: " + collector.next());
     for (std::string const& w : report.lens.warnings) fmt::print("warning: {}\n", w);
     fmt::print("{}\n", o.out);
-    return 0;
+    std::uint64_t const unread = source->counts().refused;
+    return exit_code_of(most_refused(s.looked_at - s.refused, s.refused + unread, "pictures"));
 }
 
 } // namespace
@@ -228,7 +230,8 @@ void add_ar_calibrate(CLI::App& ar, int& exit_code)
   lightwell ar calibrate views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
 
 From cameras, videos and sessions only frames in which the board is held still are used. A calibration that is
-replaced keeps its response, vignetting, colour and noise. Exit code 1: too few usable views.)");
+replaced keeps its response, vignetting, colour and noise. Exit code 1: too few usable views, or most
+pictures were refused (the calibration is written).)");
     c->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
 }
 

@@ -8,6 +8,7 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/ar/ar_recording.h"
 #include "viewer/cli/commands.h"
 
@@ -21,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats, display;
+    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats, display,
+        require_found, confidence;
     int frames = 0;
     bool fast = false, window = false, gpu = false;
     std::string monitor, eyes;
@@ -33,7 +35,7 @@ void check_arguments(RunArguments const& a, ArSession const& session)
 {
     std::vector<std::string> read{a.poses, a.true_poses};
     for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
-    check_outputs({a.frame_table, a.stats, a.video}, read);
+    check_outputs({a.frame_table, a.confidence, a.stats, a.video}, read);
     std::vector<fs::path> folders{folder_of_source(session.frames.source), a.truth};
     if (session.hmd && session.hmd->right) folders.push_back(folder_of_source(session.hmd->right->source));
     std::error_code ignored;
@@ -89,11 +91,15 @@ int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions con
     if (summary.frames.frames == 0 && !stop.requested())
         throw gi::InputError("no frame could be used", describe(summary.frames.left),
                              "check the session's frames");
-    return stop.requested() ? kInterrupted : 0;
+    if (stop.requested()) return kInterrupted;
+    PassThroughCounts const& f = summary.frames;
+    return exit_code_of(shortfall({f.frames, f.poses.found(), f.refused + f.left.refused},
+                                  parse_share("--require-found", a.require_found)));
 }
 
 int run_session(RunArguments const& a, bool poses_only)
 {
+    auto const required = parse_share("--require-found", a.require_found);
     ArSession const session = session_of(a);
     check_arguments(a, session);
     if (!a.video.empty()) {
@@ -105,7 +111,8 @@ int run_session(RunArguments const& a, bool poses_only)
     o.pace = a.fast ? ar::Pace::fastest : ar::Pace::own;
     o.find_poses_only = poses_only;
     if (a.gpu) o.composite = CompositeBy::window;
-    if (!a.poses.empty()) o.poses = ar::read_poses(a.poses);
+    if (!a.poses.empty())
+        o.poses = ar::read_poses(a.poses, ar::CameraAxes::vision, session.frames.options.frames_per_s);
     gi::Report report;
     std::optional<TrackedCamera> tracker;
     if (session.tracked) {
@@ -141,6 +148,8 @@ int run_session(RunArguments const& a, bool poses_only)
         if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
         if (tracker) fmt::print("{}", tracker->describe());
         if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
+        if (!a.confidence.empty())
+            gi::write_text(a.confidence, to_csv(confidence_curve(truth.errors().poses.estimates())));
         fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recorded);
         print_losses(report);
     };
@@ -176,7 +185,9 @@ int run_session(RunArguments const& a, bool poses_only)
     if (summary.frames.empty() && !stop.requested())
         throw gi::InputError("no frame could be used", describe(summary.source), "check the session's frames");
     bool const was_closed = window && window->wants_close();
-    return stop.requested() && !was_closed ? kInterrupted : 0;
+    if (stop.requested()) return was_closed ? 0 : kInterrupted;
+    return exit_code_of(shortfall(
+        {summary.frames.size(), count_found(summary.frames), summary.refused + summary.source.refused}, required));
 }
 
 void add_session_options(CLI::App& c, RunArguments& a)
@@ -189,7 +200,11 @@ void add_session_options(CLI::App& c, RunArguments& a)
     c.add_option("--stats", a.stats, "JSON file: seconds of the renderer's stages, counts, losses");
     c.add_option("--display", a.display,
                  "Display file whose tracker gives the camera pose, instead of markers (docs/displays.md)");
-    c.add_option("--true-poses", a.true_poses, "True camera poses (CSV or TUM), to report the pose error");
+    declare_require_found(c, a.require_found);
+    CLI::Option* const truth =
+        c.add_option("--true-poses", a.true_poses, "True camera poses, to report the pose error and its jumps");
+    c.add_option("--confidence-table", a.confidence, "CSV file: error of the poses by their confidence")
+        ->needs(truth);
 }
 
 } // namespace
@@ -205,7 +220,9 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     run_command
         ->add_option("--record-input", run->record_input, "Folder to create: the camera's frames as a session")
         ->excludes("--fast");
-    run_command->add_option("--poses", run->poses, "Camera poses (CSV or TUM), instead of using the markers");
+    run_command->add_option(
+        "--poses", run->poses,
+        "Camera poses (CSV, TUM, COLMAP images.txt, Nuke .chan, Blender .json), instead of using the markers");
     CLI::Option* const window =
         run_command->add_flag("--window", run->window, "Show a window: S before/after, H panel, Escape ends");
     run_command->add_option("--monitor", run->monitor, "Full screen on the monitor with this number or name")
@@ -217,8 +234,8 @@ void add_ar_run(CLI::App& ar, int& exit_code)
         ->needs(hmd);
     run_command->add_option("--truth", run->truth,
                             "Folder of reference pictures, with the virtual objects as real ones, to report FLIP");
-    for (char const* other :
-         {"--window", "--out", "--video", "--record-input", "--table", "--truth", "--true-poses"})
+    for (char const* other : {"--window", "--out", "--video", "--record-input", "--table", "--truth",
+                              "--true-poses", "--confidence-table"})
         hmd->excludes(run_command->get_option(other));
     run_command
         ->add_flag("--gpu", run->gpu, "Composite on the window's GPU: at most 1 different per byte, no counts")
@@ -231,7 +248,8 @@ void add_ar_run(CLI::App& ar, int& exit_code)
   lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json
   lightwell ar run desk/session.yaml --poses desk/poses.csv --video desk.mkv --record-input desk/recorded
 
-A frame is dropped and counted as overtaken if a newer one arrives before it is rendered; never with --fast.)");
+A frame is dropped and counted as overtaken if a newer one arrives before it is rendered; never with --fast.
+Exit code 1: no frame has a trusted pose, most frames were refused, or fewer have one than --require-found.)");
     run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });
 }
 
@@ -242,8 +260,10 @@ void add_ar_track(CLI::App& ar, int& exit_code)
         ar.add_subcommand("track", "Find the camera pose in each frame, with its confidence");
     add_session_options(*track_command, *track);
     track_command->footer(R"(Examples:
-  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth
-  lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv)");
+  lightwell ar synthesize desk --frames 2 --size 480x360 --paths 2 --no-truth
+  lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv --require-found 90%
+
+Exit code 1: no frame has a trusted pose, most frames were refused, or fewer have one than --require-found.)");
     track_command->callback([track, &exit_code] { exit_code = run_session(*track, true); });
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 struct SynthesizeArguments {
     SynthesizeOptions options;
-    std::string folder, size = "640x480";
+    std::string folder, size = "640x480", markers = "board";
     bool no_truth = false, no_denoise = false;
 };
 
@@ -23,7 +23,10 @@ int run_synthesize(SynthesizeArguments const& a)
     o.folder = a.folder;
     auto const [width, height] = parse_size(a.size);
     o.size_px = {width, height};
-    o.truth = !a.no_truth;
+    o.truth = !a.no_truth && !o.quick;
+    o.markers = a.markers == "one"    ? DeskMarkers::one
+                : a.markers == "none" ? DeskMarkers::none
+                                      : DeskMarkers::board;
     o.quality.denoise = !a.no_denoise;
     gi::Report report;
     gi::StopRequest stop;
@@ -52,9 +55,18 @@ void add_ar_synthesize(CLI::App& ar, int& exit_code)
     synthesize->add_option("--threads", made->options.quality.threads, "0 = all")->check(CLI::NonNegativeNumber);
     synthesize->add_flag("--no-truth", made->no_truth,
                          "Do not render the reference pictures, which show the virtual objects as real ones");
+    CLI::Option* const quick = synthesize->add_flag(
+        "--quick", made->options.quick,
+        "For tracking: rasterised without shadows, with a patterned cloth on the table; no reference pictures");
+    synthesize->add_option("--markers", made->markers, "With --quick: what is printed on the paper on the table")
+        ->check(CLI::IsMember({"board", "one", "none"}))
+        ->needs(quick)
+        ->capture_default_str();
+    synthesize->add_flag("--apart", made->options.apart, "The camera goes another way around the table");
     synthesize->add_flag("--no-denoise", made->no_denoise, "Do not denoise the frames");
-    synthesize->footer(R"(Example:
-  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth)");
+    synthesize->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth
+  lightwell ar synthesize walk --quick --frames 4 --markers one)");
     synthesize->callback([made, &exit_code] { exit_code = run_synthesize(*made); });
 }
 

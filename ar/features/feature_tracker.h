@@ -1,0 +1,63 @@
+#pragma once
+// Finds the camera by a map of features. Features are followed from picture to picture by optical flow, and looked
+// for again every few pictures where the pose predicts them, which ends their drift. After a loss they are
+// recognised by their descriptors alone.
+
+#include "ar/features/feature_map.h"
+#include "ar/features/flow.h"
+#include "ar/pose/estimate.h"
+
+namespace ar {
+
+struct FeatureTrackerSettings {
+    int look_every = 5;         ///< pictures between searches for the map's features
+    std::size_t followed = 200; ///< at most
+    std::size_t fewest = 12;    ///< features of a pose; below, they are recognised anew
+    double near_px = 8;         ///< where a predicted feature is looked for
+    int alike_bits = 64;        ///< descriptors farther apart are of other features
+    double trusted_flow_s = 2;  ///< confidence falls to exp(-1) if nothing was recognised for this long
+};
+
+struct FeatureTrackerCounts {
+    std::uint64_t pictures = 0, relocated = 0, not_relocated = 0, looked = 0;
+};
+
+class FeatureTracker {
+public:
+    FeatureTracker(FeatureMap map, CameraModel const& camera, FeatureTrackerSettings const& settings = {});
+
+    /// The pose in the next picture; its confidence falls with the time since features were last recognised.
+    /// @param gray  CV_8UC1 of the camera's size  @param expected  pose, if it can be predicted
+    /// @param[out] seen  the map's points in the picture
+    PoseEstimate next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected, Sighting& seen);
+    /// Time since features were last recognised rather than followed (s).
+    double flow_s() const { return flow_s_; }
+    FeatureTrackerCounts const& counts() const { return counts_; }
+
+private:
+    struct Followed {
+        int point;
+        glm::dvec2 pixel;
+        double sigma_px; ///< of the recognised feature; grows as it is followed
+    };
+
+    void follow(cv::Mat const& gray, std::optional<Pose> const& expected);
+    void look(PictureFeatures const& features, Pose const& world_from_camera);
+    bool relocate(PictureFeatures const& features);
+    Sighting sighting() const;
+    PoseEstimate estimate(std::optional<Pose> const& expected, Sighting& seen);
+
+    FeatureMap map_;
+    CameraModel camera_;
+    FeatureTrackerSettings settings_;
+    cv::Mat descriptors_;       ///< of all points, one a row
+    std::vector<int> point_of_; ///< of each row
+    Flow flow_;
+    std::vector<Followed> followed_;
+    std::optional<Pose> last_; ///< of the picture before
+    double recognised_s_ = 0, flow_s_ = 0;
+    int since_look_ = 0;
+    FeatureTrackerCounts counts_;
+};
+
+} // namespace ar
