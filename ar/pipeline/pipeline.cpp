@@ -69,7 +69,8 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
         features_.emplace(ar::read_feature_map(session.pose.features), camera.model);
     if (session.pose.fused) fusion_.emplace();
     renderer_.set_environment(light_.begin());
-    renderer_.choose(session.render.light);
+    std::string const why = renderer_.choose(session.render.light);
+    lit_by_ = renderer_.is_prefiltered() ? "prefiltered light" : fmt::format("paths ({})", why);
     finish_.emplace(session, camera.model, markers,
                     renderer_.is_prefiltered() ? PixelPoints::one : PixelPoints::many);
     light_picture_ = picture_of_light(light_.map());

@@ -82,6 +82,8 @@ public:
     ar::Compositor const& compositor() const { return compositor_; }
     /// By prefiltered light, without paths.
     bool is_prefiltered() const { return renderer_.is_prefiltered(); }
+    /// "prefiltered light", or "paths (why)".
+    std::string const& lit_by() const { return lit_by_; }
 
 private:
     ar::RenderedPair rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
@@ -102,6 +104,7 @@ private:
     ar::PoseTracker tracker_;
     ar::PoseTrust trust_;
     cv::Mat light_picture_;
+    std::string lit_by_;
     gi::Report& report_;
     std::string prefix_;
 };

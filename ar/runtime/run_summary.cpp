@@ -32,6 +32,7 @@ std::string describe(ArSummary const& s)
     PoseTally poses;
     for (ArFrameRecord const& f : s.frames) poses.add(f.state, f.confidence, f.estimated.has_value());
     text += describe(poses);
+    if (!s.light.empty()) text += fmt::format("virtual objects lit by {}\n", s.light);
     text += fmt::format("source: {}{}\n", describe(s.source),
                         s.end.kind == ar::SourceState::Kind::lost ? "; lost: " + s.end.reason : "");
     if (s.overtaken > 0)

@@ -57,6 +57,7 @@ struct ArFrameRecord {
 };
 
 struct ArSummary {
+    std::string light; ///< how virtual objects were lit, and why
     std::vector<ArFrameRecord> frames;
     ar::SourceCounts source;
     ar::SourceState end;
