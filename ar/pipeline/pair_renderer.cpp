@@ -67,10 +67,8 @@ PairPictures PairRenderer::prefiltered(gi::Camera const& camera, int width, int 
     gi::Changes const changes = turn(gi::PairSide::with, time_s);
     if (!pairs_)
         pairs_ = std::make_unique<PrefilteredPairs>(world_.world(), report_);
-    else {
-        if (changes.geometry) pairs_->moved();
-        if (changes.environment) pairs_->relight();
-    }
+    else
+        pairs_->update(changes);
     PairPictures p = pairs_->render(camera, width, height, stop);
     p.change = change_since_last(time_s);
     return p;

@@ -24,16 +24,19 @@ EnvironmentTexels environment_texels(gi::World const& world)
     out.width = std::min(int(map.width), 2 * kMostRows);
     std::vector<gi::dvec3> light(std::size_t(out.width * out.height)), towards(light.size()), middle(light.size());
     std::vector<double> sr(light.size());
+    std::vector<glm::dvec2> azimuth; // sine and cosine, by column
+    for (std::uint32_t x = 0; x < map.width; ++x) {
+        double const phi = ((x + 0.5) / map.width - 0.5) * 2 * gi::kPiD;
+        azimuth.emplace_back(std::sin(phi), std::cos(phi));
+    }
     for (std::uint32_t y = 0; y < map.height; ++y) {
         double const top = gi::kPiD * y / map.height, bottom = gi::kPiD * (y + 1) / map.height;
-        double const theta = 0.5 * (top + bottom);
+        double const theta = 0.5 * (top + bottom), sine = std::sin(theta), cosine = std::cos(theta);
         double const texel_sr = 2 * gi::kPiD / map.width * (std::cos(top) - std::cos(bottom));
         std::size_t const row = std::size_t(std::uint64_t(y) * std::uint64_t(out.height) / map.height);
         for (std::uint32_t x = 0; x < map.width; ++x) {
-            double const phi = ((x + 0.5) / map.width - 0.5) * 2 * gi::kPiD;
             gi::vec3 const d = gi::light_detail::from_map(
-                view, gi::vec3(gi::dvec3(std::sin(theta) * std::sin(phi), std::cos(theta),
-                                         -std::sin(theta) * std::cos(phi))));
+                view, gi::vec3(gi::dvec3(sine * azimuth[x].x, cosine, -sine * azimuth[x].y)));
             gi::vec3 const radiance = world.environment_scale * map.radiance[std::size_t(y) * map.width + x];
             std::size_t const column = std::size_t(std::uint64_t(x) * std::uint64_t(out.width) / map.width);
             std::size_t const at = row * std::size_t(out.width) + column;

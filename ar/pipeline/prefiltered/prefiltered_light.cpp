@@ -17,6 +17,8 @@ constexpr std::uint32_t kStillTexels = 96, kMovingTexels = 64, kSharpStillTexels
 constexpr float kOpenness = 0.8f;
 constexpr int kBounces = 2; ///< between still surfaces
 constexpr std::size_t kMostPatches = 20000;
+/// Moving triangles drawn in a frame, over all maps; the other maps follow in the next frames.
+constexpr std::size_t kTrianglesAtOnce = 4'000'000;
 
 gi::Bounds bounds_of(gi::World const& world, std::size_t first, std::size_t last)
 {
@@ -240,15 +242,39 @@ void PrefilteredLight::moved()
         moving_bounds_ = {b.low - room, b.high + room};
     }
     light_moving();
-    tbb::parallel_for(std::size_t(0), directions_.size(), [&](std::size_t k) {
-        Direction const& d = directions_[k];
-        if (!fits) {
+    stale_.assign(directions_.size(), 1);
+    if (!fits)
+        for (std::size_t k = 0; k < directions_.size(); ++k) {
             gi::Pcg32 rng = gi::Pcg32::for_path(0, 0x0cc2, std::uint32_t(k));
             gi::vec2 const jitter = rng.uniform2();
-            moving_[k].start(moving_bounds_, d.towards, d.sharp ? kSharpMovingTexels : kMovingTexels, jitter,
+            moving_[k].start(moving_bounds_, directions_[k].towards,
+                             directions_[k].sharp ? kSharpMovingTexels : kMovingTexels, jitter,
                              2 * gi::kPi * rng.uniform());
         }
-        moving_[k].draw(soup_, cut_outs_, world_.static_triangles, world_.triangles.size(), 0);
+    draw_stale(fits ? kTrianglesAtOnce : ~std::size_t(0));
+}
+
+bool PrefilteredLight::settle()
+{
+    bool const any = std::find(stale_.begin(), stale_.end(), 1) != stale_.end();
+    if (any) draw_stale(kTrianglesAtOnce);
+    return any;
+}
+
+void PrefilteredLight::draw_stale(std::size_t most_triangles)
+{
+    // Sharp shadows first, then the maps in turn.
+    std::size_t const triangles = world_.triangles.size() - world_.static_triangles, n = directions_.size();
+    std::vector<std::size_t> drawn;
+    for (std::size_t k = 0; k < n; ++k)
+        if (stale_[k] && directions_[k].sharp) drawn.push_back(k);
+    for (std::size_t i = 0; i < n && (drawn.empty() || (drawn.size() + 1) * triangles <= most_triangles); ++i) {
+        next_ = (next_ + 1) % n;
+        if (stale_[next_] && !directions_[next_].sharp) drawn.push_back(next_);
+    }
+    tbb::parallel_for(std::size_t(0), drawn.size(), [&](std::size_t i) {
+        moving_[drawn[i]].draw(soup_, cut_outs_, world_.static_triangles, world_.triangles.size(), 0);
+        stale_[drawn[i]] = 0;
     });
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t i) {
         Patch const& p = patches_[i];
@@ -289,12 +315,17 @@ std::uint32_t PrefilteredLight::still_in_the_way(std::size_t k, gi::vec3 p, gi::
     gi::NearestTexel const* const t = facing.texel(p);
     if (t == nullptr) return kOpen;
     // The first surface of the column, if the point is in front of it, is the first that is met.
-    if (t->primitive != triangle && -t->key > facing.grid().depth(p)) {
-        gi::Surface const& s = surfaces[t->primitive];
-        gi::vec3 const n = glm::cross(s.edge1, s.edge2);
-        float const side = glm::dot(n, p - s.corner);
-        if ((glm::dot(n, directions_[k].towards) < 0 ? side : -side) > s.clearance * glm::length(n))
-            return patch_of_texel_[k][std::size_t(t - facing.texels().data())];
+    constexpr float kFar = 4; // texels
+    float const gap = -t->key - facing.grid().depth(p);
+    if (gap > 0 && t->primitive != triangle) {
+        bool in_front = gap > kFar * facing.grid().texel;
+        if (!in_front) {
+            gi::Surface const& s = surfaces[t->primitive];
+            gi::vec3 const n = glm::cross(s.edge1, s.edge2);
+            float const side = glm::dot(n, p - s.corner);
+            in_front = (glm::dot(n, directions_[k].towards) < 0 ? side : -side) > s.clearance * glm::length(n);
+        }
+        if (in_front) return patch_of_texel_[k][std::size_t(t - facing.texels().data())];
     }
     return still_[k].blocker(surfaces, p, normal, triangle) == gi::kNoPrimitive ? kOpen : kUnknown;
 }

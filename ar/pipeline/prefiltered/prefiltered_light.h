@@ -45,8 +45,12 @@ public:
 
     /// The environment has changed. @return true if the directions have
     bool relight();
-    /// Moving triangles have moved, or the directions have changed.
+    /// Moving triangles have moved, or the directions have changed. Of very many triangles, not all maps are drawn
+    /// at once: sharp shadows follow in this frame, others some frames later.
     void moved();
+    /// Draws maps that are not yet up to date; call in frames in which nothing moves. @return false: there were
+    /// none
+    bool settle();
 
     ReceivedLight on_moving(LitPoint const& at) const;
     /// How moving surfaces change the light of a still one; exactly 0 where they hide nothing.
@@ -96,6 +100,7 @@ private:
     void find_patches();
     void light_patches();
     void light_moving();
+    void draw_stale(std::size_t most_triangles);
     std::uint32_t still_in_the_way(std::size_t k, gi::vec3 p, gi::vec3 normal, std::uint32_t triangle) const;
     float moving_in_the_way(std::size_t k, LitPoint const& at, std::uint32_t& blocker) const;
     gi::vec3 radiance(std::vector<gi::vec3> const& of, std::uint32_t patch) const
@@ -123,6 +128,8 @@ private:
     std::vector<OcclusionMap> still_;  ///< per direction: what is nearest to the light
     std::vector<OcclusionMap> facing_; ///< per direction: what is nearest to a surface far from the light
     std::vector<OcclusionMap> moving_;
+    std::vector<std::uint8_t> stale_;                        ///< per map of moving_: 1 = older than the last move
+    std::size_t next_ = 0;                                   ///< map that is drawn next
     std::vector<std::vector<std::uint32_t>> patch_of_texel_; ///< of facing_
     std::vector<Patch> patches_;
     std::vector<std::uint32_t> in_the_way_;             ///< per patch and direction: patch, kOpen, kUnknown

@@ -71,19 +71,17 @@ void PrefilteredPairs::report_counts()
     report_.count("patches of real surfaces", double(light_.counts().patches));
 }
 
-void PrefilteredPairs::moved()
+void PrefilteredPairs::update(gi::Changes const& changes)
 {
-    gi::StageTimer const timer(report_, "occlusion maps of virtual objects");
-    all_.moved();
-    light_.moved();
-}
-
-void PrefilteredPairs::relight()
-{
-    gi::StageTimer const timer(report_, "prefilter the light");
-    light_.relight();
-    light_.moved();
-    report_counts();
+    gi::StageTimer const timer(report_,
+                               changes.environment ? "prefilter the light" : "occlusion maps of virtual objects");
+    if (changes.geometry) all_.moved();
+    if (changes.environment) light_.relight();
+    if (changes.geometry || changes.environment)
+        light_.moved();
+    else
+        light_.settle();
+    if (changes.environment) report_counts();
 }
 
 PairPictures PrefilteredPairs::render(gi::Camera const& camera, int width, int height, gi::StopRequest const& stop)

@@ -6,6 +6,7 @@
 #include "ar/pipeline/prefiltered/prefiltered_light.h"
 #include "gi/core/progress.h"
 #include "gi/core/report.h"
+#include "gi/scene/motion/moving_world.h"
 
 #include <string>
 
@@ -20,10 +21,8 @@ public:
     /// @param world  with the virtual objects in place, also during calls; it and the report must outlive this
     PrefilteredPairs(gi::World const& world, gi::Report& report);
 
-    /// Call after the virtual objects have moved, before the next picture.
-    void moved();
-    /// Call after the environment has changed, before the next picture.
-    void relight();
+    /// Call before each further picture. @param changes  of the world since the last one
+    void update(gi::Changes const& changes);
     /// @param stop  on request, rows are left out
     PairPictures render(gi::Camera const& camera, int width, int height, gi::StopRequest const& stop);
 
