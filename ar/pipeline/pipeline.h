@@ -35,7 +35,9 @@ void check_size(glm::ivec2 frames_px, ArCamera const& camera);
 /// A camera pose that is not estimated from the frame, but comes from a tracker or a file; nothing: that has none
 /// for this frame.
 struct KnownPose {
-    KnownPose(std::optional<ar::Pose> const& world_from_camera_) : world_from_camera(world_from_camera_) {}
+    explicit KnownPose(std::optional<ar::Pose> const& world_from_camera_) : world_from_camera(world_from_camera_)
+    {
+    }
     KnownPose(ar::Pose const& world_from_camera_) : world_from_camera(world_from_camera_) {}
     std::optional<ar::Pose> world_from_camera;
 };

@@ -166,7 +166,7 @@ PoseEstimate PoseFusion::next(double time_s, PoseEstimate const& estimate)
     }
     e.other = rival;
     e.other_likelihood = std::clamp(1 - likely, 0.0, 1.0);
-    e.ambiguous = e.other_likelihood > kRivalry;
+    e.ambiguous = estimate.ambiguous && e.other_likelihood > kRivalry;
     e.confidence = confidence_of(e.fit, 1 - e.other_likelihood, e.rotation_sigma_deg);
     return e;
 }

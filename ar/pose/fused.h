@@ -31,9 +31,9 @@ class PoseFusion {
 public:
     explicit PoseFusion(FusionSettings const& settings = {}) : settings_(settings) {}
 
-    /// The estimate with pose, covariance and confidence of the most likely hypothesis; `ambiguous` where others
-    /// that differ have more than 1 % of the probability. Failed estimates are returned as they are. Call for
-    /// every frame, in order; times that do not increase restart the filter.
+    /// The estimate with pose, covariance and confidence of the most likely hypothesis; `ambiguous` if it was and
+    /// others that differ have more than 1 % of the probability. Failed estimates are returned as they are. Call
+    /// for every frame, in order; times that do not increase restart the filter.
     PoseEstimate next(double time_s, PoseEstimate const& estimate);
 
 private:

@@ -198,6 +198,7 @@ private:
             }
         }
         if (p.has("features")) use.features = path(p.at("features"));
+        use.fused = !use.filtered; // averaged or smoothed already
         if (p.has("fuse")) {
             use.fused = p.at("fuse").boolean();
             if (use.fused && use.tracker.motion == ar::CameraMotion::tripod)

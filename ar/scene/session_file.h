@@ -57,7 +57,7 @@ struct ArPoseUse {
     ar::TrackerSettings tracker;
     ar::TrustSettings trust;
     std::filesystem::path features; ///< map of features instead of markers (ar/features); empty = markers
-    bool fused = false;             ///< fuse the estimates of successive frames (ar/pose/fused.h)
+    bool fused = true;              ///< fuse the estimates of successive frames (ar/pose/fused.h)
     bool filtered = false; ///< use the tracker's poses (smoothed, or a tripod's mean) instead of each frame's own
     double predict_s = 0;  ///< extrapolate for frames without a pose up to this long after the last one
 };

@@ -82,7 +82,8 @@ TEST_F(ArThreads, GiveWhatOneAloneGives)
         auto const frame = source->next(std::chrono::seconds(5));
         ASSERT_TRUE(frame);
         double const time_s = double(k) / 30;
-        ArResult r = pipeline.find(*frame, time_s, ar::pose_at(o.poses, std::min(time_s, o.poses.back().time_s)));
+        ArResult r = pipeline.find(*frame, time_s,
+                                   KnownPose(ar::pose_at(o.poses, std::min(time_s, o.poses.back().time_s))));
         pipeline.add(r, *frame, time_s, stop);
         EXPECT_EQ(cv::norm(r.rgb, composites[k], cv::NORM_INF), 0) << "frame " << k;
         EXPECT_GT(cv::norm(r.rgb, r.camera, cv::NORM_INF), 20) << "something is there";

@@ -109,7 +109,10 @@ pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
               0.2);
     EXPECT_EQ(parse_ar_session(kLeastSession + "pose: {features: maps/m.txt}\n", "there/s.yaml").pose.features,
               "there/maps/m.txt");
-    EXPECT_TRUE(parse_ar_session(kLeastSession + "pose: {fuse: true}\n", "s.yaml").pose.fused);
+    EXPECT_TRUE(parse_ar_session(kLeastSession + "pose: {smoothing: true, fuse: true}\n", "s.yaml").pose.fused);
+    EXPECT_TRUE(least.pose.fused);
+    EXPECT_FALSE(still.pose.fused);
+    EXPECT_FALSE(parse_ar_session(kLeastSession + "pose: {fuse: false}\n", "s.yaml").pose.fused);
     EXPECT_NE(session_refusal(kLeastSession + "pose: {tripod: true, fuse: true}\n").find("averaged"),
               std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "pose: {tracker: head, fuse: true}\n").find("tracker"),

@@ -260,7 +260,7 @@ void add_ar_track(CLI::App& ar, int& exit_code)
         ar.add_subcommand("track", "Find the camera pose in each frame, with its confidence");
     add_session_options(*track_command, *track);
     track_command->footer(R"(Examples:
-  lightwell ar synthesize desk --frames 2 --size 480x360 --paths 2 --no-truth
+  lightwell ar synthesize desk --frames 2 --size 640x480 --paths 2 --no-truth
   lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv --require-found 90%
 
 Exit code 1: no frame has a trusted pose, most frames were refused, or fewer have one than --require-found.)");

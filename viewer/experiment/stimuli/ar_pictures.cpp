@@ -139,17 +139,13 @@ public:
         if (stimulus_.show == ArShow::camera) p.rgb = ar::rgb_of(f.frame).clone();
         if (stimulus_.show == ArShow::truth) p.rgb = read_truth(stimulus_, f.frame);
         if (stimulus_.show != ArShow::composite) return p;
-        std::optional<ar::Pose> known;
-        if (!poses_.empty()) known = recorded_pose(poses_, f.time_s);
-        if (!known && !poses_.empty()) {
-            p.rgb = ar::rgb_of(f.frame).clone(); // as in `ar run`
-        } else {
-            ArResult r = pipeline_->find(f.frame, f.time_s, known);
-            pipeline_->add(r, f.frame, f.time_s, stop_);
-            p.rgb = r.rgb.clone();
-            if (r.pose.found()) p.world_from_camera = r.pose.world_from_camera;
-        }
-        if (!p.world_from_camera)
+        std::optional<KnownPose> known;
+        if (!poses_.empty()) known.emplace(recorded_pose(poses_, f.time_s));
+        ArResult r = pipeline_->find(f.frame, f.time_s, known);
+        pipeline_->add(r, f.frame, f.time_s, stop_);
+        p.rgb = r.rgb.clone();
+        p.world_from_camera = r.used.world_from_camera;
+        if (r.used.state != ar::PoseState::tracked)
             report_.lose("frames of stimuli in which no camera was found", 1,
                          fmt::format("frame {} of {}", f.frame.sequence, stimulus_.session.string()));
         return p;
