@@ -27,6 +27,12 @@ struct FinishCounts {
     double camera_sigma_px = 0, added_sigma_px = 0; ///< of the last frame
 };
 
+/// First surfaces along the camera's axis, m, CV_32FC1, in the camera's lens; 0 = none.
+struct SeenDepth {
+    cv::Mat composite; ///< virtual objects and the model of the place
+    cv::Mat place;     ///< the model of the place alone
+};
+
 class PairFinish {
 public:
     PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers);
@@ -37,6 +43,8 @@ public:
     bool needs_world() const { return session_.finish.upsample || session_.finish.mattes; }
     /// @param world  with all virtual objects in place, the same object in every call; read only if needed
     ar::RenderedPair operator()(PairPictures const& rendered, FinishFrame const& frame, gi::World const& world);
+    /// Nearest rendered pixels: at a resolution below 1 their borders are coarser than those of the pair.
+    SeenDepth depth_of(PairPictures const& rendered) const;
     /// Discards the history; call when the camera's pose is lost.
     void forget();
     FinishCounts const& counts() const { return counts_; }

@@ -69,8 +69,7 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
     light_picture_ = picture_of_light(light_.map());
 }
 
-ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
-                                      gi::StopRequest const& stop)
+void ArPipeline::render(ArResult& found, ar::Exposure const& exposure, double time_s, gi::StopRequest const& stop)
 {
     ar::CameraModel const& pinhole = finish_.pinhole();
     ar::Pose const& world_from_camera = found.pose.world_from_camera;
@@ -79,7 +78,8 @@ ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const&
                          session_.render.paths, time_s, session_.render.denoise, stop);
     FinishFrame frame{{}, world_from_camera, time_s, exposure.time_s};
     if (finish_.needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
-    return finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+    found.pair = finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+    if (keeps_depth_) found.depth = finish_.depth_of(p);
 }
 
 void ArPipeline::count_some(char const* what, std::size_t n)
@@ -124,7 +124,7 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<a
             "set the camera to that size, or calibrate it at this one");
     ArResult r;
     Lap lap(begun_s ? *begun_s : ar::steady_now_s());
-    r.camera = ar::rgb_of(frame);
+    r.camera = ar::picture_of(frame);
     cv::Mat const gray = ar::gray_of(frame);
     r.times.decode_ms = lap();
     if (known) {
@@ -157,7 +157,7 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
             light_picture_ = picture_of_light(light_.map());
         }
         r.times.light_ms = lap();
-        r.pair = rendered(r, frame.exposure, time_s, stop);
+        render(r, frame.exposure, time_s, stop);
         r.times.render_ms = lap();
         if (composite == CompositeBy::pipeline) {
             r.rgb = cv::Mat(); // the camera's stays as it is

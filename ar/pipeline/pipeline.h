@@ -30,12 +30,13 @@ struct ArCamera {
 void check_size(glm::ivec2 frames_px, ArCamera const& camera);
 
 struct ArResult {
-    cv::Mat rgb;    ///< CV_8UC3; without a pose: the camera's frame unchanged
-    cv::Mat camera; ///< the camera's frame
+    cv::Mat rgb;    ///< of the type of `camera`; without a pose: the camera's frame unchanged
+    cv::Mat camera; ///< the camera's frame, with all its bits (ar::picture_of)
     ar::Sighting sighting;
     ar::PoseEstimate pose;
     ar::CompositeCounts counts;
     std::optional<ar::RenderedPair> pair; ///< in the camera's lens
+    std::optional<SeenDepth> depth;       ///< of the pair; only after ArPipeline::keep_depth
     cv::Mat light;                        ///< CV_8UC3 RGB, thumbnail of the environment map used; empty = no map
     ArTimes times;
     double done_s = 0; ///< steady clock, end of the last stage
@@ -67,11 +68,14 @@ public:
     /// @param r  result of `find` for the same frame
     void add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
              CompositeBy composite = CompositeBy::pipeline);
+    /// Results get their depth; call before the first frame.
+    void keep_depth() { keeps_depth_ = true; }
+    ArCamera const& camera() const { return camera_; }
     ar::Compositor const& compositor() const { return compositor_; }
 
 private:
-    ar::RenderedPair rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
-                              gi::StopRequest const& stop);
+    /// Sets the pair, and its depth if needed.
+    void render(ArResult& found, ar::Exposure const& exposure, double time_s, gi::StopRequest const& stop);
     void report_poses();
     void report_finish();
     void count_some(char const* what, std::size_t n);
@@ -85,6 +89,7 @@ private:
     ar::Compositor compositor_;
     ar::PoseTracker tracker_;
     std::uint64_t predicted_ = 0; ///< frames
+    bool keeps_depth_ = false;
     cv::Mat light_picture_;
     gi::Report& report_;
     std::string prefix_;

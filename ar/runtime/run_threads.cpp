@@ -116,7 +116,7 @@ ArResult RunThreads::found_in(FrameInFlight const& w)
         return pipeline_.find(w.frame, w.time_s, known, begun_s);
     ArResult r; // pose unknown
     double const from_s = begun_s ? *begun_s : ar::steady_now_s();
-    r.rgb = r.camera = ar::rgb_of(w.frame);
+    r.rgb = r.camera = ar::picture_of(w.frame);
     r.done_s = ar::steady_now_s();
     r.times.decode_ms = 1e3 * (r.done_s - from_s);
     return r;

@@ -49,6 +49,13 @@ struct ArPoseUse {
     double predict_s = 0;  ///< extrapolate for frames without a pose up to this long after the last one
 };
 
+/// The parts of composites, as multi-layer EXR files.
+struct ArPassSettings {
+    std::filesystem::path folder; ///< empty = none
+    int bits = 16;                ///< of radiance, 16 or 32; depths and motion always have 32
+    bool is_undistorted = false;  ///< as a pinhole that covers the camera's view, not in its lens
+};
+
 struct ArSession {
     std::filesystem::path file;
     ArFrames frames;
@@ -66,6 +73,7 @@ struct ArSession {
     bool match_noise = true; ///< add noise as in the camera's calibration
     ArFinish finish;
     ArPoseUse pose;
+    ArPassSettings passes;
 };
 
 /// Paths in the file are relative to its folder. @throws gi::InputError with file:line:column

@@ -103,7 +103,7 @@ Cell share_of_search(ArSession const& session, ArResult const& last)
     if (last.camera.empty()) return {};
     ar::Frame frame;
     frame.size_px = {last.camera.cols, last.camera.rows};
-    frame.planes[0] = last.camera;
+    frame.planes[0] = ar::eight_bits_of(last.camera);
     cv::Mat const gray = ar::gray_of(frame);
     ar::SearchSettings plain = ar::search_settings({}, gray.size());
     plain.refinement = ar::Refinement::none;
@@ -120,13 +120,13 @@ Cell share_of_search(ArSession const& session, ArResult const& last)
 }
 
 /// Time of compositing by plain OpenCV relative to ours, in the same rounds, and their mean difference in byte
-/// values. Only for sRGB bytes.
+/// values. Only for frames of sRGB bytes.
 std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
 {
     if (!m.last.pair || !m.compositor) return {};
     ar::Photometry const &p = m.compositor->photometry(), srgb = ar::srgb_photometry();
     if (p.unit_of_byte != srgb.unit_of_byte || p.vignetting != srgb.vignetting || p.colour != srgb.colour ||
-        p.radiance_per_unit != 1)
+        p.radiance_per_unit != 1 || m.last.camera.depth() != CV_8U)
         return {};
     ar::Compositor compositor(p); // without noise, so that differences are comparable
     cv::Mat ours, plain, difference;

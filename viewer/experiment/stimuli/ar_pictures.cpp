@@ -146,7 +146,9 @@ public:
         } else {
             ArResult r = pipeline_->find(f.frame, f.time_s, known);
             pipeline_->add(r, f.frame, f.time_s, stop_);
-            p.rgb = r.rgb.clone();
+            p.rgb = ar::eight_bits_of(r.rgb).clone();
+            if (r.rgb.depth() != CV_8U)
+                report_.lose("frames of stimuli reduced to 8 bits", 1, stimulus_.session.string());
             if (r.pose.found()) p.world_from_camera = r.pose.world_from_camera;
         }
         if (!p.world_from_camera)
