@@ -65,21 +65,40 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       report_(report),
       prefix_(std::move(prefix))
 {
+    if (session.occlusion) occluders_.emplace(*session.occlusion, camera.model);
     renderer_.set_environment(light_.begin());
     light_picture_ = picture_of_light(light_.map());
 }
 
-void ArPipeline::render(ArResult& found, ar::Exposure const& exposure, double time_s, gi::StopRequest const& stop)
+void ArPipeline::render(ArResult& found, ar::Frame const& frame, double time_s, gi::StopRequest const& stop)
 {
     ar::CameraModel const& pinhole = finish_.pinhole();
     ar::Pose const& world_from_camera = found.pose.world_from_camera;
     PairPictures const p =
         renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
                          session_.render.paths, time_s, session_.render.denoise, stop);
-    FinishFrame frame{{}, world_from_camera, time_s, exposure.time_s};
-    if (finish_.needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
-    found.pair = finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
-    if (keeps_depth_) found.depth = finish_.depth_of(p);
+    FinishFrame of{{}, world_from_camera, time_s, frame.exposure.time_s};
+    if (finish_.needs_radiance()) of.radiance = ar::radiance_of(found.camera, camera_.photometry, frame.exposure);
+    found.pair = finish_(p, of, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+    if (keeps_depth_ || occluders_) found.depth = finish_.depth_of(p);
+    if (!occluders_) return;
+    LiveOccluderCounts const before = occluders_->counts();
+    occluders_->hide(*found.pair, found.depth->composite, frame.sequence, time_s);
+    LiveOccluderCounts const& now = occluders_->counts();
+    std::string const where = fmt::format("frame {}", frame.sequence);
+    report_.lose("frames without their depth picture", now.without_depth - before.without_depth, where);
+    report_.lose("frames without their matte", now.without_matte - before.without_matte, where);
+    report_.lose("depth pictures and mattes that cannot be used", now.unusable - before.unusable,
+                 now.last_problem);
+    report_occluders();
+}
+
+void ArPipeline::report_occluders()
+{
+    LiveOccluderCounts const& c = occluders_->counts();
+    count_some("frames with a depth picture or a matte", c.frames);
+    count_some("pixels of virtual things hidden by them", c.pixels.hidden);
+    count_some("pixels of virtual things without a measured depth", c.pixels.holes);
 }
 
 void ArPipeline::count_some(char const* what, std::size_t n)
@@ -157,7 +176,7 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
             light_picture_ = picture_of_light(light_.map());
         }
         r.times.light_ms = lap();
-        render(r, frame.exposure, time_s, stop);
+        render(r, frame, time_s, stop);
         r.times.render_ms = lap();
         if (composite == CompositeBy::pipeline) {
             r.rgb = cv::Mat(); // the camera's stays as it is

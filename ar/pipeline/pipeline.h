@@ -5,6 +5,7 @@
 #include "ar/camera/frame.h"
 #include "ar/composite/composite.h"
 #include "ar/markers/detect.h"
+#include "ar/pipeline/live_occluders.h"
 #include "ar/pipeline/pair_finish.h"
 #include "ar/pipeline/pair_renderer.h"
 #include "ar/pipeline/place_light.h"
@@ -75,9 +76,10 @@ public:
 
 private:
     /// Sets the pair, and its depth if needed.
-    void render(ArResult& found, ar::Exposure const& exposure, double time_s, gi::StopRequest const& stop);
+    void render(ArResult& found, ar::Frame const& frame, double time_s, gi::StopRequest const& stop);
     void report_poses();
     void report_finish();
+    void report_occluders();
     void count_some(char const* what, std::size_t n);
 
     ArSession session_;
@@ -86,6 +88,7 @@ private:
     PairRenderer renderer_;
     PlaceLight light_;
     PairFinish finish_;
+    std::optional<LiveOccluders> occluders_;
     ar::Compositor compositor_;
     ar::PoseTracker tracker_;
     std::uint64_t predicted_ = 0; ///< frames

@@ -12,13 +12,14 @@ namespace viewer {
 struct SynthesizeOptions {
     std::filesystem::path folder;
     glm::ivec2 size_px{640, 480};
-    int frames = 300;
+    int frames = 30;
     double rate_hz = 30;
     SyntheticQuality quality;
     bool truth = true; ///< also write the pictures with the virtual objects
 };
 
-/// Existing frames are kept, so an interrupted run can be continued.
+/// Existing frames are kept, so an interrupted run can be continued. Says on stderr how long it will take, as
+/// measured on the first frame.
 /// @return number of frames now in the folder. @throws gi::InputError the folder cannot be written, or contains a
 /// session with other options
 int synthesize(SynthesizeOptions const& options, gi::StopRequest const& stop, gi::Report& report);

@@ -24,7 +24,7 @@ public:
     ArSession read()
     {
         root_.only_keys({"schema", "frames", "camera", "markers", "light", "real", "virtual", "render",
-                         "composite", "pose", "hmd", "passes"});
+                         "composite", "pose", "hmd", "passes", "occlusion"});
         if (!root_.has("schema") || root_.at("schema").text() != "ar/1")
             throw root_.error("no 'schema: ar/1'", "this may be a file of another kind", "begin the file with it");
         for (char const* needed : {"frames", "camera", "markers"})
@@ -40,6 +40,13 @@ public:
         if (root_.has("hmd")) session_.hmd = read_hmd(root_.at("hmd"), folder_);
         if (root_.has("composite")) read_composite(root_.at("composite"));
         if (root_.has("pose")) read_pose(root_.at("pose"));
+        if (root_.has("occlusion")) {
+            session_.occlusion = read_occlusion(root_.at("occlusion"), folder_);
+            if (session_.hmd && session_.hmd->right)
+                throw root_.at("occlusion")
+                    .error("occlusion with two cameras", "its pictures belong to one camera",
+                           "remove hmd.right or occlusion");
+        }
         if (root_.has("passes")) read_passes(root_.at("passes"));
         return std::move(session_);
     }

@@ -5,6 +5,7 @@
 #include "ar/composite/composite.h"
 #include "ar/pose/tracker.h"
 #include "ar/scene/hmd_cameras.h"
+#include "ar/scene/occlusion.h"
 #include "ar/scene/proxies.h"
 #include "ar/scene/tracked_pose.h"
 #include "gi/filter/denoise.h"
@@ -74,6 +75,7 @@ struct ArSession {
     ArFinish finish;
     ArPoseUse pose;
     ArPassSettings passes;
+    std::optional<ArOcclusion> occlusion; ///< by real things that are not modelled
 };
 
 /// Paths in the file are relative to its folder. @throws gi::InputError with file:line:column

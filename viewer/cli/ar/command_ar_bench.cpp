@@ -1,3 +1,4 @@
+#include "ar/capture/clock.h"
 #include "ar/markers/aruco.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/pipeline/plain_composite.h"
@@ -164,9 +165,18 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
         if (m.refused > 0) table.facts.emplace_back("frames refused, " + size, fmt::format("{}", m.refused));
     };
     if (given) return one(session.render.paths, session.render.resolution);
+    std::size_t const qualities = a.paths.size() * a.resolutions.size();
+    std::size_t done = 0;
     for (std::uint32_t const paths : a.paths)
-        for (double const resolution : a.resolutions)
-            if (!stop.requested()) one(paths, resolution);
+        for (double const resolution : a.resolutions) {
+            if (stop.requested()) return;
+            double const begun_s = ar::steady_now_s();
+            one(paths, resolution);
+            if (double const each_s = ar::steady_now_s() - begun_s; done++ == 0)
+                gi::say_estimate("bench of " + size, each_s * double(qualities - 1),
+                                 fmt::format("{} further qualities as long as the first: {:.1f} s each",
+                                             qualities - 1, each_s));
+        }
 }
 
 void keep(std::vector<BenchTable*> const& tables, BenchArguments const& a)

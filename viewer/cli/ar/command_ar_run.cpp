@@ -260,6 +260,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
   lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json
   lightwell ar run desk/session.yaml --poses desk/poses.csv --video desk.mkv --record-input desk/recorded
+  lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --passes desk/passes --pass-bits 32
 
 A frame is dropped and counted as overtaken if a newer one arrives before it is rendered; never with --fast.)");
     run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });
