@@ -27,7 +27,7 @@ SyntheticCamera synthetic_camera(glm::ivec2 size_px);
 ar::Pose synthetic_pose(double t);
 
 struct SyntheticQuality {
-    std::uint32_t paths = 6;  ///< of the reference renderer, per pixel of the camera
+    std::uint32_t paths = 4;  ///< of the reference renderer, per pixel of the camera
     double resolution = 1.25; ///< pixels rendered per pixel of the camera, before the lens
     bool denoise = true;
     int threads = 0;

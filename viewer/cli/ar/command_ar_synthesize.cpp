@@ -56,7 +56,7 @@ void add_ar_synthesize(CLI::App& ar, int& exit_code)
     synthesize->footer(R"(Example:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth
 
-After the first frame it says how long the rest will take. The default, 30 frames with references at 640x480 and 6 paths,
+After the first frame it says how long the rest will take. The default, 30 frames with references at 640x480 and 4 paths,
 takes a minute or two on two cores; its noise is that of a cheap camera. For measurements take --paths 48.)");
     synthesize->callback([made, &exit_code] { exit_code = run_synthesize(*made); });
 }
