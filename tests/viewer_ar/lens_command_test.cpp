@@ -20,6 +20,7 @@ TEST(LensCommand, WritesMapsAndOpenCvFilesThatComeBack)
     Outcome const o = run("ar lens camera.yaml --stmap st.exr --undistort un.exr --opencv cv.yaml", folder.path());
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_NE(o.out.find("radial_tangential, 160 x 120 px"), std::string::npos) << o.out;
+    EXPECT_EQ(o.out.find("by up to 0.00 px"), std::string::npos) << o.out;
 
     cv::FileStorage const file(folder / "cv.yaml", cv::FileStorage::READ);
     cv::Mat k, d;

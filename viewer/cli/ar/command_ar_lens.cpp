@@ -21,6 +21,7 @@ std::string describe(ar::CameraModel const& c)
 {
     ar::CameraModel straight = c;
     straight.lens = ar::LensModel::pinhole;
+    straight.distortion = {};
     double moved_px = 0, error_px = 0;
     for (int y = 0; y < c.size_px.y; y += 4)
         for (int x = 0; x < c.size_px.x; x += 4) {
