@@ -1,5 +1,6 @@
 #include "ar/calibration/calibration_file.h"
 
+#include "ar/calibration/stmap.h"
 #include "gi/core/durable_file.h"
 #include "gi/core/file.h"
 #include "gi/core/yaml.h"
@@ -72,6 +73,8 @@ LensModel lens_of(gi::Yaml const& top, std::size_t coefficients)
         if (!lens)
             throw y.error("'" + y.text().substr(0, 64) + "' is no lens model", "it is unknown",
                           "write pinhole, radial_tangential, rational or fisheye");
+        if (*lens == LensModel::stmap && !top.has("stmap"))
+            throw y.error("no 'stmap'", "the lens is a table in a file", "add stmap: FILE.exr");
         return *lens;
     }
     if (top.has("fisheye_model") && top.at("fisheye_model").text() == "1") return LensModel::fisheye;
@@ -96,6 +99,13 @@ void read_lens(gi::Yaml const& top, CameraModel& c)
         !top.has("distortion_coefficients") && top.has("dist_coeffs") ? "dist_coeffs" : "distortion_coefficients";
     std::vector<double> d;
     if (top.has(name)) d = read_matrix(top.at(name)).values;
+    if (top.has("stmap")) {
+        if (std::any_of(d.begin(), d.end(), [](double k_i) { return k_i != 0; }))
+            throw top.at("stmap").error("stmap beside " + name, "the lens would be distorted twice",
+                                        "remove one of the two");
+        lens_of(top, 0); // its name may still be wrong
+        return;
+    }
     c.lens = lens_of(top, d.size());
     // 4 of OpenCV's are k1 k2 p1 p2; 14 with zeros behind the eighth are the rational model.
     while (d.size() > 8 && d.back() == 0) d.pop_back();
@@ -181,6 +191,7 @@ Calibration parse_calibration(std::string const& text, std::string const& file, 
     out.camera.size_px = read_size(top, size_px);
     gi::TextLocation const at = top.at("camera_matrix").place();
     check(out.camera, fmt::format("{}:{}:{}", at.file, at.line, at.column));
+    if (top.has("stmap")) out.stmap = std::filesystem::path(file).parent_path() / top.at("stmap").text();
     if (top.has("rms_px")) out.rms_px = top.at("rms_px").number(0, 1e6);
     if (top.has("covariance")) {
         int const n = 4 + coefficient_count(out.camera.lens);
@@ -210,6 +221,7 @@ std::string format_calibration(Calibration const& c)
     s += matrix("camera_matrix", 3, 3, values_of(cv::Mat(camera_matrix(m))));
     if (coefficient_count(m.lens) > 0)
         s += matrix("distortion_coefficients", 1, coefficient_count(m.lens), values_of(distortion_of(m)));
+    if (!c.stmap.empty()) s += "stmap: \"" + c.stmap.string() + "\"\n";
     if (c.rms_px > 0) s += "rms_px: " + number(c.rms_px) + "\n";
     if (!c.covariance.empty())
         s += matrix("covariance", c.covariance.rows, c.covariance.cols, values_of(c.covariance));
@@ -239,7 +251,9 @@ std::string format_calibration(Calibration const& c)
 
 Calibration read_calibration(std::filesystem::path const& file, std::optional<glm::ivec2> size_px)
 {
-    return parse_calibration(gi::read_text(file), file.string(), size_px);
+    Calibration c = parse_calibration(gi::read_text(file), file.string(), size_px);
+    if (!c.stmap.empty()) c.camera = with_stmap(c.camera, c.stmap);
+    return c;
 }
 
 void write_calibration(std::filesystem::path const& file, Calibration const& c)
@@ -252,7 +266,14 @@ void write_calibration(std::filesystem::path const& file, Calibration const& c)
             }))
             throw gi::InputError("'" + key + "' is no key of provenance", "keys are letters, digits and _",
                                  "rename it");
-    std::string const text = format_calibration(c);
+    Calibration relative = c;
+    if (!c.stmap.empty()) {
+        std::error_code unrelated;
+        auto const from = std::filesystem::absolute(file).parent_path();
+        auto const there = std::filesystem::relative(std::filesystem::absolute(c.stmap), from, unrelated);
+        if (!unrelated && !there.empty()) relative.stmap = there;
+    }
+    std::string const text = format_calibration(relative);
     parse_calibration(text, file.string()); // refuse to write what could not be read back
     gi::write_durably(file, text);
 }

@@ -18,13 +18,16 @@ struct Calibration {
     cv::Mat covariance;
     std::optional<Photometry> photometry;
     std::optional<NoiseModel> noise;
+    std::filesystem::path stmap; ///< of the lens stmap: its file
     /// How the calibration was made: key and value; keys consist of letters, digits and _.
     std::vector<std::pair<std::string, std::string>> provenance;
 };
 
 /// Also reads OpenCV files that have only camera_matrix and distortion_coefficients (or dist_coeffs): 0
 /// coefficients mean pinhole, 4 or 5 radial_tangential, 8 rational, unless lens_model or OpenCV's fisheye_model
-/// states another model. The picture's size may be image_width and image_height, or image_size.
+/// states another model. The key `stmap` names an STMap (ar/calibration/stmap.h), relative to the file, that
+/// replaces the coefficients; `parse` leaves the lens a pinhole, `read` reads the map. The picture's size may be
+/// image_width and image_height, or image_size.
 /// @param file name of the file for messages
 /// @param size_px used if the file states no size. @throws gi::InputError with file:line:column: not YAML,
 /// matrices of wrong sizes, numbers that are not finite, lens models that are unknown or do not fit the

@@ -10,7 +10,7 @@
 namespace ar {
 namespace {
 
-constexpr std::array<char const*, 4> kNames{"pinhole", "radial_tangential", "rational", "fisheye"};
+constexpr std::array<char const*, 5> kNames{"pinhole", "radial_tangential", "rational", "fisheye", "stmap"};
 
 /// Applies the lens distortion on the plane z = 1.
 glm::dvec2 distorted(CameraModel const& c, glm::dvec2 p)
@@ -28,6 +28,16 @@ double fisheye_radius(CameraModel const& c, double angle)
     auto const& d = c.distortion;
     double const a2 = angle * angle;
     return angle * (1 + a2 * (d[0] + a2 * (d[1] + a2 * (d[2] + a2 * d[3]))));
+}
+
+/// Between pixels of the camera and of its table.
+glm::dvec2 table_px(CameraModel const& c, glm::dvec2 pixel)
+{
+    return (pixel + 0.5) * glm::dvec2(c.table->size_px()) / glm::dvec2(c.size_px) - 0.5;
+}
+glm::dvec2 camera_px(CameraModel const& c, glm::dvec2 pixel)
+{
+    return (pixel + 0.5) * glm::dvec2(c.size_px) / glm::dvec2(c.table->size_px()) - 0.5;
 }
 
 glm::dvec2 on_plane(CameraModel const& c, glm::dvec2 pixel)
@@ -67,7 +77,7 @@ std::optional<glm::dvec2> undistorted(CameraModel const& c, glm::dvec2 target)
 
 int coefficient_count(LensModel lens)
 {
-    constexpr std::array<int, 4> counts{0, 5, 8, 4};
+    constexpr std::array<int, 5> counts{0, 5, 8, 4, 0};
     return counts[std::size_t(lens)];
 }
 
@@ -99,6 +109,12 @@ std::optional<glm::dvec2> project(CameraModel const& c, glm::dvec3 point)
         p = across > 0 ? r / across * glm::dvec2(point) : glm::dvec2(0);
     } else {
         if (!(point.z > 0)) return std::nullopt;
+        if (c.lens == LensModel::stmap) {
+            glm::dvec2 const straight = glm::dvec2(point) / point.z;
+            auto const pixel = c.table->pixel_of(
+                straight, table_px(c, glm::dvec2(c.fx * straight.x + c.cx, c.fy * straight.y + c.cy)));
+            return pixel ? std::optional(camera_px(c, *pixel)) : std::nullopt;
+        }
         p = distorted(c, glm::dvec2(point) / point.z);
     }
     return glm::dvec2(c.fx * p.x + c.cx, c.fy * p.y + c.cy);
@@ -106,6 +122,10 @@ std::optional<glm::dvec2> project(CameraModel const& c, glm::dvec3 point)
 
 std::optional<glm::dvec3> direction_of(CameraModel const& c, glm::dvec2 pixel)
 {
+    if (c.lens == LensModel::stmap) {
+        auto const p = c.table->plane_at(table_px(c, pixel));
+        return p ? std::optional(glm::normalize(glm::dvec3(*p, 1))) : std::nullopt;
+    }
     glm::dvec2 const target = on_plane(c, pixel);
     if (c.lens != LensModel::fisheye) {
         auto const p = c.lens == LensModel::pinhole ? target : undistorted(c, target);

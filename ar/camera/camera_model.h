@@ -5,9 +5,13 @@
 //   radial_tangential  k1 k2 p1 p2 k3            Brown 1966
 //   rational           k1 k2 p1 p2 k3 k4 k5 k6   the same over 1 + k4 r^2 + k5 r^4 + k6 r^6
 //   fisheye            k1 k2 k3 k4               Kannala and Brandt 2006, of the angle to the axis
+//   stmap              no coefficients: a table of rays (LensTable)
+
+#include "ar/camera/lens_table.h"
 
 #include <array>
 #include <glm/glm.hpp>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
@@ -16,19 +20,20 @@
 
 namespace ar {
 
-enum class LensModel { pinhole, radial_tangential, rational, fisheye };
-/// Number of distortion coefficients: 0, 5, 8, 4.
+enum class LensModel { pinhole, radial_tangential, rational, fisheye, stmap };
+/// Number of distortion coefficients: 0, 5, 8, 4, 0.
 int coefficient_count(LensModel lens);
-/// Name in calibration files: "pinhole", "radial_tangential", "rational", "fisheye".
+/// Name in calibration files: "pinhole", "radial_tangential", "rational", "fisheye", "stmap".
 std::string name_of(LensModel lens);
 std::optional<LensModel> lens_named(std::string const& name);
 
 struct CameraModel {
     LensModel lens = LensModel::pinhole;
     glm::ivec2 size_px{0};
-    double fx = 0, fy = 0;              ///< pixels
-    double cx = 0, cy = 0;              ///< pixels
-    std::array<double, 8> distortion{}; ///< in the order above; unused coefficients are 0
+    double fx = 0, fy = 0;                       ///< pixels
+    double cx = 0, cy = 0;                       ///< pixels
+    std::array<double, 8> distortion{};          ///< in the order above; unused coefficients are 0
+    std::shared_ptr<LensTable const> table = {}; ///< of the lens stmap; pictures of another size scale it
 
     friend bool operator==(CameraModel const&, CameraModel const&) = default;
 };

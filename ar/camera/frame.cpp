@@ -30,7 +30,8 @@ cv::Mat decoded(Frame const& f, int mode)
 
 std::string name_of(PixelFormat format)
 {
-    constexpr std::array<char const*, 6> names{"rgb8", "bgr8", "gray8", "nv12", "yuyv", "mjpeg"};
+    constexpr std::array<char const*, 8> names{"rgb8", "bgr8",  "gray8", "nv12",
+                                               "yuyv", "mjpeg", "rgb16", "rgb_linear"};
     return names[std::size_t(format)];
 }
 
@@ -38,6 +39,21 @@ std::string name_of(TimestampOrigin origin)
 {
     constexpr std::array<char const*, 4> names{"sensor", "driver", "file", "arrival"};
     return names[std::size_t(origin)];
+}
+
+cv::Mat eight_bits_of(cv::Mat const& picture)
+{
+    if (picture.depth() == CV_8U) return picture;
+    if (picture.depth() == CV_32F) return bytes_of(picture, srgb_photometry());
+    cv::Mat bytes;
+    picture.convertTo(bytes, CV_8U, 1 / 257.0);
+    return bytes;
+}
+
+cv::Mat picture_of(Frame const& f)
+{
+    bool const is_deep = f.format == PixelFormat::rgb16 || f.format == PixelFormat::rgb_linear;
+    return is_deep ? f.planes[0] : rgb_of(f);
 }
 
 cv::Mat rgb_of(Frame const& f)
@@ -61,6 +77,9 @@ cv::Mat rgb_of(Frame const& f)
     case PixelFormat::mjpeg:
         cv::cvtColor(decoded(f, cv::IMREAD_COLOR), rgb, cv::COLOR_BGR2RGB);
         return rgb;
+    case PixelFormat::rgb16:
+    case PixelFormat::rgb_linear:
+        return eight_bits_of(f.planes[0]);
     }
     throw std::logic_error("a pixel format without a way to RGB");
 }
@@ -83,6 +102,10 @@ cv::Mat gray_of(Frame const& f)
         return gray;
     case PixelFormat::mjpeg:
         return decoded(f, cv::IMREAD_GRAYSCALE);
+    case PixelFormat::rgb16:
+    case PixelFormat::rgb_linear:
+        cv::cvtColor(eight_bits_of(f.planes[0]), gray, cv::COLOR_RGB2GRAY);
+        return gray;
     }
     throw std::logic_error("a pixel format without luma");
 }

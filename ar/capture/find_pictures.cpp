@@ -118,8 +118,8 @@ std::vector<NumberedPicture> find_pictures(fs::path const& what)
         });
         return pictures;
     }
-    static std::set<std::string> const kPictures{".png",  ".jpg", ".jpeg", ".bmp", ".tif",
-                                                 ".tiff", ".ppm", ".pgm",  ".webp"};
+    static std::set<std::string> const kPictures{".png",  ".jpg", ".jpeg", ".bmp",  ".tif",
+                                                 ".tiff", ".ppm", ".pgm",  ".webp", ".exr"};
     for (fs::path const& file : files_in(what))
         if (kPictures.contains(lower(file.extension().string()))) pictures.push_back({0, file});
     std::sort(pictures.begin(), pictures.end(), [](auto const& a, auto const& b) {

@@ -1,12 +1,11 @@
 #include "ar/capture/picture_source.h"
 
-#include "ar/capture/whole_picture.h"
+#include "ar/capture/decode_picture.h"
 #include "gi/core/error.h"
 
 #include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 
 namespace ar {
 namespace {
@@ -54,25 +53,25 @@ cv::Mat PictureSource::decoded(NumberedPicture const& p)
     };
     std::string problem;
     auto const bytes = bytes_of_file(p.file, problem);
-    if (problem.empty()) problem = bytes.empty() ? "it is empty" : what_is_missing(bytes);
-    if (problem.empty() && !is_picture(bytes)) problem = "it is no picture that is known here";
+    if (problem.empty() && bytes.empty()) problem = "it is empty";
     if (!problem.empty()) return refuse(problem);
-    cv::Mat picture;
-    try {
-        picture = cv::imdecode(bytes, cv::IMREAD_ANYCOLOR); // of 8 bits
-    } catch (cv::Exception const& e) {
-        return refuse("it cannot be decoded: " + e.err);
-    }
-    if (picture.empty()) return refuse("it cannot be decoded");
+    DecodedPicture picture = decoded_picture(bytes);
+    if (!picture.problem.empty()) return refuse(picture.problem);
+    cv::Mat const& pixels = picture.pixels;
     if (size_px_ == glm::ivec2(0)) {
-        size_px_ = {picture.cols, picture.rows};
-        type_ = picture.type();
+        size_px_ = {pixels.cols, pixels.rows};
+        format_ = picture.format;
     }
-    if (glm::ivec2(picture.cols, picture.rows) != size_px_)
-        return refuse(fmt::format("it has {} x {} pixels, the first one had {} x {}", picture.cols, picture.rows,
+    if (glm::ivec2(pixels.cols, pixels.rows) != size_px_)
+        return refuse(fmt::format("it has {} x {} pixels, the first one had {} x {}", pixels.cols, pixels.rows,
                                   size_px_.x, size_px_.y));
-    if (picture.type() != type_) return refuse("it has colour where the first one had none, or none where it had");
-    return picture;
+    auto const has_bytes = [](PixelFormat f) { return f == PixelFormat::gray8 || f == PixelFormat::bgr8; };
+    if (picture.format != format_ && has_bytes(picture.format) && has_bytes(format_))
+        return refuse("it has colour where the first one had none, or none where it had");
+    if (picture.format != format_)
+        return refuse(fmt::format("its pixels are {}, those of the first one were {}", name_of(picture.format),
+                                  name_of(format_)));
+    return pixels;
 }
 
 std::optional<Frame> PictureSource::next(std::chrono::milliseconds wait)
@@ -87,7 +86,7 @@ std::optional<Frame> PictureSource::next(std::chrono::milliseconds wait)
     if (!due_s) return std::nullopt;
     f.captured_s = *due_s;
     f.origin = TimestampOrigin::file;
-    f.format = type_ == CV_8UC1 ? PixelFormat::gray8 : PixelFormat::bgr8;
+    f.format = format_;
     f.size_px = size_px_;
     f.planes[0] = std::exchange(ready_, cv::Mat());
     f.arrived_s = steady_now_s();
@@ -107,7 +106,7 @@ SourceDescription PictureSource::description() const
     return {.name = name_,
             .id = name_,
             .size_px = size_px_,
-            .format = type_ == CV_8UC1 ? PixelFormat::gray8 : PixelFormat::bgr8,
+            .format = format_,
             .frames_per_s = options_.frames_per_s,
             .is_live = false,
             .controls = {}};

@@ -13,8 +13,8 @@ struct NumberedPicture {
     std::filesystem::path file;
 };
 
-/// For a folder: its pictures (.png .jpg .jpeg .bmp .tif .tiff .ppm .pgm .webp) in natural order (2 before 10),
-/// numbered from 0. For a pattern like "shots/frame_%04d.png" (one %d, optionally with zeros and width): the
+/// For a folder: its pictures (.png .jpg .jpeg .bmp .tif .tiff .ppm .pgm .webp .exr) in natural order (2 before
+/// 10), numbered from 0. For a pattern like "shots/frame_%04d.png" (one %d, optionally with zeros and width): the
 /// matching files, by their numbers.
 /// @throws gi::InputError no such folder, an invalid pattern
 std::vector<NumberedPicture> find_pictures(std::filesystem::path const& folder_or_pattern);
@@ -27,9 +27,10 @@ struct PictureOptions {
     Pace pace = Pace::own;
 };
 
-/// The first decodable picture sets the size. Files that are truncated, not pictures, missing or of another size
-/// are refused; numbers missing from a pattern count as dropped. Frames are bgr8 or (single-channel pictures)
-/// gray8; captured_s is the time when the frame is due, origin: file.
+/// The first decodable picture sets size and kind. Files that are truncated, not pictures, missing or of another
+/// size are refused; numbers missing from a pattern count as dropped. Frames are bgr8 or (single-channel pictures)
+/// gray8; of 16 bits (PNG, TIFF) rgb16; of OpenEXR (channels R, G, B without a layer, or Y) and float TIFF
+/// rgb_linear; captured_s is the time when the frame is due, origin: file.
 class PictureSource final : public FrameSource {
 public:
     /// @throws gi::InputError no pictures, or none that can be decoded
@@ -50,7 +51,7 @@ private:
     std::size_t at_ = 0;
     cv::Mat ready_; ///< decoded, not yet due
     glm::ivec2 size_px_{0};
-    int type_ = 0;
+    PixelFormat format_ = PixelFormat::bgr8;
     Tally tally_;
     Player player_;
 };

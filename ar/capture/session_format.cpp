@@ -18,8 +18,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kSumKey = ",\"crc32\":\"";
 constexpr std::size_t kSumTail = kSumKey.size() + 8 + 2; // and "}
-constexpr std::array kFormats{PixelFormat::rgb8, PixelFormat::bgr8, PixelFormat::gray8,
-                              PixelFormat::nv12, PixelFormat::yuyv, PixelFormat::mjpeg};
+constexpr std::array kFormats{PixelFormat::rgb8, PixelFormat::bgr8,  PixelFormat::gray8, PixelFormat::nv12,
+                              PixelFormat::yuyv, PixelFormat::mjpeg, PixelFormat::rgb16, PixelFormat::rgb_linear};
 constexpr std::array kOrigins{TimestampOrigin::sensor, TimestampOrigin::driver, TimestampOrigin::file,
                               TimestampOrigin::arrival};
 
@@ -179,6 +179,10 @@ std::uint64_t packed_bytes(PixelFormat format, glm::ivec2 size)
         return 2 * pixels;
     case PixelFormat::mjpeg:
         return 0;
+    case PixelFormat::rgb16:
+        return 6 * pixels;
+    case PixelFormat::rgb_linear:
+        return 12 * pixels;
     }
     throw std::logic_error("a pixel format without a size");
 }
@@ -205,6 +209,12 @@ void set_packed_planes(Frame& f, std::vector<std::uint8_t> bytes)
         break;
     case PixelFormat::mjpeg:
         f.planes[0] = cv::Mat(1, int(owner->size()), CV_8UC1, owner->data());
+        break;
+    case PixelFormat::rgb16:
+        f.planes[0] = cv::Mat(y, x, CV_16UC3, owner->data());
+        break;
+    case PixelFormat::rgb_linear:
+        f.planes[0] = cv::Mat(y, x, CV_32FC3, owner->data());
         break;
     }
     f.owner = owner;

@@ -67,6 +67,12 @@ void check_frame(Frame const& f)
     case PixelFormat::mjpeg:
         good = f.planes[0].rows == 1 && f.planes[0].cols > 0 && f.planes[0].type() == CV_8UC1;
         break;
+    case PixelFormat::rgb16:
+        good = is(0, y, x, CV_16UC3);
+        break;
+    case PixelFormat::rgb_linear:
+        good = is(0, y, x, CV_32FC3);
+        break;
     }
     if (!good) refuse("its planes are not those of " + name_of(f.format));
 }

@@ -57,6 +57,12 @@ bool is_jpeg(std::span<std::uint8_t const> p)
     return p.size() >= 3 && p[0] == 0xff && p[1] == 0xd8 && p[2] == 0xff;
 }
 
+bool is_exr(std::span<std::uint8_t const> p)
+{
+    constexpr std::array<std::uint8_t, 4> kExr{0x76, 0x2f, 0x31, 0x01};
+    return p.size() >= kExr.size() && std::equal(kExr.begin(), kExr.end(), p.begin());
+}
+
 bool is_picture(std::span<std::uint8_t const> p)
 {
     using namespace std::string_view_literals;

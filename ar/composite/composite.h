@@ -7,15 +7,18 @@
 //
 // All is computed in units of the camera's bytes (ar/camera/photometry.h): with and without go through exposure,
 // colour matrix and vignetting, then through the response to the nearest byte. Uncovered pixels where with equals
-// without keep the camera's bytes. docs/methods.md has the equations of the options.
+// without keep the camera's bytes. Frames of 16 bits and of linear radiance keep their depth. docs/methods.md has
+// the equations of the options.
 
 #include "ar/camera/photometry.h"
+#include "ar/composite/deep_response.h"
 #include "ar/composite/rendered_pair.h"
 #include "ar/composite/response_table.h"
 #include "ar/composite/sensor_noise.h"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace ar {
 
@@ -55,18 +58,23 @@ struct CompositeCounts {
     CompositeCounts& operator+=(CompositeCounts const& other);
 };
 
+enum class Output; // codes or radiance; of the implementation
+
 class Compositor {
 public:
     /// @throws gi::InputError a colour matrix without inverse, settings out of range
     explicit Compositor(Photometry const& photometry, CompositeSettings const& settings = {});
 
-    /// @param rgb      CV_8UC3 RGB, the camera's frame; not resampled
+    /// @param rgb      CV_8UC3, CV_16UC3 or CV_32FC3 RGB (picture_of), the camera's frame; not resampled
     /// @param pair     of the frame's size and lens (see Warp, upsampled)
-    /// @param out      CV_8UC3; its memory is reused if it fits; may be `rgb` itself
+    /// @param out      of the frame's type; its memory is reused if it fits; may be `rgb` itself
     /// @param frame    frame number, which selects the noise
     /// @throws gi::InputError wrong types or sizes
     CompositeCounts operator()(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure,
                                cv::Mat& out, std::uint64_t frame = 0);
+
+    /// The composite as radiance, CV_32FC3: what the codes are made of, before noise and rounding.
+    cv::Mat light(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure);
 
     /// For the same computation on the GPU (viewer/devices/gl).
     Photometry const& photometry() const { return photometry_; }
@@ -79,9 +87,19 @@ public:
     NoiseField const& noise() const { return noise_; }
 
 private:
+    cv::Matx33f radiance_to_unit() const; ///< of linear frames
+    template <Output kOutput>
+    CompositeCounts by_depth(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure, cv::Mat& out,
+                             std::uint64_t frame_number);
+    template <Output kOutput, typename Response>
+    CompositeCounts composited(cv::Mat const& rgb, RenderedPair const& pair,
+                               std::array<Response, 3> const& response, cv::Matx33f const& to_unit,
+                               cv::Mat const& vignetting, cv::Mat& out, std::uint64_t frame_number) const;
+
     Photometry photometry_;
     CompositeSettings settings_;
     std::array<ResponseTable, 3> response_;
+    std::optional<std::array<DeepResponse, 3>> deep_response_; ///< from the first frame of 16 bits on
     cv::Matx33f camera_colour_;
     NoiseField noise_;
     cv::Mat vignetting_; ///< CV_32FC1 of the last frame's size; empty without vignetting

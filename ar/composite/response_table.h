@@ -9,6 +9,9 @@ namespace ar {
 
 class ResponseTable {
 public:
+    using Code = std::uint8_t;
+    static constexpr Code kWhite = 255;
+
     /// @param unit_of_byte  non-decreasing
     explicit ResponseTable(std::array<float, 256> const& unit_of_byte);
 
@@ -27,6 +30,9 @@ public:
     {
         return unit >= least_[camera] && unit <= most_[camera] ? camera : byte(unit);
     }
+    /// The names that responses of other depths have too (deep_response.h).
+    Code code(float unit) const { return byte(unit); }
+    Code code_near(float unit, Code camera) const { return byte_near(unit, camera); }
     std::array<float, 256> const& units() const { return unit_; }
     /// [b]: midpoint between the units of b and b + 1; [255] is the unit of 255.
     std::array<float, 256> const& borders() const { return border_; }

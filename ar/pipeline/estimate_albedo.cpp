@@ -1,11 +1,13 @@
 #include "ar/pipeline/estimate_albedo.h"
 
+#include "ar/capture/clock.h"
 #include "ar/pipeline/bridge.h"
 #include "ar/pipeline/first_surfaces.h"
 #include "gi/core/error.h"
 #include "gi/filter/denoise.h"
 #include "gi/methods/reference/reference.h"
 
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 namespace viewer {
@@ -79,7 +81,15 @@ public:
         std::vector<ar::AlbedoView> views;
         for (std::size_t i = 0; i < prepared_.size(); ++i) {
             ar::AlbedoView view = prepared_[i].view;
+            double const begun_s = ar::steady_now_s();
             view.white = warp_.smooth(color(world, prepared_[i].camera, i));
+            if (double const each_s = ar::steady_now_s() - begun_s; !std::exchange(is_told_, true)) {
+                std::size_t const n = prepared_.size();
+                gi::say_estimate(
+                    "albedo", each_s * double(n) * settings_.most_turns,
+                    fmt::format("at most: {} iterations of {} pictures, {:.1f} s each; often half of that",
+                                settings_.most_turns, n, each_s));
+            }
             view.white.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
                 int const patch = view.surface.at<int>(at[0], at[1]);
                 if (patch < 0) return;
@@ -148,6 +158,7 @@ private:
     ar::Warp warp_;
     std::vector<int> patch_of_material_;
     std::vector<Prepared> prepared_;
+    bool is_told_ = false; ///< how long it will take
 };
 
 cv::Size texture_size(AlbedoPatch const& p)

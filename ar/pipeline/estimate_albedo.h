@@ -11,7 +11,7 @@ namespace viewer {
 
 /// A frame without virtual objects.
 struct AlbedoFrame {
-    cv::Mat rgb; ///< CV_8UC3, of the calibration's size
+    cv::Mat rgb; ///< as ar::picture_of, of the calibration's size
     ar::Exposure exposure;
     ar::Pose world_from_camera;
     double confidence = 1; ///< of the pose

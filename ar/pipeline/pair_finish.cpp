@@ -109,6 +109,16 @@ ar::RenderedPair PairFinish::blurred(ar::RenderedPair pair, FinishFrame const& f
     return pair;
 }
 
+SeenDepth PairFinish::depth_of(PairPictures const& rendered) const
+{
+    cv::Size const size(warp_.from().size_px.x, warp_.from().size_px.y);
+    auto const in_lens = [&](cv::Mat depth_m) {
+        if (depth_m.size() != size) cv::resize(depth_m, depth_m, size, 0, 0, cv::INTER_NEAREST);
+        return warp_.nearest(depth_m);
+    };
+    return {in_lens(rendered.depth_m), in_lens(rendered.real_depth_m)};
+}
+
 ar::RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFrame const& frame,
                                         gi::World const& world)
 {

@@ -30,6 +30,12 @@ struct FinishCounts {
 /// Whether rendered pixels are means over many points, so that they need no borders at full size.
 enum class PixelPoints { one, many };
 
+/// First surfaces along the camera's axis, m, CV_32FC1, in the camera's lens; 0 = none.
+struct SeenDepth {
+    cv::Mat composite; ///< virtual objects and the model of the place
+    cv::Mat place;     ///< the model of the place alone
+};
+
 class PairFinish {
 public:
     /// @param points  of each rendered pixel
@@ -42,6 +48,8 @@ public:
     bool needs_world() const { return session_.finish.upsample || session_.finish.mattes; }
     /// @param world  with all virtual objects in place, the same object in every call; read only if needed
     ar::RenderedPair operator()(PairPictures const& rendered, FinishFrame const& frame, gi::World const& world);
+    /// Nearest rendered pixels: at a resolution below 1 their borders are coarser than those of the pair.
+    SeenDepth depth_of(PairPictures const& rendered) const;
     /// Discards the history; call when the camera's pose is lost.
     void forget();
     FinishCounts const& counts() const { return counts_; }

@@ -68,6 +68,7 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
     if (!session.pose.features.empty())
         features_.emplace(ar::read_feature_map(session.pose.features), camera.model);
     if (session.pose.fused) fusion_.emplace();
+    if (session.occlusion) occluders_.emplace(*session.occlusion, camera.model);
     renderer_.set_environment(light_.begin());
     std::string const why = renderer_.choose(session.render.light);
     lit_by_ = renderer_.is_prefiltered() ? "prefiltered light" : fmt::format("paths ({})", why);
@@ -76,19 +77,36 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
     light_picture_ = picture_of_light(light_.map());
 }
 
-ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
-                                      gi::StopRequest const& stop)
+void ArPipeline::render(ArResult& found, ar::Frame const& frame, double time_s, gi::StopRequest const& stop)
 {
     ar::CameraModel const& pinhole = finish_->pinhole();
     ar::Pose const& world_from_camera = *found.used.world_from_camera;
     PairPictures const p =
         renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
                          session_.render.paths, time_s, session_.render.denoise, stop);
-    FinishFrame frame{{}, world_from_camera, time_s, exposure.time_s};
-    if (finish_->needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
-    ar::RenderedPair const pair =
-        (*finish_)(p, frame, finish_->needs_world() ? renderer_.world_with(time_s) : renderer_.world());
-    return found.used.shown < 1 ? ar::faded(pair, found.used.shown) : pair;
+    FinishFrame of{{}, world_from_camera, time_s, frame.exposure.time_s};
+    if (finish_->needs_radiance()) of.radiance = ar::radiance_of(found.camera, camera_.photometry, frame.exposure);
+    found.pair = (*finish_)(p, of, finish_->needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+    if (found.used.shown < 1) found.pair = ar::faded(*found.pair, found.used.shown);
+    if (keeps_depth_ || occluders_) found.depth = finish_->depth_of(p);
+    if (!occluders_) return;
+    LiveOccluderCounts const before = occluders_->counts();
+    occluders_->hide(*found.pair, found.depth->composite, frame.sequence, time_s);
+    LiveOccluderCounts const& now = occluders_->counts();
+    std::string const where = fmt::format("frame {}", frame.sequence);
+    report_.lose("frames without their depth picture", now.without_depth - before.without_depth, where);
+    report_.lose("frames without their matte", now.without_matte - before.without_matte, where);
+    report_.lose("depth pictures and mattes that cannot be used", now.unusable - before.unusable,
+                 now.last_problem);
+    report_occluders();
+}
+
+void ArPipeline::report_occluders()
+{
+    LiveOccluderCounts const& c = occluders_->counts();
+    count_some("frames with a depth picture or a matte", c.frames);
+    count_some("pixels of virtual things hidden by them", c.pixels.hidden);
+    count_some("pixels of virtual things without a measured depth", c.pixels.holes);
 }
 
 void ArPipeline::count_some(char const* what, std::size_t n)
@@ -139,7 +157,7 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<K
             "set the camera to that size, or calibrate it at this one");
     ArResult r;
     Lap lap(begun_s ? *begun_s : ar::steady_now_s());
-    r.camera = ar::rgb_of(frame);
+    r.camera = ar::picture_of(frame);
     cv::Mat const gray = ar::gray_of(frame);
     r.times.decode_ms = lap();
     if (known) {
@@ -183,7 +201,7 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
                 light_picture_ = picture_of_light(light_.map());
             }
         r.times.light_ms = lap();
-        r.pair = rendered(r, frame.exposure, time_s, stop);
+        render(r, frame, time_s, stop);
         r.times.render_ms = lap();
         if (composite == CompositeBy::pipeline) {
             r.rgb = cv::Mat(); // the camera's stays as it is

@@ -6,6 +6,7 @@
 #include "ar/composite/composite.h"
 #include "ar/features/feature_tracker.h"
 #include "ar/markers/detect.h"
+#include "ar/pipeline/live_occluders.h"
 #include "ar/pipeline/pair_finish.h"
 #include "ar/pipeline/pair_renderer.h"
 #include "ar/pipeline/place_light.h"
@@ -43,13 +44,14 @@ struct KnownPose {
 };
 
 struct ArResult {
-    cv::Mat rgb;    ///< CV_8UC3; without a pose: the camera's frame unchanged
-    cv::Mat camera; ///< the camera's frame
+    cv::Mat rgb;    ///< of the type of `camera`; without a pose: the camera's frame unchanged
+    cv::Mat camera; ///< the camera's frame, with all its bits (ar::picture_of)
     ar::Sighting sighting;
     ar::PoseEstimate pose; ///< the frame's own estimate, or the known pose
     ar::UsedPose used;     ///< what the frame is composited with
     ar::CompositeCounts counts;
     std::optional<ar::RenderedPair> pair; ///< in the camera's lens
+    std::optional<SeenDepth> depth;       ///< of the pair; only after ArPipeline::keep_depth
     cv::Mat light;                        ///< CV_8UC3 RGB, thumbnail of the environment map used; empty = no map
     ArTimes times;
     double done_s = 0; ///< steady clock, end of the last stage
@@ -81,6 +83,9 @@ public:
     /// @param r  result of `find` for the same frame
     void add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
              CompositeBy composite = CompositeBy::pipeline);
+    /// Results get their depth; call before the first frame.
+    void keep_depth() { keeps_depth_ = true; }
+    ArCamera const& camera() const { return camera_; }
     ar::Compositor const& compositor() const { return compositor_; }
     /// By prefiltered light, without paths.
     bool is_prefiltered() const { return renderer_.is_prefiltered(); }
@@ -88,10 +93,11 @@ public:
     std::string const& lit_by() const { return lit_by_; }
 
 private:
-    ar::RenderedPair rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
-                              gi::StopRequest const& stop);
+    /// Sets the pair, and its depth if needed.
+    void render(ArResult& found, ar::Frame const& frame, double time_s, gi::StopRequest const& stop);
     void report_poses();
     void report_finish();
+    void report_occluders();
     void count_some(char const* what, std::size_t n);
 
     ArSession session_;
@@ -100,11 +106,13 @@ private:
     PairRenderer renderer_;
     PlaceLight light_;
     std::optional<PairFinish> finish_;
+    std::optional<LiveOccluders> occluders_;
     ar::Compositor compositor_;
     std::optional<ar::FeatureTracker> features_; ///< instead of the detector
     std::optional<ar::PoseFusion> fusion_;
     ar::PoseTracker tracker_;
     ar::PoseTrust trust_;
+    bool keeps_depth_ = false;
     cv::Mat light_picture_;
     std::string lit_by_;
     gi::Report& report_;

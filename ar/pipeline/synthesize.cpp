@@ -1,6 +1,7 @@
 #include "ar/pipeline/synthesize.h"
 
 #include "ar/calibration/calibration_file.h"
+#include "ar/capture/clock.h"
 #include "ar/markers/draw.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/pipeline/quick_view.h"
@@ -166,22 +167,39 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
     if (o.quick) quick.emplace(empty, report);
     gi::Scene full = empty;
     gi::append(full, generate_statue(), "virtual", glm::translate(gi::dmat4(1), gi::dvec3(-0.02, 0, -0.1)));
+    auto const file_of = [&](char const* folder, std::size_t f) {
+        return o.folder / folder / fmt::format("{:06}.png", f);
+    };
+    std::size_t wanted = 0, written = 0;
+    for (std::size_t f = 0; f < poses.size(); ++f)
+        wanted += std::size_t(!fs::exists(file_of("frames", f))) +
+                  std::size_t(o.truth && !fs::exists(file_of("truth", f)));
     gi::ProgressBar bar("synthesize");
+    double const begun_s = ar::steady_now_s();
+    bool is_told = false;
     int done = 0;
     for (std::size_t f = 0; f < poses.size() && !stop.requested(); ++f) {
-        bar.update(double(f) / double(poses.size()));
         auto const picture = [&](char const* folder, gi::Scene const& scene) {
-            fs::path const file = o.folder / folder / fmt::format("{:06}.png", f);
+            fs::path const file = file_of(folder, f);
             if (fs::exists(file)) return;
+            bar.update(double(written) / double(wanted), fmt::format("frame {} of {}", f + 1, poses.size()));
             cv::Mat const radiance =
                 quick ? quick->radiance(camera.model, poses[f].world_from_camera)
                       : synthetic_radiance(scene, poses[f].time_s, camera.model, poses[f].world_from_camera,
                                            o.quality, f, stop, report);
-            if (!stop.requested()) write_png(file, synthetic_frame(radiance, camera, f));
+            if (stop.requested()) return;
+            write_png(file, synthetic_frame(radiance, camera, f));
+            ++written;
         };
         picture("frames", empty);
         if (o.truth) picture("truth", full);
         done += stop.requested() ? 0 : 1;
+        if (is_told || written == 0 || stop.requested()) continue;
+        is_told = true;
+        double const each_s = (ar::steady_now_s() - begun_s) / double(written);
+        gi::say_estimate("synthesize", each_s * double(wanted - written),
+                         fmt::format("{} pictures of {} x {}, {:.1f} s each with {} paths per pixel",
+                                     wanted - written, o.size_px.x, o.size_px.y, each_s, o.quality.paths));
     }
     return done;
 }

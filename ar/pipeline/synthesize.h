@@ -15,7 +15,7 @@ enum class DeskMarkers { board, one, none };
 struct SynthesizeOptions {
     std::filesystem::path folder;
     glm::ivec2 size_px{640, 480};
-    int frames = 300;
+    int frames = 30;
     double rate_hz = 30;
     SyntheticQuality quality;
     /// Rasterised with a sky as the only light, without shadows (ar/pipeline/quick_view.h), and with a printed
@@ -26,7 +26,8 @@ struct SynthesizeOptions {
     bool truth = true;                        ///< also write the pictures with the virtual objects
 };
 
-/// Existing frames are kept, so an interrupted run can be continued.
+/// Existing frames are kept, so an interrupted run can be continued. Says on stderr how long it will take, as
+/// measured on the first frame.
 /// @return number of frames now in the folder. @throws gi::InputError the folder cannot be written, or contains a
 /// session with other options
 int synthesize(SynthesizeOptions const& options, gi::StopRequest const& stop, gi::Report& report);

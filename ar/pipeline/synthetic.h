@@ -29,7 +29,7 @@ ar::Pose synthetic_pose(double t);
 ar::Pose synthetic_pose_apart(double t);
 
 struct SyntheticQuality {
-    std::uint32_t paths = 48; ///< of the reference renderer, per pixel of the camera
+    std::uint32_t paths = 4;  ///< of the reference renderer, per pixel of the camera
     double resolution = 1.25; ///< pixels rendered per pixel of the camera, before the lens
     bool denoise = true;
     int threads = 0;

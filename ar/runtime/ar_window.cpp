@@ -57,6 +57,7 @@ cv::Rect place_of(glm::ivec2 picture_px, glm::ivec2 window_px)
 
 ArWindow::ArWindow(ArWindowSettings const& settings, gi::Report& report)
     : settings_(settings),
+      report_(report),
       window_(window_settings(settings), report),
       panel_(window_),
       picture_(texture()),
@@ -128,13 +129,13 @@ void ArWindow::fill_panel(ArFrameRecord const& f)
 unsigned ArWindow::composite(ArFrameRecord const& record, ArResult const& result)
 {
     if (!pass_ || !result.pair) {
-        fill(picture_, result.rgb);
+        fill(picture_, ar::eight_bits_of(result.rgb));
         return picture_.id();
     }
     glm::ivec2 const size_px(result.camera.cols, result.camera.rows);
     if (!composited_ || composited_->shown().size_px != size_px)
         composited_.emplace(TextureTarget::Format::bytes, size_px);
-    pass_->upload(result.camera, *result.pair);
+    pass_->upload(ar::eight_bits_of(result.camera), *result.pair);
     pass_->draw(composited_->target(), record.exposure, record.sequence);
     return composited_->shown().texture;
 }
@@ -178,6 +179,7 @@ void ArWindow::show(ArFrameRecord& record, ArResult const& result)
         light_ = result.light;
         if (!light_.empty()) fill(light_texture_, light_);
     }
+    if (result.rgb.depth() != CV_8U) report_.lose("frames shown with 8 bits of 16 or more", 1, "the window");
     fill_panel(record);
     unsigned const picture = composite(record, result);
     bind(target_of(window_));
@@ -186,7 +188,7 @@ void ArWindow::show(ArFrameRecord& record, ArResult const& result)
     glClear(GL_COLOR_BUFFER_BIT);
     draw(picture, result.camera.size(), 1);
     if (is_split_) {
-        fill(camera_, result.camera);
+        fill(camera_, ar::eight_bits_of(result.camera));
         draw(camera_.id(), result.camera.size(), 0.5);
     }
     panel_.draw();

@@ -23,6 +23,7 @@ struct ArWindowSettings {
 
 class ArWindow {
 public:
+    /// @param report  counts frames of more than 8 bits, of which the window shows 8; must outlive the window
     ArWindow(ArWindowSettings const& settings, gi::Report& report);
 
     /// Draws and swaps; sets `record.present_ms` and, for frames with times, `record.swapped_ms`: the time from
@@ -45,6 +46,7 @@ private:
     void keep_shown(cv::Size picture);
 
     ArWindowSettings settings_;
+    gi::Report& report_;
     Window window_;
     Panel panel_;
     std::optional<ArCompositePass> pass_;

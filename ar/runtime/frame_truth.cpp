@@ -34,7 +34,7 @@ void FrameTruth::add(ArFrameRecord const& f, ArResult const& r)
         return;
     }
     cv::cvtColor(truth, truth, cv::COLOR_BGR2RGB);
-    TruthErrors const e = errors_against_truth(r.rgb, r.camera, truth);
+    TruthErrors const e = errors_against_truth(ar::eight_bits_of(r.rgb), ar::eight_bits_of(r.camera), truth);
     errors_.flip_affected.push_back(e.flip_affected);
     errors_.flip_elsewhere.push_back(e.flip_elsewhere);
     errors_.camera_affected.push_back(e.camera_affected);

@@ -179,14 +179,15 @@ std::shared_ptr<PassThroughFrame> PassThrough::composited(ar::Frame const& frame
     made->used = left.used;
     made->is_estimated = left.pose.found();
     made->confidence = left.pose.confidence;
-    made->rgb.push_back(left.rgb.clone());
+    if (left.rgb.depth() != CV_8U) report_.lose("frames shown with 8 bits of 16 or more", 1, "the headset");
+    made->rgb.push_back(ar::eight_bits_of(left.rgb).clone());
     if (other != nullptr && left.used.world_from_camera) {
         ar::Pose const world_from_right = *left.used.world_from_camera * session_.hmd->right->left_from_right;
         ArResult right = sides_[1]->pipeline.find(*other, time_s, world_from_right);
         right.used = left.used;
         right.used.world_from_camera = world_from_right;
         sides_[1]->pipeline.add(right, *other, time_s, stop_);
-        made->rgb.push_back(right.rgb.clone());
+        made->rgb.push_back(ar::eight_bits_of(right.rgb).clone());
     } else if (other != nullptr) {
         made->rgb.push_back(ar::rgb_of(*other).clone());
     }

@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/image_io/picture_file.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -20,6 +21,15 @@ PictureFolder::PictureFolder(std::filesystem::path folder) : folder_(std::move(f
 
 void PictureFolder::add(std::uint64_t sequence, cv::Mat const& rgb) const
 {
+    if (rgb.depth() == CV_32F) {
+        gi::Picture picture{rgb.cols, rgb.rows, {}, {}};
+        gi::Layer& color = picture.add("color", 3);
+        cv::Mat const all = rgb.isContinuous() ? rgb : rgb.clone();
+        std::copy_n(all.ptr<float>(), color.data.size(), color.data.begin());
+        gi::Report none_lost; // single precision keeps all values
+        gi::write_exr(folder_ / fmt::format("{:06}.exr", sequence), picture, gi::PixelType::single, none_lost);
+        return;
+    }
     cv::Mat bgr;
     cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
     std::vector<unsigned char> bytes;

@@ -75,6 +75,7 @@ void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions cons
     check_size(about.size_px, camera);
     ArPipeline pipeline(session, camera, markers, report);
     if (!options.find_poses_only) summary.light = pipeline.lit_by();
+    if (options.keeps_depth) pipeline.keep_depth();
     if (options.opened) options.opened(about, pipeline);
     bool const is_timed = options.pace == ar::Pace::own || about.is_live;
     double const begun_s = ar::steady_now_s();

@@ -22,6 +22,7 @@ struct ArRunOptions {
     /// Callback to a tracker that replaces both; called for each frame by the pose-estimating thread.
     std::function<std::optional<ar::Pose>(ar::Frame const&)> tracked;
     bool find_poses_only = false; ///< nothing is rendered
+    bool keeps_depth = false;     ///< results have ArResult::depth
     CompositeBy composite = CompositeBy::pipeline;
     /// Called before the first frame, by the caller's thread.
     std::function<void(ar::SourceDescription const&, ArPipeline const&)> opened;

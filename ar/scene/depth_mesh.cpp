@@ -1,63 +1,14 @@
 #include "ar/calibration/calibration_file.h"
 #include "ar/camera/camera_model.h"
+#include "ar/scene/depth_map.h"
 #include "ar/scene/proxy_mesh.h"
 #include "gi/core/error.h"
-#include "gi/core/file.h"
-#include "gi/image_io/picture_file.h"
 #include "gi/scene/motion/vertex_normals.h"
 
-#include <cctype>
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 
 namespace viewer {
 namespace {
-
-cv::Mat decoded_exr(std::filesystem::path const& file)
-{
-    gi::Picture const picture = gi::read_exr(file);
-    // Channels without a layer, Z or Y, are read as "color"; several of them are colours, and no depths.
-    for (char const* name : {"depth", "Z", "Y", "color"})
-        if (gi::Layer const* const layer = picture.find(name); layer && layer->channels == 1) {
-            cv::Mat map(picture.height, picture.width, CV_32FC1);
-            for (std::size_t i = 0; i < picture.pixels(); ++i)
-                map.ptr<float>()[i] = layer->data[i * std::size_t(layer->channels)];
-            return map;
-        }
-    throw gi::InputError("'" + file.string() + "' has no layer 'depth', 'Z' or 'Y' of one channel",
-                         "the depth channel cannot be identified",
-                         "write a file whose only channel without a layer is Z or Y, or name it depth.V");
-}
-
-cv::Mat decoded_png(std::filesystem::path const& file)
-{
-    auto const bad = [&](std::string const& problem) {
-        return gi::InputError("'" + file.string() + "' " + problem, "depth maps have one channel of 16 bits",
-                              "save it as PNG of 16 bits, or as EXR in metres");
-    };
-    std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 30);
-    cv::Mat map;
-    try {
-        map = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-    } catch (cv::Exception const&) {
-        throw bad("cannot be decoded");
-    }
-    if (map.empty()) throw bad("cannot be decoded");
-    if (map.type() != CV_16UC1) throw bad(fmt::format("has pixels of {}", cv::typeToString(map.type())));
-    map.convertTo(map, CV_32F);
-    return map;
-}
-
-/// Converts to metres; 0 and non-finite values: no surface.
-cv::Mat depths_of(ProxyDepth const& depth)
-{
-    std::string ending = depth.file.extension().string();
-    for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-    bool const is_exr = ending == ".exr";
-    cv::Mat const map = is_exr ? decoded_exr(depth.file) : decoded_png(depth.file);
-    double const metres = depth.metres_per_unit > 0 ? depth.metres_per_unit : is_exr ? 1 : 1e-3;
-    return map * metres;
-}
 
 ar::CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
 {
@@ -76,7 +27,7 @@ ar::CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
 
 gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report)
 {
-    cv::Mat const map = depths_of(depth);
+    cv::Mat const map = read_depth_map(depth.file, depth.metres_per_unit);
     ar::CameraModel const camera = camera_of(depth, map.size());
     int const step = depth.step_px, columns = (map.cols - 1) / step + 1, rows = (map.rows - 1) / step + 1;
     gi::Mesh mesh;

@@ -24,7 +24,7 @@ public:
     ArSession read()
     {
         root_.only_keys({"schema", "frames", "camera", "markers", "light", "real", "virtual", "render",
-                         "composite", "pose", "hmd"});
+                         "composite", "pose", "hmd", "passes", "occlusion"});
         if (!root_.has("schema") || root_.at("schema").text() != "ar/1")
             throw root_.error("no 'schema: ar/1'", "this may be a file of another kind", "begin the file with it");
         for (char const* needed : {"frames", "camera", "markers"})
@@ -40,6 +40,14 @@ public:
         if (root_.has("hmd")) session_.hmd = read_hmd(root_.at("hmd"), folder_);
         if (root_.has("composite")) read_composite(root_.at("composite"));
         if (root_.has("pose")) read_pose(root_.at("pose"));
+        if (root_.has("occlusion")) {
+            session_.occlusion = read_occlusion(root_.at("occlusion"), folder_);
+            if (session_.hmd && session_.hmd->right)
+                throw root_.at("occlusion")
+                    .error("occlusion with two cameras", "its pictures belong to one camera",
+                           "remove hmd.right or occlusion");
+        }
+        if (root_.has("passes")) read_passes(root_.at("passes"));
         return std::move(session_);
     }
 
@@ -150,6 +158,14 @@ private:
                                                            {"ratio", ar::ClippedBytes::ratio},
                                                            {"model", ar::ClippedBytes::model}});
         if (c.has("largest_ratio")) session_.composite.largest_ratio = float(c.at("largest_ratio").number(1, 1e6));
+    }
+
+    void read_passes(Yaml const& p)
+    {
+        p.only_keys({"folder", "bits", "undistorted"});
+        session_.passes.folder = path(p.needed("folder", "passes"));
+        if (p.has("bits")) session_.passes.bits = choice<int>(p.at("bits"), {{"16", 16}, {"32", 32}});
+        if (p.has("undistorted")) session_.passes.is_undistorted = p.at("undistorted").boolean();
     }
 
     /// Of markers, or of a tracker in their place.

@@ -6,6 +6,7 @@
 #include "ar/pose/tracker.h"
 #include "ar/pose/trust.h"
 #include "ar/scene/hmd_cameras.h"
+#include "ar/scene/occlusion.h"
 #include "ar/scene/proxies.h"
 #include "ar/scene/tracked_pose.h"
 #include "gi/filter/denoise.h"
@@ -62,6 +63,13 @@ struct ArPoseUse {
     double predict_s = 0;  ///< extrapolate for frames without a pose up to this long after the last one
 };
 
+/// The parts of composites, as multi-layer EXR files.
+struct ArPassSettings {
+    std::filesystem::path folder; ///< empty = none
+    int bits = 16;                ///< of radiance, 16 or 32; depths and motion always have 32
+    bool is_undistorted = false;  ///< as a pinhole that covers the camera's view, not in its lens
+};
+
 struct ArSession {
     std::filesystem::path file;
     ArFrames frames;
@@ -79,6 +87,8 @@ struct ArSession {
     bool match_noise = true; ///< add noise as in the camera's calibration
     ArFinish finish;
     ArPoseUse pose;
+    ArPassSettings passes;
+    std::optional<ArOcclusion> occlusion; ///< by real things that are not modelled
 };
 
 /// Paths in the file are relative to its folder. @throws gi::InputError with file:line:column

@@ -111,6 +111,11 @@ std::vector<fs::path> files_read_by(ArSession const& s)
     files.add_estimates(s.real);
     files.add(s.virtual_things.scene);
     if (s.tracked) files.add(files_read_by(*s.tracked));
+    if (s.occlusion) {
+        for (auto const* pictures : {&s.occlusion->depth, &s.occlusion->matte})
+            if (*pictures) files.add(files_of_source((*pictures)->source.string()));
+        files.add(s.occlusion->camera);
+    }
     if (s.hmd && s.hmd->right) {
         files.add(files_of_source(s.hmd->right->source));
         files.add(s.hmd->right->calibration);

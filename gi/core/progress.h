@@ -41,6 +41,12 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// "8 s", "1 min 20 s", "2 h 5 min": rounded as estimates are.
+std::string text_of_seconds(double seconds);
+/// Tells on stderr how long something will take, before it does: "synthesize: about 1 min 20 s (60 pictures, 1.3 s
+/// each)". What takes less than three seconds is not worth a line.
+void say_estimate(std::string const& task, double seconds, std::string const& how);
+
 /// Progress bar on stderr if stderr is a terminal, else no output. Redraws at most ten times a second.
 class ProgressBar {
 public:

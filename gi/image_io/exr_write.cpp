@@ -4,13 +4,18 @@
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
+#include <ImfFramesPerSecond.h>
 #include <ImfHeader.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfRational.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfTimeCode.h>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <half.h>
 
 namespace gi {
@@ -18,11 +23,15 @@ namespace {
 
 constexpr float kLargestHalf = 65504;
 
-bool is_vector(std::string const& layer) { return layer == "normal" || layer == "position"; }
+bool is_vector(std::string const& layer)
+{
+    return layer == "normal" || layer == "position" || layer.starts_with("motion_");
+}
 
 bool needs_single(std::string const& layer)
 {
-    return layer == "depth" || layer == "position" || layer.starts_with("variance");
+    return layer.starts_with("depth") || layer.starts_with("motion_") || layer == "position" ||
+           layer.starts_with("variance");
 }
 
 /// Suffix of channel c of a layer, in the order of its data.
@@ -52,9 +61,41 @@ std::vector<half> to_half(Layer const& layer, Report& report)
     return values;
 }
 
+/// Both column vectors by columns, and row vectors by rows, are the same sixteen numbers in a row.
+Imath::M44f matrix_of(dmat4 const& m)
+{
+    Imath::M44f out;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) out[i][j] = float(m[i][j]);
+    return out;
+}
+
+void add(ExrAttributes const& a, Imf::Header& header)
+{
+    if (a.frames_per_s > 0) Imf::addFramesPerSecond(header, Imf::guessExactFps(a.frames_per_s));
+    if (a.time_code) {
+        ExrAttributes::TimeCode const& t = *a.time_code;
+        Imf::addTimeCode(header, {t.hours, t.minutes, t.seconds, t.frame, false, false, t.is_second_field});
+    }
+    if (a.world_to_camera) Imf::addWorldToCamera(header, matrix_of(*a.world_to_camera));
+    if (a.world_to_ndc) Imf::addWorldToNDC(header, matrix_of(*a.world_to_ndc));
+}
+
 } // namespace
 
-void write_exr(std::filesystem::path const& file, Picture const& picture, PixelType type, Report& report)
+std::optional<ExrAttributes::TimeCode> time_code_of(std::uint64_t frame, double frames_per_s)
+{
+    auto const rate = std::uint64_t(std::lround(std::min(frames_per_s, 1000.0)));
+    if (!(frames_per_s > 0) || rate < 1 || rate > 60) return std::nullopt;
+    std::uint64_t const second = frame / rate, within = frame % rate;
+    if (second >= 24 * 3600) return std::nullopt;
+    bool const has_pairs = rate > 30;
+    return ExrAttributes::TimeCode{int(second / 3600), int(second / 60 % 60), int(second % 60),
+                                   int(has_pairs ? within / 2 : within), has_pairs && within % 2 == 1};
+}
+
+void write_exr(std::filesystem::path const& file, Picture const& picture, PixelType type, Report& report,
+               ExrAttributes const& attributes)
 {
     std::vector<Imf::Header> headers;
     std::vector<std::vector<half>> halves(picture.layers.size());
@@ -65,6 +106,7 @@ void write_exr(std::filesystem::path const& file, Picture const& picture, PixelT
         header.setType(Imf::SCANLINEIMAGE);
         header.compression() = Imf::ZIP_COMPRESSION;
         Imf::addChromaticities(header, Imf::Chromaticities()); // the default is Rec. 709
+        add(attributes, header);                               // such attributes are the same in all parts
         if (l == 0)
             for (auto const& [key, value] : picture.metadata)
                 header.insert(std::string(kMetadataPrefix) + key, Imf::StringAttribute(value));

@@ -5,7 +5,9 @@
 #include "gi/core/report.h"
 #include "gi/image_io/picture.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -13,11 +15,30 @@ namespace gi {
 
 enum class PixelType { half, single };
 
+/// Standard attributes of OpenEXR that a film's pictures have; empty ones are left out.
+struct ExrAttributes {
+    double frames_per_s = 0; ///< 0 = none
+    struct TimeCode {
+        int hours = 0, minutes = 0, seconds = 0;
+        int frame = 0;                ///< 0..29
+        bool is_second_field = false; ///< above 30 frames per second two frames share a number (SMPTE ST 12-1)
+    };
+    std::optional<TimeCode> time_code = {};
+    /// Points of the world to those of a camera that looks along -z with y up, and to its picture, -1..1 each way.
+    std::optional<dmat4> world_to_camera = {}, world_to_ndc = {};
+};
+
+/// SMPTE time code of a frame; drop-frame counting is not used: at 29.97 Hz the code runs as at 30. Nothing above
+/// 60 Hz, of rates that are not known (0), and after 24 hours.
+std::optional<ExrAttributes::TimeCode> time_code_of(std::uint64_t frame, double frames_per_s);
+
 /// OpenEXR. "color" becomes the channels R, G, B(, A) of the first part; every other layer NAME becomes
 /// NAME.R/.G/.B (radiance-like), NAME.X/.Y/.Z ("normal", "position") or NAME.V (one channel).
-/// Layers that need more accuracy than half floats ("depth", "position", "variance*") are always single precision.
-/// Half values beyond +-65504 are clamped and counted in the report.
-void write_exr(std::filesystem::path const& file, Picture const& picture, PixelType type, Report& report);
+/// NAME.X, NAME.Y for "motion_*". Layers that need more accuracy than half floats ("depth*", "position",
+/// "variance*", "motion_*") are always single precision. Half values beyond +-65504 are clamped and counted in the
+/// report.
+void write_exr(std::filesystem::path const& file, Picture const& picture, PixelType type, Report& report,
+               ExrAttributes const& attributes = {});
 
 /// Reads any OpenEXR image: scan-line or tiled (level 0), one or several parts, half/float/uint; sub-sampled
 /// channels are rejected. Channels are grouped into layers by their name up to the last '.'; the group without a

@@ -17,8 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 using Kind = SourceState::Kind;
 
-constexpr std::array kFormats{PixelFormat::rgb8, PixelFormat::bgr8, PixelFormat::gray8,
-                              PixelFormat::nv12, PixelFormat::yuyv, PixelFormat::mjpeg};
+constexpr std::array kFormats{PixelFormat::rgb8, PixelFormat::bgr8,  PixelFormat::gray8, PixelFormat::nv12,
+                              PixelFormat::yuyv, PixelFormat::mjpeg, PixelFormat::rgb16, PixelFormat::rgb_linear};
 
 /// With gaps between its rows, as cameras have them.
 Frame make_frame(PixelFormat format, std::uint64_t sequence, glm::ivec2 size = {8, 6})
@@ -49,10 +49,17 @@ Frame make_frame(PixelFormat format, std::uint64_t sequence, glm::ivec2 size = {
     case PixelFormat::yuyv:
         f.planes[0] = plane(size.y, size.x, CV_8UC2);
         break;
-    case PixelFormat::mjpeg:
+    case PixelFormat::mjpeg: {
         std::vector<uchar> bytes;
         cv::imencode(".jpg", noise(size.y, size.x, CV_8UC3, seed), bytes);
         f.planes[0] = cv::Mat(bytes, true).reshape(1, 1);
+        break;
+    }
+    case PixelFormat::rgb16:
+        f.planes[0] = plane(size.y, size.x, CV_16UC3);
+        break;
+    case PixelFormat::rgb_linear:
+        f.planes[0] = plane(size.y, size.x, CV_32FC3);
         break;
     }
     return f;

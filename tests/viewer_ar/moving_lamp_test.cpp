@@ -64,7 +64,9 @@ TEST(MovingLamp, IsFollowedInTheFrameThatShowsIt)
     session.render.settings.slhb.light_samples = 8;
     session.render.settings.slhb.shadow_resolution = 64;
     // Wide, so that a lamp at its borders stands beside the ball and not behind it.
-    ArCamera const camera{{ar::LensModel::pinhole, {120, 90}, 35, 35, 59.5, 44.5, {}}, ar::srgb_photometry(), {}};
+    ArCamera camera;
+    camera.model = {ar::LensModel::pinhole, {120, 90}, 35, 35, 59.5, 44.5, {}};
+    camera.photometry = ar::srgb_photometry();
     ar::MarkerMap markers;
     markers.markers = {{"DICT_4X4_50", 0, 0.05, {}}};
     ArPipeline pipeline(session, camera, markers, report);

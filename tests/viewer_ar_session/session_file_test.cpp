@@ -138,6 +138,42 @@ TEST(ArSessions, OfDevicesKeepTheirNames)
     EXPECT_EQ(s.frames.options.format, ar::PixelFormat::mjpeg);
 }
 
+TEST(ArSessions, SayWhatOccludesAndWhichPassesAreWritten)
+{
+    ArSession const s = parse_ar_session(kLeastSession + R"(occlusion:
+  depth: {source: d_%04d.png, first: 5, rate_hz: 15}
+  matte: mattes
+  camera: depth.yaml
+  camera_from_depth: {position_m: [0.02, 0, 0]}
+  metres_per_unit: 0.0002
+  margin_m: 0.03
+  soft_m: 0
+  soft_px: 2
+passes: {folder: parts, bits: 32, undistorted: true}
+)",
+                                         "/home/s.yaml");
+    ASSERT_TRUE(s.occlusion && s.occlusion->depth && s.occlusion->matte);
+    EXPECT_EQ(s.occlusion->depth->source, "/home/d_%04d.png");
+    EXPECT_EQ(s.occlusion->depth->first, 5);
+    EXPECT_EQ(s.occlusion->depth->rate_hz, 15);
+    EXPECT_EQ(s.occlusion->matte->source, "/home/mattes");
+    EXPECT_EQ(s.occlusion->camera, "/home/depth.yaml");
+    EXPECT_EQ(s.occlusion->camera_from_depth.position_m.x, 0.02);
+    EXPECT_EQ(s.occlusion->metres_per_unit, 0.0002);
+    EXPECT_EQ(s.occlusion->settings.margin_m, 0.03);
+    EXPECT_EQ(s.occlusion->settings.soft_m, 0);
+    EXPECT_EQ(s.occlusion->settings.soft_px, 2);
+    EXPECT_EQ(s.passes.folder, "/home/parts");
+    EXPECT_EQ(s.passes.bits, 32);
+    EXPECT_TRUE(s.passes.is_undistorted);
+    EXPECT_FALSE(parse_ar_session(kLeastSession, "s.yaml").occlusion);
+    EXPECT_NE(session_refusal(kLeastSession + "occlusion: {depth: {first: 3}}\n").find("source"),
+              std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "occlusion: {matte: m, soft_m: 1}\n").find("s.yaml:5:"),
+              std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "passes: {folder: p, bits: 8}\n").find("16, 32"), std::string::npos);
+}
+
 TEST(ArSessions, ThatAreWrongAreRefusedWithTheirPlace)
 {
     EXPECT_NE(session_refusal("frames: {source: x}\ncamera: c\nmarkers: m\n").find("schema: ar/1"),

@@ -45,6 +45,7 @@ void add_ar_vignetting(CLI::App& ar, int& exit_code);
 void add_ar_noise(CLI::App& ar, int& exit_code);
 void add_ar_colour(CLI::App& ar, int& exit_code);
 void add_ar_probe(CLI::App& ar, int& exit_code);
+void add_ar_lens(CLI::App& ar, int& exit_code);
 // Within bench
 void add_bench_dynamic(CLI::App& bench, int& exit_code);
 void add_bench_sweep(CLI::App& bench, int& exit_code);

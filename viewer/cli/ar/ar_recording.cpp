@@ -19,9 +19,13 @@ ArRecording::ArRecording(ArRecordingSettings settings) : settings_(std::move(set
         [this](NumberedPicture const& p) { folder_->add(p.sequence, p.rgb); }, settings_.when_full);
 }
 
-void ArRecording::begin(ar::SourceDescription const& source)
+void ArRecording::begin(ar::SourceDescription const& source, ar::CameraModel const& camera,
+                        ar::Compositor const& compositor, gi::Report& report)
 {
     if (source.frames_per_s > 0) video_hz_ = source.frames_per_s;
+    if (!settings_.passes.folder.empty())
+        passes_ = std::make_unique<PassFolder>(settings_.passes, camera, compositor, source.frames_per_s,
+                                               settings_.when_full, report);
     if (!settings_.video.empty()) {
         video_ = std::make_unique<VideoWriter>(settings_.video, source.size_px.x, source.size_px.y, video_hz_);
         to_video_ = std::make_unique<PictureThread>([this](NumberedPicture const& p) { add_to_video(p); },
@@ -43,7 +47,8 @@ void ArRecording::add_input(ar::Frame const& frame)
 void ArRecording::add_to_video(NumberedPicture const& p)
 {
     constexpr double longest_s = 10; // longest time that one picture is shown, even if the clock jumps
-    cv::Mat const rgb = p.rgb.isContinuous() ? p.rgb : p.rgb.clone();
+    cv::Mat const bytes = ar::eight_bits_of(p.rgb), rgb = bytes.isContinuous() ? bytes : bytes.clone();
+    if (p.rgb.depth() != CV_8U) ++reduced_;
     double const early_s = video_->frames() / video_hz_ - (p.time_s - cut_s_);
     if (early_s > 1.25 / video_hz_) { // tolerates jitter of about one picture
         ++left_out_;
@@ -56,10 +61,11 @@ void ArRecording::add_to_video(NumberedPicture const& p)
     held_ = rgb;
 }
 
-void ArRecording::add(ArFrameRecord const& record, cv::Mat const& rgb)
+void ArRecording::add(ArFrameRecord const& record, ArResult const& result)
 {
+    if (passes_) passes_->add(record, result);
     for (PictureThread* const t : {to_folder_.get(), to_video_.get()})
-        if (t != nullptr) t->add({record.sequence, record.captured_s, rgb});
+        if (t != nullptr) t->add({record.sequence, record.captured_s, result.rgb});
 }
 
 void ArRecording::finish()
@@ -74,6 +80,7 @@ void ArRecording::finish()
     };
     if (to_folder_) attempt([&] { to_folder_->finish(); });
     if (to_video_) attempt([&] { to_video_->finish(); });
+    if (passes_) attempt([&] { passes_->finish(); });
     if (video_ && video_->frames() > 0 && !is_video_done_) {
         is_video_done_ = is_video_lost_ = true;
         attempt([&] {
@@ -91,10 +98,16 @@ std::string ArRecording::text() const
     if (to_folder_ && to_folder_->lost() > 0)
         text += fmt::format("{}: {} composites were not written (the disk was too slow)\n", settings_.pictures,
                             to_folder_->lost());
+    if (passes_ && passes_->lost() > 0)
+        text += fmt::format("{}: the passes of {} frames were not written (the disk was too slow)\n",
+                            settings_.passes.folder.string(), passes_->lost());
     if (video_)
         text += fmt::format("{}: {} pictures at {:g} Hz, {} of them repeated for missing frames; {} "
                             "composites lost to a slow encoder\n",
                             settings_.video, video_->frames(), video_hz_, repeated_, to_video_->lost());
+    if (reduced_ > 0)
+        text += fmt::format("{}: {} composites reduced to 8 bits, as videos have them (--out keeps all)\n",
+                            settings_.video, reduced_);
     if (is_video_lost_) text += fmt::format("{}: the video could not be saved\n", settings_.video);
     if (left_out_ > 0)
         text += fmt::format("{}: {} composites left out (faster than this rate)\n", settings_.video, left_out_);

@@ -3,6 +3,7 @@
 // frames as a recorded session. Rendering and display wait for them only if frames are read as fast as possible.
 
 #include "ar/capture/session_writer.h"
+#include "ar/runtime/pass_folder.h"
 #include "ar/runtime/picture_folder.h"
 #include "ar/runtime/picture_thread.h"
 #include "ar/runtime/runner.h"
@@ -17,6 +18,7 @@ struct ArRecordingSettings {
     std::string pictures, video, input; ///< folder, file, folder; empty = none
     std::string calibration;            ///< file name stored with the input
     PictureThread::WhenFull when_full = PictureThread::WhenFull::lose;
+    ArPassSettings passes = {};
 };
 
 class ArRecording {
@@ -25,11 +27,13 @@ public:
     explicit ArRecording(ArRecordingSettings settings);
 
     /// @throws gi::InputError, gi::InputError if the video or the session cannot be created
-    void begin(ar::SourceDescription const& source);
+    /// @param report  for what is lost when passes are written
+    void begin(ar::SourceDescription const& source, ar::CameraModel const& camera,
+               ar::Compositor const& compositor, gi::Report& report);
     /// Called by the thread that captures frames.
     void add_input(ar::Frame const& frame);
     /// @throws the error of an earlier picture
-    void add(ArFrameRecord const& record, cv::Mat const& rgb);
+    void add(ArFrameRecord const& record, ArResult const& result);
     /// Waits until all files are written, also if one of them fails, and renames the video to its final name.
     /// @throws the first error
     void finish();
@@ -45,10 +49,12 @@ private:
     std::optional<PictureFolder> folder_;
     std::unique_ptr<VideoWriter> video_;
     std::unique_ptr<ar::SessionWriter> input_;
+    std::unique_ptr<PassFolder> passes_;
     double video_hz_ = 30;
     cv::Mat held_;     ///< last picture of the video
     double cut_s_ = 0; ///< seconds without frames that were cut from the video
     int left_out_ = 0; ///< pictures dropped because they came too early
+    int reduced_ = 0;  ///< composites of the video that had more than 8 bits
     bool is_video_done_ = false, is_video_lost_ = false;
     int repeated_ = 0;                                    ///< pictures repeated in place of missing frames
     std::unique_ptr<PictureThread> to_folder_, to_video_; // destroyed before the outputs they fill

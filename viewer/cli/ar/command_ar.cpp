@@ -22,6 +22,7 @@ void add_ar(CLI::App& app, int& exit_code)
     add_ar_replay(*ar, exit_code);
     add_ar_board(*ar, exit_code);
     add_ar_calibrate(*ar, exit_code);
+    add_ar_lens(*ar, exit_code);
     add_ar_response(*ar, exit_code);
     add_ar_vignetting(*ar, exit_code);
     add_ar_noise(*ar, exit_code);

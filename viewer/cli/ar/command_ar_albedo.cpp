@@ -70,7 +70,7 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
                 kept.skip();
                 continue;
             }
-            cv::Mat const rgb = ar::rgb_of(*frame);
+            cv::Mat const rgb = ar::picture_of(*frame);
             if (rgb.size() != cv::Size(camera.model.size_px.x, camera.model.size_px.y))
                 throw gi::InputError("a frame of another size", "the calibration differs", "calibrate again");
             kept.add({rgb.clone(), frame->exposure, pose->first, pose->second});

@@ -1,3 +1,4 @@
+#include "ar/capture/clock.h"
 #include "ar/markers/aruco.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/pipeline/plain_composite.h"
@@ -103,7 +104,7 @@ Cell share_of_search(ArSession const& session, ArResult const& last)
     if (last.camera.empty()) return {};
     ar::Frame frame;
     frame.size_px = {last.camera.cols, last.camera.rows};
-    frame.planes[0] = last.camera;
+    frame.planes[0] = ar::eight_bits_of(last.camera);
     cv::Mat const gray = ar::gray_of(frame);
     ar::SearchSettings plain = ar::search_settings({}, gray.size());
     plain.refinement = ar::Refinement::none;
@@ -120,13 +121,13 @@ Cell share_of_search(ArSession const& session, ArResult const& last)
 }
 
 /// Time of compositing by plain OpenCV relative to ours, in the same rounds, and their mean difference in byte
-/// values. Only for sRGB bytes.
+/// values. Only for frames of sRGB bytes.
 std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
 {
     if (!m.last.pair || !m.compositor) return {};
     ar::Photometry const &p = m.compositor->photometry(), srgb = ar::srgb_photometry();
     if (p.unit_of_byte != srgb.unit_of_byte || p.vignetting != srgb.vignetting || p.colour != srgb.colour ||
-        p.radiance_per_unit != 1)
+        p.radiance_per_unit != 1 || m.last.camera.depth() != CV_8U)
         return {};
     ar::Compositor compositor(p); // without noise, so that differences are comparable
     cv::Mat ours, plain, difference;
@@ -176,11 +177,26 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
         if (m.refused > 0) table.facts.emplace_back("frames refused, " + size, fmt::format("{}", m.refused));
     };
     if (given) return one(session.render.light, session.render.paths, session.render.resolution);
+    struct Quality {
+        PairLight light;
+        std::uint32_t paths;
+        double resolution;
+    };
+    std::vector<Quality> qualities;
     for (std::string const& light : a.lights)
         for (std::uint32_t const paths : light == "paths" ? a.paths : std::vector<std::uint32_t>{1})
             for (double const resolution : a.resolutions)
-                if (!stop.requested())
-                    one(light == "paths" ? PairLight::paths : PairLight::prefiltered, paths, resolution);
+                qualities.push_back(
+                    {light == "paths" ? PairLight::paths : PairLight::prefiltered, paths, resolution});
+    for (std::size_t k = 0; k < qualities.size(); ++k) {
+        if (stop.requested()) return;
+        double const begun_s = ar::steady_now_s();
+        one(qualities[k].light, qualities[k].paths, qualities[k].resolution);
+        if (double const each_s = ar::steady_now_s() - begun_s; k == 0)
+            gi::say_estimate("bench of " + size, each_s * double(qualities.size() - 1),
+                             fmt::format("{} further qualities as long as the first: {:.1f} s each",
+                                         qualities.size() - 1, each_s));
+    }
 }
 
 void keep(std::vector<BenchTable*> const& tables, BenchArguments const& a)

@@ -28,6 +28,9 @@ struct RunArguments {
     bool fast = false, window = false, gpu = false;
     std::string monitor, eyes;
     bool hmd = false, seated = false;
+    std::string passes;
+    int pass_bits = 0; ///< 0 = as the session
+    bool undistorted = false;
 };
 
 /// Throws if an input would be overwritten.
@@ -43,6 +46,22 @@ void check_arguments(RunArguments const& a, ArSession const& session)
         if (!a.out.empty() && !folder.empty() && fs::equivalent(a.out, folder, ignored))
             throw gi::InputError("--out '" + a.out + "' is a folder that is read",
                                  "its pictures would be replaced", "name another folder");
+    folders.emplace_back(a.out);
+    fs::path const& passes = session.passes.folder;
+    for (fs::path const& folder : folders)
+        if (!passes.empty() && !folder.empty() && (passes == folder || fs::equivalent(passes, folder, ignored)))
+            throw gi::InputError("the passes' folder '" + passes.string() + "' has other pictures in this run",
+                                 "they would be mixed or replaced", "name another folder");
+    if (!passes.empty() && a.hmd)
+        throw gi::InputError("passes with --hmd", "they are written of one camera's run", "leave one out");
+    if (!passes.empty() && a.gpu)
+        throw gi::InputError("passes with --gpu", "their composite would not be the one shown", "leave one out");
+    if (a.undistorted && passes.empty())
+        throw gi::InputError("--undistorted without --passes", "it is how passes are written",
+                             "add --passes FOLDER");
+    if (a.pass_bits != 0 && passes.empty())
+        throw gi::InputError("--pass-bits without --passes", "it is how passes are written",
+                             "add --passes FOLDER");
     if (a.eyes.empty()) return;
     if (!fs::create_directories(a.eyes, ignored) && ignored)
         throw gi::InputError("'" + a.eyes + "' cannot be made", ignored.message(), "choose another folder");
@@ -60,6 +79,9 @@ ArSession session_of(RunArguments const& a)
         if (!session.tracked) session.tracked.emplace();
         session.tracked->display = a.display;
     }
+    if (!a.passes.empty()) session.passes.folder = a.passes;
+    if (a.pass_bits != 0) session.passes.bits = a.pass_bits;
+    if (a.undistorted) session.passes.is_undistorted = true;
     return session;
 }
 
@@ -110,6 +132,7 @@ int run_session(RunArguments const& a, bool poses_only)
     o.frames = a.frames;
     o.pace = a.fast ? ar::Pace::fastest : ar::Pace::own;
     o.find_poses_only = poses_only;
+    o.keeps_depth = !session.passes.folder.empty();
     if (a.gpu) o.composite = CompositeBy::window;
     if (!a.poses.empty())
         o.poses = ar::read_poses(a.poses, ar::CameraAxes::vision, session.frames.options.frames_per_s);
@@ -125,7 +148,8 @@ int run_session(RunArguments const& a, bool poses_only)
     if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
     FrameTruth truth(a.truth, a.true_poses);
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
-                           a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose});
+                           a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose,
+                           poses_only ? ArPassSettings{} : session.passes});
     std::optional<ArWindow> window;
     std::optional<ar::Compositor> compositor;
     o.opened = [&](ar::SourceDescription const& source, ArPipeline const& pipeline) {
@@ -133,7 +157,7 @@ int run_session(RunArguments const& a, bool poses_only)
         ArWindowSettings settings{.size_px = source.size_px, .monitor = a.monitor};
         settings.compositor = compositor ? &*compositor : nullptr;
         if (a.window) window.emplace(settings, report);
-        recording.begin(source);
+        recording.begin(source, pipeline.camera().model, pipeline.compositor(), report);
     };
     if (!a.record_input.empty()) o.taken = [&](ar::Frame const& f) { recording.add_input(f); };
     auto const look = [&] {
@@ -156,7 +180,7 @@ int run_session(RunArguments const& a, bool poses_only)
     auto const shown = [&](ArFrameRecord& f, ArResult const& r) {
         if (window) window->show(f, r);
         look();
-        recording.add(f, r.rgb);
+        recording.add(f, r);
         truth.add(f, r);
     };
     try {
@@ -215,6 +239,11 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     CLI::App* const run_command = ar.add_subcommand("run", "Add virtual objects to frames, live or from files");
     add_session_options(*run_command, *run);
     run_command->add_option("--out", run->out, "Folder for the composites, as PNG");
+    CLI::Option* const passes = run_command->add_option(
+        "--passes", run->passes, "Folder for the parts of each composite, as multi-layer EXR (docs/ar.md)");
+    run_command->add_option("--pass-bits", run->pass_bits, "Bits of the passes' radiance, 16 (default) or 32")
+        ->check(CLI::IsMember({16, 32}));
+    run_command->add_flag("--undistorted", run->undistorted, "Passes as of a pinhole, not in the camera's lens");
     run_command->add_option("--video", run->video,
                             "Video of the composites, .mkv (lossless) or .mp4; each is shown until the next");
     run_command
@@ -234,6 +263,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
         ->needs(hmd);
     run_command->add_option("--truth", run->truth,
                             "Folder of reference pictures, with the virtual objects as real ones, to report FLIP");
+    hmd->excludes(passes);
     for (char const* other : {"--window", "--out", "--video", "--record-input", "--table", "--truth",
                               "--true-poses", "--confidence-table"})
         hmd->excludes(run_command->get_option(other));
@@ -247,6 +277,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
   lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json
   lightwell ar run desk/session.yaml --poses desk/poses.csv --video desk.mkv --record-input desk/recorded
+  lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --passes desk/passes --pass-bits 32
 
 A frame is dropped and counted as overtaken if a newer one arrives before it is rendered; never with --fast.
 Exit code 1: no frame has a trusted pose, most frames were refused, or fewer have one than --require-found.)");

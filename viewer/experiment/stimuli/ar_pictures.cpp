@@ -143,7 +143,9 @@ public:
         if (!poses_.empty()) known.emplace(recorded_pose(poses_, f.time_s));
         ArResult r = pipeline_->find(f.frame, f.time_s, known);
         pipeline_->add(r, f.frame, f.time_s, stop_);
-        p.rgb = r.rgb.clone();
+        p.rgb = ar::eight_bits_of(r.rgb).clone();
+        if (r.rgb.depth() != CV_8U)
+            report_.lose("frames of stimuli reduced to 8 bits", 1, stimulus_.session.string());
         p.world_from_camera = r.used.world_from_camera;
         if (r.used.state != ar::PoseState::tracked)
             report_.lose("frames of stimuli in which no camera was found", 1,
