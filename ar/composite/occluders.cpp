@@ -19,7 +19,9 @@ cv::Mat share_of_nearer(cv::Mat const& measured_m, cv::Mat const& modelled_m, De
     constexpr float kNone = 1e30f;
     cv::Mat filled = modelled_m.clone(), nearest;
     filled.forEach<float>([&](float& z, int const*) { z = is_depth(z) ? z : kNone; });
-    cv::erode(filled, nearest, cv::getStructuringElement(cv::MORPH_RECT, {5, 5})); // the least
+    // Beside objects, as far as the blur below reaches, the nearest of them decides.
+    int const side = 2 * (2 + int(std::ceil(3 * s.soft_px))) + 1;
+    cv::erode(filled, nearest, cv::getStructuringElement(cv::MORPH_RECT, {side, side})); // the least
     cv::Mat share(measured_m.size(), CV_32FC1);
     share.forEach<float>([&](float& o, int const* at) {
         float const d = measured_m.at<float>(at[0], at[1]), own = filled.at<float>(at[0], at[1]),

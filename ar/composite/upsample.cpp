@@ -149,7 +149,9 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
                         add(i, j, kEnough * tent);
                     }
                 cv::Vec3f light(0, 0, 0);
-                if (guided_weight > 1e-6f)
+                if (!guides.depth.empty() && !(guides.depth.at<float>(y, x) > 0)) {
+                    // Nothing is known of what is there, so nothing changes.
+                } else if (guided_weight > 1e-6f)
                     light = guided * (1 / guided_weight);
                 else if (plain_weight > 0) {
                     light = plain * (1 / plain_weight);
