@@ -12,6 +12,7 @@
 #include "gi/scene/shading/warp.h"
 #include "tests/support/data.h"
 
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 namespace viewer::test {
@@ -287,6 +288,91 @@ TEST(PrefilteredPairs, AreTheSameInEveryFrame)
     PairPictures const same = pictures(nothing);
     EXPECT_EQ(cv::norm(same.with, same.without, cv::NORM_INF), 0);
     EXPECT_GT(cv::mean(same.without)[1], 0.01);
+}
+
+/// Mean radiance of a face's middle, looked up in a picture.
+double face_mean(cv::Mat const& picture, ar::CameraModel const& camera, ar::Pose const& pose, gi::vec3 normal)
+{
+    gi::vec3 const u = std::abs(normal.y) > 0.5f ? gi::vec3(1, 0, 0) : gi::vec3(0, 1, 0),
+                   v = glm::cross(normal, u);
+    double sum = 0;
+    int count = 0;
+    for (int j = -9; j <= 9; ++j)
+        for (int i = -9; i <= 9; ++i) {
+            gi::vec3 const p = gi::vec3(0, 0.1f, 0) + 0.1f * normal + 0.008f * (float(i) * u + float(j) * v);
+            glm::dvec3 const seen = glm::conjugate(pose.rotation) * (glm::dvec3(p) - pose.position_m);
+            cv::Point const at(int(std::lround(camera.fx * seen.x / seen.z + camera.cx)),
+                               int(std::lround(camera.fy * seen.y / seen.z + camera.cy)));
+            if (!cv::Rect({0, 0}, picture.size()).contains(at)) continue;
+            sum += double(picture.at<cv::Vec3f>(at)[1]);
+            ++count;
+        }
+    EXPECT_GT(count, 300);
+    return sum / std::max(count, 1);
+}
+
+/// A matt box on a table, the camera held by hand: each pose a little off.
+TEST(PrefilteredPairs, DoNotFlickerWhenTheCameraTrembles)
+{
+    std::vector<std::pair<std::string, cv::Mat>> maps{{"a lamp", uniform(0.3)}};
+    cv::rectangle(maps[0].second, {20, 6, 2, 2}, cv::Scalar(90, 80, 60), cv::FILLED);
+    for (char const* const name : {"dancing_hall_1k.hdr", "autoshop_01_1k.hdr", "kloppenheim_05_1k.hdr"})
+        if (fs::path const file = gi::test::shared_data() / "envmaps" / name; fs::exists(file))
+            maps.emplace_back(name, ar::read_map(file));
+    ar::CameraModel camera = synthetic_camera({640, 480}).model;
+    camera.lens = ar::LensModel::pinhole;
+    ar::CameraModel const half = ar::scaled(camera, {320, 240});
+    for (auto const& [name, map] : maps) {
+        gi::Report report;
+        PairRenderer renderer(join_scenes(floor(0.7f, matt(0.6f)),
+                                          box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)), gi::dmat4(1)),
+                              {}, report);
+        renderer.set_environment(environment(map));
+        renderer.choose(PairLight::prefiltered);
+        gi::Pcg32 rng = gi::Pcg32::for_path(7, 0, 0);
+        auto const normal = [&] { return double(rng.uniform() + rng.uniform() + rng.uniform() - 1.5f) * 2; };
+        std::map<int, std::vector<double>> means;
+        for (int frame = 0; frame < 16; ++frame) {
+            ar::Pose pose = synthetic_pose(0.35);
+            pose.position_m += 5e-4 * glm::dvec3(normal(), normal(), normal());
+            glm::dvec3 const axis(normal(), normal(), normal());
+            pose.rotation =
+                glm::normalize(pose.rotation * glm::dquat(1, 2.5e-4 * axis.x, 2.5e-4 * axis.y, 2.5e-4 * axis.z));
+            PairPictures const p = renderer.render(gi_camera(half, pose), 320, 240, 1, 0, {}, {});
+            for (int k : {0, 1, 2, 4, 5})
+                if (glm::dot(glm::dvec3(kAxes[k]), pose.position_m - glm::dvec3(0, 0.1, 0)) > 0.2)
+                    means[k].push_back(face_mean(p.with, half, pose, kAxes[k]));
+        }
+        for (auto const& [k, m] : means) {
+            double mean = 0, squares = 0;
+            for (double const v : m) mean += v / double(m.size());
+            for (double const v : m) squares += (v - mean) * (v - mean) / double(m.size());
+            std::printf("%s, face %d: standard deviation %.3f %%\n", name.c_str(), k,
+                        100 * std::sqrt(squares) / mean);
+            EXPECT_LT(std::sqrt(squares), 0.01 * mean) << name;
+        }
+        EXPECT_GE(means.size(), 2u);
+    }
+}
+
+TEST(PrefilteredPairs, FollowALampInTheFrameAfter)
+{
+    gi::Report report;
+    PairRenderer renderer(join_scenes({}, box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)), gi::dmat4(1)),
+                          {}, report);
+    renderer.choose(PairLight::prefiltered);
+    ar::CameraModel camera = synthetic_camera({160, 120}).model;
+    camera.lens = ar::LensModel::pinhole;
+    ar::Pose const pose = synthetic_pose(0.35);
+    for (int const column : {4, 20, 36, 52}) {
+        cv::Mat map = uniform(0.05);
+        cv::rectangle(map, {column, 10, 2, 2}, cv::Scalar(40, 60, 80), cv::FILLED);
+        renderer.set_environment(environment(map));
+        PairPictures const p = renderer.render(gi_camera(camera, pose), 160, 120, 1, 0, {}, {});
+        double const top = face_mean(p.with, camera, pose, {0, 1, 0});
+        double const wanted = 0.5 / gi::kPiD * ar::irradiance_exact(map, {0, 1, 0})[1];
+        EXPECT_NEAR(top / wanted, 1, 0.02) << column;
+    }
 }
 
 TEST(PrefilteredPairs, AreRefusedWhereTheyCannotLight)
