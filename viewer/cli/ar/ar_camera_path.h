@@ -2,8 +2,8 @@
 // The camera's poses in a session's frames, for commands that only need poses: frame by frame, in order.
 
 #include "ar/markers/marker_map_file.h"
-#include "ar/pose/pose_file.h"
 #include "ar/runtime/runner.h"
+#include "ar/scene/camera_poses.h"
 
 namespace viewer {
 
@@ -16,7 +16,7 @@ public:
           detector_(ar::read_marker_map(session.markers))
     {
         if (!poses.empty())
-            poses_ = ar::read_poses(poses, ar::CameraAxes::vision, session.frames.options.frames_per_s);
+            poses_ = read_camera_poses(poses, session.frames.options.frames_per_s, report);
         else if (session.tracked)
             poses_ = recorded_poses(*session.tracked, report);
     }

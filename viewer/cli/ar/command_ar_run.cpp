@@ -2,6 +2,7 @@
 #include "ar/runtime/frame_table.h"
 #include "ar/runtime/frame_truth.h"
 #include "ar/runtime/hmd_run.h"
+#include "ar/scene/camera_poses.h"
 #include "ar/scene/session_inputs.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
@@ -134,9 +135,8 @@ int run_session(RunArguments const& a, bool poses_only)
     o.find_poses_only = poses_only;
     o.keeps_depth = !session.passes.folder.empty();
     if (a.gpu) o.composite = CompositeBy::window;
-    if (!a.poses.empty())
-        o.poses = ar::read_poses(a.poses, ar::CameraAxes::vision, session.frames.options.frames_per_s);
     gi::Report report;
+    if (!a.poses.empty()) o.poses = read_camera_poses(a.poses, session.frames.options.frames_per_s, report);
     std::optional<TrackedCamera> tracker;
     if (session.tracked) {
         tracker.emplace(*session.tracked, report);

@@ -1,0 +1,65 @@
+#include "ar/scene/camera_poses.h"
+
+#include "gi/core/error.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/motion/animation.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+
+namespace viewer {
+namespace {
+
+bool is_scene(std::filesystem::path const& file)
+{
+    static std::set<std::string> const kinds{".gltf", ".glb", ".fbx", ".dae"};
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return kinds.contains(extension);
+}
+
+/// Without its scale; cameras of scenes look along -z with y up, those of frames along z with y down.
+ar::Pose pose_of(gi::dmat4 const& world_from_node)
+{
+    gi::dvec3 const z = glm::normalize(gi::dvec3(world_from_node[2]));
+    gi::dvec3 const x = glm::normalize(glm::cross(gi::dvec3(world_from_node[1]), z));
+    glm::dmat3 const turn(x, -glm::cross(z, x), -z);
+    return {glm::normalize(glm::quat_cast(turn)), gi::dvec3(world_from_node[3])};
+}
+
+} // namespace
+
+std::vector<ar::TimedPose> read_camera_poses(std::filesystem::path const& file, double frames_per_s,
+                                             gi::Report& report)
+{
+    if (!is_scene(file)) return ar::read_poses(file, ar::CameraAxes::vision, frames_per_s);
+    gi::Scene const scene = gi::load_scene(file.string(), report);
+    std::vector<std::size_t> cameras;
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+        if (scene.nodes[n].camera >= 0) cameras.push_back(n);
+    if (cameras.size() != 1)
+        throw gi::InputError(fmt::format("'{}' has {} cameras", file.string(), cameras.size()),
+                             "one camera's poses are needed",
+                             "export the scene with the one that filmed the frames");
+    double duration_s = 0;
+    for (gi::Playback const& p : scene.playbacks)
+        duration_s = std::max(duration_s, scene.animations[std::size_t(p.animation)].duration_s);
+    std::vector<ar::TimedPose> poses;
+    auto const frames = std::size_t(std::floor(duration_s * frames_per_s + 1e-6));
+    for (std::size_t f = 0; f <= frames; ++f) {
+        // A clip that loops is back at its start after its last key.
+        double const time_s = double(f) / frames_per_s, at_s = std::min(time_s, std::nexttoward(duration_s, 0.0L));
+        gi::Pose const pose = gi::evaluate_pose(scene, at_s);
+        poses.push_back({time_s, pose_of(pose.world_from_node[cameras.front()])});
+        auto const& p = poses.back().world_from_camera;
+        if (!std::isfinite(glm::length(p.position_m)) || !(std::abs(glm::length(p.rotation) - 1) < 1e-6))
+            throw gi::InputError(fmt::format("'{}': the camera at {} s is not finite", file.string(), time_s),
+                                 "frames cannot be composited with it", "check the scale of its node");
+    }
+    return poses;
+}
+
+} // namespace viewer
