@@ -66,9 +66,9 @@ PairPictures PairRenderer::prefiltered(gi::Camera const& camera, int width, int 
 {
     gi::Changes const changes = turn(gi::PairSide::with, time_s);
     if (!pairs_)
-        pairs_ = std::make_unique<PrefilteredPairs>(world_.world(), report_);
+        pairs_ = std::make_unique<PrefilteredPairs>(world_.world(), report_, stop);
     else
-        pairs_->update(changes);
+        pairs_->update(changes, stop);
     PairPictures p = pairs_->render(camera, width, height, stop);
     p.change = change_since_last(time_s);
     return p;

@@ -123,6 +123,9 @@ void RunThreads::add_all()
             try {
                 if (!options_.find_poses_only)
                     pipeline_.add(w->result, w->frame, w->time_s, ending_, options_.composite);
+            } catch (gi::Interrupted const&) {
+                if (!ending_.requested()) throw;
+                break;
             } catch (gi::InputError const& e) {
                 refuse(e);
                 continue;

@@ -12,26 +12,12 @@ namespace {
 constexpr double kLampShare = 0.003; ///< of the light, in one texel: too much to interpolate its cosine
 constexpr std::ptrdiff_t kMostLamps = 24;
 constexpr float kSharpShare = 0.03f; ///< of the light, in one direction
-constexpr std::uint32_t kStillTexels = 96, kMovingTexels = 64, kSharpStillTexels = 512, kSharpMovingTexels = 256;
+constexpr std::uint32_t kMovingTexels = 64, kSharpMovingTexels = 256;
 /// Of the light that moving surfaces would receive without each other, roughly what they do receive.
 constexpr float kOpenness = 0.8f;
 constexpr int kBounces = 2; ///< between still surfaces
-constexpr std::size_t kMostPatches = 20000;
 /// Moving triangles drawn in a frame, over all maps; the other maps follow in the next frames.
 constexpr std::size_t kTrianglesAtOnce = 4'000'000;
-
-gi::Bounds bounds_of(gi::World const& world, std::size_t first, std::size_t last)
-{
-    gi::Bounds b;
-    for (std::size_t t = first; t < last; ++t)
-        for (int k = 0; k < 3; ++k) {
-            gi::vec3 const p = world.positions[world.triangles[t][k]];
-            if (!gi::all_finite(p)) continue;
-            b.low = glm::min(b.low, p);
-            b.high = glm::max(b.high, p);
-        }
-    return b;
-}
 
 /// Diffuse albedo at the middle of a triangle.
 gi::vec3 albedo_of(gi::WorldView const& world, std::uint32_t triangle)
@@ -42,8 +28,8 @@ gi::vec3 albedo_of(gi::WorldView const& world, std::uint32_t triangle)
 
 } // namespace
 
-PrefilteredLight::PrefilteredLight(gi::World const& world)
-    : world_(world), soup_(gi::make_soup(world)), cut_outs_(world)
+PrefilteredLight::PrefilteredLight(gi::World const& world, gi::StopRequest const& stop)
+    : world_(world), soup_(gi::make_soup(world)), cut_outs_(world), still_(world)
 {
     gi::WorldView const view = gi::view(world);
     for (std::size_t t = world.static_triangles; t < world.triangles.size(); ++t)
@@ -51,12 +37,13 @@ PrefilteredLight::PrefilteredLight(gi::World const& world)
     has_glossy_ = std::any_of(world.bsdfs.begin(), world.bsdfs.end(), [](gi::Bsdf const& b) {
         return gi::max_component(glossy_lobe_of(b, 1).reflectance) > 0;
     });
-    relight();
-    moved();
+    relight(stop);
+    moved(stop);
 }
 
-bool PrefilteredLight::relight()
+bool PrefilteredLight::relight(gi::StopRequest const& stop_request)
 {
+    gi::BuildStop const stop(&stop_request);
     EnvironmentTexels const texels = environment_texels(world_);
     bool const cut = cells_.update(texels);
     std::vector<EnvironmentTexels::Texel> rest = texels.texels;
@@ -71,15 +58,14 @@ bool PrefilteredLight::relight()
     if (cut) directions_.resize(cells_.cells().size());
     for (std::size_t k = 0; k < directions_.size(); ++k) {
         EnvironmentCell const& c = cells_.cells()[k];
-        directions_[k] = {c.direction, c.light, c.solid_angle_sr, kOpenness * gi::kInvPi * open(-c.direction),
-                          c.share > kSharpShare};
+        directions_[k] = {c.direction, c.light, c.solid_angle_sr, c.share > kSharpShare};
         for (int axis = 0; axis < 3; ++axis) towards_[std::size_t(axis)][k] = c.direction[axis];
     }
     tbb::parallel_for(0, light_sum_.nodes(), [&](int node) {
         gi::vec3 const n = light_sum_.direction(node);
         gi::vec3 light(0);
         float angle = 0;
-        for (Direction const& d : directions_) {
+        for (LightDirection const& d : directions_) {
             float const c = std::max(glm::dot(d.towards, n), 0.0f);
             light += c * d.light;
             angle += c * d.solid_angle_sr;
@@ -88,8 +74,10 @@ bool PrefilteredLight::relight()
         angle_sum_[node] = angle;
     });
     if (cut) {
-        start_maps();
-        find_patches();
+        moving_.assign(directions_.size(), {});
+        moving_bounds_ = {};
+        still_.build(directions_, soup_, cut_outs_, stop);
+        still_.fit_patches(directions_, present_bounds(), stop);
     }
     light_patches();
     return cut;
@@ -116,99 +104,27 @@ gi::vec3 PrefilteredLight::open(gi::vec3 normal) const
     return sum;
 }
 
-void PrefilteredLight::start_maps()
+gi::Bounds PrefilteredLight::present_bounds() const
 {
-    std::size_t const n = directions_.size();
-    still_.resize(n);
-    facing_.resize(n);
-    moving_.resize(n);
-    moving_bounds_ = {};
-    if (world_.static_triangles == 0) return;
-    gi::Bounds const bounds = bounds_of(world_, 0, world_.static_triangles);
-    tbb::parallel_for(std::size_t(0), n, [&](std::size_t k) {
-        Direction const& d = directions_[k];
-        gi::Pcg32 rng = gi::Pcg32::for_path(0, 0x0cc1, std::uint32_t(k));
-        gi::vec2 const jitter = rng.uniform2();
-        float const turn = 2 * gi::kPi * rng.uniform();
-        still_[k].start(bounds, d.towards, d.sharp ? kSharpStillTexels : kStillTexels, jitter, turn);
-        still_[k].draw(soup_, cut_outs_, 0, world_.static_triangles, 0);
-        facing_[k].start(bounds, -d.towards, kStillTexels, jitter, turn);
-        facing_[k].draw(soup_, cut_outs_, 0, world_.static_triangles, 0);
-    });
-}
-
-void PrefilteredLight::find_patches()
-{
-    patches_.clear();
-    patch_of_texel_.assign(directions_.size(), {});
-    if (world_.static_triangles == 0) return;
-    gi::WorldView const view = gi::view(world_);
-    gi::Bounds const bounds = bounds_of(world_, 0, world_.static_triangles);
-    gi::Bounds const moving = bounds_of(world_, world_.static_triangles, world_.triangles.size());
-    float const near_m = moving.empty() ? bounds.radius() : moving.radius();
-    // Patches are small beside moving surfaces, and grow with the distance from them.
-    for (float size_m = near_m / 12;; size_m *= 1.5f) {
-        std::unordered_map<std::uint64_t, std::uint32_t> known;
-        patches_.clear();
-        bool too_many = false;
-        for (std::size_t k = 0; k < directions_.size() && !too_many; ++k) {
-            OcclusionMap const& map = facing_[k];
-            patch_of_texel_[k].assign(map.texels().size(), kUnknown);
-            for (std::size_t t = 0; t < map.texels().size(); ++t) {
-                gi::NearestTexel const& texel = map.texels()[t];
-                if (texel.primitive == gi::kNoPrimitive) continue;
-                gi::vec3 const p = map.grid().point(std::uint32_t(t % map.grid().width),
-                                                    std::uint32_t(t / map.grid().width), -texel.key);
-                gi::vec3 n = gi::shading_detail::triangle_normal(view.surfaces[texel.primitive]);
-                if (glm::dot(n, directions_[k].towards) > 0) n = -n;
-                float const away = moving.empty() ? 0 : glm::distance(p, moving.center());
-                int const level = std::max(0, int(std::floor(std::log2(std::max(away / (3 * near_m), 1e-3f)))));
-                float const side_m = std::ldexp(size_m, level);
-                glm::ivec3 const at(glm::floor((p - bounds.low) / side_m));
-                gi::vec3 const a = glm::abs(n);
-                int const axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-                std::uint64_t const key = std::uint64_t(at.x & 0x3ffff) | std::uint64_t(at.y & 0x3ffff) << 18 |
-                                          std::uint64_t(at.z & 0x3ffff) << 36 |
-                                          std::uint64_t(2 * axis + (n[axis] > 0)) << 54 |
-                                          std::uint64_t(level & 0x1f) << 57;
-                auto const [entry, is_new] = known.try_emplace(key, std::uint32_t(patches_.size()));
-                if (is_new) {
-                    gi::vec2 const where = gi::barycentric_at(view.surfaces[texel.primitive], p);
-                    gi::ShadingPoint const s = gi::shading_point(view, texel.primitive, where, -n);
-                    patches_.push_back({{s.position, n, n, texel.primitive, {}, {}}, gi::albedo(s.bsdf)});
-                }
-                patch_of_texel_[k][t] = entry->second;
-            }
-            too_many = patches_.size() > kMostPatches;
-        }
-        if (!too_many) break;
-    }
-    std::size_t const n = directions_.size();
-    in_the_way_.resize(patches_.size() * n);
-    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t i) {
-        LitPoint const& at = patches_[i].at;
-        for (std::size_t k = 0; k < n; ++k)
-            in_the_way_[i * n + k] = glm::dot(at.normal, directions_[k].towards) > 0
-                                         ? still_in_the_way(k, at.position, at.normal, at.triangle)
-                                         : kOpen;
-    });
+    return bounds_of(world_, world_.static_triangles, world_.triangles.size());
 }
 
 void PrefilteredLight::light_patches()
 {
     std::size_t const n = directions_.size();
-    patch_light_.assign(patches_.size(), gi::vec3(0));
-    radiance_without_.assign(patches_.size(), gi::vec3(0));
+    std::vector<SurfacePatch> const& patches = still_.patches();
+    patch_light_.assign(patches.size(), gi::vec3(0));
+    radiance_without_.assign(patches.size(), gi::vec3(0));
     mean_radiance_ = gi::vec3(0);
     for (int bounce = 0; bounce <= kBounces; ++bounce) {
-        tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t i) {
-            LitPoint const& at = patches_[i].at;
+        tbb::parallel_for(std::size_t(0), patches.size(), [&](std::size_t i) {
+            SurfacePatch const& at = patches[i];
             Sums sums;
             for (std::size_t k = 0; k < n; ++k) {
                 float const c = glm::dot(at.normal, directions_[k].towards);
                 if (!(c > 0)) continue;
-                std::uint32_t const there = in_the_way_[i * n + k];
-                if (there == kOpen)
+                std::uint32_t const there = still_.seen_from(i, k);
+                if (there == StillSurfaces::kOpen)
                     sums.light += c * directions_[k].light;
                 else
                     sums.radiance += c * directions_[k].solid_angle_sr * radiance(radiance_without_, there);
@@ -217,19 +133,19 @@ void PrefilteredLight::light_patches()
                                       {light_sum_.at(at.normal), angle_sum_.at(at.normal)});
         });
         gi::vec3 sum(0);
-        for (std::size_t i = 0; i < patches_.size(); ++i)
-            sum += radiance_without_[i] = gi::kInvPi * patches_[i].albedo * patch_light_[i];
-        if (!patches_.empty()) mean_radiance_ = sum / float(patches_.size());
+        for (std::size_t i = 0; i < patches.size(); ++i)
+            sum += radiance_without_[i] = gi::kInvPi * patches[i].albedo * patch_light_[i];
+        if (!patches.empty()) mean_radiance_ = sum / float(patches.size());
     }
     radiance_ = radiance_without_;
 }
 
-void PrefilteredLight::moved()
+void PrefilteredLight::moved(gi::StopRequest const& stop)
 {
     moving_radius_ = 0;
     if (world_.static_triangles == world_.triangles.size()) return;
     gi::update_soup(world_, world_.static_triangles, soup_);
-    gi::Bounds const b = bounds_of(world_, world_.static_triangles, world_.triangles.size());
+    gi::Bounds const b = present_bounds();
     if (b.empty()) return;
     moving_centre_ = b.center();
     moving_radius_ = b.radius();
@@ -241,6 +157,7 @@ void PrefilteredLight::moved()
         gi::vec3 const room = gi::vec3(0.15f * b.radius());
         moving_bounds_ = {b.low - room, b.high + room};
     }
+    if (still_.fit_patches(directions_, b, gi::BuildStop(&stop))) light_patches();
     light_moving();
     stale_.assign(directions_.size(), 1);
     if (!fits)
@@ -268,7 +185,9 @@ void PrefilteredLight::draw_stale(std::size_t most_triangles)
     std::vector<std::size_t> drawn;
     for (std::size_t k = 0; k < n; ++k)
         if (stale_[k] && directions_[k].sharp) drawn.push_back(k);
-    for (std::size_t i = 0; i < n && (drawn.empty() || (drawn.size() + 1) * triangles <= most_triangles); ++i) {
+    std::size_t const sharp = drawn.size(); // one of the others follows in any case
+    for (std::size_t i = 0; i < n && (drawn.size() == sharp || (drawn.size() + 1) * triangles <= most_triangles);
+         ++i) {
         next_ = (next_ + 1) % n;
         if (stale_[next_] && !directions_[next_].sharp) drawn.push_back(next_);
     }
@@ -276,10 +195,10 @@ void PrefilteredLight::draw_stale(std::size_t most_triangles)
         moving_[drawn[i]].draw(soup_, cut_outs_, world_.static_triangles, world_.triangles.size(), 0);
         stale_[drawn[i]] = 0;
     });
-    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t i) {
-        Patch const& p = patches_[i];
-        radiance_[i] =
-            gi::kInvPi * p.albedo * glm::max(patch_light_[i] + change_on_still(p.at).irradiance, gi::vec3(0));
+    tbb::parallel_for(std::size_t(0), still_.patches().size(), [&](std::size_t i) {
+        SurfacePatch const& p = still_.patches()[i];
+        gi::vec3 const change = change_on_still({p.position, p.normal, p.normal, p.triangle, {}, {}}).irradiance;
+        radiance_[i] = gi::kInvPi * p.albedo * glm::max(patch_light_[i] + change, gi::vec3(0));
     });
 }
 
@@ -293,7 +212,9 @@ void PrefilteredLight::light_moving()
         gi::vec3 const normal = directions_[k].towards;
         received[k] = on_still({moving_centre_, normal, normal, gi::kNoPrimitive, {}, {}}).irradiance;
     });
-    for (Direction& seen : directions_) {
+    white_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        LightDirection const& seen = directions_[i];
         gi::vec3 sum(0);
         float area = 0;
         for (std::size_t k = 0; k < n; ++k) {
@@ -302,32 +223,8 @@ void PrefilteredLight::light_moving()
             sum += a * received[k];
             area += a;
         }
-        seen.moving = area > 0 ? kOpenness * gi::kInvPi / area * sum : gi::vec3(0);
+        white_[i] = area > 0 ? kOpenness * gi::kInvPi / area * sum : gi::vec3(0);
     }
-}
-
-std::uint32_t PrefilteredLight::still_in_the_way(std::size_t k, gi::vec3 p, gi::vec3 normal,
-                                                 std::uint32_t triangle) const
-{
-    if (world_.static_triangles == 0) return kOpen;
-    gi::View<gi::Surface const> const surfaces(world_.surfaces);
-    OcclusionMap const& facing = facing_[k];
-    gi::NearestTexel const* const t = facing.texel(p);
-    if (t == nullptr) return kOpen;
-    // The first surface of the column, if the point is in front of it, is the first that is met.
-    constexpr float kFar = 4; // texels
-    float const gap = -t->key - facing.grid().depth(p);
-    if (gap > 0 && t->primitive != triangle) {
-        bool in_front = gap > kFar * facing.grid().texel;
-        if (!in_front) {
-            gi::Surface const& s = surfaces[t->primitive];
-            gi::vec3 const n = glm::cross(s.edge1, s.edge2);
-            float const side = glm::dot(n, p - s.corner);
-            in_front = (glm::dot(n, directions_[k].towards) < 0 ? side : -side) > s.clearance * glm::length(n);
-        }
-        if (in_front) return patch_of_texel_[k][std::size_t(t - facing.texels().data())];
-    }
-    return still_[k].blocker(surfaces, p, normal, triangle) == gi::kNoPrimitive ? kOpen : kUnknown;
 }
 
 float PrefilteredLight::moving_in_the_way(std::size_t k, LitPoint const& at, std::uint32_t& blocker) const
@@ -358,13 +255,13 @@ public:
     }
 
     /// Counts a direction among all. @param c  its cosine, > 0
-    void include(Direction const& d, float c)
+    void include(LightDirection const& d, float c)
     {
         all_.light += c * d.light;
         all_.solid_angle += c * d.solid_angle_sr;
         include_in_lobe(d, c);
     }
-    void include_in_lobe(Direction const& d, float c)
+    void include_in_lobe(LightDirection const& d, float c)
     {
         if (!has_lobe_) return;
         float const w = lobe(d, c);
@@ -372,13 +269,13 @@ public:
         lobe_all_.solid_angle += w * d.solid_angle_sr;
     }
     /// A share of a direction's light arrives.
-    void add_light(Direction const& d, float c, float share)
+    void add_light(LightDirection const& d, float c, float share)
     {
         sums_.light += share * c * d.light;
         if (has_lobe_) lobe_sums_.light += share * lobe(d, c) * d.light;
     }
     /// A share of its solid angle shows a surface.
-    void add_radiance(Direction const& d, float c, float share, gi::vec3 radiance)
+    void add_radiance(LightDirection const& d, float c, float share, gi::vec3 radiance)
     {
         radiance *= share * d.solid_angle_sr;
         sums_.radiance += c * radiance;
@@ -399,7 +296,7 @@ public:
     }
 
 private:
-    float lobe(Direction const& d, float c) const
+    float lobe(LightDirection const& d, float c) const
     {
         gi::vec3 const h = glm::normalize(at_.to_viewer + d.towards);
         float const cosine = glm::dot(h, at_.normal), squared = cosine * cosine;
@@ -444,15 +341,15 @@ ReceivedLight PrefilteredLight::on_moving(LitPoint const& at) const
 {
     Gather gather(*this, at);
     for_directions(at.normal, gi::vec3(0), -1, [&](std::size_t k, float c) {
-        Direction const& d = directions_[k];
+        LightDirection const& d = directions_[k];
         gather.include(d, c);
         // Behind the triangle, though not behind the smooth surface: nothing can tell.
         std::uint32_t blocker = gi::kNoPrimitive;
         float const hidden = glm::dot(at.geometric, d.towards) > 0 ? moving_in_the_way(k, at, blocker) : 0;
         if (hidden > 0) gather.add_radiance(d, c, hidden, moving_radiance(k, blocker));
         if (!(hidden < 1)) return;
-        std::uint32_t const there = still_in_the_way(k, at.position, at.geometric, at.triangle);
-        if (there == kOpen)
+        std::uint32_t const there = still_.in_the_way(k, at.position, at.geometric, at.triangle);
+        if (there == StillSurfaces::kOpen)
             gather.add_light(d, c, 1 - hidden);
         else
             gather.add_radiance(d, c, 1 - hidden, radiance(radiance_, there));
@@ -472,21 +369,21 @@ ReceivedLight PrefilteredLight::change_on_still(LitPoint const& at) const
     Gather gather(*this, at);
     bool changed = false;
     for_directions(at.normal, way, least, [&](std::size_t k, float c) {
-        Direction const& d = directions_[k];
+        LightDirection const& d = directions_[k];
         std::uint32_t blocker = gi::kNoPrimitive;
         float const hidden = moving_in_the_way(k, at, blocker);
         if (!(hidden > 0)) return;
         changed = true;
         gather.add_radiance(d, c, hidden, moving_radiance(k, blocker));
-        std::uint32_t const there = still_in_the_way(k, at.position, at.geometric, at.triangle);
-        if (there == kOpen)
+        std::uint32_t const there = still_.in_the_way(k, at.position, at.geometric, at.triangle);
+        if (there == StillSurfaces::kOpen)
             gather.add_light(d, c, -hidden);
         else
             gather.add_radiance(d, c, -hidden, radiance(radiance_without_, there));
     });
     if (!changed) return {};
     if (gather.has_lobe())
-        for (Direction const& d : directions_)
+        for (LightDirection const& d : directions_)
             if (float const c = glm::dot(at.normal, d.towards); c > 0) gather.include_in_lobe(d, c);
     All const all{light_sum_.at(at.normal), angle_sum_.at(at.normal)};
     return gather.result(&all);
@@ -496,12 +393,12 @@ ReceivedLight PrefilteredLight::on_still(LitPoint const& at, std::size_t every, 
 {
     Gather gather(*this, at);
     for (std::size_t k = first; k < directions_.size(); k += every) {
-        Direction const& d = directions_[k];
+        LightDirection const& d = directions_[k];
         float const c = glm::dot(at.normal, d.towards);
         if (!(c > 0)) continue;
         gather.include(d, c);
-        std::uint32_t const there = still_in_the_way(k, at.position, at.geometric, at.triangle);
-        if (there == kOpen)
+        std::uint32_t const there = still_.in_the_way(k, at.position, at.geometric, at.triangle);
+        if (there == StillSurfaces::kOpen)
             gather.add_light(d, c, 1);
         else
             gather.add_radiance(d, c, 1, radiance(radiance_without_, there));

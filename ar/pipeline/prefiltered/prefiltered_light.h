@@ -13,7 +13,7 @@
 
 #include "ar/pipeline/prefiltered/environment_cells.h"
 #include "ar/pipeline/prefiltered/glossy_table.h"
-#include "ar/pipeline/prefiltered/occlusion_map.h"
+#include "ar/pipeline/prefiltered/still_surfaces.h"
 
 namespace viewer {
 
@@ -41,13 +41,16 @@ struct PrefilteredCounts {
 class PrefilteredLight {
 public:
     /// Builds everything for the world's present state. @param world  must outlive this object
-    explicit PrefilteredLight(gi::World const& world);
+    /// @throws gi::Interrupted
+    explicit PrefilteredLight(gi::World const& world, gi::StopRequest const& stop = {});
 
-    /// The environment has changed. @return true if the directions have
-    bool relight();
+    /// The environment has changed. @return true if the directions have; then call moved().
+    /// @throws gi::Interrupted; then this object is of no use any more
+    bool relight(gi::StopRequest const& stop = {});
     /// Moving triangles have moved, or the directions have changed. Of very many triangles, not all maps are drawn
     /// at once: sharp shadows follow in this frame, others some frames later.
-    void moved();
+    /// @throws gi::Interrupted as relight
+    void moved(gi::StopRequest const& stop = {});
     /// Draws maps that are not yet up to date; call in frames in which nothing moves. @return false: there were
     /// none
     bool settle();
@@ -62,24 +65,10 @@ public:
     ReceivedLight open_light(LitPoint const& at) const;
     gi::vec3 open(gi::vec3 normal) const;
 
-    PrefilteredCounts counts() const { return {directions_.size(), patches_.size()}; }
+    PrefilteredCounts counts() const { return {directions_.size(), still_.patches().size()}; }
 
 private:
     static constexpr int kSide = 73; ///< nodes, of tables by normal
-    static constexpr std::uint32_t kOpen = 0xffffffffu, kUnknown = 0xfffffffeu;
-
-    struct Direction {
-        gi::vec3 towards;
-        gi::vec3 light;       ///< of its part, W/m^2
-        float solid_angle_sr; ///< of its part
-        gi::vec3 moving;      ///< radiance of a white moving surface in the way
-        bool sharp;           ///< much of the light in few directions: its shadows have an edge
-    };
-    /// A small part of still surfaces.
-    struct Patch {
-        LitPoint at;
-        gi::vec3 albedo;
-    };
     /// Sums over directions, weighted by cosine or lobe.
     struct Sums {
         gi::vec3 light{0};    ///< what arrives of the environment
@@ -96,20 +85,18 @@ private:
     template <class Visit>
     void for_directions(gi::vec3 normal, gi::vec3 way, float least, Visit const& visit) const;
     void take_lamps(std::vector<EnvironmentTexels::Texel>& texels);
-    void start_maps();
-    void find_patches();
+    gi::Bounds present_bounds() const;
     void light_patches();
     void light_moving();
     void draw_stale(std::size_t most_triangles);
-    std::uint32_t still_in_the_way(std::size_t k, gi::vec3 p, gi::vec3 normal, std::uint32_t triangle) const;
     float moving_in_the_way(std::size_t k, LitPoint const& at, std::uint32_t& blocker) const;
     gi::vec3 radiance(std::vector<gi::vec3> const& of, std::uint32_t patch) const
     {
-        return patch == kUnknown ? mean_radiance_ : of[patch];
+        return patch == StillSurfaces::kUnknown ? mean_radiance_ : of[patch];
     }
     gi::vec3 moving_radiance(std::size_t k, std::uint32_t blocker) const
     {
-        return directions_[k].moving * moving_albedo_[blocker - world_.static_triangles];
+        return white_[k] * moving_albedo_[blocker - world_.static_triangles];
     }
     static gi::vec3 arrived(gi::vec3 open, gi::vec3 by_radiance, Sums const& sums, All const& all);
 
@@ -117,7 +104,7 @@ private:
     gi::TriangleSoup soup_;
     gi::CutOuts cut_outs_;
     EnvironmentCells cells_{{.cells = int(kMostDirections)}};
-    std::vector<Direction> directions_;
+    std::vector<LightDirection> directions_;
     std::array<std::array<float, kMostDirections>, 3> towards_{}; ///< of the directions, x, y, z
     std::vector<EnvironmentTexels::Texel> lamps_;                 ///< the brightest texels
     NormalTable<gi::vec3> smooth_irradiance_{kSide};              ///< E_map without them
@@ -125,18 +112,15 @@ private:
     NormalTable<float> angle_sum_{kSide};                         ///< sum of w_k c_k
     bool has_glossy_;                                             ///< some surface has a glossy lobe
     GlossyTable glossy_;
-    std::vector<OcclusionMap> still_;  ///< per direction: what is nearest to the light
-    std::vector<OcclusionMap> facing_; ///< per direction: what is nearest to a surface far from the light
+    StillSurfaces still_;
     std::vector<OcclusionMap> moving_;
-    std::vector<std::uint8_t> stale_;                        ///< per map of moving_: 1 = older than the last move
-    std::size_t next_ = 0;                                   ///< map that is drawn next
-    std::vector<std::vector<std::uint32_t>> patch_of_texel_; ///< of facing_
-    std::vector<Patch> patches_;
-    std::vector<std::uint32_t> in_the_way_;             ///< per patch and direction: patch, kOpen, kUnknown
+    std::vector<std::uint8_t> stale_;                   ///< per map of moving_: 1 = older than the last move
+    std::size_t next_ = 0;                              ///< map that is drawn next
     std::vector<gi::vec3> patch_light_;                 ///< irradiance per patch without moving surfaces
     std::vector<gi::vec3> radiance_without_, radiance_; ///< per patch, without and with moving surfaces
     gi::vec3 mean_radiance_{0};
     std::vector<gi::vec3> moving_albedo_; ///< per moving triangle
+    std::vector<gi::vec3> white_;         ///< per direction: radiance of a white moving surface in the way
     gi::Bounds moving_bounds_;            ///< of the maps
     gi::vec3 moving_centre_{0};
     float moving_radius_ = 0; ///< m; 0 = nothing moves

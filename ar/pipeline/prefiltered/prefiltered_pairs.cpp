@@ -2,12 +2,14 @@
 
 #include "gi/scene/shading/shading_point.h"
 
+#include <set>
 #include <tbb/parallel_for.h>
 
 namespace viewer {
 namespace {
 
-constexpr std::size_t kSubsets = 8; ///< of the directions, by pixel, for the picture without virtual objects
+/// Subsets of the directions, by pixel, for the picture without virtual objects: at most, and directions in each.
+constexpr std::size_t kMostSubsets = 8, kLeastDirections = 16;
 
 cv::Vec3f vector(gi::vec3 v) { return {v.x, v.y, v.z}; }
 
@@ -40,27 +42,51 @@ bool is_invisible(gi::vec3 change, gi::vec3 radiance)
     return gi::max_component(glm::abs(change)) < 1e-3f * gi::luminance(radiance);
 }
 
+/// The least roughness that a material has anywhere.
+float least_alpha(gi::World const& world, gi::Material const& m, GlossyLobe const& lobe)
+{
+    if (m.model != gi::MaterialModel::metal_rough || m.metallic_roughness_map.texture < 0) return lobe.alpha;
+    gi::TexturePool const& pool = world.scene->textures;
+    gi::Texture const& texture = pool.textures[std::size_t(m.metallic_roughness_map.texture)];
+    std::uint8_t least = 255;
+    for (std::uint64_t k = 0; k < std::uint64_t(texture.width) * texture.height; ++k)
+        least = std::min(least, pool.texels[texture.first + k].g);
+    return lobe.alpha * gi::square(float(least) / 255);
+}
+
+std::string why_paths(gi::World const& world, std::uint32_t material, bool is_still)
+{
+    gi::Bsdf const& b = world.bsdfs[material];
+    if (b.clear > 0) return "surfaces are glass";
+    GlossyLobe const lobe = glossy_lobe_of(b, 1);
+    // On still surfaces, weak reflections of virtual objects may be blurred.
+    if (least_alpha(world, world.materials[material], lobe) < (is_still ? 0.25f : GlossyTable::kLeastAlpha) &&
+        gi::max_component(lobe.reflectance) > (is_still ? 0.1f : 0.0f))
+        return is_still ? "real surfaces are mirrors" : "virtual objects are mirrors";
+    return {};
+}
+
 } // namespace
 
 std::string needs_paths(gi::World const& world)
 {
     if (!world.lights.empty()) return "the scenes have lights of their own";
     if (!world.emitters.empty()) return "surfaces emit light";
+    std::set<std::pair<std::uint32_t, bool>> known; // material, is it of a still surface
     for (std::size_t t = 0; t < world.triangles.size(); ++t) {
-        gi::Bsdf const& b = world.bsdfs[world.triangle_material[t]];
-        if (b.clear > 0) return "surfaces are glass";
-        GlossyLobe const lobe = glossy_lobe_of(b, 1);
-        // On still surfaces, weak reflections of virtual objects may be blurred.
         bool const is_still = t < world.static_triangles;
-        if (lobe.alpha < (is_still ? 0.25f : GlossyTable::kLeastAlpha) &&
-            gi::max_component(lobe.reflectance) > (is_still ? 0.1f : 0.0f))
-            return is_still ? "real surfaces are mirrors" : "virtual objects are mirrors";
+        if (!known.emplace(world.triangle_material[t], is_still).second) continue;
+        if (std::string why = why_paths(world, world.triangle_material[t], is_still); !why.empty()) return why;
     }
     return {};
 }
 
-PrefilteredPairs::PrefilteredPairs(gi::World const& world, gi::Report& report)
-    : world_(world), report_(report), light_(world), all_(world, Surfaces::all), still_(world, Surfaces::still)
+PrefilteredPairs::PrefilteredPairs(gi::World const& world, gi::Report& report, gi::StopRequest const& stop)
+    : world_(world),
+      report_(report),
+      light_(world, stop),
+      all_(world, Surfaces::all),
+      still_(world, Surfaces::still)
 {
     report_counts();
 }
@@ -71,14 +97,14 @@ void PrefilteredPairs::report_counts()
     report_.count("patches of real surfaces", double(light_.counts().patches));
 }
 
-void PrefilteredPairs::update(gi::Changes const& changes)
+void PrefilteredPairs::update(gi::Changes const& changes, gi::StopRequest const& stop)
 {
     gi::StageTimer const timer(report_,
                                changes.environment ? "prefilter the light" : "occlusion maps of virtual objects");
     if (changes.geometry) all_.moved();
-    if (changes.environment) light_.relight();
+    if (changes.environment) light_.relight(stop);
     if (changes.geometry || changes.environment)
-        light_.moved();
+        light_.moved(stop);
     else
         light_.settle();
     if (changes.environment) report_counts();
@@ -99,6 +125,8 @@ PairPictures PrefilteredPairs::render(gi::Camera const& camera, int width, int h
     }
     gi::StageTimer const timer(report_, "shade by prefiltered light");
     gi::WorldView const world = gi::view(world_);
+    std::size_t const subsets =
+        std::clamp<std::size_t>(light_.counts().directions / kLeastDirections, 1, kMostSubsets);
     tbb::parallel_for(0, height, [&](int y) {
         if (stop.requested()) return;
         for (int x = 0; x < width; ++x) {
@@ -113,8 +141,8 @@ PairPictures PrefilteredPairs::render(gi::Camera const& camera, int width, int h
                 Seen const s = seen_through(world, still_raster_.rays, behind, x, y);
                 if (!is_virtual) change = s.radiance(light_.change_on_still(s.at));
                 if (is_invisible(change, s.radiance(light_.open_light(s.at)))) change = gi::vec3(0);
-                std::size_t const subset = std::size_t(x % 4 + 4 * (y % 2));
-                without = s.radiance(change != gi::vec3(0) ? light_.on_still(s.at, kSubsets, subset)
+                std::size_t const subset = std::size_t(x % 4 + 4 * (y % 2)) % subsets;
+                without = s.radiance(change != gi::vec3(0) ? light_.on_still(s.at, subsets, subset)
                                                            : light_.open_light(s.at));
             }
             p.without.at<cv::Vec3f>(y, x) = vector(without);

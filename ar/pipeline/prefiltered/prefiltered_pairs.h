@@ -19,10 +19,12 @@ std::string needs_paths(gi::World const& world);
 class PrefilteredPairs {
 public:
     /// @param world  with the virtual objects in place, also during calls; it and the report must outlive this
-    PrefilteredPairs(gi::World const& world, gi::Report& report);
+    /// @throws gi::Interrupted
+    PrefilteredPairs(gi::World const& world, gi::Report& report, gi::StopRequest const& stop);
 
     /// Call before each further picture. @param changes  of the world since the last one
-    void update(gi::Changes const& changes);
+    /// @throws gi::Interrupted
+    void update(gi::Changes const& changes, gi::StopRequest const& stop);
     /// @param stop  on request, rows are left out
     PairPictures render(gi::Camera const& camera, int width, int height, gi::StopRequest const& stop);
 
