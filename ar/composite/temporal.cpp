@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -66,11 +67,12 @@ Neighbourhood around(Added const& added, int radius)
 /// Reprojects a pixel's surface to the previous frame.
 class PlaceBefore {
 public:
-    PlaceBefore(CameraModel const& camera, Pose const& before_from_now)
+    /// @param still  take each pixel for the same as before
+    PlaceBefore(CameraModel const& camera, Pose const& before_from_now, bool still)
         : camera_(camera),
           turn_(glm::mat3_cast(before_from_now.rotation)),
           shift_(before_from_now.position_m),
-          still_(shift_ == glm::dvec3(0) && std::abs(before_from_now.rotation.w) > 1 - 1e-15)
+          still_(still)
     {
     }
     /// @param z metres along the axis, 0 = infinitely far. @return pixel and the depth then; depth below 0: unseen
@@ -89,6 +91,22 @@ private:
     glm::dvec3 shift_;
     bool still_;
 };
+
+/// How far pixels move at most, about: by the rotation, and by the translation for the nearest surface.
+double motion_px(CameraModel const& camera, Pose const& before_from_now, cv::Mat const& depth)
+{
+    double nearest_m = std::numeric_limits<double>::infinity(), shift_m = glm::length(before_from_now.position_m);
+    if (shift_m > 0)
+        for (int y = 0; y < depth.rows; ++y)
+            for (int x = 0; x < depth.cols; ++x)
+                if (float const z = depth.at<float>(y, x); z > 0) nearest_m = std::min(nearest_m, double(z));
+    // A rotation by a small angle moves pixels at the border of a wide picture more than in its middle.
+    double const wide =
+        1 + glm::dot(glm::dvec2(camera.size_px), glm::dvec2(camera.size_px)) / (4 * camera.fx * camera.fx);
+    glm::dquat const& q = before_from_now.rotation;
+    double const angle = 2 * std::asin(std::min(1.0, glm::length(glm::dvec3(q.x, q.y, q.z))));
+    return camera.fx * (angle * wide + (shift_m > 0 ? shift_m / nearest_m * wide : 0));
+}
 
 } // namespace
 
@@ -110,7 +128,11 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
                                         SceneChange change)
 {
     constexpr float kMostFrames = 256;
-    bool const is_still = change == SceneChange::none;
+    constexpr double kStill_px = 0.02;
+    Pose const before_from_now = inverse(world_from_camera_) * pose;
+    // History that is looked up between pixels again and again would be blurred.
+    bool const same_view = !added_.empty() && motion_px(camera_, before_from_now, depth) < kStill_px;
+    bool const is_still = change == SceneChange::none && same_view;
     cv::Size const size(camera_.size_px.x, camera_.size_px.y);
     check(pair, size);
     if (depth.type() != CV_32FC1 || depth.size() != size)
@@ -126,7 +148,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
         counts_.fresh = filtered.total();
     } else {
         counts_.followed = filtered.total() - std::size_t(where.area()); // nothing is there, as before
-        PlaceBefore const place_before(camera_, inverse(world_from_camera_) * pose);
+        PlaceBefore const place_before(camera_, before_from_now, same_view);
         struct History {
             cv::Vec3f added;
             float frames;
@@ -205,7 +227,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
     frames_ = frames;
     coverage_ = pair.coverage.clone();
     depth_ = depth.clone();
-    world_from_camera_ = pose;
+    if (!same_view) world_from_camera_ = pose; // small motions add up
     return out;
 }
 

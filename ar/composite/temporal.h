@@ -9,9 +9,9 @@
 // clipped; a change of light is adopted to 63 % in about 1 / weight frames. Where nothing is added, the result is
 // exactly 0.
 //
-// While objects and light are known to stay as they are, differences are noise, even those of whole faces, whose
-// pixels share light samples: then nothing is clipped, and the result is the mean of all frames since the last
-// change (256 at most).
+// While objects and light are known to stay as they are and the camera moves by less than a fiftieth of a pixel,
+// differences are noise, even those of whole faces, whose pixels share light samples: then nothing is clipped, and
+// the result is the mean of all frames since the last change (256 at most).
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/pose.h"

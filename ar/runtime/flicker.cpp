@@ -57,12 +57,10 @@ Flicker measure_flicker(ArSession const& session, ar::Frame const& frame, ar::Po
     Moments bytes, blocks;
     cv::Mat coverage, changed;
     for (int k = 0; k < frames && !stop.requested(); ++k) {
-        ar::Frame again = frame;
-        again.sequence = frame.sequence + std::uint64_t(k);
-        ArResult r = pipeline.find(again, time_s, pose);
-        pipeline.add(r, again, time_s, stop);
+        ArResult r = pipeline.find(frame, time_s, pose);
+        pipeline.add(r, frame, time_s, stop);
         if (!r.pair) break;
-        bytes.add(r.rgb);
+        bytes.add(ar::eight_bits_of(r.rgb));
         blocks.add(block_means(r.pair->with));
         coverage = k == 0 ? r.pair->coverage.clone() : cv::Mat(cv::min(coverage, r.pair->coverage));
         cv::Mat differs = r.rgb != r.camera;

@@ -106,6 +106,30 @@ TEST(TemporalFilter, KnowsAStillSceneFromAChangeOfLight)
     EXPECT_LE(lag, 2);
 }
 
+/// Over a still scene, too, history is not looked up between pixels for ever.
+TEST(TemporalFilter, KeepsTexturesWhileTheCameraMovesOverAStillScene)
+{
+    cv::Mat const depth(kFrameSize, CV_32FC1, cv::Scalar(2));
+    TemporalFilter filter(kCamera, {.weight = 0.2f});
+    double const step_m = 0.3 / kCamera.fx * 2;
+    RenderedPair in, out;
+    for (int i = 0; i < 40; ++i) {
+        in = unchanged_pair(kFrameSize);
+        for (int y = 0; y < kFrameSize.height; ++y)
+            for (int x = 0; x < kFrameSize.width; ++x)
+                in.with.at<cv::Vec3f>(y, x) += cv::Vec3f::all(std::sin((x + 0.3 * i) * 1.2) > 0 ? 0.3f : 0.1f);
+        Pose pose;
+        pose.position_m.x = step_m * i;
+        out = filter(in, depth, pose, i > 0 ? SceneChange::none : SceneChange::unknown);
+    }
+    auto const contrast = [](RenderedPair const& pair) {
+        cv::Scalar mean, deviation;
+        cv::meanStdDev((pair.with - pair.without)(kShadow), mean, deviation);
+        return deviation[0];
+    };
+    EXPECT_GT(contrast(out), 0.4 * contrast(in)); // means of all frames leave a tenth
+}
+
 TEST(TemporalFilter, KeepsNothingNothing)
 {
     cv::Mat const depth(kFrameSize, CV_32FC1, cv::Scalar(2));

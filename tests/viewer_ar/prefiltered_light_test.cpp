@@ -2,52 +2,20 @@
 
 #include "ar/light/irradiance.h"
 #include "ar/light/map_file.h"
-#include "ar/pipeline/bridge.h"
-#include "ar/pipeline/pair_renderer.h"
+#include "ar/pipeline/local_scene.h"
 #include "ar/pipeline/prefiltered/prefiltered_light.h"
-#include "ar/pipeline/synthetic.h"
-#include "gi/core/error.h"
 #include "gi/core/rng.h"
-#include "gi/scene/generate/builder.h"
+#include "gi/scene/motion/moving_world.h"
 #include "gi/scene/shading/warp.h"
 #include "tests/support/data.h"
+#include "tests/viewer_ar/lit_places.h"
 
-#include <map>
 #include <opencv2/imgproc.hpp>
 
 namespace viewer::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-gi::Material matt(float albedo)
-{
-    gi::Material m;
-    m.base_color = gi::vec3(albedo);
-    m.specular = 0;
-    return m;
-}
-
-std::shared_ptr<gi::EnvironmentMap const> environment(cv::Mat const& map)
-{
-    return std::make_shared<gi::EnvironmentMap const>(environment_of(map));
-}
-
-cv::Mat uniform(double radiance) { return cv::Mat(32, 64, CV_32FC3, cv::Scalar::all(radiance)); }
-
-gi::Scene box(gi::vec3 low, gi::vec3 high, gi::Material const& material)
-{
-    gi::SceneBuilder b;
-    b.box(b.add_material("box", material), low, high);
-    return b.finish("box");
-}
-
-gi::Scene floor(float half_m, gi::Material const& material)
-{
-    gi::SceneBuilder b;
-    b.quad(b.add_material("floor", material), {-half_m, 0, half_m}, {2 * half_m, 0, 0}, {0, 0, -2 * half_m});
-    return b.finish("floor");
-}
 
 /// Virtual things on real ones, under a map.
 struct Place {
@@ -80,8 +48,6 @@ struct Place {
     LocalScene local;
     gi::MovingWorld moving;
 };
-
-constexpr gi::vec3 kAxes[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 
 /// Largest relative difference of a free box's faces from the irradiance summed over the map; of the darkest ones,
 /// relative to a twentieth of the brightest.
@@ -255,152 +221,86 @@ TEST(PrefilteredLights, HardCases)
         << "flat, coplanar with the floor, under a map of two texels";
 }
 
-PairPictures pictures(PairRenderer& renderer, double time_s = 0)
+/// Radiance that a glossy surface with this normal reflects of a map, summed over its texels.
+gi::dvec3 reflected(cv::Mat const& map, gi::Bsdf const& lobe, gi::vec3 normal, gi::vec3 to_viewer)
 {
-    ar::CameraModel camera = synthetic_camera({160, 120}).model;
-    camera.lens = ar::LensModel::pinhole;
-    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 160, 120, 1, time_s, {}, {});
-}
-
-TEST(PrefilteredPairs, AreTheSameInEveryFrame)
-{
-    gi::Report report;
-    PaperOnTable const paper{cv::Mat(4, 4, CV_8UC1, cv::Scalar(255)), 0.3, 0.2, {-0.15, 0.3}};
-    PairRenderer renderer(join_scenes(generate_desk(DeskPart::near, paper), generate_statue(), gi::dmat4(1)), {},
-                          report);
-    cv::Mat map = uniform(0.5);
-    cv::rectangle(map, {20, 6, 3, 3}, cv::Scalar(20, 18, 14), cv::FILLED);
-    renderer.set_environment(environment(map));
-    EXPECT_EQ(renderer.choose(PairLight::automatic), "");
-    PairPictures const first = pictures(renderer);
-    EXPECT_GT(cv::countNonZero(first.coverage), 100);
-    for (int frame = 0; frame < 3; ++frame) {
-        PairPictures const again = pictures(renderer);
-        EXPECT_EQ(cv::norm(again.with, first.with, cv::NORM_INF), 0);
-        EXPECT_EQ(cv::norm(again.without, first.without, cv::NORM_INF), 0);
-    }
-    EXPECT_GT(cv::norm(pictures(renderer, 0.4).coverage, first.coverage, cv::NORM_L1), 5) << "clips play";
-    PairPictures const back = pictures(renderer, 0);
-    EXPECT_LT(cv::norm(back.with, first.with, cv::NORM_L1), 0.01 * cv::norm(first.with, cv::NORM_L1));
-    PairRenderer nothing(join_scenes(generate_desk(DeskPart::near, paper), {}, gi::dmat4(1)), {}, report);
-    nothing.set_environment(environment(map));
-    nothing.choose(PairLight::prefiltered);
-    PairPictures const same = pictures(nothing);
-    EXPECT_EQ(cv::norm(same.with, same.without, cv::NORM_INF), 0);
-    EXPECT_GT(cv::mean(same.without)[1], 0.01);
-}
-
-/// Mean radiance of a face's middle, looked up in a picture.
-double face_mean(cv::Mat const& picture, ar::CameraModel const& camera, ar::Pose const& pose, gi::vec3 normal)
-{
-    gi::vec3 const u = std::abs(normal.y) > 0.5f ? gi::vec3(1, 0, 0) : gi::vec3(0, 1, 0),
-                   v = glm::cross(normal, u);
-    double sum = 0;
-    int count = 0;
-    for (int j = -9; j <= 9; ++j)
-        for (int i = -9; i <= 9; ++i) {
-            gi::vec3 const p = gi::vec3(0, 0.1f, 0) + 0.1f * normal + 0.008f * (float(i) * u + float(j) * v);
-            glm::dvec3 const seen = glm::conjugate(pose.rotation) * (glm::dvec3(p) - pose.position_m);
-            cv::Point const at(int(std::lround(camera.fx * seen.x / seen.z + camera.cx)),
-                               int(std::lround(camera.fy * seen.y / seen.z + camera.cy)));
-            if (!cv::Rect({0, 0}, picture.size()).contains(at)) continue;
-            sum += double(picture.at<cv::Vec3f>(at)[1]);
-            ++count;
+    gi::Frame const frame = gi::Frame::about(normal);
+    gi::dvec3 sum(0);
+    for (int j = 0; j < map.rows; ++j)
+        for (int i = 0; i < map.cols; ++i) {
+            glm::vec3 const d(ar::texel_direction(map.size(), i, j));
+            float const c = glm::dot(d, normal);
+            if (!(c > 0)) continue;
+            cv::Vec3f const l = map.at<cv::Vec3f>(j, i);
+            sum += double(c) * ar::texel_sr(map.size(), j) *
+                   gi::dvec3(gi::evaluate(lobe, frame.to_local(to_viewer), frame.to_local(d)).f) *
+                   gi::dvec3(l[0], l[1], l[2]);
         }
-    EXPECT_GT(count, 300);
-    return sum / std::max(count, 1);
+    return sum;
 }
 
-/// A matt box on a table, the camera held by hand: each pose a little off.
-TEST(PrefilteredPairs, DoNotFlickerWhenTheCameraTrembles)
+/// The split sum is exact under an even sky seen from in front, and near where light varies over the lobe.
+TEST(PrefilteredLights, GlossyLobesReflectWhatTheBsdfDoes)
 {
-    std::vector<std::pair<std::string, cv::Mat>> maps{{"a lamp", uniform(0.3)}};
-    cv::rectangle(maps[0].second, {20, 6, 2, 2}, cv::Scalar(90, 80, 60), cv::FILLED);
-    for (char const* const name : {"dancing_hall_1k.hdr", "autoshop_01_1k.hdr", "kloppenheim_05_1k.hdr"})
-        if (fs::path const file = gi::test::shared_data() / "envmaps" / name; fs::exists(file))
-            maps.emplace_back(name, ar::read_map(file));
-    ar::CameraModel camera = synthetic_camera({640, 480}).model;
-    camera.lens = ar::LensModel::pinhole;
-    ar::CameraModel const half = ar::scaled(camera, {320, 240});
-    for (auto const& [name, map] : maps) {
-        gi::Report report;
-        PairRenderer renderer(join_scenes(floor(0.7f, matt(0.6f)),
-                                          box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)), gi::dmat4(1)),
-                              {}, report);
-        renderer.set_environment(environment(map));
-        renderer.choose(PairLight::prefiltered);
-        gi::Pcg32 rng = gi::Pcg32::for_path(7, 0, 0);
-        auto const normal = [&] { return double(rng.uniform() + rng.uniform() + rng.uniform() - 1.5f) * 2; };
-        std::map<int, std::vector<double>> means;
-        for (int frame = 0; frame < 16; ++frame) {
-            ar::Pose pose = synthetic_pose(0.35);
-            pose.position_m += 5e-4 * glm::dvec3(normal(), normal(), normal());
-            glm::dvec3 const axis(normal(), normal(), normal());
-            pose.rotation =
-                glm::normalize(pose.rotation * glm::dquat(1, 2.5e-4 * axis.x, 2.5e-4 * axis.y, 2.5e-4 * axis.z));
-            PairPictures const p = renderer.render(gi_camera(half, pose), 320, 240, 1, 0, {}, {});
-            for (int k : {0, 1, 2, 4, 5})
-                if (glm::dot(glm::dvec3(kAxes[k]), pose.position_m - glm::dvec3(0, 0.1, 0)) > 0.2)
-                    means[k].push_back(face_mean(p.with, half, pose, kAxes[k]));
+    cv::Mat lamp(128, 256, CV_32FC3, cv::Scalar::all(0.3));
+    cv::rectangle(lamp, {5, 45, 25, 18}, cv::Scalar(6, 5, 4), cv::FILLED); // about +z
+    for (auto const& [name, map, tolerance] :
+         {std::tuple{"even", cv::Mat(128, 256, CV_32FC3, cv::Scalar::all(1)), 0.015}, {"lamp", lamp, 0.2}})
+        for (float const roughness : {0.3f, 0.5f, 0.8f}) {
+            gi::Material m = matt(0.9f);
+            m.metallic = 1;
+            m.roughness = roughness;
+            Place const place({}, box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, m), environment(map));
+            PrefilteredLight const light(place.world());
+            gi::Bsdf const bsdf = gi::make_bsdf(m);
+            for (gi::vec3 const& to_viewer : {gi::vec3(0, 0, 1), glm::normalize(gi::vec3(0.5f, 0.3f, 1))}) {
+                LitPoint at = place.point({0.1f, 0.1f, 0.5f}, {0, 0, 1});
+                at.to_viewer = to_viewer;
+                at.lobe = glossy_lobe_of(bsdf, to_viewer.z);
+                double const got = double(light.on_moving(at).glossy.y);
+                double const wanted = reflected(map, gi::glossy_lobe(bsdf), {0, 0, 1}, to_viewer).y;
+                std::printf("%s, roughness %.1f: %.4f, by the BSDF %.4f\n", name, double(roughness), got, wanted);
+                EXPECT_NEAR(got / wanted, 1, tolerance);
+            }
         }
-        for (auto const& [k, m] : means) {
-            double mean = 0, squares = 0;
-            for (double const v : m) mean += v / double(m.size());
-            for (double const v : m) squares += (v - mean) * (v - mean) / double(m.size());
-            std::printf("%s, face %d: standard deviation %.3f %%\n", name.c_str(), k,
-                        100 * std::sqrt(squares) / mean);
-            EXPECT_LT(std::sqrt(squares), 0.01 * mean) << name;
-        }
-        EXPECT_GE(means.size(), 2u);
-    }
 }
 
-TEST(PrefilteredPairs, FollowALampInTheFrameAfter)
+TEST(PrefilteredLights, DrawMapsOfManyTrianglesOverSeveralFrames)
 {
-    gi::Report report;
-    PairRenderer renderer(join_scenes({}, box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)), gi::dmat4(1)),
-                          {}, report);
-    renderer.choose(PairLight::prefiltered);
-    ar::CameraModel camera = synthetic_camera({160, 120}).model;
-    camera.lens = ar::LensModel::pinhole;
-    ar::Pose const pose = synthetic_pose(0.35);
-    for (int const column : {4, 20, 36, 52}) {
-        cv::Mat map = uniform(0.05);
-        cv::rectangle(map, {column, 10, 2, 2}, cv::Scalar(40, 60, 80), cv::FILLED);
-        renderer.set_environment(environment(map));
-        PairPictures const p = renderer.render(gi_camera(camera, pose), 160, 120, 1, 0, {}, {});
-        double const top = face_mean(p.with, camera, pose, {0, 1, 0});
-        double const wanted = 0.5 / gi::kPiD * ar::irradiance_exact(map, {0, 1, 0})[1];
-        EXPECT_NEAR(top / wanted, 1, 0.02) << column;
-    }
+    gi::Scene things = box({-0.1f, 0.1f, -0.1f}, {0.1f, 0.3f, 0.1f}, matt(0.5f));
+    Place place(floor(1, matt(0.5f)), things, environment(uniform(1)));
+    PrefilteredLight whole(place.world()), parts(place.world(), {}, {.triangles_at_once = 1});
+    gi::Pose pose = local_pose(place.local, std::nullopt, gi::PairSide::with);
+    for (std::size_t n = place.local.first_virtual_node; n < pose.world_from_node.size(); ++n)
+        pose.world_from_node[n][3].x += 0.02;
+    place.moving.advance(pose);
+    whole.moved();
+    parts.moved();
+    LitPoint const at = place.point({0.05f, 0, 0.02f}, {0, 1, 0});
+    EXPECT_NE(parts.change_on_still(at).irradiance, whole.change_on_still(at).irradiance);
+    int frames = 0;
+    while (parts.settle()) ++frames;
+    EXPECT_GT(frames, 50);
+    EXPECT_LT(frames, 200);
+    EXPECT_EQ(parts.change_on_still(at).irradiance, whole.change_on_still(at).irradiance);
+    EXPECT_EQ(parts.on_moving(place.point({0.02f, 0.2f, 0.1f}, {0, 0, 1})).irradiance,
+              whole.on_moving(place.point({0.02f, 0.2f, 0.1f}, {0, 0, 1})).irradiance);
 }
 
-TEST(PrefilteredPairs, AreRefusedWhereTheyCannotLight)
+/// Objects that appear: patches suit their size.
+TEST(PrefilteredLights, FitPatchesToObjectsThatGrow)
 {
-    gi::Report report;
-    gi::Material glass = matt(1);
-    glass.transmission = 1;
-    glass.specular = 1;
-    glass.roughness = 0;
-    gi::Material mirror = matt(0.9f);
-    mirror.metallic = 1;
-    mirror.roughness = 0;
-    auto const why = [&](gi::Scene real, gi::Scene things, PairLight light) {
-        PairRenderer renderer(join_scenes(std::move(real), std::move(things), gi::dmat4(1)), {}, report);
-        return renderer.choose(light);
-    };
-    gi::Scene const things = box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f));
-    EXPECT_EQ(why(floor(1, matt(0.5f)), things, PairLight::automatic), "");
-    EXPECT_NE(why(floor(1, matt(0.5f)), things, PairLight::paths), "");
-    EXPECT_EQ(why(floor(1, matt(0.5f)), box(gi::vec3(0), gi::vec3(1), glass), PairLight::automatic),
-              "surfaces are glass");
-    EXPECT_EQ(why(floor(1, mirror), things, PairLight::automatic), "real surfaces are mirrors");
-    EXPECT_EQ(why(floor(1, matt(0.5f)), box(gi::vec3(0), gi::vec3(1), mirror), PairLight::automatic),
-              "virtual objects are mirrors");
-    EXPECT_THROW(why(floor(1, mirror), things, PairLight::prefiltered), gi::InputError);
-    gi::Material lamp = matt(0);
-    lamp.emission = gi::vec3(1);
-    EXPECT_EQ(why(floor(1, lamp), things, PairLight::automatic), "surfaces emit light");
+    Place place(floor(1, matt(0.5f)), box({-0.1f, 0.1f, -0.1f}, {0.1f, 0.3f, 0.1f}, matt(0.5f)),
+                environment(uniform(1)));
+    PrefilteredLight const grown(place.world());
+    gi::Pose const pose = local_pose(place.local, std::nullopt, gi::PairSide::with);
+    place.moving.advance(local_pose(place.local, std::nullopt, gi::PairSide::without));
+    PrefilteredLight light(place.world());
+    place.moving.advance(pose);
+    light.moved();
+    EXPECT_GT(light.counts().patches, grown.counts().patches / 2);
+    LitPoint const below = place.point({0, 0.1f, 0}, {0, -1, 0});
+    EXPECT_NEAR(light.on_moving(below).irradiance.x / grown.on_moving(below).irradiance.x, 1, 0.05);
 }
 
 } // namespace

@@ -1,8 +1,7 @@
 #pragma once
 // An environment map filtered with GGX lobes of several widths, and the share of it that a glossy surface
-// reflects: the split sum of Karis ("Real Shading in Unreal Engine 4", 2013), with the fit of its second factor
-// from "Physically Based Shading on Mobile" (2014). Lobes are as seen along the normal: at grazing angles they are
-// too round.
+// reflects: the split sum of Karis ("Real Shading in Unreal Engine 4", 2013). Lobes are as seen along the normal:
+// at grazing angles they are too round.
 
 #include "ar/pipeline/prefiltered/environment_cells.h"
 #include "ar/pipeline/prefiltered/normal_table.h"

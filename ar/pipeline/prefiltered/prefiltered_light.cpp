@@ -16,8 +16,6 @@ constexpr std::uint32_t kMovingTexels = 64, kSharpMovingTexels = 256;
 /// Of the light that moving surfaces would receive without each other, roughly what they do receive.
 constexpr float kOpenness = 0.8f;
 constexpr int kBounces = 2; ///< between still surfaces
-/// Moving triangles drawn in a frame, over all maps; the other maps follow in the next frames.
-constexpr std::size_t kTrianglesAtOnce = 4'000'000;
 
 /// Diffuse albedo at the middle of a triangle.
 gi::vec3 albedo_of(gi::WorldView const& world, std::uint32_t triangle)
@@ -28,8 +26,9 @@ gi::vec3 albedo_of(gi::WorldView const& world, std::uint32_t triangle)
 
 } // namespace
 
-PrefilteredLight::PrefilteredLight(gi::World const& world, gi::StopRequest const& stop)
-    : world_(world), soup_(gi::make_soup(world)), cut_outs_(world), still_(world)
+PrefilteredLight::PrefilteredLight(gi::World const& world, gi::StopRequest const& stop,
+                                   PrefilteredSettings const& settings)
+    : settings_(settings), world_(world), soup_(gi::make_soup(world)), cut_outs_(world), still_(world)
 {
     gi::WorldView const view = gi::view(world);
     for (std::size_t t = world.static_triangles; t < world.triangles.size(); ++t)
@@ -168,13 +167,13 @@ void PrefilteredLight::moved(gi::StopRequest const& stop)
                              directions_[k].sharp ? kSharpMovingTexels : kMovingTexels, jitter,
                              2 * gi::kPi * rng.uniform());
         }
-    draw_stale(fits ? kTrianglesAtOnce : ~std::size_t(0));
+    draw_stale(fits ? settings_.triangles_at_once : ~std::size_t(0));
 }
 
 bool PrefilteredLight::settle()
 {
     bool const any = std::find(stale_.begin(), stale_.end(), 1) != stale_.end();
-    if (any) draw_stale(kTrianglesAtOnce);
+    if (any) draw_stale(settings_.triangles_at_once);
     return any;
 }
 

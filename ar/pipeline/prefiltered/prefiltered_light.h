@@ -38,11 +38,17 @@ struct PrefilteredCounts {
     std::size_t directions = 0, patches = 0;
 };
 
+struct PrefilteredSettings {
+    /// Moving triangles drawn in a frame, over all maps; the other maps follow in the next frames.
+    std::size_t triangles_at_once = 4'000'000;
+};
+
 class PrefilteredLight {
 public:
     /// Builds everything for the world's present state. @param world  must outlive this object
     /// @throws gi::Interrupted
-    explicit PrefilteredLight(gi::World const& world, gi::StopRequest const& stop = {});
+    explicit PrefilteredLight(gi::World const& world, gi::StopRequest const& stop = {},
+                              PrefilteredSettings const& settings = {});
 
     /// The environment has changed. @return true if the directions have; then call moved().
     /// @throws gi::Interrupted; then this object is of no use any more
@@ -100,6 +106,7 @@ private:
     }
     static gi::vec3 arrived(gi::vec3 open, gi::vec3 by_radiance, Sums const& sums, All const& all);
 
+    PrefilteredSettings settings_;
     gi::World const& world_;
     gi::TriangleSoup soup_;
     gi::CutOuts cut_outs_;
