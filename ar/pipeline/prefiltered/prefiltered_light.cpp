@@ -391,9 +391,11 @@ ReceivedLight PrefilteredLight::change_on_still(LitPoint const& at) const
 ReceivedLight PrefilteredLight::on_still(LitPoint const& at, std::size_t every, std::size_t first) const
 {
     Gather gather(*this, at);
-    for (std::size_t k = first; k < directions_.size(); k += every) {
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
         LightDirection const& d = directions_[k];
-        float const c = glm::dot(at.normal, d.towards);
+        bool const in_all = d.sharp || every == 1;
+        if (!in_all && k % every != first) continue;
+        float const c = (in_all ? 1.0f : float(every)) * glm::dot(at.normal, d.towards);
         if (!(c > 0)) continue;
         gather.include(d, c);
         std::uint32_t const there = still_.in_the_way(k, at.position, at.geometric, at.triangle);

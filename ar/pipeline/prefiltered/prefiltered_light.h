@@ -65,7 +65,7 @@ public:
     /// How moving surfaces change the light of a still one; exactly 0 where they hide nothing.
     ReceivedLight change_on_still(LitPoint const& at) const;
     /// The light of a still surface without the moving ones. @param every  uses each so many-th direction, from
-    ///   `first` on
+    ///   `first` on, and all with much of the light
     ReceivedLight on_still(LitPoint const& at, std::size_t every = 1, std::size_t first = 0) const;
     /// Light without anything in the way.
     ReceivedLight open_light(LitPoint const& at) const;

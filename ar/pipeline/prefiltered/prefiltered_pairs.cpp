@@ -145,8 +145,10 @@ PairPictures PrefilteredPairs::render(gi::Camera const& camera, int width, int h
                 without = s.radiance(change != gi::vec3(0) ? light_.on_still(s.at, subsets, subset)
                                                            : light_.open_light(s.at));
             }
+            // The change is known better than the light without it.
+            without = glm::max(without, -change);
             p.without.at<cv::Vec3f>(y, x) = vector(without);
-            gi::vec3 with = glm::max(without + change, gi::vec3(0));
+            gi::vec3 with = without + change;
             if (is_virtual) {
                 Seen const s = seen_through(world, all_raster_.rays, first, x, y);
                 with = s.radiance(light_.on_moving(s.at));
