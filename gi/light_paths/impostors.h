@@ -8,6 +8,7 @@
 #include "gi/light_paths/impostor_kernels.h"
 #include "gi/raster/cut_outs.h"
 #include "gi/raster/draw_nearest.h"
+#include "gi/render/render_settings.h"
 
 #include <span>
 
@@ -17,6 +18,8 @@ namespace gi {
 std::uint32_t impostor_resolution(int texels);
 /// Upper bound of the memory of impostors. @param moves  whether some triangles can move
 std::uint64_t impostor_bytes(int count, int texels, bool moves);
+/// Throws InputError for more than kMostBytes (memory_limit.h), those by hand too.
+void check_impostors(PhotonSettings const& settings, bool moves);
 
 /// Distance at which the faces' views begin, m: as near as floats can tell from the centre.
 float impostor_near(World const& world, vec3 centre);

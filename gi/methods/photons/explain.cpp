@@ -2,6 +2,7 @@
 
 #include "gi/light_paths/caustics.h"
 #include "gi/light_paths/focus.h"
+#include "gi/light_paths/impostor_places.h"
 #include "gi/light_paths/impostors.h"
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/screen_volume.h"
@@ -51,8 +52,9 @@ Shown what_is_shown(World const& world, RenderSettings const& s, Camera const& c
 {
     ExactVisibility const visibility(world, plan_scene(world).alpha_tests, s.threads);
     FrameView const view{camera, s.width, s.height};
-    Bounds const shown = focus_of(shown_points(world, visibility, {&view, 1}), 64);
-    return {needs_fine_grid(shown, world.bounds) ? shown : Bounds{},
+    std::vector<vec3> const points = shown_points(world, visibility, {&view, 1});
+    Bounds const shown = focus_of(points, 64);
+    return {focus_in(world.bounds, points, 64),
             fmt::format("what the camera shows is {:.3g} of {:.3g} m long", double(longest_side(shown)),
                         double(longest_side(world.bounds)))};
 }
@@ -62,7 +64,7 @@ PhotonLatticeSettings with_cascades(PhotonLatticeSettings of, World const& world
 {
     if (of.cascades > 0) return of;
     of.cascades = nested_levels(world.bounds, shown.focus, of.kMostCascades);
-    while (of.cascades > 1 && PhotonLattices::bytes(of, world.bounds, surface_area(world)) > of.kMostBytes)
+    while (of.cascades > 1 && PhotonLattices::bytes(of, world.bounds, surface_area(world)) > kMostBytes)
         --of.cascades;
     return of;
 }
@@ -97,9 +99,10 @@ Items light_path_items(World const& world, RenderSettings const& s, Shown const&
                             : "surfaces are found in another way (--photon-rays)"});
     std::uint32_t const side = impostor_resolution(p.impostor_texels);
     out.push_back({"distance impostors", impostors,
-                   impostors ? fmt::format("at most {} cube maps of 6 x {} x {} texels, {}", p.impostors, side,
-                                           side, megabytes(impostor_bytes(p.impostors, p.impostor_texels, moves)))
-                             : "surfaces are found in another way (--photon-rays)"});
+                   impostors
+                       ? fmt::format("at most {} cube maps of 6 x {} x {} texels, {}", impostor_count(p), side,
+                                     side, megabytes(impostor_bytes(impostor_count(p), p.impostor_texels, moves)))
+                       : "surfaces are found in another way (--photon-rays)"});
     out.push_back(focus_item(world, shown));
     bool const frozen = p.frozen == Switch::on;
     out.push_back({"new photons when something moves", moves && !frozen,

@@ -1,5 +1,6 @@
 // The methods lpv and isllpm: what their lattices send from the points of ray trees.
 
+#include "gi/light_paths/memory_limit.h"
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/photons/photon_renderer.h"
@@ -64,12 +65,16 @@ protected:
     bool has_caustics() const override { return false; }
     int bounces() const override { return PhotonRenderer::bounces() - 1; } // the last is the lattice's
     std::string_view timer_name() const override { return "light propagation"; }
-    void take(PhotonSet const& set) override
+    int cascades_about_camera() const override { return of_propagation_.cascades; }
+    void take(PhotonSet&& set) override
     {
         propagation_.update(world_, set.surfaces_changed ? Geometry::changed : Geometry::same, set.photons,
-                            camera_of(set.views, world_), set.focus, set.stop);
+                            set.middle, set.focus, set.stop);
     }
-    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const*) override { return &light_; }
+    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const*, BuildStop const&) override
+    {
+        return &light_;
+    }
     void report_light(Report& report) override
     {
         report.count("lattices, MiB", double(LightPropagation::bytes(of_propagation_, world_.bounds)) / (1 << 20));
@@ -99,19 +104,25 @@ public:
 protected:
     bool stores(LightVertex const&) const override { return true; } // all tell what light reaches
     std::string_view timer_name() const override { return "light lattices"; }
-    void take(PhotonSet const& set) override
+    int cascades_about_camera() const override { return of_lattices_.cascades; }
+    void take(PhotonSet&& set) override
     {
-        if (set.surfaces_changed || (set.number == 0 && of_lattices_.cascades > 1))
-            lattices_.place(world_, set.visibility,
-                            {camera_of(set.views, world_), set.focus, first_moving_, set.only_moved}, set.stop);
-        lattices_.update(set.photons);
+        of_caustics_.reset();
+        if (set.surfaces_changed || set.middle_changed)
+            lattices_.place(world_, set.visibility, {set.middle, set.focus, first_moving_, set.only_moved},
+                            set.stop);
+        lattices_.update(set.photons, set.stop);
     }
-    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const* caustics) override
+    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const* caustics,
+                              BuildStop const& stop) override
     {
         bool const by_kernels = settings_.photons.caustics_by == CausticsBy::kernels;
         light_.take_caustics(by_kernels ? caustics : nullptr);
-        lattices_.update_caustics(caustics != nullptr && !by_kernels ? caustic_photons()
-                                                                     : std::span<Photon const>{});
+        if (of_caustics_ == caustics_version()) return &light_;
+        of_caustics_.reset();
+        lattices_.update_caustics(
+            caustics != nullptr && !by_kernels ? caustic_photons() : std::span<Photon const>{}, stop);
+        of_caustics_ = caustics_version();
         return &light_;
     }
     void report_light(Report& report) override
@@ -130,6 +141,7 @@ private:
     PhotonLatticeSettings of_lattices_;
     PhotonLattices lattices_;
     LatticeLight<PhotonLattices> light_;
+    std::optional<std::uint32_t> of_caustics_; ///< version of those in the lattices
 };
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "gi/methods/photons/light_propagation.h"
 
 #include "gi/core/error.h"
-#include "gi/kernel/launch.h"
+#include "gi/kernel/stoppable_launch.h"
 #include "gi/methods/photons/lattice_kernels.h"
 #include "gi/methods/photons/propagation_kernels.h"
 #include "gi/methods/sh_grid/voxels.h"
@@ -165,12 +165,11 @@ void LightPropagation::propagate(Level& level, Level const* coarser, std::span<R
     std::vector<vec3> scales(n);
     int const steps = settings_.steps > 0 ? settings_.steps : 2 * settings_.cells;
     for (int step = 0; step < steps; ++step) {
-        if (stop.given_up()) throw Interrupted();
-        launch(Space::host, "scale faces of cells", n, ScaleFaces{now, scales});
+        launch_host(n, ScaleFaces{now, scales}, stop);
         DenseView<ShColor> const around = step == 0 && coarser != nullptr ? coarser->view() : DenseView<ShColor>{};
-        launch(
-            Space::host, "propagate light", n,
-            Propagate{{frame, now}, scales, level.corners, level.open, around, settings_.by, next, level.total});
+        launch_host(
+            n, Propagate{{frame, now}, scales, level.corners, level.open, around, settings_.by, next, level.total},
+            stop);
         std::swap(now, next);
     }
 }

@@ -1,7 +1,7 @@
 #include "gi/methods/photons/photon_lattice.h"
 
 #include "gi/core/error.h"
-#include "gi/kernel/launch.h"
+#include "gi/kernel/stoppable_launch.h"
 #include "gi/methods/photons/lattice_kernels.h"
 #include "gi/methods/photons/photon_cell_kernels.h"
 
@@ -92,7 +92,7 @@ void PhotonLattices::place(World const& world, ExactVisibility const& visibility
     if (s.cascades == 0) {
         center = center_of(where.focus, world.bounds.center());
         s.cascades = nested_levels(world.bounds, where.focus, s.kMostCascades);
-        while (s.cascades > 1 && bytes(s, world.bounds, surface_area(world)) > s.kMostBytes) --s.cascades;
+        while (s.cascades > 1 && bytes(s, world.bounds, surface_area(world)) > kMostBytes) --s.cascades;
     }
     std::array<std::vector<GridFrame>, 3> frames;
     bool stays = where.only_moved;
@@ -136,21 +136,23 @@ void PhotonLattices::place_anew(World const& world, std::size_t first_moving,
 }
 
 void PhotonLattices::inject(Level& level, ExposedSides const& exposed, std::span<Photon const* const> photons,
-                            bool last)
+                            bool last, Flux& sums, BuildStop const& stop)
 {
     std::size_t const n = photons.size(), cells = level.cells.values.size();
     if (level.areas.empty()) {
-        level.areas.assign(cells, vec4{0});
+        std::vector<vec4> areas(cells, vec4{0});
         for (Level::Piece const& p : level.pieces) {
+            if (stop.given_up()) throw Interrupted();
             float const area = glm::length(p.area);
             if (!(area > 0)) continue;
             vec3 const normal = p.area / area;
             for (float const side : {1.0f, -1.0f}) {
                 std::uint32_t const k = ReachedSides::side_index(side * normal, side > 0);
                 float const lit = area * exposed.share(p.exposure_cell, k);
-                level.areas[p.place] += lit * vec4(1, side * normal.x, side * normal.y, side * normal.z);
+                areas[p.place] += lit * vec4(1, side * normal.x, side * normal.y, side * normal.z);
             }
         }
+        level.areas = std::move(areas);
     }
     std::ranges::fill(level.cells.values, PhotonCell{});
     for (std::size_t i = 0; i < cells; ++i) level.cells.values[i].area = level.areas[i];
@@ -161,80 +163,80 @@ void PhotonLattices::inject(Level& level, ExposedSides const& exposed, std::span
         positions[i] = photons[i]->position;
     }
     std::vector<std::uint64_t> keys(n);
-    launch(Space::host, "find cells of photons", n,
-           FindPhotonCells{level.cells.view(), positions, items, keys, last});
+    launch_host(n, FindPhotonCells{level.cells.view(), positions, items, keys, last}, stop);
     for (std::size_t i = 0; last && i < n; ++i) {
         double const flux = double(glm::dot(items[i].flux, vec3{1}));
-        (keys[i] < cells ? injected_w_ : lost_w_) += flux;
+        (keys[i] < cells ? sums.injected_w : sums.lost_w) += flux;
     }
+    if (stop.given_up()) throw Interrupted();
     ItemsByCell const sorted = sort_by_cell(keys, cells);
-    launch(Space::host, "inject photons", cells,
-           SumItems<LatticePhoton, PhotonCell>{items, sorted.order, sorted.firsts, level.cells.values});
+    launch_host(cells, SumItems<LatticePhoton, PhotonCell>{items, sorted.order, sorted.firsts, level.cells.values},
+                stop);
 }
 
-void PhotonLattices::spread(Level& level, Frequency f)
+void PhotonLattices::spread(Level& level, Frequency f, BuildStop const& stop)
 {
     std::vector<PhotonCell> next(level.cells.values.size());
     if (settings_.smooth[std::size_t(f)]) {
-        launch(Space::host, "smooth lattice", next.size(),
-               SmoothCells<PhotonCell>{level.cells.view(), level.cells.cells, next});
+        launch_host(next.size(), SmoothCells<PhotonCell>{level.cells.view(), level.cells.cells, next}, stop);
         std::swap(level.cells.values, next);
     }
     for (int step = 0; f != Frequency::high && step < settings_.gathers; ++step) {
-        launch(Space::host, "gather in lattice", next.size(),
-               GatherCells<PhotonCell>{level.cells.view(), level.cells.cells, next});
+        launch_host(next.size(), GatherCells<PhotonCell>{level.cells.view(), level.cells.cells, next}, stop);
         std::swap(level.cells.values, next);
     }
 }
 
-void PhotonLattices::dim_small_areas(Level& level, bool last)
+void PhotonLattices::dim_small_areas(Level& level, bool last, Flux& sums)
 {
     float const least = PhotonLatticeSettings::kLeastArea * square(level.frame.cell);
     for (PhotonCell& c : level.cells.values) {
         if (!(c.area.x > 0) || !(c.area.x < least)) continue;
         float const by = c.area.x / least;
-        if (last) dimmed_w_ += double(1 - by) * double(glm::dot(c.received.integral(), vec3{1}));
+        if (last) sums.dimmed_w += double(1 - by) * double(glm::dot(c.received.integral(), vec3{1}));
         c.arrived *= vec3{by};
         c.received *= vec3{by};
     }
 }
 
-void PhotonLattices::see_photons(std::span<Photon const> photons)
+void PhotonLattices::see_photons(std::span<Photon const> photons, BuildStop const& stop)
 {
     for (std::size_t i = 0; i < exposed_.size(); ++i)
-        if (exposed_[i].add(photons, sky_shines_))
+        if (exposed_[i].add(photons, sky_shines_, stop))
             for (auto& levels : levels_) levels[i].areas.clear();
 }
 
-void PhotonLattices::update(std::span<Photon const> photons)
+void PhotonLattices::update(std::span<Photon const> photons, BuildStop const& stop)
 {
-    injected_w_ = lost_w_ = dimmed_w_ = 0;
+    diffuse_ = {};
     if (levels_[0].empty()) return;
-    see_photons(photons);
+    see_photons(photons, stop);
     std::vector<Photon const*> once, more;
     for (Photon const& p : photons)
         if (p.scatterings > 0 && all_finite(p.flux)) (p.scatterings == 1 ? once : more).push_back(&p);
-    inject(Frequency::low, more);
-    inject(Frequency::middle, once);
+    inject(Frequency::low, more, diffuse_, stop);
+    inject(Frequency::middle, once, diffuse_, stop);
 }
 
-void PhotonLattices::update_caustics(std::span<Photon const> photons)
+void PhotonLattices::update_caustics(std::span<Photon const> photons, BuildStop const& stop)
 {
+    caustics_ = {};
     if (levels_[0].empty()) return;
     std::vector<Photon const*> caustics;
     for (Photon const& p : photons)
         if (p.scatterings == 0 && p.by_delta && all_finite(p.flux)) caustics.push_back(&p);
-    if (!caustics.empty()) see_photons(photons);
-    inject(Frequency::high, caustics);
+    if (!caustics.empty()) see_photons(photons, stop);
+    inject(Frequency::high, caustics, caustics_, stop);
 }
 
-void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons)
+void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons, Flux& sums, BuildStop const& stop)
 {
     std::vector<Level>& levels = levels_[std::size_t(f)];
     for (std::size_t i = 0; i < levels.size(); ++i) {
-        inject(levels[i], exposed_[i], photons, i + 1 == levels.size());
-        spread(levels[i], f);
-        dim_small_areas(levels[i], i + 1 == levels.size());
+        bool const last = i + 1 == levels.size();
+        inject(levels[i], exposed_[i], photons, last, sums, stop);
+        spread(levels[i], f, stop);
+        dim_small_areas(levels[i], last, sums);
     }
 }
 
