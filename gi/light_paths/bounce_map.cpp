@@ -46,13 +46,15 @@ void add_views(WorldView const& world, Bounds const& bounds, LightChoice choice,
 {
     LightView v;
     float const share = 1 / (choice.probability * float(views));
-    v.paths = texels * float(views) * world.light_select.probability(choice.light);
+    v.views = float(views) * world.light_select.probability(choice.light);
+    v.paths = texels * v.views;
+    v.views = std::max(1.0f, v.views);
     auto const parallel = [&](vec3 travels, vec3 irradiance) {
         v.parallel = true;
         v.grid =
             make_grid(bounds, travels, std::uint32_t(std::sqrt(texels)), rng.uniform2(), 2 * kPi * rng.uniform());
         v.light = irradiance * square(v.grid.texel);
-        v.area = square(v.grid.texel) / std::max(1.0f, v.paths / texels); // its views lie over each other
+        v.area = square(v.grid.texel) / v.views; // its views lie over each other
         out.push_back(v);
     };
     auto const cube = [&](vec3 eye, float near_m, float faces) {
@@ -114,17 +116,16 @@ std::vector<NearestTexel> draw_light_view(WorldView const& world, TriangleSoup c
     return v.parallel ? draw(world, soup, v.grid, cut_outs, seed) : draw(world, soup, v.face, cut_outs, seed);
 }
 
-std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
-                                           CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s,
-                                           PathCounts& counts)
+void trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
+                       CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s, PathCounts& counts,
+                       std::function<void(std::span<LightVertex const>, double share)> const& found)
 {
-    std::vector<LightVertex> all;
-    if (s.bounces < 1) return all;
-    for (LightView const& v : light_views(world, bounds, s)) {
+    if (s.bounces < 1) return;
+    std::vector<LightView> const views = light_views(world, bounds, s);
+    for (LightView const& v : views) {
         if (s.stop != nullptr && s.stop->given_up()) throw Interrupted();
         std::vector<NearestTexel> const seen = draw_light_view(world, soup, v, cut_outs, s.pass ^ v.first);
         std::size_t const n = seen.size();
-        std::vector<BounceTexel> texels(n);
         std::vector<LightPath> paths(n);
         std::vector<LightVertex> vertices(n);
         std::vector<std::uint8_t> has_vertex(n);
@@ -134,16 +135,18 @@ std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const&
                             {s.count, s.seed, s.pass},
                             {s.bounces, s.delta_only},
                             seen,
-                            texels,
+                            {},
                             paths,
                             vertices,
                             has_vertex});
+        std::size_t left = 0;
         for (std::size_t k = 0; k < n; ++k)
-            if (has_vertex[k] != 0) all.push_back(vertices[k]);
-        std::vector<LightVertex> const rest = trace_onwards(world, rays, paths, s, counts);
-        all.insert(all.end(), rest.begin(), rest.end());
+            if (has_vertex[k] != 0) vertices[left++] = vertices[k];
+        LightView const& last = views.back();
+        double const share = double(v.first + n) / double(last.first + last.width() * last.height());
+        found(std::span(vertices).first(left), share);
+        found(trace_onwards(world, rays, paths, s, counts), share);
     }
-    return all;
 }
 
 } // namespace gi

@@ -23,6 +23,7 @@ struct LightView {
     Light spot; ///< its cone and range
     bool is_spot = false;
     float paths = 1;         ///< of its light that are expected
+    float views = 1;         ///< of its light that are expected, with this one
     float area = 0;          ///< see EmittedLight
     std::uint32_t first = 0; ///< number of the path of its first texel
 
@@ -69,7 +70,7 @@ GI_FN inline void start_at_texel(LightView const& view, std::uint32_t texel, Lig
     out.light.ray = {view.face.eye, direction};
     out.light.power = solid_angle * view.light;
     out.light.range = view.spot.range;
-    out.solid_angle = 4 * kPi / view.paths;
+    out.solid_angle = solid_angle / view.views;
     if (view.is_spot) {
         float const z = glm::dot(direction, view.spot.direction);
         out.light.power *= light_detail::cone_attenuation(view.spot, z);
@@ -87,7 +88,7 @@ struct BounceTexels {
     LightPathSet set;
     LightPathRules rules;
     View<NearestTexel const> seen;
-    View<BounceTexel> texels;
+    View<BounceTexel> texels;   ///< what the bounce map holds; may be empty: paths go on without it
     View<LightPath> paths;      ///< how they go on; power 0 = they have ended
     View<LightVertex> vertices; ///< of the reflective shadow map
     View<std::uint8_t> has_vertex;
@@ -131,7 +132,7 @@ struct BounceTexels {
         } else {
             p.light.power = vec3{0};
         }
-        texels[k] = out;
+        if (!texels.empty()) texels[k] = out;
         paths[k] = p;
     }
 };
@@ -142,9 +143,10 @@ std::vector<LightView> light_views(WorldView const& world, Bounds const& bounds,
 /// What is seen in a view. @param soup  of the world
 std::vector<NearestTexel> draw_light_view(WorldView const& world, TriangleSoup const& soup, LightView const& view,
                                           CutOuts const& cut_outs, std::uint32_t seed);
-/// As trace_light_paths(), with first surfaces from bounce maps: the vertices of a whole set.
-std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
-                                           CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s,
-                                           PathCounts& counts);
+/// As trace_light_paths(), with first surfaces from bounce maps: the vertices of a whole set, view by view.
+/// @param found  called with some after the others, and the share of the set's texels that have been drawn
+void trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
+                       CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s, PathCounts& counts,
+                       std::function<void(std::span<LightVertex const>, double share)> const& found);
 
 } // namespace gi

@@ -155,7 +155,7 @@ TEST(PhotonMethods, CoplanarSurfaces)
 }
 
 /// Memory is refused before it is spent.
-TEST(PhotonMethods, LatticesAndImpostorsBeyondMemory)
+TEST(PhotonMethods, PhotonsLatticesAndImpostorsBeyondMemory)
 {
     World const world = world_of(room_with_mirror());
     auto const refused = [&](char const* name, RenderSettings const& s) {
@@ -183,6 +183,11 @@ TEST(PhotonMethods, LatticesAndImpostorsBeyondMemory)
         s.photons.impostor_places += (k > 0 ? ";0,0.01," : "0,0.01,") + std::to_string(k);
     for (char const* const name : {"ispm", "lpv", "isllpm", "multi_image"}) refused(name, s);
     s.photons.impostor_places.clear();
+    s = small_photon_picture(8, PhotonSettings::kMostPaths);
+    for (FirstBounce const first : {FirstBounce::rays, FirstBounce::map}) {
+        s.photons.first_bounce = first;
+        for (char const* const name : {"ispm", "lpv", "isllpm", "multi_image"}) refused(name, s);
+    }
     s = small_photon_picture(8, 256);
     s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = 512;
     s.photons.lattice_cascades = 4;
@@ -195,7 +200,7 @@ TEST(PhotonStops, WhileLightPathsAreTraced)
     World const world = world_of(room_with_mirror());
     for (PhotonMethod const& m : kPhotonMethods)
         for (double const after_s : {0.2, 1.0}) {
-            RenderSettings s = small_photon_picture(8, PhotonSettings::kMostPaths);
+            RenderSettings s = small_photon_picture(8, 4000000);
             StopRequest stop;
             Clock::time_point asked;
             std::thread asks([&] {

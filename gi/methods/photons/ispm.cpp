@@ -14,6 +14,7 @@ public:
 
 protected:
     std::string_view timer_name() const override { return "photon map"; }
+    std::size_t bytes_per_photon() const override { return 400; }
     void take(PhotonSet&& set) override
     {
         constexpr float kAlpha = 2.0f / 3; // Knaus and Zwicker 2011: how slowly kernels shrink

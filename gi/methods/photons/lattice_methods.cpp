@@ -65,6 +65,7 @@ protected:
     bool has_caustics() const override { return false; }
     int bounces() const override { return PhotonRenderer::bounces() - 1; } // the last is the lattice's
     std::string_view timer_name() const override { return "light propagation"; }
+    std::size_t bytes_per_photon() const override { return 250; }
     int cascades_about_camera() const override { return of_propagation_.cascades; }
     void take(PhotonSet&& set) override
     {
@@ -104,6 +105,7 @@ public:
 protected:
     bool stores(LightVertex const&) const override { return true; } // all tell what light reaches
     std::string_view timer_name() const override { return "light lattices"; }
+    std::size_t bytes_per_photon() const override { return 200; }
     int cascades_about_camera() const override { return of_lattices_.cascades; }
     void take(PhotonSet&& set) override
     {

@@ -81,6 +81,7 @@ protected:
     bool stores(LightVertex const&) const override { return true; } // all tell what light reaches
     PhotonRays rays_kind() const override { return PhotonRays::impostors; }
     std::string_view timer_name() const override { return "light gathering volume"; }
+    std::size_t bytes_per_photon() const override { return 200; }
     int cascades_about_camera() const override { return settings_.photons.lattice_cascades; }
     void take(PhotonSet&& set) override
     {

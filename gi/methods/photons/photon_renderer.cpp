@@ -2,6 +2,7 @@
 
 #include "gi/light_paths/bounce_map.h"
 #include "gi/light_paths/focus.h"
+#include "gi/light_paths/memory_limit.h"
 #include "gi/light_paths/options.h"
 #include "gi/methods/photons/limits.h"
 
@@ -128,6 +129,15 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
 {
     constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
     std::vector<Photon> photons;
+    auto const keep = [&](std::span<LightVertex const> vertices, double share) {
+        for (LightVertex const& v : vertices)
+            if (stores(v)) photons.push_back(to_photon(v));
+        double const expected = double(photons.size()) / share;
+        check_bytes(std::uint64_t(expected * double(bytes_per_photon())), "photons",
+                    "choose fewer --photons or --reflections");
+        // Copies of gigabytes, as the array grows, could not be stopped.
+        if (expected > double(photons.capacity())) photons.reserve(std::size_t(1.05 * expected));
+    };
     {
         PathRays const& rays = light_rays_.of(rays_kind(), *visibility_, focus_);
         StageTimer const timer(report_, "light paths");
@@ -148,15 +158,11 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
                                   .pass = *first_index_ + sets_,
                                   .focus = focus_,
                                   .stop = &stop};
-            std::vector<LightVertex> const vertices =
-                by_map
-                    ? trace_bounce_maps(view(world_), world_.bounds, *soup_, CutOuts(world_), rays, some, counts)
-                    : trace_light_paths(view(world_), world_.bounds, rays, some, counts);
-            for (LightVertex const& v : vertices)
-                if (stores(v)) photons.push_back(to_photon(v));
-            if (by_map) break; // the whole set
-            // Copies of gigabytes, as the array grows, could not be stopped.
-            if (first == 0) photons.reserve(std::size_t(1.05 * double(photons.size()) * paths_ / some.last));
+            if (by_map) {
+                trace_bounce_maps(view(world_), world_.bounds, *soup_, CutOuts(world_), rays, some, counts, keep);
+                break; // the whole set
+            }
+            keep(trace_light_paths(view(world_), world_.bounds, rays, some, counts), double(some.last) / paths_);
         }
     }
     has_light_ = false;

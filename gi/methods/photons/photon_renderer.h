@@ -57,6 +57,8 @@ protected:
     /// Nested lattices that follow the camera; fewer than 2 = none do.
     virtual int cascades_about_camera() const { return 0; }
     virtual std::string_view timer_name() const = 0; ///< of take()
+    /// Most memory that a photon and what stores its light take, as measured.
+    virtual std::size_t bytes_per_photon() const = 0;
     /// Makes light of a set of photons. Throws Interrupted; there is then no light until another call ends.
     virtual void take(PhotonSet&& set) = 0;
     /// The light of a pass, after take(). Throws Interrupted, and may then be called again.
