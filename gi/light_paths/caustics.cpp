@@ -5,6 +5,7 @@
 #include "gi/render/ray_path.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -58,6 +59,17 @@ StartTargets find_caustic_targets(World const& world, Bounds const& focus)
     }
     out.choice = make_alias_table(weights);
     return out;
+}
+
+PlanItem explain_caustics(World const& world, PhotonSettings const& s)
+{
+    std::size_t const smooth = find_caustic_targets(world, {}).triangles.size();
+    if (smooth == 0)
+        return {"caustics", false, "no smooth surface: nothing mirrors or refracts without scattering"};
+    if (s.caustic_paths == 0)
+        return {"caustics", false, fmt::format("{} smooth triangles, but --caustic-photons 0", smooth)};
+    return {"caustics", true,
+            fmt::format("{} light paths per pass begin on {} smooth triangles", s.caustic_paths, smooth)};
 }
 
 Caustics::Caustics(World const& world, RenderSettings const& settings, Report& report)

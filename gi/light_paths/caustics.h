@@ -21,6 +21,7 @@
 #include "gi/render/frame_renderer.h"
 #include "gi/render/path_sample.h"
 #include "gi/render/render_settings.h"
+#include "gi/scene/model/plan.h"
 #include "gi/scene/motion/moving_world.h"
 
 #include <optional>
@@ -32,6 +33,9 @@ namespace gi {
 /// like another: small curved things, which focus light, have many. @param focus  gets at least half of the paths
 /// if smooth triangles lie there; empty = there is none
 StartTargets find_caustic_targets(World const& world, Bounds const& focus);
+
+/// Whether there will be caustics, and why.
+PlanItem explain_caustics(World const& world, PhotonSettings const& settings);
 
 class Caustics {
 public:

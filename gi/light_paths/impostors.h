@@ -63,6 +63,7 @@ struct ImpostorsOn {
     ImpostorsView view() const { return {centres.view(), texels.view(), blocks.view(), resolution}; }
 };
 
+/// For devices; methods draw theirs by Impostors, and tests compare the two.
 /// @param soup, keep  in space S; see DrawNearest  @param resolution  as for Impostors
 template <Space S, class Keep = KeepAll>
 ImpostorsOn<S> draw_impostors(World const& world, SoupView const& soup, std::vector<vec3> const& centres,

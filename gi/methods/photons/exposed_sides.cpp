@@ -11,9 +11,9 @@ constexpr float kLeastShare = 0.02f, kSurelyExposed = 0.2f;
 
 } // namespace
 
-std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int levels)
+std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int cascades)
 {
-    std::vector<GridFrame> frames = frames_off_walls(bounds, center, kExposureCells, levels);
+    std::vector<GridFrame> frames = frames_off_walls(bounds, center, kExposureCells, cascades);
     for (GridFrame& f : frames) f.size = (f.size + 3) / 4 * 4;
     return frames;
 }

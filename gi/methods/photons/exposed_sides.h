@@ -46,6 +46,6 @@ private:
 };
 
 /// Grids of 48 cells along the longest side for nested lattices of a world, finest first.
-std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int levels);
+std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int cascades);
 
 } // namespace gi

@@ -56,10 +56,7 @@ protected:
     SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics,
                               BuildStop const& stop) override
     {
-        bool const same = std::ranges::equal(views, cameras_, [](FrameView const& v, FrameView const& w) {
-            return v.camera == w.camera && v.width == w.width && v.height == w.height;
-        });
-        if (!same) {
+        if (!same_pictures(views, cameras_)) {
             StageTimer const timer(report_, "photons by tiles");
             screens_.clear();
             cameras_.clear();

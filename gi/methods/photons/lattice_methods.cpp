@@ -79,8 +79,8 @@ protected:
     void report_light(Report& report) override
     {
         report.count("lattices, MiB", double(LightPropagation::bytes(of_propagation_, world_.bounds)) / (1 << 20));
-        if (!propagation_.levels().empty())
-            report.count("finest cells, m", double(propagation_.levels().front().frame.cell));
+        if (!propagation_.cascades().empty())
+            report.count("finest cells, m", double(propagation_.cascades().front().frame.cell));
     }
 
 private:
@@ -131,8 +131,9 @@ protected:
     {
         std::size_t cells = 0;
         for (Frequency const f : {Frequency::low, Frequency::middle, Frequency::high})
-            for (PhotonLattices::Level const& level : lattices_.levels(f)) cells += level.cells.values.size();
-        report.count("nested lattices", double(lattices_.levels(Frequency::low).size()));
+            for (PhotonLattices::Cascade const& cascade : lattices_.cascades(f))
+                cells += cascade.cells.values.size();
+        report.count("nested lattices", double(lattices_.cascades(Frequency::low).size()));
         report.count("cells with surfaces", double(cells));
         report.count("hidden area of surfaces, m^2", lattices_.hidden_m2());
         report.count("flux of photons in no cell, W (sum of channels)", lattices_.lost_w());

@@ -13,7 +13,9 @@ PropagationSettings propagation_of(PhotonSettings const& s)
 PhotonLatticeSettings lattices_of(PhotonSettings const& s)
 {
     bool const smooth = s.lattice_smoothing == Switch::on;
-    return {.cells = {s.low_cells, s.middle_cells, s.high_cells},
+    // The lattice of caustics stays empty if kernels show them.
+    int const high = s.caustics_by == CausticsBy::kernels ? 4 : s.high_cells;
+    return {.cells = {s.low_cells, s.middle_cells, high},
             .smooth = {smooth, smooth, false},
             .cascades = s.lattice_cascades,
             .by = s.irradiance_by};

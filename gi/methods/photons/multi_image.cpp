@@ -109,8 +109,9 @@ protected:
     {
         std::size_t cells = 0;
         for (Frequency const f : {Frequency::low, Frequency::middle})
-            for (PhotonLattices::Level const& level : volume_.levels(f)) cells += level.cells.values.size();
-        report.count("nested lattices", double(volume_.levels(Frequency::low).size()));
+            for (PhotonLattices::Cascade const& cascade : volume_.cascades(f))
+                cells += cascade.cells.values.size();
+        report.count("nested lattices", double(volume_.cascades(Frequency::low).size()));
         report.count("cells with surfaces", double(cells));
         report.count("flux of photons in no cell, W (sum of channels)", volume_.lost_w());
         report.count("flux left out in cells of hardly any area, W (sum of channels)", volume_.dimmed_w());
@@ -126,10 +127,7 @@ protected:
 private:
     void place_screens(std::span<FrameView const> views)
     {
-        bool const same = std::ranges::equal(views, cameras_, [](FrameView const& v, FrameView const& w) {
-            return v.camera == w.camera && v.width == w.width && v.height == w.height;
-        });
-        if (same) return;
+        if (same_pictures(views, cameras_)) return;
         StageTimer const timer(report_, "surfaces on screen");
         cameras_.assign(views.begin(), views.end());
         if (!soup_)

@@ -138,7 +138,7 @@ public:
         return radiance(Frequency::low, position, direction) + radiance(Frequency::middle, position, direction);
     }
 
-    struct Level {
+    struct Cascade {
         GridFrame frame;
         SparseCells<PhotonCell> cells;
         /// The part of a surface in a cell.
@@ -150,12 +150,14 @@ public:
         std::size_t still_pieces = 0, still_cells = 0; ///< of triangles that do not move; the others follow
         std::vector<vec4> areas;                       ///< per cell, see PhotonCell; empty = not yet known
     };
-    std::span<Level const> levels(Frequency f) const { return levels_[std::size_t(f)]; }
+    std::span<Cascade const> cascades(Frequency f) const { return cascades_[std::size_t(f)]; }
     /// Sums over channels, with the caustics'.
     double injected_w() const { return diffuse_.injected_w + caustics_.injected_w; }
     double lost_w() const { return diffuse_.lost_w + caustics_.lost_w; } ///< of photons where no surface was found
     double dimmed_w() const { return diffuse_.dimmed_w + caustics_.dimmed_w; } ///< left out for kLeastArea
     double hidden_m2() const { return exposed_.empty() ? 0 : exposed_.back().hidden_m2(); }
+    /// With the number of cascades that place() makes. @param focus  see LatticePlace
+    static PhotonLatticeSettings placed(PhotonLatticeSettings settings, World const& world, Bounds const& focus);
     /// Upper bound of the memory that place() and update() take. @param area_m2  of all triangles
     static std::uint64_t bytes(PhotonLatticeSettings const& settings, Bounds const& bounds, double area_m2);
 
@@ -170,16 +172,16 @@ private:
     };
     void see_photons(std::span<Photon const> photons, BuildStop const& stop);
     void inject(Frequency f, std::span<Photon const* const> photons, Flux& sums, BuildStop const& stop);
-    static void inject(Level& level, ExposedSides const& exposed, std::span<Photon const* const> photons,
+    static void inject(Cascade& cascade, ExposedSides const& exposed, std::span<Photon const* const> photons,
                        bool last, Flux& sums, BuildStop const& stop);
-    void spread(Level& level, Frequency f, BuildStop const& stop);
-    static void dim_small_areas(Level& level, bool last, Flux& sums);
+    void spread(Cascade& cascade, Frequency f, BuildStop const& stop);
+    static void dim_small_areas(Cascade& cascade, bool last, Flux& sums);
     float cells_together(Frequency f) const;
 
     PhotonLatticeSettings settings_;
     std::vector<ExposedSides> exposed_; ///< per nested lattice, finest first
     bool sky_shines_ = false;
-    std::array<std::vector<Level>, 3> levels_; ///< finest first
+    std::array<std::vector<Cascade>, 3> cascades_; ///< finest first
     Flux diffuse_, caustics_;
 };
 

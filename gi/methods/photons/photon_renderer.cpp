@@ -16,6 +16,13 @@ vec3 camera_of(std::span<FrameView const> views, World const& world)
                          : vec3(dvec3(views[0].camera.world_from_camera[3]) - world.origin);
 }
 
+bool same_pictures(std::span<FrameView const> a, std::span<FrameView const> b)
+{
+    return std::ranges::equal(a, b, [](FrameView const& v, FrameView const& w) {
+        return v.camera == w.camera && v.width == w.width && v.height == w.height;
+    });
+}
+
 PhotonRenderer::PhotonRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                                Report& report, StopRequest const* stop)
     : TreeRenderer(world, settings, first_moving, report, stop),

@@ -36,6 +36,9 @@ struct PhotonSet {
 /// Where the first camera is, m in the world's coordinates; the world's centre without cameras.
 vec3 camera_of(std::span<FrameView const> views, World const& world);
 
+/// True if cameras and sizes are the same.
+bool same_pictures(std::span<FrameView const> a, std::span<FrameView const> b);
+
 class PhotonRenderer : public TreeRenderer {
 public:
     /// See StartPasses.

@@ -43,7 +43,7 @@ void ScreenVolume::update(std::span<Photon const> photons, BuildStop const& stop
     launch_host(pixels, SumItems<ScreenPhoton, ShColor>{items, sorted.order, sorted.firsts, light_}, stop);
     std::vector<ShColor> next(settings_.gathers > 0 ? pixels : 0);
     for (int step = 0; step < settings_.gathers; ++step) {
-        launch_host(pixels, GatherScreen{screen_.size, settings_.radius_m, surfaces_, light_, next}, stop);
+        launch_host(pixels, GatherScreen{screen_.size, surfaces_, light_, next}, stop);
         std::swap(light_, next);
     }
 }

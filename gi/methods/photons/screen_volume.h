@@ -24,8 +24,7 @@
 namespace gi {
 
 struct ScreenVolumeSettings {
-    int gathers = 8;    ///< steps; light of a pixel then lies about sqrt(0.4 gathers) pixels around it
-    float radius_m = 0; ///< farther neighbours are declined; 0 = as far as pixels of one surface can be apart
+    int gathers = 8; ///< steps; light of a pixel then lies about sqrt(0.4 gathers) pixels around it
 };
 
 /// Light at the pixels of a screen, for kernels.
