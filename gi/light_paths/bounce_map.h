@@ -4,7 +4,8 @@
 // is a reflective shadow map (Dachsbacher and Stamminger 2005), how it goes on is the bounce map.
 //
 // A set has a few dozen views: from points drawn on the lights (cubes in random turns), along directions of
-// parallel lights and the sky. So paths of one view share a point of the light; sets differ.
+// parallel lights and the sky; with a focus, half of these show its surroundings alone. So paths of one view share
+// a point of the light; sets differ.
 
 #include "gi/light_paths/light_path_step.h"
 #include "gi/light_paths/light_paths.h"
@@ -22,9 +23,13 @@ struct LightView {
     bool both_sides = false;
     Light spot; ///< its cone and range
     bool is_spot = false;
-    float paths = 1;         ///< of its light that are expected
-    float views = 1;         ///< of its light that are expected, with this one
-    float area = 0;          ///< see EmittedLight
+    float paths = 1; ///< of its light that are expected
+    float views = 1; ///< of its light that are expected, with this one
+    float area = 0;  ///< see EmittedLight
+    /// Of a parallel light with a focus: its texels lie in the cylinder about the focus's sphere, or beside it.
+    vec3 focus_center{0};
+    float focus_radius = 0;  ///< m; 0 = no focus
+    bool through = false;    ///< in the cylinder
     std::uint32_t first = 0; ///< number of the path of its first texel
 
     GI_FN std::uint32_t width() const { return parallel ? grid.width : face.width; }
@@ -55,8 +60,11 @@ GI_FN inline void start_at_texel(LightView const& view, std::uint32_t texel, Lig
     std::uint32_t const i = texel % view.width(), j = texel / view.width();
     if (view.parallel) {
         out.light.ray.direction = view.grid.axis;
-        out.light.power = view.light;
         out.area = view.area;
+        vec3 const way = view.grid.point(i, j, 0) - view.focus_center;
+        vec3 const beside = way - glm::dot(way, view.grid.axis) * view.grid.axis;
+        bool const in_cylinder = glm::dot(beside, beside) < square(view.focus_radius);
+        out.light.power = in_cylinder == view.through ? view.light : vec3{0};
         return;
     }
     // The solid angle of a texel, by the rectangle's closed form, so that all together are 4 pi.
