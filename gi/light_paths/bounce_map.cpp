@@ -40,19 +40,63 @@ void add_cube(LightView const& v, vec3 eye, float near_m, std::uint32_t resoluti
     }
 }
 
+/// Which part of the light from afar a view shows, see LightPaths::focus.
+struct FocusPart {
+    vec3 center{0};
+    float radius = 0; ///< m; 0 = all
+    bool through = false;
+
+    float share() const { return radius > 0 ? 0.5f : 1.0f; } ///< of the views
+};
+
+/// True if grids about a focus have fine enough subpixels for triangles of the whole world.
+bool fits_grid(Bounds const& focus, Bounds const& world, float texels)
+{
+    constexpr float kMost = 1 << (RasterGrid::kCoordinateBits - 5); // texels along the world
+    return focus.radius() > 0 && std::sqrt(texels) * world.radius() < kMost * focus.radius();
+}
+
+/// Grid over a sphere, in which triangles of the world beyond it can be drawn.
+RasterGrid grid_about(FocusPart const& focus, Bounds const& world, vec3 axis, std::uint32_t resolution,
+                      vec2 jitter, float turn_rad)
+{
+    // Of boxes that cover the sphere along the grid's axes the smallest.
+    auto const reach = [](vec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+    RasterGrid const turned = make_grid({}, axis, resolution, jitter, turn_rad);
+    float const half = focus.radius / std::min(reach(turned.right), reach(turned.up));
+    RasterGrid g = make_grid({focus.center - half, focus.center + half}, axis, resolution, jitter, turn_rad);
+    constexpr float kMost = 1 << RasterGrid::kCoordinateBits; // subpixels
+    while (g.subpixels > 1 && 2.01f * world.radius() / g.texel * g.subpixels > kMost) g.subpixels /= 2;
+    float const scale = g.subpixels / g.texel;
+    g.to_x = scale * g.right;
+    g.to_y = scale * g.up;
+    g.x0 = -scale * g.corner.x;
+    g.y0 = -scale * g.corner.y;
+    g.rounding = 1e-6f * (glm::length(world.center()) + world.radius());
+    return g;
+}
+
 /// Views from a point of an emitting triangle or a punctual light, or along a direction. @param texels  of all
 void add_views(WorldView const& world, Bounds const& bounds, LightChoice choice, std::uint32_t views, float texels,
-               Pcg32& rng, std::vector<LightView>& out)
+               FocusPart const& focus, Pcg32& rng, std::vector<LightView>& out)
 {
     LightView v;
     float const share = 1 / (choice.probability * float(views));
-    v.paths = texels * float(views) * world.light_select.probability(choice.light);
+    v.views = float(views) * world.light_select.probability(choice.light);
+    v.paths = texels * v.views;
+    v.views = std::max(1.0f, v.views);
     auto const parallel = [&](vec3 travels, vec3 irradiance) {
         v.parallel = true;
-        v.grid =
-            make_grid(bounds, travels, std::uint32_t(std::sqrt(texels)), rng.uniform2(), 2 * kPi * rng.uniform());
-        v.light = irradiance * square(v.grid.texel);
-        v.area = square(v.grid.texel) / std::max(1.0f, v.paths / texels); // its views lie over each other
+        auto const side = std::uint32_t(std::sqrt(texels));
+        vec2 const jitter = rng.uniform2();
+        float const turn = 2 * kPi * rng.uniform();
+        v.grid = focus.radius > 0 && focus.through ? grid_about(focus, bounds, travels, side, jitter, turn)
+                                                   : make_grid(bounds, travels, side, jitter, turn);
+        v.focus_center = focus.center;
+        v.focus_radius = focus.radius;
+        v.through = focus.through;
+        v.light = irradiance * (square(v.grid.texel) / focus.share());
+        v.area = square(v.grid.texel) / std::max(1.0f, v.views * focus.share()); // its views lie over each other
         out.push_back(v);
     };
     auto const cube = [&](vec3 eye, float near_m, float faces) {
@@ -95,10 +139,17 @@ std::vector<LightView> light_views(WorldView const& world, Bounds const& bounds,
     std::vector<LightView> out;
     if (world.light_select.empty() || bounds.empty()) return out;
     auto const n = std::uint32_t(std::clamp(views, 1, int(std::max(1u, s.count / 64))));
+    FocusPart focus;
+    if (fits_grid(s.focus, bounds, float(s.count) / float(n)))
+        focus = {s.focus.center(), 1.001f * s.focus.radius(), false};
+    // By turns, so that both parts have views of each light; which part is first is random.
+    std::uint32_t const first_part = Pcg32::for_path(s.seed ^ 0xb0cf0c, n, s.pass).uniform() < 0.5f ? 0 : 1;
     for (std::uint32_t k = 0; k < n; ++k) {
+        focus.through = focus.radius > 0 && (k + first_part) % 2 == 0;
         Pcg32 rng = Pcg32::for_path(s.seed ^ 0xb0c3a9, k, s.pass);
         LightChoice const choice = choose_light(world, (double(k) + rng.uniform_double()) / double(n));
-        if (choice.probability > 0) add_views(world, bounds, choice, n, float(s.count) / float(n), rng, out);
+        if (choice.probability > 0)
+            add_views(world, bounds, choice, n, float(s.count) / float(n), focus, rng, out);
     }
     std::uint32_t first = 0;
     for (LightView& v : out) {
@@ -114,17 +165,16 @@ std::vector<NearestTexel> draw_light_view(WorldView const& world, TriangleSoup c
     return v.parallel ? draw(world, soup, v.grid, cut_outs, seed) : draw(world, soup, v.face, cut_outs, seed);
 }
 
-std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
-                                           CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s,
-                                           PathCounts& counts)
+void trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
+                       CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s, PathCounts& counts,
+                       std::function<void(std::span<LightVertex const>, double share)> const& found)
 {
-    std::vector<LightVertex> all;
-    if (s.bounces < 1) return all;
-    for (LightView const& v : light_views(world, bounds, s)) {
+    if (s.bounces < 1) return;
+    std::vector<LightView> const views = light_views(world, bounds, s);
+    for (LightView const& v : views) {
         if (s.stop != nullptr && s.stop->given_up()) throw Interrupted();
         std::vector<NearestTexel> const seen = draw_light_view(world, soup, v, cut_outs, s.pass ^ v.first);
         std::size_t const n = seen.size();
-        std::vector<BounceTexel> texels(n);
         std::vector<LightPath> paths(n);
         std::vector<LightVertex> vertices(n);
         std::vector<std::uint8_t> has_vertex(n);
@@ -134,16 +184,18 @@ std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const&
                             {s.count, s.seed, s.pass},
                             {s.bounces, s.delta_only},
                             seen,
-                            texels,
+                            {},
                             paths,
                             vertices,
                             has_vertex});
+        std::size_t left = 0;
         for (std::size_t k = 0; k < n; ++k)
-            if (has_vertex[k] != 0) all.push_back(vertices[k]);
-        std::vector<LightVertex> const rest = trace_onwards(world, rays, paths, s, counts);
-        all.insert(all.end(), rest.begin(), rest.end());
+            if (has_vertex[k] != 0) vertices[left++] = vertices[k];
+        LightView const& last = views.back();
+        double const share = double(v.first + n) / double(last.first + last.width() * last.height());
+        found(std::span(vertices).first(left), share);
+        found(trace_onwards(world, rays, paths, s, counts), share);
     }
-    return all;
 }
 
 } // namespace gi

@@ -4,7 +4,8 @@
 // is a reflective shadow map (Dachsbacher and Stamminger 2005), how it goes on is the bounce map.
 //
 // A set has a few dozen views: from points drawn on the lights (cubes in random turns), along directions of
-// parallel lights and the sky. So paths of one view share a point of the light; sets differ.
+// parallel lights and the sky; with a focus, half of these show its surroundings alone. So paths of one view share
+// a point of the light; sets differ.
 
 #include "gi/light_paths/light_path_step.h"
 #include "gi/light_paths/light_paths.h"
@@ -22,8 +23,13 @@ struct LightView {
     bool both_sides = false;
     Light spot; ///< its cone and range
     bool is_spot = false;
-    float paths = 1;         ///< of its light that are expected
-    float area = 0;          ///< see EmittedLight
+    float paths = 1; ///< of its light that are expected
+    float views = 1; ///< of its light that are expected, with this one
+    float area = 0;  ///< see EmittedLight
+    /// Of a parallel light with a focus: its texels lie in the cylinder about the focus's sphere, or beside it.
+    vec3 focus_center{0};
+    float focus_radius = 0;  ///< m; 0 = no focus
+    bool through = false;    ///< in the cylinder
     std::uint32_t first = 0; ///< number of the path of its first texel
 
     GI_FN std::uint32_t width() const { return parallel ? grid.width : face.width; }
@@ -54,8 +60,11 @@ GI_FN inline void start_at_texel(LightView const& view, std::uint32_t texel, Lig
     std::uint32_t const i = texel % view.width(), j = texel / view.width();
     if (view.parallel) {
         out.light.ray.direction = view.grid.axis;
-        out.light.power = view.light;
         out.area = view.area;
+        vec3 const way = view.grid.point(i, j, 0) - view.focus_center;
+        vec3 const beside = way - glm::dot(way, view.grid.axis) * view.grid.axis;
+        bool const in_cylinder = glm::dot(beside, beside) < square(view.focus_radius);
+        out.light.power = in_cylinder == view.through ? view.light : vec3{0};
         return;
     }
     // The solid angle of a texel, by the rectangle's closed form, so that all together are 4 pi.
@@ -69,7 +78,7 @@ GI_FN inline void start_at_texel(LightView const& view, std::uint32_t texel, Lig
     out.light.ray = {view.face.eye, direction};
     out.light.power = solid_angle * view.light;
     out.light.range = view.spot.range;
-    out.solid_angle = 4 * kPi / view.paths;
+    out.solid_angle = solid_angle / view.views;
     if (view.is_spot) {
         float const z = glm::dot(direction, view.spot.direction);
         out.light.power *= light_detail::cone_attenuation(view.spot, z);
@@ -87,7 +96,7 @@ struct BounceTexels {
     LightPathSet set;
     LightPathRules rules;
     View<NearestTexel const> seen;
-    View<BounceTexel> texels;
+    View<BounceTexel> texels;   ///< what the bounce map holds; may be empty: paths go on without it
     View<LightPath> paths;      ///< how they go on; power 0 = they have ended
     View<LightVertex> vertices; ///< of the reflective shadow map
     View<std::uint8_t> has_vertex;
@@ -131,7 +140,7 @@ struct BounceTexels {
         } else {
             p.light.power = vec3{0};
         }
-        texels[k] = out;
+        if (!texels.empty()) texels[k] = out;
         paths[k] = p;
     }
 };
@@ -142,9 +151,10 @@ std::vector<LightView> light_views(WorldView const& world, Bounds const& bounds,
 /// What is seen in a view. @param soup  of the world
 std::vector<NearestTexel> draw_light_view(WorldView const& world, TriangleSoup const& soup, LightView const& view,
                                           CutOuts const& cut_outs, std::uint32_t seed);
-/// As trace_light_paths(), with first surfaces from bounce maps: the vertices of a whole set.
-std::vector<LightVertex> trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
-                                           CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s,
-                                           PathCounts& counts);
+/// As trace_light_paths(), with first surfaces from bounce maps: the vertices of a whole set, view by view.
+/// @param found  called with some after the others, and the share of the set's texels that have been drawn
+void trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSoup const& soup,
+                       CutOuts const& cut_outs, PathRays const& rays, LightPaths const& s, PathCounts& counts,
+                       std::function<void(std::span<LightVertex const>, double share)> const& found);
 
 } // namespace gi

@@ -5,6 +5,7 @@
 #include "gi/render/ray_path.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -60,8 +61,19 @@ StartTargets find_caustic_targets(World const& world, Bounds const& focus)
     return out;
 }
 
-Caustics::Caustics(World const& world, RenderSettings const& settings, Report& report, StopRequest const* stop)
-    : world_(world), settings_(settings), report_(report), stop_(stop)
+PlanItem explain_caustics(World const& world, PhotonSettings const& s)
+{
+    std::size_t const smooth = find_caustic_targets(world, {}).triangles.size();
+    if (smooth == 0)
+        return {"caustics", false, "no smooth surface: nothing mirrors or refracts without scattering"};
+    if (s.caustic_paths == 0)
+        return {"caustics", false, fmt::format("{} smooth triangles, but --caustic-photons 0", smooth)};
+    return {"caustics", true,
+            fmt::format("{} light paths per pass begin on {} smooth triangles", s.caustic_paths, smooth)};
+}
+
+Caustics::Caustics(World const& world, RenderSettings const& settings, Report& report)
+    : world_(world), settings_(settings), report_(report)
 {
 }
 
@@ -72,7 +84,7 @@ void Caustics::changed(Changes const& c)
 }
 
 void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
-                       Bounds const& focus, double share, PathCounts& counts)
+                       Bounds const& focus, double share, BuildStop const& stop, PathCounts& counts)
 {
     if (settings_.photons.caustic_paths == 0) return;
     paths_ = std::max(1u, std::uint32_t(share * settings_.photons.caustic_paths));
@@ -94,18 +106,15 @@ void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, s
     if (targets_.choice.empty()) {
         map_ = {};
         photons_.clear();
+        ++version_;
         return;
     }
-    try {
-        trace(visibility, counts);
-    } catch (Interrupted const&) {
-        if (map() == nullptr) throw;
-    }
+    trace(visibility, stop, counts);
 }
 
-std::vector<Photon> Caustics::photons_of_set(ExactVisibility const& visibility, PathCounts& counts)
+std::vector<Photon> Caustics::photons_of_set(ExactVisibility const& visibility, BuildStop const& stop,
+                                             PathCounts& counts)
 {
-    BuildStop const stop(stop_);
     WorldView const w = view(world_);
     LightPaths paths{.count = paths_,
                      .bounces = 1,
@@ -124,12 +133,12 @@ std::vector<Photon> Caustics::photons_of_set(ExactVisibility const& visibility, 
     return photons;
 }
 
-void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
+void Caustics::trace(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts)
 {
     constexpr float kAlpha = 2.0f / 3; // Knaus and Zwicker 2011: how slowly disks shrink
     constexpr float kLargest = 0.05f;  // radius over the longest side of what is lit, or of the focus
     StageTimer const timer(report_, "caustic photons");
-    std::vector<Photon> photons = photons_of_set(visibility, counts);
+    std::vector<Photon> photons = photons_of_set(visibility, stop, counts);
     std::size_t const few = paths_ / 4;
     if (!learned_) {
         learned_ = !photons.empty() && photons.size() < few;
@@ -137,7 +146,7 @@ void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
             std::vector<float> light(targets_.triangles.size());
             for (Photon const& p : photons) light[p.path] += luminance(p.flux);
             learn_chances(light, targets_);
-            photons = photons_of_set(visibility, counts);
+            photons = photons_of_set(visibility, stop, counts);
         }
     }
     Bounds box = focus_;
@@ -145,15 +154,20 @@ void Caustics::trace(ExactVisibility const& visibility, PathCounts& counts)
         for (Photon const& p : photons) box = joined(box, {p.position, p.position});
     float const chosen = settings_.photons.caustic_radius_m,
                 largest = chosen > 0 ? chosen : kLargest * max_component(box.high - box.low);
-    shrunk_ = sets_ == 0 ? 1.0f : shrunk_ * std::sqrt((float(sets_) + kAlpha) / (float(sets_) + 1));
+    float const shrunk = sets_ == 0 ? 1.0f : shrunk_ * std::sqrt((float(sets_) + kAlpha) / (float(sets_) + 1));
+    PhotonMap map;
+    if (!photons.empty() && largest > 0) { // else all are at one point: no area to spread them over
+        std::vector<float> radii = chosen > 0
+                                       ? std::vector<float>(photons.size(), largest)
+                                       : radii_by_density(photons, largest, 16, settings_.seed + sets_ + 1, stop);
+        for (float& r : radii) r *= shrunk;
+        map = PhotonMap(photons, radii, stop);
+    }
+    shrunk_ = shrunk;
     ++sets_;
-    map_ = {};
+    ++version_;
+    map_ = std::move(map); // which borrows the photons: they stay in their place
     photons_ = std::move(photons);
-    if (photons_.empty() || !(largest > 0)) return; // all at one point: no area to spread them over
-    std::vector<float> radii = chosen > 0 ? std::vector<float>(photons_.size(), largest)
-                                          : radii_by_density(photons_, largest, 16, settings_.seed + sets_);
-    for (float& r : radii) r *= shrunk_;
-    map_ = PhotonMap(photons_, radii);
 }
 
 void Caustics::report_counts()

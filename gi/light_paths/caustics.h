@@ -21,6 +21,7 @@
 #include "gi/render/frame_renderer.h"
 #include "gi/render/path_sample.h"
 #include "gi/render/render_settings.h"
+#include "gi/scene/model/plan.h"
 #include "gi/scene/motion/moving_world.h"
 
 #include <optional>
@@ -33,31 +34,35 @@ namespace gi {
 /// if smooth triangles lie there; empty = there is none
 StartTargets find_caustic_targets(World const& world, Bounds const& focus);
 
+/// Whether there will be caustics, and why.
+PlanItem explain_caustics(World const& world, PhotonSettings const& settings);
+
 class Caustics {
 public:
-    /// All arguments must outlive it. @param stop  see StartPasses
-    Caustics(World const& world, RenderSettings const& settings, Report& report, StopRequest const* stop);
+    /// All arguments must outlive it.
+    Caustics(World const& world, RenderSettings const& settings, Report& report);
 
     /// Follows the world.
     void changed(Changes const& changes);
-    /// Traces the photons of one more pass. Throws Interrupted if a stop is requested and there are none yet.
+    /// Traces the photons of one more pass. Throws Interrupted, and then keeps what it had.
     /// @param index  of the pass; the first decides which photons are traced  @param share  of the paths that the
     /// settings ask for
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
-                 Bounds const& focus, double share, PathCounts& counts);
+                 Bounds const& focus, double share, BuildStop const& stop, PathCounts& counts);
     /// Null if the world has no smooth surface, no light reached one, or nothing is to be traced.
     PhotonMap const* map() const { return map_.empty() ? nullptr : &map_; }
     std::span<Photon const> photons() const { return photons_; } ///< of the map
+    std::uint32_t version() const { return version_; }           ///< changes with the photons
     void report_counts();
 
 private:
-    void trace(ExactVisibility const& visibility, PathCounts& counts);
-    std::vector<Photon> photons_of_set(ExactVisibility const& visibility, PathCounts& counts);
+    void trace(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts);
+    std::vector<Photon> photons_of_set(ExactVisibility const& visibility, BuildStop const& stop,
+                                       PathCounts& counts);
 
     World const& world_;
     RenderSettings const& settings_;
     Report& report_;
-    StopRequest const* stop_;
     std::optional<std::uint32_t> first_index_; ///< of the passes
     std::vector<Camera> cameras_;              ///< of the last call
     Bounds focus_;
@@ -68,7 +73,8 @@ private:
     PhotonMap map_;
     std::uint32_t paths_ = 0; ///< of a set
     std::uint32_t sets_ = 0;  ///< of photons since the last change
-    float shrunk_ = 1;        ///< factor of the disks' radii
+    std::uint32_t version_ = 0;
+    float shrunk_ = 1; ///< factor of the disks' radii
 };
 
 } // namespace gi

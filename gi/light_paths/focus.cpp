@@ -73,6 +73,13 @@ bool needs_fine_grid(Bounds const& focus, Bounds const& world)
     return longest_side(focus) > 0 && longest_side(focus) < 0.5f * longest_side(world);
 }
 
+Bounds focus_in(Bounds const& world, std::span<vec3 const> points, int voxels)
+{
+    Bounds const shown = focus_of(points, voxels);
+    if (!needs_fine_grid(shown, world)) return {};
+    return {glm::max(shown.low, world.low), glm::min(shown.high, world.high)};
+}
+
 bool holds(Bounds const& box, Bounds const& inner)
 {
     return glm::all(glm::lessThanEqual(box.low, inner.low)) && glm::all(glm::lessThanEqual(inner.high, box.high));

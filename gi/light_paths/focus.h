@@ -30,6 +30,8 @@ Bounds focus_of(std::span<vec3 const> points, int voxels);
 float longest_side(Bounds const& b);
 /// True if what is shown is less than half as long as the world. An empty focus needs none.
 bool needs_fine_grid(Bounds const& focus, Bounds const& world);
+/// The part of focus_of() that lies within the world; empty unless the world is much larger.
+Bounds focus_in(Bounds const& world, std::span<vec3 const> points, int voxels);
 /// True if a box holds another.
 bool holds(Bounds const& box, Bounds const& inner);
 /// Share of the points in a box.

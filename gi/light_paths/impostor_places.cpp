@@ -137,4 +137,9 @@ std::vector<dvec3> read_impostor_places(std::string const& text)
     return places;
 }
 
+int impostor_count(PhotonSettings const& s)
+{
+    return s.impostor_places.empty() ? s.impostors : int(read_impostor_places(s.impostor_places).size());
+}
+
 } // namespace gi

@@ -14,6 +14,7 @@
 // possible (Nemhauser et al. 1978).
 
 #include "gi/render/exact_visibility.h"
+#include "gi/render/render_settings.h"
 
 #include <vector>
 
@@ -37,5 +38,8 @@ inline constexpr std::size_t kMostImpostors = 256;
 /// Places that a user gives, "x,y,z;x,y,z", m in the scene's coordinates. Throws InputError unless they are 1 to
 /// kMostImpostors places of three finite numbers.
 std::vector<dvec3> read_impostor_places(std::string const& text);
+
+/// How many there are, at most.
+int impostor_count(PhotonSettings const& settings);
 
 } // namespace gi

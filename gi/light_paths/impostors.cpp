@@ -1,6 +1,8 @@
 #include "gi/light_paths/impostors.h"
 
 #include "gi/core/error.h"
+#include "gi/light_paths/impostor_places.h"
+#include "gi/light_paths/memory_limit.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -19,6 +21,13 @@ std::uint64_t impostor_bytes(int count, int texels, bool moves)
     std::uint64_t const side = impostor_resolution(texels), all = std::uint64_t(count) * 6 * side * side;
     return all * sizeof(ImpostorTexel) * (moves ? 2 : 1) +
            all / (ImpostorsView::kBlock * ImpostorsView::kBlock) * sizeof(ImpostorBlock);
+}
+
+void check_impostors(PhotonSettings const& settings, bool moves)
+{
+    check_bytes(impostor_bytes(impostor_count(settings), settings.impostor_texels, moves), "distance impostors",
+                settings.impostor_places.empty() ? "choose fewer --impostors or --impostor-texels"
+                                                 : "choose fewer --impostor-places or --impostor-texels");
 }
 
 float impostor_near(World const& world, vec3 centre)

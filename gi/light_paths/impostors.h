@@ -8,6 +8,7 @@
 #include "gi/light_paths/impostor_kernels.h"
 #include "gi/raster/cut_outs.h"
 #include "gi/raster/draw_nearest.h"
+#include "gi/render/render_settings.h"
 
 #include <span>
 
@@ -17,6 +18,8 @@ namespace gi {
 std::uint32_t impostor_resolution(int texels);
 /// Upper bound of the memory of impostors. @param moves  whether some triangles can move
 std::uint64_t impostor_bytes(int count, int texels, bool moves);
+/// Throws InputError for more than kMostBytes (memory_limit.h), those by hand too.
+void check_impostors(PhotonSettings const& settings, bool moves);
 
 /// Distance at which the faces' views begin, m: as near as floats can tell from the centre.
 float impostor_near(World const& world, vec3 centre);
@@ -60,6 +63,7 @@ struct ImpostorsOn {
     ImpostorsView view() const { return {centres.view(), texels.view(), blocks.view(), resolution}; }
 };
 
+/// For devices; methods draw theirs by Impostors, and tests compare the two.
 /// @param soup, keep  in space S; see DrawNearest  @param resolution  as for Impostors
 template <Space S, class Keep = KeepAll>
 ImpostorsOn<S> draw_impostors(World const& world, SoupView const& soup, std::vector<vec3> const& centres,

@@ -5,6 +5,7 @@
 #include "gi/light_paths/emission.h"
 #include "gi/light_paths/light_vertex.h"
 #include "gi/render/ray_query.h"
+#include "gi/scene/shading/narrow_lobes.h"
 
 namespace gi {
 
@@ -19,6 +20,7 @@ struct LightPath {
     bool from_light = true, from_surface = false;
     bool from_outside = false, straight = true; ///< see LightPaths::grid_side
     bool by_delta = false;                      ///< since the last vertex
+    bool narrow = false;                        ///< it leaves its triangle by a narrow lobe (narrow_lobes.h)
     float paths = 1;                            ///< of this kind that are expected to come so far
     float area = 0, solid_angle = 0;            ///< over which one of them is spread where it left, m^2, sr
     float length = 0;                           ///< since then, m
@@ -124,6 +126,7 @@ GI_FN bool advance(WorldView const& world, LightPathRules const& s, LightPath& p
     BsdfSample const next = s.delta_only ? sample_delta_lobe(at, arrived, u_lobe)
                                          : sample(at.bsdf, arrived, at.front, u_lobe, p.rng.uniform2());
     p.straight = !next.delta;
+    p.narrow = has_narrow_lobe(at.bsdf) && takes_narrow_lobe(at.bsdf, arrived, u_lobe);
     if (!next.delta && ++p.scatterings >= s.bounces) return false;
     vec3 const leaves = at.frame.to_world(next.wi);
     float const cos_leaves = glm::dot(leaves, at.geometric_normal);

@@ -36,9 +36,11 @@ bool advance(WorldView const& world, LightPaths const& s, TracedPath& p, Hit con
 }
 
 /// Sends a ray from the sky, or of a parallel light, through the sphere around the focus, or lets it pass beside.
-void focus_light(LightPaths const& s, Bounds const& bounds, bool through, vec2 place, EmittedLight& light)
+void focus_light(LightPaths const& s, Bounds const& bounds, bool through, LightPath& p)
 {
+    EmittedLight& light = p.light;
     light.power *= 2;
+    p.area *= 2; // half of the paths go either way
     vec3 const travels = light.ray.direction, center = s.focus.center();
     float const radius = 1.001f * s.focus.radius(); // as the disk of emit_light()
     vec3 const beside = light.ray.origin - center;
@@ -48,10 +50,12 @@ void focus_light(LightPaths const& s, Bounds const& bounds, bool through, vec2 p
         return;
     }
     Frame const frame = Frame::about(travels);
-    vec2 const on_disk = radius * square_to_disk(place);
+    vec2 const on_disk = radius * square_to_disk(p.place);
     float const back = 1.001f * bounds.radius() + glm::length(center - bounds.center());
     light.ray.origin = center - back * travels + on_disk.x * frame.tangent + on_disk.y * frame.bitangent;
-    light.power *= square(radius / (1.001f * bounds.radius()));
+    float const share = square(radius / (1.001f * bounds.radius()));
+    light.power *= share;
+    p.area *= share;
 }
 
 void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, std::vector<TracedPath>& paths,
@@ -71,7 +75,7 @@ void trace(WorldView const& world, PathRays const& rays, LightPaths const& s, st
         for (TracedPath* p : active)
             queries.push_back({{.ray = p->light.ray, .seed = p->rng.next()},
                                p->triangle != kNoTriangle ? p->triangle : p->light.triangle,
-                               p->triangle != kNoTriangle && !p->by_delta});
+                               p->triangle != kNoTriangle && !p->by_delta && !p->narrow});
         hits.resize(active.size());
         rays.nearest(queries, hits);
         counts.nearest_rays += active.size();
@@ -121,7 +125,7 @@ std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const&
             LightChoice const choice = start_at_light(world, bounds, {s.count, s.seed, s.pass}, i, p);
             p.from_outside = comes_from_afar(world, choice);
             if (!s.focus.empty() && p.from_outside)
-                focus_light(s, bounds, p.rng.uniform() < 0.5f, p.place, p.light);
+                focus_light(s, bounds, p.rng.uniform() < 0.5f, p);
         });
 }
 

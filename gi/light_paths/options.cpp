@@ -35,8 +35,7 @@ RenderOptionTable const& photon_options()
     static RenderOptionTable const table{
         places,
         photons("photons", {1, P::kMostPaths},
-                "light paths per set of photons; with a --budget fewer, if they would take more than half of it",
-                &P::paths, all),
+                "light paths per set of photons; with a --budget as many as fit a part of it", &P::paths, all),
         photons("caustic-photons", {0, P::kMostPaths},
                 "light paths per pass that begin on mirrors and glass, fewer as --photons are; 0 = no caustics",
                 &P::caustic_paths, caustics),
@@ -98,7 +97,7 @@ RenderOptionTable const& photon_options()
         photons("screen-gathers", {0, 1000}, "steps that spread caustics over neighbouring pixels",
                 &P::screen_gathers, {"multi_image"}),
         photons("caustics-by", {"lattice", "kernels"},
-                "show caustics by the finest lattice, or by kernels of photons: no cells, and no memory for them",
+                "show caustics by the finest lattice, or by kernels of photons, without its cells",
                 &P::caustics_by, {"isllpm"}),
         photons("irradiance-by", {"normals", "directions"},
                 "divide the light of a cell by its surfaces' normals, or by their area in the photons' directions",

@@ -9,7 +9,7 @@ namespace gi {
 struct PathQuery {
     RayQuery ray;
     std::uint32_t triangle = kNoTriangle; ///< that it leaves
-    bool any_direction = false;           ///< a direction nearby would do as well: none of a mirror or a lens
+    bool any_direction = false;           ///< a direction nearby would do as well: it comes from a broad lobe
 };
 
 } // namespace gi

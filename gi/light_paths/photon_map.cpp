@@ -4,12 +4,22 @@
 #include "gi/core/rng.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <numeric>
 
 namespace gi {
+namespace {
 
-PhotonCells::PhotonCells(std::vector<PhotonKernel> const& kernels, float radius)
+/// For comparisons in long sorts, which throw.
+void obey(BuildStop const& stop)
+{
+    if (stop.given_up()) throw Interrupted();
+}
+
+} // namespace
+
+PhotonCells::PhotonCells(std::span<PhotonKernel const> kernels, float radius)
     : radius_(radius),
       kernels_(kernels.size()),
       first_(std::bit_ceil(std::max<std::size_t>(kernels.size(), 1)) + 1)
@@ -74,7 +84,7 @@ std::vector<float> radii_by_density(std::span<Photon const> photons, float large
     std::vector<std::uint16_t> halvings(photons.size());
     std::vector<Place> places;
     for (int tree = 0; tree < kTrees; ++tree) {
-        if (stop.given_up()) throw Interrupted();
+        obey(stop);
         Pcg32 rng = Pcg32::for_path(seed ^ 0x0c7e, std::uint32_t(tree), 0);
         vec3 const shift = std::ldexp(1.0f, kLevels - 1) * vec3{rng.uniform(), rng.uniform(), rng.uniform()};
         places.clear();
@@ -85,8 +95,12 @@ std::vector<float> radii_by_density(std::span<Photon const> photons, float large
             glm::uvec3 const cell(at);
             places.push_back({morton(cell.x, cell.y, cell.z), i});
         }
-        std::ranges::sort(places, {}, &Place::key);
+        std::ranges::sort(places, [&](Place const& a, Place const& b) {
+            obey(stop);
+            return a.key < b.key;
+        });
         for (int level = 1; level < kLevels; ++level) {
+            obey(stop);
             int const bits = 3 * (kLevels - 1 - level);
             for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
                 while (end < places.size() && places[end].key >> bits == places[begin].key >> bits) ++end;
@@ -107,39 +121,60 @@ std::vector<float> radii_by_footprint(std::span<Photon const> photons, float lar
     return out;
 }
 
-void sort_along_curve(std::vector<Photon>& photons)
+void sort_along_curve(std::vector<Photon>& photons, BuildStop const& stop)
 {
     Bounds box;
     for (Photon const& p : photons) box = joined(box, {p.position, p.position});
     vec3 const scale = 1023.0f / glm::max(box.high - box.low, vec3{1e-30f});
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    order.reserve(photons.size());
     for (std::uint32_t i = 0; i < photons.size(); ++i) {
         glm::uvec3 const cell(glm::clamp((photons[i].position - box.low) * scale, 0.0f, 1023.0f));
         order.emplace_back(morton(cell.x, cell.y, cell.z), i);
     }
-    std::ranges::sort(order);
+    std::ranges::sort(order, [&](auto const& a, auto const& b) {
+        obey(stop);
+        return a < b;
+    });
     std::vector<Photon> sorted;
-    for (auto const& [key, i] : order) sorted.push_back(photons[i]);
+    sorted.reserve(photons.size());
+    for (auto const& [key, i] : order) {
+        obey(stop);
+        sorted.push_back(photons[i]);
+    }
     photons = std::move(sorted);
 }
 
-PhotonMap::PhotonMap(std::span<Photon const> photons, std::span<float const> radii) : photons_(photons)
+PhotonMap::PhotonMap(std::span<Photon const> photons, std::span<float const> radii, BuildStop const& stop)
+    : photons_(photons)
 {
     constexpr int kLayers = 24;
     float largest = 0;
     for (float const r : radii) largest = std::max(largest, r);
-    std::vector<std::vector<PhotonKernel>> parts(kLayers);
-    for (std::uint32_t i = 0; i < photons.size(); ++i) {
-        Photon const& p = photons[i];
-        auto const layer =
-            std::size_t(glm::clamp(std::floor(std::log2(largest / radii[i])), 0.0f, kLayers - 1.0f));
-        parts[layer].push_back({p.position, radii[i], p.normal, i});
-        flux_ += dvec3(p.flux);
+    std::vector<std::uint8_t> layer_of;
+    layer_of.reserve(photons.size());
+    std::array<std::size_t, kLayers> counts{};
+    for (float const r : radii) {
+        layer_of.push_back(std::uint8_t(glm::clamp(std::floor(std::log2(largest / r)), 0.0f, kLayers - 1.0f)));
+        ++counts[layer_of.back()];
+    }
+    std::vector<PhotonKernel> part;
+    for (int k = 0; k < kLayers; ++k) {
+        std::size_t const count = counts[std::size_t(k)];
+        if (count == 0) continue;
+        part.clear();
+        part.reserve(count);
+        for (std::uint32_t i = 0; part.size() < count; ++i) {
+            if (layer_of[i] != k) continue;
+            obey(stop);
+            part.push_back({photons[i].position, radii[i], photons[i].normal, i});
+        }
+        layers_.emplace_back(part, std::ldexp(largest, -k));
+    }
+    for (std::size_t i = 0; i < photons.size(); ++i) {
+        flux_ += dvec3(photons[i].flux);
         radii_ += double(radii[i]);
     }
-    for (int k = 0; k < kLayers; ++k)
-        if (auto const& part = parts[std::size_t(k)]; !part.empty())
-            layers_.emplace_back(part, std::ldexp(largest, -k));
 }
 
 vec3 PhotonMap::radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const

@@ -69,14 +69,14 @@ struct PhotonSum {
     GI_FN vec3 radiance() const { return matt ? kInvPi * at.bsdf.diffuse * sum : sum; }
 };
 
-/// Brings neighbours together in memory.
-void sort_along_curve(std::vector<Photon>& photons);
+/// Brings neighbours together in memory. Throws Interrupted.
+void sort_along_curve(std::vector<Photon>& photons, BuildStop const& stop = BuildStop(nullptr));
 
 /// Photons in cubic cells, by a hash of these.
 class PhotonCells {
 public:
     /// @param radius  of searches, m, > 0, as large as that of any kernel
-    PhotonCells(std::vector<PhotonKernel> const& kernels, float radius);
+    PhotonCells(std::span<PhotonKernel const> kernels, float radius);
 
     /// Calls f(kernel) for those that may reach a position, and some others.
     template <class F>
@@ -95,8 +95,9 @@ private:
 class PhotonMap {
 public:
     PhotonMap() = default;
-    /// @param photons  must outlive it  @param radii  of their kernels, m, > 0
-    PhotonMap(std::span<Photon const> photons, std::span<float const> radii);
+    /// Throws Interrupted. @param photons  must outlive it  @param radii  of their kernels, m, > 0
+    PhotonMap(std::span<Photon const> photons, std::span<float const> radii,
+              BuildStop const& stop = BuildStop(nullptr));
 
     /// See PhotonSum.
     vec3 radiance(ShadingPoint const& at, vec3 wo, bool without_glossy) const;

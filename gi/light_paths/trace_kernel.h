@@ -1,6 +1,7 @@
 #pragma once
 // Light paths as a kernel: one item traces one path to its end, by exact rays through the project's own BVH. Steps
-// and random numbers are those of trace_light_paths(), so that both trace the same paths up to rounding.
+// and random numbers are those of trace_light_paths(), so that both trace the same paths up to rounding. It is for
+// devices: the methods trace their paths on the CPU, by trace_light_paths(), and tests compare the two.
 
 #include "gi/kernel/atomics.h"
 #include "gi/light_paths/light_path_step.h"

@@ -167,6 +167,10 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
             h.add(std::uint64_t(v));
         h.add(o.caustic_radius_m);
         h.add(o.kernel_size);
+        if (o.rays == PhotonRays::look_ups) {
+            for (char const c : s.slhb.directions) h.add(std::uint64_t(c));
+            for (int const v : {s.slhb.resolution, s.slhb.most_layers}) h.add(std::uint64_t(v));
+        }
         for (int const v : {s.whitted.recursion, s.whitted.light_samples}) h.add(std::uint64_t(v));
         h.add(s.whitted.cutoff);
     }

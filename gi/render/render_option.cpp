@@ -1,6 +1,7 @@
 #include "gi/render/render_option.h"
 
 #include "gi/core/error.h"
+#include "gi/core/shell.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ std::string as_options(RenderOptionTable const& table, RenderSettings const& set
             std::string const value = o.get(settings);
             bool const flag = o.type == OptionType::yes_or_no;
             if (flag && value == "false") continue;
-            all += (all.empty() ? "--" : " --") + o.name + (flag ? "" : " " + value);
+            all += (all.empty() ? "--" : " --") + o.name + (flag ? "" : " " + shell_quoted(value));
         }
     return all;
 }

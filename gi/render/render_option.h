@@ -26,7 +26,8 @@ using RenderOptionTable = std::vector<RenderOption>;
 /// Bounces, seed, pixel filter, threads, and the device of the methods that have kernels.
 RenderOptionTable const& common_options();
 
-/// Options and their values as on the command line: "--hit-buffer 128 --packed". Flags that are off are left out.
+/// Options and their values as on the command line: "--hit-buffer 128 --packed", quoted for a shell where they
+/// must be. Flags that are off are left out.
 std::string as_options(RenderOptionTable const& table, RenderSettings const& settings,
                        std::vector<std::string_view> const& names);
 

@@ -9,12 +9,10 @@
 // the rays that meet nothing though there is something, and the reverse. maps: cube maps a ray used. exact: share
 // of the rays whose answer is a triangle that the ray does meet.
 
-#include "gi/light_paths/impostor_rays.h"
-#include "gi/core/quantile.h"
 #include "gi/light_paths/impostor_places.h"
-#include "gi/light_paths/reached_points.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
+#include "tests/light_paths/impostor_accuracy.h"
 
 #include <algorithm>
 #include <charconv>
@@ -32,19 +30,6 @@ double seconds(Work const& work)
     auto const start = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Rays that start on surfaces which light or cameras reach.
-std::vector<PathQuery> rays_of_light(World const& world, ExactVisibility const& visibility, std::size_t n)
-{
-    std::vector<PathQuery> rays;
-    std::vector<Flight> const all = reach(world, visibility, n / 8 + 64, 3).flights;
-    n = std::min(n, all.size());
-    for (std::size_t k = 0; k < n; ++k) {
-        Flight const& f = all[k * all.size() / n];
-        rays.push_back({{.ray = {f.from, f.direction}, .seed = std::uint32_t(k)}, f.leaves});
-    }
-    return rays;
 }
 
 constexpr std::size_t kTogether = 64;
@@ -85,7 +70,7 @@ void measure(std::string const& name, std::size_t n, ImpostorPlacement const& pl
     double const place_s = seconds([&] { centres = place_impostors(world, visibility, placement); });
     std::optional<Impostors> impostors;
     double const draw_s = seconds([&] { impostors.emplace(world, centres, resolution); });
-    std::vector<PathQuery> rays = rays_of_light(world, visibility, n);
+    std::vector<PathQuery> rays = test::rays_of_light(world, visibility, n, 3);
     fmt::print(
         "{}: {} triangles, {} impostors of 6 x {}^2 texels ({:.1f} MiB), placed in {:.2f} s, drawn in {:.3f} s; "
         "{} rays\n",
@@ -113,26 +98,7 @@ void measure(std::string const& name, std::size_t n, ImpostorPlacement const& pl
                "", "", million / median(exact_s));
     for (std::size_t k = 0; k < all.size(); ++k) {
         ImpostorRays(world, *impostors, all[k].settings).follow(rays, how);
-        std::size_t wrong = 0, lost = 0, extra = 0, both = 0, maps = 0, met = 0;
-        double error = 0;
-        std::vector<double> errors;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            Hit const &a = truth[i], &b = how[i].hit;
-            maps += how[i].maps;
-            met += how[i].exact ? 1 : 0;
-            bool const is = a.triangle != kNoTriangle, found = b.triangle != kNoTriangle;
-            lost += is && !found;
-            extra += !is && found;
-            if (is != found) ++wrong;
-            if (!is || !found) continue;
-            double const off =
-                std::abs(double(b.distance) - double(a.distance)) / double(std::max(a.distance, 1e-30f));
-            error += std::min(off, 1.0);
-            errors.push_back(off);
-            ++both;
-            if (a.triangle != b.triangle && off > 0.02) ++wrong;
-        }
-        double const percent = 100 / double(rays.size());
+        test::Accuracy const a = test::accuracy(truth, how);
         std::vector<double> by_all, by_exact;
         for (int round = 0; round < kRounds; ++round) {
             by_all.push_back(time_s[1][std::size_t(round)] / time_s[k][std::size_t(round)]);
@@ -140,10 +106,8 @@ void measure(std::string const& name, std::size_t n, ImpostorPlacement const& pl
         }
         fmt::print(
             "  {:<22} {:>7.2f} {:>7.2f} {:>7.2f} {:>8.3f} {:>8.4f} {:>6.2f} {:>7.2f} {:>8.3f} {:>8.3f} {:>8.2f}\n",
-            all[k].name, percent * double(wrong), percent * double(lost), percent * double(extra),
-            100 * error / double(std::max<std::size_t>(both, 1)), errors.empty() ? 0 : 100 * median(errors),
-            double(maps) / double(rays.size()), percent * double(met), million / median(time_s[k]),
-            median(by_exact), median(by_all));
+            all[k].name, 100 * a.wrong, 100 * a.lost, 100 * a.extra, 100 * a.error, 100 * a.median, a.maps,
+            100 * a.exact, million / median(time_s[k]), median(by_exact), median(by_all));
     }
 }
 

@@ -1,9 +1,9 @@
 #pragma once
-// Scenes and measures of the tests of distance impostors.
+// Scenes of the tests of distance impostors.
 
 #include "gi/core/rng.h"
-#include "gi/light_paths/impostor_rays.h"
 #include "gi/scene/shading/warp.h"
+#include "tests/light_paths/impostor_accuracy.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -44,43 +44,6 @@ inline std::vector<PathQuery> rays_from_surfaces(World const& world, std::size_t
                         std::uint32_t(&s - world.surfaces.data())});
     }
     return rays;
-}
-
-/// How the answers of a search differ from those of exact rays.
-struct Accuracy {
-    double wrong = 0; ///< share: a surface where there is none, the reverse, or another triangle and > 2 % off
-    double error = 0; ///< mean of min(1, |distance - exact| / exact)
-    double maps = 0;  ///< per ray
-    double exact = 0; ///< share of ImpostorHit::exact
-};
-
-inline Accuracy accuracy(World const& world, Impostors const& impostors, ImpostorSettings const& settings,
-                         ExactVisibility const& visibility, std::span<PathQuery const> rays)
-{
-    std::vector<Hit> truth(rays.size());
-    std::vector<PathQuery> copies(rays.begin(), rays.end());
-    ExactPathRays(visibility).nearest(copies, truth);
-    std::vector<ImpostorHit> found(rays.size());
-    ImpostorRays(world, impostors, settings).follow(rays, found);
-    Accuracy a;
-    std::size_t both = 0;
-    for (std::size_t k = 0; k < rays.size(); ++k) {
-        a.maps += found[k].maps;
-        a.exact += found[k].exact;
-        bool const is = truth[k].triangle != kNoTriangle, hit = found[k].hit.triangle != kNoTriangle;
-        double const off = is && hit ? std::abs(double(found[k].hit.distance) / double(truth[k].distance) - 1) : 0;
-        if (is && hit) {
-            ++both;
-            a.error += std::min(off, 1.0);
-        }
-        a.wrong += is != hit || (is && truth[k].triangle != found[k].hit.triangle && !(off <= 0.02));
-    }
-    auto const n = double(std::max<std::size_t>(rays.size(), 1));
-    a.wrong /= n;
-    a.maps /= n;
-    a.exact /= n;
-    a.error /= double(std::max<std::size_t>(both, 1));
-    return a;
 }
 
 } // namespace gi::test

@@ -16,18 +16,6 @@ namespace {
 constexpr ImpostorSearch kSearches[] = {ImpostorSearch::first_guess, ImpostorSearch::all, ImpostorSearch::cascaded,
                                         ImpostorSearch::walk};
 
-std::vector<PathQuery> light_rays(World const& world, ExactVisibility const& visibility, std::size_t n)
-{
-    std::vector<PathQuery> rays;
-    std::vector<Flight> const all = reach(world, visibility, n / 8 + 64, 77).flights;
-    n = std::min(n, all.size());
-    for (std::size_t k = 0; k < n; ++k) {
-        Flight const& f = all[k * all.size() / n];
-        rays.push_back({{.ray = {f.from, f.direction}, .seed = std::uint32_t(k)}, f.leaves});
-    }
-    return rays;
-}
-
 TEST(ImpostorSearch, ErrsByLessThanATexelInAConvexRoom)
 {
     World const world = box_room({-3, 0, -2}, {3, 2.5f, 2});
@@ -116,7 +104,7 @@ void check_accuracy(World const& world, Expected const& expected)
 {
     ExactVisibility const visibility(world, false, 0);
     Impostors const impostors(world, place_impostors(world, visibility, {.count = 16}), 128);
-    std::vector<PathQuery> const rays = light_rays(world, visibility, 12000);
+    std::vector<PathQuery> const rays = rays_of_light(world, visibility, 12000, 77);
     ASSERT_GT(rays.size(), 4000u);
     Accuracy const guess = accuracy(world, impostors, {.search = ImpostorSearch::first_guess}, visibility, rays);
     Accuracy const all = accuracy(world, impostors, {.search = ImpostorSearch::all}, visibility, rays);
@@ -269,7 +257,7 @@ void check_kernels()
     }
     EXPECT_LT(differ, texels.size() / 1000);
 
-    std::vector<PathQuery> const rays = light_rays(world, visibility, 2000);
+    std::vector<PathQuery> const rays = rays_of_light(world, visibility, 2000, 77);
     WorldOn<S> const world_there(world);
     // The same maps for both, so that differences are those of the search.
     ImpostorsOn<S> const same{upload<S>(centres), upload<S>(std::vector(maps.texels.begin(), maps.texels.end())),

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 namespace gi::test {
 namespace {
@@ -30,8 +31,13 @@ std::vector<LightVertex> trace(Way way, World const& world, LightPaths const& s)
     ExactVisibility const visibility(world, false, 0);
     ExactPathRays const exact(visibility);
     PathCounts counts;
-    if (way == Way::maps)
-        return trace_bounce_maps(view(world), world.bounds, make_soup(world), CutOuts(world), exact, s, counts);
+    if (way == Way::maps) {
+        std::vector<LightVertex> all;
+        trace_bounce_maps(
+            view(world), world.bounds, make_soup(world), CutOuts(world), exact, s, counts,
+            [&](std::span<LightVertex const> some, double) { all.insert(all.end(), some.begin(), some.end()); });
+        return all;
+    }
     if (way == Way::rays) return trace_light_paths(view(world), world.bounds, exact, s, counts);
     StoredAxes const axes(world, with_stored_axes({}), s.seed, ~std::size_t(0));
     return trace_light_paths(view(world), world.bounds, LookUpRays(world, axes, visibility), s, counts);
@@ -180,6 +186,142 @@ TEST(LightPathsAnalytic, PathDensity)
     EXPECT_NEAR(mirrored, 0.6 * 2 * 0.6 * 2, 0.06);
     EXPECT_GT(light, 1000);
     EXPECT_GT(image, 400);
+}
+
+/// Of bounce maps each texel has the density of its own solid angle: the footprints on a part of a plane add up to
+/// its area, of a point and of a lamp that shines to one side.
+TEST(LightPathsAnalytic, PathDensityOfBounceMaps)
+{
+    for (bool const lamp : {false, true}) {
+        Scene scene;
+        add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0.5f})));
+        if (lamp) {
+            add_quad(scene, {0, 1, 0}, {1e-3f, 0, 0}, {0, 0, 1e-3f}, add_material(scene, emitter(vec3{1})));
+            scene.meshes.back().triangles.resize(1);
+        } else {
+            add_light(scene, punctual(LightType::point, {0, 1, 0}));
+        }
+        World const world = world_of(scene);
+        double area = 0;
+        for (LightVertex const& v : trace(Way::maps, world, paths_of(1 << 18, 1)))
+            if (glm::length(vec2{v.position.x, v.position.z}) < 0.5f && v.normal.y > 0.5f)
+                area += double(v.footprint);
+        fmt::print("{}: footprints cover {:.4f} of the disk\n", lamp ? "lamp" : "point",
+                   area / (double(kPi) * 0.25));
+        EXPECT_NEAR(area / (double(kPi) * 0.25), 1, 0.01) << lamp;
+    }
+}
+
+/// With a focus, half of the paths of a parallel light are spread over its sphere's disk, the others over the
+/// whole one: footprints on a part of a plane still add up to its area, by rays and by bounce maps.
+TEST(LightPathsAnalytic, PathDensityWithFocus)
+{
+    Scene scene;
+    add_quad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, add_material(scene, lambert(vec3{0.5f})));
+    Light sun = punctual(LightType::directional, {});
+    sun.direction = {0, -1, 0};
+    add_light(scene, sun);
+    World const world = world_of(scene);
+    for (Way const way : {Way::rays, Way::maps}) {
+        LightPaths s = paths_of(1 << 18, 1);
+        s.focus = {{-1, 0, -1}, {1, 1, 1}};
+        double in = 0, out = 0, flux_in = 0, flux_out = 0;
+        std::size_t paths = 0;
+        for (LightVertex const& v : trace(way, world, s)) {
+            float const r = glm::length(vec2{v.position.x, v.position.z});
+            if (r < 1) {
+                in += double(v.footprint);
+                flux_in += double(v.power.x) / 2;
+                ++paths;
+            }
+            if (r > 20 && r < 80) {
+                out += double(v.footprint);
+                flux_out += double(v.power.x) / 2;
+            }
+        }
+        double const disk = double(kPi), ring = double(kPi) * (80 * 80 - 20 * 20);
+        fmt::print(
+            "{}: footprints cover {:.4f} of a disk in the focus, which gets {:.4f} of its light by {} paths; "
+            "{:.4f} and {:.4f} of a ring beside it\n",
+            name(way), in / disk, flux_in / disk, paths, out / ring, flux_out / ring);
+        EXPECT_NEAR(in / disk, 1, 0.02);
+        EXPECT_NEAR(out / ring, 1, 0.02);
+        EXPECT_NEAR(flux_in / disk, 1, 0.02);
+        EXPECT_NEAR(flux_out / ring, 1, 0.02);
+        EXPECT_GT(paths, s.count / 8);
+    }
+}
+
+/// With a focus, the sky's light is the same by bounce maps as by rays: on a floor under a half open roof, the
+/// focus below.
+TEST(LightPathsAnalytic, SkyWithFocus)
+{
+    Scene scene;
+    int const matt = add_material(scene, lambert(vec3{0.5f}));
+    add_quad(scene, {-40, 0, -40}, {0, 0, 80}, {80, 0, 0}, matt);
+    add_quad(scene, {-1, 1, -1}, {1, 0, 0}, {0, 0, 2}, matt);
+    set_environment(scene, vec3{1});
+    World const world = world_of(scene);
+    auto const flux = [&](Way way, Bounds const& focus) {
+        constexpr std::uint32_t kSets = 32;
+        double near = 0, far = 0;
+        for (std::uint32_t set = 0; set < kSets; ++set) {
+            LightPaths s = paths_of(1 << 16, 1, set);
+            s.focus = focus;
+            for (LightVertex const& v : trace(way, world, s)) {
+                bool const on_floor = v.position.y < 0.1f && v.normal.y > 0;
+                if (on_floor && glm::length(v.position) < 0.8f) near += double(v.power.x) / kSets;
+                if (on_floor && glm::length(v.position) > 10) far += double(v.power.x) / kSets;
+            }
+        }
+        return glm::dvec2{near, far};
+    };
+    Bounds const focus{{-1, 0, -1}, {1, 1, 1}};
+    glm::dvec2 const truth = flux(Way::rays, focus), found = flux(Way::maps, focus);
+    fmt::print("sky by bounce maps with a focus: {:.4f} of that of rays in it, {:.4f} beside it\n",
+               found.x / truth.x, found.y / truth.y);
+    EXPECT_NEAR(found.x / truth.x, 1, 0.05);
+    EXPECT_NEAR(found.y / truth.y, 1, 0.05);
+}
+
+/// Remembers what is asked.
+struct ListeningRays : PathRays {
+    ExactPathRays exact;
+    mutable std::vector<PathQuery> asked;
+
+    explicit ListeningRays(ExactVisibility const& visibility) : exact(visibility) {}
+    void nearest(std::span<PathQuery> queries, std::span<Hit> hits) const override
+    {
+        asked.insert(asked.end(), queries.begin(), queries.end());
+        exact.nearest(queries, hits);
+    }
+};
+
+/// Light that leaves by a broad lobe may follow a stored direction, by a narrow lobe not.
+TEST(LightPathsAnalytic, NarrowLobesKeepTheirDirection)
+{
+    Scene scene;
+    Material polished = lambert(vec3{0.9f});
+    polished.metallic = 1;
+    polished.roughness = 0.2f;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert(vec3{0.8f})), true);
+    add_box(scene, {-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, add_material(scene, polished), false);
+    add_light(scene, punctual(LightType::point, {0.1f, 0.8f, 0.2f}));
+    World const world = world_of(scene);
+    ExactVisibility const visibility(world, false, 1);
+    ListeningRays const rays(visibility);
+    PathCounts counts;
+    tbb::task_arena(1).execute(
+        [&] { trace_light_paths(view(world), world.bounds, rays, paths_of(20000, 4), counts); });
+    int narrow = 0, broad = 0;
+    for (PathQuery const& q : rays.asked) {
+        if (q.triangle == kNoTriangle) continue;
+        bool const from_polished = world.triangle_material[q.triangle] == 1;
+        ++(from_polished ? narrow : broad);
+        ASSERT_EQ(q.any_direction, !from_polished);
+    }
+    EXPECT_GT(narrow, 1000);
+    EXPECT_GT(broad, 1000);
 }
 
 /// Of each texel how its path goes on: by mirror, glass, matt surface, or not at all.

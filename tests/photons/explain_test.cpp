@@ -66,6 +66,15 @@ TEST(ExplainPhotons, EachItemHasItsReason)
     EXPECT_TRUE(says(
         item(explain_multi_image(world, s, orthographic({0, 0, 0.9}, {0, 0, 0}, 1)), "caustics in screen space"),
         "orthographic"));
+    EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "lattice of caustics").build);
+    RenderSettings kernels = s;
+    kernels.photons.caustics_by = CausticsBy::kernels;
+    PlanItem const none = item(explain_isllpm(world, kernels, in_the_room()), "lattice of caustics");
+    EXPECT_FALSE(none.build);
+    EXPECT_TRUE(says(none, "--caustics-by kernels")) << none.reason;
+    s.photons.high_cells = kernels.photons.high_cells = 512;
+    EXPECT_LT(PhotonLattices::bytes(lattices_of(kernels.photons), world.bounds, 40),
+              PhotonLattices::bytes(lattices_of(s.photons), world.bounds, 40) / 2);
     s.photons.caustic_paths = 0;
     EXPECT_TRUE(says(item(explain_ispm(world, s, in_the_room()), "caustics"), "--caustic-photons 0"));
     s.photons.frozen = Switch::on;

@@ -99,6 +99,81 @@ TEST(PhotonFrames, FrozenLightWithoutCaustics)
     }
 }
 
+/// A corridor of 40 m with walls and blocks, lit evenly.
+Scene corridor()
+{
+    Scene scene;
+    int const wall = add_material(scene, lambert(vec3{0.6f}));
+    add_box(scene, {-0.3f, -0.1f, -1}, {40, 2.1f, 1.1f}, wall, true);
+    for (int k = 0; k < 10; ++k) {
+        float const x = 4 * float(k) + 1.7f;
+        add_box(scene, {x, -0.099f, -0.6f}, {x + 0.5f, 0.7f, -0.1f}, wall, false);
+        Light lamp;
+        lamp.position = {x, 1.8f, 0.5f};
+        lamp.intensity = vec3{1};
+        add_light(scene, lamp);
+    }
+    return scene;
+}
+
+/// Lattices about the camera follow it: after a walk and at rest it sees what one sees that has always been there.
+TEST(PhotonFrames, LatticesFollowTheCamera)
+{
+    auto const at = [](double x) { return look_at({x, 1.2, 0.3}, {x + 2, 0.6, -0.2}, 70); };
+    for (PhotonMethod const& m : kPhotonMethods) {
+        if (std::string_view(m.name) == "ispm") continue;
+        RenderSettings s = small_photon_picture(24, 16384);
+        s.photons.lattice_cascades = s.photons.propagation_cascades = 4;
+        s.photons.volume_gathers = 0;
+        for (int const steps_at_rest : {0, 2}) {
+            Picture seen[2];
+            double cells[2] = {0, 0};
+            for (bool const walks : {false, true}) {
+                Report report;
+                MovingWorld moving(std::make_shared<Scene const>(corridor()), 0.0, report);
+                auto const frames = m.start(moving, at(17), s, report);
+                for (double x = walks ? 1 : 17; x < 17; x += 4) frames->frame(at(x), {}, {}, {});
+                for (int k = 0; k < steps_at_rest; ++k) frames->frame(at(17), {}, {}, {});
+                seen[walks ? 1 : 0] = frames->frame(at(17), {}, {}, {}).picture;
+                for (auto const& [what, count] : report.counts())
+                    if (what == "cells with surfaces") cells[walks ? 1 : 0] = count;
+            }
+            std::vector<float> const &a = seen[0].find("L2")->data, &b = seen[1].find("L2")->data;
+            double off = 0, sum = 0;
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                off += std::abs(double(a[i] - b[i]));
+                sum += double(a[i]);
+            }
+            fmt::print("{}, {} frames at rest: {:.4f} of the light differs, {} and {} cells\n", m.name,
+                       steps_at_rest, off / sum, cells[0], cells[1]);
+            EXPECT_EQ(cells[0], cells[1]) << m.name;
+            // Rays of the pixels differ, of which the coarse cells of lpv show most.
+            EXPECT_LT(off / sum, m.start == start_lpv_frames ? 0.08 : 0.03) << m.name;
+        }
+    }
+}
+
+/// A room at the border of a large world: the part that is shown does not change with each step of the camera, and
+/// light is not traced anew.
+TEST(PhotonFrames, FocusAtTheBorderOfTheWorldStays)
+{
+    Scene scene;
+    int const matt = add_material(scene, lambert(vec3{0.6f}));
+    add_quad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, matt); // its lower border is that of the world
+    add_box(scene, {-1, 0.01f, -1}, {0, 0.5f, 0}, matt, false);
+    set_environment(scene, vec3{1});
+    Report report;
+    MovingWorld moving(std::make_shared<Scene const>(scene), 0.0, report);
+    RenderSettings const s = small_photon_picture(16, 4096);
+    PhotonMethod const& m = kPhotonMethods[0];
+    auto const at = [](double x) { return look_at({x, 1, 3}, {x, 0, 0}, 50); };
+    auto const frames = m.start(moving, at(0), s, report);
+    frames->frame(at(0), {}, {}, {});
+    double const after_first = light_time(report);
+    for (int k = 1; k < 4; ++k) frames->frame(at(0.01 * k), {}, {}, {});
+    EXPECT_EQ(light_time(report), after_first);
+}
+
 TEST(PhotonFrames, AnyNumberOfThreadsGivesTheSameBits)
 {
     World const world = world_of(room_with_mirror());

@@ -1,9 +1,11 @@
 // Scenes and settings that could break the photon methods: each becomes a picture of finite numbers or is refused.
 
 #include "gi/core/error.h"
+#include "gi/methods/sh_grid/sh_grid.h"
 #include "tests/photons/photon_methods.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -153,11 +155,13 @@ TEST(PhotonMethods, CoplanarSurfaces)
 }
 
 /// Memory is refused before it is spent.
-TEST(PhotonMethods, LatticesAndImpostorsBeyondMemory)
+TEST(PhotonMethods, PhotonsLatticesAndImpostorsBeyondMemory)
 {
     World const world = world_of(room_with_mirror());
     auto const refused = [&](char const* name, RenderSettings const& s) {
-        for (PhotonMethod const& m : kPhotonMethods) {
+        std::vector<PhotonMethod> methods(std::begin(kPhotonMethods), std::end(kPhotonMethods));
+        methods.push_back({"sh_grid", render_sh_grid, start_sh_grid_frames});
+        for (PhotonMethod const& m : methods) {
             if (std::string(m.name) != name) continue;
             Report report;
             try {
@@ -173,7 +177,17 @@ TEST(PhotonMethods, LatticesAndImpostorsBeyondMemory)
     s.photons.impostor_texels = 2048;
     refused("multi_image", s);
     s.photons.rays = PhotonRays::impostors;
-    for (char const* const name : {"ispm", "lpv", "isllpm"}) refused(name, s);
+    for (char const* const name : {"ispm", "lpv", "isllpm", "sh_grid"}) refused(name, s);
+    s.photons.impostors = 1;
+    for (int k = 0; k < 256; ++k)
+        s.photons.impostor_places += (k > 0 ? ";0,0.01," : "0,0.01,") + std::to_string(k);
+    for (char const* const name : {"ispm", "lpv", "isllpm", "multi_image"}) refused(name, s);
+    s.photons.impostor_places.clear();
+    s = small_photon_picture(8, PhotonSettings::kMostPaths);
+    for (FirstBounce const first : {FirstBounce::rays, FirstBounce::map}) {
+        s.photons.first_bounce = first;
+        for (char const* const name : {"ispm", "lpv", "isllpm", "multi_image"}) refused(name, s);
+    }
     s = small_photon_picture(8, 256);
     s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = 512;
     s.photons.lattice_cascades = 4;
@@ -186,7 +200,7 @@ TEST(PhotonStops, WhileLightPathsAreTraced)
     World const world = world_of(room_with_mirror());
     for (PhotonMethod const& m : kPhotonMethods)
         for (double const after_s : {0.2, 1.0}) {
-            RenderSettings s = small_photon_picture(8, PhotonSettings::kMostPaths);
+            RenderSettings s = small_photon_picture(8, 4000000);
             StopRequest stop;
             Clock::time_point asked;
             std::thread asks([&] {
@@ -205,6 +219,112 @@ TEST(PhotonStops, WhileLightPathsAreTraced)
             asks.join();
             fmt::print("{}: stopped {:.3f} s after the request\n", m.name, took);
             EXPECT_TRUE(interrupted) << m.name << " had rendered already";
+            EXPECT_LT(took, 0.2) << m.name;
+        }
+}
+
+/// Requests a stop a while after the first pass; returns the seconds from then to the end of the render. Of a
+/// render that throws Interrupted the result is empty.
+double stop_after_first_pass(PhotonMethod const& m, World const& world, Camera const& camera,
+                             RenderSettings const& s, double after_s, RenderResult& result)
+{
+    StopRequest stop;
+    std::atomic<bool> first_is_done = false;
+    Clock::time_point asked;
+    std::thread asks([&] {
+        while (!first_is_done) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
+        asked = Clock::now();
+        stop.request();
+    });
+    Report report;
+    try {
+        result = m.render(
+            world, camera, s, stop, [&](RenderStatus const&) { first_is_done = true; }, report);
+    } catch (Interrupted const&) {
+        result = {};
+    }
+    double const took = std::chrono::duration<double>(Clock::now() - asked).count();
+    asks.join();
+    return took;
+}
+
+/// A stop while caustics are traced keeps the finished passes, also if no light ever reached the mirror.
+TEST(PhotonStops, WithoutCausticPhotons)
+{
+    Scene scene;
+    add_box(scene, vec3{-1}, vec3{1}, add_material(scene, lambert(vec3{0.5f})), true);
+    add_box(scene, vec3{2}, vec3{3}, add_material(scene, mirror(vec3{0.9f})), false);
+    add_light(scene, point_light({0.2f, 0.3f, 0.1f}));
+    World const world = world_of(scene);
+    for (PhotonMethod const& m :
+         {kPhotonMethods[0], PhotonMethod{"sh_grid", render_sh_grid, start_sh_grid_frames}}) {
+        RenderSettings s = small_photon_picture(8, 4096);
+        s.sh_grid.voxels = 16;
+        s.paths = 1000;
+        s.photons.caustic_paths = 4000000;
+        RenderResult r;
+        double const took = stop_after_first_pass(m, world, in_the_room(), s, 0.4, r);
+        fmt::print("{}: {} passes, stopped {:.3f} s after the request\n", m.name, r.paths, took);
+        EXPECT_EQ(r.end, RenderEnd::interrupted) << m.name;
+        EXPECT_GE(r.paths, 1u) << m.name;
+        EXPECT_LT(took, 0.2) << m.name;
+    }
+}
+
+/// Stages after tracing are as long as paths and steps are many: a stop is obeyed in them, too.
+TEST(PhotonStops, AfterTracing)
+{
+    World const world = world_of(room_with_mirror());
+    struct Stage {
+        char const *method, *name;
+        RenderSettings settings;
+    };
+    std::vector<Stage> stages;
+    RenderSettings s = small_photon_picture(8, 600000);
+    s.photons.caustic_paths = 0;
+    s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = 128;
+    stages.push_back({"isllpm", "light lattices", s});
+    stages.push_back({"ispm", "photon map", s});
+    s = small_photon_picture(256, 4096);
+    s.photons.caustic_paths = 4096;
+    s.photons.screen_gathers = 1000;
+    stages.push_back({"multi_image", "caustics on screen", s});
+    for (Stage const& stage : stages)
+        for (PhotonMethod const& m : kPhotonMethods) {
+            if (std::string_view(m.name) != stage.method) continue;
+            // How long it takes to and through the stage.
+            Report all;
+            auto const begun = Clock::now();
+            m.render(world, in_the_room(), stage.settings, {}, {}, all);
+            double const whole = std::chrono::duration<double>(Clock::now() - begun).count();
+            double in_stage = 0;
+            for (auto const& [name, seconds] : all.times())
+                if (name == stage.name) in_stage += seconds;
+            fmt::print("{}: {:.3f} of {:.3f} s in {}\n", m.name, in_stage, whole, stage.name);
+            ASSERT_GT(in_stage, 0.1) << "too short to tell";
+            StopRequest stop;
+            std::atomic<bool> asked = false;
+            Clock::time_point when;
+            double const before = whole - in_stage;
+            std::thread asks([&] {
+                std::this_thread::sleep_for(std::chrono::duration<double>(before + 0.1 * in_stage));
+                when = Clock::now();
+                asked = true;
+                stop.request();
+            });
+            Report report;
+            bool interrupted = false;
+            try {
+                m.render(world, in_the_room(), stage.settings, stop, {}, report);
+            } catch (Interrupted const&) {
+                interrupted = true;
+            }
+            double const took = std::chrono::duration<double>(Clock::now() - when).count();
+            EXPECT_TRUE(asked) << "the render had ended already";
+            asks.join();
+            fmt::print("{}: stopped {:.3f} s after the request\n", m.name, took);
+            EXPECT_TRUE(interrupted) << m.name;
             EXPECT_LT(took, 0.2) << m.name;
         }
 }

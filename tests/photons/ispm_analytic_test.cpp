@@ -1,9 +1,8 @@
 // Pictures of the method ispm: furnaces, convergence as photons grow, and splatting against the photon map.
 
-#include "gi/kernel/launch.h"
 #include "gi/light_paths/light_paths.h"
 #include "gi/methods/photons/methods.h"
-#include "gi/methods/photons/splat.h"
+#include "gi/methods/photons/splat_light.h"
 #include "tests/support/scenes.h"
 
 #include <fmt/format.h>
@@ -73,7 +72,8 @@ TEST(Ispm, ConvergesWithPhotons)
     }
 }
 
-/// The kernel adds the same photons on a screen as a search in the photon map finds, wherever it looks from.
+/// Points on a screen get the same light from its lists as from a search in the photon map, wherever it looks
+/// from, and from the map alone if there are no lists.
 TEST(Ispm, SplattingIsThePhotonMap)
 {
     Scene scene;
@@ -114,9 +114,10 @@ TEST(Ispm, SplattingIsThePhotonMap)
                               orthographic({0, 0.9, 0}, {0, 0, 0}, 1.5)};
     for (Camera const& camera : cameras) {
         FrameView const eye{camera, 70, 50};
-        PhotonTiles const tiles(screen_map(eye, world.origin), near, all);
+        std::vector<PhotonTiles> const screens = tiles_of_views({&eye, 1}, world.origin, near, all);
+        ASSERT_EQ(screens.size(), 1u);
         CameraRays const rays = camera_rays(camera, eye.width, eye.height, world.origin);
-        std::vector<SplatSurface> surfaces;
+        std::vector<TreePoint> points;
         std::vector<vec3> expected;
         for (int y = 0; y < eye.height; ++y)
             for (int x = 0; x < eye.width; ++x) {
@@ -124,24 +125,51 @@ TEST(Ispm, SplattingIsThePhotonMap)
                 Hit hit;
                 visibility.nearest({&q, 1}, {&hit, 1});
                 if (hit.triangle == kNoTriangle) continue;
-                SplatSurface s{shading_point(view(world), hit.triangle, hit.barycentric, q.ray.direction), {}, -1};
-                s.wo = s.at.frame.to_local(-q.ray.direction);
-                glm::ivec2 const pixel = tiles.view().screen.pixel_of(s.at.position);
-                ASSERT_EQ(pixel, (glm::ivec2{x, y}));
-                s.tile = std::int32_t(tiles.view().screen.tile_of(pixel));
-                surfaces.push_back(s);
-                expected.push_back(map.radiance(s.at, s.wo, false));
+                TreePoint p{.at = shading_point(view(world), hit.triangle, hit.barycentric, q.ray.direction),
+                            .wo = {},
+                            .rng = Pcg32(1, 1),
+                            .direct = true,
+                            .glossy_traced = x % 7 == 0,
+                            .scatterings = 0,
+                            .throughput = vec3{1},
+                            .sample = nullptr};
+                p.wo = p.at.frame.to_local(-q.ray.direction);
+                ASSERT_EQ(screens[0].view().screen.pixel_of(p.at.position), (glm::ivec2{x, y}));
+                points.push_back(p);
+                expected.push_back(map.radiance(p.at, p.wo, p.glossy_traced));
             }
-        ASSERT_GT(surfaces.size(), 3000u);
-        std::vector<vec3> found(surfaces.size());
-        launch(Space::host, "splat pixels", surfaces.size(), SplatPixels{tiles.view(), surfaces, found});
-        double sum = 0;
-        for (std::size_t k = 0; k < found.size(); ++k) {
-            ASSERT_LT(glm::length(found[k] - expected[k]), 1e-3f * max_component(expected[k]) + 1e-6f);
-            sum += double(found[k].x);
+        ASSERT_GT(points.size(), 3000u);
+        for (bool const lists : {true, false}) {
+            std::vector<vec3> found(points.size());
+            std::vector<PhotonTiles> const none;
+            SplatLight(lists ? screens : none, map, nullptr).indirect(points, found, counts);
+            double sum = 0;
+            for (std::size_t k = 0; k < found.size(); ++k) {
+                ASSERT_LT(glm::length(found[k] - expected[k]), 1e-3f * max_component(expected[k]) + 1e-6f);
+                sum += double(found[k].x);
+            }
+            EXPECT_GT(sum / double(found.size()), 0.01);
         }
-        EXPECT_GT(sum / double(found.size()), 0.01);
     }
+}
+
+/// Lists of more than 2^32 entries are counted, not made; of kernels about the camera's plane only those count
+/// that can be seen.
+TEST(Ispm, ListsTooLongForMemory)
+{
+    Camera const camera = look_at({0, 0, 0}, {0, 0, -1}, 60);
+    FrameView const eye{camera, 16384, 16384};
+    std::size_t const tiles = 1024 * 1024;
+    std::vector<PhotonKernel> kernels(5000, {{0, 0, -0.5f}, 1, {0, 0, 1}, 0});
+    std::vector<Photon> const photons(1);
+    auto const all = [&] { return View<PhotonKernel const>{kernels.data(), kernels.size()}; };
+    ScreenMap const screen = screen_map(eye, dvec3{0});
+    EXPECT_EQ(tile_entries(screen, all()), kernels.size() * tiles);
+    EXPECT_GT(tile_entries(screen, all()), std::uint64_t(1) << 32);
+    EXPECT_TRUE(tiles_of_views({&eye, 1}, dvec3{0}, all(), {photons.data(), photons.size()}).empty());
+    for (PhotonKernel& k : kernels) k.position = {-3, 0, 0}; // beside the camera
+    EXPECT_EQ(tile_entries(screen, all()), 0u);
+    EXPECT_EQ(tiles_of_views({&eye, 1}, dvec3{0}, all(), {photons.data(), photons.size()}).size(), 1u);
 }
 
 } // namespace

@@ -220,8 +220,8 @@ TEST(LightPropagation, ClosedRoomTakesAllLight)
                        cells, steps, flux / 4, ceiling / (4 / kPiD / 4));
             EXPECT_NEAR(flux / 4, 1, steps == 0 ? 0.1 : 0.02);
             EXPECT_NEAR(ceiling / (4 / kPiD / 4), 0.2, 0.15); // the known error: much light turns back
-            EXPECT_NEAR(light.levels()[0].injected_w, 12, 1e-4);
-            EXPECT_EQ(light.levels()[0].outside_w, 0);
+            EXPECT_NEAR(light.cascades()[0].injected_w, 12, 1e-4);
+            EXPECT_EQ(light.cascades()[0].outside_w, 0);
         }
 }
 
@@ -254,7 +254,7 @@ TEST(LightPropagation, NestedLatticesAgree)
     std::vector<GridFrame> const nested = nested_frames(bounds, vec3{0}, 22, 2),
                                  one = nested_frames(bounds, vec3{0}, 41, 1);
     ASSERT_NEAR(one[0].cell, nested[0].cell, 1e-6f);
-    double worst = 0, level = 0;
+    double worst = 0, cascade = 0;
     for (vec3 const place : {vec3{0.1f, 0.1f, 0.1f}, vec3{-1.7f, 0.1f, 0.1f}}) {
         std::vector<ReflectedLight> const lights{{place, {1, 0, 0}, vec3{5}}};
         LightPropagation fine({.cells = 41, .cascades = 1, .steps = 150}),
@@ -272,9 +272,9 @@ TEST(LightPropagation, NestedLatticesAgree)
         }
         fmt::print("light at x = {}: {:.3f} of the irradiance off\n", place.x, off / sum);
         worst = std::max(worst, off / sum);
-        level = std::max(level, sum);
+        cascade = std::max(cascade, sum);
     }
-    EXPECT_GT(level, 0.1);
+    EXPECT_GT(cascade, 0.1);
     EXPECT_LT(worst, 0.3);
 }
 
@@ -319,7 +319,7 @@ TEST(LightPropagation, NothingToShow)
     broken.flux = vec3{std::nanf("")};
     light.update(world, Geometry::same, std::vector{outside, broken}, vec3{0});
     EXPECT_EQ(light.irradiance(vec3{0.1f}, {0, 1, 0}), vec3{0});
-    EXPECT_NEAR(light.levels().back().outside_w, 3, 1e-5);
+    EXPECT_NEAR(light.cascades().back().outside_w, 3, 1e-5);
     for (vec3 const at : {vec3{1e20f, 0, 0}, vec3{-1e9f}, vec3{0.3f}})
         EXPECT_EQ(light.radiance(at, {0, 1, 0}), vec3{0});
 }

@@ -75,7 +75,7 @@ TEST(PhotonLattices, NestedLatticesInAFurnace)
     PhotonLattices light({.cells = {16, 16, 16}, .cascades = 3});
     light.place(traced.world, traced.visibility, {.camera = vec3{0.2f, -1, 0.3f}});
     light.update(traced.photons);
-    ASSERT_EQ(light.levels(Frequency::low).size(), 3u);
+    ASSERT_EQ(light.cascades(Frequency::low).size(), 3u);
     double mean = 0, off = 0, n = 0;
     for (std::size_t i = 0; i < traced.photons.size(); i += 37) {
         Photon const& p = traced.photons[i];
@@ -252,7 +252,7 @@ TEST(PhotonLattices, ThinWall)
             fmt::print(
                 "{} cells of {:.2f} m, by {}: {:.4f} of the light on the other side of the wall; on the floor "
                 "at 0.05, 0.2, 0.5 m:",
-                cells, light.levels(Frequency::low)[0].frame.cell, name(by), dim / bright);
+                cells, light.cascades(Frequency::low)[0].frame.cell, name(by), dim / bright);
             EXPECT_LT(dim / bright, 0.01);
             EXPECT_LT(light.irradiance({0.5f, 0, 0}, {0, 1, 0}).x,
                       0.01f * light.irradiance({-0.5f, 0, 0}, {0, 1, 0}).x);

@@ -177,12 +177,12 @@ TEST(ShGridCaustics, PhotonsStayWhileTheCameraMoves)
     ExactVisibility const visibility(world, false, 0);
     RenderSettings const s = caustic_settings(16, 1, 32);
     Report report;
-    Caustics caustics(world, s, report, nullptr);
+    Caustics caustics(world, s, report);
     PathCounts counts;
     std::uint32_t index = 0;
     auto const pass = [&](double x) {
         FrameView const view{look_at({x, 0.3, 0.95}, {0, -0.9, -0.2}, 80), 16, 16};
-        caustics.prepare(visibility, index++, {&view, 1}, {}, 1, counts);
+        caustics.prepare(visibility, index++, {&view, 1}, {}, 1, BuildStop(nullptr), counts);
         return caustics.map();
     };
     float const first = pass(0)->mean_radius();

@@ -1,6 +1,7 @@
 // Tables of measurements: medians, files, the page.
 
 #include "gi/core/error.h"
+#include "gi/core/shell.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/report/chart.h"
 #include "viewer/report/html.h"
@@ -120,9 +121,9 @@ TEST(Machine, IsKnown)
     EXPECT_FALSE(machine.cpu.empty());
     EXPECT_GE(machine.cores, 1);
     EXPECT_GT(machine.memory_gib, 0);
-    EXPECT_EQ(shell_quoted("a-b_c/d.exr"), "a-b_c/d.exr");
-    EXPECT_EQ(shell_quoted("it's $5"), "'it'\\''s $5'");
-    EXPECT_EQ(shell_quoted(""), "''");
+    EXPECT_EQ(gi::shell_quoted("a-b_c/d.exr"), "a-b_c/d.exr");
+    EXPECT_EQ(gi::shell_quoted("it's $5"), "'it'\\''s $5'");
+    EXPECT_EQ(gi::shell_quoted(""), "''");
 }
 
 TEST(Chart, SaysWhatItLeavesOut)

@@ -1,5 +1,6 @@
 #include "viewer/offline/render_record.h"
 
+#include "gi/core/shell.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/version.h"
 #include "viewer/report/machine.h"
@@ -20,11 +21,11 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
                                std::string const& chosen)
 {
     std::string command =
-        fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}", o.scene,
-                    o.method, s.width, s.height, s.bounces, filter_of(s),
+        fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}",
+                    gi::shell_quoted(o.scene), o.method, s.width, s.height, s.bounces, filter_of(s),
                     o.seed_per_frame && !o.frames.empty() ? o.settings.seed : s.seed, amount);
     auto const add = [&](char const* option, std::string const& value) {
-        if (!value.empty()) command += fmt::format(" {} {}", option, value);
+        if (!value.empty()) command += fmt::format(" {} {}", option, gi::shell_quoted(value));
     };
     add("--camera", o.camera);
     add("--look-from", o.look_from);

@@ -1,7 +1,8 @@
 #include "viewer/report/machine.h"
 
+#include "gi/core/shell.h"
+
 #include <algorithm>
-#include <cctype>
 #include <ctime>
 #include <filesystem>
 #include <fmt/chrono.h>
@@ -43,23 +44,13 @@ std::string to_text(Machine const& m)
     return fmt::format("{} core{} of {}, {:.0f} GiB", m.cores, m.cores == 1 ? "" : "s", m.cpu, m.memory_gib);
 }
 
-std::string shell_quoted(std::string const& word)
-{
-    bool const plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-        return std::isalnum(c) != 0 || std::string_view("-_./,:=+@%").find(char(c)) != std::string_view::npos;
-    });
-    if (plain) return word;
-    std::string quoted = "'";
-    for (char const c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
 std::string this_command()
 {
     std::ifstream in("/proc/self/cmdline", std::ios::binary);
     std::string command;
     for (std::string word; std::getline(in, word, '\0');)
-        command += command.empty() ? std::filesystem::path(word).filename().string() : " " + shell_quoted(word);
+        command +=
+            command.empty() ? std::filesystem::path(word).filename().string() : " " + gi::shell_quoted(word);
     return command;
 }
 

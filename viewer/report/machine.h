@@ -17,8 +17,6 @@ Machine this_machine();
 std::string to_text(Machine const& machine);
 /// Command line of this process, quoted for a shell, from /proc; the program's name without its folder.
 std::string this_command();
-/// Quotes one word for a POSIX shell, if it needs quotes.
-std::string shell_quoted(std::string const& word);
 /// Current time: "2026-11-21 12:34 UTC".
 std::string this_moment();
 

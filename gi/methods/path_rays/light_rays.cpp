@@ -1,8 +1,17 @@
 #include "gi/methods/path_rays/light_rays.h"
 
 #include "gi/light_paths/impostor_places.h"
+#include "gi/methods/slhb/settings.h"
 
 namespace gi {
+
+LightRays::LightRays(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
+                     StopRequest const* stop)
+    : world_(world), settings_(settings), first_moving_(first_moving), report_(report), stop_(stop)
+{
+    if (settings.photons.rays == PhotonRays::impostors)
+        check_impostors(settings.photons, first_moving < world.triangles.size());
+}
 
 void LightRays::changed(Changes const& c)
 {
@@ -72,6 +81,14 @@ void LightRays::report_counts()
     if (!axes_) return;
     report_.lose("layers beyond the limit of a texel", axes_->lost() - lost_);
     lost_ = axes_->lost();
+}
+
+std::string LightRays::options(PhotonRays kind) const
+{
+    if (kind != PhotonRays::look_ups) return {};
+    RenderSettings chosen = settings_;
+    chosen.slhb = with_stored_axes(chosen.slhb);
+    return " " + as_options(slhb_options(), chosen, {"directions", "hit-buffer"});
 }
 
 } // namespace gi

@@ -14,19 +14,20 @@ namespace gi {
 
 class LightRays {
 public:
-    /// All arguments must outlive it. @param first_moving  index of the first triangle that may move
+    /// All arguments must outlive it. Throws InputError if the settings ask for impostors beyond
+    /// check_impostors().
+    /// @param first_moving  index of the first triangle that may move
     /// @param stop  checked while hit buffers are built; null = never
     LightRays(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
-              StopRequest const* stop)
-        : world_(world), settings_(settings), first_moving_(first_moving), report_(report), stop_(stop)
-    {
-    }
+              StopRequest const* stop);
     /// Follows the world.
     void changed(Changes const& changes);
     /// For the world as it is now. Throws Interrupted. @param exact  of the world
     /// @param focus  what cameras show, if the world is much larger; else empty
     PathRays const& of(PhotonRays kind, ExactVisibility const& exact, Bounds const& focus = {});
     void report_counts();
+    /// What it reads of options of other methods, as on the command line, after a space; empty if nothing.
+    std::string options(PhotonRays kind) const;
 
 private:
     void build_look_ups(ExactVisibility const& exact);

@@ -43,7 +43,6 @@ void LookUpRays::nearest(std::span<PathQuery> queries, std::span<Hit> hits) cons
     }
     batch.resize(walks.size());
     nearest_layers(axes_.pool(), world_.surfaces, batch);
-    look_ups_.fetch_add(walks.size(), std::memory_order_relaxed);
     for (std::size_t k = 0; k < walks.size(); ++k) {
         Hit& hit = hits[walks[k]];
         hit = {};

@@ -6,8 +6,6 @@
 #include "gi/light_paths/path_rays.h"
 #include "gi/methods/slhb/directions/stored_axes.h"
 
-#include <atomic>
-
 namespace gi {
 
 class LookUpRays : public PathRays {
@@ -18,13 +16,11 @@ public:
     {
     }
     void nearest(std::span<PathQuery> queries, std::span<Hit> hits) const override;
-    std::uint64_t look_ups() const { return look_ups_; }
 
 private:
     World const& world_;
     StoredAxes const& axes_;
     ExactPathRays exact_;
-    mutable std::atomic<std::uint64_t> look_ups_ = 0;
 };
 
 } // namespace gi

@@ -2,6 +2,7 @@
 
 #include "gi/light_paths/caustics.h"
 #include "gi/light_paths/focus.h"
+#include "gi/light_paths/impostor_places.h"
 #include "gi/light_paths/impostors.h"
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/screen_volume.h"
@@ -51,20 +52,11 @@ Shown what_is_shown(World const& world, RenderSettings const& s, Camera const& c
 {
     ExactVisibility const visibility(world, plan_scene(world).alpha_tests, s.threads);
     FrameView const view{camera, s.width, s.height};
-    Bounds const shown = focus_of(shown_points(world, visibility, {&view, 1}), 64);
-    return {needs_fine_grid(shown, world.bounds) ? shown : Bounds{},
+    std::vector<vec3> const points = shown_points(world, visibility, {&view, 1});
+    Bounds const shown = focus_of(points, 64);
+    return {focus_in(world.bounds, points, 64),
             fmt::format("what the camera shows is {:.3g} of {:.3g} m long", double(longest_side(shown)),
                         double(longest_side(world.bounds)))};
-}
-
-/// With the number of nested lattices that there will be.
-PhotonLatticeSettings with_cascades(PhotonLatticeSettings of, World const& world, Shown const& shown)
-{
-    if (of.cascades > 0) return of;
-    of.cascades = nested_levels(world.bounds, shown.focus, of.kMostCascades);
-    while (of.cascades > 1 && PhotonLattices::bytes(of, world.bounds, surface_area(world)) > of.kMostBytes)
-        --of.cascades;
-    return of;
 }
 
 PlanItem focus_item(World const& world, Shown const& shown)
@@ -97,9 +89,10 @@ Items light_path_items(World const& world, RenderSettings const& s, Shown const&
                             : "surfaces are found in another way (--photon-rays)"});
     std::uint32_t const side = impostor_resolution(p.impostor_texels);
     out.push_back({"distance impostors", impostors,
-                   impostors ? fmt::format("at most {} cube maps of 6 x {} x {} texels, {}", p.impostors, side,
-                                           side, megabytes(impostor_bytes(p.impostors, p.impostor_texels, moves)))
-                             : "surfaces are found in another way (--photon-rays)"});
+                   impostors
+                       ? fmt::format("at most {} cube maps of 6 x {} x {} texels, {}", impostor_count(p), side,
+                                     side, megabytes(impostor_bytes(impostor_count(p), p.impostor_texels, moves)))
+                       : "surfaces are found in another way (--photon-rays)"});
     out.push_back(focus_item(world, shown));
     bool const frozen = p.frozen == Switch::on;
     out.push_back({"new photons when something moves", moves && !frozen,
@@ -111,23 +104,12 @@ Items light_path_items(World const& world, RenderSettings const& s, Shown const&
     return out;
 }
 
-PlanItem caustics_item(World const& world, PhotonSettings const& s)
+/// @param asked  0 = about what is shown  @param cascades  that there are
+PlanItem cascades_item(int asked, int cascades, Shown const& shown)
 {
-    std::size_t const smooth = find_caustic_targets(world, {}).triangles.size();
-    if (smooth == 0)
-        return {"caustics", false, "no smooth surface: nothing mirrors or refracts without scattering"};
-    if (s.caustic_paths == 0)
-        return {"caustics", false, fmt::format("{} smooth triangles, but --caustic-photons 0", smooth)};
-    return {"caustics", true,
-            fmt::format("{} light paths per pass begin on {} smooth triangles", s.caustic_paths, smooth)};
-}
-
-/// @param asked  0 = about what is shown  @param levels  that there are
-PlanItem cascades_item(int asked, int levels, Shown const& shown)
-{
-    std::string const many = fmt::format("{} of them, the cells of each half as wide as the next one's", levels);
-    if (asked == 0) return {"nested lattices", levels > 1, (levels > 1 ? many + ": " : "") + shown.extents};
-    return {"nested lattices", levels > 1, levels > 1 ? many + ", about the camera" : "one was asked for"};
+    std::string const many = fmt::format("{} of them, the cells of each half as wide as the next one's", cascades);
+    if (asked == 0) return {"nested lattices", cascades > 1, (cascades > 1 ? many + ": " : "") + shown.extents};
+    return {"nested lattices", cascades > 1, cascades > 1 ? many + ", about the camera" : "one was asked for"};
 }
 
 PlanItem bytes_item(char const* what, std::uint64_t bytes)
@@ -148,7 +130,7 @@ Items explain_ispm(World const& world, RenderSettings const& s, Camera const& ca
     if (std::string const why = why_no_paths(world, plan); !why.empty()) return {{"light paths", false, why}};
     Shown const shown = what_is_shown(world, s, camera);
     Items out = light_path_items(world, s, shown, plan);
-    out.push_back(caustics_item(world, s.photons));
+    out.push_back(explain_caustics(world, s.photons));
     out.push_back({"lists of photons by tiles of the screen", true,
                    fmt::format("tiles of {0} x {0} pixels; what mirrors show is found in the photon map",
                                ScreenMap::kTile)});
@@ -163,7 +145,7 @@ Items explain_lpv(World const& world, RenderSettings const& s, Camera const& cam
     Shown const shown = what_is_shown(world, s, camera);
     Items out = light_path_items(world, s, shown, plan);
     PropagationSettings of = propagation_of(s.photons);
-    if (of.cascades == 0) of.cascades = nested_levels(world.bounds, shown.focus, of.kMostCascades);
+    if (of.cascades == 0) of.cascades = nested_cascades(world.bounds, shown.focus, of.kMostCascades);
     auto const frames =
         nested_frames(world.bounds, center_of(shown.focus, world.bounds.center()), of.cells, of.cascades);
     int const steps = of.steps > 0 ? of.steps : 2 * of.cells;
@@ -181,17 +163,19 @@ Items explain_isllpm(World const& world, RenderSettings const& s, Camera const& 
     if (std::string const why = why_no_paths(world, plan); !why.empty()) return {{"light paths", false, why}};
     Shown const shown = what_is_shown(world, s, camera);
     Items out = light_path_items(world, s, shown, plan);
-    PhotonLatticeSettings const of = with_cascades(lattices_of(s.photons), world, shown);
-    PlanItem const caustics = caustics_item(world, s.photons);
+    PhotonLatticeSettings const of = PhotonLattices::placed(lattices_of(s.photons), world, shown.focus);
+    PlanItem const caustics = explain_caustics(world, s.photons);
     char const* const names[] = {"lattice of two and more reflections", "lattice of one reflection",
                                  "lattice of caustics"};
     for (std::size_t k = 0; k < 3; ++k) {
         auto const frames = frames_off_walls(world.bounds, center_of(shown.focus, world.bounds.center()),
                                              of.cells[k], of.cascades);
-        bool const used = k < 2 || caustics.build;
+        bool const by_kernels = s.photons.caustics_by == CausticsBy::kernels;
+        bool const used = k < 2 || (caustics.build && !by_kernels);
         out.push_back({names[k], used,
                        used ? cells_of(frames) + (of.smooth[k] ? ", smoothed over 3 x 3 x 3 cells" : "")
-                            : caustics.reason + "; it stays empty"});
+                       : caustics.build ? std::string("the photon map shows them (--caustics-by kernels)")
+                                        : caustics.reason + "; it stays empty"});
     }
     out.push_back(cascades_item(s.photons.lattice_cascades, of.cascades, shown));
     out.push_back(bytes_item("memory of lattices", PhotonLattices::bytes(of, world.bounds, surface_area(world))));
@@ -205,7 +189,7 @@ Items explain_multi_image(World const& world, RenderSettings const& s, Camera co
     if (std::string const why = why_no_paths(world, plan); !why.empty()) return {{"light paths", false, why}};
     Shown const shown = what_is_shown(world, s, camera);
     Items out = light_path_items(world, s, shown, plan);
-    PhotonLatticeSettings const of = with_cascades(volume_of(s.photons), world, shown);
+    PhotonLatticeSettings const of = PhotonLattices::placed(volume_of(s.photons), world, shown.focus);
     out.push_back(
         {"light gathering volume", true,
          fmt::format("{}, {} steps of gathering",
@@ -215,7 +199,7 @@ Items explain_multi_image(World const& world, RenderSettings const& s, Camera co
     out.push_back(cascades_item(s.photons.lattice_cascades, of.cascades, shown));
     out.push_back(
         bytes_item("memory of the volume", PhotonLattices::bytes(of, world.bounds, surface_area(world))));
-    PlanItem const caustics = caustics_item(world, s.photons);
+    PlanItem const caustics = explain_caustics(world, s.photons);
     out.push_back(caustics);
     bool const on_screen = caustics.build && !camera.orthographic;
     out.push_back({"caustics in screen space", on_screen,

@@ -11,9 +11,9 @@ constexpr float kLeastShare = 0.02f, kSurelyExposed = 0.2f;
 
 } // namespace
 
-std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int levels)
+std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int cascades)
 {
-    std::vector<GridFrame> frames = frames_off_walls(bounds, center, kExposureCells, levels);
+    std::vector<GridFrame> frames = frames_off_walls(bounds, center, kExposureCells, cascades);
     for (GridFrame& f : frames) f.size = (f.size + 3) / 4 * 4;
     return frames;
 }
@@ -57,9 +57,10 @@ void ExposedSides::sample(World const& world, std::size_t first, std::size_t las
     look_around(world, visibility, frame_, RayWorld::all, stop, std::span(samples_).subspan(begin));
 }
 
-bool ExposedSides::add(std::span<Photon const> photons, bool sky_shines)
+bool ExposedSides::add(std::span<Photon const> photons, bool sky_shines, BuildStop const& stop)
 {
     for (Photon const& p : photons) {
+        if (stop.given_up()) throw Interrupted();
         glm::ivec3 const cell = frame_.at(p.position);
         if (frame_.holds(cell))
             reached_.of_cell[frame_.index(cell)] |=
@@ -67,6 +68,7 @@ bool ExposedSides::add(std::span<Photon const> photons, bool sky_shines)
     }
     std::vector<float> whole(shares_.size()), exposed(shares_.size());
     for (PatchSample const& s : samples_) {
+        if (stop.given_up()) throw Interrupted();
         std::uint32_t const cell = s.patch / 6;
         for (std::size_t k = 0; k < 2; ++k) {
             vec3 const normal = k == 0 ? s.normal : -s.normal;

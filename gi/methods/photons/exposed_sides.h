@@ -24,8 +24,9 @@ public:
     void moved(World const& world, std::size_t first_moving, ExactVisibility const& visibility,
                BuildStop const& stop);
 
-    /// Adds what light has reached. Returns true if shares have changed.
-    bool add(std::span<Photon const> photons, bool sky_shines);
+    /// Adds what light has reached. Returns true if shares have changed. Throws Interrupted; shares are then those
+    /// from before.
+    bool add(std::span<Photon const> photons, bool sky_shines, BuildStop const& stop = BuildStop(nullptr));
     GridFrame const& frame() const { return frame_; }
     /// Share of the area of sides in a cell, 0 to 1. @param side  see ReachedSides::side_index()
     float share(std::uint32_t cell, std::uint32_t side) const { return shares_[12 * std::size_t(cell) + side]; }
@@ -45,6 +46,6 @@ private:
 };
 
 /// Grids of 48 cells along the longest side for nested lattices of a world, finest first.
-std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int levels);
+std::vector<GridFrame> exposure_frames(Bounds const& bounds, vec3 center, int cascades);
 
 } // namespace gi

@@ -1,88 +1,12 @@
 #include "gi/light_paths/kernel_cover.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/photons/photon_renderer.h"
-#include "gi/methods/photons/splat.h"
-#include "gi/methods/whitted/caustic_light.h"
+#include "gi/methods/photons/splat_light.h"
 
 #include <algorithm>
 
 namespace gi {
 namespace {
-
-/// Points on a screen take photons from the lists of its tiles, others (seen in mirrors, or behind the border)
-/// from the map.
-class SplatLight : public SurfaceLight {
-public:
-    SplatLight(std::vector<PhotonTiles> const& screens, PhotonMap const& map, PhotonMap const* caustics)
-        : screens_(screens), map_(map), caustics_(caustics)
-    {
-    }
-    void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts&) const override
-    {
-        if (caustics_ != nullptr) add_caustics(*caustics_, points);
-        std::vector<Place> places;
-        for (std::uint32_t i = 0; i < points.size(); ++i) {
-            std::optional<Place> const place = find_place(points[i], i);
-            if (place)
-                places.push_back(*place);
-            else
-                out[i] = points[i].wo.z > 0 ? map_.radiance(points[i].at, points[i].wo, points[i].glossy_traced)
-                                            : vec3{0};
-        }
-        std::ranges::sort(places, {}, &Place::block);
-        for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
-            while (end < places.size() && places[end].block == places[begin].block) ++end;
-            splat_block(points, std::span(places).subspan(begin, end - begin), out);
-        }
-    }
-
-private:
-    static constexpr int kBlock = 4; ///< px; points that are this near on screen share a list of photons
-    struct Place {
-        std::uint64_t block;
-        std::uint32_t point, screen, tile;
-    };
-
-    std::optional<Place> find_place(TreePoint const& p, std::uint32_t i) const
-    {
-        if (!(p.wo.z > 0)) return {};
-        for (std::uint32_t k = 0; k < screens_.size(); ++k) {
-            ScreenMap const& screen = screens_[k].view().screen;
-            glm::ivec2 const pixel = screen.pixel_of(p.at.position);
-            if (pixel.x < 0) continue;
-            std::uint64_t const x = std::uint64_t(pixel.x / kBlock), y = std::uint64_t(pixel.y / kBlock);
-            return Place{std::uint64_t(k) << 48 | y << 24 | x, i, k, std::uint32_t(screen.tile_of(pixel))};
-        }
-        return {};
-    }
-    /// Of the tile's photons only those that reach the block are tested against each of its points.
-    void splat_block(std::span<TreePoint const> points, std::span<Place const> places, std::span<vec3> out) const
-    {
-        TilesView const tiles = screens_[places[0].screen].view();
-        vec3 low{kInf}, high{-kInf};
-        for (Place const& p : places) {
-            low = glm::min(low, points[p.point].at.position);
-            high = glm::max(high, points[p.point].at.position);
-        }
-        thread_local std::vector<PhotonKernel> near;
-        near.clear();
-        for (std::uint32_t const k : tiles.of_tile(places[0].tile)) {
-            PhotonKernel const& kernel = tiles.kernels[k];
-            vec3 const way = kernel.position - glm::clamp(kernel.position, low, high);
-            if (glm::dot(way, way) < square(kernel.radius)) near.push_back(kernel);
-        }
-        for (Place const& p : places) {
-            TreePoint const& point = points[p.point];
-            PhotonSum sum(point.at, point.wo, point.glossy_traced);
-            for (PhotonKernel const& kernel : near) sum.add(kernel, tiles.photons[kernel.photon]);
-            out[p.point] = sum.radiance();
-        }
-    }
-
-    std::vector<PhotonTiles> const& screens_;
-    PhotonMap const& map_;
-    PhotonMap const* caustics_;
-};
 
 class SplatRenderer : public PhotonRenderer {
 public:
@@ -90,12 +14,18 @@ public:
 
 protected:
     std::string_view timer_name() const override { return "photon map"; }
-    void take(PhotonSet const& set) override
+    std::size_t bytes_per_photon() const override { return 400; }
+    void take(PhotonSet&& set) override
     {
         constexpr float kAlpha = 2.0f / 3; // Knaus and Zwicker 2011: how slowly kernels shrink
         constexpr float kLargest = 0.05f;  // radius over the longest side of what photons reach
-        std::vector<Photon> photons(set.photons.begin(), set.photons.end());
-        sort_along_curve(photons); // lists of tiles then read neighbours one after the other
+        screens_.clear();
+        cameras_.clear();
+        map_ = {};
+        photons_ = {};
+        kernels_ = {};
+        std::vector<Photon> photons = std::move(set.photons);
+        sort_along_curve(photons, set.stop); // lists of tiles then read neighbours one after the other
         float const shrunk = set.number == 0
                                  ? settings_.photons.kernel_size
                                  : shrunk_ * std::sqrt((float(set.number) - 1 + kAlpha) / float(set.number));
@@ -110,6 +40,7 @@ protected:
                                                           settings_.seed + set.number, set.stop)
                                        : radii_by_footprint(photons, largest, each);
         std::vector<PhotonKernel> kernels;
+        kernels.reserve(photons.size());
         for (std::uint32_t i = 0; i < photons.size(); ++i) {
             radii[i] *= shrunk;
             kernels.push_back({photons[i].position, radii[i], photons[i].normal, i});
@@ -117,26 +48,21 @@ protected:
         std::vector<float> const shares =
             covered_shares(view(world_), set.visibility, photons, kernels, set.stop, set.counts);
         for (std::size_t i = 0; i < photons.size(); ++i) photons[i].flux /= shares[i];
-        screens_.clear(); // nothing is interrupted from here on
-        cameras_.clear();
         photons_ = std::move(photons);
-        map_ = PhotonMap(photons_, radii);
+        map_ = PhotonMap(photons_, radii, set.stop);
         kernels_ = std::move(kernels);
         shrunk_ = shrunk;
     }
-    SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) override
+    SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics,
+                              BuildStop const& stop) override
     {
-        bool const same = std::ranges::equal(views, cameras_, [](FrameView const& v, FrameView const& w) {
-            return v.camera == w.camera && v.width == w.width && v.height == w.height;
-        });
-        if (!same) {
+        if (!same_pictures(views, cameras_)) {
             StageTimer const timer(report_, "photons by tiles");
             screens_.clear();
+            cameras_.clear();
+            screens_ = tiles_of_views(views, world_.origin, {kernels_.data(), kernels_.size()},
+                                      {photons_.data(), photons_.size()}, stop);
             cameras_.assign(views.begin(), views.end());
-            for (FrameView const& v : views)
-                screens_.emplace_back(screen_map(v, world_.origin),
-                                      View<PhotonKernel const>{kernels_.data(), kernels_.size()},
-                                      View<Photon const>{photons_.data(), photons_.size()});
         }
         light_.emplace(screens_, map_, caustics);
         return &*light_;
@@ -146,6 +72,8 @@ protected:
         std::size_t entries = 0;
         for (PhotonTiles const& s : screens_) entries += s.entries();
         report.count("photons in lists of tiles", double(entries));
+        report.count("pictures without lists of tiles, which were too long",
+                     double(cameras_.size() - screens_.size()));
         report.count("mean radius of the photons' kernels, m", double(map_.mean_radius()));
     }
 
@@ -154,8 +82,8 @@ private:
     std::vector<PhotonKernel> kernels_;
     float shrunk_ = 1; ///< factor of the radii
     PhotonMap map_;
-    std::vector<FrameView> cameras_; ///< of screens_
-    std::vector<PhotonTiles> screens_;
+    std::vector<FrameView> cameras_;   ///< of screens_
+    std::vector<PhotonTiles> screens_; ///< none if their lists were too long
     std::optional<SplatLight> light_;
 };
 

@@ -1,5 +1,6 @@
 // The methods lpv and isllpm: what their lattices send from the points of ray trees.
 
+#include "gi/light_paths/memory_limit.h"
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/photons/photon_renderer.h"
@@ -64,17 +65,22 @@ protected:
     bool has_caustics() const override { return false; }
     int bounces() const override { return PhotonRenderer::bounces() - 1; } // the last is the lattice's
     std::string_view timer_name() const override { return "light propagation"; }
-    void take(PhotonSet const& set) override
+    std::size_t bytes_per_photon() const override { return 250; }
+    int cascades_about_camera() const override { return of_propagation_.cascades; }
+    void take(PhotonSet&& set) override
     {
         propagation_.update(world_, set.surfaces_changed ? Geometry::changed : Geometry::same, set.photons,
-                            camera_of(set.views, world_), set.focus, set.stop);
+                            set.middle, set.focus, set.stop);
     }
-    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const*) override { return &light_; }
+    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const*, BuildStop const&) override
+    {
+        return &light_;
+    }
     void report_light(Report& report) override
     {
         report.count("lattices, MiB", double(LightPropagation::bytes(of_propagation_, world_.bounds)) / (1 << 20));
-        if (!propagation_.levels().empty())
-            report.count("finest cells, m", double(propagation_.levels().front().frame.cell));
+        if (!propagation_.cascades().empty())
+            report.count("finest cells, m", double(propagation_.cascades().front().frame.cell));
     }
 
 private:
@@ -99,27 +105,35 @@ public:
 protected:
     bool stores(LightVertex const&) const override { return true; } // all tell what light reaches
     std::string_view timer_name() const override { return "light lattices"; }
-    void take(PhotonSet const& set) override
+    std::size_t bytes_per_photon() const override { return 200; }
+    int cascades_about_camera() const override { return of_lattices_.cascades; }
+    void take(PhotonSet&& set) override
     {
-        if (set.surfaces_changed || (set.number == 0 && of_lattices_.cascades > 1))
-            lattices_.place(world_, set.visibility,
-                            {camera_of(set.views, world_), set.focus, first_moving_, set.only_moved}, set.stop);
-        lattices_.update(set.photons);
+        of_caustics_.reset();
+        if (set.surfaces_changed || set.middle_changed)
+            lattices_.place(world_, set.visibility, {set.middle, set.focus, first_moving_, set.only_moved},
+                            set.stop);
+        lattices_.update(set.photons, set.stop);
     }
-    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const* caustics) override
+    SurfaceLight const* light(std::span<FrameView const>, PhotonMap const* caustics,
+                              BuildStop const& stop) override
     {
         bool const by_kernels = settings_.photons.caustics_by == CausticsBy::kernels;
         light_.take_caustics(by_kernels ? caustics : nullptr);
-        lattices_.update_caustics(caustics != nullptr && !by_kernels ? caustic_photons()
-                                                                     : std::span<Photon const>{});
+        if (of_caustics_ == caustics_version()) return &light_;
+        of_caustics_.reset();
+        lattices_.update_caustics(
+            caustics != nullptr && !by_kernels ? caustic_photons() : std::span<Photon const>{}, stop);
+        of_caustics_ = caustics_version();
         return &light_;
     }
     void report_light(Report& report) override
     {
         std::size_t cells = 0;
         for (Frequency const f : {Frequency::low, Frequency::middle, Frequency::high})
-            for (PhotonLattices::Level const& level : lattices_.levels(f)) cells += level.cells.values.size();
-        report.count("nested lattices", double(lattices_.levels(Frequency::low).size()));
+            for (PhotonLattices::Cascade const& cascade : lattices_.cascades(f))
+                cells += cascade.cells.values.size();
+        report.count("nested lattices", double(lattices_.cascades(Frequency::low).size()));
         report.count("cells with surfaces", double(cells));
         report.count("hidden area of surfaces, m^2", lattices_.hidden_m2());
         report.count("flux of photons in no cell, W (sum of channels)", lattices_.lost_w());
@@ -130,6 +144,7 @@ private:
     PhotonLatticeSettings of_lattices_;
     PhotonLattices lattices_;
     LatticeLight<PhotonLattices> light_;
+    std::optional<std::uint32_t> of_caustics_; ///< version of those in the lattices
 };
 
 } // namespace

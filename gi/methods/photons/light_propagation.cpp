@@ -1,7 +1,7 @@
 #include "gi/methods/photons/light_propagation.h"
 
 #include "gi/core/error.h"
-#include "gi/kernel/launch.h"
+#include "gi/kernel/stoppable_launch.h"
 #include "gi/methods/photons/lattice_kernels.h"
 #include "gi/methods/photons/propagation_kernels.h"
 #include "gi/methods/sh_grid/voxels.h"
@@ -24,22 +24,22 @@ ShColor arriving_radiance(ShColor of, float cell_m)
 }
 
 /// Adds projected areas of triangles, by the cells of the corners. A voxel of the voxeliser is such a cell.
-void add_blockers(World const& world, BuildStop const& stop, LightPropagation::Level& level)
+void add_blockers(World const& world, BuildStop const& stop, LightPropagation::Cascade& cascade)
 {
     constexpr std::size_t kTogether = std::size_t(1)
                                       << 18; // of triangles, which bounds the memory of their pieces
-    GridFrame blocks = level.corners;
+    GridFrame blocks = cascade.corners;
     blocks.cell *= 4;
     blocks.size = (blocks.size + 3) / 4;
-    float const of_face = 1 / square(level.frame.cell);
+    float const of_face = 1 / square(cascade.frame.cell);
     for (std::size_t first = 0; first < world.triangles.size(); first += kTogether) {
         VoxelGrid grid{SparseCells<BlockVoxels>(blocks), {}};
         add_triangles(world, first, std::min(world.triangles.size(), first + kTogether), grid, stop);
         for (SurfacePiece const& p : grid.pieces) {
             glm::ivec3 const c = 4 * blocks.cell_of(grid.blocks.cells[p.block]) +
                                  glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
-            if (level.corners.holds(c))
-                level.blocked[level.corners.index(c)] +=
+            if (cascade.corners.holds(c))
+                cascade.blocked[cascade.corners.index(c)] +=
                     {of_face * p.area * glm::abs(p.normal), of_face * p.area * glm::abs(p.normal) * p.point};
         }
     }
@@ -47,18 +47,18 @@ void add_blockers(World const& world, BuildStop const& stop, LightPropagation::L
 
 /// Mean of the eight cells around a point by trilinear weights, those behind surfaces without weight: seen from
 /// the cell that holds the point, on the way along the axes. @param at  not in a surface
-ShColor open_mean(LightPropagation::Level const& level, vec3 at)
+ShColor open_mean(LightPropagation::Cascade const& cascade, vec3 at)
 {
-    GridFrame const& frame = level.frame;
+    GridFrame const& frame = cascade.frame;
     vec3 const in = glm::clamp((at - frame.low) / frame.cell, -2.0f, 1e6f);
     glm::ivec3 const base = glm::ivec3(glm::floor(in));
     vec3 const part = in - vec3(base) - 0.5f;
     glm::ivec3 const way = glm::mix(glm::ivec3{-1}, glm::ivec3{1}, glm::greaterThanEqual(part, vec3{0}));
     vec3 beside = glm::abs(part);
-    for (int axis = 0; axis < 3 && !level.open.empty(); ++axis) {
+    for (int axis = 0; axis < 3 && !cascade.open.empty(); ++axis) {
         glm::ivec3 face = base;
         face[axis] += way[axis] > 0 ? 1 : 0;
-        if (level.corners.holds(face)) beside[axis] *= level.open[level.corners.index(face)][axis];
+        if (cascade.corners.holds(face)) beside[axis] *= cascade.open[cascade.corners.index(face)][axis];
     }
     ShColor sum;
     float weights = 0;
@@ -71,7 +71,7 @@ ShColor open_mean(LightPropagation::Level const& level, vec3 at)
             weight *= other ? beside[axis] : 1 - std::abs(part[axis]);
         }
         weights += weight;
-        if (frame.holds(cell)) sum += weight * level.total[frame.index(cell)];
+        if (frame.holds(cell)) sum += weight * cascade.total[frame.index(cell)];
     }
     return (1 / weights) * sum;
 }
@@ -89,15 +89,15 @@ void check(PropagationSettings const& s)
 /// A point before a surface, past the faces that it and others nearby block. In the lattice, surfaces lie at the
 /// corners nearest to them; points keep to their side of these. Then half a cell along the normal's largest
 /// component.
-vec3 in_front(LightPropagation::Level const& level, vec3 position, vec3 normal)
+vec3 in_front(LightPropagation::Cascade const& cascade, vec3 position, vec3 normal)
 {
     constexpr float kBlocks = 0.2f; // so much of a face
-    float const cell = level.frame.cell, step = cell / std::max(max_component(glm::abs(normal)), 0.5f);
+    float const cell = cascade.frame.cell, step = cell / std::max(max_component(glm::abs(normal)), 0.5f);
     vec3 at = position + 0.1f * step * normal;
-    glm::ivec3 const corner = level.corners.at(at);
-    if (!level.blocked.empty() && level.corners.holds(corner)) {
-        Blocker const& near = level.blocked[level.corners.index(corner)];
-        vec3 const center = level.corners.center(corner);
+    glm::ivec3 const corner = cascade.corners.at(at);
+    if (!cascade.blocked.empty() && cascade.corners.holds(corner)) {
+        Blocker const& near = cascade.blocked[cascade.corners.index(corner)];
+        vec3 const center = cascade.corners.center(corner);
         for (int axis = 0; axis < 3; ++axis) {
             if (near.area[axis] < kBlocks) continue;
             bool const above = at[axis] * near.area[axis] >= near.moment[axis];
@@ -133,44 +133,45 @@ std::uint64_t LightPropagation::bytes(PropagationSettings const& s, Bounds const
 
 void LightPropagation::place(std::span<GridFrame const> frames)
 {
-    levels_.assign(frames.size(), {});
+    cascades_.assign(frames.size(), {});
     for (std::size_t k = 0; k < frames.size(); ++k) {
-        Level& level = levels_[k];
-        level.frame = level.corners = frames[k];
-        level.corners.low -= 0.5f * frames[k].cell;
-        level.corners.size += 1;
-        level.total.resize(frames[k].cells());
+        Cascade& cascade = cascades_[k];
+        cascade.frame = cascade.corners = frames[k];
+        cascade.corners.low -= 0.5f * frames[k].cell;
+        cascade.corners.size += 1;
+        cascade.total.resize(frames[k].cells());
     }
 }
 
-void LightPropagation::propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights,
+void LightPropagation::propagate(Cascade& cascade, Cascade const* coarser, std::span<ReflectedLight const> lights,
                                  BuildStop const& stop)
 {
-    GridFrame const& frame = level.frame;
+    GridFrame const& frame = cascade.frame;
     std::size_t const n = frame.cells();
-    level.total.assign(n, {});
-    level.injected_w = level.outside_w = 0;
+    cascade.total.assign(n, {});
+    cascade.injected_w = cascade.outside_w = 0;
     std::vector<std::uint64_t> keys(lights.size());
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        glm::ivec3 const cell = frame.at(in_front(level, lights[i].position, lights[i].normal));
+        glm::ivec3 const cell = frame.at(in_front(cascade, lights[i].position, lights[i].normal));
         bool const in = frame.holds(cell);
         keys[i] = in ? frame.index(cell) : n;
-        (in ? level.injected_w : level.outside_w) += double(glm::dot(lights[i].flux, vec3{1}));
+        (in ? cascade.injected_w : cascade.outside_w) += double(glm::dot(lights[i].flux, vec3{1}));
     }
     ItemsByCell const sorted = sort_by_cell(keys, n);
     View<ReflectedLight const> const all{lights.data(), lights.size()};
     launch(Space::host, "inject virtual lights", n,
-           SumItems<ReflectedLight, ShColor>{all, sorted.order, sorted.firsts, level.total});
-    std::vector<ShColor> now = level.total, next(n);
+           SumItems<ReflectedLight, ShColor>{all, sorted.order, sorted.firsts, cascade.total});
+    std::vector<ShColor> now = cascade.total, next(n);
     std::vector<vec3> scales(n);
     int const steps = settings_.steps > 0 ? settings_.steps : 2 * settings_.cells;
     for (int step = 0; step < steps; ++step) {
-        if (stop.given_up()) throw Interrupted();
-        launch(Space::host, "scale faces of cells", n, ScaleFaces{now, scales});
+        launch_host(n, ScaleFaces{now, scales}, stop);
         DenseView<ShColor> const around = step == 0 && coarser != nullptr ? coarser->view() : DenseView<ShColor>{};
-        launch(
-            Space::host, "propagate light", n,
-            Propagate{{frame, now}, scales, level.corners, level.open, around, settings_.by, next, level.total});
+        launch_host(
+            n,
+            Propagate{
+                {frame, now}, scales, cascade.corners, cascade.open, around, settings_.by, next, cascade.total},
+            stop);
         std::swap(now, next);
     }
 }
@@ -178,40 +179,40 @@ void LightPropagation::propagate(Level& level, Level const* coarser, std::span<R
 void LightPropagation::propagate(std::span<GridFrame const> frames, std::span<ReflectedLight const> lights)
 {
     place(frames);
-    for (std::size_t k = levels_.size(); k-- > 0;)
-        propagate(levels_[k], k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights, BuildStop(nullptr));
+    for (std::size_t k = cascades_.size(); k-- > 0;)
+        propagate(cascades_[k], k + 1 < cascades_.size() ? &cascades_[k + 1] : nullptr, lights,
+                  BuildStop(nullptr));
 }
 
 void LightPropagation::update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
                               Bounds const& focus, BuildStop const& stop)
 {
-    if (world.bounds.empty()) return levels_.clear();
+    if (world.bounds.empty()) return cascades_.clear();
     bool const by_focus = settings_.cascades == 0;
     std::vector<GridFrame> const frames = nested_frames(
         world.bounds, by_focus ? center_of(focus, camera) : camera, settings_.cells,
-        by_focus ? nested_levels(world.bounds, focus, PropagationSettings::kMostCascades) : settings_.cascades);
-    std::vector<Level> former;
-    std::swap(former, levels_);
+        by_focus ? nested_cascades(world.bounds, focus, PropagationSettings::kMostCascades) : settings_.cascades);
+    std::vector<Cascade> former;
+    std::swap(former, cascades_);
     place(frames);
     std::vector<ReflectedLight> const lights = reflected_lights(photons);
     try {
-        for (std::size_t k = levels_.size(); k-- > 0;) {
-            Level& level = levels_[k];
-            if (settings_.blocked && geometry == Geometry::same && k < former.size() &&
-                same(former[k].frame, level.frame)) {
-                level.open = former[k].open;
-                level.blocked = former[k].blocked;
-            } else if (settings_.blocked) {
-                level.blocked.resize(level.corners.cells());
-                level.open.resize(level.corners.cells());
-                add_blockers(world, stop, level);
-                launch(Space::host, "open faces of cells", level.corners.cells(),
-                       OpenFaces{level.corners, level.blocked, level.open});
+        for (std::size_t k = cascades_.size(); k-- > 0;) {
+            Cascade& cascade = cascades_[k];
+            if (geometry == Geometry::same && k < former.size() && same(former[k].frame, cascade.frame)) {
+                cascade.open = former[k].open;
+                cascade.blocked = former[k].blocked;
+            } else {
+                cascade.blocked.resize(cascade.corners.cells());
+                cascade.open.resize(cascade.corners.cells());
+                add_blockers(world, stop, cascade);
+                launch(Space::host, "open faces of cells", cascade.corners.cells(),
+                       OpenFaces{cascade.corners, cascade.blocked, cascade.open});
             }
-            propagate(level, k + 1 < levels_.size() ? &levels_[k + 1] : nullptr, lights, stop);
+            propagate(cascade, k + 1 < cascades_.size() ? &cascades_[k + 1] : nullptr, lights, stop);
         }
     } catch (Interrupted const&) {
-        levels_ = std::move(former);
+        cascades_ = std::move(former);
         throw;
     }
 }
@@ -219,10 +220,10 @@ void LightPropagation::update(World const& world, Geometry geometry, std::span<P
 vec3 LightPropagation::irradiance(vec3 position, vec3 normal) const
 {
     vec3 sum{0};
-    for_grids_at(levels_, position, [&](std::size_t k, float weight) {
-        GridFrame const& frame = levels_[k].frame;
-        vec3 const at = in_front(levels_[k], position, normal);
-        ShColor const light = arriving_radiance(open_mean(levels_[k], at), frame.cell);
+    for_grids_at(cascades_, position, [&](std::size_t k, float weight) {
+        GridFrame const& frame = cascades_[k].frame;
+        vec3 const at = in_front(cascades_[k], position, normal);
+        ShColor const light = arriving_radiance(open_mean(cascades_[k], at), frame.cell);
         sum += weight * glm::max(gi::irradiance(light, normal), vec3{0});
     });
     return sum;
@@ -230,23 +231,23 @@ vec3 LightPropagation::irradiance(vec3 position, vec3 normal) const
 
 vec3 LightPropagation::radiance(vec3 position, vec3 direction) const
 {
-    if (levels_.empty()) return vec3{0};
+    if (cascades_.empty()) return vec3{0};
     vec3 sum{0}, at = position;
     float weights = 0, open = 1;
     for (int step = 0; step < settings_.glossy_cells && open > 0.01f; ++step) {
         std::size_t finest = 0;
-        while (finest + 1 < levels_.size() && weight_in(levels_[finest].frame, at) <= 0) ++finest;
-        float const cell = levels_[finest].frame.cell;
+        while (finest + 1 < cascades_.size() && weight_in(cascades_[finest].frame, at) <= 0) ++finest;
+        float const cell = cascades_[finest].frame.cell;
         at += (step == 0 ? 0.75f : 1.0f) * cell * direction;
-        if (!levels_[finest].frame.holds(levels_[finest].frame.at(at))) break;
-        if (step > 0 && !levels_[finest].blocked.empty()) {
-            DenseView<Blocker> const blocked{levels_[finest].corners, levels_[finest].blocked};
+        if (!cascades_[finest].frame.holds(cascades_[finest].frame.at(at))) break;
+        if (step > 0 && !cascades_[finest].blocked.empty()) {
+            DenseView<Blocker> const blocked{cascades_[finest].corners, cascades_[finest].blocked};
             vec3 const area = trilinear<Blocker>(blocked, at - 0.5f * cell * direction).area;
             open *= std::max(0.0f, 1 - glm::dot(area, glm::abs(direction)));
         }
         vec3 here{0};
-        for_grids_at(levels_, at, [&](std::size_t k, float weight) {
-            ShColor const light = arriving_radiance(open_mean(levels_[k], at), levels_[k].frame.cell);
+        for_grids_at(cascades_, at, [&](std::size_t k, float weight) {
+            ShColor const light = arriving_radiance(open_mean(cascades_[k], at), cascades_[k].frame.cell);
             here += weight * glm::max(evaluate(light, direction), vec3{0});
         });
         sum += open * here;

@@ -35,7 +35,6 @@ struct PropagationSettings {
     int cascades = 0; ///< nested lattices about the camera, up to kMostCascades; 0 = about what is shown
     int steps = 0;    ///< from cell to cell; 0 = twice the cells
     Reprojection by = Reprojection::beams;
-    bool blocked = true;  ///< by surfaces
     int glossy_cells = 4; ///< looked up along a glossy direction
 };
 
@@ -66,7 +65,7 @@ public:
     /// light through (the paper's sec. 5.1). @param direction  unit
     vec3 radiance(vec3 position, vec3 direction) const;
 
-    struct Level {
+    struct Cascade {
         GridFrame frame, corners;
         std::vector<Blocker> blocked; ///< per corner, see OpenFaces
         std::vector<vec3> open;
@@ -74,7 +73,7 @@ public:
         double injected_w = 0, outside_w = 0; ///< sums over channels, virtual lights in it and beyond it
         DenseView<ShColor> view() const { return {frame, total}; }
     };
-    std::vector<Level> const& levels() const { return levels_; }
+    std::vector<Cascade> const& cascades() const { return cascades_; }
     /// Memory of lattices that update() would make for a world.
     static std::uint64_t bytes(PropagationSettings const& settings, Bounds const& bounds);
 
@@ -83,11 +82,11 @@ public:
 
 private:
     void place(std::span<GridFrame const> frames);
-    void propagate(Level& level, Level const* coarser, std::span<ReflectedLight const> lights,
+    void propagate(Cascade& cascade, Cascade const* coarser, std::span<ReflectedLight const> lights,
                    BuildStop const& stop);
 
     PropagationSettings settings_;
-    std::vector<Level> levels_;
+    std::vector<Cascade> cascades_;
 };
 
 } // namespace gi

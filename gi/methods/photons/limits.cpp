@@ -1,10 +1,5 @@
 #include "gi/methods/photons/limits.h"
 
-#include "gi/core/error.h"
-#include "gi/light_paths/impostors.h"
-
-#include <fmt/format.h>
-
 namespace gi {
 
 PropagationSettings propagation_of(PhotonSettings const& s)
@@ -18,7 +13,9 @@ PropagationSettings propagation_of(PhotonSettings const& s)
 PhotonLatticeSettings lattices_of(PhotonSettings const& s)
 {
     bool const smooth = s.lattice_smoothing == Switch::on;
-    return {.cells = {s.low_cells, s.middle_cells, s.high_cells},
+    // The lattice of caustics stays empty if kernels show them.
+    int const high = s.caustics_by == CausticsBy::kernels ? 4 : s.high_cells;
+    return {.cells = {s.low_cells, s.middle_cells, high},
             .smooth = {smooth, smooth, false},
             .cascades = s.lattice_cascades,
             .by = s.irradiance_by};
@@ -30,19 +27,6 @@ PhotonLatticeSettings volume_of(PhotonSettings const& s)
             .smooth = {false, false, false},
             .gathers = s.volume_gathers,
             .cascades = s.lattice_cascades};
-}
-
-void check_bytes(std::uint64_t bytes, std::string_view what, std::string_view instead)
-{
-    if (bytes > kMostBytes)
-        throw InputError(fmt::format("{} of {:.1f} GiB", what, double(bytes) / double(1 << 30)),
-                         fmt::format("at most {} GiB are supported", kMostBytes >> 30), std::string(instead));
-}
-
-void check_impostors(PhotonSettings const& settings, bool moves)
-{
-    check_bytes(impostor_bytes(settings.impostors, settings.impostor_texels, moves), "distance impostors",
-                "choose fewer --impostors or --impostor-texels");
 }
 
 } // namespace gi

@@ -81,19 +81,26 @@ protected:
     bool stores(LightVertex const&) const override { return true; } // all tell what light reaches
     PhotonRays rays_kind() const override { return PhotonRays::impostors; }
     std::string_view timer_name() const override { return "light gathering volume"; }
-    void take(PhotonSet const& set) override
+    std::size_t bytes_per_photon() const override { return 200; }
+    int cascades_about_camera() const override { return settings_.photons.lattice_cascades; }
+    void take(PhotonSet&& set) override
     {
-        if (set.surfaces_changed || (set.number == 0 && settings_.photons.lattice_cascades > 1))
-            volume_.place(world_, set.visibility,
-                          {camera_of(set.views, world_), set.focus, first_moving_, set.only_moved}, set.stop);
-        volume_.update(set.photons);
+        if (set.surfaces_changed || set.middle_changed)
+            volume_.place(world_, set.visibility, {set.middle, set.focus, first_moving_, set.only_moved},
+                          set.stop);
+        volume_.update(set.photons, set.stop);
     }
-    SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) override
+    SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics,
+                              BuildStop const& stop) override
     {
         if (caustics != nullptr) {
             place_screens(views);
-            StageTimer const timer(report_, "caustics on screen");
-            for (ScreenVolume& s : screens_) s.update(caustic_photons());
+            if (of_caustics_ != caustics_version()) {
+                StageTimer const timer(report_, "caustics on screen");
+                of_caustics_.reset();
+                for (ScreenVolume& s : screens_) s.update(caustic_photons(), stop);
+                of_caustics_ = caustics_version();
+            }
         }
         light_.emplace(volume_, screens_, caustics);
         return &*light_;
@@ -102,8 +109,9 @@ protected:
     {
         std::size_t cells = 0;
         for (Frequency const f : {Frequency::low, Frequency::middle})
-            for (PhotonLattices::Level const& level : volume_.levels(f)) cells += level.cells.values.size();
-        report.count("nested lattices", double(volume_.levels(Frequency::low).size()));
+            for (PhotonLattices::Cascade const& cascade : volume_.cascades(f))
+                cells += cascade.cells.values.size();
+        report.count("nested lattices", double(volume_.cascades(Frequency::low).size()));
         report.count("cells with surfaces", double(cells));
         report.count("flux of photons in no cell, W (sum of channels)", volume_.lost_w());
         report.count("flux left out in cells of hardly any area, W (sum of channels)", volume_.dimmed_w());
@@ -119,10 +127,7 @@ protected:
 private:
     void place_screens(std::span<FrameView const> views)
     {
-        bool const same = std::ranges::equal(views, cameras_, [](FrameView const& v, FrameView const& w) {
-            return v.camera == w.camera && v.width == w.width && v.height == w.height;
-        });
-        if (same) return;
+        if (same_pictures(views, cameras_)) return;
         StageTimer const timer(report_, "surfaces on screen");
         cameras_.assign(views.begin(), views.end());
         if (!soup_)
@@ -132,6 +137,7 @@ private:
         soup_moved_ = false;
         if (!cut_outs_) cut_outs_.emplace(world_);
         screens_.clear();
+        of_caustics_.reset();
         for (FrameView const& v : views) {
             if (v.camera.orthographic) continue;
             screens_.emplace_back(ScreenVolumeSettings{.gathers = settings_.photons.screen_gathers});
@@ -145,6 +151,7 @@ private:
     bool soup_moved_ = false;
     std::vector<FrameView> cameras_; ///< of screens_
     std::vector<ScreenVolume> screens_;
+    std::optional<std::uint32_t> of_caustics_; ///< version of those on the screens
     std::optional<MultiImageLight> light_;
 };
 

@@ -25,7 +25,6 @@ template void launch_device(char const*, std::size_t, Propagate const&);
 template void launch_device(char const*, std::size_t, CountTiles const&);
 template void launch_device(char const*, std::size_t, FillTiles const&);
 template void launch_device(char const*, std::size_t, SortTiles const&);
-template void launch_device(char const*, std::size_t, SplatPixels const&);
 
 } // namespace gi
 

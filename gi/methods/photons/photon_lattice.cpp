@@ -1,7 +1,7 @@
 #include "gi/methods/photons/photon_lattice.h"
 
 #include "gi/core/error.h"
-#include "gi/kernel/launch.h"
+#include "gi/kernel/stoppable_launch.h"
 #include "gi/methods/photons/lattice_kernels.h"
 #include "gi/methods/photons/photon_cell_kernels.h"
 
@@ -12,13 +12,13 @@ namespace gi {
 namespace {
 
 void find_pieces(World const& world, std::size_t begin, std::size_t last, GridFrame const& exposure,
-                 BuildStop const& stop, PhotonLattices::Level& level)
+                 BuildStop const& stop, PhotonLattices::Cascade& cascade)
 {
     constexpr std::size_t kTogether = std::size_t(1)
                                       << 18; // of triangles, which bounds the memory of their pieces
     // A cell is a block of 4 x 4 x 4 voxels if it is larger than those of the exposure, else a voxel.
-    bool const large = level.frame.cell > exposure.cell;
-    GridFrame blocks = level.frame;
+    bool const large = cascade.frame.cell > exposure.cell;
+    GridFrame blocks = cascade.frame;
     if (!large) {
         blocks.cell *= 4;
         blocks.size = (blocks.size + 3) / 4;
@@ -29,21 +29,21 @@ void find_pieces(World const& world, std::size_t begin, std::size_t last, GridFr
         for (SurfacePiece const& p : grid.pieces) {
             glm::ivec3 c = blocks.cell_of(grid.blocks.cells[p.block]);
             if (!large) c = 4 * c + glm::ivec3{p.voxel % 4, p.voxel / 4 % 4, p.voxel / 16};
-            if (!level.frame.holds(c)) continue;
+            if (!cascade.frame.holds(c)) continue;
             glm::ivec3 const e = glm::clamp(exposure.at(p.point), glm::ivec3{0}, exposure.size - 1);
-            level.pieces.push_back({level.cells.place_at(c), exposure.index(e), p.area * p.normal});
+            cascade.pieces.push_back({cascade.cells.place_at(c), exposure.index(e), p.area * p.normal});
         }
     }
 }
 
-void forget_moving(PhotonLattices::Level& level)
+void forget_moving(PhotonLattices::Cascade& cascade)
 {
-    level.pieces.resize(level.still_pieces);
-    for (std::size_t i = level.still_cells; i < level.cells.cells.size(); ++i)
-        level.cells.place[level.cells.cells[i]] = kNoCell;
-    level.cells.cells.resize(level.still_cells);
-    level.cells.values.resize(level.still_cells);
-    level.areas.clear();
+    cascade.pieces.resize(cascade.still_pieces);
+    for (std::size_t i = cascade.still_cells; i < cascade.cells.cells.size(); ++i)
+        cascade.cells.place[cascade.cells.cells[i]] = kNoCell;
+    cascade.cells.cells.resize(cascade.still_cells);
+    cascade.cells.values.resize(cascade.still_cells);
+    cascade.areas.clear();
 }
 
 } // namespace
@@ -75,30 +75,33 @@ std::uint64_t PhotonLattices::bytes(PhotonLatticeSettings const& s, Bounds const
     std::uint64_t sum = 0;
     for (int const cells : s.cells)
         for (GridFrame const& f : frames_off_walls(bounds, bounds.center(), cells, std::max(s.cascades, 1)))
-            sum += sparse_bytes(f, area_m2, 2 * sizeof(PhotonCell) + 2 * sizeof(Level::Piece));
+            sum += sparse_bytes(f, area_m2, 2 * sizeof(PhotonCell) + 2 * sizeof(Cascade::Piece));
     return sum;
+}
+
+PhotonLatticeSettings PhotonLattices::placed(PhotonLatticeSettings s, World const& world, Bounds const& focus)
+{
+    if (s.cascades > 0) return s;
+    s.cascades = nested_cascades(world.bounds, focus, s.kMostCascades);
+    while (s.cascades > 1 && bytes(s, world.bounds, surface_area(world)) > kMostBytes) --s.cascades;
+    return s;
 }
 
 void PhotonLattices::place(World const& world, ExactVisibility const& visibility, LatticePlace const& where,
                            BuildStop const& stop)
 {
     if (world.bounds.empty()) {
-        for (auto& levels : levels_) levels.clear();
+        for (auto& cascades : cascades_) cascades.clear();
         return;
     }
     sky_shines_ = world.environment != nullptr;
-    PhotonLatticeSettings s = settings_;
-    vec3 center = where.camera;
-    if (s.cascades == 0) {
-        center = center_of(where.focus, world.bounds.center());
-        s.cascades = nested_levels(world.bounds, where.focus, s.kMostCascades);
-        while (s.cascades > 1 && bytes(s, world.bounds, surface_area(world)) > s.kMostBytes) --s.cascades;
-    }
+    PhotonLatticeSettings const s = placed(settings_, world, where.focus);
+    vec3 const center = settings_.cascades > 0 ? where.camera : center_of(where.focus, world.bounds.center());
     std::array<std::vector<GridFrame>, 3> frames;
     bool stays = where.only_moved;
     for (std::size_t k = 0; k < 3; ++k) {
         frames[k] = frames_off_walls(world.bounds, center, s.cells[k], s.cascades);
-        stays = stays && std::ranges::equal(frames[k], levels_[k], same, {}, &Level::frame);
+        stays = stays && std::ranges::equal(frames[k], cascades_[k], same, {}, &Cascade::frame);
     }
     if (!stays) {
         exposed_.clear();
@@ -108,11 +111,11 @@ void PhotonLattices::place(World const& world, ExactVisibility const& visibility
     }
     for (ExposedSides& e : exposed_) e.moved(world, where.first_moving, visibility, stop);
     std::size_t const triangles = world.triangles.size();
-    for (auto& levels : levels_)
-        for (std::size_t i = 0; i < levels.size(); ++i) {
-            forget_moving(levels[i]);
+    for (auto& cascades : cascades_)
+        for (std::size_t i = 0; i < cascades.size(); ++i) {
+            forget_moving(cascades[i]);
             find_pieces(world, std::min(where.first_moving, triangles), triangles, exposed_[i].frame(), stop,
-                        levels[i]);
+                        cascades[i]);
         }
 }
 
@@ -122,38 +125,40 @@ void PhotonLattices::place_anew(World const& world, std::size_t first_moving,
     std::size_t const triangles = world.triangles.size();
     first_moving = std::min(first_moving, triangles);
     for (std::size_t k = 0; k < 3; ++k) {
-        levels_[k].clear();
+        cascades_[k].clear();
         for (std::size_t i = 0; i < frames[k].size(); ++i) {
-            Level& level = levels_[k].emplace_back();
-            level.frame = frames[k][i];
-            level.cells = SparseCells<PhotonCell>(level.frame);
-            find_pieces(world, 0, first_moving, exposed_[i].frame(), stop, level);
-            level.still_pieces = level.pieces.size();
-            level.still_cells = level.cells.cells.size();
-            find_pieces(world, first_moving, triangles, exposed_[i].frame(), stop, level);
+            Cascade& cascade = cascades_[k].emplace_back();
+            cascade.frame = frames[k][i];
+            cascade.cells = SparseCells<PhotonCell>(cascade.frame);
+            find_pieces(world, 0, first_moving, exposed_[i].frame(), stop, cascade);
+            cascade.still_pieces = cascade.pieces.size();
+            cascade.still_cells = cascade.cells.cells.size();
+            find_pieces(world, first_moving, triangles, exposed_[i].frame(), stop, cascade);
         }
     }
 }
 
-void PhotonLattices::inject(Level& level, ExposedSides const& exposed, std::span<Photon const* const> photons,
-                            bool last)
+void PhotonLattices::inject(Cascade& cascade, ExposedSides const& exposed, std::span<Photon const* const> photons,
+                            bool last, Flux& sums, BuildStop const& stop)
 {
-    std::size_t const n = photons.size(), cells = level.cells.values.size();
-    if (level.areas.empty()) {
-        level.areas.assign(cells, vec4{0});
-        for (Level::Piece const& p : level.pieces) {
+    std::size_t const n = photons.size(), cells = cascade.cells.values.size();
+    if (cascade.areas.empty()) {
+        std::vector<vec4> areas(cells, vec4{0});
+        for (Cascade::Piece const& p : cascade.pieces) {
+            if (stop.given_up()) throw Interrupted();
             float const area = glm::length(p.area);
             if (!(area > 0)) continue;
             vec3 const normal = p.area / area;
             for (float const side : {1.0f, -1.0f}) {
                 std::uint32_t const k = ReachedSides::side_index(side * normal, side > 0);
                 float const lit = area * exposed.share(p.exposure_cell, k);
-                level.areas[p.place] += lit * vec4(1, side * normal.x, side * normal.y, side * normal.z);
+                areas[p.place] += lit * vec4(1, side * normal.x, side * normal.y, side * normal.z);
             }
         }
+        cascade.areas = std::move(areas);
     }
-    std::ranges::fill(level.cells.values, PhotonCell{});
-    for (std::size_t i = 0; i < cells; ++i) level.cells.values[i].area = level.areas[i];
+    std::ranges::fill(cascade.cells.values, PhotonCell{});
+    for (std::size_t i = 0; i < cells; ++i) cascade.cells.values[i].area = cascade.areas[i];
     std::vector<LatticePhoton> items(n);
     std::vector<vec3> positions(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -161,80 +166,81 @@ void PhotonLattices::inject(Level& level, ExposedSides const& exposed, std::span
         positions[i] = photons[i]->position;
     }
     std::vector<std::uint64_t> keys(n);
-    launch(Space::host, "find cells of photons", n,
-           FindPhotonCells{level.cells.view(), positions, items, keys, last});
+    launch_host(n, FindPhotonCells{cascade.cells.view(), positions, items, keys, last}, stop);
     for (std::size_t i = 0; last && i < n; ++i) {
         double const flux = double(glm::dot(items[i].flux, vec3{1}));
-        (keys[i] < cells ? injected_w_ : lost_w_) += flux;
+        (keys[i] < cells ? sums.injected_w : sums.lost_w) += flux;
     }
+    if (stop.given_up()) throw Interrupted();
     ItemsByCell const sorted = sort_by_cell(keys, cells);
-    launch(Space::host, "inject photons", cells,
-           SumItems<LatticePhoton, PhotonCell>{items, sorted.order, sorted.firsts, level.cells.values});
+    launch_host(cells,
+                SumItems<LatticePhoton, PhotonCell>{items, sorted.order, sorted.firsts, cascade.cells.values},
+                stop);
 }
 
-void PhotonLattices::spread(Level& level, Frequency f)
+void PhotonLattices::spread(Cascade& cascade, Frequency f, BuildStop const& stop)
 {
-    std::vector<PhotonCell> next(level.cells.values.size());
+    std::vector<PhotonCell> next(cascade.cells.values.size());
     if (settings_.smooth[std::size_t(f)]) {
-        launch(Space::host, "smooth lattice", next.size(),
-               SmoothCells<PhotonCell>{level.cells.view(), level.cells.cells, next});
-        std::swap(level.cells.values, next);
+        launch_host(next.size(), SmoothCells<PhotonCell>{cascade.cells.view(), cascade.cells.cells, next}, stop);
+        std::swap(cascade.cells.values, next);
     }
     for (int step = 0; f != Frequency::high && step < settings_.gathers; ++step) {
-        launch(Space::host, "gather in lattice", next.size(),
-               GatherCells<PhotonCell>{level.cells.view(), level.cells.cells, next});
-        std::swap(level.cells.values, next);
+        launch_host(next.size(), GatherCells<PhotonCell>{cascade.cells.view(), cascade.cells.cells, next}, stop);
+        std::swap(cascade.cells.values, next);
     }
 }
 
-void PhotonLattices::dim_small_areas(Level& level, bool last)
+void PhotonLattices::dim_small_areas(Cascade& cascade, bool last, Flux& sums)
 {
-    float const least = PhotonLatticeSettings::kLeastArea * square(level.frame.cell);
-    for (PhotonCell& c : level.cells.values) {
+    float const least = PhotonLatticeSettings::kLeastArea * square(cascade.frame.cell);
+    for (PhotonCell& c : cascade.cells.values) {
         if (!(c.area.x > 0) || !(c.area.x < least)) continue;
         float const by = c.area.x / least;
-        if (last) dimmed_w_ += double(1 - by) * double(glm::dot(c.received.integral(), vec3{1}));
+        if (last) sums.dimmed_w += double(1 - by) * double(glm::dot(c.received.integral(), vec3{1}));
         c.arrived *= vec3{by};
         c.received *= vec3{by};
     }
 }
 
-void PhotonLattices::see_photons(std::span<Photon const> photons)
+void PhotonLattices::see_photons(std::span<Photon const> photons, BuildStop const& stop)
 {
     for (std::size_t i = 0; i < exposed_.size(); ++i)
-        if (exposed_[i].add(photons, sky_shines_))
-            for (auto& levels : levels_) levels[i].areas.clear();
+        if (exposed_[i].add(photons, sky_shines_, stop))
+            for (auto& cascades : cascades_) cascades[i].areas.clear();
 }
 
-void PhotonLattices::update(std::span<Photon const> photons)
+void PhotonLattices::update(std::span<Photon const> photons, BuildStop const& stop)
 {
-    injected_w_ = lost_w_ = dimmed_w_ = 0;
-    if (levels_[0].empty()) return;
-    see_photons(photons);
+    diffuse_ = {};
+    if (cascades_[0].empty()) return;
+    see_photons(photons, stop);
     std::vector<Photon const*> once, more;
     for (Photon const& p : photons)
         if (p.scatterings > 0 && all_finite(p.flux)) (p.scatterings == 1 ? once : more).push_back(&p);
-    inject(Frequency::low, more);
-    inject(Frequency::middle, once);
+    inject(Frequency::low, more, diffuse_, stop);
+    inject(Frequency::middle, once, diffuse_, stop);
 }
 
-void PhotonLattices::update_caustics(std::span<Photon const> photons)
+void PhotonLattices::update_caustics(std::span<Photon const> photons, BuildStop const& stop)
 {
-    if (levels_[0].empty()) return;
+    caustics_ = {};
+    if (cascades_[0].empty()) return;
     std::vector<Photon const*> caustics;
     for (Photon const& p : photons)
         if (p.scatterings == 0 && p.by_delta && all_finite(p.flux)) caustics.push_back(&p);
-    if (!caustics.empty()) see_photons(photons);
-    inject(Frequency::high, caustics);
+    if (!caustics.empty()) see_photons(photons, stop);
+    inject(Frequency::high, caustics, caustics_, stop);
 }
 
-void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons)
+void PhotonLattices::inject(Frequency f, std::span<Photon const* const> photons, Flux& sums, BuildStop const& stop)
 {
-    std::vector<Level>& levels = levels_[std::size_t(f)];
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-        inject(levels[i], exposed_[i], photons, i + 1 == levels.size());
-        spread(levels[i], f);
-        dim_small_areas(levels[i], i + 1 == levels.size());
+    std::vector<Cascade>& cascades = cascades_[std::size_t(f)];
+    for (std::size_t i = 0; i < cascades.size(); ++i) {
+        bool const last = i + 1 == cascades.size();
+        inject(cascades[i], exposed_[i], photons, last, sums, stop);
+        spread(cascades[i], f, stop);
+        dim_small_areas(cascades[i], last, sums);
     }
 }
 
@@ -250,16 +256,16 @@ template <class Function>
 void PhotonLattices::for_cells_at(Frequency f, vec3 position, Function const& of) const
 {
     constexpr float kEnough = 16; // photons: a finer lattice then counts by a half
-    std::vector<Level> const& levels = levels_[std::size_t(f)];
+    std::vector<Cascade> const& cascades = cascades_[std::size_t(f)];
     float const together = cells_together(f);
     float left = 1;
-    for (std::size_t k = 0; k < levels.size() && left > 0; ++k) {
-        bool const last = k + 1 == levels.size();
-        float weight = last ? 1 : weight_in(levels[k].frame, position);
+    for (std::size_t k = 0; k < cascades.size() && left > 0; ++k) {
+        bool const last = k + 1 == cascades.size();
+        float weight = last ? 1 : weight_in(cascades[k].frame, position);
         PhotonCell const cell =
-            weight > 0 ? trilinear<PhotonCell>(levels[k].cells.view(), position) : PhotonCell{};
+            weight > 0 ? trilinear<PhotonCell>(cascades[k].cells.view(), position) : PhotonCell{};
         if (!last && weight > 0) {
-            PhotonCell const coarser = trilinear<PhotonCell>(levels[k + 1].cells.view(), position);
+            PhotonCell const coarser = trilinear<PhotonCell>(cascades[k + 1].cells.view(), position);
             float const expected =
                 coarser.area.x > 0 ? together * coarser.photons * cell.area.x / coarser.area.x : 0;
             weight *= expected / (expected + kEnough);

@@ -23,6 +23,7 @@
 //
 // Memory: per cell with surfaces 120 bytes, twice with smoothing; per piece of a surface in a cell 20 bytes.
 
+#include "gi/light_paths/memory_limit.h"
 #include "gi/methods/photons/exposed_sides.h"
 #include "gi/methods/photons/sh_lattice.h"
 #include "gi/render/render_settings.h"
@@ -38,7 +39,6 @@ struct PhotonLatticeSettings {
     /// Smaller areas in a cell, of that of its face, count as this: one photon in its corner would be a bright
     /// dot.
     static constexpr float kLeastArea = 0.01f;
-    static constexpr std::uint64_t kMostBytes = std::uint64_t(8) << 30;
 
     std::array<int, 3> cells{64, 128, 128}; ///< by Frequency, along the scene's longest side, 4 to kMostCells
     std::array<bool, 3> smooth{true, true, false}; ///< over 3 x 3 x 3 cells
@@ -113,16 +113,16 @@ public:
     /// Throws InputError for settings out of range.
     explicit PhotonLattices(PhotonLatticeSettings const& settings);
 
-    /// To be called before the first update(), and when surfaces have changed or the camera has moved by a cell of
-    /// nested lattices. Throws Interrupted, and is then to be called again without `only_moved`.
+    /// To be called before the first update(), and when surfaces have changed or nested lattices shall lie
+    /// elsewhere. Throws Interrupted, and is then to be called again without `only_moved`.
     void place(World const& world, ExactVisibility const& visibility, LatticePlace const& where,
                BuildStop const& stop = BuildStop(nullptr));
     /// Replaces light of one and more scatterings. What light has reached is remembered. @param photons  of all
-    /// scatterings
-    void update(std::span<Photon const> photons);
+    /// scatterings. Throws Interrupted, and is then to be called again.
+    void update(std::span<Photon const> photons, BuildStop const& stop = BuildStop(nullptr));
     /// Replaces the caustics: those of the photons that have come by mirrors and glass alone. To be called after
-    /// update().
-    void update_caustics(std::span<Photon const> photons);
+    /// update(), and again when that was. Throws Interrupted, and is then to be called again.
+    void update_caustics(std::span<Photon const> photons, BuildStop const& stop = BuildStop(nullptr));
 
     /// Of a lattice, W/m^2. @param normal  unit, on the side asked for
     vec3 irradiance(Frequency of, vec3 position, vec3 normal) const;
@@ -138,7 +138,7 @@ public:
         return radiance(Frequency::low, position, direction) + radiance(Frequency::middle, position, direction);
     }
 
-    struct Level {
+    struct Cascade {
         GridFrame frame;
         SparseCells<PhotonCell> cells;
         /// The part of a surface in a cell.
@@ -150,11 +150,14 @@ public:
         std::size_t still_pieces = 0, still_cells = 0; ///< of triangles that do not move; the others follow
         std::vector<vec4> areas;                       ///< per cell, see PhotonCell; empty = not yet known
     };
-    std::span<Level const> levels(Frequency f) const { return levels_[std::size_t(f)]; }
-    double injected_w() const { return injected_w_; } ///< sum over channels
-    double lost_w() const { return lost_w_; }         ///< of photons where no surface was found
-    double dimmed_w() const { return dimmed_w_; }     ///< left out for kLeastArea
+    std::span<Cascade const> cascades(Frequency f) const { return cascades_[std::size_t(f)]; }
+    /// Sums over channels, with the caustics'.
+    double injected_w() const { return diffuse_.injected_w + caustics_.injected_w; }
+    double lost_w() const { return diffuse_.lost_w + caustics_.lost_w; } ///< of photons where no surface was found
+    double dimmed_w() const { return diffuse_.dimmed_w + caustics_.dimmed_w; } ///< left out for kLeastArea
     double hidden_m2() const { return exposed_.empty() ? 0 : exposed_.back().hidden_m2(); }
+    /// With the number of cascades that place() makes. @param focus  see LatticePlace
+    static PhotonLatticeSettings placed(PhotonLatticeSettings settings, World const& world, Bounds const& focus);
     /// Upper bound of the memory that place() and update() take. @param area_m2  of all triangles
     static std::uint64_t bytes(PhotonLatticeSettings const& settings, Bounds const& bounds, double area_m2);
 
@@ -164,18 +167,22 @@ private:
     void for_cells_at(Frequency f, vec3 position, Function const& of) const;
     void place_anew(World const& world, std::size_t first_moving,
                     std::array<std::vector<GridFrame>, 3> const& frames, BuildStop const& stop);
-    void see_photons(std::span<Photon const> photons);
-    void inject(Frequency f, std::span<Photon const* const> photons);
-    void inject(Level& level, ExposedSides const& exposed, std::span<Photon const* const> photons, bool last);
-    void spread(Level& level, Frequency f);
-    void dim_small_areas(Level& level, bool last);
+    struct Flux {
+        double injected_w = 0, lost_w = 0, dimmed_w = 0; ///< sums over channels, in the coarsest lattice
+    };
+    void see_photons(std::span<Photon const> photons, BuildStop const& stop);
+    void inject(Frequency f, std::span<Photon const* const> photons, Flux& sums, BuildStop const& stop);
+    static void inject(Cascade& cascade, ExposedSides const& exposed, std::span<Photon const* const> photons,
+                       bool last, Flux& sums, BuildStop const& stop);
+    void spread(Cascade& cascade, Frequency f, BuildStop const& stop);
+    static void dim_small_areas(Cascade& cascade, bool last, Flux& sums);
     float cells_together(Frequency f) const;
 
     PhotonLatticeSettings settings_;
     std::vector<ExposedSides> exposed_; ///< per nested lattice, finest first
     bool sky_shines_ = false;
-    std::array<std::vector<Level>, 3> levels_; ///< finest first
-    double injected_w_ = 0, lost_w_ = 0, dimmed_w_ = 0;
+    std::array<std::vector<Cascade>, 3> cascades_; ///< finest first
+    Flux diffuse_, caustics_;
 };
 
 /// Area of a world's triangles, m^2.

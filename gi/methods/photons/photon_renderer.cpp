@@ -2,6 +2,7 @@
 
 #include "gi/light_paths/bounce_map.h"
 #include "gi/light_paths/focus.h"
+#include "gi/light_paths/memory_limit.h"
 #include "gi/light_paths/options.h"
 #include "gi/methods/photons/limits.h"
 
@@ -15,16 +16,21 @@ vec3 camera_of(std::span<FrameView const> views, World const& world)
                          : vec3(dvec3(views[0].camera.world_from_camera[3]) - world.origin);
 }
 
+bool same_pictures(std::span<FrameView const> a, std::span<FrameView const> b)
+{
+    return std::ranges::equal(a, b, [](FrameView const& v, FrameView const& w) {
+        return v.camera == w.camera && v.width == w.width && v.height == w.height;
+    });
+}
+
 PhotonRenderer::PhotonRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                                Report& report, StopRequest const* stop)
     : TreeRenderer(world, settings, first_moving, report, stop),
       stop_(stop),
-      caustics_(world, settings, report, stop),
+      caustics_(world, settings, report),
       light_rays_(world, settings, first_moving, report, stop),
       paths_(std::uint32_t(settings.photons.paths))
 {
-    if (settings.photons.rays == PhotonRays::impostors)
-        check_impostors(settings.photons, first_moving < world.triangles.size());
 }
 
 void PhotonRenderer::changed(Changes const& c)
@@ -45,14 +51,15 @@ SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<Frame
     bool const any = !world_.light_select.empty() && !world_.bounds.empty(),
                frozen = settings_.photons.frozen == Switch::on;
     if (any && !(frozen && has_light_)) find_focus(views);
-    if (any && settings_.bounces > 0) update(views, counts);
+    if (any && settings_.bounces > 0) update(index, views, BuildStop(stop_), counts);
+    BuildStop const stop(stop_);
     if (any && has_caustics() && !(frozen && caustics_known_)) {
-        caustics_.prepare(*visibility_, index, views, focus_, share(), counts);
+        caustics_.prepare(*visibility_, index, views, focus_, share(), stop, counts);
         caustics_known_ = true;
     }
     rays_ += double(counts.nearest_rays + counts.shadow_rays);
     work_.paths += counts;
-    return any || (frozen && has_light_) ? light(views, caustics_.map()) : nullptr;
+    return any || (frozen && has_light_) ? light(views, caustics_.map(), stop) : nullptr;
 }
 
 /// A room in a large world gets half of the light from afar. Stays while it holds most of what cameras show, as a
@@ -66,32 +73,46 @@ void PhotonRenderer::find_focus(std::span<FrameView const> views)
     std::vector<vec3> const points = shown_points(world_, *visibility_, views);
     if (points.empty()) return;
     if (!focus_.empty() && share_in(focus_, points) >= kLeastShown && holds(world_.bounds, focus_)) return;
-    Bounds const shown = focus_of(points, kCells);
-    Bounds const focus = needs_fine_grid(shown, world_.bounds) ? shown : Bounds{};
+    Bounds const focus = focus_in(world_.bounds, points, kCells);
     if (focus.empty() && focus_.empty()) return;
     focus_ = focus;
     surfaces_changed_ = true;
 }
 
-void PhotonRenderer::update(std::span<FrameView const> views, PathCounts& counts)
+/// Lattices about the camera stay until it has moved by an eighth of the finest one's side, as a change begins all
+/// light anew.
+void PhotonRenderer::find_middle(std::span<FrameView const> views)
+{
+    constexpr float kShare = 0.125f;
+    vec3 const camera = camera_of(views, world_);
+    float const finest = std::ldexp(longest_side(world_.bounds), 1 - std::max(cascades_about_camera(), 1));
+    if (middle_ && (cascades_about_camera() < 2 || max_component(glm::abs(camera - *middle_)) < kShare * finest))
+        return;
+    middle_ = camera;
+    middle_changed_ = true;
+}
+
+void PhotonRenderer::update(std::uint32_t index, std::span<FrameView const> views, BuildStop const& stop,
+                            PathCounts& counts)
 {
     if (settings_.photons.frozen == Switch::on && has_light_) return;
     bool const new_cameras = !std::ranges::equal(views, cameras_, {}, &FrameView::camera);
     cameras_.clear();
     for (FrameView const& v : views) cameras_.push_back(v.camera);
-    bool const fresh = light_changed_ || surfaces_changed_;
+    find_middle(views);
+    bool const fresh = light_changed_ || surfaces_changed_ || middle_changed_;
     if (fresh || (new_cameras && sets_ > 1))
         sets_ = 0;
     else if (new_cameras && has_light_)
         return;
-    BuildStop const stop(stop_);
     try {
         if (!has_light_ && settings_.budget_s > 0)
             fit_budget(views, stop, counts);
         else
             trace_set(views, stop, counts);
     } catch (Interrupted const&) {
-        if (!has_light_) throw;
+        // A first pass goes on with the light of the small sets that a budget begins with.
+        if (!has_light_ || index != *first_index_) throw;
     }
 }
 
@@ -115,6 +136,15 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
 {
     constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
     std::vector<Photon> photons;
+    auto const keep = [&](std::span<LightVertex const> vertices, double share) {
+        for (LightVertex const& v : vertices)
+            if (stores(v)) photons.push_back(to_photon(v));
+        double const expected = double(photons.size()) / share;
+        check_bytes(std::uint64_t(expected * double(bytes_per_photon())), "photons",
+                    "choose fewer --photons or --reflections");
+        // Copies of gigabytes, as the array grows, could not be stopped.
+        if (expected > double(photons.capacity())) photons.reserve(std::size_t(1.05 * expected));
+    };
     {
         PathRays const& rays = light_rays_.of(rays_kind(), *visibility_, focus_);
         StageTimer const timer(report_, "light paths");
@@ -135,28 +165,25 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
                                   .pass = *first_index_ + sets_,
                                   .focus = focus_,
                                   .stop = &stop};
-            std::vector<LightVertex> const vertices =
-                by_map
-                    ? trace_bounce_maps(view(world_), world_.bounds, *soup_, CutOuts(world_), rays, some, counts)
-                    : trace_light_paths(view(world_), world_.bounds, rays, some, counts);
-            for (LightVertex const& v : vertices)
-                if (stores(v)) photons.push_back(to_photon(v));
-            if (by_map) break; // the whole set
-            // Copies of gigabytes, as the array grows, could not be stopped.
-            if (first == 0) photons.reserve(std::size_t(1.05 * double(photons.size()) * paths_ / some.last));
+            if (by_map) {
+                trace_bounce_maps(view(world_), world_.bounds, *soup_, CutOuts(world_), rays, some, counts, keep);
+                break; // the whole set
+            }
+            keep(trace_light_paths(view(world_), world_.bounds, rays, some, counts), double(some.last) / paths_);
         }
     }
-    {
-        StageTimer const timer(report_, std::string(timer_name()));
-        take({photons, sets_, paths_, surfaces_changed_, !more_than_moved_, focus_, *visibility_, views, stop,
-              counts});
-    }
-    ++sets_;
-    light_changed_ = surfaces_changed_ = more_than_moved_ = false;
-    has_light_ = true;
+    has_light_ = false;
     stored_ = photons.size();
     flux_ = dvec3{0};
     for (Photon const& p : photons) flux_ += dvec3(p.flux);
+    {
+        StageTimer const timer(report_, std::string(timer_name()));
+        take({std::move(photons), sets_, paths_, surfaces_changed_, !more_than_moved_, focus_, *middle_,
+              middle_changed_, *visibility_, views, stop, counts});
+    }
+    ++sets_;
+    light_changed_ = surfaces_changed_ = more_than_moved_ = middle_changed_ = false;
+    has_light_ = true;
 }
 
 void PhotonRenderer::report_work()
@@ -180,7 +207,8 @@ std::string PhotonRenderer::options() const
     chosen.photons.caustic_paths = int(share() * chosen.photons.caustic_paths);
     std::vector<std::string_view> names{"photons"};
     if (has_caustics()) names.push_back("caustic-photons");
-    return TreeRenderer::options() + " " + changed_options(photon_options(), chosen, names);
+    return TreeRenderer::options() + " " + changed_options(photon_options(), chosen, names) +
+           light_rays_.options(rays_kind());
 }
 
 } // namespace gi

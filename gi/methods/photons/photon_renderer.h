@@ -19,12 +19,14 @@ namespace gi {
 
 /// One set of photons.
 struct PhotonSet {
-    std::span<Photon const> photons;
+    std::vector<Photon> photons;
     std::uint32_t number;  ///< since the last change; 0 = what earlier sets gave is no longer true
     std::uint32_t paths;   ///< light paths of the set
     bool surfaces_changed; ///< since the set before: geometry, materials or coverage
     bool only_moved;       ///< of these, geometry alone
     Bounds focus;          ///< what cameras show, if the world is much larger; else empty
+    vec3 middle;           ///< of nested lattices about the camera, m
+    bool middle_changed;   ///< since the set before
     ExactVisibility const& visibility;
     std::span<FrameView const> views;
     BuildStop const& stop;
@@ -33,6 +35,9 @@ struct PhotonSet {
 
 /// Where the first camera is, m in the world's coordinates; the world's centre without cameras.
 vec3 camera_of(std::span<FrameView const> views, World const& world);
+
+/// True if cameras and sizes are the same.
+bool same_pictures(std::span<FrameView const> a, std::span<FrameView const> b);
 
 class PhotonRenderer : public TreeRenderer {
 public:
@@ -52,22 +57,31 @@ protected:
     /// Indirect bounces that the method's light paths give, at most.
     virtual int bounces() const { return std::min(settings_.photons.reflections, settings_.bounces); }
     virtual PhotonRays rays_kind() const { return settings_.photons.rays; }
+    /// Nested lattices that follow the camera; fewer than 2 = none do.
+    virtual int cascades_about_camera() const { return 0; }
     virtual std::string_view timer_name() const = 0; ///< of take()
-    /// Makes light of a set of photons. Throws Interrupted if a stop is requested, and then keeps what it had.
-    virtual void take(PhotonSet const& set) = 0;
-    /// The light of a pass, after take(). @param caustics  null = none
-    virtual SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics) = 0;
+    /// Most memory that a photon and what stores its light take, as measured.
+    virtual std::size_t bytes_per_photon() const = 0;
+    /// Makes light of a set of photons. Throws Interrupted; there is then no light until another call ends.
+    virtual void take(PhotonSet&& set) = 0;
+    /// The light of a pass, after take(). Throws Interrupted, and may then be called again.
+    /// @param caustics  null = none
+    virtual SurfaceLight const* light(std::span<FrameView const> views, PhotonMap const* caustics,
+                                      BuildStop const& stop) = 0;
     /// Reports what is specific to the method.
     virtual void report_light(Report&) {}
 
     SurfaceLight const* prepare(std::uint32_t index, std::span<FrameView const> views) override;
     std::span<Photon const> caustic_photons() const { return caustics_.photons(); }
+    /// Another number for other caustic photons.
+    std::uint32_t caustics_version() const { return caustics_.version(); }
 
 private:
     using Clock = std::chrono::steady_clock;
     bool frames() const { return stop_ == nullptr; }
     void find_focus(std::span<FrameView const> views);
-    void update(std::span<FrameView const> views, PathCounts& counts);
+    void find_middle(std::span<FrameView const> views);
+    void update(std::uint32_t index, std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     void trace_set(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     void fit_budget(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     double share() const { return double(paths_) / settings_.photons.paths; }
@@ -80,9 +94,11 @@ private:
     std::optional<std::uint32_t> first_index_; ///< of the passes
     std::vector<Camera> cameras_;              ///< of the last call
     Bounds focus_;                             ///< what cameras show, if the world is much larger; else empty
-    std::uint32_t paths_;                      ///< of a set
-    std::uint32_t sets_ = 0;                   ///< since the last change
-    std::optional<TriangleSoup> soup_;         ///< what bounce maps draw
+    std::optional<vec3> middle_;               ///< see PhotonSet
+    bool middle_changed_ = true;
+    std::uint32_t paths_;              ///< of a set
+    std::uint32_t sets_ = 0;           ///< since the last change
+    std::optional<TriangleSoup> soup_; ///< what bounce maps draw
     bool soup_moved_ = false;
     std::size_t stored_ = 0;
     dvec3 flux_{0};

@@ -1,6 +1,6 @@
 #include "gi/methods/photons/screen_volume.h"
 
-#include "gi/kernel/launch.h"
+#include "gi/kernel/stoppable_launch.h"
 #include "gi/methods/photons/lattice_kernels.h"
 #include "gi/methods/photons/splat.h"
 #include "gi/render/sampling.h"
@@ -28,24 +28,22 @@ void ScreenVolume::place(World const& world, TriangleSoup const& soup, CutOuts c
     light_.assign(surfaces_.size(), {});
 }
 
-void ScreenVolume::update(std::span<Photon const> photons)
+void ScreenVolume::update(std::span<Photon const> photons, BuildStop const& stop)
 {
     std::size_t const pixels = surfaces_.size();
     injected_w_ = lost_w_ = dvec3{0};
     light_.assign(pixels, {});
     std::vector<ScreenPhoton> items(photons.size());
     std::vector<std::uint64_t> keys(photons.size());
-    launch(Space::host, "find pixels of photons", photons.size(),
-           FindPhotonPixels{screen_, surfaces_, {photons.data(), photons.size()}, items, keys});
+    launch_host(photons.size(),
+                FindPhotonPixels{screen_, surfaces_, {photons.data(), photons.size()}, items, keys}, stop);
     for (std::size_t k = 0; k < items.size(); ++k)
         if (all_finite(items[k].flux)) (keys[k] < pixels ? injected_w_ : lost_w_) += dvec3(items[k].flux);
     ItemsByCell const sorted = sort_by_cell(keys, pixels);
-    launch(Space::host, "inject into pixels", pixels,
-           SumItems<ScreenPhoton, ShColor>{items, sorted.order, sorted.firsts, light_});
+    launch_host(pixels, SumItems<ScreenPhoton, ShColor>{items, sorted.order, sorted.firsts, light_}, stop);
     std::vector<ShColor> next(settings_.gathers > 0 ? pixels : 0);
     for (int step = 0; step < settings_.gathers; ++step) {
-        launch(Space::host, "gather on screen", pixels,
-               GatherScreen{screen_.size, settings_.radius_m, surfaces_, light_, next});
+        launch_host(pixels, GatherScreen{screen_.size, surfaces_, light_, next}, stop);
         std::swap(light_, next);
     }
 }

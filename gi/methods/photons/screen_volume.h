@@ -13,6 +13,7 @@
 //
 // Memory: 80 bytes a pixel, 128 while gathering.
 
+#include "gi/core/progress.h"
 #include "gi/methods/photons/screen_volume_kernels.h"
 #include "gi/raster/cut_outs.h"
 #include "gi/render/frame_renderer.h"
@@ -23,8 +24,7 @@
 namespace gi {
 
 struct ScreenVolumeSettings {
-    int gathers = 8;    ///< steps; light of a pixel then lies about sqrt(0.4 gathers) pixels around it
-    float radius_m = 0; ///< farther neighbours are declined; 0 = as far as pixels of one surface can be apart
+    int gathers = 8; ///< steps; light of a pixel then lies about sqrt(0.4 gathers) pixels around it
 };
 
 /// Light at the pixels of a screen, for kernels.
@@ -78,8 +78,8 @@ public:
     /// @param seed  of the random decisions about partial coverage
     void place(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, FrameView const& view,
                std::uint32_t seed = 0);
-    /// Replaces the light. To be called after place().
-    void update(std::span<Photon const> photons);
+    /// Replaces the light. To be called after place(). Throws Interrupted, and is then to be called again.
+    void update(std::span<Photon const> photons, BuildStop const& stop = BuildStop(nullptr));
 
     ScreenVolumeView view() const { return {screen_, surfaces_, light_}; }
     bool empty() const { return surfaces_.empty(); }

@@ -104,7 +104,6 @@ struct FindPhotonPixels {
 /// Item = pixel. One step of gathering from the four neighbours.
 struct GatherScreen {
     glm::ivec2 size;
-    float radius; ///< m; farther neighbours are declined, 0 = as far as pixels of one surface can be apart
     View<ScreenSurface const> surfaces;
     View<ShColor const> in;
     View<ShColor> out;
@@ -145,8 +144,7 @@ private:
         float const across = glm::max(std::abs(glm::dot(way, a.normal)), std::abs(glm::dot(way, b.normal)));
         // What bends away by the angle that normals may differ is still one surface.
         constexpr float kBend = 0.6f;
-        return squared <= square(most) && (radius <= 0 || squared <= square(radius)) &&
-               across <= kBend * std::sqrt(squared);
+        return squared <= square(most) && across <= kBend * std::sqrt(squared);
     }
 };
 

@@ -8,15 +8,15 @@
 
 namespace gi {
 
-std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int levels, int border)
+std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int cascades, int border)
 {
     vec3 const extent = bounds.high - bounds.low;
     float const longest = std::max(max_component(extent), 1e-5f * (1 + max_component(glm::abs(bounds.center()))));
     float const coarsest = longest / float(cells - 1 - 2 * border); // the box does not begin with a cell
     std::vector<GridFrame> out;
-    for (int level = 0; level < levels; ++level) {
+    for (int cascade = 0; cascade < cascades; ++cascade) {
         GridFrame f;
-        f.cell = std::ldexp(coarsest, level + 1 - levels);
+        f.cell = std::ldexp(coarsest, cascade + 1 - cascades);
         for (int axis = 0; axis < 3; ++axis) {
             // In cells from the world's origin.
             double const side = double(f.cell);
@@ -31,23 +31,23 @@ std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cell
     return out;
 }
 
-std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int cells, int levels)
+std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int cells, int cascades)
 {
     float const about = max_component(bounds.high - bounds.low) / float(cells);
     vec3 const shift = bounds.low - about * vec3{0.37f, 0.41f, 0.43f};
     std::vector<GridFrame> frames =
-        nested_frames({bounds.low - shift, bounds.high - shift}, center - shift, cells, levels, 0);
+        nested_frames({bounds.low - shift, bounds.high - shift}, center - shift, cells, cascades, 0);
     for (GridFrame& f : frames) f.low += shift;
     return frames;
 }
 
-int nested_levels(Bounds const& bounds, Bounds const& focus, int most)
+int nested_cascades(Bounds const& bounds, Bounds const& focus, int most)
 {
     if (bounds.empty() || focus.empty()) return 1;
     float const whole = max_component(bounds.high - bounds.low), part = max_component(focus.high - focus.low);
-    int levels = 1;
-    while (levels < most && std::ldexp(whole, -levels) >= part) ++levels;
-    return levels;
+    int cascades = 1;
+    while (cascades < most && std::ldexp(whole, -cascades) >= part) ++cascades;
+    return cascades;
 }
 
 std::uint64_t dense_bytes(std::span<GridFrame const> frames, std::size_t cell_bytes)

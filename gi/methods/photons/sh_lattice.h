@@ -73,16 +73,16 @@ void for_grids_at(Frames const& grids, vec3 position, Function const& of)
 /// other one are half as wide as the next one's. All are placed by whole cells from the world's origin, so that
 /// light does not swim when the point moves; they stay in the last one.
 /// @param cells  along the longest side, at least 2 + 2 border  @param border  cells beyond the box
-/// @param levels  at least 1  @param bounds  not empty
-std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int levels, int border = 1);
+/// @param cascades  at least 1  @param bounds  not empty
+std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cells, int cascades, int border = 1);
 
 /// The same without a border, and so placed, relative to the box, that walls along the axes do not lie between two
 /// cells: for light that is kept where surfaces are.
-std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int cells, int levels);
+std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int cells, int cascades);
 
 /// Number of nested grids about the centre of a focus of which the finest just holds it, at most `most`; 1 if it
 /// is empty.
-int nested_levels(Bounds const& bounds, Bounds const& focus, int most);
+int nested_cascades(Bounds const& bounds, Bounds const& focus, int most);
 /// The centre of a focus, or a point if it is empty.
 inline vec3 center_of(Bounds const& focus, vec3 otherwise) { return focus.empty() ? otherwise : focus.center(); }
 

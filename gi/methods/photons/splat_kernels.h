@@ -53,9 +53,10 @@ GI_FN inline TileRange tiles_of(ScreenMap const& screen, vec3 center, float radi
     if (!(w + dw > 0)) return {};
     for (int axis = 0; axis < 2; ++axis) {
         float const d = radius * row_length(axis), a = p[axis] - d, b = p[axis] + d;
+        // About the camera's plane, only the side towards which a sphere lies wholly is a bound.
         bool const near = !(w - dw > 0);
-        low[axis] = near ? -kInf : a / (a < 0 ? w - dw : w + dw);
-        high[axis] = near ? kInf : b / (b > 0 ? w - dw : w + dw);
+        low[axis] = a >= 0 ? a / (w + dw) : near ? -kInf : a / (w - dw);
+        high[axis] = b <= 0 ? b / (w + dw) : near ? kInf : b / (w - dw);
     }
     TileRange out;
     glm::ivec2 const tiles{screen.columns(), screen.rows()};
@@ -140,32 +141,6 @@ struct TilesView {
     {
         std::uint32_t const begin = tile == 0 ? 0 : ends[tile - 1];
         return {list.data + begin, ends[tile] - begin};
-    }
-};
-
-/// A pixel's surface, as a G-buffer holds it.
-struct SplatSurface {
-    ShadingPoint at;
-    vec3 wo;                ///< unit, in at.frame
-    std::int32_t tile = -1; ///< -1 = nothing is seen
-};
-
-/// Item = pixel.
-struct SplatPixels {
-    TilesView tiles;
-    View<SplatSurface const> surfaces;
-    View<vec3> radiance;
-
-    GI_FN void operator()(std::size_t i) const
-    {
-        SplatSurface const& s = surfaces[i];
-        PhotonSum sum(s.at, s.wo, false);
-        if (s.tile >= 0)
-            for (std::uint32_t const k : tiles.of_tile(std::size_t(s.tile))) {
-                PhotonKernel const& kernel = tiles.kernels[k];
-                sum.add(kernel, tiles.photons[kernel.photon]);
-            }
-        radiance[i] = sum.radiance();
     }
 };
 

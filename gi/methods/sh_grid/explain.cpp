@@ -39,13 +39,7 @@ std::vector<PlanItem> explain_sh_grid(World const& world, RenderSettings const& 
     } else {
         out.push_back({"fine grid of what is shown", false, extents});
     }
-    std::size_t const smooth = find_caustic_targets(world, {}).triangles.size();
-    out.push_back({"caustics", smooth > 0 && settings.photons.caustic_paths > 0,
-                   smooth == 0 ? std::string("nothing mirrors or refracts without scattering")
-                   : settings.photons.caustic_paths > 0
-                       ? fmt::format("{} light paths per pass begin on {} smooth triangles",
-                                     settings.photons.caustic_paths, smooth)
-                       : fmt::format("{} smooth triangles, but --caustic-photons 0", smooth)});
+    out.push_back(explain_caustics(world, settings.photons));
     bool const moves = world.static_triangles < world.triangles.size();
     out.push_back(
         {"photons", true,

@@ -37,6 +37,7 @@ public:
     /// The finest level first; empty without indirect light.
     std::span<GridLevel const> levels() const { return levels_; }
     void report_counts();
+    std::string ray_options() const { return light_rays_.options(settings_.photons.rays); } ///< see LightRays
 
 private:
     using Clock = std::chrono::steady_clock;

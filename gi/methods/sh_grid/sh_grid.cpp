@@ -16,7 +16,8 @@ public:
                    StopRequest const* stop)
         : TreeRenderer(world, settings, first_moving, report, stop),
           field_(world, settings, first_moving, report, stop),
-          caustics_(world, settings, report, stop)
+          stop_(stop),
+          caustics_(world, settings, report)
     {
     }
     void changed(Changes const& changes) override
@@ -45,7 +46,7 @@ public:
         chosen.sh_grid.voxels = field_.voxels();
         return TreeRenderer::options() + " " +
                changed_options(photon_options(), chosen, {"photons", "caustic-photons"}) + " " +
-               changed_options(sh_grid_options(), chosen, {"voxels"});
+               changed_options(sh_grid_options(), chosen, {"voxels"}) + field_.ray_options();
     }
 
 protected:
@@ -55,7 +56,7 @@ protected:
         field_.prepare(*visibility_, index, views, counts);
         auto const levels = field_.levels();
         caustics_.prepare(*visibility_, index, views, levels.size() > 1 ? levels[0].bounds : Bounds{},
-                          photon_share(), counts);
+                          photon_share(), BuildStop(stop_), counts);
         rays_ += double(counts.nearest_rays + counts.shadow_rays);
         work_.paths += counts;
         if (light_) unseen_ += light_->unseen();
@@ -70,6 +71,7 @@ private:
     double photon_share() const { return double(field_.light_paths()) / settings_.photons.paths; }
 
     IndirectField field_;
+    StopRequest const* stop_;
     Caustics caustics_;
     std::uint64_t unseen_ = 0; ///< see FieldLight::unseen()
     std::optional<FieldLight> light_;
