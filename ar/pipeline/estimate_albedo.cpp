@@ -42,12 +42,12 @@ public:
         }
     }
 
-    void prepare(std::span<AlbedoFrame const> frames)
+    void prepare(std::span<PosedFrame const> frames)
     {
         gi::World const world = build();
         SurfaceView const surfaces(world, Surfaces::all);
         glm::ivec2 const pinhole_px = warp_.from().size_px;
-        for (AlbedoFrame const& f : frames) {
+        for (PosedFrame const& f : frames) {
             Prepared p;
             p.camera = gi_camera(warp_.from(), f.world_from_camera);
             FirstSurfaces const s = surfaces.seen(p.camera, pinhole_px.x, pinhole_px.y, 0);
@@ -173,7 +173,7 @@ gi::dvec3 vector_of(cv::Vec3f const& v) { return {v[0], v[1], v[2]}; }
 } // namespace
 
 AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentMap const> light,
-                                ArCamera const& camera, std::span<AlbedoFrame const> frames,
+                                ArCamera const& camera, std::span<PosedFrame const> frames,
                                 EstimateSettings const& settings, gi::StopRequest const& stop, gi::Report& report)
 {
     if (real.patches.empty())

@@ -4,18 +4,11 @@
 
 #include "ar/composite/albedo.h"
 #include "ar/pipeline/pipeline.h"
+#include "ar/pipeline/posed_frame.h"
 #include "ar/scene/real_scene.h"
 #include "gi/core/progress.h"
 
 namespace viewer {
-
-/// A frame without virtual objects.
-struct AlbedoFrame {
-    cv::Mat rgb; ///< as ar::picture_of, of the calibration's size
-    ar::Exposure exposure;
-    ar::Pose world_from_camera;
-    double confidence = 1; ///< of the pose
-};
 
 struct EstimateSettings {
     double resolution = 0.5;  ///< compared pixels per camera pixel, in each direction
@@ -37,7 +30,7 @@ struct AlbedoEstimate {
 /// @param light  environment map in the world's frame; null = none
 /// @throws gi::InputError nothing to estimate, no light, no frame
 AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentMap const> light,
-                                ArCamera const& camera, std::span<AlbedoFrame const> frames,
+                                ArCamera const& camera, std::span<PosedFrame const> frames,
                                 EstimateSettings const& settings, gi::StopRequest const& stop, gi::Report& report);
 
 } // namespace viewer

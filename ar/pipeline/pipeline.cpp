@@ -196,7 +196,7 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
         // Only a measured pose tells which direction a pixel is light from.
         if (r.used.state == ar::PoseState::tracked)
             if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
-                                         r.used.world_from_camera->rotation, time_s)) {
+                                         *r.used.world_from_camera, time_s, stop, report_)) {
                 renderer_.set_environment(std::move(map));
                 light_picture_ = picture_of_light(light_.map());
             }

@@ -3,7 +3,10 @@
 
 #include "ar/camera/frame.h"
 #include "ar/light/live_probe.h"
+#include "ar/pipeline/posed_frame.h"
 #include "ar/scene/session_file.h"
+#include "gi/core/progress.h"
+#include "gi/core/report.h"
 #include "gi/scene/model/scene.h"
 
 #include <memory>
@@ -15,17 +18,24 @@ public:
     /// @throws gi::InputError the map cannot be read
     explicit PlaceLight(ArSession const& session);
 
-    /// The captured map; null: none.
+    /// The captured map; with `from: frame`, grey until a frame was seen; null: none.
     std::shared_ptr<gi::EnvironmentMap const> begin() const;
-    /// Updates the estimate with a frame. @return a new map if one is due or a lamp was switched; else null
+    /// Updates the estimate with a frame. The first one takes a second or two with `from: frame`; a frame that
+    /// does not suffice is counted in the report, and the next one is tried.
+    /// @return a new map if one is due or a lamp was switched; else null
     std::shared_ptr<gi::EnvironmentMap const> follow(cv::Mat const& rgb, ar::Photometry const& photometry,
                                                      ar::Exposure const& exposure, ar::CameraModel const& camera,
-                                                     glm::dquat const& world_from_camera, double time_s);
+                                                     ar::Pose const& world_from_camera, double time_s,
+                                                     gi::StopRequest const& stop, gi::Report& report);
     /// The current map: lat-long radiance, CV_32FC3; empty = none.
     cv::Mat map() const { return probe_ ? probe_->map() : captured_; }
 
 private:
-    cv::Mat captured_; ///< in the world's frame; empty = none
+    bool estimate(PosedFrame const& frame, ar::Photometry const& photometry, ar::CameraModel const& camera,
+                  gi::StopRequest const& stop, gi::Report& report);
+
+    cv::Mat captured_;             ///< in the world's frame; empty = none
+    std::optional<ArReal> unseen_; ///< real surfaces from which the light is still to be estimated
     std::optional<ar::LiveProbe> probe_;
     int every_, frames_ = 0;
 };

@@ -22,22 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Squares are 25 pixels wide at 1 m in pictures of 640 x 480.
-ar::MarkerMap synthetic_markers(DeskMarkers which)
-{
-    glm::dquat const flat = glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0));
-    if (which == DeskMarkers::one) return {{{"DICT_4X4_50", 7, 0.07, {flat, {0.05, 0.0005, 0.15}}}}, {}, {}};
-    ar::CharucoBoard board;
-    board.squares_x = 7;
-    board.squares_y = 5;
-    board.square_m = 0.045;
-    board.marker_m = 0.034;
-    board.dictionary = "DICT_4X4_50";
-    // Flat on the table, its top away from the camera.
-    board.world_from_board = {flat, {-0.1575, 0.0005, 0.32}};
-    return {{}, {board}, {}};
-}
-
 PaperOnTable paper_of(ar::MarkerMap const& map)
 {
     constexpr double dots_per_m = 4000;
@@ -138,6 +122,26 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::
 
 } // namespace
 
+ar::MarkerMap synthetic_markers(DeskMarkers which)
+{
+    glm::dquat const flat = glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0));
+    if (which == DeskMarkers::one) return {{{"DICT_4X4_50", 7, 0.07, {flat, {0.05, 0.0005, 0.15}}}}, {}, {}};
+    ar::CharucoBoard board;
+    board.squares_x = 7;
+    board.squares_y = 5;
+    board.square_m = 0.045;
+    board.marker_m = 0.034;
+    board.dictionary = "DICT_4X4_50";
+    // Flat on the table, its top away from the camera.
+    board.world_from_board = {flat, {-0.1575, 0.0005, 0.32}};
+    return {{}, {board}, {}};
+}
+
+PaperOnTable synthetic_paper(DeskMarkers which)
+{
+    return which == DeskMarkers::none ? PaperOnTable{} : paper_of(synthetic_markers(which));
+}
+
 int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Report& report)
 {
     if (!o.quick && o.markers != DeskMarkers::board)
@@ -155,7 +159,7 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
                              "choose another folder");
     SyntheticCamera const camera = synthetic_camera(o.size_px);
     ar::MarkerMap const markers = synthetic_markers(o.markers);
-    PaperOnTable const paper = o.markers == DeskMarkers::none ? PaperOnTable{} : paper_of(markers);
+    PaperOnTable const paper = synthetic_paper(o.markers);
     std::vector<ar::TimedPose> poses;
     for (int f = 0; f < o.frames; ++f)
         poses.push_back({f / o.rate_hz, (o.apart ? synthetic_pose_apart : synthetic_pose)(

@@ -3,6 +3,7 @@
 //   frames/000000.png ...  the camera's frames      truth/000000.png ...  with the virtual objects really there
 //   camera.yaml  markers.yaml  poses.csv (true)     probe.exr   near.glb   statue.glb   session.yaml
 
+#include "ar/markers/marker_map.h"
 #include "ar/pipeline/synthetic.h"
 
 #include <filesystem>
@@ -11,6 +12,12 @@ namespace viewer {
 
 /// What is printed and lies on the table.
 enum class DeskMarkers { board, one, none };
+
+/// Markers of a synthetic session, as they lie on the table: of the board, squares are 25 pixels wide at 1 m in
+/// pictures of 640 x 480.
+ar::MarkerMap synthetic_markers(DeskMarkers which);
+/// Their print.
+PaperOnTable synthetic_paper(DeskMarkers which);
 
 struct SynthesizeOptions {
     std::filesystem::path folder;

@@ -81,12 +81,25 @@ private:
 
     void read_light(Yaml const& l)
     {
-        l.only_keys({"map", "turn_deg", "scale", "live"});
+        l.only_keys({"map", "from", "turn_deg", "scale", "live"});
         if (l.has("live")) session_.live_light = int(l.at("live").integer(0, 100000));
+        if (l.has("from")) {
+            session_.light_from_frame = choice<bool>(l.at("from"), {{"frame", true}});
+            for (char const* key : {"map", "turn_deg", "scale"})
+                if (l.has(key))
+                    throw l.at(key).error(fmt::format("'{}' beside 'from: frame'", key),
+                                          "the light is estimated, in the world's axes and the camera's unit",
+                                          "remove one of the two");
+            if (!root_.has("real"))
+                throw l.at("from").error("'from: frame' without 'real'",
+                                         "light is estimated from the shading of known surfaces",
+                                         "model the table: real: {planes: [...]}");
+        }
         if (l.has("map"))
             session_.light = path(l.at("map"));
-        else if (session_.live_light == 0)
-            throw l.error("no 'map'", "the light needs a source", "set a lat-long EXR or HDR file, or live: 10");
+        else if (session_.live_light == 0 && !session_.light_from_frame)
+            throw l.error("no 'map'", "the light needs a source",
+                          "set a lat-long EXR or HDR file, from: frame, or live: 10");
         if (l.has("turn_deg")) session_.light_turn_deg = l.at("turn_deg").number(-360, 360);
         if (l.has("scale")) session_.light_scale = l.at("scale").number(0, 1e9);
     }

@@ -74,7 +74,8 @@ struct ArSession {
     std::filesystem::path file;
     ArFrames frames;
     std::filesystem::path camera, markers;
-    std::filesystem::path light; ///< lat-long map; empty: only lights of the real scene
+    std::filesystem::path light;   ///< lat-long map; empty: only lights of the real scene
+    bool light_from_frame = false; ///< no map: the light is estimated from the first frame with a trusted pose
     double light_turn_deg = 0, light_scale = 1;
     int live_light = 0; ///< update the light from the camera's frames every this many frames; 0 = never
     ArReal real;

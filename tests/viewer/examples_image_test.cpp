@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                                          "bench accuracy", "bench thesis", "track", "track listen", "track send",
                                          "track walk", "ar", "ar synthesize", "ar run", "ar track", "ar bench",
                                          "ar cameras", "ar record", "ar replay", "ar board", "ar calibrate",
-                                         "ar map", "ar albedo"),
+                                         "ar map", "ar albedo", "ar light"),
                          [](auto const& example) {
                              std::string name = *example.param == '\0' ? "program" : example.param;
                              std::replace(name.begin(), name.end(), ' ', '_');

@@ -36,12 +36,12 @@ protected:
         light_ = std::make_shared<gi::EnvironmentMap const>(environment_of(map));
     }
 
-    std::vector<AlbedoFrame> frames(gi::Scene scene)
+    std::vector<PosedFrame> frames(gi::Scene scene)
     {
         scene.environment = *light_;
         SyntheticQuality quality;
         quality.paths = 48;
-        std::vector<AlbedoFrame> out;
+        std::vector<PosedFrame> out;
         for (double const t : {0.1, 0.8}) {
             ar::Pose const pose = synthetic_pose(t);
             cv::Mat const radiance =
@@ -51,7 +51,7 @@ protected:
         return out;
     }
 
-    AlbedoEstimate estimate(std::span<AlbedoFrame const> seen)
+    AlbedoEstimate estimate(std::span<PosedFrame const> seen)
     {
         EstimateSettings s;
         s.resolution = 1;
@@ -84,7 +84,7 @@ TEST_F(Albedos, AreThoseOfThePlace)
 TEST_F(Albedos, WithNothingToGoByAreRefused)
 {
     EXPECT_THROW(estimate({}), gi::InputError) << "no frame";
-    std::vector<AlbedoFrame> const one{{cv::Mat(72, 96, CV_8UC3, cv::Scalar::all(90)), {}, synthetic_pose(0), 1}};
+    std::vector<PosedFrame> const one{{cv::Mat(72, 96, CV_8UC3, cv::Scalar::all(90)), {}, synthetic_pose(0), 1}};
     light_ = nullptr;
     EXPECT_THROW(estimate(one), gi::InputError) << "no light";
 }

@@ -182,6 +182,17 @@ TEST(ArSessions, ThatAreWrongAreRefusedWithTheirPlace)
               std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "lihgt: {map: x}\n").find("s.yaml:5:1"), std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "light: {turn_deg: 3}\n").find("no 'map'"), std::string::npos);
+    std::string const real = "real: {scene: near.glb}\n";
+    EXPECT_TRUE(
+        parse_ar_session(kLeastSession + real + "light: {from: frame, live: 5}\n", "s.yaml").light_from_frame);
+    EXPECT_NE(session_refusal(kLeastSession + "light: {from: frame}\n").find("'from: frame' without 'real'"),
+              std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + real + "light: {from: frame, map: p.exr}\n")
+                  .find("s.yaml:6:27: 'map' beside 'from: frame'"),
+              std::string::npos)
+        << session_refusal(kLeastSession + real + "light: {from: frame, map: p.exr}\n");
+    EXPECT_NE(session_refusal(kLeastSession + real + "light: {from: video}\n").find("s.yaml:6:15"),
+              std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "render: {paths: 0}\n").find("s.yaml:5:"), std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "composite: {blend: add}\n").find("difference, ratio"),
               std::string::npos);

@@ -39,6 +39,7 @@ void add_ar_replay(CLI::App& ar, int& exit_code);
 void add_ar_board(CLI::App& ar, int& exit_code);
 void add_ar_map(CLI::App& ar, int& exit_code);
 void add_ar_albedo(CLI::App& ar, int& exit_code);
+void add_ar_light(CLI::App& ar, int& exit_code);
 void add_ar_calibrate(CLI::App& ar, int& exit_code);
 void add_ar_response(CLI::App& ar, int& exit_code);
 void add_ar_vignetting(CLI::App& ar, int& exit_code);

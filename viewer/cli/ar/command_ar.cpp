@@ -30,6 +30,7 @@ void add_ar(CLI::App& app, int& exit_code)
     add_ar_probe(*ar, exit_code);
     add_ar_map(*ar, exit_code);
     add_ar_albedo(*ar, exit_code);
+    add_ar_light(*ar, exit_code);
 }
 
 } // namespace viewer

@@ -1,10 +1,7 @@
 #include "ar/markers/marker_map_file.h"
 #include "ar/pipeline/estimate_albedo.h"
 #include "ar/pose/pose_file.h"
-#include "ar/runtime/frame_clock.h"
-#include "ar/runtime/frames_apart.h"
 #include "ar/runtime/runner.h"
-#include "ar/runtime/source_losses.h"
 #include "ar/scene/session_inputs.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
@@ -13,8 +10,8 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
-#include "viewer/cli/ar/ar_camera_path.h"
 #include "viewer/cli/ar/ar_outcome.h"
+#include "viewer/cli/ar/ar_posed_frames.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -27,63 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct AlbedoArguments {
-    std::string session, out, poses;
-    int views = 8, frames = 0;
+    std::string session, out;
+    PosedFrameChoice read;
     bool scene = false;
     EstimateSettings settings;
 };
-
-struct SeenFrames {
-    std::vector<AlbedoFrame> kept;
-    int found = 0, without_pose = 0, refused = 0;
-};
-
-SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera,
-                gi::StopRequest const& stop, gi::Report& report)
-{
-    CameraPath path(a.poses, session, camera, report);
-    ar::OpenOptions open = session.frames.options;
-    open.pace = ar::Pace::fastest;
-    auto const source = ar::open_source(session.frames.source, open);
-    if (a.frames == 0 && (source->description().is_live || session.frames.source == "counter"))
-        throw gi::InputError("frames of '" + session.frames.source + "', all of them", "the source never ends",
-                             "limit their number: --frames 300");
-    FrameClock clock(session.frames.source, source->description(), false);
-    SeenFrames seen;
-    SpacedFrames<AlbedoFrame> kept(std::size_t(a.views));
-    for (int n = 0; !stop.requested() && (a.frames == 0 || n < a.frames);) {
-        std::optional<ar::Frame> const frame = source->next(std::chrono::milliseconds(200));
-        if (!frame) {
-            if (source->state().kind != ar::SourceState::Kind::running) break;
-            continue;
-        }
-        ++n;
-        double const time_s = clock(*frame);
-        try {
-            auto const pose = path.at(*frame, time_s);
-            if (!pose) {
-                ++seen.without_pose;
-                continue;
-            }
-            ++seen.found;
-            if (!kept.wants_next()) {
-                kept.skip();
-                continue;
-            }
-            cv::Mat const rgb = ar::picture_of(*frame);
-            if (rgb.size() != cv::Size(camera.model.size_px.x, camera.model.size_px.y))
-                throw gi::InputError("a frame of another size", "the calibration differs", "calibrate again");
-            kept.add({rgb.clone(), frame->exposure, pose->first, pose->second});
-        } catch (gi::InputError const& e) {
-            ++seen.refused;
-            report.lose("frames that could not be used", 1, e.what());
-        }
-    }
-    report_losses(source->counts(), source->state(), report);
-    seen.refused += int(source->counts().refused);
-    seen.kept = kept.take();
-    return seen;
-}
 
 void write_texture(fs::path const& file, cv::Mat const& linear)
 {
@@ -91,7 +36,7 @@ void write_texture(fs::path const& file, cv::Mat const& linear)
     gi::write_png(file, srgb.cols, srgb.rows, {srgb.ptr(), srgb.total() * 3});
 }
 
-std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
+std::string describe(AlbedoEstimate const& e, PosedFrames const& seen)
 {
     ar::AlbedoFit const& fit = e.solution.fit;
     std::string text = fmt::format("camera found in {} frames ({} without, {} unusable); {} compared\n",
@@ -123,8 +68,8 @@ fs::path texture_beside(fs::path const& out, std::size_t patch)
 void check_albedo_outputs(AlbedoArguments const& a, ArSession session, fs::path const& out, RealScene const& real)
 {
     session.real.estimates.clear();
-    if (!a.poses.empty()) session.tracked.reset();
-    std::vector<std::string> read{a.poses}, written{out.string()};
+    if (!a.read.poses.empty()) session.tracked.reset();
+    std::vector<std::string> read{a.read.poses}, written{out.string()};
     for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
     for (std::size_t k = 0; k < real.patches.size(); ++k)
         if (real.patches[k].texels > 0) written.push_back(texture_beside(out, k).string());
@@ -140,6 +85,10 @@ int run_albedo(AlbedoArguments const& a)
                                  "write albedo: estimate at its planes, boxes, meshes or depth");
         session.real.estimate_scene = true;
     }
+    if (session.light_from_frame)
+        throw gi::InputError("'light: {from: frame}' in '" + a.session + "'",
+                             "albedos are estimated from frames and known light",
+                             "run lightwell ar light first, which estimates both, and set its map");
     fs::path const out = a.out.empty() ? session.real.estimates : fs::path(a.out);
     gi::Report report;
     gi::StopRequest stop;
@@ -147,7 +96,7 @@ int run_albedo(AlbedoArguments const& a)
     ArCamera const camera = load_ar_camera(session.camera);
     RealScene real = model_of(session.real, report);
     check_albedo_outputs(a, session, out, real);
-    SeenFrames const seen = look(a, session, camera, stop, report);
+    PosedFrames const seen = read_posed_frames(a.read, session, camera, stop, report);
     if (stop.requested()) return kInterrupted;
     AlbedoEstimate estimate = estimate_albedos(std::move(real), PlaceLight(session).begin(), camera, seen.kept,
                                                a.settings, stop, report);
@@ -175,12 +124,12 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
                   "with 'albedo: estimate' or 'texture: estimate' on the objects to estimate")
         ->required();
     c->add_option("--out", a->out, "File for the albedos (default: the one that the session reads)");
-    c->add_option("--poses", a->poses, "Camera poses (CSV or TUM), instead of using the markers");
+    c->add_option("--poses", a->read.poses, "Camera poses (CSV or TUM), instead of using the markers");
     c->add_flag("--scene", a->scene, "Also estimate the scene's materials, if the session does not request it");
-    c->add_option("--views", a->views, "Number of frames to compare, spread over the session")
+    c->add_option("--views", a->read.views, "Number of frames to compare, spread over the session")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--frames", a->frames, "Read at most this many frames; 0 = all (files only)")
+    c->add_option("--frames", a->read.frames, "Read at most this many frames; 0 = all (files only)")
         ->check(CLI::NonNegativeNumber);
     c->add_option("--resolution", a->settings.resolution, "Pixels compared per pixel of the camera")
         ->check(CLI::Range(0.05, 1.0))

@@ -12,6 +12,7 @@
 #include "viewer/base/validators.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/cli/ar/ar_chain_check.h"
+#include "viewer/cli/ar/ar_light_bench.h"
 #include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/commands.h"
 #include "viewer/report/table_file.h"
@@ -36,6 +37,7 @@ struct BenchArguments {
     int frames = 20, still_frames = 16;
     std::uint32_t truth_paths = 8;
     bool counter = false, window = false, json = false;
+    LightBenchSettings light_check;
 };
 
 std::string size_text(glm::ivec2 px) { return fmt::format("{}x{}", px.x, px.y); }
@@ -278,12 +280,24 @@ int run_counter(BenchArguments const& a)
     return checked.good ? 0 : 1;
 }
 
+int run_light_check(BenchArguments const& a)
+{
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    BenchTable table = measure_light_estimates(a.light_check, stop, report);
+    keep({&table}, a);
+    print_losses(report);
+    return stop.requested() ? kInterrupted : 0;
+}
+
 int run(BenchArguments const& a)
 {
     if (!a.out.empty()) {
         check_folder(a.out);
         gi::make_folder(a.out);
     }
+    if (!a.light_check.maps.empty()) return run_light_check(a);
     return a.counter ? run_counter(a) : run_bench(a);
 }
 
@@ -335,6 +349,22 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_flag("--counter", a->counter,
                 "Instead, check that shown frames and rendering match: frames show their number, and a ball "
                 "moves with the camera. Exit code 1 if they do not");
+    CLI::Option* const maps =
+        c->add_option("--light-maps", a->light_check.maps,
+                      "Instead, check ar light: render the desk (320 x 240) under each of these environment maps, "
+                      "estimate its light from the frame, compare")
+            ->excludes(session);
+    c->add_option("--light-views", a->light_check.views, "Frames that the light is estimated from")
+        ->check(CLI::Range(1, 20))
+        ->needs(maps)
+        ->capture_default_str();
+    c->add_option("--light-paths", a->light_check.paths, "Paths per pixel of these frames")
+        ->check(CLI::Range(1, 100000))
+        ->needs(maps)
+        ->capture_default_str();
+    c->add_flag("--light-albedo-unknown", a->light_check.unknown_albedo,
+                "Only the albedo of the paper is known, not that of table and things")
+        ->needs(maps);
     c->add_option("--out", a->out, "Folder for the tables, as JSON and CSV");
     c->add_flag("--json", a->json, "Print the tables as JSON");
     c->footer(R"(Examples:

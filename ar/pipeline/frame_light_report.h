@@ -1,0 +1,14 @@
+#pragma once
+// What an estimate of light from frames found and how far it can be trusted, as text for people.
+
+#include "ar/pipeline/frame_light.h"
+
+namespace viewer {
+
+std::string describe(FrameLight const& light);
+/// Sentences about numbers that must not be relied on; empty = none.
+std::vector<std::string> warnings_of(FrameLight const& light);
+/// Writes the map as OpenEXR: R, G, B, and the layer "known" (1 = determined by the frames, 0 = a guess).
+void write_light(std::filesystem::path const& file, FrameLight const& light, gi::Report& report);
+
+} // namespace viewer
