@@ -12,24 +12,28 @@ constexpr int kBlock_px = 8;
 
 /// Mean and standard deviation of each element over pictures.
 struct Moments {
+    cv::Mat first;        ///< CV_64F; differences from it are summed, so that equal pictures deviate by exactly 0
     cv::Mat sum, squares; ///< CV_64F
     int count = 0;
 
     void add(cv::Mat const& picture)
     {
-        cv::Mat wide;
-        picture.convertTo(wide, CV_64F);
+        cv::Mat difference;
+        picture.convertTo(difference, CV_64F);
         if (count++ == 0) {
-            sum = cv::Mat::zeros(wide.size(), wide.type());
+            first = difference.clone();
+            sum = cv::Mat::zeros(first.size(), first.type());
             squares = sum.clone();
         }
-        sum += wide;
-        squares += wide.mul(wide);
+        difference -= first;
+        sum += difference;
+        squares += difference.mul(difference);
     }
-    cv::Mat mean() const { return sum / count; }
+    cv::Mat mean() const { return first + sum / count; }
     cv::Mat deviation() const
     {
-        cv::Mat variance = squares / count - mean().mul(mean()), root;
+        cv::Mat const shift = sum / count;
+        cv::Mat variance = squares / count - shift.mul(shift), root;
         cv::sqrt(cv::max(variance, 0), root);
         return root;
     }
