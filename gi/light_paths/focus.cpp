@@ -1,6 +1,7 @@
 #include "gi/light_paths/focus.h"
 
 #include "gi/core/rng.h"
+#include "gi/render/sampling.h"
 #include "gi/scene/shading/shading_point.h"
 #include "gi/scene/shading/warp.h"
 

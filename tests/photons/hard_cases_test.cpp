@@ -9,6 +9,7 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <optional>
 #include <thread>
 
 namespace gi::test {
@@ -262,7 +263,7 @@ TEST(PhotonStops, WithoutCausticPhotons)
         RenderSettings s = small_photon_picture(8, 4096);
         s.sh_grid.voxels = 16;
         s.paths = 1000;
-        s.photons.caustic_paths = 4000000;
+        s.photons.caustic_paths = 16000000;
         RenderResult r;
         double const took = stop_after_first_pass(m, world, in_the_room(), s, 0.4, r);
         fmt::print("{}: {} passes, stopped {:.3f} s after the request\n", m.name, r.paths, took);
@@ -303,29 +304,32 @@ TEST(PhotonStops, AfterTracing)
                 if (name == stage.name) in_stage += seconds;
             fmt::print("{}: {:.3f} of {:.3f} s in {}\n", m.name, in_stage, whole, stage.name);
             ASSERT_GT(in_stage, 0.1) << "too short to tell";
-            StopRequest stop;
-            std::atomic<bool> asked = false;
-            Clock::time_point when;
             double const before = whole - in_stage;
-            std::thread asks([&] {
-                std::this_thread::sleep_for(std::chrono::duration<double>(before + 0.1 * in_stage));
-                when = Clock::now();
-                asked = true;
-                stop.request();
-            });
-            Report report;
-            bool interrupted = false;
-            try {
-                m.render(world, in_the_room(), stage.settings, stop, {}, report);
-            } catch (Interrupted const&) {
-                interrupted = true;
+            for (double const share : {0.1, 0.5}) {
+                bool interrupted = false;
+                // Another run may be faster, and end before the request.
+                for (int attempt = 0; attempt < 3 && !interrupted; ++attempt) {
+                    StopRequest stop;
+                    std::optional<Clock::time_point> asked;
+                    std::thread asks([&] {
+                        std::this_thread::sleep_for(std::chrono::duration<double>(before + share * in_stage));
+                        asked = Clock::now();
+                        stop.request();
+                    });
+                    Report report;
+                    try {
+                        m.render(world, in_the_room(), stage.settings, stop, {}, report);
+                    } catch (Interrupted const&) {
+                        interrupted = true;
+                    }
+                    auto const end = Clock::now();
+                    asks.join();
+                    double const took = std::chrono::duration<double>(end - *asked).count();
+                    if (interrupted) fmt::print("{}: stopped {:.3f} s after the request\n", m.name, took);
+                    EXPECT_LT(took, 0.2) << m.name;
+                }
+                EXPECT_TRUE(interrupted) << m.name;
             }
-            double const took = std::chrono::duration<double>(Clock::now() - when).count();
-            EXPECT_TRUE(asked) << "the render had ended already";
-            asks.join();
-            fmt::print("{}: stopped {:.3f} s after the request\n", m.name, took);
-            EXPECT_TRUE(interrupted) << m.name;
-            EXPECT_LT(took, 0.2) << m.name;
         }
 }
 

@@ -189,7 +189,7 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
 void PhotonRenderer::report_work()
 {
     TreeRenderer::report_work();
-    if (has_light_) {
+    if (has_light_ || sets_ > 0) {
         report_.count("light paths of a set of photons", double(paths_));
         report_.count("photons of the last set", double(stored_));
         report_.count("sets of photons since the last change", double(sets_));
