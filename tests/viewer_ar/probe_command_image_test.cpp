@@ -2,6 +2,7 @@
 // there.
 
 #include "ar/calibration/calibration_file.h"
+#include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
 #include "ar/light/map_file.h"
 #include "ar/markers/marker_map_file.h"
@@ -11,6 +12,8 @@
 #include "tests/viewer/run_program.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
 namespace viewer::test {
@@ -31,10 +34,12 @@ ar::Calibration camera()
 }
 
 /// The board and a bright backdrop, before them the ball; 2 x 2 rays per pixel of it.
-cv::Mat traced(ar::test::DrawnWorld const& world, ar::Pose const& pose, ar::test::Environment const& light)
+cv::Mat traced(ar::test::DrawnWorld const& world, ar::Pose const& pose, ar::test::Environment const& light,
+               cv::Vec3d lit)
 {
     cv::Mat picture;
     cv::cvtColor(world.light(pose), picture, cv::COLOR_GRAY2RGB);
+    picture = picture.mul(cv::Scalar(lit[0], lit[1], lit[2]));
     glm::dvec3 const eye = pose.position_m - kBall;
     for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x) {
@@ -56,7 +61,8 @@ cv::Mat traced(ar::test::DrawnWorld const& world, ar::Pose const& pose, ar::test
 }
 
 /// a0.png, a1.png, a2.png, b0.png, ...
-void write_brackets(TemporaryFolder const& folder, ar::test::Environment const& light)
+/// @param lit  colour of the light on the board, relative to that of its drawing
+void write_brackets(TemporaryFolder const& folder, ar::test::Environment const& light, cv::Vec3d lit = {1, 1, 1})
 {
     ar::test::ViewSettings settings;
     settings.rays = 2;
@@ -69,7 +75,7 @@ void write_brackets(TemporaryFolder const& folder, ar::test::Environment const& 
         cv::Mat const radiance = traced(
             world,
             ar::test::looking(target + glm::dvec3(0.5 * std::sin(turn), 0.45, 0.5 * std::cos(turn)), target),
-            light);
+            light, lit);
         for (int k = 0; k < 3; ++k) {
             ar::Exposure e;
             e.time_s = 1. / (30 << 3 * k);
@@ -128,6 +134,47 @@ TEST(ArProbe, GivesBackTheLightInTheWorldOfTheMarkers)
     Outcome const odd = run("ar probe a0.png a1.png --out odd.exr" + rest, folder.path());
     EXPECT_EQ(odd.code, 2);
     EXPECT_NE(odd.err.find("2 pictures and 3 exposures"), std::string::npos) << odd.err;
+}
+
+TEST(ArProbe, EstimatesAClippedSunByThePaperBesideTheBall)
+{
+    TemporaryFolder const folder;
+    run_well("ar board --squares 7x5 --square 0.04 --marker 0.03 --out b.svg --markers m.yaml", folder.path());
+    ar::write_calibration(folder / "camera.yaml", camera());
+    // Red, as the evening's; the shortest exposure is white at 64 / 0.6.
+    ar::test::Environment const light = [](glm::dvec3 d) {
+        cv::Vec3d v = ar::test::kRoom(d);
+        if (glm::dot(glm::normalize(glm::dvec3(0.4, 0.8, 0.3)), d) > std::cos(0.03)) v += cv::Vec3d(900, 700, 450);
+        return v;
+    };
+    cv::Mat const truth = ar::test::drawn({512, 256}, light);
+    cv::Vec3d const up = ar::irradiance_exact(truth, {0, 1, 0});
+    write_brackets(folder, light, up / std::numbers::pi); // white paper: an albedo of 0.8
+    std::string const rest =
+        "ar probe a0.png a1.png a2.png b0.png b1.png b2.png --calibration camera.yaml --markers "
+        "m.yaml --ball-radius 0.08 --ball 0.14,0.09,-0.32 --exposures 1/30,1/240,1/1920 --size 256";
+    Outcome const before = run_well(rest + " --out p.exr --stats p.json", folder.path());
+    Outcome const after = run_well(rest + " --paper-albedo 0.8 --out q.exr --stats q.json", folder.path());
+    EXPECT_NE(before.out.find("lower bound: lit by clipped light"), std::string::npos) << before.out;
+    EXPECT_NE(before.out.find("not to be trusted: the power of that light"), std::string::npos) << before.out;
+    EXPECT_NE(after.out.find("added from the markers' paper"), std::string::npos) << after.out;
+    auto const p = nlohmann::json::parse(file_text(folder / "p.json")),
+               q = nlohmann::json::parse(file_text(folder / "q.json"));
+    EXPECT_GT(p["clipped"]["solid_angle_sr"], 1e-3);
+    EXPECT_TRUE(p["faces"][2]["lower_bound"]);
+    EXPECT_FALSE(p["faces"][3]["lower_bound"]); // the sun is above
+    EXPECT_FALSE(q["faces"][2]["lower_bound"]);
+    EXPECT_TRUE(q["faces"][2]["estimated"]);
+    glm::dvec3 const normals[] = {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+    for (glm::dvec3 const& n : normals) {
+        cv::Vec3d const t = ar::irradiance_exact(truth, n);
+        cv::Vec3d const a = ar::irradiance_exact(ar::read_map(folder / "p.exr"), n),
+                        b = ar::irradiance_exact(ar::read_map(folder / "q.exr"), n);
+        fmt::print("clipped {:+.3f} {:+.3f} {:+.3f}, repaired {:+.3f} {:+.3f} {:+.3f}\n", a[0] / t[0] - 1,
+                   a[1] / t[1] - 1, a[2] / t[2] - 1, b[0] / t[0] - 1, b[1] / t[1] - 1, b[2] / t[2] - 1);
+        EXPECT_LT(a[0] / t[0], 0.9);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(b[c] / t[c], 1, 0.04);
+    }
 }
 
 } // namespace

@@ -35,6 +35,20 @@ ar::Pose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& map, ar
     return pose.world_from_camera;
 }
 
+cv::Mat white_in_shortest(ar::Bracket const& bracket)
+{
+    std::size_t shortest = 0;
+    for (std::size_t i = 1; i < bracket.exposures.size(); ++i)
+        if (bracket.exposures[i].time_s < bracket.exposures[shortest].time_s) shortest = i;
+    cv::Mat white(bracket.rgb[0].size(), CV_8UC1);
+    for (int y = 0; y < white.rows; ++y)
+        for (int x = 0; x < white.cols; ++x) {
+            cv::Vec3b const v = bracket.rgb[shortest].at<cv::Vec3b>(y, x);
+            white.at<std::uint8_t>(y, x) = std::max({v[0], v[1], v[2]}) >= 253 ? 255 : 0; // as ar::merge
+        }
+    return white;
+}
+
 } // namespace
 
 std::vector<ProbeSide> read_probe_sides(std::vector<std::string> const& pictures,
@@ -82,6 +96,7 @@ std::vector<ProbeSide> read_probe_sides(std::vector<std::string> const& pictures
             fmt::print("  {} px at an end of their range: lights are brighter than measured\n",
                        cv::countNonZero(ar::is_clipped(bracket.rgb[0])));
         }
+        side.clipped = white_in_shortest(bracket);
         sides.push_back(std::move(side));
     }
     return sides;

@@ -15,6 +15,7 @@ struct ProbeSide {
     std::string name; ///< file name of the first picture
     cv::Mat radiance; ///< CV_32FC3
     ar::Pose world_from_camera;
+    cv::Mat clipped{}; ///< CV_8UC1: 255 where a channel is white in the shortest exposure
 };
 
 /// @param pictures all pictures of one side, then all of the next
