@@ -47,16 +47,18 @@ PoseEstimate FeatureTracker::next(double time_s, cv::Mat const& gray, std::optio
             followed_.clear();
             e = relocate(features) ? estimate({}, seen) : PoseEstimate();
             e.found() ? ++counts_.relocated : ++counts_.not_relocated;
-            if (!e.found()) {
+            if (e.found()) {
+                recognised_s_ = time_s;
+            } else {
                 followed_.clear();
                 seen = {};
             }
         }
         if (e.found()) {
             ++counts_.looked;
-            look(features, e.world_from_camera);
+            std::size_t const recognised = look(features, e.world_from_camera);
             e = estimate(e.world_from_camera, seen);
-            if (e.found()) recognised_s_ = time_s;
+            if (e.found() && recognised >= settings_.fewest) recognised_s_ = time_s;
         }
     }
     last_.reset();
@@ -110,7 +112,7 @@ PoseEstimate FeatureTracker::estimate(std::optional<Pose> const& expected, Sight
 }
 
 /// Recognises features near where the pose predicts them: corrects those that are followed, and adds others.
-void FeatureTracker::look(PictureFeatures const& features, Pose const& world_from_camera)
+std::size_t FeatureTracker::look(PictureFeatures const& features, Pose const& world_from_camera)
 {
     int const columns = camera_.size_px.x / kGrid_px + 1, rows = camera_.size_px.y / kGrid_px + 1;
     std::vector<std::vector<std::pair<int, glm::dvec2>>> cells(std::size_t(columns) * std::size_t(rows));
@@ -144,9 +146,11 @@ void FeatureTracker::look(PictureFeatures const& features, Pose const& world_fro
     std::stable_sort(matches.begin(), matches.end(),
                      [](Match const& a, Match const& b) { return a.bits < b.bits; });
     std::vector<char> used(map_.points.size(), 0);
+    std::size_t recognised = 0;
     for (Match const& m : matches) {
         if (used[std::size_t(m.point)]) continue;
         used[std::size_t(m.point)] = 1;
+        ++recognised;
         Followed const seen{m.point, features.pixels[m.feature], features.sigma_px[m.feature]};
         auto const known = std::find_if(followed_.begin(), followed_.end(),
                                         [&](Followed const& f) { return f.point == m.point; });
@@ -159,6 +163,7 @@ void FeatureTracker::look(PictureFeatures const& features, Pose const& world_fro
             known->sigma_px = std::max(0.3, std::sqrt(1 / (a + b)));
         }
     }
+    return recognised;
 }
 
 /// Recognises features by their descriptors alone, and keeps those that agree with one pose.

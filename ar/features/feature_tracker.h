@@ -42,7 +42,8 @@ private:
     };
 
     void follow(cv::Mat const& gray, std::optional<Pose> const& expected);
-    void look(PictureFeatures const& features, Pose const& world_from_camera);
+    /// Number of features that were recognised.
+    std::size_t look(PictureFeatures const& features, Pose const& world_from_camera);
     bool relocate(PictureFeatures const& features);
     Sighting sighting() const;
     PoseEstimate estimate(std::optional<Pose> const& expected, Sighting& seen);

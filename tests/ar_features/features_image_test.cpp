@@ -155,6 +155,23 @@ TEST_F(Features, LoseConfidenceWhereNothingIsRecognised)
     EXPECT_LT(last, 0.7 * first);
 }
 
+TEST_F(Features, LoseConfidenceWhereTheSearchFindsNone)
+{
+    FeatureTrackerSettings settings;
+    settings.near_px = 1e-9;
+    FeatureTracker tracker(map, camera(), settings);
+    double first = 0, last = 0;
+    for (int k = 0; k < 30 && tracker.flow_s() <= 2; ++k) {
+        Sighting seen;
+        PoseEstimate const e = tracker.next(k / 10.0, picture(second_way(k), 300 + k), {}, seen);
+        if (k == 0) first = e.confidence;
+        if (e.found()) last = e.confidence;
+    }
+    EXPECT_GT(tracker.counts().looked, 3u);
+    EXPECT_GT(tracker.flow_s(), 1);
+    EXPECT_LT(last, 0.7 * first);
+}
+
 TEST(FeatureMaps, OfNothingAreEmpty)
 {
     MapBuilder builder(camera());
