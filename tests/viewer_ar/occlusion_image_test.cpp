@@ -136,6 +136,7 @@ TEST_F(ArOcclusions, ThatAreWrongSayWhy)
     refused("{depth: empty}", "no pictures");
     refused("{matte: eight, margin_m: 1}", "s.yaml:10:");
     refused("{depth: eight, soft_px: -1}", "s.yaml:10:");
+    refused("{matte: eight, soft_px: 1}", "'soft_px' without 'depth'");
     refused("{depth: eight, camera_from_depth: {position_m: [1, 0, 0]}}", "no 'camera'");
     write("twice", 1, cv::Mat::zeros(96, 128, CV_8UC1));
     fs::copy(desk() / "twice/000001.png", desk() / "twice/b1.png");

@@ -114,7 +114,7 @@ TEST_F(ArPasses, MotionLeadsToTheSamePlaceInTheFrameBefore)
                       now = gi::read_exr(desk() / "passes/000001.exr");
     EXPECT_EQ(before.find("motion_place"), nullptr);
     ar::CameraModel const camera = ar::read_calibration(desk() / "camera.yaml").camera;
-    auto const poses = ar::read_poses(desk() / "poses.csv");
+    auto const poses = ar::read_poses(desk() / "poses.csv", {30}).poses;
     ar::Pose const before_from_now = inverse(poses[0].world_from_camera) * poses[1].world_from_camera;
     std::vector<float> const &depth = now.find("depth_place")->data,
                              &depth_before = before.find("depth_place")->data,
@@ -156,7 +156,8 @@ TEST_F(ArPasses, OfLinearFramesComeOutAsRadiance)
 {
     write_linear_frames();
     write_session("linear.yaml", "source: frames", "source: linear");
-    Outcome const o = run("ar run linear.yaml --fast --poses poses.csv --out out --passes passes --pass-bits 32 --video v.mkv");
+    Outcome const o =
+        run("ar run linear.yaml --fast --poses poses.csv --out out --passes passes --pass-bits 32 --video v.mkv");
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_NE(o.out.find("2 composites reduced to 8 bits"), std::string::npos) << o.out;
     gi::Picture const in = gi::read_exr(desk() / "linear/000001.exr"),

@@ -3,20 +3,20 @@
 
 #include "ar/markers/marker_map_file.h"
 #include "ar/runtime/runner.h"
-#include "ar/scene/camera_poses.h"
+#include "viewer/cli/ar/pose_arguments.h"
 
 namespace viewer {
 
 /// Camera poses from the --poses file, from a recorded tracker, or from the markers in the frame.
 class CameraPath {
 public:
-    CameraPath(std::string const& poses, ArSession const& session, ArCamera const& camera, gi::Report& report)
+    CameraPath(PoseArguments const& poses, ArSession const& session, ArCamera const& camera, gi::Report& report)
         : camera_(camera),
           least_(session.pose.trust.least_confidence),
           detector_(ar::read_marker_map(session.markers))
     {
-        if (!poses.empty())
-            poses_ = read_camera_poses(poses, session.frames.options.frames_per_s, report);
+        if (!poses.file.empty())
+            poses_ = poses_of(poses, session, report);
         else if (session.tracked)
             poses_ = recorded_poses(*session.tracked, report);
     }

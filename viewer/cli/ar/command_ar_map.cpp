@@ -20,7 +20,8 @@ namespace viewer {
 namespace {
 
 struct MapArguments {
-    std::string session, out, poses, require_found;
+    std::string session, out, require_found;
+    PoseArguments poses;
     int frames = 0;
 };
 
@@ -86,7 +87,7 @@ int run_map(MapArguments const& a)
     auto const required = parse_share("--require-found", a.require_found);
     ArSession session = read_ar_session(a.session);
     session.pose.features.clear(); // a map is made from markers, a tracker or a file
-    std::vector<std::string> read{a.poses};
+    std::vector<std::string> read{a.poses.file};
     for (std::filesystem::path const& file : files_read_by(session)) read.push_back(file.string());
     check_outputs({a.out}, read);
     gi::Report report;
@@ -117,7 +118,7 @@ void add_ar_map(CLI::App& ar, int& exit_code)
         "map", "Make a map of features from a session whose camera poses are known, to track without markers");
     c->add_option("session", a->session, "Session whose frames follow each other, as in a video")->required();
     c->add_option("--out", a->out, "File for the map, for pose.features of sessions")->required();
-    c->add_option("--poses", a->poses, "Camera poses, instead of using the markers");
+    declare_poses(*c, a->poses);
     c->add_option("--frames", a->frames, "Read at most this many frames; 0 = all (files only)")
         ->check(CLI::NonNegativeNumber);
     declare_require_found(*c, a->require_found);
