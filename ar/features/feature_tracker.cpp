@@ -17,6 +17,7 @@ constexpr double kLikeTheNext = 0.8;  ///< ratio of distances to the best and to
 constexpr double kSamePlace_m = 0.01; ///< points nearer than this do not compete
 constexpr double kInlier_px = 5;
 constexpr int kGrid_px = 16;
+constexpr int kMatchedAtOnce = 64; ///< features, between looks at stop requests
 constexpr std::size_t kFewestInliers = 12;
 
 } // namespace
@@ -24,6 +25,7 @@ constexpr std::size_t kFewestInliers = 12;
 FeatureTracker::FeatureTracker(FeatureMap map, CameraModel const& camera, FeatureTrackerSettings const& settings)
     : map_(std::move(map)), camera_(camera), settings_(settings)
 {
+    check_size(map_, "the map");
     for (std::size_t k = 0; k < map_.points.size(); ++k)
         for (std::size_t d = 0; d < map_.points[k].descriptors.size(); ++d) point_of_.push_back(int(k));
     descriptors_.create(int(point_of_.size()), 32, CV_8UC1);
@@ -33,7 +35,7 @@ FeatureTracker::FeatureTracker(FeatureMap map, CameraModel const& camera, Featur
 }
 
 PoseEstimate FeatureTracker::next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected,
-                                  Sighting& seen)
+                                  Sighting& seen, gi::StopRequest const* stop)
 {
     ++counts_.pictures;
     follow(gray, expected);
@@ -45,7 +47,7 @@ PoseEstimate FeatureTracker::next(double time_s, cv::Mat const& gray, std::optio
         since_look_ = 0;
         if (is_lost) {
             followed_.clear();
-            e = relocate(features) ? estimate({}, seen) : PoseEstimate();
+            e = relocate(features, stop) ? estimate({}, seen) : PoseEstimate();
             e.found() ? ++counts_.relocated : ++counts_.not_relocated;
             if (e.found()) {
                 recognised_s_ = time_s;
@@ -167,14 +169,23 @@ std::size_t FeatureTracker::look(PictureFeatures const& features, Pose const& wo
 }
 
 /// Recognises features by their descriptors alone, and keeps those that agree with one pose.
-bool FeatureTracker::relocate(PictureFeatures const& features)
+bool FeatureTracker::relocate(PictureFeatures const& features, gi::StopRequest const* stop)
 {
     if (features.pixels.size() < kFewestInliers || point_of_.size() < kFewestInliers) return false;
     cv::Mat query(int(features.descriptors.size()), 32, CV_8UC1);
     for (int k = 0; k < query.rows; ++k)
         std::memcpy(query.ptr(k), features.descriptors[std::size_t(k)].data(), 32);
+    cv::BFMatcher const matcher(cv::NORM_HAMMING);
     std::vector<std::vector<cv::DMatch>> matches;
-    cv::BFMatcher(cv::NORM_HAMMING).knnMatch(query, descriptors_, matches, 4);
+    for (int from = 0; from < query.rows; from += kMatchedAtOnce) {
+        if (stop != nullptr && stop->requested()) return false;
+        std::vector<std::vector<cv::DMatch>> some;
+        matcher.knnMatch(query.rowRange(from, std::min(from + kMatchedAtOnce, query.rows)), descriptors_, some, 4);
+        for (auto& nearest : some) {
+            for (cv::DMatch& m : nearest) m.queryIdx += from;
+            matches.push_back(std::move(nearest));
+        }
+    }
     std::vector<cv::Point3d> world;
     std::vector<cv::Point2d> picture;
     std::vector<Followed> guesses;

@@ -196,6 +196,34 @@ TEST_F(Features, AreReadAsTheyWereWritten)
     }
 }
 
+TEST(FeatureMaps, ThatCannotBeMatchedAreRefused)
+{
+    FeatureMap large;
+    large.points.resize(kMostDescriptorsOfMap / kMostDescriptors + 1);
+    for (MapPoint& p : large.points) p.descriptors.resize(kMostDescriptors);
+    EXPECT_THROW(FeatureTracker(large, camera()), gi::InputError);
+    large.points.back().descriptors.resize(kMostDescriptorsOfMap % kMostDescriptors);
+    cv::Mat const gray = picture(first_way(0), 0);
+    FeatureTracker tracker(large, camera());
+    Sighting seen;
+    gi::StopRequest stop;
+    EXPECT_FALSE(tracker.next(0, gray, {}, seen, &stop).found()) << "nor does OpenCV's matcher throw";
+    stop.request();
+    auto const begun = std::chrono::steady_clock::now();
+    EXPECT_FALSE(tracker.next(0.1, gray, {}, seen, &stop).found());
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(300));
+    std::string const d(64, 'a');
+    std::string text = "lightwell features 1\n";
+    for (std::size_t k = 0; k <= kMostDescriptorsOfMap; ++k) text += "1 2 3 0.1 " + d + "\n";
+    try {
+        parse_feature_map(text, "map.txt");
+        ADD_FAILURE();
+    } catch (gi::InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("'map.txt' has 262144 points with 262144 descriptors"),
+                  std::string::npos);
+    }
+}
+
 TEST(FeatureMaps, ThatAreBrokenSayWhere)
 {
     std::string const d(64, 'a'), head = "lightwell features 1\n";

@@ -61,7 +61,7 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
         ++n;
         double const time_s = clock(*frame);
         try {
-            auto const pose = path.at(*frame, time_s);
+            auto const pose = path.at(*frame, time_s, stop);
             if (!pose) {
                 ++seen.without_pose;
                 continue;

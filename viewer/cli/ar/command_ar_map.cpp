@@ -48,7 +48,7 @@ FrameTally look(MapArguments const& a, ArSession const& session, ArCamera const&
         ++n;
         double const time_s = clock(*frame);
         try {
-            auto const pose = path.at(*frame, time_s);
+            auto const pose = path.at(*frame, time_s, stop);
             cv::Mat const gray = ar::gray_of(*frame);
             check_size({gray.cols, gray.rows}, camera);
             ++tally.looked_at;
@@ -104,6 +104,7 @@ int run_map(MapArguments const& a)
         return exit_code_of(
             "no map was written (no feature was seen from several sides with a known camera pose) move "
             "the camera around a place with texture");
+    ar::check_size(map, "the map");
     gi::write_text(a.out, ar::format_feature_map(map));
     fmt::print("{}\n", a.out);
     return exit_code_of(shortfall(tally, required));

@@ -141,7 +141,7 @@ public:
         if (stimulus_.show != ArShow::composite) return p;
         std::optional<KnownPose> known;
         if (!poses_.empty()) known.emplace(recorded_pose(poses_, f.time_s));
-        ArResult r = pipeline_->find(f.frame, f.time_s, known);
+        ArResult r = pipeline_->find(f.frame, f.time_s, known, {}, &stop_);
         pipeline_->add(r, f.frame, f.time_s, stop_);
         p.rgb = ar::eight_bits_of(r.rgb).clone();
         if (r.rgb.depth() != CV_8U)
