@@ -97,7 +97,7 @@ int run_map(MapArguments const& a)
     ar::MapBuilder builder(camera.model);
     FrameTally const tally = look(a, session, camera, builder, stop, report);
     if (stop.requested()) return kInterrupted;
-    ar::FeatureMap const map = builder.finish();
+    ar::FeatureMap const& map = builder.finish();
     fmt::print("{}", describe(map, builder.counts(), tally));
     print_losses(report);
     if (map.points.empty())
