@@ -96,8 +96,8 @@ void ArPipeline::report_occluders()
 {
     LiveOccluderCounts const& c = occluders_->counts();
     count_some("frames with a depth picture or a matte", c.frames);
-    count_some("pixels of virtual things hidden by them", c.pixels.hidden);
-    count_some("pixels of virtual things without a measured depth", c.pixels.holes);
+    count_some("pixels of virtual objects hidden by them", c.pixels.hidden);
+    count_some("pixels of virtual objects without a measured depth", c.pixels.holes);
 }
 
 void ArPipeline::count_some(char const* what, std::size_t n)
@@ -125,8 +125,8 @@ void ArPipeline::report_finish()
 {
     FinishCounts const& f = finish_->counts();
     count_some("enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
-    count_some("enlarged pixels among virtual things alone", f.upsample.no_sample);
-    count_some("points of virtual things without light", f.unlit);
+    count_some("enlarged pixels among virtual objects alone", f.upsample.no_sample);
+    count_some("points of virtual objects without light", f.unlit);
     count_some("pixels at borders of real occluders", f.matte.band);
     count_some("pixels at borders of real occluders, refined", f.matte.refined);
     count_some("frames whose sharpness was measured", f.blur.measured);

@@ -1,4 +1,4 @@
-// Hands in front of virtual things, through the program: depth pictures and mattes.
+// Hands in front of virtual objects, through the program: depth pictures and mattes.
 
 #include "ar/calibration/calibration_file.h"
 #include "tests/viewer/run_program.h"
@@ -65,7 +65,7 @@ TEST_F(ArOcclusions, ByDepthsKeepTheHand)
     Outcome const o = run("{depth: depth}");
     ASSERT_EQ(o.code, 0) << o.err;
     for (int f : {0, 1, 2}) expect_left_hidden(f);
-    EXPECT_NE(file_text(desk() / "s.json").find("pixels of virtual things hidden by them"), std::string::npos);
+    EXPECT_NE(file_text(desk() / "s.json").find("pixels of virtual objects hidden by them"), std::string::npos);
     // Half the size, and far away: nothing is hidden.
     for (int f : {0, 1, 2}) write("far", f, hand({64, 48}, 4000));
     ASSERT_EQ(run("{depth: far}").code, 0);

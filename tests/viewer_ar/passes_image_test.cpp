@@ -80,7 +80,7 @@ TEST_F(ArPasses, AreOneFileAFrameWithAllThatIsPromised)
     EXPECT_EQ(layer_size(p, "motion_place", 2), 2 * n);
     EXPECT_EQ(p.metadata.at("frame"), "1");
     EXPECT_EQ(p.metadata.at("lens"), "radial_tangential");
-    // Virtual things are nearer than the place behind them.
+    // Virtual objects are nearer than the place behind them.
     std::size_t covered = 0;
     for (std::size_t i = 0; i < n; ++i)
         if (p.find("coverage")->data[i] > 0.99f) {
