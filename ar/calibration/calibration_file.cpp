@@ -72,7 +72,7 @@ LensModel lens_of(gi::Yaml const& top, std::size_t coefficients)
         auto const lens = lens_named(y.text());
         if (!lens)
             throw y.error("'" + y.text().substr(0, 64) + "' is no lens model", "it is unknown",
-                          "write pinhole, radial_tangential, rational or fisheye");
+                          "write pinhole, radial_tangential, rational, fisheye or stmap");
         if (*lens == LensModel::stmap && !top.has("stmap"))
             throw y.error("no 'stmap'", "the lens is a table in a file", "add stmap: FILE.exr");
         return *lens;

@@ -1,6 +1,6 @@
 #pragma once
 // A lens as a table: where the centre of each pixel of the distorted picture lies on the plane z = 1. Between
-// centres it is bilinear, and up to half the border cell's reach beyond the picture it continues linearly.
+// centres it is bilinear; beyond the picture, by 2 % of its size (4 pixels at least), it continues linearly.
 
 #include <glm/glm.hpp>
 #include <opencv2/core.hpp>

@@ -16,13 +16,6 @@ enum class Output {
 
 namespace {
 
-/// True if all components are finite (0 times a non-finite value is NaN).
-bool is_finite(cv::Vec3f const& v)
-{
-    float const zero = 0 * v[0] + 0 * v[1] + 0 * v[2];
-    return zero == 0;
-}
-
 /// One frame's constants. @tparam Response  of a channel: ResponseTable, DeepResponse, LinearResponse
 template <typename Response, Output kOutput>
 struct Blending {

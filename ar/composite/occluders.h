@@ -1,5 +1,5 @@
 #pragma once
-// Real things that nobody modelled (hands, people) in front of virtual ones: where a measured depth or a matte
+// Real objects that nobody modelled (hands, people) in front of virtual ones: where a measured depth or a matte
 // says so, the camera's picture stays. Shadows that virtual objects would cast on them are not computed.
 
 #include "ar/composite/rendered_pair.h"
@@ -17,11 +17,12 @@ struct OcclusionCounts {
     std::size_t hidden = 0; ///< pixels with something virtual that were hidden, by half or more
 };
 
-/// Share of each pixel that a nearer real thing takes, CV_32FC1, 0..1.
+/// Share of each pixel that a nearer real object takes, CV_32FC1, 0..1.
 /// @param measured_m  CV_32FC1: along the camera's axis; 0 and non-finite values are holes
-/// @param modelled_m  CV_32FC1: of virtual objects and the model of the place; 0 = nothing: the nearest depth
-/// within two
-///                    pixels counts (of a virtual thing's border), else nothing is hidden, as nothing was added
+/// @param modelled_m  CV_32FC1: of virtual objects and the model of the place; 0 = nothing. There the nearest
+/// depth
+///   within 2 + ceil(3 soft_px) pixels counts (at the border of a virtual object); without one nothing is hidden,
+///   as nothing was added.
 cv::Mat share_of_nearer(cv::Mat const& measured_m, cv::Mat const& modelled_m, DepthOcclusion const& settings);
 
 /// Takes out of a pair what is behind occluders: its composite is (1 - share) composite + share camera.

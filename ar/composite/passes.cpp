@@ -29,6 +29,11 @@ CompositePasses passes_of(Compositor& compositor, cv::Mat const& camera, cv::Mat
                 float const a = std::clamp(pair.coverage.at<float>(y, x), 0.0f, 1.0f); // NaN stays
                 cv::Vec3f const &with = pair.with.at<cv::Vec3f>(y, x), &without = pair.without.at<cv::Vec3f>(y, x);
                 if ((a == 0 && with == without) || std::isnan(a)) continue;
+                bool const is_parted = !pair.direct.empty() && a > 0 && a < 1;
+                if (!is_finite(with) ||
+                    (a < 1 && !(is_finite(without) && is_finite(p.background.at<cv::Vec3f>(y, x)))) ||
+                    (is_parted && !is_finite(pair.direct.at<cv::Vec3f>(y, x))))
+                    continue; // the compositor leaves the camera's
                 // Without `direct`, all of a covered pixel's light counts as the objects'.
                 cv::Vec3f direct = pair.direct.empty() ? (a > 0 ? with - (1 - a) * without : cv::Vec3f(0, 0, 0))
                                                        : pair.direct.at<cv::Vec3f>(y, x);

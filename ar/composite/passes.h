@@ -20,6 +20,7 @@ struct CompositePasses {
 
 /// @param compositor  as the composite was made with
 /// @param camera      the frame (picture_of)   @param written  its composite, of the same type
+/// Pixels whose pair is not finite, where the compositor leaves the camera's, are as without virtual objects.
 /// @throws gi::InputError wrong types or sizes
 CompositePasses passes_of(Compositor& compositor, cv::Mat const& camera, cv::Mat const& written,
                           RenderedPair const& pair, Exposure const& exposure);

@@ -6,6 +6,13 @@
 
 namespace ar {
 
+/// True if all components are finite (0 times a non-finite value is NaN).
+inline bool is_finite(cv::Vec3f const& v)
+{
+    float const zero = 0 * v[0] + 0 * v[1] + 0 * v[2];
+    return zero == 0;
+}
+
 /// All pictures have the same size, rows from the top.
 struct RenderedPair {
     cv::Mat with;    ///< CV_32FC3 RGB, radiance: proxies of the real place and virtual objects

@@ -13,8 +13,6 @@
 namespace ar {
 namespace {
 
-bool all_finite(cv::Vec3f const& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
 /// The added light, and its extent.
 struct Added {
     cv::Mat radiance; ///< CV_32FC3
@@ -55,7 +53,7 @@ Neighbourhood around(Added const& added, int radius)
 {
     cv::Mat finite = added.radiance(added.where).clone(); // a NaN would spoil all sums after it
     finite.forEach<cv::Vec3f>([](cv::Vec3f& v, int const*) {
-        if (!all_finite(v)) v = {0, 0, 0};
+        if (!is_finite(v)) v = {0, 0, 0};
     });
     Neighbourhood n;
     cv::Size const box(2 * radius + 1, 2 * radius + 1);
@@ -171,7 +169,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
                     double const d = depth_.at<float>(q);
                     if ((d > 0) != (z > 0) || std::abs(d - z) > settings_.depth_tolerance * z) continue;
                     cv::Vec3f const v = added_.at<cv::Vec3f>(q);
-                    if (!all_finite(v)) continue;
+                    if (!is_finite(v)) continue;
                     sum += w * v;
                     weight += w;
                     least_frames = std::min(least_frames, frames_.at<float>(q));
@@ -192,7 +190,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
                     cv::Vec3f const now = added.radiance.at<cv::Vec3f>(y, x);
                     float const a = pair.coverage.at<float>(y, x);
                     auto const h = history(x, y, a);
-                    if (!h || !all_finite(now)) {
+                    if (!h || !is_finite(now)) {
                         ++counts.fresh;
                         continue;
                     }

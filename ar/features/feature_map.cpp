@@ -75,6 +75,17 @@ int hamming(Descriptor const& a, Descriptor const& b)
     return sum;
 }
 
+void check_size(FeatureMap const& map, std::string const& name)
+{
+    std::size_t descriptors = 0;
+    for (MapPoint const& p : map.points) descriptors += p.descriptors.size();
+    if (descriptors > kMostDescriptorsOfMap)
+        throw gi::InputError(
+            fmt::format("{} has {} points with {} descriptors", name, map.points.size(), descriptors),
+            fmt::format("{} descriptors can be matched", kMostDescriptorsOfMap),
+            "make a map of fewer frames (lightwell ar map --frames) or of a part of the place");
+}
+
 FeatureMap parse_feature_map(std::string_view text, std::string const& file)
 {
     FeatureMap map;
@@ -96,6 +107,7 @@ FeatureMap parse_feature_map(std::string_view text, std::string const& file)
     if (map.points.empty())
         throw gi::InputError(gi::TextLocation{file, 0, 0}, "there are no points", "nothing could be recognised",
                              "make a map of a place with texture: lightwell ar map SESSION --out map.txt");
+    check_size(map, "'" + file + "'");
     return map;
 }
 

@@ -32,7 +32,13 @@ struct FeatureMap {
     std::vector<MapPoint> points;
 };
 
-/// @throws gi::InputError with file:line:column: another kind of file, wrong columns, no numbers, no points
+/// Descriptors of a whole map that cv::BFMatcher can match (its indices have 18 bits).
+inline constexpr std::size_t kMostDescriptorsOfMap = (std::size_t(1) << 18) - 1;
+/// @param name  of the map, for the message. @throws gi::InputError more descriptors than can be matched
+void check_size(FeatureMap const& map, std::string const& name);
+
+/// @throws gi::InputError with file:line:column: another kind of file, wrong columns, no numbers, no points; as
+///   check_size
 FeatureMap parse_feature_map(std::string_view text, std::string const& file);
 /// @throws gi::InputError, also for files that cannot be read or above 1 GiB
 FeatureMap read_feature_map(std::filesystem::path const& file);

@@ -17,6 +17,7 @@ constexpr double kLikeTheNext = 0.8;  ///< ratio of distances to the best and to
 constexpr double kSamePlace_m = 0.01; ///< points nearer than this do not compete
 constexpr double kInlier_px = 5;
 constexpr int kGrid_px = 16;
+constexpr int kMatchedAtOnce = 64; ///< features, between looks at stop requests
 constexpr std::size_t kFewestInliers = 12;
 
 } // namespace
@@ -24,6 +25,7 @@ constexpr std::size_t kFewestInliers = 12;
 FeatureTracker::FeatureTracker(FeatureMap map, CameraModel const& camera, FeatureTrackerSettings const& settings)
     : map_(std::move(map)), camera_(camera), settings_(settings)
 {
+    check_size(map_, "the map");
     for (std::size_t k = 0; k < map_.points.size(); ++k)
         for (std::size_t d = 0; d < map_.points[k].descriptors.size(); ++d) point_of_.push_back(int(k));
     descriptors_.create(int(point_of_.size()), 32, CV_8UC1);
@@ -33,7 +35,7 @@ FeatureTracker::FeatureTracker(FeatureMap map, CameraModel const& camera, Featur
 }
 
 PoseEstimate FeatureTracker::next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected,
-                                  Sighting& seen)
+                                  Sighting& seen, gi::StopRequest const* stop)
 {
     ++counts_.pictures;
     follow(gray, expected);
@@ -45,18 +47,20 @@ PoseEstimate FeatureTracker::next(double time_s, cv::Mat const& gray, std::optio
         since_look_ = 0;
         if (is_lost) {
             followed_.clear();
-            e = relocate(features) ? estimate({}, seen) : PoseEstimate();
+            e = relocate(features, stop) ? estimate({}, seen) : PoseEstimate();
             e.found() ? ++counts_.relocated : ++counts_.not_relocated;
-            if (!e.found()) {
+            if (e.found()) {
+                recognised_s_ = time_s;
+            } else {
                 followed_.clear();
                 seen = {};
             }
         }
         if (e.found()) {
             ++counts_.looked;
-            look(features, e.world_from_camera);
+            std::size_t const recognised = look(features, e.world_from_camera);
             e = estimate(e.world_from_camera, seen);
-            if (e.found()) recognised_s_ = time_s;
+            if (e.found() && recognised >= settings_.fewest) recognised_s_ = time_s;
         }
     }
     last_.reset();
@@ -110,7 +114,7 @@ PoseEstimate FeatureTracker::estimate(std::optional<Pose> const& expected, Sight
 }
 
 /// Recognises features near where the pose predicts them: corrects those that are followed, and adds others.
-void FeatureTracker::look(PictureFeatures const& features, Pose const& world_from_camera)
+std::size_t FeatureTracker::look(PictureFeatures const& features, Pose const& world_from_camera)
 {
     int const columns = camera_.size_px.x / kGrid_px + 1, rows = camera_.size_px.y / kGrid_px + 1;
     std::vector<std::vector<std::pair<int, glm::dvec2>>> cells(std::size_t(columns) * std::size_t(rows));
@@ -144,9 +148,11 @@ void FeatureTracker::look(PictureFeatures const& features, Pose const& world_fro
     std::stable_sort(matches.begin(), matches.end(),
                      [](Match const& a, Match const& b) { return a.bits < b.bits; });
     std::vector<char> used(map_.points.size(), 0);
+    std::size_t recognised = 0;
     for (Match const& m : matches) {
         if (used[std::size_t(m.point)]) continue;
         used[std::size_t(m.point)] = 1;
+        ++recognised;
         Followed const seen{m.point, features.pixels[m.feature], features.sigma_px[m.feature]};
         auto const known = std::find_if(followed_.begin(), followed_.end(),
                                         [&](Followed const& f) { return f.point == m.point; });
@@ -159,17 +165,27 @@ void FeatureTracker::look(PictureFeatures const& features, Pose const& world_fro
             known->sigma_px = std::max(0.3, std::sqrt(1 / (a + b)));
         }
     }
+    return recognised;
 }
 
 /// Recognises features by their descriptors alone, and keeps those that agree with one pose.
-bool FeatureTracker::relocate(PictureFeatures const& features)
+bool FeatureTracker::relocate(PictureFeatures const& features, gi::StopRequest const* stop)
 {
     if (features.pixels.size() < kFewestInliers || point_of_.size() < kFewestInliers) return false;
     cv::Mat query(int(features.descriptors.size()), 32, CV_8UC1);
     for (int k = 0; k < query.rows; ++k)
         std::memcpy(query.ptr(k), features.descriptors[std::size_t(k)].data(), 32);
+    cv::BFMatcher const matcher(cv::NORM_HAMMING);
     std::vector<std::vector<cv::DMatch>> matches;
-    cv::BFMatcher(cv::NORM_HAMMING).knnMatch(query, descriptors_, matches, 4);
+    for (int from = 0; from < query.rows; from += kMatchedAtOnce) {
+        if (stop != nullptr && stop->requested()) return false;
+        std::vector<std::vector<cv::DMatch>> some;
+        matcher.knnMatch(query.rowRange(from, std::min(from + kMatchedAtOnce, query.rows)), descriptors_, some, 4);
+        for (auto& nearest : some) {
+            for (cv::DMatch& m : nearest) m.queryIdx += from;
+            matches.push_back(std::move(nearest));
+        }
+    }
     std::vector<cv::Point3d> world;
     std::vector<cv::Point2d> picture;
     std::vector<Followed> guesses;

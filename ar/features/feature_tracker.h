@@ -6,6 +6,7 @@
 #include "ar/features/feature_map.h"
 #include "ar/features/flow.h"
 #include "ar/pose/estimate.h"
+#include "gi/core/progress.h"
 
 namespace ar {
 
@@ -24,12 +25,15 @@ struct FeatureTrackerCounts {
 
 class FeatureTracker {
 public:
+    /// @throws gi::InputError as check_size(map)
     FeatureTracker(FeatureMap map, CameraModel const& camera, FeatureTrackerSettings const& settings = {});
 
     /// The pose in the next picture; its confidence falls with the time since features were last recognised.
     /// @param gray  CV_8UC1 of the camera's size  @param expected  pose, if it can be predicted
     /// @param[out] seen  the map's points in the picture
-    PoseEstimate next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected, Sighting& seen);
+    /// @param stop  null = none; after a request, nothing is recognised anew
+    PoseEstimate next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected, Sighting& seen,
+                      gi::StopRequest const* stop = nullptr);
     /// Time since features were last recognised rather than followed (s).
     double flow_s() const { return flow_s_; }
     FeatureTrackerCounts const& counts() const { return counts_; }
@@ -42,8 +46,9 @@ private:
     };
 
     void follow(cv::Mat const& gray, std::optional<Pose> const& expected);
-    void look(PictureFeatures const& features, Pose const& world_from_camera);
-    bool relocate(PictureFeatures const& features);
+    /// Number of features that were recognised.
+    std::size_t look(PictureFeatures const& features, Pose const& world_from_camera);
+    bool relocate(PictureFeatures const& features, gi::StopRequest const* stop);
     Sighting sighting() const;
     PoseEstimate estimate(std::optional<Pose> const& expected, Sighting& seen);
 

@@ -32,7 +32,7 @@ void MapBuilder::add(cv::Mat const& gray, Pose const& world_from_camera)
 
 void MapBuilder::skip()
 {
-    std::move(tracks_.begin(), tracks_.end(), std::back_inserter(ended_));
+    for (Track const& t : tracks_) end(t);
     tracks_.clear();
     key_.reset();
 }
@@ -46,7 +46,7 @@ void MapBuilder::follow(cv::Mat const& gray, Pose const& world_from_camera)
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
         Track& t = tracks_[k];
         if (!found[k]) {
-            ended_.push_back(std::move(t));
+            end(t);
             continue;
         }
         t.pixel = *found[k];
@@ -157,10 +157,10 @@ std::optional<MapPoint> MapBuilder::triangulated(Track const& track)
     return MapPoint{point, sigma_m, track.descriptors};
 }
 
-void MapBuilder::add_merged(FeatureMap& map, MapPoint point, double distance_m)
+void MapBuilder::add_merged(MapPoint point, double distance_m)
 {
-    for (MapPoint& p : map.points) {
-        if (glm::length(p.world_m - point.world_m) > kMerged * distance_m) continue;
+    for (std::size_t const near : grid_.near(point.world_m, kMerged * distance_m)) {
+        MapPoint& p = map_.points[near];
         bool const alike = std::any_of(p.descriptors.begin(), p.descriptors.end(), [&](Descriptor const& d) {
             return hamming(d, point.descriptors.front()) < kMergedBits;
         });
@@ -168,6 +168,7 @@ void MapBuilder::add_merged(FeatureMap& map, MapPoint point, double distance_m)
         ++counts_.merged;
         double const a = 1 / (p.sigma_m * p.sigma_m), b = 1 / (point.sigma_m * point.sigma_m);
         p.world_m = (a * p.world_m + b * point.world_m) / (a + b);
+        grid_.move(near, p.world_m);
         p.sigma_m = std::min(p.sigma_m, point.sigma_m);
         for (Descriptor const& d : point.descriptors)
             if (p.descriptors.size() < kMostDescriptors &&
@@ -176,23 +177,25 @@ void MapBuilder::add_merged(FeatureMap& map, MapPoint point, double distance_m)
                 p.descriptors.push_back(d);
         return;
     }
-    map.points.push_back(std::move(point));
+    grid_.add(point.world_m);
+    map_.points.push_back(std::move(point));
 }
 
-FeatureMap MapBuilder::finish()
+void MapBuilder::end(Track const& t)
+{
+    auto p = triangulated(t);
+    if (!p) return;
+    double const away_m = glm::length(t.sightings.front().world_from_camera.position_m - p->world_m);
+    if (away_m > 0 && std::isfinite(away_m) && p->sigma_m > 0 && p->sigma_m <= 0.05 * away_m)
+        add_merged(std::move(*p), away_m);
+    else
+        ++counts_.bad_fit;
+}
+
+FeatureMap const& MapBuilder::finish()
 {
     skip();
-    FeatureMap map;
-    for (Track const& t : ended_)
-        if (auto p = triangulated(t)) {
-            double const away_m = glm::length(t.sightings.front().world_from_camera.position_m - p->world_m);
-            if (p->sigma_m > 0.05 * away_m)
-                ++counts_.bad_fit;
-            else
-                add_merged(map, std::move(*p), away_m);
-        }
-    ended_.clear();
-    return map;
+    return map_;
 }
 
 } // namespace ar

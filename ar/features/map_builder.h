@@ -1,11 +1,12 @@
 #pragma once
 // Makes a map of features from pictures whose camera poses are known: features are followed from picture to
-// picture, and each is triangulated from all its sightings.
+// picture, and each is triangulated from all its sightings as soon as it is lost.
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/pose.h"
 #include "ar/features/feature_map.h"
 #include "ar/features/flow.h"
+#include "ar/features/point_grid.h"
 
 namespace ar {
 
@@ -36,7 +37,8 @@ public:
     void add(cv::Mat const& gray, Pose const& world_from_camera);
     /// A picture without a known pose: features are lost.
     void skip();
-    FeatureMap finish();
+    /// The map of all pictures so far; features that are still followed are lost, too.
+    FeatureMap const& finish();
     MapBuilderCounts const& counts() const { return counts_; }
 
 private:
@@ -53,13 +55,16 @@ private:
     bool has_moved(Pose const& a, Pose const& b, double m, double deg) const;
     void follow(cv::Mat const& gray, Pose const& world_from_camera);
     void look(cv::Mat const& gray, Pose const& world_from_camera);
+    void end(Track const& track);
     std::optional<MapPoint> triangulated(Track const& track);
-    void add_merged(FeatureMap& map, MapPoint point, double distance_m);
+    void add_merged(MapPoint point, double distance_m);
 
     CameraModel camera_;
     MapBuilderSettings settings_;
     Flow flow_;
-    std::vector<Track> tracks_, ended_;
+    std::vector<Track> tracks_;
+    FeatureMap map_;
+    PointGrid grid_; ///< of its points
     std::optional<Pose> key_;
     MapBuilderCounts counts_;
 };

@@ -118,7 +118,7 @@ cv::Mat LiveOccluders::matte(fs::path const& file) const
     ar::DecodedPicture const picture = ar::decoded_picture(bytes);
     if (!picture.problem.empty())
         throw gi::InputError("'" + file.string() + "' is no matte", picture.problem,
-                             "mattes are pictures of 8 or 16 bits or EXR, white where real things are in front");
+                             "mattes are pictures of 8 or 16 bits or EXR, white where real objects are in front");
     if (glm::ivec2(picture.pixels.cols, picture.pixels.rows) != camera_.size_px)
         throw other_size(file, picture.pixels.size(), camera_.size_px);
     cv::Mat one, share;

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the depth picture and the matte of each frame, and hides virtual things behind what they show.
+// Finds the depth picture and the matte of each frame, and hides virtual objects behind what they show.
 
 #include "ar/camera/camera_model.h"
 #include "ar/scene/occlusion.h"

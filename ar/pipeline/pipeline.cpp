@@ -2,7 +2,6 @@
 
 #include "ar/capture/clock.h"
 #include "ar/pipeline/bridge.h"
-#include "ar/pipeline/pose_use.h"
 #include "ar/scene/real_scene.h"
 #include "gi/core/error.h"
 #include "gi/scene/load/load.h"
@@ -16,11 +15,8 @@ namespace {
 class Lap {
 public:
     explicit Lap(double begun_s) : last_s_(begun_s) {}
-    double operator()()
-    {
-        double const now_s = ar::steady_now_s();
-        return 1e3 * (now_s - std::exchange(last_s_, now_s));
-    }
+    double operator()() { return until(ar::steady_now_s()); }
+    double until(double now_s) { return 1e3 * (now_s - std::exchange(last_s_, now_s)); }
     double last_s() const { return last_s_; }
 
 private:
@@ -55,19 +51,14 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
                        gi::Report& report, std::string prefix)
     : session_(session),
       camera_(camera),
-      detector_(markers),
       renderer_(local_scene(session, report), session.render.settings, report),
       light_(session),
       compositor_(camera.photometry,
                   with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),
-      tracker_(tracker_settings(session.pose)),
-      trust_(session.pose.trust),
+      poses_(session.pose, markers, camera.model),
       report_(report),
       prefix_(std::move(prefix))
 {
-    if (!session.pose.features.empty())
-        features_.emplace(ar::read_feature_map(session.pose.features), camera.model);
-    if (session.pose.fused) fusion_.emplace();
     if (session.occlusion) occluders_.emplace(*session.occlusion, camera.model);
     renderer_.set_environment(light_.begin());
     std::string const why = renderer_.choose(session.render.light);
@@ -105,8 +96,8 @@ void ArPipeline::report_occluders()
 {
     LiveOccluderCounts const& c = occluders_->counts();
     count_some("frames with a depth picture or a matte", c.frames);
-    count_some("pixels of virtual things hidden by them", c.pixels.hidden);
-    count_some("pixels of virtual things without a measured depth", c.pixels.holes);
+    count_some("pixels of virtual objects hidden by them", c.pixels.hidden);
+    count_some("pixels of virtual objects without a measured depth", c.pixels.holes);
 }
 
 void ArPipeline::count_some(char const* what, std::size_t n)
@@ -116,11 +107,10 @@ void ArPipeline::count_some(char const* what, std::size_t n)
 
 void ArPipeline::report_poses()
 {
-    ar::TrackerCounts const& t = tracker_.counts();
-    if (features_) {
-        ar::FeatureTrackerCounts const& f = features_->counts();
-        count_some("frames recognised anew by features", f.relocated);
-        count_some("frames whose features were not recognised", f.not_relocated);
+    ar::TrackerCounts const& t = poses_.tracker();
+    if (auto const* const f = poses_.features()) {
+        count_some("frames recognised anew by features", f->relocated);
+        count_some("frames whose features were not recognised", f->not_relocated);
     }
     count_some("poses taken", t.taken);
     count_some("poses missed", t.missed);
@@ -128,15 +118,15 @@ void ArPipeline::report_poses()
     count_some("jumps believed", t.jumps_believed);
     count_some("moves of the tripod", t.moves);
     for (std::size_t k = 0; k < ar::kPoseStates; ++k)
-        count_some(("frames " + ar::name_of(ar::PoseState(k))).c_str(), trust_.counts()[k]);
+        count_some(("frames " + ar::name_of(ar::PoseState(k))).c_str(), poses_.states()[k]);
 }
 
 void ArPipeline::report_finish()
 {
     FinishCounts const& f = finish_->counts();
     count_some("enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
-    count_some("enlarged pixels among virtual things alone", f.upsample.no_sample);
-    count_some("points of virtual things without light", f.unlit);
+    count_some("enlarged pixels among virtual objects alone", f.upsample.no_sample);
+    count_some("points of virtual objects without light", f.unlit);
     count_some("pixels at borders of real occluders", f.matte.band);
     count_some("pixels at borders of real occluders, refined", f.matte.refined);
     count_some("frames whose sharpness was measured", f.blur.measured);
@@ -148,7 +138,7 @@ void ArPipeline::report_finish()
 }
 
 ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<KnownPose> const& known,
-                          std::optional<double> begun_s)
+                          std::optional<double> begun_s, gi::StopRequest const* stop)
 {
     if (frame.size_px != camera_.model.size_px)
         throw gi::InputError(
@@ -160,26 +150,11 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<K
     r.camera = ar::picture_of(frame);
     cv::Mat const gray = ar::gray_of(frame);
     r.times.decode_ms = lap();
-    if (known) {
-        if (known->world_from_camera) {
-            r.pose.failure = ar::PoseFailure::none;
-            r.pose.world_from_camera = *known->world_from_camera;
-            r.pose.confidence = 1;
-        }
-        r.used = trust_.next(time_s, {known->world_from_camera, {}, r.pose.found()});
-    } else {
-        if (features_) {
-            r.pose = features_->next(time_s, gray, tracker_.expected(time_s), r.sighting);
-            r.times.detect_ms = lap();
-        } else {
-            r.sighting = detector_.next(gray);
-            r.times.detect_ms = lap();
-            r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
-        }
-        if (fusion_) r.pose = fusion_->next(time_s, r.pose);
-        ar::Taken const taken = tracker_.add(time_s, r.pose);
-        r.used = trust_.next(time_s, offered_pose(session_.pose, tracker_, time_s, r.pose, taken));
-    }
+    FoundPose f = known ? poses_.next(time_s, *known) : poses_.next(time_s, gray, stop);
+    r.sighting = std::move(f.sighting);
+    r.pose = std::move(f.pose);
+    r.used = f.used;
+    if (f.detected_s) r.times.detect_ms = lap.until(*f.detected_s);
     report_poses();
     r.times.pose_ms = lap();
     r.rgb = r.camera;

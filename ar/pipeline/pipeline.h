@@ -4,15 +4,11 @@
 
 #include "ar/camera/frame.h"
 #include "ar/composite/composite.h"
-#include "ar/features/feature_tracker.h"
-#include "ar/markers/detect.h"
 #include "ar/pipeline/live_occluders.h"
 #include "ar/pipeline/pair_finish.h"
 #include "ar/pipeline/pair_renderer.h"
 #include "ar/pipeline/place_light.h"
-#include "ar/pose/fused.h"
-#include "ar/pose/tracker.h"
-#include "ar/pose/trust.h"
+#include "ar/pipeline/pose_finder.h"
 
 namespace viewer {
 
@@ -32,16 +28,6 @@ struct ArCamera {
 
 /// @throws gi::InputError if the frames' size differs from the calibration's
 void check_size(glm::ivec2 frames_px, ArCamera const& camera);
-
-/// A camera pose that is not estimated from the frame, but comes from a tracker or a file; nothing: that has none
-/// for this frame.
-struct KnownPose {
-    explicit KnownPose(std::optional<ar::Pose> const& world_from_camera_) : world_from_camera(world_from_camera_)
-    {
-    }
-    KnownPose(ar::Pose const& world_from_camera_) : world_from_camera(world_from_camera_) {}
-    std::optional<ar::Pose> world_from_camera;
-};
 
 struct ArResult {
     cv::Mat rgb;    ///< of the type of `camera`; without a pose: the camera's frame unchanged
@@ -76,9 +62,10 @@ public:
     /// @param time_s   since the first frame: time for animation clips, the camera's motion and the light
     /// @param known    use this camera pose instead of estimating it from the frame
     /// @param begun_s  steady clock, start of the time measurement; nothing = now
+    /// @param stop     null = none; a pose may be missing after a request
     /// @throws gi::InputError the frame cannot be decoded or has another size than the calibration
     ArResult find(ar::Frame const& frame, double time_s, std::optional<KnownPose> const& known = {},
-                  std::optional<double> begun_s = {});
+                  std::optional<double> begun_s = {}, gi::StopRequest const* stop = nullptr);
     /// Adds the virtual objects, as far as `r.used` shows them.
     /// @param r  result of `find` for the same frame
     void add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
@@ -102,16 +89,12 @@ private:
 
     ArSession session_;
     ArCamera camera_;
-    ar::MarkerTracker detector_;
     PairRenderer renderer_;
     PlaceLight light_;
     std::optional<PairFinish> finish_;
     std::optional<LiveOccluders> occluders_;
     ar::Compositor compositor_;
-    std::optional<ar::FeatureTracker> features_; ///< instead of the detector
-    std::optional<ar::PoseFusion> fusion_;
-    ar::PoseTracker tracker_;
-    ar::PoseTrust trust_;
+    PoseFinder poses_;
     bool keeps_depth_ = false;
     cv::Mat light_picture_;
     std::string lit_by_;

@@ -95,7 +95,7 @@ std::vector<TimedPose> parse_poses(std::string_view text, std::string const& fil
     return poses;
 }
 
-std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes axes, double frames_per_s)
+PoseFile read_poses(std::filesystem::path const& file, FrameNumbering const& numbering, CameraAxes axes)
 {
     std::error_code error;
     std::uintmax_t const size = std::filesystem::file_size(file, error);
@@ -111,15 +111,18 @@ std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes 
     std::string const whole = text.str();
     switch (pose_format(whole, file.string())) {
     case PoseFormat::colmap:
-        return parse_colmap_images(whole, file.string(), frames_per_s);
+        return parse_colmap_images(whole, file.string(), numbering);
     case PoseFormat::nuke_chan:
-        return parse_chan(whole, file.string(), frames_per_s);
+        return parse_chan(whole, file.string(), numbering);
     case PoseFormat::blender_json:
-        return parse_blender_json(whole, file.string());
+        return parse_blender_json(whole, file.string(), numbering);
     case PoseFormat::csv_or_tum:
         break;
     }
-    return parse_poses(whole, file.string(), axes);
+    if (numbering.first)
+        throw gi::InputError(fmt::format("a number of the first frame with '{}'", file.string()),
+                             "its poses have times, not numbers", "leave the number out");
+    return {parse_poses(whole, file.string(), axes), {}};
 }
 
 std::string format_poses(std::vector<TimedPose> const& poses)

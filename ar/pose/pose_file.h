@@ -31,10 +31,22 @@ enum class CameraAxes {
 /// length 1 (within 5 %), times that do not increase, no poses
 std::vector<TimedPose> parse_poses(std::string_view text, std::string const& file,
                                    CameraAxes axes = CameraAxes::vision);
-/// @throws gi::InputError, also for files above 1 GiB or that cannot be read
-/// and of the other formats of ar/pose/pose_import.h, whose frames are numbered at this rate
-std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes axes = CameraAxes::vision,
-                                  double frames_per_s = 30);
+
+/// How the frames are timed that a file numbers instead of giving times.
+struct FrameNumbering {
+    double frames_per_s = 0;          ///< > 0; Blender's file has its own
+    std::optional<double> first = {}; ///< number of the frame at time 0; nothing = that of the first pose
+};
+struct PoseFile {
+    std::vector<TimedPose> poses;
+    std::optional<double> first_frame; ///< number of the frame at time 0; nothing: the file has times
+};
+/// Reads a file of a format above or in ar/pose/pose_import.h.
+/// @param axes  of CSV and TUM
+/// @throws gi::InputError as the parsers, for files above 1 GiB, those that cannot be read, and for
+/// `numbering.first` with a file of times
+PoseFile read_poses(std::filesystem::path const& file, FrameNumbering const& numbering,
+                    CameraAxes axes = CameraAxes::vision);
 /// Formats as CSV with full precision.
 std::string format_poses(std::vector<TimedPose> const& poses);
 

@@ -21,21 +21,26 @@ struct NumberedPose {
     int line = 0;
 };
 
-/// By frame number, the first at time 0. @throws gi::InputError a number twice, no poses
-std::vector<TimedPose> timed(std::vector<NumberedPose> poses, std::string const& file, double frames_per_s)
+/// By frame number. @throws gi::InputError a number twice, no poses, all before the first frame
+PoseFile timed(std::vector<NumberedPose> poses, std::string const& file, FrameNumbering const& numbering)
 {
     if (poses.empty())
         throw gi::InputError(gi::TextLocation{file, 0, 0}, "there are no poses", "the camera is nowhere",
                              "export the camera again");
     std::stable_sort(poses.begin(), poses.end(),
                      [](NumberedPose const& a, NumberedPose const& b) { return a.frame < b.frame; });
-    std::vector<TimedPose> out;
+    double const first = numbering.first.value_or(poses.front().frame);
+    if (poses.back().frame < first)
+        throw gi::InputError(gi::TextLocation{file, poses.back().line, 1},
+                             fmt::format("the last pose is of frame {:.15g}", poses.back().frame),
+                             fmt::format("the first frame is number {:.15g}", first), "name a smaller number");
+    PoseFile out{{}, first};
     for (std::size_t k = 0; k < poses.size(); ++k) {
         if (k > 0 && poses[k].frame == poses[k - 1].frame)
             throw gi::InputError(gi::TextLocation{file, poses[k].line, 1},
-                                 fmt::format("frame {:g} is there twice", poses[k].frame),
+                                 fmt::format("frame {:.15g} is there twice", poses[k].frame),
                                  "a camera has one pose at a time", "remove one of the two");
-        out.push_back({(poses[k].frame - poses.front().frame) / frames_per_s, poses[k].world_from_camera});
+        out.poses.push_back({(poses[k].frame - first) / numbering.frames_per_s, poses[k].world_from_camera});
     }
     return out;
 }
@@ -62,15 +67,42 @@ std::vector<std::string_view> words_of(std::string_view text)
     return words;
 }
 
-/// "walk/frame_0012.png" -> 12
-std::optional<double> last_number(std::string_view name)
+/// "walk/frame_0012.png" -> 0012; empty = none
+std::string_view last_number(std::string_view name)
 {
     std::size_t end = name.find_last_of('.');
     if (end == std::string_view::npos) end = name.size();
     while (end > 0 && !std::isdigit(static_cast<unsigned char>(name[end - 1]))) --end;
     std::size_t begin = end;
     while (begin > 0 && std::isdigit(static_cast<unsigned char>(name[begin - 1]))) --begin;
-    return gi::parse_finite(name.substr(begin, end - begin), kMostFrames);
+    return name.substr(begin, end - begin);
+}
+
+double frame_of(gi::TextLine const& line, std::string_view name)
+{
+    std::string_view const digits = last_number(name);
+    if (digits.empty())
+        throw line.error(name, fmt::format("the name '{}' has no number", name),
+                         "frames are ordered by the numbers of their pictures", "name pictures like 000012.png");
+    auto const frame = gi::parse_finite(digits, kMostFrames);
+    if (!frame)
+        throw line.error(digits, fmt::format("the number {} is more than {:g}", digits, kMostFrames),
+                         "frames are numbered one by one; this may be a time",
+                         "name pictures like 000012.png, or write a TUM file with times in seconds");
+    return *frame;
+}
+
+/// The line behind an image's: nothing but X Y POINT3D_ID, each a number.
+void check_points(gi::TextLine const& line)
+{
+    auto const words = words_of(line.text);
+    bool const are_points = words.size() % 3 == 0 && std::all_of(words.begin(), words.end(), [](auto const& w) {
+                                return gi::parse_finite(w).has_value();
+                            });
+    if (!are_points)
+        throw line.error(gi::trimmed(line.text), "this is no line of points",
+                         "each image has two lines, the second X Y POINT3D_ID ... or empty",
+                         "keep empty lines when images.txt is edited");
 }
 
 } // namespace
@@ -89,7 +121,7 @@ PoseFormat pose_format(std::string_view text, std::string const& file)
     return PoseFormat::csv_or_tum;
 }
 
-std::vector<TimedPose> parse_colmap_images(std::string_view text, std::string const& file, double frames_per_s)
+PoseFile parse_colmap_images(std::string_view text, std::string const& file, FrameNumbering const& numbering)
 {
     constexpr std::array<char const*, 8> names{"IMAGE_ID", "QW", "QX", "QY", "QZ", "TX", "TY", "TZ"};
     std::vector<NumberedPose> poses;
@@ -104,22 +136,17 @@ std::vector<TimedPose> parse_colmap_images(std::string_view text, std::string co
                 "write IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then a line of points, maybe empty");
         std::array<double, 8> v{};
         for (std::size_t k = 0; k < v.size(); ++k) v[k] = number(line, words[k], names[k]);
-        auto const frame = last_number(words[9]);
-        if (!frame)
-            throw line.error(words[9], fmt::format("the name '{}' has no number", words[9]),
-                             "frames are ordered by the numbers of their pictures",
-                             "name pictures like 000012.png");
+        double const frame = frame_of(line, content.substr(std::size_t(words[9].data() - content.data())));
         glm::dquat const turn = unit({v[1], v[2], v[3], v[4]},
                                      line.error(words[1], "the quaternion's length is not 1",
                                                 "that of rotations is 1", "write QW QX QY QZ with QW first"));
-        poses.push_back({*frame, inverse(Pose{turn, {v[5], v[6], v[7]}}), n});
-        gi::take_until(text, '\n'); // the image's points
-        ++n;
+        poses.push_back({frame, inverse(Pose{turn, {v[5], v[6], v[7]}}), n});
+        check_points({gi::take_until(text, '\n'), file, ++n});
     }
-    return timed(std::move(poses), file, frames_per_s);
+    return timed(std::move(poses), file, numbering);
 }
 
-std::vector<TimedPose> parse_chan(std::string_view text, std::string const& file, double frames_per_s)
+PoseFile parse_chan(std::string_view text, std::string const& file, FrameNumbering const& numbering)
 {
     constexpr std::array<char const*, 7> names{"the frame", "TX", "TY", "TZ", "RX", "RY", "RZ"};
     std::vector<NumberedPose> poses;
@@ -139,17 +166,17 @@ std::vector<TimedPose> parse_chan(std::string_view text, std::string const& file
                                 glm::angleAxis(r.x, glm::dvec3(1, 0, 0));
         poses.push_back({v[0], {glm::normalize(turn * kVisionInGraphics), {v[1], v[2], v[3]}}, n});
     }
-    return timed(std::move(poses), file, frames_per_s);
+    return timed(std::move(poses), file, numbering);
 }
 
-std::vector<TimedPose> parse_blender_json(std::string const& text, std::string const& file)
+PoseFile parse_blender_json(std::string const& text, std::string const& file, FrameNumbering numbering)
 {
     gi::Yaml const root = gi::Yaml::parse(text, file, "camera");
     if (!root.has("lightwell_camera") || root.at("lightwell_camera").integer(0, 1000) != 1)
         throw root.error("no 'lightwell_camera: 1'", "this may be a file of another kind",
                          "write it with the script in docs/ar.md");
     root.only_keys({"lightwell_camera", "fps", "frames"});
-    double const fps = root.needed("fps", "24").number(0.01, 1e4);
+    numbering.frames_per_s = root.needed("fps", "24").number(0.01, 1e4);
     glm::dquat const y_up = glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0)); // from z up
     std::vector<NumberedPose> poses;
     for (gi::Yaml const& f : root.needed("frames", "[]").items(0, 10000000)) {
@@ -164,7 +191,7 @@ std::vector<TimedPose> parse_blender_json(std::string const& text, std::string c
                          {glm::normalize(y_up * turn * kVisionInGraphics), y_up * glm::dvec3(p[0], p[1], p[2])},
                          f.place().line});
     }
-    return timed(std::move(poses), file, fps);
+    return timed(std::move(poses), file, numbering);
 }
 
 } // namespace ar

@@ -9,13 +9,12 @@
 
 namespace viewer {
 
-FrameTruth::FrameTruth(std::filesystem::path pictures, std::filesystem::path const& poses)
-    : pictures_(std::move(pictures))
+FrameTruth::FrameTruth(std::filesystem::path pictures, std::vector<ar::TimedPose> poses)
+    : pictures_(std::move(pictures)), poses_(std::move(poses))
 {
     if (!pictures_.empty() && !std::filesystem::is_directory(pictures_))
         throw gi::InputError("there is no folder '" + pictures_.string() + "'", "it should hold the truth",
                              "name the folder truth that `ar synthesize` made");
-    if (!poses.empty()) poses_ = ar::read_poses(poses);
 }
 
 void FrameTruth::add(ArFrameRecord const& f, ArResult const& r)

@@ -23,8 +23,8 @@ std::string describe(FrameErrors const& errors);
 
 class FrameTruth {
 public:
-    /// @param pictures  folder, empty = none   @param poses  file, empty = none. @throws gi::InputError
-    FrameTruth(std::filesystem::path pictures, std::filesystem::path const& poses);
+    /// @param pictures  folder, empty = none   @param poses  empty = none. @throws gi::InputError no such folder
+    FrameTruth(std::filesystem::path pictures, std::vector<ar::TimedPose> poses);
     void add(ArFrameRecord const& record, ArResult const& result);
     FrameErrors const& errors() const { return errors_; }
 

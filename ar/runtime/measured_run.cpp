@@ -4,6 +4,7 @@
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/loop_source.h"
 #include "ar/runtime/source_losses.h"
+#include "ar/scene/camera_poses.h"
 
 namespace viewer {
 namespace {
@@ -40,6 +41,10 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     o.pace = ar::Pace::fastest;
     o.frames = settings.frames;
     if (session.tracked) o.poses = recorded_poses(*session.tracked, report);
+    std::vector<ar::TimedPose> true_poses;
+    if (!settings.true_poses.empty())
+        true_poses = read_camera_poses(settings.true_poses, {frames_per_s_of(session.frames)}, report).poses;
+    FrameTruth truth(settings.truth, std::move(true_poses));
     o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) {
         m.compositor = p.compositor();
         m.is_prefiltered = p.is_prefiltered();
@@ -71,7 +76,6 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
         stop, report, fast);
     report_losses(fast.source, fast.end, report);
     if (shown_s.size() > 1) m.frames_per_s = double(shown_s.size() - 1) / (shown_s.back() - shown_s.front());
-    FrameTruth truth(settings.truth, settings.true_poses);
     for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
     m.errors = truth.errors();
     if (settings.still_frames > 1 && first_frame)

@@ -4,6 +4,7 @@
 #include "gi/core/error.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -45,6 +46,9 @@ void add_response(std::map<std::string, std::string>& text, ar::Compositor const
     for (auto const& channel : p.unit_of_byte)
         for (float const unit : channel) curve += fmt::format("{:.9g} ", unit);
 }
+
+/// Measured or predicted for the frame, not kept from an earlier one.
+bool is_own(ar::PoseState state) { return state == ar::PoseState::tracked || state == ar::PoseState::predicted; }
 
 } // namespace
 
@@ -104,8 +108,9 @@ gi::Picture PassLayers::picture(PassFrame const& f)
         nearest("depth", f.depth->composite);
         nearest("depth_place", f.depth->place);
     }
-    bool const has_motion = f.depth && f.world_from_camera && f.before && !undistort_;
-    if (has_motion) nearest("motion_place", motion(f.depth->place, *f.world_from_camera, *f.before));
+    bool const has_motion = f.depth && f.world_from_camera && is_own(f.state) && f.before && !undistort_;
+    if (has_motion)
+        nearest("motion_place", motion(f.depth->place, *f.world_from_camera, f.before->world_from_camera));
     auto& text = out.metadata;
     text["frame"] = std::to_string(f.sequence);
     text["colour_space"] = "linear BT.709 (sRGB primaries), D65";
@@ -122,11 +127,14 @@ gi::Picture PassLayers::picture(PassFrame const& f)
         text["camera_position_m"] = numbers({at.x, at.y, at.z});
         text["camera_rotation_xyzw"] = numbers({q.x, q.y, q.z, q.w}); // camera: x right, y down, z ahead
     }
-    text["pose"] = f.world_from_camera ? "found" : "none: nothing virtual was added";
+    text["pose"] = ar::name_of(f.state);
+    text["shown"] = numbers({f.shown}); // share of the change by virtual objects
     add_response(text, compositor_, f);
     text["sum"] = "color = objects.rgb + (1 - objects.a) background + added + noise";
-    if (!has_motion)
-        text["motion"] = undistort_ ? "none: only in the camera's lens" : "none: no pose here or before";
+    if (has_motion)
+        text["motion_to_frame"] = std::to_string(f.before->sequence);
+    else
+        text["motion"] = undistort_ ? "none: only in the camera's lens" : "none: no own pose here or before";
     return out;
 }
 
@@ -171,9 +179,17 @@ PassFolder::PassFolder(ArPassSettings const& settings, ar::CameraModel const& ca
 
 void PassFolder::add(ArFrameRecord const& record, ArResult const& r)
 {
-    PassFrame f{record.sequence, record.exposure,          r.camera, r.rgb, r.pair,
-                r.depth,         record.world_from_camera, before_};
-    before_ = record.world_from_camera;
+    PassFrame f{.sequence = record.sequence,
+                .exposure = record.exposure,
+                .camera = r.camera,
+                .composite = r.rgb,
+                .pair = r.pair,
+                .depth = r.depth,
+                .state = record.state,
+                .shown = record.shown,
+                .world_from_camera = record.world_from_camera,
+                .before = std::exchange(before_, std::nullopt)};
+    if (record.world_from_camera && is_own(record.state)) before_ = {record.sequence, *record.world_from_camera};
     thread_->add(std::move(f));
 }
 

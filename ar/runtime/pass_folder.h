@@ -13,6 +13,11 @@
 
 namespace viewer {
 
+struct PlacedFrame {
+    std::uint64_t sequence = 0;
+    ar::Pose world_from_camera;
+};
+
 /// A frame and its result, as they wait to be written.
 struct PassFrame {
     std::uint64_t sequence = 0;
@@ -20,7 +25,10 @@ struct PassFrame {
     cv::Mat camera, composite; ///< as ArResult
     std::optional<ar::RenderedPair> pair;
     std::optional<SeenDepth> depth;
-    std::optional<ar::Pose> world_from_camera, before; ///< before: of the frame before, if it had one
+    ar::PoseState state = ar::PoseState::lost;
+    double shown = 0;                          ///< as ar::UsedPose
+    std::optional<ar::Pose> world_from_camera; ///< the pose that was used
+    std::optional<PlacedFrame> before;         ///< the last frame written, if it had a pose of its own
 };
 
 /// The passes of one frame as layers and metadata.
@@ -57,7 +65,7 @@ public:
 private:
     ArPassSettings settings_;
     PassLayers layers_;
-    std::optional<ar::Pose> before_;
+    std::optional<PlacedFrame> before_;
     std::unique_ptr<KeepThread<PassFrame>> thread_;
 };
 

@@ -173,8 +173,8 @@ std::shared_ptr<PassThroughFrame> PassThrough::composited(ar::Frame const& frame
     std::optional<ar::Pose> known;
     bool const is_told = !options_.poses.empty() || options_.tracked;
     if (is_told) known = options_.tracked ? options_.tracked(frame) : recorded_pose(options_.poses, time_s);
-    ArResult left =
-        sides_[0]->pipeline.find(frame, time_s, is_told ? std::optional(KnownPose(known)) : std::nullopt);
+    ArResult left = sides_[0]->pipeline.find(frame, time_s,
+                                             is_told ? std::optional(KnownPose(known)) : std::nullopt, {}, &stop_);
     sides_[0]->pipeline.add(left, frame, time_s, stop_);
     made->used = left.used;
     made->is_estimated = left.pose.found();

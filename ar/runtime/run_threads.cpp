@@ -111,9 +111,10 @@ void RunThreads::find_all()
 ArResult RunThreads::found_in(FrameInFlight const& w)
 {
     std::optional<double> const begun_s = is_timed_ ? std::optional(w.frame.arrived_s) : std::nullopt;
-    if (options_.poses.empty() && !options_.tracked) return pipeline_.find(w.frame, w.time_s, {}, begun_s);
+    if (options_.poses.empty() && !options_.tracked)
+        return pipeline_.find(w.frame, w.time_s, {}, begun_s, &ending_);
     KnownPose const known(options_.tracked ? options_.tracked(w.frame) : recorded_pose(options_.poses, w.time_s));
-    return pipeline_.find(w.frame, w.time_s, known, begun_s);
+    return pipeline_.find(w.frame, w.time_s, known, begun_s, &ending_);
 }
 
 void RunThreads::add_all()

@@ -1,5 +1,6 @@
 #include "ar/scene/camera_poses.h"
 
+#include "ar/scene/read_values.h"
 #include "gi/core/error.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/motion/animation.h"
@@ -32,10 +33,23 @@ ar::Pose pose_of(gi::dmat4 const& world_from_node)
 
 } // namespace
 
-std::vector<ar::TimedPose> read_camera_poses(std::filesystem::path const& file, double frames_per_s,
-                                             gi::Report& report)
+double frames_per_s_of(ArFrames const& frames)
 {
-    if (!is_scene(file)) return ar::read_poses(file, ar::CameraAxes::vision, frames_per_s);
+    if (is_device(frames.source)) return frames.options.frames_per_s;
+    ar::OpenOptions open = frames.options;
+    open.pace = ar::Pace::fastest;
+    double const own = ar::open_source(frames.source, open)->description().frames_per_s;
+    return own > 0 ? own : frames.options.frames_per_s;
+}
+
+ar::PoseFile read_camera_poses(std::filesystem::path const& file, ar::FrameNumbering const& numbering,
+                               gi::Report& report)
+{
+    if (!is_scene(file)) return ar::read_poses(file, numbering);
+    if (numbering.first)
+        throw gi::InputError("a number of the first frame with '" + file.string() + "'",
+                             "the first key of its camera is the first frame", "leave the number out");
+    double const frames_per_s = numbering.frames_per_s;
     gi::Scene const scene = gi::load_scene(file.string(), report);
     std::vector<std::size_t> cameras;
     for (std::size_t n = 0; n < scene.nodes.size(); ++n)
@@ -59,7 +73,7 @@ std::vector<ar::TimedPose> read_camera_poses(std::filesystem::path const& file, 
             throw gi::InputError(fmt::format("'{}': the camera at {} s is not finite", file.string(), time_s),
                                  "frames cannot be composited with it", "check the scale of its node");
     }
-    return poses;
+    return {std::move(poses), {}};
 }
 
 } // namespace viewer

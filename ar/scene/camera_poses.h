@@ -3,14 +3,20 @@
 // scene file, as matchmoving programs and modellers export it: glTF, FBX, COLLADA.
 
 #include "ar/pose/pose_file.h"
+#include "ar/scene/session_file.h"
 #include "gi/core/report.h"
 
 namespace viewer {
 
-/// @param frames_per_s  of frames that a file numbers instead of giving times, and of the samples of an animated
-///   camera; its first key is the first frame
-/// @throws gi::InputError as of read_poses; a scene file with no camera or several
-std::vector<ar::TimedPose> read_camera_poses(std::filesystem::path const& file, double frames_per_s,
-                                             gi::Report& report);
+/// @param numbering  of frames that a file numbers instead of giving times; its rate is also that of the samples
+/// of
+///   an animated camera, whose first key is the first frame
+/// @throws gi::InputError as of read_poses; a scene file with no camera or several, or with `numbering.first`
+ar::PoseFile read_camera_poses(std::filesystem::path const& file, ar::FrameNumbering const& numbering,
+                               gi::Report& report);
+
+/// Rate of a session's frames: a video's or recording's own, else its key rate_hz. Opens files, but no devices.
+/// @throws gi::InputError as of ar::open_source
+double frames_per_s_of(ArFrames const& frames);
 
 } // namespace viewer

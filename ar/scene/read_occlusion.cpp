@@ -32,7 +32,7 @@ ArOcclusion read_occlusion(Yaml const& o, std::filesystem::path const& folder)
     if (o.has("matte")) out.matte = pictures(o.at("matte"), folder);
     if (!out.depth && !out.matte)
         throw o.error("neither 'depth' nor 'matte'", "nothing says what is in front", "name a folder of pictures");
-    for (char const* key : {"camera", "camera_from_depth", "metres_per_unit", "margin_m", "soft_m"})
+    for (char const* key : {"camera", "camera_from_depth", "metres_per_unit", "margin_m", "soft_m", "soft_px"})
         if (!out.depth && o.has(key))
             throw o.at(key).error("'" + std::string(key) + "' without 'depth'", "it is about depth pictures",
                                   "add depth, or remove the key");

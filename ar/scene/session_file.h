@@ -89,7 +89,7 @@ struct ArSession {
     ArFinish finish;
     ArPoseUse pose;
     ArPassSettings passes;
-    std::optional<ArOcclusion> occlusion; ///< by real things that are not modelled
+    std::optional<ArOcclusion> occlusion; ///< by real objects that are not modelled
 };
 
 /// Paths in the file are relative to its folder. @throws gi::InputError with file:line:column

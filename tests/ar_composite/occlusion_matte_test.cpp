@@ -16,7 +16,7 @@ namespace {
 
 cv::Size const kSize(200, 150);
 
-/// How much of each pixel a rounded real thing covers, smooth over a pixel.
+/// How much of each pixel a rounded real object covers, smooth over a pixel.
 cv::Mat occluder(double shift_x, double shift_y)
 {
     cv::Mat alpha(kSize, CV_32FC1);

@@ -155,6 +155,23 @@ TEST_F(Features, LoseConfidenceWhereNothingIsRecognised)
     EXPECT_LT(last, 0.7 * first);
 }
 
+TEST_F(Features, LoseConfidenceWhereTheSearchFindsNone)
+{
+    FeatureTrackerSettings settings;
+    settings.near_px = 1e-9;
+    FeatureTracker tracker(map, camera(), settings);
+    double first = 0, last = 0;
+    for (int k = 0; k < 30 && tracker.flow_s() <= 2; ++k) {
+        Sighting seen;
+        PoseEstimate const e = tracker.next(k / 10.0, picture(second_way(k), 300 + k), {}, seen);
+        if (k == 0) first = e.confidence;
+        if (e.found()) last = e.confidence;
+    }
+    EXPECT_GT(tracker.counts().looked, 3u);
+    EXPECT_GT(tracker.flow_s(), 1);
+    EXPECT_LT(last, 0.7 * first);
+}
+
 TEST(FeatureMaps, OfNothingAreEmpty)
 {
     MapBuilder builder(camera());
@@ -176,6 +193,34 @@ TEST_F(Features, AreReadAsTheyWereWritten)
     for (std::size_t k = 0; k < map.points.size(); ++k) {
         EXPECT_LT(glm::length(again.points[k].world_m - map.points[k].world_m), 2e-6);
         EXPECT_EQ(again.points[k].descriptors, map.points[k].descriptors);
+    }
+}
+
+TEST(FeatureMaps, ThatCannotBeMatchedAreRefused)
+{
+    FeatureMap large;
+    large.points.resize(kMostDescriptorsOfMap / kMostDescriptors + 1);
+    for (MapPoint& p : large.points) p.descriptors.resize(kMostDescriptors);
+    EXPECT_THROW(FeatureTracker(large, camera()), gi::InputError);
+    large.points.back().descriptors.resize(kMostDescriptorsOfMap % kMostDescriptors);
+    cv::Mat const gray = picture(first_way(0), 0);
+    FeatureTracker tracker(large, camera());
+    Sighting seen;
+    gi::StopRequest stop;
+    EXPECT_FALSE(tracker.next(0, gray, {}, seen, &stop).found()) << "nor does OpenCV's matcher throw";
+    stop.request();
+    auto const begun = std::chrono::steady_clock::now();
+    EXPECT_FALSE(tracker.next(0.1, gray, {}, seen, &stop).found());
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(300));
+    std::string const d(64, 'a');
+    std::string text = "lightwell features 1\n";
+    for (std::size_t k = 0; k <= kMostDescriptorsOfMap; ++k) text += "1 2 3 0.1 " + d + "\n";
+    try {
+        parse_feature_map(text, "map.txt");
+        ADD_FAILURE();
+    } catch (gi::InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("'map.txt' has 262144 points with 262144 descriptors"),
+                  std::string::npos);
     }
 }
 

@@ -49,8 +49,8 @@ TEST(PoseFile, SaysWhereItIsWrong)
     EXPECT_EQ(refusal("time_s,x_m,y_m,z,qx,qy,qz,qw\n").substr(0, 14), "walk.txt:1:16:");
     EXPECT_EQ(refusal("time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,,0,0,0,0,0,1\n").substr(0, 13), "walk.txt:2:3:");
     EXPECT_NE(refusal("# nothing\n"), "");
-    EXPECT_THROW(read_poses("/nowhere/walk.txt"), gi::InputError);
-    EXPECT_THROW(read_poses("/tmp"), gi::InputError);
+    EXPECT_THROW(read_poses("/nowhere/walk.txt", {30}), gi::InputError);
+    EXPECT_THROW(read_poses("/tmp", {30}), gi::InputError);
 }
 
 TEST(PoseFile, IsReadBetweenItsTimes)

@@ -30,8 +30,8 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
     } catch (gi::InputError const&) {
     }
     std::string const whole(text.begin(), text.end());
-    any([&] { ar::parse_colmap_images(whole, "fuzz", 30); });
-    any([&] { ar::parse_chan(whole, "fuzz", 30); });
-    any([&] { ar::parse_blender_json(whole, "fuzz"); });
+    any([&] { ar::parse_colmap_images(whole, "fuzz", {30}); });
+    any([&] { ar::parse_chan(whole, "fuzz", {30}); });
+    any([&] { ar::parse_blender_json(whole, "fuzz", {}); });
     return 0;
 }

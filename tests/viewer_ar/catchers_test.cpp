@@ -1,4 +1,4 @@
-// What real proxies catch of virtual things beside shadows: mirror images and caustics.
+// What real proxies catch of virtual objects beside shadows: mirror images and caustics.
 
 #include "ar/pipeline/bridge.h"
 #include "ar/pipeline/pair_renderer.h"
@@ -52,7 +52,7 @@ gi::Material red()
     return m;
 }
 
-/// What is added where no virtual thing is seen itself.
+/// What is added where no virtual object is seen itself.
 cv::Mat added_beside(PairPictures const& p)
 {
     cv::Mat added = p.with - p.without;

@@ -42,6 +42,12 @@ TEST(ArMap, FindsTheCameraWithoutMarkers)
     values >> median_mm;
     EXPECT_LT(median_mm, 10);
 
+    // Albedos are estimated with the camera found in the same way.
+    Outcome const albedo = run(
+        "ar albedo bare/features.yaml --scene --views 1 --paths 1 --resolution 0.1 --out a.yaml", folder.path());
+    EXPECT_EQ(albedo.code, 0) << albedo.err;
+    EXPECT_NE(albedo.out.find("camera found in 19 frames (1 without"), std::string::npos) << albedo.out;
+
     // Markers alone find nothing there.
     EXPECT_EQ(run("ar track bare/session.yaml --fast", folder.path()).code, 1);
     Outcome const nothing = run("ar map bare/session.yaml --out none.txt", folder.path());

@@ -1,4 +1,4 @@
-// Hands in front of virtual things, through the program: depth pictures and mattes.
+// Hands in front of virtual objects, through the program: depth pictures and mattes.
 
 #include "ar/calibration/calibration_file.h"
 #include "tests/viewer/run_program.h"
@@ -65,7 +65,7 @@ TEST_F(ArOcclusions, ByDepthsKeepTheHand)
     Outcome const o = run("{depth: depth}");
     ASSERT_EQ(o.code, 0) << o.err;
     for (int f : {0, 1, 2}) expect_left_hidden(f);
-    EXPECT_NE(file_text(desk() / "s.json").find("pixels of virtual things hidden by them"), std::string::npos);
+    EXPECT_NE(file_text(desk() / "s.json").find("pixels of virtual objects hidden by them"), std::string::npos);
     // Half the size, and far away: nothing is hidden.
     for (int f : {0, 1, 2}) write("far", f, hand({64, 48}, 4000));
     ASSERT_EQ(run("{depth: far}").code, 0);
@@ -136,6 +136,7 @@ TEST_F(ArOcclusions, ThatAreWrongSayWhy)
     refused("{depth: empty}", "no pictures");
     refused("{matte: eight, margin_m: 1}", "s.yaml:10:");
     refused("{depth: eight, soft_px: -1}", "s.yaml:10:");
+    refused("{matte: eight, soft_px: 1}", "'soft_px' without 'depth'");
     refused("{depth: eight, camera_from_depth: {position_m: [1, 0, 0]}}", "no 'camera'");
     write("twice", 1, cv::Mat::zeros(96, 128, CV_8UC1));
     fs::copy(desk() / "twice/000001.png", desk() / "twice/b1.png");

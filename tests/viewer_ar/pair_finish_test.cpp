@@ -1,4 +1,4 @@
-// Pairs rendered at half size: borders of virtual things as sharp as at full size, and hidden ones known.
+// Pairs rendered at half size: borders of virtual objects as sharp as at full size, and hidden ones known.
 
 #include "ar/pipeline/bridge.h"
 #include "ar/pipeline/pair_finish.h"

@@ -42,7 +42,7 @@ protected:
         session_.hmd.emplace().right = {(folder_ / "desk/frames").string(), folder_ / "desk/camera.yaml",
                                         ar::Pose{glm::angleAxis(0.05, glm::dvec3(0, 1, 0)), {0.06, 0, 0}}};
         options_.pace = ar::Pace::fastest;
-        options_.poses = ar::read_poses(folder_ / "desk/poses.csv");
+        options_.poses = ar::read_poses(folder_ / "desk/poses.csv", {30}).poses;
     }
     std::shared_ptr<PassThroughFrame const> last(PassThrough& p) const
     {

@@ -5,6 +5,7 @@
 #include "gi/image_io/picture_file.h"
 #include "tests/viewer/run_program.h"
 
+#include <ImathMatrix.h>
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfFramesPerSecond.h>
 #include <ImfMultiPartInputFile.h>
@@ -79,7 +80,7 @@ TEST_F(ArPasses, AreOneFileAFrameWithAllThatIsPromised)
     EXPECT_EQ(layer_size(p, "motion_place", 2), 2 * n);
     EXPECT_EQ(p.metadata.at("frame"), "1");
     EXPECT_EQ(p.metadata.at("lens"), "radial_tangential");
-    // Virtual things are nearer than the place behind them.
+    // Virtual objects are nearer than the place behind them.
     std::size_t covered = 0;
     for (std::size_t i = 0; i < n; ++i)
         if (p.find("coverage")->data[i] > 0.99f) {
@@ -98,13 +99,29 @@ TEST_F(ArPasses, AreOneFileAFrameWithAllThatIsPromised)
         EXPECT_EQ(double(Imf::framesPerSecond(header)), 30);
         EXPECT_EQ(Imf::chromaticities(header).red, Imath::V2f(0.64f, 0.33f));
     }
-    // The printed board's corner, by worldToNDC of an undistorted frame and by its matrix.
     ASSERT_EQ(run("ar run session.yaml --fast --poses poses.csv --passes flat --undistorted --pass-bits 32").code,
               0);
     gi::Picture const flat = gi::read_exr(desk() / "flat/000001.exr");
     EXPECT_EQ(flat.metadata.at("lens"), "pinhole");
     EXPECT_GT(flat.width, 128);
     EXPECT_EQ(flat.find("motion_place"), nullptr);
+    // A corner of the board, by worldToNDC of an undistorted frame and by its pinhole. Imath's vectors are rows.
+    Imf::MultiPartInputFile flat_file((desk() / "flat/000001.exr").c_str());
+    Imath::V3f ndc;
+    Imf::worldToNDC(flat_file.header(0)).multVecMatrix(Imath::V3f(0.1f, 0, -0.05f), ndc);
+    ar::Pose const world_from_camera = ar::read_poses(desk() / "poses.csv", {30}).poses[1].world_from_camera;
+    glm::dvec3 const seen = inverse(world_from_camera) * glm::dvec3(0.1, 0, -0.05);
+    auto const two = [&](char const* key) {
+        std::istringstream in(flat.metadata.at(key));
+        glm::dvec2 v;
+        in >> v.x >> v.y;
+        return v;
+    };
+    glm::dvec2 const pixel = two("focal_length_px") * glm::dvec2(seen) / seen.z + two("principal_point_px");
+    EXPECT_NEAR((ndc.x + 1) / 2 * flat.width - 0.5, pixel.x, 0.01);
+    EXPECT_NEAR((1 - ndc.y) / 2 * flat.height - 0.5, pixel.y, 0.01);
+    EXPECT_GT(pixel.x, 0) << "in the picture";
+    EXPECT_LT(pixel.x, flat.width);
 }
 
 TEST_F(ArPasses, MotionLeadsToTheSamePlaceInTheFrameBefore)
@@ -114,7 +131,7 @@ TEST_F(ArPasses, MotionLeadsToTheSamePlaceInTheFrameBefore)
                       now = gi::read_exr(desk() / "passes/000001.exr");
     EXPECT_EQ(before.find("motion_place"), nullptr);
     ar::CameraModel const camera = ar::read_calibration(desk() / "camera.yaml").camera;
-    auto const poses = ar::read_poses(desk() / "poses.csv");
+    auto const poses = ar::read_poses(desk() / "poses.csv", {30}).poses;
     ar::Pose const before_from_now = inverse(poses[0].world_from_camera) * poses[1].world_from_camera;
     std::vector<float> const &depth = now.find("depth_place")->data,
                              &depth_before = before.find("depth_place")->data,
@@ -139,6 +156,22 @@ TEST_F(ArPasses, MotionLeadsToTheSamePlaceInTheFrameBefore)
     EXPECT_GT(agree, 0.8 * seen) << "the rest was hidden behind things";
 }
 
+TEST_F(ArPasses, SayWhichPoseTheyHave)
+{
+    std::string const poses = file_text(desk() / "poses.csv");
+    std::ofstream(desk() / "first.csv") << poses.substr(0, poses.find('\n', poses.find('\n') + 1) + 1);
+    write_session("held.yaml", "schema", "schema", "pose: {hold_s: 1}\n");
+    ASSERT_EQ(run("ar run held.yaml --fast --poses first.csv --passes held").code, 0);
+    gi::Picture const held = gi::read_exr(desk() / "held/000001.exr");
+    EXPECT_EQ(held.metadata.at("pose"), "held");
+    EXPECT_EQ(held.metadata.at("shown"), "1");
+    EXPECT_EQ(held.find("motion_place"), nullptr) << "nobody knows how the camera moved";
+    EXPECT_EQ(held.metadata.count("motion_to_frame"), 0u);
+    EXPECT_EQ(gi::read_exr(desk() / "held/000000.exr").metadata.at("pose"), "tracked");
+    ASSERT_EQ(run("ar run session.yaml --fast --poses poses.csv --passes passes").code, 0);
+    EXPECT_EQ(gi::read_exr(desk() / "passes/000001.exr").metadata.at("motion_to_frame"), "0");
+}
+
 TEST_F(ArPasses, OfWrongCallsAreRefused)
 {
     refused("ar run session.yaml --fast --undistorted", "--passes");
@@ -156,7 +189,8 @@ TEST_F(ArPasses, OfLinearFramesComeOutAsRadiance)
 {
     write_linear_frames();
     write_session("linear.yaml", "source: frames", "source: linear");
-    Outcome const o = run("ar run linear.yaml --fast --poses poses.csv --out out --passes passes --pass-bits 32 --video v.mkv");
+    Outcome const o =
+        run("ar run linear.yaml --fast --poses poses.csv --out out --passes passes --pass-bits 32 --video v.mkv");
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_NE(o.out.find("2 composites reduced to 8 bits"), std::string::npos) << o.out;
     gi::Picture const in = gi::read_exr(desk() / "linear/000001.exr"),

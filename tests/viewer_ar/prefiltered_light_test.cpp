@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Virtual things on real ones, under a map.
+/// Virtual objects on real ones, under a map.
 struct Place {
     Place(gi::Scene real, gi::Scene things, std::shared_ptr<gi::EnvironmentMap const> map)
         : local(join_scenes(std::move(real), std::move(things), gi::dmat4(1))), moving(local.scene, 0, report)

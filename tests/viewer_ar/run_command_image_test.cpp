@@ -1,5 +1,6 @@
 // Whole sessions through the program: what is true is known of every frame.
 
+#include "ar/pose/pose_file.h"
 #include "tests/viewer/run_program.h"
 
 #include <fmt/format.h>
@@ -151,6 +152,48 @@ TEST_F(ArRuns, HoldAndFadeWhereThereIsNoPose)
     EXPECT_NE(file_text(desk() / "fading.csv").find(",fading,0.467"), std::string::npos);
 }
 
+TEST_F(ArRuns, TimeNumberedPosesAsTheirSource)
+{
+    // A video of 24 Hz in a session that says nothing of it; poses as of COLMAP, and by their times.
+    std::string const frames = "source: frames, rate_hz: 30";
+    auto const with = [&](std::string const& source) {
+        std::string text = session();
+        return text.replace(text.find(frames), frames.size(), source);
+    };
+    write(desk() / "slow.yaml", with("source: frames, rate_hz: 24"));
+    ASSERT_EQ(run("ar run slow.yaml --fast --poses poses.csv --video slow.mkv").code, 0);
+    write(desk() / "video.yaml", with("source: slow.mkv"));
+    std::vector<ar::TimedPose> poses = ar::read_poses(desk() / "poses.csv", {30}).poses;
+    auto const image = [&](int k) {
+        ar::Pose const p = inverse(poses[std::size_t(k)].world_from_camera);
+        glm::dquat const q = p.rotation;
+        return fmt::format("{} {} {} {} {} {} {} {} 1 {:03}.png\n\n", k + 1, q.w, q.x, q.y, q.z, p.position_m.x,
+                           p.position_m.y, p.position_m.z, k + 7);
+    };
+    write(desk() / "all.txt", image(0) + image(1) + image(2));
+    write(desk() / "late.txt", image(1) + image(2)); // the first picture could not be registered
+    for (int k = 0; k < 3; ++k) poses[std::size_t(k)].time_s = k / 24.0;
+    write(desk() / "timed.csv", ar::format_poses(poses));
+    Outcome const all = run("ar run video.yaml --fast --poses all.txt --true-poses timed.csv");
+    ASSERT_EQ(all.code, 0) << all.err;
+    EXPECT_NE(all.out.find("poses: 3 tracked"), std::string::npos) << all.out;
+    EXPECT_LT(number_behind(all.out, "position error (mm)", 2), 0.01);
+    EXPECT_NE(all.err.find("taken for number 7 of 'all.txt'"), std::string::npos) << all.err;
+    Outcome const truth = run("ar run video.yaml --fast --poses timed.csv --true-poses all.txt");
+    EXPECT_LT(number_behind(truth.out, "position error (mm)", 2), 0.01);
+    Outcome const late = run("ar run video.yaml --fast --poses late.txt --first-pose 7 --true-poses timed.csv");
+    EXPECT_NE(late.out.find("poses: 2 tracked, 1 lost"), std::string::npos) << late.out;
+    EXPECT_LT(number_behind(late.out, "position error (mm)", 2), 0.01);
+    EXPECT_EQ(late.err.find("taken for"), std::string::npos) << late.err;
+    EXPECT_GT(number_behind(run("ar run video.yaml --fast --poses late.txt --true-poses timed.csv").out,
+                            "position error (mm)"),
+              5)
+        << "which stderr tells";
+    EXPECT_EQ(run("ar run video.yaml --fast --poses timed.csv --first-pose 7").code, 2);
+    EXPECT_EQ(run("ar run video.yaml --fast --poses all.txt --first-pose many").code, 2);
+    EXPECT_EQ(run("ar run video.yaml --fast --first-pose 7").code, 2);
+}
+
 TEST_F(ArRuns, CountFramesThatAreNoFrames)
 {
     fs::copy(desk() / "frames", desk() / "damaged");
@@ -235,6 +278,13 @@ TEST_F(ArRuns, SayWhatIsWrongWithTheirFiles)
     refused("ar run session.yaml --out frames", "a folder that is read");
     refused("ar run session.yaml --out truth --truth truth", "a folder that is read");
     refused("ar run session.yaml --table camera.yaml", "camera.yaml");
+    fs::create_directory(desk() / "mattes");
+    fs::create_directory(desk() / "depths");
+    fs::copy(desk() / "frames/000000.png", desk() / "mattes/000000.png");
+    write(desk() / "occluded.yaml", session() + "occlusion: {matte: mattes, depth: depths/%06d.png}\n");
+    refused("ar run occluded.yaml --out mattes", "a folder that is read");
+    refused("ar run occluded.yaml --out depths", "a folder that is read");
+    refused("ar run occluded.yaml --passes mattes", "has other pictures");
 }
 
 } // namespace

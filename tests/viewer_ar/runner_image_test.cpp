@@ -67,7 +67,7 @@ TEST_F(ArThreads, GiveWhatOneAloneGives)
     s.smoothing = 0.5;
     ArRunOptions o;
     o.pace = ar::Pace::fastest;
-    o.poses = ar::read_poses(*folder / "poses.csv");
+    o.poses = ar::read_poses(*folder / "poses.csv", {30}).poses;
     std::vector<cv::Mat> composites;
     run_ar(
         s, o, [&](ArFrameRecord&, ArResult const& r) { composites.push_back(r.rgb); }, stop, report, summary);

@@ -30,7 +30,7 @@ TEST(CameraPoses, ComeFromAnAnimatedCamera)
     TemporaryFolder const folder;
     std::ofstream(folder / "shot.gltf") << scene();
     gi::Report report;
-    auto const poses = read_camera_poses(folder / "shot.gltf", 10, report);
+    auto const poses = read_camera_poses(folder / "shot.gltf", {10}, report).poses;
     ASSERT_EQ(poses.size(), 11u);
     for (std::size_t f = 0; f < poses.size(); ++f) {
         double const t = double(f) / 10;
@@ -50,10 +50,11 @@ TEST(CameraPoses, NeedOneCamera)
     TemporaryFolder const folder;
     gi::Report report;
     std::ofstream(folder / "two.gltf") << scene(R"(, {"camera": 0})", "0, 2");
-    EXPECT_THROW(read_camera_poses(folder / "two.gltf", 10, report), gi::InputError);
+    EXPECT_THROW(read_camera_poses(folder / "two.gltf", {10}, report), gi::InputError);
     std::ofstream(folder / "none.gltf") << R"({"asset": {"version": "2.0"}, "nodes": [{}]})";
-    EXPECT_THROW(read_camera_poses(folder / "none.gltf", 10, report), gi::InputError);
-    EXPECT_THROW(read_camera_poses(folder / "missing.glb", 10, report), gi::InputError);
+    EXPECT_THROW(read_camera_poses(folder / "none.gltf", {10}, report), gi::InputError);
+    EXPECT_THROW(read_camera_poses(folder / "shot.gltf", {10, 4}, report), gi::InputError) << "has no numbers";
+    EXPECT_THROW(read_camera_poses(folder / "missing.glb", {10}, report), gi::InputError);
 }
 
 } // namespace

@@ -2,45 +2,40 @@
 // The camera's poses in a session's frames, for commands that only need poses: frame by frame, in order.
 
 #include "ar/markers/marker_map_file.h"
+#include "ar/pipeline/pose_finder.h"
 #include "ar/runtime/runner.h"
-#include "ar/scene/camera_poses.h"
+#include "viewer/cli/ar/pose_arguments.h"
 
 namespace viewer {
 
-/// Camera poses from the --poses file, from a recorded tracker, or from the markers in the frame.
+/// Camera poses from the --poses file, from a recorded tracker, or found in the frames as `ar run` finds them.
 class CameraPath {
 public:
-    CameraPath(std::string const& poses, ArSession const& session, ArCamera const& camera, gi::Report& report)
-        : camera_(camera),
-          least_(session.pose.trust.least_confidence),
-          detector_(ar::read_marker_map(session.markers))
+    CameraPath(PoseArguments const& poses, ArSession const& session, ArCamera const& camera, gi::Report& report)
+        : finder_(session.pose, ar::read_marker_map(session.markers), camera.model)
     {
-        if (!poses.empty())
-            poses_ = read_camera_poses(poses, session.frames.options.frames_per_s, report);
+        if (!poses.file.empty())
+            poses_ = poses_of(poses, session, report);
         else if (session.tracked)
             poses_ = recorded_poses(*session.tracked, report);
     }
-    /// Pose and its confidence; nothing if it is not trusted (pose.least_confidence, ambiguous).
-    std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s)
+    /// Pose and its confidence; nothing if this frame has none that is trusted.
+    std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s,
+                                                  gi::StopRequest const& stop)
     {
         if (!poses_.empty()) {
             auto const pose = recorded_pose(poses_, time_s);
             if (!pose) return std::nullopt;
             return std::pair(*pose, 1.0);
         }
-        ar::PoseEstimate const p =
-            ar::estimate_pose(detector_.next(ar::gray_of(frame)), camera_.model, tracker_.expected(time_s));
-        tracker_.add(time_s, p);
-        if (!p.found() || p.ambiguous || p.confidence < least_) return std::nullopt;
-        return std::pair(p.world_from_camera, p.confidence);
+        FoundPose const f = finder_.next(time_s, ar::gray_of(frame), &stop);
+        if (f.used.state != ar::PoseState::tracked || f.pose.ambiguous) return std::nullopt;
+        return std::pair(*f.used.world_from_camera, f.pose.confidence);
     }
 
 private:
-    ArCamera const& camera_;
-    double least_;
     std::vector<ar::TimedPose> poses_;
-    ar::MarkerTracker detector_;
-    ar::PoseTracker tracker_;
+    PoseFinder finder_;
 };
 
 } // namespace viewer

@@ -31,7 +31,7 @@ PosedFrames read_posed_frames(PosedFrameChoice const& a, ArSession const& sessio
         if (a.only >= 0 && std::int64_t(frame->sequence) > a.only) break;
         double const time_s = clock(*frame);
         try {
-            auto const pose = path.at(*frame, time_s);
+            auto const pose = path.at(*frame, time_s, stop);
             if (!pose) {
                 ++seen.without_pose;
                 continue;

@@ -3,14 +3,14 @@
 
 #include "ar/pipeline/pipeline.h"
 #include "ar/pipeline/posed_frame.h"
+#include "viewer/cli/ar/pose_arguments.h"
 
-#include <string>
 #include <vector>
 
 namespace viewer {
 
 struct PosedFrameChoice {
-    std::string poses;      ///< file of camera poses; empty = from the markers or the session's tracker
+    PoseArguments poses;    ///< without a file: from markers, features or the session's tracker
     int views = 8;          ///< frames to keep, spread evenly
     int frames = 0;         ///< read at most this many; 0 = all, of files only
     std::int64_t only = -1; ///< number of the only frame to keep; -1 = any

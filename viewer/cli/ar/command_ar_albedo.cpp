@@ -68,8 +68,8 @@ fs::path texture_beside(fs::path const& out, std::size_t patch)
 void check_albedo_outputs(AlbedoArguments const& a, ArSession session, fs::path const& out, RealScene const& real)
 {
     session.real.estimates.clear();
-    if (!a.read.poses.empty()) session.tracked.reset();
-    std::vector<std::string> read{a.read.poses}, written{out.string()};
+    if (!a.read.poses.file.empty()) session.tracked.reset();
+    std::vector<std::string> read{a.read.poses.file}, written{out.string()};
     for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
     for (std::size_t k = 0; k < real.patches.size(); ++k)
         if (real.patches[k].texels > 0) written.push_back(texture_beside(out, k).string());
@@ -124,7 +124,7 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
                   "with 'albedo: estimate' or 'texture: estimate' on the objects to estimate")
         ->required();
     c->add_option("--out", a->out, "File for the albedos (default: the one that the session reads)");
-    c->add_option("--poses", a->read.poses, "Camera poses (CSV or TUM), instead of using the markers");
+    declare_poses(*c, a->read.poses);
     c->add_flag("--scene", a->scene, "Also estimate the scene's materials, if the session does not request it");
     c->add_option("--views", a->read.views, "Number of frames to compare, spread over the session")
         ->check(CLI::Range(1, 1000))

@@ -71,8 +71,8 @@ void check_light_outputs(LightArguments const& a, ArSession session)
 {
     session.light.clear(); // may be what is written
     session.real.estimates.clear();
-    if (!a.read.poses.empty()) session.tracked.reset();
-    std::vector<std::string> read{a.read.poses};
+    if (!a.read.poses.file.empty()) session.tracked.reset();
+    std::vector<std::string> read{a.read.poses.file};
     for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
     check_outputs({a.out, a.stats}, read);
     check_ending(a.out, ".exr", "an OpenEXR map", "write --out light.exr");
@@ -131,7 +131,7 @@ void add_ar_light(CLI::App& ar, int& exit_code)
     c->add_option("session", a->session, "with real surfaces (real:) and, of some of them, their albedos")
         ->required();
     c->add_option("--out", a->out, "Map to write, .exr; set it as the session's light: {map: FILE}")->required();
-    c->add_option("--poses", a->read.poses, "Camera poses (CSV or TUM), instead of using the markers");
+    declare_poses(*c, a->read.poses);
     CLI::Option* const views =
         c->add_option("--views", a->read.views, "Number of frames to compare, spread over the session")
             ->check(CLI::Range(1, 100))

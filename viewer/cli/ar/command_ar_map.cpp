@@ -20,7 +20,8 @@ namespace viewer {
 namespace {
 
 struct MapArguments {
-    std::string session, out, poses, require_found;
+    std::string session, out, require_found;
+    PoseArguments poses;
     int frames = 0;
 };
 
@@ -47,7 +48,7 @@ FrameTally look(MapArguments const& a, ArSession const& session, ArCamera const&
         ++n;
         double const time_s = clock(*frame);
         try {
-            auto const pose = path.at(*frame, time_s);
+            auto const pose = path.at(*frame, time_s, stop);
             cv::Mat const gray = ar::gray_of(*frame);
             check_size({gray.cols, gray.rows}, camera);
             ++tally.looked_at;
@@ -86,7 +87,7 @@ int run_map(MapArguments const& a)
     auto const required = parse_share("--require-found", a.require_found);
     ArSession session = read_ar_session(a.session);
     session.pose.features.clear(); // a map is made from markers, a tracker or a file
-    std::vector<std::string> read{a.poses};
+    std::vector<std::string> read{a.poses.file};
     for (std::filesystem::path const& file : files_read_by(session)) read.push_back(file.string());
     check_outputs({a.out}, read);
     gi::Report report;
@@ -96,13 +97,14 @@ int run_map(MapArguments const& a)
     ar::MapBuilder builder(camera.model);
     FrameTally const tally = look(a, session, camera, builder, stop, report);
     if (stop.requested()) return kInterrupted;
-    ar::FeatureMap const map = builder.finish();
+    ar::FeatureMap const& map = builder.finish();
     fmt::print("{}", describe(map, builder.counts(), tally));
     print_losses(report);
     if (map.points.empty())
         return exit_code_of(
             "no map was written (no feature was seen from several sides with a known camera pose) move "
             "the camera around a place with texture");
+    ar::check_size(map, "the map");
     gi::write_text(a.out, ar::format_feature_map(map));
     fmt::print("{}\n", a.out);
     return exit_code_of(shortfall(tally, required));
@@ -117,7 +119,7 @@ void add_ar_map(CLI::App& ar, int& exit_code)
         "map", "Make a map of features from a session whose camera poses are known, to track without markers");
     c->add_option("session", a->session, "Session whose frames follow each other, as in a video")->required();
     c->add_option("--out", a->out, "File for the map, for pose.features of sessions")->required();
-    c->add_option("--poses", a->poses, "Camera poses, instead of using the markers");
+    declare_poses(*c, a->poses);
     c->add_option("--frames", a->frames, "Read at most this many frames; 0 = all (files only)")
         ->check(CLI::NonNegativeNumber);
     declare_require_found(*c, a->require_found);

@@ -2,7 +2,6 @@
 #include "ar/runtime/frame_table.h"
 #include "ar/runtime/frame_truth.h"
 #include "ar/runtime/hmd_run.h"
-#include "ar/scene/camera_poses.h"
 #include "ar/scene/session_inputs.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
@@ -11,6 +10,7 @@
 #include "viewer/base/report_json.h"
 #include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/ar/ar_recording.h"
+#include "viewer/cli/ar/pose_arguments.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -23,8 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats, display,
-        require_found, confidence;
+    std::string session, out, video, record_input, truth, true_poses, frame_table, stats, display, require_found,
+        confidence;
+    PoseArguments poses;
     int frames = 0;
     bool fast = false, window = false, gpu = false;
     std::string monitor, eyes;
@@ -37,11 +38,14 @@ struct RunArguments {
 /// Throws if an input would be overwritten.
 void check_arguments(RunArguments const& a, ArSession const& session)
 {
-    std::vector<std::string> read{a.poses, a.true_poses};
+    std::vector<std::string> read{a.poses.file, a.true_poses};
     for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
     check_outputs({a.frame_table, a.confidence, a.stats, a.video}, read);
     std::vector<fs::path> folders{folder_of_source(session.frames.source), a.truth};
     if (session.hmd && session.hmd->right) folders.push_back(folder_of_source(session.hmd->right->source));
+    if (session.occlusion)
+        for (auto const* pictures : {&session.occlusion->depth, &session.occlusion->matte})
+            if (*pictures) folders.push_back(folder_of_source((*pictures)->source.string()));
     std::error_code ignored;
     for (fs::path const& folder : folders)
         if (!a.out.empty() && !folder.empty() && fs::equivalent(a.out, folder, ignored))
@@ -74,7 +78,7 @@ void check_arguments(RunArguments const& a, ArSession const& session)
 ArSession session_of(RunArguments const& a)
 {
     ArSession session = read_ar_session(a.session);
-    if (!a.poses.empty())
+    if (!a.poses.file.empty())
         session.tracked.reset();
     else if (!a.display.empty()) {
         if (!session.tracked) session.tracked.emplace();
@@ -136,7 +140,7 @@ int run_session(RunArguments const& a, bool poses_only)
     o.keeps_depth = !session.passes.folder.empty();
     if (a.gpu) o.composite = CompositeBy::window;
     gi::Report report;
-    if (!a.poses.empty()) o.poses = read_camera_poses(a.poses, session.frames.options.frames_per_s, report);
+    o.poses = poses_of(a.poses, session, report);
     std::optional<TrackedCamera> tracker;
     if (session.tracked) {
         tracker.emplace(*session.tracked, report);
@@ -146,7 +150,7 @@ int run_session(RunArguments const& a, bool poses_only)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
-    FrameTruth truth(a.truth, a.true_poses);
+    FrameTruth truth(a.truth, poses_of({a.true_poses, {}}, session, report));
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
                            a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose,
                            poses_only ? ArPassSettings{} : session.passes});
@@ -249,9 +253,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     run_command
         ->add_option("--record-input", run->record_input, "Folder to create: the camera's frames as a session")
         ->excludes("--fast");
-    run_command->add_option(
-        "--poses", run->poses,
-        "Camera poses (CSV, TUM, COLMAP images.txt, Nuke .chan, Blender .json), instead of using the markers");
+    declare_poses(*run_command, run->poses);
     CLI::Option* const window =
         run_command->add_flag("--window", run->window, "Show a window: S before/after, H panel, Escape ends");
     run_command->add_option("--monitor", run->monitor, "Full screen on the monitor with this number or name")

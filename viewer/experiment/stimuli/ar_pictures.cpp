@@ -2,10 +2,10 @@
 
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
-#include "ar/pose/pose_file.h"
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/runner.h"
 #include "ar/runtime/source_losses.h"
+#include "ar/scene/camera_poses.h"
 #include "ar/scene/read_values.h"
 #include "gi/core/error.h"
 #include "viewer/experiment/screens/screen.h"
@@ -110,13 +110,13 @@ cv::Mat read_truth(ArStimulus const& s, ar::Frame const& frame)
     return truth;
 }
 
-std::vector<ar::TimedPose> read_poses(ArStimulus const& s)
+std::vector<ar::TimedPose> poses_of(ArStimulus const& s, ArFrames const& frames, gi::Report& report)
 {
     try {
-        return ar::read_poses(s.poses);
+        return read_camera_poses(s.poses, {frames_per_s_of(frames), {}}, report).poses;
     } catch (gi::InputError const& e) {
         throw ArSettingError("ar.poses", s.poses.filename().string(), "the camera's poses", e.what(),
-                             "name a CSV or TUM file");
+                             "name a file of a format in docs/ar.md (Poses)");
     }
 }
 
@@ -126,9 +126,9 @@ public:
     Maker(ArStimulus const& stimulus, gi::StopRequest const& stop, gi::Report& report)
         : stimulus_(stimulus), stop_(stop), report_(report)
     {
-        if (!stimulus.poses.empty()) poses_ = read_poses(stimulus);
-        if (stimulus.show != ArShow::composite) return;
         ArSession const session = session_of(stimulus);
+        if (!stimulus.poses.empty()) poses_ = poses_of(stimulus, session.frames, report);
+        if (stimulus.show != ArShow::composite) return;
         if (poses_.empty() && session.tracked) poses_ = recorded_poses(*session.tracked, report);
         pipeline_.emplace(session, load_ar_camera(session.camera), ar::read_marker_map(session.markers), report);
     }
@@ -141,7 +141,7 @@ public:
         if (stimulus_.show != ArShow::composite) return p;
         std::optional<KnownPose> known;
         if (!poses_.empty()) known.emplace(recorded_pose(poses_, f.time_s));
-        ArResult r = pipeline_->find(f.frame, f.time_s, known);
+        ArResult r = pipeline_->find(f.frame, f.time_s, known, {}, &stop_);
         pipeline_->add(r, f.frame, f.time_s, stop_);
         p.rgb = ar::eight_bits_of(r.rgb).clone();
         if (r.rgb.depth() != CV_8U)

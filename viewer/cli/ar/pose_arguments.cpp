@@ -1,0 +1,36 @@
+#include "viewer/cli/ar/pose_arguments.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+
+namespace viewer {
+
+void declare_poses(CLI::App& c, PoseArguments& a)
+{
+    CLI::Option* const file = c.add_option(
+        "--poses", a.file,
+        "Camera poses (CSV, TUM, COLMAP images.txt, Nuke .chan, Blender .json, glTF, FBX, COLLADA), instead of "
+        "using the markers");
+    c.add_option(
+         "--first-pose", a.first_frame,
+         "Number that the session's first frame has in the file of --poses, if it numbers frames; default: "
+         "that of its first pose")
+        ->needs(file)
+        ->check(CLI::Range(-1e9, 1e9));
+}
+
+std::vector<ar::TimedPose> poses_of(PoseArguments const& a, ArSession const& session, gi::Report& report)
+{
+    if (a.file.empty()) return {};
+    ar::PoseFile poses = read_camera_poses(a.file, {frames_per_s_of(session.frames), a.first_frame}, report);
+    if (poses.first_frame && !a.first_frame)
+        std::fputs(
+            fmt::format("lightwell: the first frame is taken for number {:.15g} of '{}' (its first pose); if "
+                        "it is another: --first-pose N\n",
+                        *poses.first_frame, a.file)
+                .c_str(),
+            stderr);
+    return std::move(poses.poses);
+}
+
+} // namespace viewer

@@ -1,0 +1,23 @@
+#pragma once
+// The options --poses and --first-pose of commands that read a session.
+
+#include "ar/scene/camera_poses.h"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+namespace viewer {
+
+struct PoseArguments {
+    std::string file; ///< empty = none
+    std::optional<double> first_frame;
+};
+
+void declare_poses(CLI::App& command, PoseArguments& arguments);
+
+/// Poses of a file for the session's frames. Says on stderr which number its first frame is taken for, if the file
+/// numbers frames and the caller did not say. @throws gi::InputError
+std::vector<ar::TimedPose> poses_of(PoseArguments const& arguments, ArSession const& session, gi::Report& report);
+
+} // namespace viewer
