@@ -1,5 +1,6 @@
 #include "ar/light/lamps.h"
 #include "ar/pipeline/frame_light_report.h"
+#include "ar/runtime/runner.h"
 #include "ar/scene/session_inputs.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
