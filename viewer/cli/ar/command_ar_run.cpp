@@ -150,7 +150,7 @@ int run_session(RunArguments const& a, bool poses_only)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
-    FrameTruth truth(a.truth, poses_of({a.true_poses, {}}, session, report));
+    FrameTruth truth(a.truth, true_poses_of(a.true_poses, session, report));
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
                            a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose,
                            poses_only ? ArPassSettings{} : session.passes});

@@ -4,6 +4,23 @@
 #include <fmt/format.h>
 
 namespace viewer {
+namespace {
+
+std::vector<ar::TimedPose> timed_poses(PoseArguments const& a, ArSession const& session, char const* hint,
+                                       gi::Report& report)
+{
+    if (a.file.empty()) return {};
+    ar::PoseFile poses = read_camera_poses(a.file, {frames_per_s_of(session.frames), a.first_frame}, report);
+    if (poses.first_frame && !a.first_frame)
+        std::fputs(
+            fmt::format("lightwell: the first frame is taken for number {:.15g} of '{}' (its first pose); {}\n",
+                        *poses.first_frame, a.file, hint)
+                .c_str(),
+            stderr);
+    return std::move(poses.poses);
+}
+
+} // namespace
 
 void declare_poses(CLI::App& c, PoseArguments& a)
 {
@@ -21,16 +38,12 @@ void declare_poses(CLI::App& c, PoseArguments& a)
 
 std::vector<ar::TimedPose> poses_of(PoseArguments const& a, ArSession const& session, gi::Report& report)
 {
-    if (a.file.empty()) return {};
-    ar::PoseFile poses = read_camera_poses(a.file, {frames_per_s_of(session.frames), a.first_frame}, report);
-    if (poses.first_frame && !a.first_frame)
-        std::fputs(
-            fmt::format("lightwell: the first frame is taken for number {:.15g} of '{}' (its first pose); if "
-                        "it is another: --first-pose N\n",
-                        *poses.first_frame, a.file)
-                .c_str(),
-            stderr);
-    return std::move(poses.poses);
+    return timed_poses(a, session, "if it is another: --first-pose N", report);
+}
+
+std::vector<ar::TimedPose> true_poses_of(std::string const& file, ArSession const& session, gi::Report& report)
+{
+    return timed_poses({file, {}}, session, "if it is another, give the poses times", report);
 }
 
 } // namespace viewer
