@@ -12,8 +12,8 @@ namespace {
 /// The pinhole at the frame's size, with exactly the view of the rendered one.
 ar::CameraModel full_pinhole(ar::CameraModel const& rendered, ArSession const& s)
 {
-    if (!s.finish.upsample || s.render.resolution >= 1) return rendered;
-    return ar::scaled(rendered, glm::ivec2(glm::round(glm::dvec2(rendered.size_px) / s.render.resolution)));
+    if (!s.finish.upsample || *s.render.resolution >= 1) return rendered;
+    return ar::scaled(rendered, glm::ivec2(glm::round(glm::dvec2(rendered.size_px) / *s.render.resolution)));
 }
 
 /// Blur of a rendered pixel's mean and of the bilinear lookup through the lens: 1/12 and on average 1/6 square
@@ -26,10 +26,10 @@ PairFinish::PairFinish(ArSession const& session, ar::CameraModel const& camera, 
                        PixelPoints points)
     : session_(session),
       camera_(camera),
-      pinhole_(ar::covering_pinhole(camera, session.render.resolution)),
+      pinhole_(ar::covering_pinhole(camera, session.render.resolution.value())),
       warp_(camera, full_pinhole(pinhole_, session))
 {
-    if (session.render.resolution >= 1 && points == PixelPoints::many) session_.finish.upsample = false;
+    if (*session.render.resolution >= 1 && points == PixelPoints::many) session_.finish.upsample = false;
     if (session.smoothing < 1) {
         ar::TemporalSettings smooth;
         smooth.weight = float(session.smoothing);

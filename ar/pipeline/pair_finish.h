@@ -38,7 +38,7 @@ struct SeenDepth {
 
 class PairFinish {
 public:
-    /// @param points  of each rendered pixel
+    /// @param session  with a resolution  @param points  of each rendered pixel
     PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers,
                PixelPoints points = PixelPoints::many);
 

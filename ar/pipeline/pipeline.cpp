@@ -63,7 +63,8 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
     renderer_.set_environment(light_.begin());
     std::string const why = renderer_.choose(session.render.light);
     lit_by_ = renderer_.is_prefiltered() ? "prefiltered light" : fmt::format("paths ({})", why);
-    finish_.emplace(session, camera.model, markers,
+    session_.render.resolution = resolution_of(session.render, renderer_.is_prefiltered());
+    finish_.emplace(session_, camera.model, markers,
                     renderer_.is_prefiltered() ? PixelPoints::one : PixelPoints::many);
     light_picture_ = picture_of_light(light_.map());
 }

@@ -40,8 +40,9 @@ enum class PairLight {
 
 struct ArRender {
     PairLight light = PairLight::automatic;
-    std::uint32_t paths = 2;                   ///< per rendered pixel and frame
-    double resolution = 0.5;                   ///< rendered pixels per pixel of the camera
+    std::uint32_t paths = 2; ///< per rendered pixel and frame
+    /// Rendered pixels per pixel of the camera; nothing: as resolution_of has it.
+    std::optional<double> resolution;
     gi::DenoiseSettings denoise;               ///< no effect with fewer than two paths
     gi::RenderSettings settings{.bounces = 3}; ///< of method slhb
 };
@@ -91,6 +92,12 @@ struct ArSession {
     ArPassSettings passes;
     std::optional<ArOcclusion> occlusion; ///< by real objects that are not modelled
 };
+
+/// As the session says, else 1/3 by prefiltered light, whose pictures gain nothing from more, and 1/2 by paths.
+inline double resolution_of(ArRender const& render, bool is_prefiltered)
+{
+    return render.resolution.value_or(is_prefiltered ? 1.0 / 3 : 0.5);
+}
 
 /// Paths in the file are relative to its folder. @throws gi::InputError with file:line:column
 ArSession read_ar_session(std::filesystem::path const& file);

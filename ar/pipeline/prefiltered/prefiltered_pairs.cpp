@@ -9,7 +9,7 @@ namespace viewer {
 namespace {
 
 /// Subsets of the directions, by pixel, for the picture without virtual objects: at most, and directions in each.
-constexpr std::size_t kMostSubsets = 8, kLeastDirections = 16;
+constexpr std::size_t kMostSubsets = 16, kLeastDirections = 8;
 
 cv::Vec3f vector(gi::vec3 v) { return {v.x, v.y, v.z}; }
 
@@ -141,7 +141,7 @@ PairPictures PrefilteredPairs::render(gi::Camera const& camera, int width, int h
                 Seen const s = seen_through(world, still_raster_.rays, behind, x, y);
                 if (!is_virtual) change = s.radiance(light_.change_on_still(s.at));
                 if (is_invisible(change, s.radiance(light_.open_light(s.at)))) change = gi::vec3(0);
-                std::size_t const subset = std::size_t(x % 4 + 4 * (y % 2)) % subsets;
+                std::size_t const subset = std::size_t(x % 4 + 4 * (y % 4)) % subsets;
                 without = s.radiance(change != gi::vec3(0) ? light_.on_still(s.at, subsets, subset)
                                                            : light_.open_light(s.at));
             }

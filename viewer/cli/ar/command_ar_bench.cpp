@@ -151,10 +151,10 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
              gi::Report& report)
 {
     std::string const size = size_text(load_ar_camera(session.camera).model.size_px);
-    auto const one = [&](PairLight light, std::uint32_t most_paths, double resolution) {
+    auto const one = [&](PairLight light, std::uint32_t most_paths, std::optional<double> rendered) {
         session.render.light = light;
         session.render.paths = most_paths;
-        session.render.resolution = resolution;
+        session.render.resolution = rendered;
         MeasuredRun const m = measure_run(session, settings, stop, report);
         if (stop.requested()) {
             if (m.fast.empty() && m.own.empty()) return;
@@ -167,6 +167,7 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
         auto const [plain, bytes] = plain_over_ours(m);
         std::string const by = m.is_prefiltered ? "prefiltered" : "paths";
         double const paths = m.is_prefiltered ? 0 : double(most_paths);
+        double const resolution = resolution_of(session.render, m.is_prefiltered);
         table.add({size, by, paths, resolution, m.frames_per_s, found_percent(m.fast),
                    cell_of(values_of(
                        m.own, swapped ? [](ArFrameRecord const& f) { return f.swapped_ms; }
