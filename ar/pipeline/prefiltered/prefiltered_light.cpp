@@ -3,8 +3,8 @@
 #include "gi/core/rng.h"
 #include "gi/scene/shading/shading_point.h"
 
+#include <algorithm>
 #include <tbb/parallel_for.h>
-#include <unordered_map>
 
 namespace viewer {
 namespace {
@@ -75,6 +75,7 @@ bool PrefilteredLight::relight(gi::StopRequest const& stop_request)
     if (cut) {
         moving_.assign(directions_.size(), {});
         moving_bounds_ = {};
+        stale_.assign(directions_.size(), 0);
         still_.build(directions_, soup_, cut_outs_, stop);
         still_.fit_patches(directions_, present_bounds(), stop);
     }
