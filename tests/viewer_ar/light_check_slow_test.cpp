@@ -14,7 +14,7 @@ struct Limits {
     double irradiance_rms, lamp_deg; ///< lamp: -1 = the map has no dominant one
 };
 
-TEST(LightFromFrame, AgreesWithTheMapThatLitTheFrame)
+TEST(LightOfSharedMaps, AgreesWithTheMapThatLitTheFrame)
 {
     LIGHTWELL_NEED_DATA("envmaps/hilly_terrain_01_1k.hdr");
     for (Limits const& l : {Limits{"hilly_terrain_01_1k", 0.06, 0.6},
