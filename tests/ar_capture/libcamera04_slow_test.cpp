@@ -53,13 +53,15 @@ protected:
                        {f->planes[0].ptr<char>(), f->planes[0].total()});
         Outcome const compiled = run(fmt::format(
             "{} -std=c++20 -O1 -Wall -Wextra -Werror {} '{}/tests/ar_capture/libcamera04/camera_client.cpp' "
-            "'{}' '{}' '{}' $('{}' flags) -lopencv_imgcodecs -lopencv_imgproc -lopencv_core -lyaml-cpp -ltbb "
-            "-lfmt -lz -o "
+            "'{}' '{}' '{}' '{}' $('{}' flags) -lopencv_imgcodecs -lopencv_imgproc -lopencv_core -lOpenEXR "
+            "-lIlmThread "
+            "-lIex -lImath -lyaml-cpp -ltbb -lfmt -lz -ldl -o "
             "'{}'",
             CXX_COMPILER,
             "-DGLM_FORCE_SILENT_WARNINGS -DGLM_FORCE_XYZW_ONLY -DFMT_SHARED -isystem "
             "/usr/include/opencv4 -I'" LIGHTWELL_SOURCE_DIR "'",
-            LIGHTWELL_SOURCE_DIR, CAPTURE_LIBRARY, BASE_LIBRARY, CORE_LIBRARY, kScript, *folder / "client"));
+            LIGHTWELL_SOURCE_DIR, CAPTURE_LIBRARY, BASE_LIBRARY, IMAGE_LIBRARY, CORE_LIBRARY, kScript,
+            *folder / "client"));
         ASSERT_EQ(compiled.code, 0) << compiled.out;
     }
     static void TearDownTestSuite() { folder.reset(); }
