@@ -7,6 +7,7 @@
 #include "ar/pipeline/bridge.h"
 #include "ar/pipeline/pipeline.h"
 #include "ar/pipeline/synthesize.h"
+#include "ar/runtime/scratch_folder.h"
 #include "ar/runtime/truth.h"
 #include "gi/core/error.h"
 #include "gi/scene/generate/write_glb.h"
@@ -16,32 +17,6 @@
 
 namespace viewer {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// A folder for the files of one session, removed at the end.
-class Scratch {
-public:
-    Scratch()
-    {
-        std::string name = (fs::temp_directory_path() / "lightwell_light_XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr)
-            throw gi::InputError("no folder can be made in " + fs::temp_directory_path().string(),
-                                 "the check writes a session", "set TMPDIR");
-        path_ = name;
-    }
-    ~Scratch()
-    {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    Scratch(Scratch const&) = delete;
-    Scratch& operator=(Scratch const&) = delete;
-    fs::path operator/(char const* file) const { return path_ / file; }
-
-private:
-    fs::path path_;
-};
 
 double angle_deg(cv::Vec3d const& a, cv::Vec3d const& b)
 {
@@ -98,8 +73,9 @@ void compare_irradiance(cv::Mat const& estimate, cv::Mat const& truth, glm::dvec
 }
 
 /// The same frame with the virtual figure and ball, lit by a map.
-cv::Mat composite(ArSession session, Scratch const& folder, cv::Mat const& light, SyntheticCamera const& camera,
-                  PosedFrame const& frame, gi::StopRequest const& stop, gi::Report& report)
+cv::Mat composite(ArSession session, ScratchFolder const& folder, cv::Mat const& light,
+                  SyntheticCamera const& camera, PosedFrame const& frame, gi::StopRequest const& stop,
+                  gi::Report& report)
 {
     session.light = folder / "light.exr";
     ar::write_map(session.light, light);
@@ -117,7 +93,7 @@ void compare_composites(gi::Scene const& near, cv::Mat const& truth, SyntheticCa
                         PosedFrame const& frame, gi::StopRequest const& stop, gi::Report& report,
                         LightChecked& out)
 {
-    Scratch const folder;
+    ScratchFolder const folder;
     ArSession session;
     session.real.scene = folder / "near.glb";
     session.virtual_things.scene = folder / "statue.glb";

@@ -33,14 +33,15 @@ PrefilteredLight::PrefilteredLight(gi::World const& world, gi::StopRequest const
     gi::WorldView const view = gi::view(world);
     for (std::size_t t = world.static_triangles; t < world.triangles.size(); ++t)
         moving_albedo_.push_back(albedo_of(view, std::uint32_t(t)));
-    has_glossy_ = std::any_of(world.bsdfs.begin(), world.bsdfs.end(), [](gi::Bsdf const& b) {
-        return gi::max_component(glossy_lobe_of(b, 1).reflectance) > 0;
-    });
+    std::vector<std::uint8_t> is_used(world.bsdfs.size());
+    for (std::uint32_t const m : world.triangle_material) is_used[m] = 1;
+    for (std::size_t m = 0; m < is_used.size(); ++m)
+        has_glossy_ |= is_used[m] && gi::max_component(glossy_lobe_of(world.bsdfs[m], 1).reflectance) > 0;
     relight(stop);
     moved(stop);
 }
 
-bool PrefilteredLight::relight(gi::StopRequest const& stop_request)
+void PrefilteredLight::relight(gi::StopRequest const& stop_request)
 {
     gi::BuildStop const stop(&stop_request);
     EnvironmentTexels const texels = environment_texels(world_);
@@ -80,7 +81,6 @@ bool PrefilteredLight::relight(gi::StopRequest const& stop_request)
         still_.fit_patches(directions_, present_bounds(), stop);
     }
     light_patches();
-    return cut;
 }
 
 void PrefilteredLight::take_lamps(std::vector<EnvironmentTexels::Texel>& texels)

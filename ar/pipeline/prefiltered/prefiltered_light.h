@@ -50,9 +50,9 @@ public:
     explicit PrefilteredLight(gi::World const& world, gi::StopRequest const& stop = {},
                               PrefilteredSettings const& settings = {});
 
-    /// The environment has changed. @return true if the directions have; then call moved().
+    /// The environment has changed; call moved() after it.
     /// @throws gi::Interrupted; then this object is of no use any more
-    bool relight(gi::StopRequest const& stop = {});
+    void relight(gi::StopRequest const& stop = {});
     /// Moving triangles have moved, or the directions have changed. Of very many triangles, not all maps are drawn
     /// at once: sharp shadows follow in this frame, others some frames later.
     /// @throws gi::Interrupted as relight
@@ -117,7 +117,7 @@ private:
     NormalTable<gi::vec3> smooth_irradiance_{kSide};              ///< E_map without them
     NormalTable<gi::vec3> light_sum_{kSide};                      ///< sum of F_k c_k
     NormalTable<float> angle_sum_{kSide};                         ///< sum of w_k c_k
-    bool has_glossy_;                                             ///< some surface has a glossy lobe
+    bool has_glossy_ = false;                                     ///< some surface has a glossy lobe
     GlossyTable glossy_;
     StillSurfaces still_;
     std::vector<OcclusionMap> moving_;

@@ -140,10 +140,12 @@ PairPictures PrefilteredPairs::render(gi::Camera const& camera, int width, int h
             if (behind.primitive != gi::kNoPrimitive) {
                 Seen const s = seen_through(world, still_raster_.rays, behind, x, y);
                 if (!is_virtual) change = s.radiance(light_.change_on_still(s.at));
-                if (is_invisible(change, s.radiance(light_.open_light(s.at)))) change = gi::vec3(0);
-                std::size_t const subset = std::size_t(x % 4 + 4 * (y % 4)) % subsets;
-                without = s.radiance(change != gi::vec3(0) ? light_.on_still(s.at, subsets, subset)
-                                                           : light_.open_light(s.at));
+                without = s.radiance(light_.open_light(s.at));
+                if (is_invisible(change, without)) change = gi::vec3(0);
+                if (change != gi::vec3(0)) {
+                    std::size_t const subset = std::size_t(x % 4 + 4 * (y % 4)) % subsets;
+                    without = s.radiance(light_.on_still(s.at, subsets, subset));
+                }
             }
             // The change is known better than the light without it.
             without = glm::max(without, -change);

@@ -3,42 +3,12 @@
 #include "ar/capture/clock.h"
 #include "ar/runtime/ar_window.h"
 #include "ar/runtime/counter_check.h"
+#include "ar/runtime/scratch_folder.h"
 #include "gi/core/error.h"
 #include "viewer/base/arguments.h"
 #include "viewer/bench/bench_record.h"
 
-#include <filesystem>
-
 namespace viewer {
-namespace {
-
-namespace fs = std::filesystem;
-
-/// Temporary folder, removed at the end of the test.
-class Scratch {
-public:
-    Scratch()
-    {
-        std::string name = (fs::temp_directory_path() / "lightwell_counter_XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr)
-            throw gi::InputError("no folder can be made in " + fs::temp_directory_path().string(),
-                                 "the test writes a session", "set TMPDIR");
-        path_ = name;
-    }
-    ~Scratch()
-    {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    Scratch(Scratch const&) = delete;
-    Scratch& operator=(Scratch const&) = delete;
-    fs::path const& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
-
-} // namespace
 
 ChainChecked check_chain(ChainCheckSettings const& s, gi::StopRequest& stop, gi::Report& report)
 {
@@ -50,7 +20,7 @@ ChainChecked check_chain(ChainCheckSettings const& s, gi::StopRequest& stop, gi:
                          s.in_window ? "capture_to_swap_ms" : "capture_to_result_ms"});
     for (std::string const& size : s.sizes) {
         auto const [width, height] = parse_size(size);
-        Scratch const folder;
+        ScratchFolder const folder;
         CounterSession const c = make_counter_session(folder.path(), {width, height}, 30, report);
         CounterCheck check(c);
         ArRunOptions o;
