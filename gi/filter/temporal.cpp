@@ -108,6 +108,17 @@ private:
 
 } // namespace
 
+/// Adds this frame's light to an earlier mean.
+void TemporalReuse::Light::add_to(KnownLight const& before, vec2 variance_before, int most_frames)
+{
+    frames = std::min(before.frames + 1, float(most_frames));
+    float const share = 1 / frames;
+    vec2 const step{luminance(direct - before.direct), luminance(indirect - before.indirect)};
+    variance = (1 - share) * (variance_before + share * step * step);
+    direct = glm::mix(before.direct, direct, share);
+    indirect = glm::mix(before.indirect, indirect, share);
+}
+
 /// Averages the light of this frame with the surface's earlier light.
 void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                            TemporalCounts& total)
@@ -147,6 +158,9 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
         }
     });
     if (frames_ == 0) {
+        for (std::size_t i = 0; i < known_.size() && i < pixels; ++i)
+            if (known_[i].frames > 0) lights_[i].add_to(known_[i], vec2{0}, settings_.most_frames);
+        known_.clear();
         total.surfaces = total.started =
             std::size_t(std::ranges::count_if(surfaces_, [](Surface const& s) { return s.depth > 0; }));
         return;
@@ -221,13 +235,8 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             if (taken) continue;
             vec3 const held = neighbourhoods.clamped(before.direct / weight, x, y);
             local.held += held != before.direct / weight;
-            vec3 const indirect = before.indirect / weight;
-            now.frames = std::min(before.frames / weight + 1, float(settings_.most_frames));
-            float const share = 1 / now.frames;
-            vec2 const step{luminance(now.direct - held), luminance(now.indirect - indirect)};
-            now.variance = (1 - share) * (before.variance / weight + share * step * step);
-            now.direct = glm::mix(held, now.direct, share);
-            now.indirect = glm::mix(indirect, now.indirect, share);
+            now.add_to({held, before.indirect / weight, before.frames / weight}, before.variance / weight,
+                       settings_.most_frames);
         }
     });
     counts.combine_each([&](TemporalCounts const& c) {
@@ -287,7 +296,10 @@ TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change, TemporalRe
     if (frames_ > 0 && surfaces_.size() != frame.pixels())
         throw InputError("frames of different sizes", "temporal reuse works pixel by pixel", "start afresh");
     layer_of(frame, "color");
-    if (change == SceneChange::light) frames_ = 0;
+    if (change == SceneChange::light) {
+        frames_ = 0;
+        known_.clear();
+    }
     if (change != SceneChange::nothing || frames_ == 0) still_ = 0;
     TemporalCounts counts;
     follow(frame, partner, from, counts);

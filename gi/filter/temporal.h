@@ -37,10 +37,20 @@ struct TemporalCounts {
     int still_frames = 0;     ///< frames since the last motion, including this one; 1 = something moved
 };
 
+/// Light of a pixel's surface: L1 and L2 over the albedo.
+struct KnownLight {
+    vec3 direct{0}, indirect{0};
+    float frames = 0; ///< that it is worth; 0 = unknown
+};
+
 class TemporalReuse {
 public:
     explicit TemporalReuse(TemporalSettings const& settings) : settings_(settings) {}
 
+    /// What the next frame begins with, if it is the first: light of each pixel's surface, known from elsewhere,
+    /// such as a picture of another size. Forgotten if the next frame's light has changed.
+    void begin_with(std::vector<KnownLight> light) { known_ = std::move(light); }
+    bool is_new() const { return frames_ == 0; } ///< no frame was added yet
     /// Replaces L0, L1, L2, color and albedo by means over frames, and adds the layers variance_direct and
     /// variance_indirect: variances of these means' luminance of L1 and of L2 over the albedo, measured over
     /// frames; negative if there was only one frame. Needs color, L0, L1, L2, albedo, normal, depth and motion
@@ -63,6 +73,8 @@ private:
         vec3 l0, albedo;
         float still_frames; ///< number of frames in l0 and albedo
         bool still;         ///< true if its surface did not move in the image
+
+        void add_to(KnownLight const& before, vec2 variance_before, int most_frames);
     };
     void follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                 TemporalCounts& counts);
@@ -70,6 +82,7 @@ private:
 
     TemporalSettings settings_;
     int frames_ = 0, still_ = 0;
+    std::vector<KnownLight> known_;
     std::vector<Surface> surfaces_, last_surfaces_;
     std::vector<Light> lights_, last_lights_;
     std::vector<std::array<vec3, 3>> mean_; ///< of L0, L1, L2 since the last motion

@@ -1,6 +1,7 @@
 #include "gi/raster/cut_outs.h"
 
 #include <algorithm>
+#include <tbb/parallel_for.h>
 
 namespace gi {
 
@@ -41,6 +42,19 @@ void CutOuts::remove(Fragments& fragments, PerspectiveGrid const& grid, std::uin
 {
     remove_where(fragments, seed, [&](std::uint32_t texel, float depth) {
         return grid.point(texel % grid.width, texel / grid.width, depth);
+    });
+}
+
+void draw_view(TriangleSoup const& soup, std::size_t first, std::size_t last, CutOuts const& cut_outs,
+               PerspectiveGrid const& grid, std::uint32_t seed, NearestMap& map)
+{
+    constexpr std::size_t kPart = 32 * TriangleSoup::kChunk;
+    tbb::parallel_for(std::size_t(0), (last - first + kPart - 1) / kPart, [&](std::size_t k) {
+        thread_local Fragments fragments;
+        fragments.count = 0;
+        rasterize(soup, first + k * kPart, std::min(last, first + (k + 1) * kPart), grid, fragments);
+        cut_outs.remove(fragments, grid, seed);
+        resolve_shared(fragments, 1, map);
     });
 }
 

@@ -50,4 +50,8 @@ private:
     std::vector<std::uint8_t> marked_; ///< per triangle: 1 = has alpha
 };
 
+/// Draws triangles first..last - 1 into the map of a view, without their cut-outs. @param seed  as CutOuts::remove
+void draw_view(TriangleSoup const& soup, std::size_t first, std::size_t last, CutOuts const& cut_outs,
+               PerspectiveGrid const& grid, std::uint32_t seed, NearestMap& map);
+
 } // namespace gi

@@ -100,6 +100,10 @@ public:
     ///   end
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
                                             VertexSharing sharing, StopRequest const& stop) = 0;
+    /// From the next frame on: leave out, of L1, the light of punctual lights on the surfaces that views show, also
+    /// in mirrors and panes (gi/scene/shading/seen_mirror.h), because the caller adds it. Returns false, and does
+    /// nothing, if the method cannot.
+    virtual bool leave_out_punctual(bool) { return false; }
     /// Renders one view with and without the dynamic geometry. Calls `turn` for the two sides alternately, `with`
     /// first, and leaves the world at either side. With PairDifference::vanishing the world stays at `with` if
     /// possible, and of the other picture only those paths are traced that the dynamic geometry could affect; the

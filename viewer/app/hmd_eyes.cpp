@@ -29,7 +29,7 @@ void HmdEyes::take(LiveFrame const& frame)
     for (std::size_t eye = 0; eye < 2; ++eye) {
         ViewPicture const& view = frame.result.views[eye];
         gi::Picture const& p = view.picture;
-        gi::Layer const* const depth = p.find("depth");
+        gi::Layer const* const depth = p.find(p.find("seen_depth") ? "seen_depth" : "depth");
         std::span<float const> color = p.find("color")->data,
                                depths = depth == nullptr ? std::span<float const>() : depth->data;
         if (view.hidden) {

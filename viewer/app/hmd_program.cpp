@@ -138,7 +138,7 @@ private:
         Viewpoint at;
         double const to_session = state_.clock.now_s() - steady_s();
         at.pose_s = frame.pose_s + to_session;
-        at.display_s = frame.display_s + to_session;
+        at.display_s = at.valid_s = frame.display_s + to_session;
         at.world_from_room = world_from_room();
         at.tracked = frame.tracked;
         if (UserBody* const body = bodies_.first()) body->stand(at.tracked, at.world_from_room, seconds);

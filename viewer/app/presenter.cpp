@@ -13,7 +13,7 @@ std::span<float const> floats(gi::Picture const& picture, char const* layer)
 
 void upload(PictureTexture& to, gi::Picture const& picture)
 {
-    to.upload({picture.width, picture.height}, floats(picture, "color"), floats(picture, "depth"));
+    to.upload({picture.width, picture.height}, floats(picture, "color"), floats(picture, picture.find("seen_depth") ? "seen_depth" : "depth"));
 }
 
 } // namespace

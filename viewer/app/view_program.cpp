@@ -209,6 +209,7 @@ private:
             double const seen_s = steady_s() + expected_s_;
             // The resting head is at the navigation pose.
             at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
+            at.valid_s = at.display_s;
             at.tracked = tracking_->bodies(0, seen_s);
             bodies_.put(
                 display, [&](std::size_t user) { return tracking_->bodies(user, seen_s); }, seconds, at);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -10,13 +11,26 @@ namespace {
 constexpr double kBesides = 1.0; // k (governor.h), in paths
 constexpr double kMargin = 0.85; // of the time between frames
 constexpr double kScales[] = {1, 0.75, 0.5, 0.375, 0.25};
+constexpr double kSurfaceScales[] = {1, 0.75, 0.5};
 constexpr int kMostPaths = 256;
-/// A larger picture must fit with this margin, because a change of size discards the temporally reused light.
+/// A larger picture must fit with this margin, because a change of size costs sharpness and reused light.
 constexpr double kToGrow = 1.15;
+constexpr double kForSurfaces = 0.5; // of the time between frames
 
 } // namespace
 
-FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed) const
+double Governor::surfaces_scale() const
+{
+    for (double const scale : kSurfaceScales) {
+        if (scale > surfaces_ && to_wait_ > 0) continue;
+        // Of a smaller picture, more of the time does not depend on its size.
+        double const expected_s = surface_s_ * std::pow(scale / surfaces_, scale > surfaces_ ? 1.3 : 2.0);
+        if (expected_s * rate_hz_ <= kForSurfaces) return scale;
+    }
+    return kSurfaceScales[std::size(kSurfaceScales) - 1];
+}
+
+FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed, bool own_surfaces) const
 {
     auto const paths_at = [&](double scale) { return work_ / (pixels * scale * scale) - kBesides; };
     FrameBudget b;
@@ -31,18 +45,31 @@ FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed) const
     if (still) b.scale = 1;
     if (fixed.scale > 0) b.scale = fixed.scale;
     b.paths = fixed.paths > 0 ? fixed.paths : std::clamp(int(paths_at(b.scale)), 1, kMostPaths);
+    b.surfaces = own_surfaces && !(fixed.scale > 0) ? std::max(b.scale, surfaces_scale()) : b.scale;
     return b;
 }
 
-void Governor::measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz)
+void Governor::measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz, double surfaces_s)
 {
     constexpr double kLeast = 0.05, kGrowth = 1.25;
     double const done = pixels * budget.scale * budget.scale * (budget.paths + kBesides);
-    double const fits = kMargin / rate_hz / seconds;
-    if (!(done > 0) || !(fits > 0)) return; // nothing was rendered, or in no time
+    double const light_s = seconds - surfaces_s, free_s = std::max(kMargin / rate_hz - surfaces_s, 0.0);
+    double const fits = free_s / light_s;
+    if (!(done > 0) || !(light_s > 0)) return; // nothing was rendered, or in no time
     // Paths are whole numbers: the remainder accumulates until it allows one more.
     work_ = fits < 1 ? done * std::max(fits, kLeast) : std::min(kGrowth * std::max(work_, done), done * fits);
     last_scale_ = budget.scale;
+    rate_hz_ = rate_hz;
+    if (!(surfaces_s > 0)) return;
+    to_wait_ = std::max(0, to_wait_ - 1);
+    if (budget.surfaces != surfaces_) {
+        surface_s_ = 0;
+        if (budget.surfaces < surfaces_) to_wait_ = std::exchange(wait_, std::min(2 * wait_, kLongestWait));
+    }
+    surfaces_ = budget.surfaces;
+    // Single slow frames say little; fast ones show what is possible.
+    double const newest = surfaces_s < surface_s_ ? 0.5 : 0.1;
+    surface_s_ = surface_s_ > 0 ? surface_s_ + newest * (surfaces_s - surface_s_) : surfaces_s;
 }
 
 } // namespace viewer

@@ -1,16 +1,18 @@
 #pragma once
-// Holds the frame rate by choosing the paths per pixel and the size of the pictures.
+// Holds the frame rate by choosing the paths per pixel and the sizes of the pictures: that of light, and that of the
+// surfaces which it falls on.
 //
-// Work is counted in paths: s^2 N (p + k), with N the pixels of all views at full size, s the scale of their
-// sides, p the paths per pixel, and k the other cost of a pixel in paths (G-buffer, reuse, filter, upload). After
-// a frame that took too long, the next one gets proportionally less work; work grows slowly. So a frame's fixed
-// costs need no model.
+// Work on light is counted in paths: s^2 N (p + k), with N the pixels of all views at full size, s the scale of the
+// sides of the pictures of light, p the paths per pixel, and k the other cost of such a pixel in paths (G-buffer,
+// reuse, filter). After a frame that took too long, the next one gets proportionally less work; work grows slowly.
+// So a frame's fixed costs need no model. Surfaces have the full size while they take at most half of the time.
 
 namespace viewer {
 
 struct FrameBudget {
-    int paths = 1;    ///< per pixel
-    double scale = 1; ///< picture side over full-size side
+    int paths = 1;    ///< per pixel of the pictures of light
+    double scale = 1; ///< side of the pictures of light over full-size side
+    double surfaces = 1; ///< side of the pictures that are shown over full-size side; at least scale
 
     bool operator==(FrameBudget const&) const = default;
 };
@@ -21,13 +23,22 @@ public:
     /// @param pixels  of all views at full size
     /// @param still  nothing moves: full size whatever the rate, because the picture refines
     /// @param fixed  values that the user set: paths > 0, scale > 0; 0 = free
-    FrameBudget next(double pixels, bool still, FrameBudget fixed = {0, 0}) const;
+    /// @param own_surfaces  surfaces have a size of their own; otherwise that of the pictures of light
+    FrameBudget next(double pixels, bool still, FrameBudget fixed = {0, 0, 0}, bool own_surfaces = false) const;
     /// Records the time that a frame with this budget took.
-    void measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz);
+    /// @param surfaces_s  the part of it spent on surfaces of another size than light, 0 = there were none
+    void measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz, double surfaces_s = 0);
 
 private:
+    double surfaces_scale() const;
+
     double work_ = 1e5; ///< of the next frame, in paths
     double last_scale_ = 0;
+    double surface_s_ = 0; ///< per frame at the scale surfaces_, smoothed; 0 = unknown
+    double surfaces_ = 1;  ///< scale of the last frame's
+    int to_wait_ = 0, wait_ = kFirstWait; ///< frames until surfaces may grow; the same after they shrank next
+    static constexpr int kFirstWait = 16, kLongestWait = 512;
+    double rate_hz_ = 20;  ///< of the last frame
 };
 
 } // namespace viewer

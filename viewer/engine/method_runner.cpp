@@ -3,6 +3,7 @@
 #include "gi/filter/filter_names.h"
 
 #include <limits>
+#include <tbb/parallel_for.h>
 
 namespace viewer {
 namespace {
@@ -20,6 +21,35 @@ void without_motion(gi::Picture& picture)
     std::fill(motion.data.begin(), motion.data.end(), std::numeric_limits<float>::quiet_NaN());
 }
 
+/// Light that an earlier picture, of another size or from elsewhere, knows of the surfaces of this one.
+/// @param punctual  share of the light of punctual lights that it lacks
+std::vector<gi::KnownLight> known_light(gi::KeptLight const& before, gi::Picture const& picture, gi::dvec3 origin,
+                                        float punctual, gi::SeenSurfaces* seen, gi::CameraRays const& rays)
+{
+    constexpr float kWorth = 8, kAlike = 0.3f; // frames; likeness
+    std::vector<gi::KnownLight> known(picture.pixels());
+    gi::Layer const &normal = *picture.find("normal"), &position = *picture.find("position");
+    bool const lights = punctual != 0 && seen != nullptr;
+    if (lights) seen->look(rays, picture.width, picture.height, gi::SeenSurfaces::Lights::few);
+    tbb::parallel_for(0, picture.height, [&](int y) {
+        thread_local std::vector<gi::SeenSurface> row;
+        row.assign(std::size_t(picture.width), {});
+        if (lights) seen->row(y, row);
+        for (int x = 0; x < picture.width; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(picture.width) + std::size_t(x);
+            gi::vec3 const n = gi::rgb(normal, i);
+            if (n == gi::vec3{0}) continue;
+            auto const found = before.find(gi::vec3(gi::dvec3(gi::rgb(position, i)) - origin), n);
+            if (found && found->likeness > kAlike) known[i] = {found->direct, found->indirect, kWorth};
+            gi::SeenSurface const& s = row[std::size_t(x)];
+            for (int c = 0; c < 3 && lights; ++c)
+                if (s.albedo[c] > 0.01f)
+                    known[i].direct[c] = std::max(0.0f, known[i].direct[c] + punctual * s.direct[c] / s.albedo[c]);
+        }
+    });
+    return known;
+}
+
 } // namespace
 
 gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
@@ -30,7 +60,7 @@ gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
 
 MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings,
                            int threads, std::vector<ViewCommand> const& first, gi::Report& report)
-    : report_(report), threads_(threads)
+    : report_(report), threads_(threads), origin_(world.world().origin)
 {
     gi::RenderSettings s = settings.render;
     s.threads = threads;
@@ -49,8 +79,10 @@ MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& wor
 std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
                                                    std::span<HiddenPixels const> hidden,
                                                    gi::Changes const& changes, Settings const& settings,
+                                                   gi::SeenSurfaces* seen, bool leaves_out_punctual,
                                                    gi::StopRequest const& stop)
 {
+    left_out_punctual_ = renderer_->leave_out_punctual(leaves_out_punctual) && leaves_out_punctual;
     if (!first_) renderer_->changed(changes);
     bool anything_moved = first_ || seen_.size() != command.views.size() || changes.any();
     seen_.resize(command.views.size());
@@ -59,11 +91,13 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         ViewCommand const& now = command.views[k];
         Seen& s = seen_[k];
         bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
-                          s.most_frames == settings.reuse;
+                          s.most_frames == settings.reuse && s.punctual != left_out_punctual_;
         if (!same) s.reuse = std::make_unique<gi::TemporalReuse>(gi::TemporalSettings{settings.reuse});
         moved[k] = !same || !(s.camera == now.camera) || s.hidden != hidden[k];
         anything_moved |= moved[k];
-        s = {now.name, now.camera, now.width, now.height, std::move(s.reuse), settings.reuse, hidden[k]};
+        gi::CameraRays const rays = gi::camera_rays(now.camera, now.width, now.height, origin_);
+        bool const follows = s.name == now.name && s.width == now.width && s.height == now.height;
+        s = {now.name, now.camera, now.width, now.height, std::move(s.reuse), settings.reuse, hidden[k], std::move(s.light), s.punctual, rays, follows ? s.rays : rays};
     }
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
@@ -82,14 +116,22 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     renderer_->update_axes(settings.has_automatic_schedule() ? settings.updated_axes : 0);
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
     for (std::size_t k = 0; k < results.size(); ++k)
-        finish(k, results, views[k].partner, scene_change(changes, moved[k]), settings);
+        finish(k, results, views[k].partner, scene_change(changes, moved[k]), settings, seen);
     return results;
 }
 
 void MethodRunner::finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner,
-                          gi::SceneChange change, Settings const& settings)
+                          gi::SceneChange change, Settings const& settings, gi::SeenSurfaces* seen)
 {
     gi::RenderResult& result = results[view];
+    Seen& own = seen_[view];
+    if (own.rays.orthographic) seen = nullptr;
+    gi::MirrorLayers mirrors;
+    if (seen != nullptr && seen->has_mirrors()) {
+        gi::StageTimer const timer(report_, "surfaces in mirrors");
+        seen->look(own.rays, own.width, own.height);
+        mirrors = gi::describe_mirrored(*seen, own.rays, own.earlier, origin_, result.picture);
+    }
     gi::ReusedLight taken;
     gi::TemporalReuse const* past = nullptr;
     if (!result.light_from.empty()) {
@@ -99,13 +141,22 @@ void MethodRunner::finish(std::size_t view, std::vector<gi::RenderResult>& resul
     if (settings.reuse > 1) {
         gi::StageTimer const timer(report_, "temporal reuse");
         without_motion(result.picture);
-        seen_[view].reuse->add(result.picture, change, past, taken.from);
+        if (own.light && own.reuse->is_new()) {
+            float const add = own.punctual ? (left_out_punctual_ ? -1.0f : 0.0f) : (left_out_punctual_ ? 0.0f : 1.0f);
+            own.reuse->begin_with(known_light(*own.light, result.picture, origin_, add, seen, own.rays));
+        }
+        own.punctual = !left_out_punctual_;
+        own.reuse->add(result.picture, change, past, taken.from);
     }
     gi::DenoiseSettings const filter = denoise_settings(settings, threads_);
-    if (!gi::can_filter(filter, result.paths, settings.reuse > 1) || still_ > kFilteredFrames) return;
-    gi::StageTimer const timer(report_, "denoise");
-    gi::DenoiseReport const done = gi::denoise(result.picture, filter, taken);
-    if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
+    if (gi::can_filter(filter, result.paths, settings.reuse > 1) && still_ <= kFilteredFrames) {
+        gi::StageTimer const timer(report_, "denoise");
+        gi::DenoiseReport const done = gi::denoise(result.picture, filter, taken);
+        if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
+    }
+    own.light.reset();
+    if (seen != nullptr) own.light.emplace(result.picture, own.rays, origin_);
+    gi::describe_mirrors(mirrors, result.picture);
 }
 
 } // namespace viewer

@@ -3,6 +3,7 @@
 
 #include "gi/filter/temporal.h"
 #include "gi/methods/registry.h"
+#include "gi/surfaces/lit_picture.h"
 #include "viewer/engine/hidden_views.h"
 #include "viewer/engine/settings.h"
 
@@ -20,9 +21,15 @@ public:
                  std::vector<ViewCommand> const& first, gi::Report& report);
 
     /// Returns one picture per view. @param hidden  per view  @param changes  of the world since the last frame
+    /// @param seen  surfaces of the world; null = not needed
+    /// @param leaves_out_punctual  as gi::FrameRenderer::leave_out_punctual, if the method can
     std::vector<gi::RenderResult> render(FrameCommand const& command, std::span<HiddenPixels const> hidden,
-                                         gi::Changes const& changes, Settings const& settings,
-                                         gi::StopRequest const& stop);
+                                         gi::Changes const& changes, Settings const& settings, gi::SeenSurfaces* seen,
+                                         bool leaves_out_punctual, gi::StopRequest const& stop);
+    /// The last frame lacks the light of punctual lights.
+    bool left_out_punctual() const { return left_out_punctual_; }
+    /// Light of a view of the last frame; null without `seen`.
+    gi::KeptLight const* light(std::size_t view) const { return seen_[view].light ? &*seen_[view].light : nullptr; }
     int still_frames() const { return still_; }
     gi::DynamicUpdate dynamic_update() const { return renderer_->dynamic_update(); } ///< of the last frame
 
@@ -34,17 +41,21 @@ private:
         std::unique_ptr<gi::TemporalReuse> reuse;
         int most_frames = 0;
         HiddenPixels hidden;
+        std::optional<gi::KeptLight> light; ///< of its last picture
+        bool punctual = true; ///< the light of punctual lights is in its L1
+        gi::CameraRays rays{}, earlier{};   ///< of this frame and the one before
     };
     /// Applies temporal reuse and the filter to a view. @param partner  view whose light it may have reused; it
     /// must be finished already
     void finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner, gi::SceneChange change,
-                Settings const& settings);
+                Settings const& settings, gi::SeenSurfaces* seen);
 
     gi::Report& report_;
     int threads_;
+    gi::dvec3 origin_; ///< of the world
     std::unique_ptr<gi::FrameRenderer> renderer_;
     std::vector<Seen> seen_;
-    bool first_ = true;
+    bool first_ = true, left_out_punctual_ = false;
     int still_ = 0; ///< frames since the scene, a setting or the camera last changed
 };
 

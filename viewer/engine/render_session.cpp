@@ -6,9 +6,18 @@
 #include "gi/scene/motion/animation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <malloc.h>
 
 namespace viewer {
+
+bool has_own_surfaces(FrameCommand const& command)
+{
+    return std::none_of(command.views.begin(), command.views.end(), [](ViewCommand const& v) {
+        return v.camera.orthographic || v.camera.aperture_radius_m > 0;
+    });
+}
+
 
 RenderSession::RenderSession(LoadScene load, int threads, gi::Report& report)
     : load_(std::move(load)), threads_(threads), report_(report)
@@ -33,7 +42,10 @@ void RenderSession::apply(Change const& change)
         edits_.push_back(change);
         return;
     }
-    if (is_hidden_mask(change.key)) return hidden_.apply(change);
+    if (is_hidden_mask(change.key)) {
+        hidden_.apply(change);
+        return hidden_light_.apply(change);
+    }
     Settings changed = settings_;
     set(changed, change);
     if (change.key == "device") gi::check_device(changed.render.space);
@@ -67,6 +79,7 @@ void RenderSession::rebuild(std::shared_ptr<gi::Scene const> scene)
 {
     auto world = std::make_unique<gi::MovingWorld>(scene, time_s_, report_);
     restart(); // method runners refer to the old world
+    seen_.reset();
     world_ = std::move(world);
     scene_ = std::move(scene);
     pending_ = {};
@@ -107,6 +120,27 @@ gi::Changes RenderSession::move_to(FrameCommand const& command)
     return changes;
 }
 
+/// Replaces the pictures of light by pictures of the views' size.
+void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& frame)
+{
+    gi::StageTimer const timer(report_, kSurfacesStage);
+    gi::LitCounts counts;
+    for (std::size_t k = 0; k < command.views.size(); ++k) {
+        ViewCommand const& v = command.views[k];
+        std::span<std::uint8_t const> const hidden =
+            frame.views[k].hidden ? std::span<std::uint8_t const>(*frame.views[k].hidden) : std::span<std::uint8_t const>();
+        auto const draw = [&](MethodRunner const& runner) {
+            auto const lights = runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
+            seen_->look(gi::camera_rays(v.camera, v.width, v.height, world_->world().origin), v.width, v.height, lights);
+            return gi::lit_picture(*seen_, v.width, v.height, *runner.light(k), hidden, counts);
+        };
+        frame.views[k].picture = draw(*main_);
+        if (frame.views[k].compared) frame.views[k].compared = draw(*compared_);
+    }
+    report_.count("surfaces drawn", double(counts.surfaces));
+    report_.count("surfaces that found no light of a similar surface", double(counts.unlike));
+}
+
 SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest const& stop)
 {
     if (!world_) throw gi::InputError("there is nothing to render", "no scene is loaded", "load one first");
@@ -118,12 +152,31 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
     SessionFrame frame;
     frame.moved = changes.geometry;
     if (command.views.empty()) return frame;
+    if (seen_) {
+        gi::StageTimer const timer(report_, "update of surfaces");
+        seen_->end_frame();
+        seen_->changed(changes);
+    }
+    FrameCommand light = command; // the views of the pictures of light
+    light.light_scale = 1;
+    bool const smaller = command.light_scale < 1 && has_own_surfaces(command);
+    for (ViewCommand& v : light.views) {
+        v.width = std::max(1, int(std::lround(v.width * command.light_scale)));
+        v.height = std::max(1, int(std::lround(v.height * command.light_scale)));
+    }
+    if (!seen_ && (smaller || (settings_.first_surfaces && gi::SeenSurfaces::mirrors_in(world_->world())))) {
+        gi::StageTimer const timer(report_, "update of surfaces");
+        seen_ = std::make_unique<gi::SeenSurfaces>(world_->world(), threads_);
+    }
+    bool const leaves_out = smaller && gi::SeenSurfaces::has_few_lights(world_->world());
+    gi::SeenSurfaces* const seen = smaller || settings_.first_surfaces ? seen_.get() : nullptr;
     if (!main_)
         main_ =
-            std::make_unique<MethodRunner>(settings_.method, *world_, settings_, threads_, command.views, report_);
-    std::vector<HiddenPixels> hidden;
+            std::make_unique<MethodRunner>(settings_.method, *world_, settings_, threads_, light.views, report_);
+    std::vector<HiddenPixels> hidden, hidden_light;
     for (ViewCommand const& v : command.views) hidden.push_back(hidden_.pixels(v));
-    std::vector<gi::RenderResult> results = main_->render(command, hidden, changes, settings_, stop);
+    for (ViewCommand const& v : light.views) hidden_light.push_back(smaller ? hidden_light_.pixels(v) : hidden_.pixels(v));
+    std::vector<gi::RenderResult> results = main_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
     frame.still_frames = main_->still_frames();
     frame.dynamic_update = main_->dynamic_update();
     frame.options = results[0].options;
@@ -135,13 +188,14 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
     if (!settings_.compare.empty() && settings_.compare != settings_.method) {
         if (!compared_)
             compared_ = std::make_unique<MethodRunner>(settings_.compare, *world_, settings_, threads_,
-                                                       command.views, report_);
-        std::vector<gi::RenderResult> others = compared_->render(command, hidden, changes, settings_, stop);
+                                                       light.views, report_);
+        std::vector<gi::RenderResult> others = compared_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
         for (std::size_t k = 0; k < others.size(); ++k) {
             frame.rays += others[k].rays;
             frame.views[k].compared = std::move(others[k].picture);
         }
     }
+    if (smaller) draw_surfaces(command, frame);
     frame.stages_s = added_.times();
     return frame;
 }

@@ -34,6 +34,11 @@ struct SessionFrame {
     std::string options; ///< options that the method chose
 };
 
+/// Stage of SessionFrame::stages_s in which surfaces of another size than light are drawn.
+inline constexpr char const* kSurfacesStage = "first surfaces";
+/// False if a view is orthographic or has a lens: then its light has its own size.
+bool has_own_surfaces(FrameCommand const& command);
+
 class RenderSession {
 public:
     /// @param report  receives losses and counts; must outlive the session  @param threads  0 = all
@@ -62,6 +67,7 @@ private:
     void place_object(Change const& change);
     void restart();
     gi::Changes move_to(FrameCommand const& command);
+    void draw_surfaces(FrameCommand const& command, SessionFrame& frame);
 
     LoadScene load_;
     int threads_;
@@ -73,7 +79,8 @@ private:
     std::unique_ptr<gi::MovingWorld> world_;
     std::vector<PlacedObject> placed_;
     std::vector<Change> edits_; ///< of lights, materials, environment: one per key, reapplied to a new world
-    HiddenViews hidden_;
+    HiddenViews hidden_, hidden_light_;      ///< of views, and of their pictures of light if those are smaller
+    std::unique_ptr<gi::SeenSurfaces> seen_; ///< of the world, once needed
     DriveBodies drive_;
     gi::Changes pending_; ///< edits since the last frame
     double time_s_ = 0;   ///< of the last frame

@@ -63,6 +63,9 @@ std::vector<SettingKey> make_keys()
              &S::updated_axes),
          own("reuse", {1, 256}, "frames that temporal reuse averages over, 1 = none", &S::reuse),
          own("denoise", gi::filter_names(), "filter that removes noise", &S::denoise),
+         own("first-surfaces", {},
+             "while things move, draw surfaces, textures and what mirrors show at full size, and only light at a smaller one",
+             &S::first_surfaces),
          own("share-eyes", {}, "each eye may reuse light computed for the other eye", &S::share_eyes),
          own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),
          own("tone", {"srgb", "filmic"}, "tone curve", &S::tone),
@@ -77,6 +80,8 @@ std::vector<SettingKey> make_keys()
          own("swap-eyes", {}, "exchange the left and right eye", &S::swap_eyes),
          own("view", {"picture", "split", "flicker", "difference"}, "how two methods are shown", &S::view),
          own("split", {0, 1}, "position of the split, as a share of the picture's width", &S::split),
+         own("predict", {}, "render pictures for the moment in which they will be seen, by the motion so far",
+             &S::predict),
          own("reproject", {}, "reproject the last picture to the current head pose", &S::reproject),
          own("refine", {}, "keep adding paths while nothing moves", &S::refine),
          own("panel", {}, "show the panel", &S::panel)});

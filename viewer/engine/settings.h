@@ -19,6 +19,7 @@ struct Settings {
                           ///< schedule auto, the live viewer sets it every frame (update_governor.h)
     int reuse = 16;       ///< frames of temporal reuse; 1 = none
     std::string denoise = "atrous";
+    bool first_surfaces = true; ///< surfaces are drawn at full size where light is computed at a smaller one
     bool share_eyes = true; ///< each eye may reuse light computed for the other
     double exposure_ev = 0;
     std::string tone = "srgb";
@@ -33,6 +34,7 @@ struct Settings {
     bool swap_eyes = false;
     std::string view = "picture"; ///< picture, split, flicker, difference
     double split = 0.5;           ///< position of the split, as a share of the width
+    bool predict = true;          ///< render for where users and clips will be when the picture is seen
     bool reproject = true;        ///< reproject the last picture to the current head pose
     bool refine = true;           ///< keep adding paths while nothing moves
     bool panel = true;

@@ -10,7 +10,8 @@
 namespace viewer {
 namespace {
 
-constexpr std::uint8_t kVersion = 1;
+/// The second version has a light scale. It is written only where that is not 1.
+constexpr std::uint8_t kVersion = 2;
 
 gi::dmat4 const kIdentity{1};
 std::array<double, 7> constexpr kNoPose{0, 0, 0, 0, 0, 0, 1};
@@ -125,12 +126,14 @@ Tracked get_tracked(ByteReader& from, bool& another)
 
 FrameCommand get_order(ByteReader& from)
 {
-    if (int const version = from.byte(); version != kVersion)
-        throw BadBytes(fmt::format("they are of version {}, only {} is known", version, kVersion));
+    int const version = from.byte();
+    if (version < 1 || version > kVersion)
+        throw BadBytes(fmt::format("they are of version {}, only 1 to {} are known", version, kVersion));
     FrameCommand o;
     o.frame = from.count(~std::uint64_t(0));
     for (double* const t : {&o.pose_s, &o.display_s, &o.scene_s}) *t = from.number();
     o.paths = int(from.count(CommandLimits::paths));
+    if (version > 1) o.light_scale = from.number();
     o.world_from_room = get_matrix(from);
     bool others = false;
     o.tracked = get_tracked(from, others);
@@ -160,10 +163,12 @@ std::vector<std::uint8_t> to_bytes(FrameCommand const& o)
 {
     check_command(o);
     ByteWriter to;
-    to.put_byte(kVersion);
+    bool const small_light = o.light_scale != 1;
+    to.put_byte(small_light ? kVersion : 1);
     to.put_count(o.frame);
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) to.put_number(t);
     to.put_count(std::uint64_t(o.paths));
+    if (small_light) to.put_number(o.light_scale);
     to.put_numbers(numbers_of(o.world_from_room), numbers_of(kIdentity));
     put(to, o.tracked, !o.others.empty());
     for (Tracked const& t : o.others) put(to, t, &t != &o.others.back());

@@ -50,6 +50,13 @@ public:
         if (renderer_) renderer_->update_axes(updated_axes_); // otherwise applied when a renderer starts
     }
 
+    bool leave_out_punctual(bool on) override
+    {
+        if constexpr (kByKernels) return false;
+        leaves_out_punctual_ = on;
+        return true;
+    }
+
     DynamicUpdate dynamic_update() const override
     {
         return renderer_ ? renderer_->dynamic_update() : DynamicUpdate{};
@@ -90,6 +97,7 @@ public:
     {
         auto const begun = std::chrono::steady_clock::now();
         see_all(views);
+        if constexpr (!kByKernels) renderer_->leave_out_punctual(leaves_out_punctual_);
         double const earlier = renderer_->rays();
         sums_.resize(views.size());
         for (std::size_t k = 0; k < views.size(); ++k) sums_[k].start(views[k].width, views[k].height);
@@ -289,6 +297,7 @@ private:
     std::optional<FrameInterleaving> interleaving_; ///< none with kernels
     std::vector<Accumulator> sums_;                 ///< of the views
     PairSums pair_sums_;
+    bool leaves_out_punctual_ = false;
     std::uint32_t passes_ = 0, updated_axes_ = 0;
     std::uint64_t lost_ = 0, refused_ = 0; ///< layers and cache notes already reported as lost
     bool restart_ = false;

@@ -227,7 +227,8 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
             .smooth = smooth_somewhere(world_),
             .look_ups = !slhb_.exact.queries && slhb_.look_ups != LookUps::none,
             .cache = cached && cache_ ? &*cache_ : nullptr,
-            .spread = spread_ && slhb_.look_ups == LookUps::none};
+            .spread = spread_ && slhb_.look_ups == LookUps::none,
+            .no_punctual = leaves_out_punctual_};
 }
 
 void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing)

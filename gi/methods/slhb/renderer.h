@@ -60,6 +60,8 @@ public:
         settings_.slhb.interleave = n;
         spread_ = n > 1;
     }
+    /// From the next pass on, see FrameRenderer::leave_out_punctual.
+    void leave_out_punctual(bool on) { leaves_out_punctual_ = on; }
     double indirect_share() const
     {
         return paths_.indirect_share();
@@ -119,6 +121,7 @@ private:
     std::optional<RadianceCache> cache_; ///< none if switched off
     ViewPaths paths_;
     bool spread_ = false;            ///< see Pass::spread
+    bool leaves_out_punctual_ = false;
     std::uint64_t earlier_maps_ = 0; ///< built for earlier light points that no longer exist
 };
 

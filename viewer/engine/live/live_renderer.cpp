@@ -16,13 +16,6 @@ double pixels_of(std::vector<ViewCommand> const& views)
     return sum;
 }
 
-bool same_views(std::vector<ViewCommand> const& a, std::vector<ViewCommand> const& b)
-{
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewCommand const& x, ViewCommand const& y) {
-        return x.camera == y.camera && x.name == y.name;
-    });
-}
-
 bool same_sizes(std::vector<ViewCommand> const& a, std::vector<ViewCommand> const& b)
 {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewCommand const& x, ViewCommand const& y) {
@@ -88,8 +81,9 @@ void LiveRenderer::look(Viewpoint viewpoint)
     bool moved = false;
     {
         std::lock_guard const lock(mutex_);
-        moved = !same_views(viewpoint.views, viewpoint_.views) || !(viewpoint.tracked == viewpoint_.tracked) ||
+        moved = !same_cameras(viewpoint.views, viewpoint_.views) || !(viewpoint.tracked == viewpoint_.tracked) ||
                 viewpoint.others != viewpoint_.others || !same_sizes(viewpoint.views, viewpoint_.views);
+        anticipation_.see(viewpoint);
         viewpoint_ = std::move(viewpoint);
         if (moved) looked_ = true;
         if (moved && refining_) refining_->request();
@@ -181,12 +175,12 @@ bool LiveRenderer::scene_may_move(Viewpoint const& now) const
 {
     Settings const& s = session_.settings();
     return !has_last_ || !changes_.empty() || (s.play && s.speed != 0 && session_.moves()) ||
-           !(now.tracked == last_.tracked) || now.others != last_.others || scene_s_ != last_.scene_s;
+           !(now.tracked == last_look_.tracked) || now.others != last_look_.others || scene_s_ != last_scene_s_;
 }
 
 bool LiveRenderer::anything_moves(Viewpoint const& now) const
 {
-    return scene_may_move(now) || !same_views(now.views, last_views_);
+    return scene_may_move(now) || !same_cameras(now.views, last_look_.views);
 }
 
 /// Posts the choice as a change, like the user's, so that a replay and the other ranks apply it too.
@@ -201,36 +195,49 @@ void LiveRenderer::choose_updated_axes(bool may_move)
     changes_.push_back(change);
 }
 
+/// How long after its beginning a frame will have been seen for half of its time, s.
+double LiveRenderer::seen_after_s() const
+{
+    return std::min(1.5 * frame_s_, Anticipation::kFarthest_s);
+}
+
 FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameBudget& budget)
 {
     Settings const& s = session_.settings();
-    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale});
     FrameCommand command;
+    command.views = now.views;
+    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale, s.scale}, s.first_surfaces && has_own_surfaces(command));
     command.frame = frame_++;
     command.pose_s = now.pose_s;
     command.display_s = now.display_s;
-    command.scene_s = scene_s_;
+    last_scene_s_ = scene_s_;
+    bool const plays = s.play && s.predict && !still && session_.moves();
+    command.scene_s = scene_s_ + (plays ? s.speed * seen_after_s() : 0);
     command.world_from_room = now.world_from_room;
     command.tracked = now.tracked;
     command.others = now.others;
     command.changes = std::exchange(changes_, {});
-    command.views = now.views;
     for (ViewCommand& v : command.views) {
-        v.width = std::max(1, int(std::lround(v.width * budget.scale)));
-        v.height = std::max(1, int(std::lround(v.height * budget.scale)));
+        v.width = std::max(1, int(std::lround(v.width * budget.surfaces)));
+        v.height = std::max(1, int(std::lround(v.height * budget.surfaces)));
     }
     command.paths = budget.paths;
+    command.light_scale = budget.scale / budget.surfaces;
     return command;
 }
 
 void LiveRenderer::run_leading()
 {
     while (!quit_) {
-        Viewpoint now;
+        Viewpoint now, ahead;
         bool looked = false;
         {
             std::lock_guard const lock(mutex_);
             now = viewpoint_;
+            if (session_.settings().predict && link_ == nullptr)
+                ahead = anticipation_.at(clock_.now_s(), clock_.now_s() + seen_after_s());
+            else
+                ahead = now;
             looked = looked_.exchange(false);
             if (looked || !jobs_.empty()) resting_ = false;
         }
@@ -256,7 +263,8 @@ void LiveRenderer::run_leading()
         }
         choose_updated_axes(scene_may_move(now));
         FrameBudget budget;
-        FrameCommand command = make_command(now, still, budget);
+        FrameCommand command = make_command(still ? now : ahead, still, budget);
+        last_look_ = std::move(now);
         if (link_ != nullptr) link_->send(command);
         {
             std::lock_guard const lock(mutex_);
@@ -265,7 +273,8 @@ void LiveRenderer::run_leading()
             bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
             refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
         }
-        if (!render(std::move(command), budget)) wait_until(clock_.now_s() + 0.2);
+        double const ahead_s = command.scene_s != scene_s_ ? seen_after_s() : 0;
+        if (!render(std::move(command), budget, ahead_s)) wait_until(clock_.now_s() + 0.2);
         if (!still) wait_until(begun + 1 / s.rate_hz);
     }
 }
@@ -284,17 +293,20 @@ void LiveRenderer::run_following()
 void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
 {
     Settings const& s = session_.settings();
-    governor_.measured({last_.paths, budget.scale}, pixels_of(last_views_) / (budget.scale * budget.scale),
-                       work.seconds, s.rate_hz);
+    FrameBudget done = budget;
+    done.paths = last_.paths;
+    governor_.measured(done, pixels_of(last_look_.views), work.seconds, s.rate_hz,
+                       work.surfaces_s);
     if (s.method == "slhb" && s.has_automatic_schedule())
         update_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
 }
 
-bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget)
+bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, double ahead_s)
 {
     auto frame = std::make_shared<LiveFrame>();
     frame->begun_s = clock_.now_s();
     frame->budget = budget;
+    frame->ahead_s = ahead_s;
     gi::StopRequest never;
     std::shared_ptr<gi::StopRequest> const stop = refining_;
     if (hooks_.own_views) {
@@ -320,11 +332,16 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget)
     }
     frame->still_paths = still_paths_;
     frame->settings = session_.settings();
-    last_views_ = frame->ordered.empty() ? command.views : frame->ordered;
     last_ = command;
     has_last_ = true;
     frame->command = std::move(command);
-    FrameWork const own{frame->done_s - frame->begun_s, frame->result.dynamic_update, frame->result.moved};
+    auto const surfaces = frame->result.stages_s.find(kSurfacesStage);
+    constexpr double kNewest = 0.2;
+    double const took_s = frame->done_s - frame->begun_s;
+    if (done) frame_s_ = frame_s_ > 0 ? frame_s_ + kNewest * (took_s - frame_s_) : took_s;
+    FrameWork const own{frame->done_s - frame->begun_s,
+                        surfaces == frame->result.stages_s.end() ? 0 : surfaces->second,
+                        frame->result.dynamic_update, frame->result.moved};
     if (done && link_ == nullptr) measure(own, budget);
     if (!frame->result.views.empty()) stored_ = own.dynamic_update.stored;
     if (Settings const& s = frame->settings; s.method == "slhb")

@@ -7,6 +7,7 @@
 // after its next path.
 
 #include "viewer/engine/governor.h"
+#include "viewer/engine/live/viewpoint.h"
 #include "viewer/engine/render_session.h"
 #include "viewer/engine/update_governor.h"
 
@@ -32,21 +33,13 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-/// Last known poses of the users, and their views.
-struct Viewpoint {
-    double pose_s = 0, display_s = 0; ///< session clock
-    gi::dmat4 world_from_room{1};
-    Tracked tracked;
-    std::vector<Tracked> others;    ///< as in FrameCommand
-    std::vector<ViewCommand> views; ///< at full size
-};
-
 struct LiveFrame {
     FrameCommand command;             ///< with the views rendered by this process
     std::vector<ViewCommand> ordered; ///< all views, if other processes render some of them; else empty
     SessionFrame result;
     FrameBudget budget;
     double begun_s = 0, done_s = 0; ///< session clock
+    double ahead_s = 0; ///< the command's scene_s is that of so much after begun_s
     std::uint32_t still_paths = 0;  ///< per pixel since anything last moved
     Settings settings;              ///< used for this frame
     std::string schedule;           ///< of slhb: schedule in use and why, a sentence; empty for other methods
@@ -57,6 +50,7 @@ inline constexpr std::uint32_t kConvergedPaths = 4096;
 /// Cost of a frame on the ranks that rendered it.
 struct FrameWork {
     double seconds = 0;
+    double surfaces_s = 0; ///< the part of it spent on surfaces of another size than light
     gi::DynamicUpdate dynamic_update{};
     bool moved = false; ///< something in the scene moved
 };
@@ -130,7 +124,8 @@ private:
     void choose_updated_axes(bool may_move);
     void measure(FrameWork const& work, FrameBudget const& budget);
     FrameCommand make_command(Viewpoint const& now, bool still, FrameBudget& budget);
-    bool render(FrameCommand command, FrameBudget const& budget);
+    double seen_after_s() const;
+    bool render(FrameCommand command, FrameBudget const& budget, double ahead_s = 0);
     void wait_until(double time_s);
 
     RenderSession& session_;
@@ -142,6 +137,7 @@ private:
     std::condition_variable wake_, published_;
     std::deque<std::function<void()>> jobs_;
     Viewpoint viewpoint_;
+    Anticipation anticipation_;
     std::atomic<bool> looked_{false}; ///< the viewpoint changed since the current frame began
     std::shared_ptr<gi::StopRequest> refining_;
     std::shared_ptr<LiveFrame const> newest_;
@@ -154,9 +150,11 @@ private:
     int stored_ = 0; ///< stored axes in the last measured frame
     std::vector<Change> changes_;
     FrameCommand last_;
-    std::vector<ViewCommand> last_views_; ///< of the last frame, on all ranks
+    Viewpoint last_look_; ///< that the last frame was made for, before it was moved on
     bool has_last_ = false;
     double scene_s_ = 0, last_begun_s_ = 0;
+    double last_scene_s_ = 0; ///< scene_s_ in the last frame
+    double frame_s_ = 0;      ///< time that frames take, smoothed
     std::uint64_t frame_ = 0;
     std::uint32_t still_paths_ = 0;
     std::thread thread_;

@@ -61,14 +61,7 @@ void PrimaryMap::refresh_pair(CameraRays const& camera, float near_m, std::uint3
 
 void PrimaryMap::draw(PerspectiveGrid const& grid, std::size_t first, std::size_t last, std::uint32_t pass)
 {
-    constexpr std::size_t kPart = 32 * TriangleSoup::kChunk;
-    tbb::parallel_for(std::size_t(0), (last - first + kPart - 1) / kPart, [&](std::size_t k) {
-        thread_local Fragments fragments;
-        fragments.count = 0;
-        rasterize(soup_, first + k * kPart, std::min(last, first + (k + 1) * kPart), grid, fragments);
-        cut_outs_.remove(fragments, grid, std::uint32_t(mix_bits(seed_) + pass));
-        resolve_shared(fragments, 1, map_);
-    });
+    draw_view(soup_, first, last, cut_outs_, grid, std::uint32_t(mix_bits(seed_) + pass), map_);
 }
 
 void PrimaryMap::hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const

@@ -105,6 +105,7 @@ void SlhbTracer::start_paths(Pass const& pass, std::span<PathStart const> starts
         if (start.on_layer) {
             s.position = start.ray.origin;
             s.has_position = s.along_axis = s.emitted = true;
+            s.seen = false;
             s.scatterings = s.vertex = 1;
         } else if (start.triangle != kNoPrimitive) {
             s.barycentric = barycentric_of(world_.surfaces[start.triangle], start.ray);

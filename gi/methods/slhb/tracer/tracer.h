@@ -76,6 +76,7 @@ public:
         bool look_ups = true;               ///< else exact rays
         RadianceCache* cache = nullptr;     ///< paths may end in its cells; null = no cache
         bool spread = false;                ///< pixels without indirect light will get it from neighbours
+        bool no_punctual = false;           ///< see FrameRenderer::leave_out_punctual
     };
 
     /// @param width  of the picture, pixels

@@ -2,6 +2,8 @@
 
 #include "gi/methods/slhb/tracer/tracer_state.h"
 
+#include "gi/scene/shading/seen_mirror.h"
+
 #include <utility>
 
 namespace gi {
@@ -42,6 +44,7 @@ void SlhbTracer::add_sky(Pass const& pass, State& s, Vertex const& last) const
 vec3 SlhbTracer::unshadowed(Leaving const& from, LightSample const& light) const
 {
     ShadingPoint const& at = from.at;
+    if (from.no_punctual && light.delta) return vec3{0};
     if (bsdf_detail::is_matt(at.bsdf)) { // the same with fewer operations
         if (!(light.pdf > 0)) return vec3{0};
         float const cosine = glm::dot(light.direction, at.frame.normal);
@@ -217,7 +220,10 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     // mirrors or glass exist), and at first surfaces whose pixels wait for indirect light.
     bool const waits = s.vertex == 0 && pass.spread && interleaving_.n > 1 && bounces_ > 0;
     bool const alone = waits ? !has_narrow_lobe(at.bsdf) : !narrow && s.scatterings == bounces_ && !pass.smooth;
-    Leaving const from{at, wo, narrow, alone};
+    BsdfSample mirror;
+    bool const seen = pass.no_punctual && s.seen;
+    bool const shows_other = seen && s.vertex < kMostMirrors && find_mirror(at, wo, mirror);
+    Leaving const from{at, wo, narrow, alone, seen && !shows_other};
     if (!last && !world_.light_select.empty() && !only_delta(at.bsdf)) {
         if (pass.lights != nullptr)
             aim_at_light(pass, s, from, direct.rays);
@@ -244,6 +250,9 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     if (!survives_roulette(s, roulette_, [&] { return (*s.u)[PathDimension::roulette]; })) return false;
     if (next.exact) next.ray = {leave(at, s.direction), s.direction};
     s.along_axis = !next.exact;
+    if (seen)
+        s.seen = shows_other && scattered == Scattered::by_delta_lobe &&
+                 (glm::dot(s.direction, at.geometric_normal) > 0) == (mirror.wi.z > 0);
     if (scattered == Scattered::widely) ++s.scatterings;
     ++s.vertex;
     return true;

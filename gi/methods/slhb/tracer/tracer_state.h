@@ -19,6 +19,7 @@ struct SlhbTracer::State : PathState {
     bool has_position = false;
     vec3 direction;          ///< of arrival
     bool along_axis = false; ///< arrived by a broad lobe (along an axis if look-ups are used)
+    bool seen = true;        ///< the way so far is that to the surface which the pixel shows (seen_mirror.h)
     bool emitted = false;    ///< emission of its surface has already been added
     int vertex = 0;
     float footprint = 0; ///< approximate width of the bundle of paths that this one represents, m
@@ -84,6 +85,7 @@ struct SlhbTracer::Leaving {
     vec3 wo;     ///< local
     bool narrow; ///< some lobe is sampled by exact rays
     bool alone;  ///< light samples must account for all light, as no path continues to hit it
+    bool no_punctual = false; ///< light of punctual lights is left out
 
     /// Probability density with which paths leave along wi, 1/sr. @param bsdf  for wi, see evaluate
     float pdf(BsdfValue const& bsdf, vec3 wi) const { return narrow ? bsdf.pdf : std::max(wi.z, 0.0f) * kInvPi; }

@@ -1,0 +1,55 @@
+#pragma once
+// The light of a finished picture, kept by the surfaces that receive it, so that another picture can show it: one of
+// another size or camera, or a later one. Light is that of L1 and L2 over the albedo; where a surface of the other
+// picture lies in this one, the nearest pixels that show a similar surface are averaged (joint bilateral upsampling,
+// Kopf et al. 2007).
+
+#include "gi/image_io/picture.h"
+#include "gi/scene/model/projection.h"
+
+#include <optional>
+
+namespace gi {
+
+struct FoundLight {
+    vec3 direct{0}, indirect{0}; ///< L1 and L2 over the albedo
+    float likeness = 0; ///< of the most similar surface used, 0..1; below kUnlike the light is that of some surface
+                        ///< around
+};
+
+class KeptLight {
+public:
+    static constexpr float kUnlike = 0.01f;
+
+    /// Needs the layers L1, L2, albedo, normal, position and depth (throws InputError if one is missing).
+    /// @param origin  of the world, from which camera and later positions are measured
+    KeptLight(Picture const& picture, CameraRays const& camera, dvec3 origin);
+
+    /// Light of a surface, at most two pixels of this picture away from where it lies in it; none outside of it.
+    /// @param position  m, from the world's origin   @param normal  unit
+    std::optional<FoundLight> find(vec3 position, vec3 normal) const;
+    /// The same, for a place in this picture, in its pixels from the top left corner.
+    FoundLight find(vec3 position, vec3 normal, vec2 place) const;
+
+    CameraRays const& camera() const { return camera_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+private:
+    struct Texel {
+        vec3 position;
+        float reach; ///< 1 / distance from its plane at which another surface begins, 1/m; 0 = no surface
+        vec3 normal;
+        std::uint32_t dark; ///< bits of the channels in which the albedo is too dark
+        vec3 direct, indirect;
+    };
+    struct Sum;
+    static float likeness(Texel const& texel, vec3 position, vec3 normal);
+
+    CameraRays camera_;
+    Projection project_;
+    int width_, height_;
+    std::vector<Texel> texels_;
+};
+
+} // namespace gi

@@ -1,0 +1,109 @@
+#include "gi/surfaces/lit_picture.h"
+
+#include <mutex>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+void put(Layer& layer, std::size_t pixel, vec3 v)
+{
+    for (std::size_t c = 0; c < 3; ++c) layer.data[3 * pixel + c] = v[int(c)];
+}
+
+} // namespace
+
+Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
+                    std::span<std::uint8_t const> hidden, LitCounts& counts)
+{
+    Picture picture{width, height, {}, {}};
+    picture.add("color", 3);
+    picture.add("depth", 1);
+    float* const color = picture.find("color")->data.data();
+    float* const depth = picture.find("depth")->data.data();
+    vec2 const smaller{float(light.width()) / float(width), float(light.height()) / float(height)};
+    tbb::combinable<LitCounts> sums;
+    tbb::parallel_for(0, height, [&](int y) {
+        thread_local std::vector<SeenSurface> row;
+        row.assign(std::size_t(width), {});
+        seen.row(y, row);
+        LitCounts& local = sums.local();
+        for (int x = 0; x < width; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            if (!hidden.empty() && hidden[i] != 0) continue;
+            SeenSurface const& s = row[std::size_t(x)];
+            vec3 radiance = s.emitted + s.direct;
+            if (s.depth > 0) {
+                FoundLight const found =
+                    light.find(s.position, s.normal, smaller * vec2{float(x) + 0.5f, float(y) + 0.5f});
+                radiance += s.albedo * (found.direct + found.indirect);
+                ++local.surfaces;
+                local.unlike += found.likeness < KeptLight::kUnlike;
+            }
+            for (std::size_t c = 0; c < 3; ++c) color[3 * i + c] = radiance[int(c)];
+            depth[i] = s.depth;
+        }
+    });
+    sums.combine_each([&](LitCounts const& c) {
+        counts.surfaces += c.surfaces;
+        counts.unlike += c.unlike;
+    });
+    return picture;
+}
+
+MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, CameraRays const& before,
+                               dvec3 origin, Picture& picture)
+{
+    MirrorLayers was;
+    Layer *const albedo = picture.find("albedo"), *const normal = picture.find("normal"),
+                *const position = picture.find("position"), *const depth = picture.find("depth"),
+                *const motion = picture.find("motion");
+    if (!albedo || !normal || !position || !depth || !motion) return was;
+    Projection const project_now(now), project_before(before);
+    std::vector<MirrorLayers> rows(std::size_t(picture.height));
+    tbb::parallel_for(0, picture.height, [&](int y) {
+        thread_local std::vector<SeenSurface> row;
+        row.assign(std::size_t(picture.width), {});
+        seen.row_of_mirrors(y, row);
+        MirrorLayers& kept = rows[std::size_t(y)];
+        for (int x = 0; x < picture.width; ++x) {
+            SeenSurface const& s = row[std::size_t(x)];
+            std::size_t const i = std::size_t(y) * std::size_t(picture.width) + std::size_t(x);
+            if (!s.in_mirror || !(depth->data[i] > 0)) continue;
+            kept.pixels.push_back(std::uint32_t(i));
+            kept.layers.push_back({rgb(*albedo, i), rgb(*normal, i), rgb(*position, i)});
+            kept.depths.push_back(depth->data[i]);
+            put(*albedo, i, s.albedo);
+            put(*normal, i, s.normal);
+            put(*position, i, vec3(dvec3(s.position) + origin));
+            depth->data[i] = s.depth;
+            vec3 const from = project_now(s.position), at = project_before(s.position - s.moved);
+            bool const known = s.depth > 0 && at.z > 0;
+            put(*motion, i, known ? vec3{at.x - from.x, at.y - from.y, at.z} : vec3{std::numeric_limits<float>::quiet_NaN()});
+        }
+    });
+    for (MirrorLayers const& r : rows) {
+        was.pixels.insert(was.pixels.end(), r.pixels.begin(), r.pixels.end());
+        was.layers.insert(was.layers.end(), r.layers.begin(), r.layers.end());
+        was.depths.insert(was.depths.end(), r.depths.begin(), r.depths.end());
+    }
+    return was;
+}
+
+void describe_mirrors(MirrorLayers const& was, Picture& picture)
+{
+    if (was.pixels.empty()) return;
+    Layer seen = *picture.find("depth");
+    seen.name = "seen_depth";
+    for (std::size_t k = 0; k < was.pixels.size(); ++k) {
+        std::size_t const i = was.pixels[k];
+        put(*picture.find("albedo"), i, was.layers[k][0]);
+        put(*picture.find("normal"), i, was.layers[k][1]);
+        put(*picture.find("position"), i, was.layers[k][2]);
+        picture.find("depth")->data[i] = was.depths[k];
+    }
+    picture.layers.push_back(std::move(seen));
+}
+
+} // namespace gi

@@ -1,0 +1,34 @@
+#pragma once
+// A picture of any size whose surfaces, textures and outlines are its own, and whose light is that of a smaller one.
+
+#include "gi/surfaces/kept_light.h"
+#include "gi/surfaces/seen_surfaces.h"
+
+namespace gi {
+
+struct LitCounts {
+    std::size_t surfaces = 0;
+    std::size_t unlike = 0; ///< of these, those that found no similar surface, and took some light around them
+};
+
+/// Layers color and depth (of what mirrors show, as an image behind them) of the last view of `seen`.
+/// @param hidden  1 for each pixel that stays black and without a surface; empty = none
+Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
+                    std::span<std::uint8_t const> hidden, LitCounts& counts);
+
+/// What a method's picture says of pixels that show a mirror or a pane.
+struct MirrorLayers {
+    std::vector<std::uint32_t> pixels;
+    std::vector<std::array<vec3, 3>> layers; ///< albedo, normal, position
+    std::vector<float> depths;
+};
+
+/// Replaces albedo, normal, position, depth and motion of pixels that show a mirror or a pane by those of what is
+/// seen in it, so that filters and temporal reuse follow that. Returns what they were. The last view of `seen` must
+/// be that of the picture. @param before  the camera of the previous frame
+MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, CameraRays const& before,
+                               dvec3 origin, Picture& picture);
+/// Undoes it for albedo, normal and position; keeps the depth in "seen_depth".
+void describe_mirrors(MirrorLayers const& was, Picture& picture);
+
+} // namespace gi

@@ -1,0 +1,254 @@
+#include "gi/surfaces/seen_surfaces.h"
+
+#include "gi/scene/model/plan.h"
+#include "gi/render/path_step.h"
+#include "gi/render/ray_path.h"
+#include "gi/scene/model/plan.h"
+#include "gi/scene/shading/seen_mirror.h"
+
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// Pixels between those whose shadows are found first.
+constexpr int kCoarse = 4;
+/// Two pixels show one surface if its normals agree, and if one is near the other's plane, relative to the depth.
+constexpr float kCosine = 0.95f, kPlane = 0.01f;
+
+bool one_surface(SeenSurface const& a, SeenSurface const& b)
+{
+    return glm::dot(a.normal, b.normal) > kCosine &&
+           std::abs(glm::dot(a.normal, b.position - a.position)) < kPlane * std::max(a.depth, 1e-6f);
+}
+
+} // namespace
+
+/// The way of a pixel's light, from the eye on.
+struct SeenSurfaces::Way {
+    std::uint32_t pixel; ///< in its row
+    vec3 eye_direction;  ///< of the pixel's ray
+    Ray ray;             ///< its last piece
+    vec3 left{1};        ///< share of the light that arrives
+    mat3 image{1};       ///< from directions where the way is, to their images
+    float length_m = 0;  ///< up to the last piece
+    int mirrors = 0;
+};
+
+/// Light on its way to a surface.
+struct SeenSurfaces::Sent {
+    std::uint32_t pixel, light;
+    vec3 radiance;
+    RayQuery ray;
+};
+
+SeenSurfaces::SeenSurfaces(World const& world, int threads)
+    : world_(world), threads_(threads), view_(view(world)), soup_(make_soup(world)), cut_outs_(world)
+{
+    earlier_.first_moving = first_moving();
+    find_needs();
+}
+
+bool SeenSurfaces::mirrors_in(World const& world)
+{
+    return std::any_of(world.triangle_material.begin(), world.triangle_material.end(),
+                       [&](std::uint32_t m) { return may_mirror(world.bsdfs[m]); });
+}
+
+bool SeenSurfaces::has_few_lights(World const& world)
+{
+    return !world.lights.empty() && world.lights.size() <= kMostLights;
+}
+
+void SeenSurfaces::find_needs()
+{
+    mirrors_ = mirrors_in(world_);
+    bool const needed = mirrors_ || has_few_lights(world_);
+    if (needed == (exact_ != nullptr)) return;
+    exact_.reset();
+    now_.clear();
+    if (!needed) return;
+    exact_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, threads_, first_moving());
+    now_ = corners_of(world_, first_moving());
+}
+
+void SeenSurfaces::changed(Changes const& changes)
+{
+    view_ = view(world_);
+    if (changes.geometry) {
+        update_soup(world_, first_moving(), soup_);
+        if (exact_) {
+            exact_->moved(world_);
+            if (earlier_.corners.empty()) earlier_.corners = std::move(now_);
+            now_ = corners_of(world_, first_moving());
+        }
+    }
+    if (changes.coverage) {
+        cut_outs_ = CutOuts(world_);
+        exact_.reset(); // which tests coverage or not
+    }
+    if (changes.materials || changes.coverage || changes.lights) find_needs();
+}
+
+void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights lights)
+{
+    constexpr float kNear = 1e-5f; // of the world's radius
+    constexpr std::uint32_t kSeed = 0x5ee; // of partial coverage: the same in all frames
+    camera_ = camera;
+    camera_.focus = 0;
+    clear(map_, std::uint32_t(width), std::uint32_t(height));
+    grid_ = camera_grid(camera_, width, height, vec2{0.5f}, kNear * glm::max(world_.bounds.radius(), 1e-30f));
+    draw_view(soup_, 0, soup_.count, cut_outs_, grid_, kSeed, map_);
+    lights_ = lights == Lights::few && has_few_lights(world_) ? std::uint32_t(world_.lights.size()) : 0;
+    if (lights_ == 0) return;
+    // A fourth of the rows and columns first: where those around a pixel agree, it needs no shadow ray of its own.
+    int const columns = (width + kCoarse - 1) / kCoarse, rows = (height + kCoarse - 1) / kCoarse;
+    coarse_.clear();
+    std::vector<SeenSurface> found(std::size_t(columns) * std::size_t(rows));
+    tbb::parallel_for(0, rows, [&](int k) {
+        thread_local std::vector<SeenSurface> row;
+        row.assign(std::size_t(width), {});
+        fill(std::min(k * kCoarse + kCoarse / 2, height - 1), row, Pixels::coarse);
+        for (int i = 0; i < columns; ++i)
+            found[std::size_t(k) * std::size_t(columns) + std::size_t(i)] =
+                row[std::size_t(std::min(i * kCoarse + kCoarse / 2, width - 1))];
+    });
+    coarse_ = std::move(found);
+}
+
+/// Whether a light reaches a surface, if the coarse pixels around agree.
+std::optional<bool> SeenSurfaces::known_shadow(SeenSurface const& s, std::uint32_t light, int x, int y) const
+{
+    if (coarse_.empty()) return std::nullopt;
+    int const columns = (int(map_.width) + kCoarse - 1) / kCoarse, rows = (int(map_.height) + kCoarse - 1) / kCoarse;
+    int const left = (x + kCoarse / 2) / kCoarse - 1, top = (y + kCoarse / 2) / kCoarse - 1;
+    int lit = 0;
+    for (int j = top; j < top + 2; ++j)
+        for (int i = left; i < left + 2; ++i) {
+            if (i < 0 || j < 0 || i >= columns || j >= rows) return std::nullopt;
+            SeenSurface const& c = coarse_[std::size_t(j) * std::size_t(columns) + std::size_t(i)];
+            if (!(c.depth > 0) || !one_surface(s, c)) return std::nullopt;
+            lit += c.lit >> light & 1;
+        }
+    if (lit != 0 && lit != 4) return std::nullopt;
+    return lit == 4;
+}
+
+/// Sends the light of all lights to a surface.
+void SeenSurfaces::light(ShadingPoint const& at, Way const& way, SeenSurface const& s, int y,
+                         std::vector<Sent>& sent, SeenSurface& out) const
+{
+    vec3 const wo = at.frame.to_local(-way.ray.direction);
+    for (std::uint32_t k = 0; k < lights_; ++k) {
+        LightSample const light = light_detail::sample_punctual(view_.lights[k], at.position);
+        vec3 const radiance =
+            way.left * unshadowed_light(at, wo, light, true, [](BsdfValue const&, vec3) { return 0.0f; });
+        if (!(max_component(radiance) > 0)) continue;
+        if (std::optional<bool> const lit = known_shadow(s, k, int(way.pixel), y)) {
+            if (*lit) out.direct += radiance;
+            continue;
+        }
+        RayQuery const ray = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
+        if (ray.reach > 0)
+            sent.push_back({way.pixel, k, radiance, ray});
+        else
+            out.direct += radiance;
+    }
+}
+
+/// Describes a surface that a way arrives at. Returns true if it is a mirror: the way's ray then leads on.
+bool SeenSurfaces::arrive(std::uint32_t triangle, vec2 weights, int y, Way& way, std::vector<Sent>& sent,
+                          SeenSurface& out) const
+{
+    ShadingPoint const at = shading_point(view_, triangle, weights, way.ray.direction);
+    out.emitted += way.left * at.emission;
+    way.length_m += glm::length(at.position - way.ray.origin);
+    vec3 const wo = at.frame.to_local(-way.ray.direction);
+    if (BsdfSample mirror; exact_ && way.mirrors < kMostMirrors && find_mirror(at, wo, mirror)) {
+        vec3 const on = at.frame.to_world(mirror.wi);
+        if (mirror.wi.z > 0) { // reflected; what is seen through a pane stays where it is
+            vec3 const n = at.frame.normal;
+            way.image = way.image - 2.0f * glm::outerProduct(way.image * n, n);
+        }
+        way.left *= mirror.weight;
+        way.ray = {leave(at, on), on};
+        ++way.mirrors;
+        return true;
+    }
+    out.albedo = way.left * albedo(at.bsdf);
+    out.normal = way.image * at.frame.normal;
+    out.position = way.mirrors == 0 ? at.position : camera_.origin + way.length_m * way.eye_direction;
+    out.depth = glm::dot(out.position - camera_.origin, camera_.forward);
+    out.in_mirror = way.mirrors > 0;
+    if (out.in_mirror && triangle >= earlier_.first_moving && !earlier_.corners.empty())
+        out.moved = way.image *
+                    (at.position - point_on(earlier_.corners[triangle - earlier_.first_moving], weights));
+    if (lights_ > 0) light(at, way, out, y, sent, out);
+    return false;
+}
+
+void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
+{
+    bool const only_mirrors = which == Pixels::mirrors;
+    thread_local std::vector<Sent> sent;
+    thread_local std::vector<std::uint8_t> blocked;
+    sent.clear();
+    thread_local std::vector<Way> ways;
+    thread_local std::vector<RayQuery> rays;
+    thread_local std::vector<Hit> hits;
+    ways.clear();
+    NearestTexel const* const texels = &map_.texels[std::size_t(y) * map_.width];
+    for (std::uint32_t x = 0; x < map_.width; ++x) {
+        NearestTexel const& seen = texels[x];
+        if (which == Pixels::coarse && x % kCoarse != kCoarse / 2 && x + 1 != map_.width) continue;
+        if (only_mirrors) {
+            if (seen.primitive == kNoPrimitive) continue;
+            Surface const& surface = view_.surfaces[seen.primitive];
+            if (!surface.is(Surface::kVaries) && !may_mirror(view_.bsdfs[surface.material])) continue;
+        }
+        Ray const ray = camera_.through({float(x) + 0.5f, float(y) + 0.5f});
+        SeenSurface found;
+        if (seen.primitive == kNoPrimitive) {
+            found.emitted = background_radiance(view_, ray.direction);
+        } else {
+            Way way{x, ray.direction, ray};
+            vec3 const at =
+                ray.origin + ray.direction / (seen.key * glm::dot(ray.direction, camera_.forward));
+            if (arrive(seen.primitive, barycentric_at(view_.surfaces[seen.primitive], at), y, way, sent, found))
+                ways.push_back(way);
+            else if (only_mirrors)
+                continue;
+        }
+        out[x] = found;
+    }
+    while (!ways.empty()) {
+        rays.clear();
+        for (Way const& w : ways) rays.push_back({.ray = w.ray});
+        hits.resize(rays.size());
+        exact_->nearest(rays, hits);
+        std::size_t left = 0;
+        for (std::size_t k = 0; k < ways.size(); ++k) {
+            Way& way = ways[k];
+            SeenSurface& to = out[way.pixel];
+            if (hits[k].triangle == kNoTriangle) {
+                to.emitted += way.left * environment_radiance(view_, way.ray.direction);
+                to.in_mirror = true;
+            } else if (arrive(hits[k].triangle, hits[k].barycentric, y, way, sent, to)) {
+                ways[left++] = way;
+            }
+        }
+        ways.resize(left);
+    }
+    if (sent.empty()) return;
+    rays.clear();
+    for (Sent const& l : sent) rays.push_back(l.ray);
+    blocked.resize(rays.size());
+    exact_->occluded(rays, blocked);
+    for (std::size_t k = 0; k < sent.size(); ++k) {
+        if (blocked[k] != 0) continue;
+        out[sent[k].pixel].direct += sent[k].radiance;
+        out[sent[k].pixel].lit |= std::uint8_t(1u << sent[k].light);
+    }
+}
+
+} // namespace gi

@@ -1,0 +1,85 @@
+#pragma once
+// The surfaces that a picture shows, one per pixel, without their light: the nearest one by rasterisation; where that
+// is a mirror or a pane, the one that it shows, found by exact rays. A surface seen in a mirror is described as its
+// image behind the mirror: where it seems to be and how it seems to face.
+
+#include "gi/raster/cut_outs.h"
+#include "gi/render/exact_visibility.h"
+#include "gi/render/motion.h"
+#include "gi/scene/motion/moving_world.h"
+#include "gi/scene/shading/shading_point.h"
+
+#include <memory>
+#include <optional>
+
+namespace gi {
+
+struct SeenSurface {
+    vec3 albedo{0};   ///< times what mirrors and panes on the way leave of the light
+    vec3 normal{0};   ///< of shading, unit, as mirrored
+    vec3 position{0}; ///< m, from the world's origin; on the pixel's ray, as far away as light has travelled
+    vec3 emitted{0};  ///< radiance of emission, or of the background; times the same as the albedo
+    vec3 moved{0};    ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
+    vec3 direct{0};   ///< radiance of the light of punctual lights; times the same
+    float depth = 0;  ///< m along the camera's axis; 0 = no surface
+    std::uint8_t lit = 0; ///< bits of those lights that reach it, of pixels with shadow rays of their own
+    bool in_mirror = false;
+};
+
+class SeenSurfaces {
+public:
+    /// @param world  must outlive this object; its arrays must not be reallocated  @param threads  0 = all
+    SeenSurfaces(World const& world, int threads);
+
+    /// Call for every change of the world.
+    void changed(Changes const& changes);
+    /// Ends a frame: SeenSurface::moved is counted from its state.
+    void end_frame() { earlier_.corners.clear(); }
+
+    /// Rasterises a view; rays pass the middle of pixels. Not for orthographic cameras; a lens is a pinhole.
+    /// @param lights  few: with the light of punctual lights, if there are at most kMostLights
+    enum class Lights : std::uint8_t { none, few };
+    void look(CameraRays const& camera, int width, int height, Lights lights = Lights::none);
+    /// Surfaces of a row of the last view. Safe for concurrent calls.
+    void row(int y, std::span<SeenSurface> out) const { fill(y, out, Pixels::all); }
+    /// The same for those pixels of a row that show a mirror or a pane; the others stay as they are.
+    void row_of_mirrors(int y, std::span<SeenSurface> out) const
+    {
+        fill(y, out, Pixels::mirrors);
+    }
+    /// True if some triangle's material is a mirror or a pane all over.
+    static bool mirrors_in(World const& world);
+    bool has_mirrors() const { return mirrors_; }
+    static constexpr std::size_t kMostLights = 4;
+    static bool has_few_lights(World const& world); ///< at least one
+
+private:
+    struct Way;
+    struct Sent;
+    enum class Pixels : std::uint8_t { all, mirrors, coarse };
+    void fill(int y, std::span<SeenSurface> out, Pixels which) const;
+    bool arrive(std::uint32_t triangle, vec2 weights, int y, Way& way, std::vector<Sent>& sent,
+                SeenSurface& out) const;
+    std::optional<bool> known_shadow(SeenSurface const& s, std::uint32_t light, int x, int y) const;
+    void light(ShadingPoint const& at, Way const& way, SeenSurface const& s, int y, std::vector<Sent>& sent,
+               SeenSurface& out) const;
+    void find_needs();
+    std::size_t first_moving() const { return world_.static_triangles; }
+
+    World const& world_;
+    int threads_;
+    WorldView view_;
+    TriangleSoup soup_;
+    CutOuts cut_outs_;
+    bool mirrors_ = false;
+    std::unique_ptr<ExactVisibility> exact_; ///< null without mirrors and without few punctual lights
+    CameraRays camera_{};
+    PerspectiveGrid grid_;
+    NearestMap map_;
+    std::uint32_t lights_ = 0;        ///< punctual lights in the last view
+    std::vector<SeenSurface> coarse_; ///< every fourth pixel, with its own shadow rays
+    std::vector<Corners> now_; ///< of triangles that can move, if there are mirrors
+    EarlierCorners earlier_;
+};
+
+} // namespace gi
