@@ -39,6 +39,8 @@ std::optional<std::string> find_fault(WallMesh const& m)
         if (!is_within(m.nodes[n].place, -1, 2))
             return fmt::format("node {} is farther outside the viewport than its size", n);
         if (!is_within(m.nodes[n].picture, 0, 1)) return fmt::format("node {} is outside the picture", n);
+        if (!(m.nodes[n].weight >= 0 && m.nodes[n].weight <= 1))
+            return fmt::format("node {} has a weight outside 0 to 1", n);
     }
     double turn = 0;
     for (int j = 0; j + 1 < m.rows; ++j)

@@ -18,6 +18,7 @@ namespace viewer {
 
 struct WarpNode {
     glm::dvec2 place{0}, picture{0};
+    double weight = 1; ///< factor on light, 0 to 1
 
     bool operator==(WarpNode const&) const = default;
 };

@@ -76,7 +76,8 @@ WallSettings const& checked(WallSettings const& settings)
 
 WallPass::WallPass(WallSettings const& settings)
     : settings_(checked(settings)),
-      program_({"wall.vert"}, {"tone_map.glsl", "wall.frag"}, "#define CURVE 0\n#define CURVE_FILMIC 1\n")
+      program_({"wall.vert"}, {"tone_map.glsl", "bilinear.glsl", "wall.frag"},
+               "#define CURVE 0\n#define CURVE_FILMIC 1\n")
 {
     auto const& vertices = settings_.mesh.vertices;
     glNamedBufferStorage(buffer_.id(), GLsizeiptr(vertices.size() * sizeof(WarpVertex)), vertices.data(), 0);

@@ -9,6 +9,7 @@
 
 #include "viewer/devices/gl/draw_target.h"
 #include "viewer/devices/gl/gl_program.h"
+#include "viewer/displays/surface.h"
 
 #include <optional>
 #include <vector>
@@ -58,6 +59,7 @@ struct WallSettings {
     std::optional<BlendMap> blend_map; ///< multiplied with the formula
     glm::vec3 gain{1};                 ///< factor on light, per channel, >= 0; values above white are clipped
     glm::vec3 gamma{2.2f};             ///< of the display, > 0
+    std::optional<Surface> surface{};  ///< of a wall that is not flat: a SurfacePass goes before
 
     bool operator==(WallSettings const&) const = default;
 };
