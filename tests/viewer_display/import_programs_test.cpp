@@ -474,6 +474,9 @@ TEST(ImportSgct, TheOlderXml) // 3DTV_old.xml, single_fisheye.xml, ...
     auto const message = [&](std::string const& text) {
         return message_of([&] { parse_sgct_xml(text, "o.xml", report); });
     };
+    EXPECT_NE(message("<Cluster><Node>\n<Window mpcdi='a.mpcdi'><Size x='9' y='9'/></Window></Node></Cluster>")
+                  .find("SGCT windows with MPCDI, which is not supported, skipped (o.xml:2)"),
+              std::string::npos);
     EXPECT_NE(message("<a/>").find("there is no element <Cluster>"), std::string::npos);
     EXPECT_NE(message("<Cluster><Node><Window><Size x='1' y='1'/><Viewport>\n<Viewplane><Pos x='1' y='1' "
                       "z='1'/></Viewplane></Viewport></Window></Node></Cluster>")

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace viewer {
 
@@ -126,6 +127,37 @@ Viewport from_below(double x, double y, double width, double height)
     return {LengthUnit::fraction, x, 1 - y - height, width, height};
 }
 
+namespace {
+
+/// Windows without walls (helpers that draw parts for others) and processes without windows are left out.
+void drop_unused(Display& d, std::string const& file, ImportLog const& log)
+{
+    std::vector<int> window_of(d.windows.size(), -1);
+    std::vector<DisplayWindow> windows;
+    std::map<int, int> rank_of;
+    for (Wall const& wall : d.walls) {
+        window_of[std::size_t(wall.window)] = 0;
+        rank_of[wall.rank] = 0;
+    }
+    for (std::size_t w = 0; w < d.windows.size(); ++w) {
+        if (window_of[w] < 0) {
+            log.lose("windows that show no wall: not imported", 1, file + ", window '" + d.windows[w].name + "'");
+            continue;
+        }
+        window_of[w] = int(windows.size());
+        windows.push_back(d.windows[w]);
+    }
+    int next = 0;
+    for (auto& [theirs, ours] : rank_of) ours = next++;
+    for (Wall& wall : d.walls) {
+        wall.window = window_of[std::size_t(wall.window)];
+        wall.rank = rank_of[wall.rank];
+    }
+    d.windows = std::move(windows);
+}
+
+} // namespace
+
 Display finished(Display display, std::string const& file, ImportLog const& log)
 {
     if (display.walls.empty()) {
@@ -142,6 +174,7 @@ Display finished(Display display, std::string const& file, ImportLog const& log)
                              skipped.empty() ? "the file describes none" : skipped,
                              "walls with corners or projections are needed");
     }
+    drop_unused(display, file, log);
     for (Wall& wall : display.walls)
         for (gi::dvec3* p : {&wall.corners.lower_left, &wall.corners.lower_right, &wall.corners.upper_left})
             *p += gi::dvec3(0); // no -0

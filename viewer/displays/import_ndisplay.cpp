@@ -8,6 +8,7 @@
 #include "gi/core/yaml.h"
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
+#include "viewer/displays/json_text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -452,7 +453,7 @@ UnrealViewport viewport_of(UnrealLine const& v, UnrealLine const& projection)
 
 Display parse_ndisplay(std::string const& text, std::string const& name, ImportLog log)
 {
-    Yaml const root = Yaml::parse(text, name, "nDisplay file");
+    Yaml const root = parse_json(text, name, "nDisplay file");
     Yaml const all = root.needed("nDisplay", "{scene: {...}, cluster: {...}}");
     lose_keys(
         all,

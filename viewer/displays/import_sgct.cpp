@@ -3,14 +3,13 @@
 
 #include "gi/core/yaml.h"
 #include "viewer/displays/import_common.h"
+#include "viewer/displays/json_text.h"
 #include "viewer/displays/sgct_config.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <string_view>
 
 namespace viewer {
 namespace {
@@ -151,8 +150,9 @@ SgctViewport read_viewport(Yaml const& y, ImportLog const& log)
 
 SgctWindow read_window(Yaml const& y, ImportLog const& log)
 {
-    lose_others(y, {"name", "id", "pos", "size", "res", "fullscreen", "monitor", "stereo", "viewports", "border"},
-                "window.", log);
+    lose_others(
+        y, {"name", "id", "pos", "size", "res", "fullscreen", "monitor", "stereo", "viewports", "border", "mpcdi"},
+        "window.", log);
     SgctWindow w;
     w.at = y.place();
     w.window.name = y.has("name") ? y.at("name").text() : "window";
@@ -174,6 +174,8 @@ SgctWindow read_window(Yaml const& y, ImportLog const& log)
     w.picture_aspect = double(w.window.width_px) / std::max(1, w.window.height_px);
     if (y.has("res"))
         w.picture_aspect = double(pixel(needed(y.at("res"), "x"))) / std::max(1, pixel(needed(y.at("res"), "y")));
+    if (y.has("mpcdi"))
+        log.lose("SGCT windows with MPCDI, which is not supported, skipped", 1, text_at(y.at("mpcdi").place()));
     if (y.has("viewports"))
         for (Yaml const& v : y.at("viewports").items()) w.viewports.push_back(read_viewport(v, log));
     return w;
@@ -197,31 +199,11 @@ void read_scene(Yaml const& y, SgctConfig& config, ImportLog const& log)
                  text_at(y.place()));
 }
 
-Yaml parse_json(std::string const& text, std::string const& file)
-{
-    try {
-        return Yaml::parse(text, file, "SGCT");
-    } catch (gi::InputError const&) { // its message is about YAML, but the file is meant to be JSON
-        try {
-            [[maybe_unused]] auto const json = nlohmann::json::parse(text);
-        } catch (nlohmann::json::parse_error const& e) {
-            std::string_view const read = std::string_view(text).substr(0, e.byte > 0 ? e.byte - 1 : 0);
-            auto const line_start = read.rfind('\n') + 1; // npos + 1 is 0
-            throw gi::InputError(
-                {file, int(std::ranges::count(read, '\n')) + 1, int(read.size() - line_start) + 1},
-                "this is not JSON", e.byte > text.size() ? "the text ends too early" : "this does not belong here",
-                "check the brackets, the commas and the quotes");
-        } catch (nlohmann::json::exception const&) { // a number is too large
-        }
-        throw;
-    }
-}
-
 } // namespace
 
 Display parse_sgct(std::string const& text, std::string const& name, ImportLog log)
 {
-    Yaml const root = parse_json(text, name);
+    Yaml const root = parse_json(text, name, "SGCT");
     SgctConfig config;
     lose_others(root,
                 {"version", "masteraddress", "nodes", "users", "scene", "$schema", "title", "description",

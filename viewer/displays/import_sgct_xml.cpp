@@ -178,7 +178,7 @@ SgctWindow xml_window(XMLElement const& e, SgctXml const& x)
 {
     SgctWindow w;
     w.at = x.at(e);
-    x.lose_others(e, {"fullScreen", "fullscreen", "name", "border", "decorated", "monitor"},
+    x.lose_others(e, {"fullScreen", "fullscreen", "name", "border", "decorated", "monitor", "mpcdi"},
                   {"Stereo", "Size", "Pos", "Res", "Viewport", "Fisheye"});
     w.window.name = e.Attribute("name") ? word(e, "name") : "window";
     w.window.fullscreen = x.flag(e, {"fullScreen", "fullscreen"});
@@ -205,6 +205,8 @@ SgctWindow xml_window(XMLElement const& e, SgctXml const& x)
         w.picture_aspect = x.number(*res, "x") / std::max(1.0, x.number(*res, "y"));
     for (XMLElement const* v = e.FirstChildElement("Viewport"); v; v = v->NextSiblingElement("Viewport"))
         w.viewports.push_back(xml_viewport(*v, x));
+    if (e.Attribute("mpcdi"))
+        x.log.lose("SGCT windows with MPCDI, which is not supported, skipped", 1, text_at(w.at));
     if (XMLElement const* fisheye = e.FirstChildElement("Fisheye")) {
         if (w.viewports.empty()) w.viewports.push_back({});
         for (SgctViewport& v : w.viewports) v.projection = *xml_projection(*fisheye, x);

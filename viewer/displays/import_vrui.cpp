@@ -276,6 +276,10 @@ User read_viewer(TextNode const& s, VruiContext& c)
             c.log.lose("Vrui viewers whose eyes are not level: taken as level", 1, c.where(s));
     }
     user.eye_offset_m = glm::conjugate(pose_of(user.head).rotation) * ((l + r) * 0.5);
+    if (glm::length(user.eye_offset_m) > 1) { // control windows put the eyes metres behind a fixed place
+        user.head.translation_m += (l + r) * 0.5;
+        user.eye_offset_m = gi::dvec3{0};
+    }
     return user;
 }
 
