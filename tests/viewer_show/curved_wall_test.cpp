@@ -18,8 +18,8 @@ gi::Picture spot(ViewCommand const& view, gi::dvec3 point)
     gi::Picture picture;
     picture.width = view.width;
     picture.height = view.height;
-    gi::Layer& color = picture.add("color", 3);
     picture.add("depth", 1);
+    gi::Layer& color = picture.add("color", 3);
     glm::dmat3 const turn(view.camera.world_from_camera);
     gi::dvec3 const to = glm::normalize(point - gi::dvec3(view.camera.world_from_camera[3]));
     gi::ViewTangents const t = *view.camera.off_axis;
@@ -80,6 +80,42 @@ walls:
         EXPECT_NEAR(x_sum / count, 100, 0.7) << "eye " << eye;
         EXPECT_NEAR(y_sum / count, 166.67, 0.7) << "eye " << eye;
     }
+}
+
+TEST_F(CurvedWall, MeshesShareAViewport)
+{
+    gi::Report unused;
+    // Each half of the window is lit by one of two walls whose viewports are the whole of it.
+    std::string const mesh = "warp: {columns: 2, rows: 2, nodes: ";
+    std::string const corners =
+        "lower_left_m: [-1, 0, -1], lower_right_m: [1, 0, -1], upper_left_m: [-1, 1, -1], ";
+    Display const display = parse_display(
+        "windows: [{name: w, size_px: [40, 20]}]\n"
+        "users: [{name: u, head_position_m: [0, 0.5, 0]}]\nwalls:\n  - {name: a, window: w, " +
+            corners + mesh +
+            "[[0, 0, 0, 0], [0.5, 0, 1, 0], [0, 1, 0, 1], [0.5, 1, 1, 1]]}}\n  - {name: b, window: w, " + corners +
+            mesh + "[[0.5, 0, 0, 0], [1, 0, 1, 0], [0.5, 1, 0, 1], [1, 1, 1, 1]]}}\n",
+        "two.yaml", unused);
+    Layout const layout = display_layout(display, {}, gi::dmat4(1));
+    ASSERT_EQ(layout.views.size(), 2u);
+    auto frame = std::make_shared<LiveFrame>();
+    frame->command.views = layout.views;
+    for (float const grey : {0.2f, 1.0f}) {
+        gi::Picture picture;
+        picture.width = 40;
+        picture.height = 20;
+        picture.add("depth", 1);
+        for (float& value : picture.add("color", 3).data) value = grey;
+        frame->result.views.push_back({picture, {}, {}});
+    }
+    Presenter presenter(wall_settings(display));
+    presenter.take(frame, layout.panes[0]);
+    TextureTarget const window(TextureTarget::Format::bytes, {40, 20});
+    presenter.draw(window.target(), {0, 0}, layout.panes[0], {}, {});
+    auto const bytes = read_bytes(window.target());
+    auto const at = [&](int x) { return int(bytes[std::size_t((10 * 40 + x) * 3)]); };
+    EXPECT_GT(at(5), 60);
+    EXPECT_GT(at(35), at(5) + 60);
 }
 
 } // namespace

@@ -58,15 +58,12 @@ private:
         bool has_other = false, fresh = false;
     };
     EyeView eye(int view, std::vector<gi::Camera> const& now);
-    void draw_on_wall(Pane const& pane, DrawTarget const& target, EyeView const& left, EyeView const& right,
-                      DisplaySettings const& settings);
-    void draw_on_surface(Pane const& pane, DrawTarget const& target, PresentSettings const& shown,
-                         DisplaySettings const& settings, std::vector<gi::Camera> const& now);
-    EyeView curved(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings, std::size_t side,
-                   glm::ivec2 size_px, std::vector<gi::Camera> const& now);
-    void make_targets(std::size_t side, glm::ivec2 size_px);
-    ShownPicture bent(Pane const& pane, EyeView const& eye, DisplaySettings const& settings, std::size_t side,
-                      glm::ivec2 size_px);
+    /// Bends the pictures of one wall into bent_. False if it has none.
+    bool bend(Pane const& pane, PresentSettings const& shown, DisplaySettings const& settings,
+              std::vector<gi::Camera> const& now, WallPass::Outside outside);
+    /// The picture of one eye on a wall that is not flat, in flat_.
+    void draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings, std::size_t side,
+                    std::vector<gi::Camera> const& now);
 
     std::deque<Shown> shown_;
     std::shared_ptr<LiveFrame const> frame_;

@@ -431,6 +431,12 @@ void report_doubts(Display const& d, gi::Report& report)
     for (Wall const& wall : d.walls) used.insert({wall.window, wall.second_window});
     for (std::size_t i = 0; i < d.windows.size(); ++i)
         if (!used.contains(int(i))) report.lose("windows without a wall, which stay dark", 1, d.windows[i].name);
+    for (Wall const& wall : d.walls)
+        if (wall.warp)
+            if (MeshFlaws const flaws = find_flaws(*wall.warp); flaws.folded > 0)
+                report.lose("meshes that fold over: a part is drawn twice", 1,
+                            fmt::format("'{}', {} triangles, first in cell {} of row {}", wall.name, flaws.folded,
+                                        flaws.first_fold.x, flaws.first_fold.y));
     std::vector<WallFrame> frames;
     std::vector<Wall const*> flat;
     for (Wall const& wall : d.walls)

@@ -109,7 +109,7 @@ WallPass::WallPass(WallSettings const& settings)
     program_.set("gamma", settings_.gamma);
 }
 
-void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded) const
+void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded, Outside outside) const
 {
     if (encoded.texture == 0)
         throw gi::InputError("a wall has no picture", "there is nothing to warp", "draw the eye's picture first");
@@ -118,7 +118,7 @@ void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded) const
     glEnable(GL_SCISSOR_TEST);
     glScissor(target.corner_px.x, target.corner_px.y, target.size_px.x, target.size_px.y);
     glClearColor(0, 0, 0, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
+    if (outside == Outside::black) glClear(GL_COLOR_BUFFER_BIT);
     program_.set("up", target.rows == RowOrder::top_last ? 1.0f : -1.0f);
     glBindTextureUnit(0, encoded.texture);
     glBindTextureUnit(1, map_.id());

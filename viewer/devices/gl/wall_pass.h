@@ -70,9 +70,10 @@ public:
     /// Throws InputError on a mesh with fewer than 2 x 2 vertices or the wrong number of vertices, non-finite
     /// values, overlaps larger than the picture, and gains or gammas out of range.
     explicit WallPass(WallSettings const& settings);
-    /// Draws the picture, black outside the mesh, with bilinear filtering. If mesh, size, blend and gain have no
-    /// effect, its bytes stay unchanged.
-    void draw(DrawTarget const& target, ShownPicture const& encoded) const;
+    enum class Outside { black, kept };
+    /// Draws the picture with bilinear filtering; outside the mesh it is black, or what was there stays, for walls
+    /// that share a viewport. If mesh, size, blend and gain have no effect, its bytes stay unchanged.
+    void draw(DrawTarget const& target, ShownPicture const& encoded, Outside outside = Outside::black) const;
 
 private:
     WallSettings settings_;
