@@ -11,20 +11,6 @@ in vec2 place;
 in float vertex_weight;
 out vec4 color;
 
-const float kSnap = 1.0 / 256; // px: as near to a pixel's middle as this is at it
-
-vec4 bilinear(sampler2D from, vec2 at)
-{
-    ivec2 last = textureSize(from, 0) - 1;
-    vec2 u = vec2(at.x, 1.0 - at.y) * vec2(last + 1) - 0.5, whole = floor(u + kSnap);
-    vec2 f = u - whole;
-    f = mix(f, vec2(0.0), lessThan(f, vec2(kSnap)));
-    ivec2 a = clamp(ivec2(whole), ivec2(0), last), b = clamp(ivec2(whole) + 1, ivec2(0), last);
-    vec4 top = mix(texelFetch(from, a, 0), texelFetch(from, ivec2(b.x, a.y), 0), f.x);
-    vec4 bottom = mix(texelFetch(from, ivec2(a.x, b.y), 0), texelFetch(from, b, 0), f.x);
-    return mix(top, bottom, f.y);
-}
-
 float side(float at, float width)
 {
     if (width <= 0.0 || at >= width) return 1.0;

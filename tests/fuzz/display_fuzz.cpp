@@ -4,12 +4,22 @@
 #include "gi/core/error.h"
 #include "viewer/displays/display_file.h"
 #include "viewer/displays/import.h"
+#include "viewer/displays/mesh_file.h"
 #include "viewer/displays/view_summary.h"
 
 #include <algorithm>
 #include <cstdlib>
 
 namespace {
+
+/// Any text as a mesh of another program: one that can be drawn, or an InputError.
+void read_meshes(std::string const& text)
+{
+    for (char const* name : {"fuzz.data", "fuzz.obj"}) try {
+            if (viewer::find_fault(viewer::parse_mesh_file(text, name, 1.5))) std::abort();
+        } catch (gi::InputError const&) {
+        }
+}
 
 viewer::Display parse(char kind, std::string const& text, gi::Report& report)
 {
@@ -20,8 +30,19 @@ viewer::Display parse(char kind, std::string const& text, gi::Report& report)
         return viewer::parse_sgct(text, "fuzz", report);
     case 'e':
         return viewer::parse_equalizer(text, "fuzz", report);
+    case 'x':
+        return viewer::parse_sgct_xml(text, "fuzz", report);
+    case 'n':
+        return viewer::parse_ndisplay(text, "fuzz", report);
+    case 'c':
+        return viewer::parse_ndisplay_cfg(text, "fuzz", report);
     case 'v':
         return viewer::parse_vrui(text, "fuzz", "", report);
+    case 'b': { // a configuration and its patch, with a form feed between them
+        std::size_t const half = std::min(text.find('\f'), text.size());
+        return viewer::parse_vrui(
+            {{text.substr(0, half), "base"}, {text.substr(std::min(half + 1, text.size())), "fuzz"}}, "", report);
+    }
     default:
         return viewer::parse_display(text, "fuzz", report);
     }
@@ -34,6 +55,10 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
     if (size < 2) return 0;
     gi::Report report;
     std::string const text(reinterpret_cast<char const*>(data) + 1, size - 1);
+    if (data[0] == 'm') {
+        read_meshes(text);
+        return 0;
+    }
     viewer::Display display;
     try {
         display = parse(char(data[0]), text, report);

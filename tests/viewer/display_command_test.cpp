@@ -28,12 +28,52 @@ TEST(DisplayCommand, ChecksAnExample)
 TEST(DisplayCommand, ImportsAndSaysWhatIsLost)
 {
     TemporaryFolder const folder;
-    for (char const* name : {"cave.json", "cave.pvx", "cave.eqc", "cave.cfg"}) {
+    for (char const* name : {"cave.json", "cave.pvx", "cave.eqc", "cave.cfg", "cave.ndisplay"}) {
         run_well(std::string("display example ") + name + " --out " + name, folder.path());
         Outcome const o = run_well(std::string("display import ") + name + " --out imported.yaml", folder.path());
-        EXPECT_EQ(o.err.empty(), std::string(name) != "cave.pvx") << o.err; // whose head is nowhere
+        bool const says_all = std::string(name) != "cave.pvx" && std::string(name) != "cave.ndisplay";
+        EXPECT_EQ(o.err.empty(), says_all) << o.err; // whose head is nowhere, and which says nothing of stereo
+        std::string const text = file_text(folder / "imported.yaml");
+        EXPECT_TRUE(text.starts_with(std::string("# From ") + name)) << text;
+        EXPECT_EQ(text.find("# Not imported, or assumed:\n# - ") == std::string::npos, says_all) << text;
         run_well("display check imported.yaml", folder.path());
     }
+}
+
+TEST(DisplayCommand, ImportsAPatchOnItsBase)
+{
+    TemporaryFolder const folder;
+    run_well("display example cave.cfg --out Vrui.cfg", folder.path());
+    std::ofstream(folder / "patch.cfg")
+        << "section Vrui\n  section cave\n    section FrontWall\n      width 60.0\n"
+           "    endsection\n  endsection\nendsection\n";
+    run_well("display import patch.cfg --base Vrui.cfg --section cave --out out.yaml", folder.path());
+    EXPECT_NE(file_text(folder / "out.yaml").find("lower_right_m: [0, 0, -1.524]"), std::string::npos)
+        << file_text(folder / "out.yaml");
+}
+
+TEST(DisplayCommand, DrawsOnePicturePerCurvedWall)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "d.yaml")
+        << "windows: [{name: w, size_px: [200, 200]}]\nworld: {position_m: [1, 2, 3]}\n"
+           "users: [{name: u, head_position_m: [0, 0, 0]}]\nwalls:\n"
+           "  - {name: dome, window: w, projection: {type: fisheye}}\n";
+    Outcome const check = run_well("display check d.yaml", folder.path());
+    EXPECT_NE(check.out.find("dome, middle, front face"), std::string::npos) << check.out;
+    EXPECT_NE(check.out.find("world: the room's origin is at (1, 2, 3) m"), std::string::npos) << check.out;
+    EXPECT_EQ(
+        nlohmann::json::parse(run_well("display check d.yaml --json", folder.path()).out)["world"]["yaw_deg"], 0);
+    run_well("display calibrate d.yaml --out-dir p", folder.path());
+    gi::Picture const grid = gi::read_picture(folder.path() / "p/00_dome.png");
+    EXPECT_EQ(grid.width, 200);
+    // Azimuth 0 is the line in the middle, green.
+    float greenest = 0;
+    for (std::size_t x = 97; x < 103; ++x) {
+        auto const c = gi::rgb(grid.layers[0], 50 * 200 + x);
+        greenest = std::max(greenest, c.y - c.x);
+    }
+    EXPECT_GT(greenest, 0.3f);
 }
 
 TEST(DisplayCommand, DrawsAPicturePerView)
@@ -56,6 +96,7 @@ TEST(DisplayCommand, RefusesInOneLine)
     run_well("display example cave.pvx --out cave.pvx", folder.path());
     run_well("display example cave4.yaml --out cave4.yaml", folder.path());
     std::ofstream(folder / "cut.yaml") << "name: cut\n";
+    std::ofstream(folder / "cut.ndisplay") << "{\n  \"scene\": [1,";
     std::ofstream(folder / "cut.json") << "{\n  \"nodes\": [1,";
     std::ofstream(folder / "comma.json") << "{\"version\": 1 \"nodes\": []}";
     for (auto const& [arguments, mentions] :
@@ -68,14 +109,16 @@ TEST(DisplayCommand, RefusesInOneLine)
           {"display example cave9.yaml --out x", "there are: "},
           {"display import cave.pvx --out cave.pvx", "cave.pvx"},
           {"display import cave.pvx --section a --out x.yaml", "only configurations of Vrui"},
+          {"display import cave.pvx --base cave4.yaml --out x.yaml", "only configurations of Vrui"},
+          {"display import cut.ndisplay --out x.yaml", "cut.ndisplay:2:15: this is not JSON"},
           {"display calibrate cave4.yaml --pattern plaid --out-dir x", "grid, corners, eyes"}}) {
         Outcome const o = run(arguments, folder.path());
         EXPECT_EQ(o.code, 2) << arguments;
         EXPECT_NE(o.err.find(mentions), std::string::npos) << arguments << "\n" << o.err;
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
     }
-    EXPECT_EQ(folder.files(),
-              (std::vector<std::string>{"cave.pvx", "cave4.yaml", "comma.json", "cut.json", "cut.yaml"}));
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"cave.pvx", "cave4.yaml", "comma.json", "cut.json",
+                                                        "cut.ndisplay", "cut.yaml"}));
 }
 
 } // namespace

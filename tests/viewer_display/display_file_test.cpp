@@ -303,17 +303,39 @@ Display random_display(std::mt19937& random)
         if (below(2)) w.viewport = {LengthUnit::px, 0, 0, 2, 2};
         if (below(2)) w.render_width_px = w.render_height_px = 1 + below(99);
         w.swap_eyes = below(2) == 0;
+        if (w.stereo == StereoMode::off && below(2)) w.eye = below(2) ? Eye::left : Eye::right;
+        if (below(4) == 0) {
+            w.surface.emplace();
+            w.surface->type = kSurfaceTypes[std::size_t(below(4))];
+            w.surface->place = {vector(3), vector(180)};
+            w.surface->radius_m = real(1, 9);
+            w.surface->fov_deg = real(90, 270);
+            w.surface->azimuths_deg = {real(-180, 0), real(1, 180)};
+            w.surface->elevations_deg = {real(-90, 0), real(1, 90)};
+            w.surface->heights_m = {real(-3, 0), real(1, 3)};
+            if (below(2)) w.surface->circle = {real(0, 1), real(0, 1), real(0.1, 1), real(0.1, 1)};
+            w.surface->mirror = {
+                vector(0.1), 0.3, {{0, 0, real(1, 2)}, vector(9)}, {-0.5, 0.5, -0.3, real(0.1, 1)}};
+            w.corners = {};
+        }
         w.user = below(int(d.users.size()));
-        if (below(2))
+        if (below(2) && !w.surface)
             w.blend = {real(0, 0.02), real(0, 0.02), real(0, 0.02), real(0, 0.02), real(0.5, 3), real(1, 3)};
         if (below(3) == 0) {
             w.warp = plain_mesh(2 + below(3), 2 + below(3));
             for (WarpNode& node : w.warp->nodes) node.place += glm::dvec2(real(-0.01, 0.01), real(-0.01, 0.01));
+            w.warp->nodes[0].weight = real(0, 1);
         }
         if (below(2)) w.gain = {real(0, 4), 1, real(0, 1)};
         w.rank = below(3);
         d.walls.push_back(w);
     }
+    for (DisplayWindow& window : d.windows) {
+        window.borders = below(2) == 0;
+        window.swap_group = below(3);
+        window.swap_barrier = window.swap_group > 0 ? below(3) : 0;
+    }
+    if (below(2)) d.world = RoomPlace{vector(9), real(-180, 180)};
     return d;
 }
 

@@ -105,6 +105,14 @@ TEST(WallMesh, WhatCannotBeDrawnIsRefused)
         return text.find(part) != std::string::npos;
     };
     EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes[5].place.x = 0.9; }), "folds at cell");
+    WallMesh calibrated = plain_mesh(31, 31); // 1800 triangles
+    calibrated.nodes[40].place.x = 0.9;       // 3 of them turned
+    for (std::size_t i = 0; i < 31; ++i) calibrated.nodes[i].place.y = calibrated.nodes[31 + i].place.y;
+    EXPECT_EQ(find_fault(calibrated), std::nullopt);
+    EXPECT_GE(find_flaws(calibrated).flat, 50u);
+    EXPECT_GE(find_flaws(calibrated).folded, 1u);
+    for (std::size_t i = 341; i < 480; i += 2) calibrated.nodes[i].place.x += 0.1;
+    EXPECT_NE(find_fault(calibrated), std::nullopt);
     EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes[5].place = m.nodes[4].place; }), "is flat");
     EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes.pop_back(); }), "need 12 nodes, there are 11");
     EXPECT_PRED2(has, fault([](WallMesh& m) { m.rows = 1; }), "2 to 257");

@@ -11,7 +11,7 @@ constexpr char const* kFolder = LIGHTWELL_SOURCE_DIR "/data/displays/import/";
 
 Display imported(std::string const& name, gi::Report& report)
 {
-    return import_display(kFolder + name, "", report);
+    return import_display(kFolder + name, {}, report);
 }
 
 void expect_corners(Wall const& wall, WallCorners const& expected)
@@ -95,7 +95,7 @@ TEST(Import, ParaView)
     expect_corners(d.walls[1], {{-1.5, -1.5, -1.5}, {1.5, -1.5, -1.5}, {-1.5, 1.5, -1.5}});
     EXPECT_EQ(d.walls[1].rank, 1);
     EXPECT_EQ(d.walls[1].stereo, StereoMode::quad_buffer);
-    EXPECT_EQ(d.windows[1], (DisplayWindow{"front", 800, 800, 800, 0, -1, false}));
+    EXPECT_EQ(d.windows[1], (DisplayWindow{"front", 800, 800, 800, 0, -1, false, false}));
     EXPECT_EQ(d.users[0].interpupillary_m, 0.063);
     EXPECT_EQ(report.losses().size(), 1u); // the head
     gi::Report old;
@@ -146,8 +146,8 @@ TEST(Import, EqualizerCanvasesProjectionsAndCompounds)
         attributes { stereo_mode ANAGLYPH } projection { origin [ 0 0 0 ] distance 2 fov [ 90 90 ] hpr [ 180 0 0 ] } } } } })",
                         "c.eqc", other);
     ASSERT_EQ(compound.walls.size(), 1u);
-    // hpr 0 lies at +z; half a turn brings it before the eyes.
-    expect_corners(compound.walls[0], {{2, -2, -2}, {-2, -2, -2}, {2, 2, -2}});
+    // hpr 0 lies at -z, half a turn behind the eyes.
+    expect_corners(compound.walls[0], {{2, -2, 2}, {-2, -2, 2}, {2, 2, 2}});
     EXPECT_EQ(compound.walls[0].stereo, StereoMode::anaglyph_red_cyan);
     EXPECT_EQ(compound.users[0].interpupillary_m, 0.06);
 }
@@ -223,11 +223,12 @@ endsection
         EXPECT_TRUE(report.losses().contains(what)) << what;
     EXPECT_EQ(
         report.losses().at("Vrui settings that are not about walls, windows and viewers: not imported").first,
-        "uiSize");
+        "uiSize, v.cfg:7");
     EXPECT_NE(message_of([&] { parse_vrui(text, "v.cfg", "three", report); }).find("there are: one, two"),
               std::string::npos);
-    EXPECT_NE(message_of([&] { parse_vrui(text, "v.cfg", "", report); }).find("no wall could be imported"),
-              std::string::npos);
+    EXPECT_NE(
+        message_of([&] { parse_vrui(text, "v.cfg", "", report); }).find("v.cfg:2:3: environment 'one' names"),
+        std::string::npos);
 }
 
 TEST(Import, WhatIsBrokenIsRefusedWithItsPlace)
@@ -240,12 +241,13 @@ TEST(Import, WhatIsBrokenIsRefusedWithItsPlace)
     expect(parse_sgct, "{\"nodes\": [", "f:");
     expect(parse_sgct, "{\"nodes\": []}", "no wall could be imported");
     expect(parse_sgct, "{}", "nodes is missing");
-    expect(parse_sgct, sgct(R"({"type": "FisheyeProjection"})"), "no wall could be imported");
+    expect(parse_sgct, sgct(R"({"type": "StrangeProjection"})"),
+           "StrangeProjection, which is not shown in a window, skipped (f:1:");
     expect(parse_sgct, sgct(R"({"type": "ProjectionPlane"})"), "f:1:155: lowerleft is missing");
     expect(parse_pvx, "<pvx><Process>", "f:1: this is not XML");
     expect(parse_pvx, "<a/>", "there is no element <pvx>");
     expect(parse_pvx, "<pvx>\n<Process>\n<Machine LowerLeft='1 2' LowerRight='1 0/5 2'/></Process></pvx>",
-           "f:3: LowerLeft of a Machine is not three numbers");
+           "f:3: LowerLeft=\"1 2\" of a Machine is not three numbers");
     expect(parse_pvx,
            "<pvx><Process><Machine LowerLeft='0 0 0' LowerRight='1 0 0' UpperRight='1.5 1 0'/></Process></pvx>",
            "meet at 63.43 degrees");
@@ -265,10 +267,10 @@ TEST(Import, WhatIsBrokenIsRefusedWithItsPlace)
     expect(vrui, "section Vrui\nendsection\nendsection", "f:3:1: an endsection too many");
     expect(vrui, "a 1", "there is no section Vrui");
     expect(vrui, "section Vrui\nsection a\nscreenNames (S)\nwindowNames (W)\nendsection\nendsection",
-           "there is no section 'W'");
-    EXPECT_NE(message_of([] { format_of("a.xml"); }).find("no known kind"), std::string::npos);
+           "f:2:1: environment 'a' names screens, windows or viewers that this file does not have");
+    EXPECT_NE(message_of([] { format_of("a.txt"); }).find("no known kind"), std::string::npos);
     EXPECT_NE(message_of([&] {
-                  import_display(std::string(kFolder) + "cave.pvx", "x", report);
+                  import_display(std::string(kFolder) + "cave.pvx", {"x", {}}, report);
               }).find("only configurations of Vrui"),
               std::string::npos);
 }

@@ -26,7 +26,7 @@ TEST(ShippedDisplays, LoadWithoutADoubtAndComeBack)
         EXPECT_FALSE(d.name.empty());
         for (DisplayView const& view : views_of(d, {})) EXPECT_TRUE(view.camera) << view.name;
     }
-    EXPECT_EQ(count, 5);
+    EXPECT_EQ(count, 6);
 }
 
 TEST(ShippedDisplays, TheProgramCarriesThem)

@@ -39,6 +39,19 @@ std::optional<InputEvent> await(Window& window, Fits const& fits)
 void inject(std::string const& xdotool) { ASSERT_EQ(gi::test::run_shell("xdotool " + xdotool), 0); }
 bool have_xdotool() { return gi::test::run_shell("xdotool version > /dev/null 2>&1") == 0; }
 
+TEST_F(WindowOnX, SaysThatTheDriverHasNoSwapGroups)
+{
+    WindowSettings settings = window_settings({64, 48}, {10, 10});
+    settings.borders = false;
+    settings.swap_group = settings.swap_barrier = 1;
+    Window const window(settings, report);
+    auto const losses = report.losses();
+    auto const loss = losses.find("windows outside their swap group, which swap by themselves");
+    if (loss == losses.end()) GTEST_SKIP() << "SKIPPED: this driver has swap groups";
+    EXPECT_EQ(loss->second.first, "lightwell: the driver has no GLX_NV_swap_group");
+    EXPECT_EQ(glfwGetWindowAttrib(window.glfw(), GLFW_DECORATED), 0);
+}
+
 TEST_F(WindowOnX, HasOpenGl45AndTheSizeAskedFor)
 {
     Window window(window_settings({320, 240}, {10, 20}), report);

@@ -16,6 +16,9 @@ DisplayWindows open_windows(Display& display, int rank, int swap_interval, gi::R
         settings.title = "Lightwell: " + wanted.name;
         settings.size_px = {wanted.width_px, wanted.height_px};
         settings.swap_interval = swap_interval;
+        settings.borders = wanted.borders;
+        settings.swap_group = wanted.swap_group;
+        settings.swap_barrier = wanted.swap_barrier;
         if (wanted.fullscreen) settings.monitor = std::to_string(std::max(0, wanted.monitor));
         settings.position_px = glm::ivec2{wanted.x_px, wanted.y_px};
         if (wanted.monitor >= 0 && !wanted.fullscreen)

@@ -32,6 +32,28 @@ bool is_of(ViewCommand const& view, Wall const& wall)
            (view.name.size() == wall.name.size() || view.name[wall.name.size()] == ',');
 }
 
+/// Puts the views of a wall that is not flat into the pane: those of the eye named first to the left.
+void put_faces(Pane& pane, Wall const& wall, std::span<ViewCommand const> views, gi::dmat4 const& world_from_room)
+{
+    gi::dmat4 const room_from_world = glm::inverse(world_from_room);
+    std::string first_eye;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        if (!is_of(views[k], wall)) continue;
+        std::string const rest = views[k].name.substr(wall.name.size()); // ", left eye, front face"
+        std::size_t const comma = rest.find(", ", 2);
+        if (comma == std::string::npos) continue;
+        std::string const eye = rest.substr(0, comma), face = rest.substr(comma + 2);
+        if (first_eye.empty()) first_eye = eye;
+        PaneFaces& faces = eye == first_eye ? pane.left_faces : pane.right_faces;
+        for (CubeFace const f : kCubeFaces)
+            if (face == std::string(name_of(f)) + " face") {
+                faces.views.push_back(int(k));
+                faces.faces.push_back(f);
+                faces.eye_m = gi::dvec3(room_from_world * views[k].camera.world_from_camera[3]);
+            }
+    }
+}
+
 } // namespace
 
 Layout display_layout(Display const& display, std::span<std::optional<RoomPose> const> heads,
@@ -39,21 +61,23 @@ Layout display_layout(Display const& display, std::span<std::optional<RoomPose> 
 {
     Layout layout;
     layout.views = view_orders(views_of(display, heads), world_from_room);
-    layout.panes = display_panes(display, layout.views);
+    layout.panes = display_panes(display, layout.views, world_from_room);
     return layout;
 }
 
-std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewCommand const> views)
+std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewCommand const> views,
+                                             gi::dmat4 const& world_from_room)
 {
     std::vector<std::vector<Pane>> panes(display.windows.size());
     for (std::size_t w = 0; w < display.walls.size(); ++w) {
         Wall const& wall = display.walls[w];
         Pane pane;
-        for (std::size_t k = 0; k < views.size(); ++k)
+        if (wall.surface) put_faces(pane, wall, views, world_from_room);
+        for (std::size_t k = 0; k < views.size() && !wall.surface; ++k)
             if (is_of(views[k], wall)) (pane.left < 0 ? pane.left : pane.right) = int(k);
-        if (pane.left < 0) continue;
+        if (pane.left < 0 && pane.left_faces.views.empty()) continue;
         pane.stereo = wall.stereo;
-        pane.wall = needs_finish(wall) ? int(w) : -1;
+        pane.wall = wall.surface || needs_finish(wall) ? int(w) : -1;
         auto const add = [&](int window, bool right_alone) {
             PixelRectangle const r = viewport_px(wall, display.windows[std::size_t(window)]);
             if (r.width <= 0 || r.height <= 0) return;
@@ -91,9 +115,10 @@ std::vector<WallSettings> wall_settings(Display const& display)
         if (wall.warp) {
             s.mesh = {wall.warp->columns, wall.warp->rows, {}};
             for (WarpNode const& n : wall.warp->nodes)
-                s.mesh.vertices.push_back({glm::vec2(n.place), glm::vec2(n.picture), 1});
+                s.mesh.vertices.push_back({glm::vec2(n.place), glm::vec2(n.picture), float(n.weight)});
         }
-        WallFrame const frame = wall_frame(wall.corners);
+        s.surface = wall.surface;
+        WallFrame const frame = wall.surface ? WallFrame{{}, {}, {}, {}, 1, 1, 0} : wall_frame(wall.corners);
         WallBlend const& b = wall.blend;
         s.blend = {float(b.left_m / frame.width_m), float(b.right_m / frame.width_m),
                    float(b.bottom_m / frame.height_m), float(b.top_m / frame.height_m), float(b.power)};

@@ -20,7 +20,8 @@ Layout desktop_layout(ViewState const& state, StereoMode mode, std::span<glm::iv
 Layout display_layout(Display const& display, std::span<std::optional<RoomPose> const> heads,
                       gi::dmat4 const& world_from_room);
 /// Panes for views made by display_layout, in this or another process; matches them by name.
-std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewCommand const> views);
+std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewCommand const> views,
+                                             gi::dmat4 const& world_from_room);
 /// The views of a rank's walls.
 std::vector<ViewCommand> views_of_rank(Display const& display, std::span<ViewCommand const> views, int rank);
 

@@ -20,7 +20,11 @@ void upload(PictureTexture& to, gi::Picture const& picture)
 
 Presenter::Presenter(std::vector<WallSettings> const& walls)
 {
-    for (WallSettings const& w : walls) walls_.emplace_back(w);
+    for (WallSettings const& w : walls) {
+        walls_.emplace_back(w);
+        surfaces_.emplace_back();
+        if (w.surface) surfaces_.back().emplace(*w.surface);
+    }
 }
 
 void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes)
@@ -28,8 +32,11 @@ void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> c
     frame_ = std::move(frame);
     while (shown_.size() < frame_->result.views.size()) shown_.emplace_back();
     for (Shown& s : shown_) s.fresh = false;
-    for (Pane const& pane : panes)
-        for (int const view : {pane.left, pane.right}) {
+    for (Pane const& pane : panes) {
+        std::vector<int> views{pane.left, pane.right};
+        for (PaneFaces const* faces : {&pane.left_faces, &pane.right_faces})
+            views.insert(views.end(), faces->views.begin(), faces->views.end());
+        for (int const view : views) {
             if (view < 0 || std::size_t(view) >= frame_->result.views.size()) continue;
             Shown& s = shown_[std::size_t(view)];
             if (s.fresh) continue;
@@ -39,6 +46,7 @@ void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> c
             if (s.has_other) upload(s.other, *v.compared);
             s.fresh = true;
         }
+    }
 }
 
 EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
@@ -57,41 +65,74 @@ EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
     return e;
 }
 
-ShownPicture Presenter::bent(Pane const& pane, EyeView const& eye, DisplaySettings const& settings,
-                             std::size_t side, glm::ivec2 size_px)
+void Presenter::draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings,
+                           std::size_t side, std::vector<gi::Camera> const& now)
 {
-    if (!flat_[side] || bent_px_ != size_px) {
-        flat_[side].emplace(TextureTarget::Format::bytes, size_px);
-        bent_[side].emplace(TextureTarget::Format::bytes, size_px);
+    std::vector<ShownFace> shown;
+    for (std::size_t k = 0; k < faces.views.size(); ++k) {
+        EyeView const picture = eye(faces.views[k], now);
+        if (picture.picture.texture == 0) continue;
+        while (face_targets_.size() <= k) {
+            face_targets_.emplace_back(TextureTarget::Format::bytes, picture.picture.size_px);
+            face_px_.push_back(picture.picture.size_px);
+        }
+        if (face_px_[k] != picture.picture.size_px) {
+            face_targets_[k] = TextureTarget(TextureTarget::Format::bytes, picture.picture.size_px);
+            face_px_[k] = picture.picture.size_px;
+        }
+        pass_.draw(face_targets_[k].target(), picture, picture, settings);
+        gi::Camera const& camera = frame_->command.views[std::size_t(faces.views[k])].camera;
+        if (camera.off_axis) shown.push_back({faces.faces[k], *camera.off_axis, face_targets_[k].shown()});
+    }
+    surfaces_[std::size_t(pane.wall)]->draw(flat_[side]->target(), shown, faces.eye_m);
+}
+
+bool Presenter::bend(Pane const& pane, PresentSettings const& shown, DisplaySettings const& settings,
+                     std::vector<gi::Camera> const& now, WallPass::Outside outside)
+{
+    bool const is_curved = !pane.left_faces.views.empty();
+    std::array<EyeView, 2> eyes{eye(pane.left, now), {}};
+    eyes[1] = pane.right >= 0 ? eye(pane.right, now) : eyes[0];
+    std::array<PaneFaces const*, 2> faces{&pane.left_faces,
+                                          pane.right_faces.views.empty() ? &pane.left_faces : &pane.right_faces};
+    if (!is_curved && (eyes[0].picture.texture == 0 || eyes[1].picture.texture == 0)) return false;
+    if (shown.swap_eyes) {
+        std::swap(eyes[0], eyes[1]);
+        std::swap(faces[0], faces[1]);
+    }
+    if (pane.right_alone) {
+        eyes[0] = eyes[1];
+        faces[0] = faces[1];
+    }
+    glm::ivec2 const size = eye_size(settings.stereo, pane.size_px);
+    if (bent_px_ != size) {
+        flat_ = {};
+        bent_ = {};
+        bent_px_ = size;
     }
     DisplaySettings alone = settings;
     alone.stereo = StereoMode::off;
-    pass_.draw(flat_[side]->target(), eye, eye, alone);
-    walls_[std::size_t(pane.wall)].draw(bent_[side]->target(), flat_[side]->shown());
-    return bent_[side]->shown();
-}
-
-void Presenter::draw_on_wall(Pane const& pane, DrawTarget const& target, EyeView const& left, EyeView const& right,
-                             DisplaySettings const& settings)
-{
-    glm::ivec2 const size = eye_size(settings.stereo, pane.size_px);
-    EyeView const l{bent(pane, left, settings, 0, size), {}};
-    EyeView const r = settings.stereo == StereoMode::off ? l : EyeView{bent(pane, right, settings, 1, size), {}};
-    bent_px_ = size;
-    DisplaySettings joined = settings;
-    joined.values = PictureValues::encoded;
-    joined.comparison = Comparison::off;
-    pass_.draw(target, l, r, joined);
+    for (std::size_t side = 0; side < (settings.stereo == StereoMode::off ? 1u : 2u); ++side) {
+        if (!flat_[side]) {
+            flat_[side].emplace(TextureTarget::Format::bytes, size);
+            bent_[side].emplace(TextureTarget::Format::bytes, size);
+        }
+        if (is_curved)
+            draw_faces(pane, *faces[side], alone, side, now);
+        else
+            pass_.draw(flat_[side]->target(), eyes[side], eyes[side], alone);
+        walls_[std::size_t(pane.wall)].draw(bent_[side]->target(), flat_[side]->shown(), outside);
+    }
+    return true;
 }
 
 void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
                      PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
-    for (Pane const& pane : panes) {
-        EyeView left = eye(pane.left, now), right = pane.right >= 0 ? eye(pane.right, now) : left;
-        if (left.picture.texture == 0 || right.picture.texture == 0) continue;
-        if (s.swap_eyes) std::swap(left, right);
-        if (pane.right_alone) left = right;
+    std::vector<char> is_drawn(panes.size());
+    for (std::size_t k = 0; k < panes.size(); ++k) {
+        if (is_drawn[k]) continue;
+        Pane const& pane = panes[k];
         DrawTarget const part = part_of(whole, pane.corner_px, pane.size_px);
         DisplaySettings settings;
         settings.tone = s.tone;
@@ -99,10 +140,31 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
         settings.comparison = s.comparison;
         settings.split = s.split;
         settings.on_screen_px = on_screen_px + pane.corner_px;
-        if (pane.wall >= 0)
-            draw_on_wall(pane, part, left, right, settings);
-        else
+        if (pane.wall < 0) {
+            EyeView left = eye(pane.left, now), right = pane.right >= 0 ? eye(pane.right, now) : left;
+            if (left.picture.texture == 0 || right.picture.texture == 0) continue;
+            if (s.swap_eyes) std::swap(left, right);
+            if (pane.right_alone) left = right;
             pass_.draw(part, left, right, settings);
+            continue;
+        }
+        // Walls with meshes may share a viewport.
+        bool has_picture = false;
+        for (std::size_t q = k; q < panes.size(); ++q) {
+            Pane const& other = panes[q];
+            if (other.wall < 0 || other.corner_px != pane.corner_px || other.size_px != pane.size_px ||
+                other.stereo != pane.stereo || other.right_alone != pane.right_alone)
+                continue;
+            is_drawn[q] = 1;
+            if (bend(other, s, settings, now, has_picture ? WallPass::Outside::kept : WallPass::Outside::black))
+                has_picture = true;
+        }
+        if (!has_picture) continue;
+        EyeView const l{bent_[0]->shown(), {}};
+        EyeView const r = settings.stereo == StereoMode::off ? l : EyeView{bent_[1]->shown(), {}};
+        settings.values = PictureValues::encoded;
+        settings.comparison = Comparison::off;
+        pass_.draw(part, l, r, settings);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/reprojection.h"
+#include "viewer/devices/gl/surface_pass.h"
 #include "viewer/devices/gl/wall_pass.h"
 #include "viewer/engine/live/live_renderer.h"
 
@@ -11,13 +12,21 @@
 
 namespace viewer {
 
+/// The views of one eye on a wall that is not flat.
+struct PaneFaces {
+    std::vector<int> views;
+    std::vector<CubeFace> faces; ///< of each view
+    gi::dvec3 eye_m{0};          ///< in the room
+};
+
 /// Part of a window and the views that it shows.
 struct Pane {
     glm::ivec2 corner_px{}, size_px{}; ///< from the window's top left corner
     StereoMode stereo = StereoMode::off;
-    int left = -1, right = -1; ///< views of the frame; -1 = none, stays dark
-    bool right_alone = false;  ///< shows only the right eye: second of two windows
-    int wall = -1;             ///< index into the walls' settings; -1 = flat, without a wall pass
+    int left = -1, right = -1;             ///< views of the frame; -1 = none, stays dark
+    bool right_alone = false;              ///< shows only the right eye: second of two windows
+    int wall = -1;                         ///< index into the walls' settings; -1 = flat, without a wall pass
+    PaneFaces left_faces{}, right_faces{}; ///< instead of left and right, for a wall with a surface
 };
 
 struct PresentSettings {
@@ -49,15 +58,20 @@ private:
         bool has_other = false, fresh = false;
     };
     EyeView eye(int view, std::vector<gi::Camera> const& now);
-    void draw_on_wall(Pane const& pane, DrawTarget const& target, EyeView const& left, EyeView const& right,
-                      DisplaySettings const& settings);
-    ShownPicture bent(Pane const& pane, EyeView const& eye, DisplaySettings const& settings, std::size_t side,
-                      glm::ivec2 size_px);
+    /// Bends the pictures of one wall into bent_. False if it has none.
+    bool bend(Pane const& pane, PresentSettings const& shown, DisplaySettings const& settings,
+              std::vector<gi::Camera> const& now, WallPass::Outside outside);
+    /// The picture of one eye on a wall that is not flat, in flat_.
+    void draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings, std::size_t side,
+                    std::vector<gi::Camera> const& now);
 
     std::deque<Shown> shown_;
     std::shared_ptr<LiveFrame const> frame_;
     DisplayPass pass_;
     std::deque<WallPass> walls_;
+    std::deque<std::optional<SurfacePass>> surfaces_; ///< of the walls that have one
+    std::deque<TextureTarget> face_targets_;
+    std::vector<glm::ivec2> face_px_;
     std::array<std::optional<TextureTarget>, 2> flat_, bent_;
     glm::ivec2 bent_px_{};
 };

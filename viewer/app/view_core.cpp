@@ -3,10 +3,12 @@
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
 #include "viewer/app/frame_hash.h"
+#include "viewer/displays/views.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace viewer {
 namespace {
@@ -48,8 +50,13 @@ ViewCore::~ViewCore()
     if (renderer) renderer->stop();
 }
 
-void ViewCore::start_at(gi::Camera const& camera)
+void ViewCore::start_at(gi::Camera const& of_scene)
 {
+    gi::Camera camera = of_scene;
+    if (display && display->world) {
+        gi::dvec3 const rest = display->users.empty() ? gi::dvec3{0} : resting_head(display->users[0]).position;
+        camera.world_from_camera = world_from_room(*display->world) * glm::translate(gi::dmat4(1), rest);
+    }
     state.first_camera = state.camera = camera;
     // Crossing a scene takes seconds, whatever its size.
     double const speed = std::clamp(0.2 * state.facts.radius_m, 0.05, 20.0);

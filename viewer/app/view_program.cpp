@@ -289,7 +289,8 @@ private:
         if (fresh) {
             state_.frame = newest;
             state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
-            if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->command.views));
+            if (link_ != nullptr && core_.display)
+                set_panes(display_panes(*core_.display, newest->command.views, newest->command.world_from_room));
             meter_.see(newest);
         }
         state_.live_error = meter_.latest();

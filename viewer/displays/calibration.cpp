@@ -243,6 +243,38 @@ double grid_step_m(WallFrame const& wall)
     return 10 * decade;
 }
 
+CalibrationPicture draw_curved_grid(Display const& display, Wall const& wall)
+{
+    PixelRectangle const area = viewport_px(wall, display.windows[std::size_t(wall.window)]);
+    int const width = std::max(1, area.width), height = std::max(1, area.height);
+    cv::Mat image(height, width, CV_8UC3, kBlack);
+    RoomPose const pose = pose_of(wall.surface->place);
+    // Cells of 10 degrees; a line is where the cell of the next pixel is another.
+    auto const cell = [&](int x, int y) -> std::optional<cv::Point> {
+        auto const p =
+            surface_point(*wall.surface, double(width) / height, {(x + 0.5) / width, 1 - (y + 0.5) / height});
+        if (!p) return {};
+        gi::dvec3 const d = glm::conjugate(pose.rotation) * direction_to(*p, pose.position);
+        return cv::Point(int(std::floor(glm::degrees(std::atan2(d.x, -d.z)) / 10)),
+                         int(std::floor(glm::degrees(std::asin(std::clamp(d.y, -1.0, 1.0))) / 10)));
+    };
+    auto const colour = [](int line) { return line % 3 == 0 ? kWhite : kGrey; };
+    for (int y = 0; y + 1 < height; ++y)
+        for (int x = 0; x + 1 < width; ++x) {
+            auto const here = cell(x, y), right = cell(x + 1, y), below = cell(x, y + 1);
+            if (!here || !right || !below) continue;
+            for (auto const& next : {*right, *below}) {
+                int const azimuth = std::max(here->x, next.x), elevation = std::max(here->y, next.y);
+                std::optional<Colour> line;
+                if (next.x != here->x) line = azimuth == 0 ? kGreen : colour(azimuth);
+                if (next.y != here->y) line = elevation == 0 ? kYellow : colour(elevation);
+                if (!line) continue;
+                for (int c = 0; c < 3; ++c) image.at<cv::Vec3b>(y, x)[c] = static_cast<unsigned char>((*line)[c]);
+            }
+        }
+    return {width, height, {image.data, image.data + image.total() * 3}};
+}
+
 CalibrationPicture draw_calibration(CalibrationPattern pattern, Display const& display, DisplayView const& view)
 {
     Wall const& wall = display.walls[std::size_t(view.wall)];

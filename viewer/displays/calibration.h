@@ -32,8 +32,12 @@ struct CalibrationPicture {
     std::vector<unsigned char> rgb;
 };
 
-/// Picture for one eye on one wall, of the view's size. Without a camera, only patterns that need none are drawn;
-/// `eyes` then shows a message.
+/// Picture of a wall that is not flat, of its viewport's size: lines of azimuth and elevation in the surface's
+/// frame every 10 degrees, white every 30, green at azimuth 0, yellow at elevation 0; dark where nothing is lit.
+CalibrationPicture draw_curved_grid(Display const& display, Wall const& wall);
+
+/// Picture for one eye on one flat wall, of the view's size. Without a camera, only patterns that need none are
+/// drawn; `eyes` then shows a message.
 CalibrationPicture draw_calibration(CalibrationPattern pattern, Display const& display, DisplayView const& view);
 
 /// Distance between grid lines for 6 to 24 lines along the longer edge: 1, 2 or 5 times a power of ten, m.

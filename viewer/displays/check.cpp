@@ -83,8 +83,16 @@ Fault viewport_fault(Wall const& wall, std::size_t i, DisplayWindow const& windo
 
 Fault finish_fault(Wall const& wall, std::size_t i)
 {
-    WallFrame const frame = wall_frame(wall.corners);
     WallBlend const& b = wall.blend;
+    if (wall.surface && b != WallBlend{})
+        return DisplayFault{"walls",
+                            i,
+                            "blend",
+                            "a blend on a projection",
+                            "bands have widths on a flat wall",
+                            "fade by the weights of a warp mesh"};
+    double const width_m = wall.surface ? 0 : wall_frame(wall.corners).width_m,
+                 height_m = wall.surface ? 0 : wall_frame(wall.corners).height_m;
     for (double const band : {b.left_m, b.right_m, b.top_m, b.bottom_m})
         if (!is_within(band, 0, 1e6))
             return DisplayFault{"walls",
@@ -94,12 +102,12 @@ Fault finish_fault(Wall const& wall, std::size_t i)
                                 "it is a width on the wall",
                                 "give metres, or 0"};
     double const slack = 1 + 1e-9;
-    if (b.left_m + b.right_m > frame.width_m * slack || b.top_m + b.bottom_m > frame.height_m * slack)
+    if (b.left_m + b.right_m > width_m * slack || b.top_m + b.bottom_m > height_m * slack)
         return DisplayFault{"walls",
                             i,
                             "blend",
                             "the bands of blending overlap each other",
-                            fmt::format("the wall is {:.4g} x {:.4g} m", frame.width_m, frame.height_m),
+                            fmt::format("the wall is {:.4g} x {:.4g} m", width_m, height_m),
                             "make them narrower"};
     if (!is_within(b.power, 0.1, 10))
         return DisplayFault{"walls",
@@ -138,7 +146,13 @@ Fault wall_fault(Display const& d, std::size_t i)
                            std::string const& suggestion) {
         return DisplayFault{"walls", i, key, problem, why, suggestion};
     };
-    if (auto const corners = find_fault(wall.corners))
+    if (wall.surface) {
+        if (auto const f = find_fault(*wall.surface))
+            return fault("projection", "wall '" + wall.name + "': " + f->problem, f->why, f->suggestion);
+        if (wall.render_width_px != wall.render_height_px)
+            return fault("render_px", "a face of a cube that is not square",
+                         "a projection is drawn from such faces", "give the same number twice");
+    } else if (auto const corners = find_fault(wall.corners))
         return fault("lower_left_m", "wall '" + wall.name + "': " + corners->problem, corners->why,
                      corners->suggestion);
     if (wall.window < 0 || std::size_t(wall.window) >= d.windows.size())
@@ -147,6 +161,9 @@ Fault wall_fault(Display const& d, std::size_t i)
     if (wall.user < 0 || std::size_t(wall.user) >= d.users.size())
         return fault("user", "wall '" + wall.name + "' has no user", "it is drawn for a user's eyes",
                      "name one of users");
+    if (wall.eye != Eye::middle && wall.stereo != StereoMode::off)
+        return fault("eye", std::string("eye: ") + name_of(wall.eye) + " with stereo: " + name_of(wall.stereo),
+                     "the wall shows one eye, or both", "remove one of them");
     bool const two = wall.stereo == StereoMode::two_windows;
     if (two != (wall.second_window >= 0))
         return fault("stereo", two ? "two-windows without a second_window" : "a second_window without two-windows",
@@ -181,6 +198,14 @@ Fault window_fault(DisplayWindow const& w, std::size_t i)
         return DisplayFault{
             "windows",  i, "position_px", "the window is a million pixels away", "no desktop is that large",
             "change it"};
+    if (w.swap_group < 0 || w.swap_group > 1000 || w.swap_barrier < 0 || w.swap_barrier > 1000 ||
+        (w.swap_barrier > 0 && w.swap_group == 0))
+        return DisplayFault{"windows",
+                            i,
+                            w.swap_group == 0 ? "swap_barrier" : "swap_group",
+                            fmt::format("swap group {} at barrier {}", w.swap_group, w.swap_barrier),
+                            "groups and barriers count from 1, and a barrier joins groups",
+                            "swap_group: 1, swap_barrier: 1"};
     if (w.monitor < -1 || w.monitor > 255)
         return DisplayFault{"windows",
                             i,
@@ -406,22 +431,33 @@ void report_doubts(Display const& d, gi::Report& report)
     for (Wall const& wall : d.walls) used.insert({wall.window, wall.second_window});
     for (std::size_t i = 0; i < d.windows.size(); ++i)
         if (!used.contains(int(i))) report.lose("windows without a wall, which stay dark", 1, d.windows[i].name);
+    for (Wall const& wall : d.walls)
+        if (wall.warp)
+            if (MeshFlaws const flaws = find_flaws(*wall.warp); flaws.folded > 0)
+                report.lose("meshes that fold over: a part is drawn twice", 1,
+                            fmt::format("'{}', {} triangles, first in cell {} of row {}", wall.name, flaws.folded,
+                                        flaws.first_fold.x, flaws.first_fold.y));
     std::vector<WallFrame> frames;
-    for (Wall const& wall : d.walls) frames.push_back(wall_frame(wall.corners));
+    std::vector<Wall const*> flat;
+    for (Wall const& wall : d.walls)
+        if (!wall.surface) {
+            frames.push_back(wall_frame(wall.corners));
+            flat.push_back(&wall);
+        }
     for (std::size_t i = 0; i < frames.size(); ++i)
         if (frames[i].skew_deg > 0.01)
             report.lose("walls not quite rectangular, made rectangular", 1,
-                        fmt::format("'{}', {:.3g} degrees", d.walls[i].name, frames[i].skew_deg));
+                        fmt::format("'{}', {:.3g} degrees", flat[i]->name, frames[i].skew_deg));
     for (std::size_t i = 0; i < frames.size(); ++i)
         for (std::size_t j = 0; j < frames.size(); ++j) {
             double const overlap_width = i == j ? 0 : overlap_m(frames[i], frames[j]);
             if (overlap_width < 1e-3) continue;
             double const slack = 0.01 + 0.02 * overlap_width;
-            if (std::abs(d.walls[i].blend.right_m - overlap_width) > slack ||
-                std::abs(d.walls[j].blend.left_m - overlap_width) > slack)
-                report.lose("walls whose overlap differs from their blend width", 1,
-                            fmt::format("'{}' and '{}' overlap by {:.4g} m", d.walls[i].name, d.walls[j].name,
-                                        overlap_width));
+            if (std::abs(flat[i]->blend.right_m - overlap_width) > slack ||
+                std::abs(flat[j]->blend.left_m - overlap_width) > slack)
+                report.lose(
+                    "walls whose overlap differs from their blend width", 1,
+                    fmt::format("'{}' and '{}' overlap by {:.4g} m", flat[i]->name, flat[j]->name, overlap_width));
         }
 }
 

@@ -5,12 +5,12 @@
 
 namespace viewer {
 
-RoomPose pose_of(Placement const& p)
+char const* name_of(Eye eye) { return eye == Eye::left ? "left" : eye == Eye::right ? "right" : "middle"; }
+
+gi::dmat4 world_from_room(RoomPlace const& place)
 {
-    gi::dvec3 const a = glm::radians(p.rotation_deg);
-    gi::dquat const rotation = glm::angleAxis(a.z, gi::dvec3{0, 0, 1}) * glm::angleAxis(a.y, gi::dvec3{0, 1, 0}) *
-                               glm::angleAxis(a.x, gi::dvec3{1, 0, 0});
-    return {p.translation_m, glm::normalize(rotation)};
+    return glm::translate(gi::dmat4(1), place.position_m) *
+           glm::rotate(gi::dmat4(1), glm::radians(place.yaw_deg), gi::dvec3{0, 1, 0});
 }
 
 char const* name_of(DisplayTrackerType type)

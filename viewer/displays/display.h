@@ -6,9 +6,10 @@
 // Positions on a wall (u, v) count from the lower left corner, 0 to 1.
 
 #include "viewer/displays/off_axis.h"
+#include "viewer/displays/placement.h"
 #include "viewer/displays/stereo_mode.h"
+#include "viewer/displays/surface.h"
 #include "viewer/displays/warp_mesh.h"
-#include "viewer/protocol/frame_command.h"
 
 #include <cstdint>
 #include <optional>
@@ -17,13 +18,9 @@
 
 namespace viewer {
 
-/// Rotation in degrees about the room's x, then y, then z axis; then translation.
-struct Placement {
-    gi::dvec3 translation_m{0}, rotation_deg{0};
-
-    bool operator==(Placement const&) const = default;
-};
-RoomPose pose_of(Placement const& placement);
+enum class Eye { middle, left, right };
+/// "left"
+char const* name_of(Eye eye);
 
 enum class LengthUnit { px, fraction };
 
@@ -46,12 +43,14 @@ struct WallBlend {
 
 struct Wall {
     std::string name;
-    WallCorners corners;
+    WallCorners corners;            ///< of a flat wall
+    std::optional<Surface> surface; ///< instead of corners: not flat
     int window = 0;
     int second_window = -1;                        ///< for the right eye, with StereoMode::two_windows
     Viewport viewport;                             ///< in either window
     int render_width_px = 0, render_height_px = 0; ///< of each eye's picture; 0 = as the viewport
     StereoMode stereo = StereoMode::off;
+    Eye eye = Eye::middle;  ///< left, right: shows that eye alone (one projector per eye), without a stereo mode
     bool swap_eyes = false; ///< exchanges the left and right eye
     int user = 0;           ///< index of the user it is drawn for
     WallBlend blend;
@@ -69,6 +68,9 @@ struct DisplayWindow {
     int x_px = 0, y_px = 0; ///< on the monitor, or on the desktop if no monitor is given
     int monitor = -1;       ///< index in the window system; -1 = not given
     bool fullscreen = false;
+    bool borders = true;  ///< the window system's frame and title
+    int swap_group = 0;   ///< of the driver (GLX_NV_swap_group): its windows swap together; 0 = none
+    int swap_barrier = 0; ///< joins the swap groups of several machines; 0 = none
 
     bool operator==(DisplayWindow const&) const = default;
 };
@@ -124,12 +126,22 @@ inline constexpr LimbBody kLimbBodies[]{{"left_hand_body", &DisplayTracker::left
                                         {"left_foot_body", &DisplayTracker::left_foot_body},
                                         {"right_foot_body", &DisplayTracker::right_foot_body}};
 
+/// Start of the room in a scene. The floor stays level, so the only angle is about +Y.
+struct RoomPlace {
+    gi::dvec3 position_m{0}; ///< of the room's origin, in the world
+    double yaw_deg = 0;      ///< of the room's -Z, to the left
+
+    bool operator==(RoomPlace const&) const = default;
+};
+gi::dmat4 world_from_room(RoomPlace const& place);
+
 struct Display {
     std::string name;
     std::vector<Wall> walls;
     std::vector<DisplayWindow> windows;
     std::vector<User> users;
     std::vector<DisplayTracker> trackers;
+    std::optional<RoomPlace> world{}; ///< none: the first user's resting head is at the scene's camera
 
     bool operator==(Display const&) const = default;
 };

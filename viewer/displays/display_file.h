@@ -17,6 +17,5 @@ Display parse_display(std::string const& text, std::string const& name, gi::Repo
 
 /// YAML that parses to an equal display. Meshes from a file are written as the file's name.
 std::string to_yaml(Display const& display);
-void save_display(std::filesystem::path const& file, Display const& display);
 
 } // namespace viewer

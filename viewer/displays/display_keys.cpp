@@ -5,13 +5,20 @@ namespace viewer {
 std::map<std::string, std::set<std::string>> const& display_keys()
 {
     static std::map<std::string, std::set<std::string>> const keys{
-        {"display", {"name", "walls", "windows", "users", "trackers"}},
+        {"display", {"name", "walls", "windows", "users", "trackers", "world"}},
         {"wall",
          {"name", "lower_left_m", "lower_right_m", "upper_left_m", "window", "second_window", "viewport_px",
-          "viewport_fraction", "render_px", "stereo", "swap_eyes", "user", "blend", "warp", "gain", "rank"}},
+          "viewport_fraction", "render_px", "stereo", "eye", "swap_eyes", "user", "blend", "warp", "projection",
+          "gain", "rank"}},
+        {"projection",
+         {"type", "center_m", "rotation_deg", "radius_m", "fov_deg", "circle", "azimuths_deg", "elevations_deg",
+          "heights_m", "mirror_center_m", "mirror_radius_m", "projector_position_m", "projector_rotation_deg",
+          "projector_tangents"}},
+        {"world", {"position_m", "yaw_deg"}},
         {"blend", {"left_m", "right_m", "top_m", "bottom_m", "power", "gamma"}},
         {"warp", {"file", "columns", "rows", "nodes"}},
-        {"window", {"name", "size_px", "position_px", "monitor", "fullscreen"}},
+        {"window",
+         {"name", "size_px", "position_px", "monitor", "fullscreen", "borders", "swap_group", "swap_barrier"}},
         {"user",
          {"name", "interpupillary_m", "head_position_m", "head_rotation_deg", "eye_offset_m", "head_tracker",
           "avatar", "eye_height_m"}},

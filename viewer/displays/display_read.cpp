@@ -50,8 +50,9 @@ WallMesh read_mesh(Yaml const& y)
     mesh.columns = int(needed(y, "columns", "2").integer(2, kMostWarpNodes));
     mesh.rows = int(needed(y, "rows", "2").integer(2, kMostWarpNodes));
     for (Yaml const& node : needed(y, "nodes", "[[0, 0, 0, 0], ...]").items()) {
-        auto const v = numbers(node, 4, -kAny, kAny);
-        mesh.nodes.push_back({{v[0], v[1]}, {v[2], v[3]}});
+        bool const is_weighted = node.is_list() && node.items().size() == 5;
+        auto const v = numbers(node, is_weighted ? 5 : 4, -kAny, kAny);
+        mesh.nodes.push_back({{v[0], v[1]}, {v[2], v[3]}, is_weighted ? v[4] : 1});
     }
     return mesh;
 }
@@ -89,15 +90,64 @@ WallBlend read_blend(Yaml const& y)
     return blend;
 }
 
+Surface read_surface(Yaml const& y)
+{
+    check_display_keys(y, "projection");
+    Surface s;
+    std::vector<std::string> names;
+    for (SurfaceType const type : kSurfaceTypes) names.push_back(name_of(type));
+    s.type = kSurfaceTypes[std::size_t(needed(y, "type", "fisheye").one_of(names, "projection"))];
+    for (auto const& [key, value] : {std::pair{"center_m", &s.place.translation_m},
+                                     {"rotation_deg", &s.place.rotation_deg},
+                                     {"mirror_center_m", &s.mirror.center_m},
+                                     {"projector_position_m", &s.mirror.projector.translation_m},
+                                     {"projector_rotation_deg", &s.mirror.projector.rotation_deg}})
+        if (y.has(key)) *value = y.at(key).vector(-kAny, kAny);
+    for (auto const& [key, value] :
+         {std::pair{"radius_m", &s.radius_m}, {"fov_deg", &s.fov_deg}, {"mirror_radius_m", &s.mirror.radius_m}})
+        if (y.has(key)) *value = y.at(key).number(-kAny, kAny);
+    for (auto const& [key, value] : {std::pair{"azimuths_deg", &s.azimuths_deg},
+                                     {"elevations_deg", &s.elevations_deg},
+                                     {"heights_m", &s.heights_m}})
+        if (y.has(key)) {
+            auto const v = numbers(y.at(key), 2, -kAny, kAny);
+            *value = {v[0], v[1]};
+        }
+    if (y.has("circle")) {
+        auto const v = numbers(y.at("circle"), 4, -kAny, kAny);
+        s.circle = {v[0], v[1], v[2], v[3]};
+    }
+    if (y.has("projector_tangents")) {
+        auto const v = numbers(y.at("projector_tangents"), 4, -kAny, kAny);
+        s.mirror.projector_tangents = {v[0], v[1], v[2], v[3]};
+    }
+    if (auto const f = find_fault(s))
+        throw(y.has(f->key) ? y.at(f->key) : y).error(f->problem, f->why, f->suggestion);
+    return s;
+}
+
+void read_place(Wall& wall, Yaml const& y)
+{
+    if (y.has("projection")) {
+        for (char const* key : {"lower_left_m", "lower_right_m", "upper_left_m"})
+            if (y.has(key))
+                throw y.at(key).error("a projection and corners", "corners are those of a flat wall",
+                                      "keep one of them");
+        wall.surface = read_surface(y.at("projection"));
+        return;
+    }
+    double const far = 10 * kFarthestCorner_m;
+    wall.corners = {needed(y, "lower_left_m", "[-1.5, 0, -1.5]").vector(-far, far),
+                    needed(y, "lower_right_m", "[1.5, 0, -1.5]").vector(-far, far),
+                    needed(y, "upper_left_m", "[-1.5, 3, -1.5]").vector(-far, far)};
+}
+
 Wall read_wall(Yaml const& y, Display const& d, std::filesystem::path const& folder)
 {
     check_display_keys(y, "wall");
     Wall wall;
     wall.name = needed(y, "name", "front").text();
-    double const far = 10 * kFarthestCorner_m;
-    wall.corners = {needed(y, "lower_left_m", "[-1.5, 0, -1.5]").vector(-far, far),
-                    needed(y, "lower_right_m", "[1.5, 0, -1.5]").vector(-far, far),
-                    needed(y, "upper_left_m", "[-1.5, 3, -1.5]").vector(-far, far)};
+    read_place(wall, y);
     wall.window = index_of(d.windows, needed(y, "window", "front"), "windows");
     if (y.has("second_window")) wall.second_window = index_of(d.windows, y.at("second_window"), "windows");
     if (y.has("user"))
@@ -126,6 +176,7 @@ Wall read_wall(Yaml const& y, Display const& d, std::filesystem::path const& fol
                                        "the name is unknown", "there are: " + stereo_mode_names());
         wall.stereo = *mode;
     }
+    if (y.has("eye")) wall.eye = y.at("eye").one_of({"left", "right"}, "eye") == 0 ? Eye::left : Eye::right;
     if (y.has("swap_eyes")) wall.swap_eyes = y.at("swap_eyes").boolean();
     if (y.has("blend")) wall.blend = read_blend(y.at("blend"));
     if (y.has("warp")) read_warp(wall, y.at("warp"), folder);
@@ -148,6 +199,9 @@ DisplayWindow read_window(Yaml const& y)
     if (y.has("position_px")) std::tie(window.x_px, window.y_px) = pair(y.at("position_px"), -10000000, 10000000);
     if (y.has("monitor")) window.monitor = int(y.at("monitor").integer(0, 1000));
     if (y.has("fullscreen")) window.fullscreen = y.at("fullscreen").boolean();
+    if (y.has("borders")) window.borders = y.at("borders").boolean();
+    if (y.has("swap_group")) window.swap_group = int(y.at("swap_group").integer(0, 1000));
+    if (y.has("swap_barrier")) window.swap_barrier = int(y.at("swap_barrier").integer(0, 1000));
     return window;
 }
 
@@ -245,6 +299,14 @@ Display parse_display(std::string const& text, std::string const& name, gi::Repo
          [&](Yaml const& y) { d.users.push_back(read_user(y, d, folder)); });
     each("walls", "[{name: front, window: front, lower_left_m: [-1.5, 0, -1.5], ...}]",
          [&](Yaml const& y) { d.walls.push_back(read_wall(y, d, folder)); });
+    if (root.has("world")) {
+        Yaml const w = root.at("world");
+        check_display_keys(w, "world");
+        d.world = RoomPlace{};
+        if (w.has("position_m"))
+            d.world->position_m = w.at("position_m").vector(-kFarthestCorner_m, kFarthestCorner_m);
+        if (w.has("yaw_deg")) d.world->yaw_deg = w.at("yaw_deg").number(-3600, 3600);
+    }
     if (auto const fault = find_fault(d)) throw error_of(*fault, root);
     report_doubts(d, report);
     return d;

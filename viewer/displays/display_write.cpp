@@ -1,4 +1,3 @@
-#include "gi/core/file.h"
 #include "viewer/displays/display_file.h"
 
 #include <fmt/format.h>
@@ -31,16 +30,49 @@ std::string mesh_text(WallMesh const& m)
 {
     std::string out = fmt::format("\n      columns: {}\n      rows: {}\n      nodes:", m.columns, m.rows);
     for (WarpNode const& n : m.nodes)
-        out += fmt::format("\n        - [{}, {}, {}, {}]", n.place.x, n.place.y, n.picture.x, n.picture.y);
+        out += fmt::format("\n        - [{}, {}, {}, {}{}]", n.place.x, n.place.y, n.picture.x, n.picture.y,
+                           n.weight == 1 ? "" : fmt::format(", {}", n.weight));
+    return out;
+}
+
+std::string surface_text(Surface const& s)
+{
+    Surface const usual;
+    std::string out = std::string("\n      type: ") + name_of(s.type);
+    auto const key = [&](char const* name, std::string const& value) {
+        out += std::string("\n      ") + name + ": " + value;
+    };
+    auto const pair = [](glm::dvec2 v) { return fmt::format("[{}, {}]", v.x, v.y); };
+    if (s.place.translation_m != gi::dvec3{0}) key("center_m", vec(s.place.translation_m));
+    if (s.place.rotation_deg != gi::dvec3{0}) key("rotation_deg", vec(s.place.rotation_deg));
+    if (s.radius_m != 0) key("radius_m", fmt::format("{}", s.radius_m));
+    if (s.fov_deg != usual.fov_deg) key("fov_deg", fmt::format("{}", s.fov_deg));
+    if (s.circle)
+        key("circle", fmt::format("[{}, {}, {}, {}]", s.circle->x, s.circle->y, s.circle->half_width,
+                                  s.circle->half_height));
+    if (s.azimuths_deg != usual.azimuths_deg) key("azimuths_deg", pair(s.azimuths_deg));
+    if (s.elevations_deg != usual.elevations_deg) key("elevations_deg", pair(s.elevations_deg));
+    if (s.heights_m != usual.heights_m) key("heights_m", pair(s.heights_m));
+    SphericalMirror const &m = s.mirror, none;
+    if (m.center_m != none.center_m) key("mirror_center_m", vec(m.center_m));
+    if (m.radius_m != none.radius_m) key("mirror_radius_m", fmt::format("{}", m.radius_m));
+    if (m.projector.translation_m != gi::dvec3{0}) key("projector_position_m", vec(m.projector.translation_m));
+    if (m.projector.rotation_deg != gi::dvec3{0}) key("projector_rotation_deg", vec(m.projector.rotation_deg));
+    if (auto const& t = m.projector_tangents; t != none.projector_tangents)
+        key("projector_tangents", fmt::format("[{}, {}, {}, {}]", t[0], t[1], t[2], t[3]));
     return out;
 }
 
 void write_wall(Writer& w, Wall const& wall, Display const& d)
 {
     w.begin(wall.name);
-    w.key("lower_left_m", vec(wall.corners.lower_left));
-    w.key("lower_right_m", vec(wall.corners.lower_right));
-    w.key("upper_left_m", vec(wall.corners.upper_left));
+    if (wall.surface) {
+        w.key("projection", surface_text(*wall.surface));
+    } else {
+        w.key("lower_left_m", vec(wall.corners.lower_left));
+        w.key("lower_right_m", vec(wall.corners.lower_right));
+        w.key("upper_left_m", vec(wall.corners.upper_left));
+    }
     w.key("window", quoted(d.windows[std::size_t(wall.window)].name));
     if (wall.second_window >= 0) w.key("second_window", quoted(d.windows[std::size_t(wall.second_window)].name));
     if (Viewport const& v = wall.viewport; v != Viewport{})
@@ -49,6 +81,7 @@ void write_wall(Writer& w, Wall const& wall, Display const& d)
     if (wall.render_width_px > 0)
         w.key("render_px", fmt::format("[{}, {}]", wall.render_width_px, wall.render_height_px));
     if (wall.stereo != StereoMode::off) w.key("stereo", quoted(name_of(wall.stereo)));
+    if (wall.eye != Eye::middle) w.key("eye", name_of(wall.eye));
     if (wall.swap_eyes) w.key("swap_eyes", "true");
     w.key("user", quoted(d.users[std::size_t(wall.user)].name));
     if (WallBlend const& b = wall.blend; b != WallBlend{})
@@ -70,6 +103,9 @@ void write_window(Writer& w, DisplayWindow const& window)
         w.key("position_px", fmt::format("[{}, {}]", window.x_px, window.y_px));
     if (window.monitor >= 0) w.key("monitor", std::to_string(window.monitor));
     if (window.fullscreen) w.key("fullscreen", "true");
+    if (!window.borders) w.key("borders", "false");
+    if (window.swap_group != 0) w.key("swap_group", std::to_string(window.swap_group));
+    if (window.swap_barrier != 0) w.key("swap_barrier", std::to_string(window.swap_barrier));
 }
 
 void write_user(Writer& w, User const& user, Display const& d)
@@ -118,12 +154,12 @@ std::string to_yaml(Display const& d)
     for (User const& user : d.users) write_user(w, user, d);
     if (!d.trackers.empty()) w.line("trackers:");
     for (DisplayTracker const& tracker : d.trackers) write_tracker(w, tracker);
+    if (d.world) {
+        w.line("world:");
+        w.line("  position_m: " + vec(d.world->position_m));
+        w.line(fmt::format("  yaw_deg: {}", d.world->yaw_deg));
+    }
     return w.take();
-}
-
-void save_display(std::filesystem::path const& file, Display const& display)
-{
-    gi::write_text(file, to_yaml(display));
 }
 
 } // namespace viewer

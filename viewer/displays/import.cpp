@@ -5,7 +5,10 @@
 #include "viewer/displays/display_file.h"
 #include "viewer/displays/import_common.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace viewer {
 
@@ -20,6 +23,8 @@ char const* name_of(DisplayFormat format)
         return "Equalizer";
     case DisplayFormat::vrui:
         return "Vrui";
+    case DisplayFormat::ndisplay:
+        return "nDisplay";
     case DisplayFormat::yaml:
         break;
     }
@@ -32,42 +37,88 @@ DisplayFormat format_of(std::filesystem::path const& file)
     for (auto const& [known, format] : {std::pair{".yaml", DisplayFormat::yaml},
                                         {".yml", DisplayFormat::yaml},
                                         {".json", DisplayFormat::sgct},
+                                        {".xml", DisplayFormat::sgct},
+                                        {".ndisplay", DisplayFormat::ndisplay},
                                         {".pvx", DisplayFormat::pvx},
                                         {".eqc", DisplayFormat::equalizer},
                                         {".cfg", DisplayFormat::vrui}})
         if (end == known) return format;
-    throw gi::InputError("'" + file.string() + "' is of no known kind of display", "its file extension is unknown",
-                         ".yaml (ours), .json (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui)");
+    throw gi::InputError(
+        "'" + file.string() + "' is of no known kind of display", "its file extension is unknown",
+        ".yaml (ours), .json and .xml (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui, nDisplay), "
+        ".ndisplay");
 }
 
-Display import_display(std::filesystem::path const& file, std::string const& section, gi::Report& report)
+namespace {
+
+std::string text_of(std::filesystem::path const& file)
+{
+    auto const bytes = gi::read_bytes(file, std::size_t(1) << 20);
+    return {bytes.begin(), bytes.end()};
+}
+
+/// The older text format of nDisplay shares its extension with Vrui.
+bool is_ndisplay_cfg(std::string const& text)
+{
+    for (std::size_t at = 0; at < text.size();) {
+        std::size_t const end = std::min(text.find('\n', at), text.size());
+        std::size_t const first = text.find_first_not_of(" \t\r", at);
+        if (first < end && text[first] != '#') return text[first] == '[';
+        at = end + 1;
+    }
+    return false;
+}
+
+Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportLog const& log)
 {
     DisplayFormat const format = format_of(file);
-    if (!section.empty() && format != DisplayFormat::vrui)
-        throw gi::InputError("a section of " + file.string(), "only configurations of Vrui have sections",
+    std::string const text = text_of(file), name = file.string();
+    bool const is_vrui = format == DisplayFormat::vrui && !is_ndisplay_cfg(text);
+    if (!is_vrui && !(o.section.empty() && o.base_file.empty()))
+        throw gi::InputError("a section or base file of " + name, "only configurations of Vrui have them",
                              "leave it out");
-    auto const bytes = gi::read_bytes(file, std::size_t(1) << 20);
-    std::string const text(bytes.begin(), bytes.end()), name = file.string();
     switch (format) {
     case DisplayFormat::sgct:
-        return parse_sgct(text, name, report);
+        return file.extension() == ".xml" ? parse_sgct_xml(text, name, log) : parse_sgct(text, name, log);
     case DisplayFormat::pvx:
-        return parse_pvx(text, name, report);
+        return parse_pvx(text, name, log);
     case DisplayFormat::equalizer:
-        return parse_equalizer(text, name, report);
+        return parse_equalizer(text, name, log);
+    case DisplayFormat::ndisplay:
+        return parse_ndisplay(text, name, log);
     case DisplayFormat::vrui:
-        return parse_vrui(text, name, section, report);
+        if (!is_vrui) return parse_ndisplay_cfg(text, name, log);
+        if (o.base_file.empty()) return parse_vrui(text, name, o.section, log);
+        return parse_vrui({{text_of(o.base_file), o.base_file.string()}, {text, name}}, o.section, log);
     case DisplayFormat::yaml:
         break;
     }
-    return parse_display(text, name, report);
+    return parse_display(text, name, log.report());
 }
 
-double imported_eyes(double metres, std::string const& where, gi::Report& report)
+} // namespace
+
+void ImportLog::lose(std::string const& what, std::uint64_t count, std::string const& where) const
+{
+    constexpr std::size_t kMost = 10000;
+    report_->lose(what, count, where);
+    if (parts_->size() < kMost) parts_->push_back({what, where});
+}
+
+Display import_display(std::filesystem::path const& file, ImportOptions const& options, gi::Report& report,
+                       std::vector<SkippedPart>* parts)
+{
+    ImportLog const log(report);
+    Display display = parse(file, options, log);
+    if (parts) *parts = log.parts();
+    return display;
+}
+
+double imported_eyes(double metres, std::string const& where, ImportLog const& log)
 {
     if (metres >= kNarrowestEyes_m && metres <= kWidestEyes_m) return metres;
-    report.lose("implausible interpupillary distances, replaced by 0.063 m", 1,
-                fmt::format("{}: {} m", where, metres));
+    log.lose("implausible interpupillary distances, replaced by 0.063 m", 1,
+             fmt::format("{}: {} m", where, metres));
     return User{}.interpupillary_m;
 }
 
@@ -76,11 +127,57 @@ Viewport from_below(double x, double y, double width, double height)
     return {LengthUnit::fraction, x, 1 - y - height, width, height};
 }
 
-Display finished(Display display, std::string const& file, gi::Report& report)
+namespace {
+
+/// Windows without walls (helpers that draw parts for others) and processes without windows are left out.
+void drop_unused(Display& d, std::string const& file, ImportLog const& log)
 {
-    if (display.walls.empty())
-        throw gi::InputError({file, 0, 0}, "no wall could be imported", "there is nothing to draw on",
-                             "flat walls with corners are needed; see what was skipped");
+    std::vector<int> window_of(d.windows.size(), -1);
+    std::vector<DisplayWindow> windows;
+    std::map<int, int> rank_of;
+    for (Wall const& wall : d.walls) {
+        window_of[std::size_t(wall.window)] = 0;
+        rank_of[wall.rank] = 0;
+    }
+    for (std::size_t w = 0; w < d.windows.size(); ++w) {
+        if (window_of[w] < 0) {
+            log.lose("windows that show no wall: not imported", 1, file + ", window '" + d.windows[w].name + "'");
+            continue;
+        }
+        window_of[w] = int(windows.size());
+        windows.push_back(d.windows[w]);
+    }
+    int next = 0;
+    for (auto& [theirs, ours] : rank_of) ours = next++;
+    for (Wall& wall : d.walls) {
+        wall.window = window_of[std::size_t(wall.window)];
+        wall.rank = rank_of[wall.rank];
+    }
+    d.windows = std::move(windows);
+}
+
+} // namespace
+
+Display finished(Display display, std::string const& file, ImportLog const& log)
+{
+    if (display.walls.empty()) {
+        constexpr std::size_t kNamed = 3;
+        std::vector<SkippedPart> parts = log.parts(); // skipped walls first
+        std::stable_partition(parts.begin(), parts.end(), [](SkippedPart const& part) {
+            return part.what.find("skipped") != std::string::npos;
+        });
+        std::string skipped;
+        for (std::size_t i = 0; i < std::min(kNamed, parts.size()); ++i)
+            skipped += (i ? "; " : "") + parts[i].what + " (" + parts[i].where + ")";
+        if (parts.size() > kNamed) skipped += fmt::format("; and {} more", parts.size() - kNamed);
+        throw gi::InputError({file, 0, 0}, "no wall could be imported",
+                             skipped.empty() ? "the file describes none" : skipped,
+                             "walls with corners or projections are needed");
+    }
+    drop_unused(display, file, log);
+    for (Wall& wall : display.walls)
+        for (gi::dvec3* p : {&wall.corners.lower_left, &wall.corners.lower_right, &wall.corners.upper_left})
+            *p += gi::dvec3(0); // no -0
     // Fractions written with few digits may miss the window's edge by less than a pixel.
     for (Wall& wall : display.walls)
         if (Viewport& v = wall.viewport; v.unit == LengthUnit::fraction) {
@@ -92,7 +189,7 @@ Display finished(Display display, std::string const& file, gi::Report& report)
             tidy(v.y, v.height);
         }
     require_sound(display, file);
-    report_doubts(display, report);
+    report_doubts(display, log.report());
     return display;
 }
 

@@ -3,36 +3,76 @@
 // assumed, are counted in the report by name; nothing is dropped silently.
 //
 // Corners, frame and units of each format:
-// - SGCT, JSON: lowerleft, upperleft, upperright; our frame, m.
+// - SGCT, JSON and the older XML: lowerleft, upperleft, upperright; our frame, m. Fisheye, cylindrical and
+//   equirectangular projections become surfaces, spherical mirrors four walls of a cube with meshes.
 // - ParaView .pvx: LowerLeft, LowerRight, UpperRight (or UpperLeft); our frame, taken as m.
 // - Equalizer .eqc: bottom_left, bottom_right, top_left; our frame, m.
 // - Vrui .cfg: origin, horizontalAxis, verticalAxis, width, height; forwardDirection becomes -Z, upDirection +Y;
-//   inchScale or meterScale.
+//   inchScale or meterScale. Patch files need the configuration that they change.
+// - nDisplay .ndisplay (JSON, cm) and its older .cfg (m): x forward, y to the right, z up; screens by centre and
+// size.
 //
 // Viewports of SGCT and Equalizer count from the window's lower left corner, ours from the top left corner.
 
 #include "gi/core/report.h"
 #include "viewer/displays/display.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace viewer {
 
-enum class DisplayFormat { yaml, sgct, pvx, equalizer, vrui };
+enum class DisplayFormat { yaml, sgct, pvx, equalizer, vrui, ndisplay };
 char const* name_of(DisplayFormat format);
-/// Format by file extension: .yaml or .yml, .json, .pvx, .eqc, .cfg. Throws InputError for others.
+/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay. Throws InputError for
+/// others.
 DisplayFormat format_of(std::filesystem::path const& file);
 
+/// Something in a file that has no equivalent here, or that had to be assumed.
+struct SkippedPart {
+    std::string what, where; ///< where: "file:line:column"
+};
+
+/// Counts in a report, and lists, what an importer could not take over.
+class ImportLog {
+public:
+    ImportLog(gi::Report& report) : report_(&report) {}
+    void lose(std::string const& what, std::uint64_t count, std::string const& where) const;
+    std::vector<SkippedPart> const& parts() const { return *parts_; } ///< the first 10,000
+    gi::Report& report() const { return *report_; }
+
+private:
+    gi::Report* report_;
+    std::shared_ptr<std::vector<SkippedPart>> parts_ = std::make_shared<std::vector<SkippedPart>>();
+};
+
 /// Each throws InputError, with file:line:column if known, if the text is not of the format or the display is
-/// invalid.
-Display parse_sgct(std::string const& text, std::string const& name, gi::Report& report);
-Display parse_pvx(std::string const& text, std::string const& name, gi::Report& report);
-Display parse_equalizer(std::string const& text, std::string const& name, gi::Report& report);
-/// `section` names the environment within "section Vrui"; empty = the first with screens.
-Display parse_vrui(std::string const& text, std::string const& name, std::string const& section,
-                   gi::Report& report);
-/// Imports any format, including ours, by file extension. `section` is for Vrui.
-Display import_display(std::filesystem::path const& file, std::string const& section, gi::Report& report);
+/// invalid. Meshes of SGCT are read from the folder of `name`.
+Display parse_sgct(std::string const& text, std::string const& name, ImportLog log);
+Display parse_sgct_xml(std::string const& text, std::string const& name, ImportLog log);
+Display parse_pvx(std::string const& text, std::string const& name, ImportLog log);
+Display parse_equalizer(std::string const& text, std::string const& name, ImportLog log);
+Display parse_ndisplay(std::string const& text, std::string const& name, ImportLog log);
+Display parse_ndisplay_cfg(std::string const& text, std::string const& name, ImportLog log);
+
+/// A file of Vrui.
+struct VruiText {
+    std::string text, name;
+};
+/// `section` names the environment within "section Vrui"; empty = the first with screens. Later files change what
+/// earlier ones say, as with -mergeConfig.
+Display parse_vrui(std::vector<VruiText> const& files, std::string const& section, ImportLog log);
+Display parse_vrui(std::string const& text, std::string const& name, std::string const& section, ImportLog log);
+
+struct ImportOptions {
+    std::string section{};             ///< Vrui
+    std::filesystem::path base_file{}; ///< Vrui: configuration that the file changes; empty = none
+};
+/// Imports any format, including ours, by file extension. If `parts` is not null, it receives what was skipped.
+Display import_display(std::filesystem::path const& file, ImportOptions const& options, gi::Report& report,
+                       std::vector<SkippedPart>* parts = nullptr);
 
 } // namespace viewer

@@ -1,8 +1,8 @@
 #pragma once
 // Helpers shared by the importers.
 
-#include "gi/core/report.h"
-#include "viewer/displays/display.h"
+#include "gi/core/error.h"
+#include "viewer/displays/import.h"
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace viewer {
 
 /// The file's distance between the eyes, or 0.063 m (reported) if no person has that distance.
-double imported_eyes(double metres, std::string const& where, gi::Report& report);
+double imported_eyes(double metres, std::string const& where, ImportLog const& log);
 inline constexpr std::size_t kMostImportedParts = 1000;
 /// `wanted`, with a number appended if another part has this name. Throws InputError if there are too many parts.
 template <typename Part>
@@ -29,7 +29,8 @@ std::string free_name(std::vector<Part> const& parts, std::string const& wanted)
 }
 /// Converts a viewport given from the window's lower left corner, in fractions of its size, to ours.
 Viewport from_below(double x, double y, double width, double height);
-/// Validates the imported display and reports doubtful values. Throws InputError if it has no walls or is invalid.
-Display finished(Display display, std::string const& file, gi::Report& report);
+/// Validates the imported display and reports doubtful values. Throws InputError if it has no walls, naming what
+/// was skipped, or is invalid.
+Display finished(Display display, std::string const& file, ImportLog const& log);
 
 } // namespace viewer

@@ -1,5 +1,7 @@
-// ParaView's display configuration (vtkDisplayConfiguration): one Machine element per process. Walls have
-// LowerLeft, LowerRight and UpperRight; files from before version 5 have UpperLeft instead of UpperRight.
+// ParaView's display configuration (vtkDisplayConfiguration): one Machine element per process, in <pvx> or in its
+// <Process Type="server"> (otherwise the last Process), as ParaView chooses. Walls have LowerLeft, LowerRight and
+// UpperRight; files from before version 5 have UpperLeft instead of UpperRight. Viewers are told apart by
+// ViewerId.
 
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
@@ -18,7 +20,8 @@ using tinyxml2::XMLElement;
 struct PvxContext {
     Display display;
     std::string file;
-    gi::Report& report;
+    ImportLog log;
+    std::vector<double> eyes_m; ///< of each viewer
 
     gi::InputError error(XMLElement const& at, std::string const& problem, std::string const& why,
                          std::string const& suggestion) const
@@ -43,9 +46,14 @@ gi::dvec3 point(XMLElement const& e, char const* name, PvxContext const& c)
     bool good = at != nullptr;
     for (int i = 0; i < 3 && good; ++i) good = parse_number(at, v[i]);
     if (good) good = std::string(at).find_first_not_of(" \t\n\r") == std::string::npos;
-    if (!good)
-        throw c.error(e, fmt::format("{} of a Machine is not three numbers", name), "a corner is a point",
-                      fmt::format("{}=\"-1 -1 -1\"", name));
+    if (!good) {
+        char const* const text = e.Attribute(name);
+        throw c.error(e,
+                      text ? fmt::format("{}=\"{}\" of a Machine is not three numbers", name,
+                                         std::string(text).substr(0, 64))
+                           : fmt::format("a Machine has no {}", name),
+                      "a corner is a point", fmt::format("{}=\"-1 -1 -1\"", name));
+    }
     return v;
 }
 
@@ -55,27 +63,46 @@ std::string attribute(XMLElement const& e, char const* name)
     return value ? value : "";
 }
 
-void lose_others(XMLElement const& e, std::set<std::string> const& known, PvxContext& c)
+std::string where(XMLElement const& e, PvxContext const& c)
+{
+    return fmt::format("{}:{}", c.file, e.GetLineNum());
+}
+
+void lose_others(XMLElement const& e, std::set<std::string> const& known, PvxContext const& c)
 {
     for (auto const* a = e.FirstAttribute(); a; a = a->Next())
         if (!known.contains(a->Name()))
-            c.report.lose(fmt::format("ParaView {}.{}: not imported", std::string(e.Name()).substr(0, 64),
-                                      std::string(a->Name()).substr(0, 64)),
-                          1, fmt::format("{}:{}", c.file, e.GetLineNum()));
+            c.log.lose(fmt::format("ParaView {}.{}: not imported", std::string(e.Name()).substr(0, 64),
+                                   std::string(a->Name()).substr(0, 64)),
+                       1, where(e, c));
 }
 
-StereoMode stereo_of(std::string const& name, XMLElement const& e, PvxContext& c)
+void lose(XMLElement const& e, PvxContext const& c)
 {
-    if (name.empty() || name == "None") return StereoMode::off;
-    if (name == "Crystal Eyes") return StereoMode::quad_buffer;
-    if (name == "Anaglyph" || name == "Red-Blue") return StereoMode::anaglyph_red_cyan;
-    if (name == "Interlaced") return StereoMode::rows;
-    if (name == "Checkerboard") return StereoMode::checkerboard;
-    if (name == "SplitViewportHorizontal") return StereoMode::side_by_side;
-    c.report.lose("ParaView stereo type '" + name.substr(0, 64) + "': shown without stereo", 1,
-                  fmt::format("{}:{}", c.file, e.GetLineNum()));
-    return StereoMode::off;
+    c.log.lose("ParaView <" + std::string(e.Name()).substr(0, 64) + ">: not imported", 1, where(e, c));
 }
+
+void read_stereo(std::string const& name, Wall& wall, XMLElement const& e, PvxContext const& c)
+{
+    if (name.empty() || name == "None") return;
+    for (auto const& [theirs, mode] : {std::pair{"Crystal Eyes", StereoMode::quad_buffer},
+                                       {"Anaglyph", StereoMode::anaglyph_red_cyan},
+                                       {"Red-Blue", StereoMode::anaglyph_red_cyan},
+                                       {"Interlaced", StereoMode::rows},
+                                       {"Dresden", StereoMode::columns},
+                                       {"Checkerboard", StereoMode::checkerboard},
+                                       {"SplitViewportHorizontal", StereoMode::side_by_side}})
+        if (name == theirs) {
+            wall.stereo = mode;
+            return;
+        }
+    if (name == "Left") wall.eye = Eye::left;
+    if (name == "Right") wall.eye = Eye::right;
+    if (wall.eye == Eye::middle)
+        c.log.lose("ParaView stereo type '" + name.substr(0, 64) + "': shown without stereo", 1, where(e, c));
+}
+
+bool is_true(char const* value) { return value && std::strchr("1tTyY", value[0]) && value[0]; }
 
 /// "640x360+60+1200"
 bool read_geometry(std::string const& text, DisplayWindow& window)
@@ -90,25 +117,38 @@ bool read_geometry(std::string const& text, DisplayWindow& window)
     return true;
 }
 
-void read_machine(XMLElement const& m, int rank, bool default_fullscreen, PvxContext& c)
+int viewer_of(XMLElement const& m, PvxContext const& c)
+{
+    char const* const text = m.Attribute("ViewerId");
+    if (!text) return 0;
+    int id = -1;
+    auto const [end, failure] = std::from_chars(text, text + std::strlen(text), id);
+    if (failure != std::errc{} || *end != 0 || id < 0 || id > 99)
+        throw c.error(m, fmt::format("ViewerId=\"{}\"", std::string(text).substr(0, 64)),
+                      "viewers count from 0 to 99", "ViewerId=\"0\"");
+    return id;
+}
+
+void read_machine(XMLElement const& m, int rank, bool is_fullscreen, bool has_borders, PvxContext& c)
 {
     lose_others(m,
                 {"Name", "Geometry", "FullScreen", "ShowBorders", "LowerLeft", "LowerRight", "UpperLeft",
                  "UpperRight", "StereoType", "ViewerId"},
                 c);
-    std::string const where = fmt::format("{}:{}", c.file, m.GetLineNum());
+    std::string const name = attribute(m, "Name");
     if (!m.Attribute("LowerLeft")) {
-        c.report.lose("ParaView machines without corners skipped", 1, where);
+        c.log.lose("ParaView machine '" + name.substr(0, 64) + "' has no corners (a plain window there), skipped",
+                   1, where(m, c));
         return;
     }
-    std::string const name = attribute(m, "Name");
     DisplayWindow window;
     window.name = free_name(c.display.windows, name.empty() ? "machine" : name);
-    window.fullscreen = m.Attribute("FullScreen") ? attribute(m, "FullScreen") == "1" : default_fullscreen;
+    window.fullscreen = m.Attribute("FullScreen") ? is_true(m.Attribute("FullScreen")) : is_fullscreen;
+    window.borders = m.Attribute("ShowBorders") ? is_true(m.Attribute("ShowBorders")) : has_borders;
     if (!m.Attribute("Geometry")) {
         window.width_px = 1920;
         window.height_px = 1080;
-        c.report.lose("windows whose size the file does not tell, taken as 1920 x 1080", 1, where);
+        c.log.lose("windows whose size the file does not tell, taken as 1920 x 1080", 1, where(m, c));
     } else if (!read_geometry(attribute(m, "Geometry"), window))
         throw c.error(m, "Geometry '" + attribute(m, "Geometry").substr(0, 64) + "' is no place of a window",
                       "it gives no size of the window", "Geometry=\"640x360+60+1200\"");
@@ -117,66 +157,130 @@ void read_machine(XMLElement const& m, int rank, bool default_fullscreen, PvxCon
     gi::dvec3 const ll = point(m, "LowerLeft", c), lr = point(m, "LowerRight", c);
     wall.corners = {ll, lr,
                     m.Attribute("UpperLeft") ? point(m, "UpperLeft", c) : ll + point(m, "UpperRight", c) - lr};
+    if (auto const fault = find_fault(wall.corners))
+        throw c.error(m, "machine '" + name.substr(0, 64) + "': " + fault->problem, fault->why, fault->suggestion);
     wall.window = int(c.display.windows.size());
-    wall.stereo = stereo_of(attribute(m, "StereoType"), m, c);
+    read_stereo(attribute(m, "StereoType"), wall, m, c);
     wall.rank = rank;
-    if (m.Attribute("ViewerId"))
-        c.report.lose("ParaView Machine.ViewerId: all walls serve the first user", 1, where);
+    wall.user = viewer_of(m, c);
     c.display.windows.push_back(window);
     c.display.walls.push_back(wall);
 }
 
-/// The first value of this name below the element.
-char const* setting(XMLElement const& e, char const* name)
+double eyes_of(XMLElement const& e, char const* attribute, PvxContext const& c)
 {
-    XMLElement const* const child = e.FirstChildElement(name);
-    return child ? child->Attribute("Value") : nullptr;
+    char const* at = e.Attribute(attribute);
+    double metres = 0;
+    if (!at || !parse_number(at, metres))
+        throw c.error(e, std::string(e.Name()) + " has no value of " + attribute, "a number is needed",
+                      std::string(attribute) + "=\"0.065\"");
+    return imported_eyes(metres, where(e, c), c.log);
+}
+
+/// Element with the machines: the first Process of Type "server", otherwise the last one, otherwise the root.
+XMLElement const& chosen(XMLElement const& root, PvxContext const& c)
+{
+    XMLElement const* process = nullptr;
+    for (XMLElement const* p = root.FirstChildElement("Process"); p; p = p->NextSiblingElement("Process")) {
+        process = p;
+        if (attribute(*p, "Type") == "server") break;
+    }
+    if (!process) return root;
+    for (XMLElement const* p = root.FirstChildElement(); p; p = p->NextSiblingElement()) {
+        if (p == process) continue;
+        if (std::strcmp(p->Name(), "Process") != 0 || p->FirstChildElement())
+            c.log.lose("ParaView <" + std::string(p->Name()).substr(0, 64) +
+                           "> beside the chosen Process: not imported",
+                       1, where(*p, c));
+    }
+    return *process;
+}
+
+/// The value of <name Value=""/> or <Option Name="name" Value=""/> in the element.
+char const* setting(XMLElement const& of, char const* name)
+{
+    for (XMLElement const* e = of.FirstChildElement(); e; e = e->NextSiblingElement())
+        if (std::strcmp(e->Name(), name) == 0 ||
+            (std::strcmp(e->Name(), "Option") == 0 && attribute(*e, "Name") == name))
+            return e->Attribute("Value");
+    return nullptr;
+}
+
+/// Distances of the eyes of the viewers that have their own.
+void read_viewers(XMLElement const& viewers, PvxContext& c)
+{
+    for (XMLElement const* v = viewers.FirstChildElement(); v; v = v->NextSiblingElement()) {
+        int id = -1;
+        if (v->QueryIntAttribute("Id", &id) != tinyxml2::XML_SUCCESS || id < 0 || id >= int(c.eyes_m.size())) {
+            c.log.lose("ParaView viewers without a machine: not imported", 1, where(*v, c));
+            continue;
+        }
+        lose_others(*v, {"Id", "EyeSeparation"}, c);
+        if (v->Attribute("EyeSeparation")) c.eyes_m[std::size_t(id)] = eyes_of(*v, "EyeSeparation", c);
+    }
+}
+
+void add_users(XMLElement const& at, PvxContext& c)
+{
+    std::set<int> used;
+    for (Wall const& wall : c.display.walls) used.insert(wall.user);
+    for (int id = 0; id < int(c.eyes_m.size()); ++id) {
+        if (!used.contains(id) && !c.display.walls.empty())
+            throw c.error(at, fmt::format("no Machine has ViewerId=\"{}\"", id),
+                          "they are 0 to the number of viewers - 1", "count them from 0");
+        User user;
+        user.name = c.eyes_m.size() == 1 ? "viewer" : fmt::format("viewer {}", id);
+        user.interpupillary_m = c.eyes_m[std::size_t(id)];
+        c.display.users.push_back(user);
+    }
+}
+
+void read_settings(XMLElement const& e, PvxContext& c)
+{
+    std::string const kind = e.Name(), option = kind == "Option" ? attribute(e, "Name") : kind;
+    if (kind == "UseOffAxisProjection") {
+        if (!is_true(e.Attribute("Value")))
+            c.log.lose("ParaView UseOffAxisProjection off: walls are drawn for the eyes all the same", 1,
+                       where(e, c));
+    } else if (option != "FullScreen" && option != "ShowBorders" && kind != "EyeSeparation" &&
+               kind != "IndependentViewers")
+        lose(e, c);
 }
 
 } // namespace
 
-Display parse_pvx(std::string const& text, std::string const& name, gi::Report& report)
+Display parse_pvx(std::string const& text, std::string const& name, ImportLog log)
 {
     tinyxml2::XMLDocument document;
     if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
         throw gi::InputError({name, document.ErrorLineNum(), 0}, "this is not XML",
                              tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()), "check the brackets");
     XMLElement const* const root = document.FirstChildElement("pvx");
-    PvxContext c{{}, name, report};
+    PvxContext c{{}, name, log, {}};
     if (!root)
         throw gi::InputError({name, 1, 1}, "there is no element <pvx>", "configurations of ParaView have one",
                              "is this a file of ParaView?");
-    User user;
-    user.name = "viewer";
-    int rank = 0;
-    bool has_eyes = false;
-    for (XMLElement const* p = root->FirstChildElement(); p; p = p->NextSiblingElement()) {
-        if (std::strcmp(p->Name(), "Process") != 0) {
-            report.lose("ParaView <" + std::string(p->Name()).substr(0, 64) + ">: not imported", 1, name);
-            continue;
-        }
-        char const* const fullscreen = setting(*p, "FullScreen");
-        for (XMLElement const* e = p->FirstChildElement(); e; e = e->NextSiblingElement()) {
-            std::string const kind = e->Name();
-            if (kind == "Machine") {
-                read_machine(*e, rank++, fullscreen && std::strcmp(fullscreen, "1") == 0, c);
-            } else if (kind == "EyeSeparation") {
-                char const* at = e->Attribute("Value");
-                double metres = 0;
-                if (!at || !parse_number(at, metres))
-                    throw c.error(*e, "EyeSeparation has no value", "a number is needed", "Value=\"0.065\"");
-                user.interpupillary_m = imported_eyes(metres, name, report);
-                has_eyes = true;
-            } else if (kind != "FullScreen" && kind != "ShowBorders") {
-                report.lose("ParaView <" + kind.substr(0, 64) + ">: not imported", 1,
-                            fmt::format("{}:{}", name, e->GetLineNum()));
-            }
-        }
-    }
-    if (!has_eyes) report.lose("no EyeSeparation in the file: taken as 0.063 m", 1, name);
-    c.display.users.push_back(user);
-    report.lose("ParaView does not say where the untracked head is: taken as the origin of the room", 1, name);
-    return finished(std::move(c.display), name, report);
+    constexpr double kTheirEyes_m = 0.065;
+    XMLElement const& process = chosen(*root, c);
+    bool const is_fullscreen = is_true(setting(process, "FullScreen"));
+    bool const has_borders = is_true(setting(process, "ShowBorders"));
+    int rank = 0, viewers = 1;
+    for (XMLElement const* e = process.FirstChildElement(); e; e = e->NextSiblingElement())
+        if (std::strcmp(e->Name(), "Machine") == 0) {
+            read_machine(*e, rank++, is_fullscreen, has_borders, c);
+            viewers = std::max(viewers, viewer_of(*e, c) + 1);
+        } else
+            read_settings(*e, c);
+    double eyes_m = kTheirEyes_m;
+    if (XMLElement const* e = process.FirstChildElement("EyeSeparation"))
+        eyes_m = eyes_of(*e, "Value", c);
+    else
+        log.lose("no EyeSeparation in the file: taken as ParaView's 0.065 m", 1, where(process, c));
+    c.eyes_m.assign(std::size_t(viewers), eyes_m);
+    if (XMLElement const* e = process.FirstChildElement("IndependentViewers")) read_viewers(*e, c);
+    add_users(process, c);
+    log.lose("ParaView does not say where the untracked head is: taken as the origin of the room", 1, name);
+    return finished(std::move(c.display), name, log);
 }
 
 } // namespace viewer

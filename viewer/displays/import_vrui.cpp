@@ -1,9 +1,11 @@
-// Vrui.cfg: sections of tags and values, one environment per section of "section Vrui".
+// Vrui.cfg: sections of tags and values, one environment per section of "section Vrui". Patch files, which Vrui
+// reads with -mergeConfig, change the configuration read before them: their tags replace, `+=` adds to a list.
 
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
 #include "viewer/displays/text_tree.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <map>
 #include <set>
@@ -13,8 +15,8 @@ namespace {
 
 struct VruiContext {
     Display display;
-    std::string file;
-    gi::Report& report;
+    std::vector<std::string> files; ///< names, by TextNode::file
+    ImportLog log;
     gi::dvec3 right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};
     double metres = 0.0254; ///< per unit of length
 
@@ -23,16 +25,16 @@ struct VruiContext {
     gi::InputError error(TextNode const& at, std::string const& problem, std::string const& why,
                          std::string const& suggestion) const
     {
-        return {{file, at.line, at.column}, problem, why, suggestion};
+        return {{name_of(at), at.line, at.column}, problem, why, suggestion};
     }
-    std::string where(TextNode const& at) const { return fmt::format("{}:{}", file, at.line); }
+    std::string const& name_of(TextNode const& at) const { return files[std::size_t(at.file)]; }
+    std::string where(TextNode const& at) const { return fmt::format("{}:{}", name_of(at), at.line); }
     void lose_others(TextNode const& section, std::set<std::string> const& known)
     {
         for (TextNode const& tag : section.children)
             if (!known.contains(tag.key))
-                report.lose(
-                    fmt::format("Vrui {} of a screen, window or viewer: not imported", tag.key.substr(0, 64)), 1,
-                    where(tag));
+                log.lose(fmt::format("Vrui {} of a screen, window or viewer: not imported", tag.key.substr(0, 64)),
+                         1, where(tag));
     }
 };
 
@@ -88,11 +90,60 @@ TextNode read_sections(std::string const& text, std::string const& file)
     return std::move(open.front());
 }
 
+void set_file(TextNode& node, int file)
+{
+    node.file = file;
+    for (TextNode& child : node.children) set_file(child, file);
+}
+
+/// Puts the tags of `change` in place of those of `base`; nested sections are merged by name.
+void merge(TextNode& base, TextNode const& change)
+{
+    auto const is_list_addition = [](TextNode const& tag) {
+        return !tag.values.empty() && !tag.values[0].is_quoted && tag.values[0].text == "+";
+    };
+    for (TextNode const& tag : change.children) {
+        TextNode* old = nullptr;
+        for (TextNode& child : base.children)
+            if (child.key == tag.key) old = &child;
+        if (!old) {
+            base.children.push_back(tag);
+        } else if (!tag.children.empty()) {
+            merge(*old, tag);
+        } else if (is_list_addition(tag)) {
+            old->values.insert(old->values.end(), tag.values.begin() + 1, tag.values.end());
+        } else {
+            old->values = tag.values;
+            old->file = tag.file;
+            old->line = tag.line;
+            old->column = tag.column;
+        }
+    }
+}
+
+/// True if anything in the environment changes what is not there: the file is a patch of another.
+bool is_patch(TextNode const& environment)
+{
+    bool const has_nodes =
+        std::any_of(environment.children.begin(), environment.children.end(),
+                    [](TextNode const& t) { return t.key.starts_with("node") && t.key.ends_with("WindowNames"); });
+    if (!environment.find("windowNames") && !has_nodes) return true;
+    for (char const* list : {"screenNames", "windowNames", "viewerNames"}) {
+        TextNode const* const names = environment.find(list);
+        if (!names) continue;
+        if (!names->values.empty() && names->values[0].text == "+") return true;
+        for (TextToken const& name : names->values)
+            if (!environment.find(name.text)) return true;
+    }
+    return false;
+}
+
 std::vector<std::string> names_in(TextNode const& environment, std::string const& tag)
 {
     std::vector<std::string> out;
     if (TextNode const* const node = environment.find(tag))
-        for (TextToken const& token : node->values) out.push_back(token.text);
+        for (TextToken const& token : node->values)
+            if (token.is_quoted || token.text != "+") out.push_back(token.text);
     return out;
 }
 
@@ -102,7 +153,7 @@ TextNode const& section_of(TextNode const& environment, std::string const& name,
     TextNode const* const node = environment.find(name);
     if (!node)
         throw c.error(environment, fmt::format("there is no section '{}'", name.substr(0, 64)),
-                      fmt::format("{} names it", of), "is it in another file? merge them");
+                      fmt::format("{} names it", of), "is it in another file? give that one with --base");
     return *node;
 }
 
@@ -110,13 +161,13 @@ gi::dvec3 needed_point(TextNode const& section, char const* tag, VruiContext con
 {
     TextNode const* const node = section.find(tag);
     if (!node) throw c.error(section, std::string(tag) + " is missing", "the wall is not defined", "add it");
-    return point_of(*node, c.file);
+    return point_of(*node, c.name_of(*node));
 }
 
 double number_in(TextNode const& section, char const* tag, double otherwise, VruiContext const& c)
 {
     TextNode const* const node = section.find(tag);
-    return node ? numbers_of(*node, 1, c.file)[0] : otherwise;
+    return node ? numbers_of(*node, 1, c.name_of(*node))[0] : otherwise;
 }
 
 gi::dvec3 unit(gi::dvec3 v, TextNode const& at, VruiContext const& c)
@@ -125,20 +176,52 @@ gi::dvec3 unit(gi::dvec3 v, TextNode const& at, VruiContext const& c)
     return glm::normalize(v);
 }
 
+struct VruiMotion {
+    gi::dquat turn{1, 0, 0, 0};
+    gi::dvec3 shift{0};
+
+    gi::dvec3 operator()(gi::dvec3 p) const { return shift + turn * p; }
+};
+
+/// "translate (x, y, z) * rotate (x, y, z), degrees", the last first.
+VruiMotion motion_of(TextNode const& node, VruiContext const& c)
+{
+    VruiMotion m;
+    auto const& v = node.values;
+    auto const at = [&](std::size_t i) {
+        if (i >= v.size())
+            throw c.error(node, "the transformation ends too early", "numbers are missing", "complete it");
+        return number_of(v[i], c.name_of(node));
+    };
+    for (std::size_t i = 0; i < v.size();) {
+        if (v[i].text == "*") {
+            ++i;
+        } else if (v[i].text == "translate") {
+            m.shift += m.turn * gi::dvec3{at(i + 1), at(i + 2), at(i + 3)};
+            i += 4;
+        } else if (v[i].text == "rotate") {
+            m.turn =
+                m.turn * glm::angleAxis(glm::radians(at(i + 4)), unit({at(i + 1), at(i + 2), at(i + 3)}, node, c));
+            i += 5;
+        } else
+            throw c.error(node, "'" + v[i].text.substr(0, 64) + "' in a transformation", "it is no motion",
+                          "translate (x, y, z) and rotate (x, y, z), degrees");
+    }
+    return m;
+}
+
 /// None for screens that are not fixed rectangles.
 std::optional<WallCorners> read_screen(TextNode const& s, VruiContext& c)
 {
-    char const* odd = s.text("deviceMounted") == "true"               ? "carried by a device"
-                      : s.text("offAxis") == "true"                   ? "with a homography"
-                      : s.find("transform") || s.find("preTransform") ? "with a transformation"
-                                                                      : nullptr;
+    char const* odd = s.text("deviceMounted") == "true" ? "carried by a device"
+                      : s.text("offAxis") == "true"     ? "with a homography"
+                                                        : nullptr;
     if (odd) {
-        c.report.lose(fmt::format("Vrui screens {} skipped: only fixed rectangles are imported", odd), 1,
-                      c.where(s));
+        c.log.lose(fmt::format("Vrui screens {} skipped: only fixed rectangles are imported", odd), 1, c.where(s));
         return {};
     }
     c.lose_others(s, {"name", "deviceMounted", "offAxis", "origin", "horizontalAxis", "verticalAxis", "width",
-                      "height", "rotateCenter", "rotateAxis", "rotateAngle"});
+                      "height", "rotateCenter", "rotateAxis", "rotateAngle", "transform", "preTransform"});
     gi::dvec3 const across = unit(needed_point(s, "horizontalAxis", c), s, c);
     gi::dvec3 upward = unit(needed_point(s, "verticalAxis", c), s, c);
     // Vrui makes the second axis orthogonal to the first.
@@ -148,11 +231,16 @@ std::optional<WallCorners> read_screen(TextNode const& s, VruiContext& c)
     gi::dvec3 corners[3] = {origin, origin + width * across, origin + height * upward};
     if (double const angle = number_in(s, "rotateAngle", 0, c); angle != 0) {
         TextNode const *const center = s.find("rotateCenter"), *const axis = s.find("rotateAxis");
-        gi::dvec3 const about = center ? point_of(*center, c.file) : gi::dvec3{0};
-        gi::dquat const turn =
-            glm::angleAxis(glm::radians(angle), unit(axis ? point_of(*axis, c.file) : gi::dvec3{1, 0, 0}, s, c));
+        gi::dvec3 const about = center ? point_of(*center, c.name_of(*center)) : gi::dvec3{0};
+        gi::dquat const turn = glm::angleAxis(
+            glm::radians(angle), unit(axis ? point_of(*axis, c.name_of(*axis)) : gi::dvec3{1, 0, 0}, s, c));
         for (gi::dvec3& p : corners) p = about + turn * (p - about);
     }
+    for (char const* tag : {"transform", "preTransform"})
+        if (TextNode const* node = s.find(tag)) {
+            VruiMotion const motion = motion_of(*node, c);
+            for (gi::dvec3& p : corners) p = motion(p);
+        }
     return WallCorners{c.place(corners[0]), c.place(corners[1]), c.place(corners[2])};
 }
 
@@ -167,112 +255,248 @@ User read_viewer(TextNode const& s, VruiContext& c)
     c.lose_others(s, known);
     User user;
     user.name = s.key;
-    if (TextNode const* t = s.find("headDeviceTransformation")) {
-        bool const is_translation = t->values.size() == 4 && t->values[0].text == "translate";
-        if (is_translation)
-            user.head.translation_m = c.place({number_of(t->values[1], c.file), number_of(t->values[2], c.file),
-                                               number_of(t->values[3], c.file)});
-        else
-            c.report.lose("Vrui headDeviceTransformation that is more than translate (x, y, z): taken as none", 1,
-                          c.where(*t));
-    }
+    VruiMotion head;
+    if (TextNode const* t = s.find("headDeviceTransformation")) head = motion_of(*t, c);
+    user.head.translation_m = c.place(head.shift);
     if (s.text("headTracked") == "true")
-        c.report.lose("Vrui device daemons are not supported trackers: the head rests until a tracker is added", 1,
-                      c.where(s));
+        c.log.lose("Vrui device daemons are not supported trackers: the head rests until a tracker is added", 1,
+                   c.where(s));
     TextNode const *const left = s.find("leftEyePosition"), *const right = s.find("rightEyePosition");
     if (!left || !right) {
-        c.report.lose("interpupillary distance not in the file: 0.063 m assumed", 1, c.where(s));
+        c.log.lose("interpupillary distance not in the file: 0.063 m assumed", 1, c.where(s));
         return user;
     }
-    gi::dvec3 const l = c.place(point_of(*left, c.file)), r = c.place(point_of(*right, c.file)), between = r - l;
-    user.interpupillary_m = imported_eyes(glm::length(between), "viewer '" + s.key + "'", c.report);
+    gi::dvec3 const l = c.place(head.turn * point_of(*left, c.name_of(*left))),
+                    r = c.place(head.turn * point_of(*right, c.name_of(*right))), between = r - l;
+    user.interpupillary_m = imported_eyes(glm::length(between), "viewer '" + s.key + "'", c.log);
     if (glm::length(between) > 0) {
         double const yaw = std::atan2(-between.z, between.x);
         if (std::abs(yaw) > 1e-9) user.head.rotation_deg.y = glm::degrees(yaw);
         if (std::abs(between.y) > 1e-3 * glm::length(between))
-            c.report.lose("Vrui viewers whose eyes are not level: taken as level", 1, c.where(s));
+            c.log.lose("Vrui viewers whose eyes are not level: taken as level", 1, c.where(s));
     }
     user.eye_offset_m = glm::conjugate(pose_of(user.head).rotation) * ((l + r) * 0.5);
+    if (glm::length(user.eye_offset_m) > 1) { // control windows put the eyes metres behind a fixed place
+        user.head.translation_m += (l + r) * 0.5;
+        user.eye_offset_m = gi::dvec3{0};
+    }
     return user;
 }
 
-StereoMode stereo_of(TextNode const& window, VruiContext& c)
+/// Where a stereo mode that it has puts the left eye.
+struct VruiStereo {
+    StereoMode mode = StereoMode::off;
+    bool swap_eyes = false;
+};
+
+/// Rectangle of a viewport, px from the window's lower left corner.
+std::optional<PixelRectangle> viewport_in(TextNode const& s, char const* tag, VruiContext const& c)
+{
+    TextNode const* const node = s.find(tag);
+    if (!node) return {};
+    auto const v = numbers_of(*node, 4, c.name_of(*node));
+    for (double const x : v)
+        if (std::abs(x) > 1e6) throw c.error(*node, "a viewport is too large", "no window is", "check it");
+    return PixelRectangle{int(v[0]), int(v[1]), int(v[2]), int(v[3])};
+}
+
+VruiStereo split_stereo(TextNode const& s, DisplayWindow const& w, VruiContext& c)
+{
+    auto const left = viewport_in(s, "leftViewportPos", c), right = viewport_in(s, "rightViewportPos", c);
+    PixelRectangle const west{0, 0, w.width_px / 2, w.height_px},
+        east{w.width_px / 2, 0, w.width_px / 2, w.height_px}, lower{0, 0, w.width_px, w.height_px / 2},
+        upper{0, w.height_px / 2, w.width_px, w.height_px / 2};
+    PixelRectangle const l = left.value_or(west), r = right.value_or(east);
+    if (l == west && r == east) return {StereoMode::side_by_side, false};
+    if (l == east && r == west) return {StereoMode::side_by_side, true};
+    if (l == upper && r == lower) return {StereoMode::top_bottom, false};
+    if (l == lower && r == upper) return {StereoMode::top_bottom, true};
+    c.log.lose("Vrui SplitViewportStereo whose viewports are not the halves of the window: shown side by side", 1,
+               c.where(s));
+    return {StereoMode::side_by_side, false};
+}
+
+/// The pattern has the eyes of the pixels of two rows, the lower one first.
+VruiStereo interleaved_stereo(TextNode const& s, DisplayWindow const& w, VruiContext& c)
+{
+    bool const is_old = s.text("windowType") == "InterlacedViewportStereo"; // rows only
+    std::string const pattern = s.text("interleavePattern", is_old ? "LLRR" : "LRRL");
+    bool const is_even = w.height_px % 2 == 0; // then the upper row of the pattern is our row 0
+    // Its stipple has the first pixel in the highest bit, Vrui sets the lowest one: columns are exchanged.
+    if (pattern == "LLRR") return {StereoMode::rows, is_even};
+    if (pattern == "RRLL") return {StereoMode::rows, !is_even};
+    if (pattern == "LRLR") return {StereoMode::columns, true};
+    if (pattern == "RLRL") return {StereoMode::columns, false};
+    if (pattern == "LRRL") return {StereoMode::checkerboard, !is_even};
+    if (pattern == "RLLR") return {StereoMode::checkerboard, is_even};
+    c.log.lose("Vrui interleavePattern " + pattern.substr(0, 64) + ": shown without stereo", 1, c.where(s));
+    return {};
+}
+
+VruiStereo stereo_of(TextNode const& window, DisplayWindow const& w, VruiContext& c)
 {
     std::string const type = window.text("windowType", "Mono");
-    if (type == "Mono") return StereoMode::off;
-    if (type == "QuadbufferStereo") return StereoMode::quad_buffer;
-    if (type == "AnaglyphicStereo") return StereoMode::anaglyph_red_cyan;
-    if (type == "SplitViewportStereo") return StereoMode::side_by_side;
-    if (type == "InterlacedViewportStereo") return StereoMode::rows;
-    c.report.lose("Vrui windowType " + type.substr(0, 64) + ": shown without stereo", 1, c.where(window));
-    return StereoMode::off;
+    if (type == "Mono") return {};
+    if (type == "QuadbufferStereo") return {StereoMode::quad_buffer, false};
+    if (type == "AnaglyphicStereo") return {StereoMode::anaglyph_red_cyan, false};
+    if (type == "SplitViewportStereo") return split_stereo(window, w, c);
+    if (type == "InterlacedViewportStereo" || type == "InterleavedViewportStereo")
+        return interleaved_stereo(window, w, c);
+    c.log.lose("Vrui windowType " + type.substr(0, 64) + ": shown without stereo", 1, c.where(window));
+    return {};
+}
+
+DisplayWindow window_of(TextNode const& s, std::string const& name, VruiContext& c)
+{
+    DisplayWindow window;
+    window.name = free_name(c.display.windows, name);
+    window.fullscreen = s.text("windowFullscreen") == "true";
+    window.borders = s.text("decorate", s.text("decorated", "true")) != "false";
+    TextNode const *const pos = s.find("windowPos"), *const size = s.find("windowSize");
+    std::vector<double> v{0, 0, 1920, 1080};
+    if (size) {
+        auto const px = numbers_of(*size, 2, c.name_of(*size));
+        v[2] = px[0];
+        v[3] = px[1];
+    }
+    if (pos) v = numbers_of(*pos, 4, c.name_of(*pos));
+    if (!pos && !size)
+        c.log.lose("windows whose size the file does not tell, taken as 1920 x 1080", 1, c.where(s));
+    for (double const x : v)
+        if (std::abs(x) > 1e6)
+            throw c.error(pos ? *pos : *size, "a window is a million pixels away", "no desktop is", "check it");
+    window.x_px = int(v[0]);
+    window.y_px = int(v[1]);
+    window.width_px = int(v[2]);
+    window.height_px = int(v[3]);
+    return window;
+}
+
+int user_of(TextNode const& environment, std::string const& viewer, VruiContext& c)
+{
+    for (std::size_t u = 0; u < c.display.users.size(); ++u)
+        if (c.display.users[u].name == viewer) return int(u);
+    c.display.users.push_back(read_viewer(section_of(environment, viewer, "viewerName", c), c));
+    return int(c.display.users.size()) - 1;
 }
 
 void read_window(TextNode const& environment, std::string const& name, int rank, VruiContext& c)
 {
     TextNode const& s = section_of(environment, name, "the list of windows", c);
-    c.lose_others(s, {"display", "windowPos", "windowFullscreen", "windowType", "screenName", "viewerName"});
-    std::string const screen = s.text("screenName"), viewer = s.text("viewerName");
-    auto const corners = read_screen(section_of(environment, screen, "screenName", c), c);
-    if (!corners) return;
-    DisplayWindow window;
-    window.name = free_name(c.display.windows, name);
-    window.fullscreen = s.text("windowFullscreen") == "true";
-    if (TextNode const* pos = s.find("windowPos")) {
-        auto const v = numbers_of(*pos, 4, c.file);
-        for (double const x : v)
-            if (std::abs(x) > 1e6)
-                throw c.error(*pos, "a window is a million pixels away", "no desktop is", "check it");
-        window.x_px = int(v[0]);
-        window.y_px = int(v[1]);
-        window.width_px = int(v[2]);
-        window.height_px = int(v[3]);
-    } else {
-        window.width_px = 1920;
-        window.height_px = 1080;
-        c.report.lose("windows whose size the file does not tell, taken as 1920 x 1080", 1, c.where(s));
+    c.lose_others(s, {"display", "windowPos", "windowSize", "windowFullscreen", "windowType", "screenName",
+                      "viewerName", "decorate", "decorated", "leftViewportPos", "rightViewportPos",
+                      "interleavePattern", "leftScreenName", "rightScreenName"});
+    if (s.text("windowType") == "CompositorClient") {
+        c.log.lose("Vrui windows of a headset's compositor skipped: use --hmd", 1, c.where(s));
+        return;
     }
-    Wall wall;
-    wall.name = free_name(c.display.walls, screen);
-    wall.corners = *corners;
-    wall.window = int(c.display.windows.size());
-    wall.stereo = stereo_of(s, c);
-    wall.rank = rank;
-    wall.user = -1;
-    for (std::size_t u = 0; u < c.display.users.size(); ++u)
-        if (c.display.users[u].name == viewer) wall.user = int(u);
-    if (wall.user < 0) {
-        wall.user = int(c.display.users.size());
-        c.display.users.push_back(read_viewer(section_of(environment, viewer, "viewerName", c), c));
+    DisplayWindow const window = window_of(s, name, c);
+    struct Part {
+        char const* screen;
+        char const* viewport;
+        Eye eye;
+    };
+    bool const is_split = s.find("leftScreenName") || s.find("rightScreenName");
+    std::vector<Part> parts{{"screenName", nullptr, Eye::middle}};
+    if (is_split)
+        parts = {{"leftScreenName", "leftViewportPos", Eye::left},
+                 {"rightScreenName", "rightViewportPos", Eye::right}};
+    bool has_window = false;
+    for (Part const& part : parts) {
+        std::string const screen = s.text(part.screen);
+        auto const corners = read_screen(section_of(environment, screen, part.screen, c), c);
+        if (!corners) continue;
+        Wall wall;
+        wall.name = free_name(c.display.walls, screen);
+        wall.corners = *corners;
+        wall.rank = rank;
+        wall.eye = part.eye;
+        if (part.eye == Eye::middle) {
+            VruiStereo const stereo = stereo_of(s, window, c);
+            wall.stereo = stereo.mode;
+            wall.swap_eyes = stereo.swap_eyes;
+        } else {
+            int const half = window.width_px / 2;
+            PixelRectangle const r =
+                viewport_in(s, part.viewport, c)
+                    .value_or(PixelRectangle{part.eye == Eye::left ? 0 : half, 0, half, window.height_px});
+            wall.viewport = {LengthUnit::px, double(r.x), double(window.height_px - r.y - r.height),
+                             double(r.width), double(r.height)};
+        }
+        wall.user = user_of(environment, s.text("viewerName"), c);
+        wall.window = int(c.display.windows.size()) - (has_window ? 1 : 0);
+        if (!has_window) c.display.windows.push_back(window);
+        has_window = true;
+        c.display.walls.push_back(wall);
     }
-    c.display.windows.push_back(window);
-    c.display.walls.push_back(wall);
+}
+
+/// "unit (Inch, 1.0)" of an environment's definition.
+void read_unit(TextNode const& definition, VruiContext& c)
+{
+    TextNode const* const node = definition.find("unit");
+    if (!node || node->values.empty()) return;
+    std::string const name = node->values[0].text;
+    double const scale = node->values.size() > 1 ? number_of(node->values[1], c.name_of(*node)) : 1;
+    for (auto const& [known, metres] : {std::pair{"Inch", 0.0254},
+                                        {"Foot", 0.3048},
+                                        {"Yard", 0.9144},
+                                        {"Meter", 1.0},
+                                        {"Centimeter", 0.01},
+                                        {"Millimeter", 0.001}})
+        if (name == known && scale > 1e-6 && scale < 1e6) {
+            c.metres = metres * scale;
+            return;
+        }
+    throw c.error(*node, "a length unit of '" + name.substr(0, 64) + "'", "it is unknown or out of range",
+                  "Inch, Foot, Yard, Meter, Centimeter or Millimeter");
 }
 
 void read_units(TextNode const& environment, VruiContext& c)
 {
     TextNode const *const metre = environment.find("meterScale"), *const inch = environment.find("inchScale");
-    double const scale = metre ? numbers_of(*metre, 1, c.file)[0] : inch ? numbers_of(*inch, 1, c.file)[0] : 1;
+    double const scale = metre  ? numbers_of(*metre, 1, c.name_of(*metre))[0]
+                         : inch ? numbers_of(*inch, 1, c.name_of(*inch))[0]
+                                : 1;
     if (!(scale > 1e-6 && scale < 1e6))
         throw c.error(environment, "the length unit is not positive, or out of range",
                       "inchScale and meterScale give the number of units", "inchScale 1.0");
     c.metres = (metre ? 1 : 0.0254) / scale;
-    if (TextNode const* f = environment.find("forwardDirection")) c.forward = unit(point_of(*f, c.file), *f, c);
-    if (TextNode const* u = environment.find("upDirection")) c.up = unit(point_of(*u, c.file), *u, c);
+    TextNode const* const definition = environment.find("environmentDefinition")
+                                           ? environment.find(environment.text("environmentDefinition"))
+                                           : nullptr;
+    if (definition) read_unit(*definition, c);
+    for (TextNode const* from : {&environment, definition}) {
+        if (!from) continue;
+        bool const is_new = from == definition;
+        if (TextNode const* f = from->find(is_new ? "forward" : "forwardDirection"))
+            c.forward = unit(point_of(*f, c.name_of(*f)), *f, c);
+        if (TextNode const* u = from->find(is_new ? "up" : "upDirection"))
+            c.up = unit(point_of(*u, c.name_of(*u)), *u, c);
+    }
     c.right = unit(glm::cross(c.forward, c.up), environment, c);
     c.up = glm::cross(c.right, c.forward);
 }
 
 } // namespace
 
-Display parse_vrui(std::string const& text, std::string const& name, std::string const& section,
-                   gi::Report& report)
+Display parse_vrui(std::vector<VruiText> const& files, std::string const& section, ImportLog log)
 {
-    TextNode const file = read_sections(text, name);
+    std::string const& name = files.back().name; // a patch is named in messages; its base is checked alone first
+    TextNode file;
+    for (VruiText const& f : files) {
+        TextNode part = read_sections(f.text, f.name);
+        set_file(part, int(&f - files.data()));
+        if (!part.find("Vrui"))
+            throw gi::InputError({f.name, 1, 1}, "there is no section Vrui",
+                                 "displays are in one; device, avatar and server files have none",
+                                 "import the Vrui.cfg of the installation");
+        if (file.children.empty())
+            file = std::move(part);
+        else
+            merge(file, part);
+    }
     TextNode const* const vrui = file.find("Vrui");
-    if (!vrui)
-        throw gi::InputError({name, 1, 1}, "there is no section Vrui", "configurations of Vrui have one",
-                             "is this a file of Vrui?");
     TextNode const* environment = nullptr;
     std::string others;
     int other_count = 0;
@@ -284,23 +508,41 @@ Display parse_vrui(std::string const& text, std::string const& name, std::string
             others += (other_count++ ? ", " : "") + child.key.substr(0, 64);
         }
     }
-    VruiContext c{{}, name, report};
+    VruiContext c{{}, {}, log};
+    for (VruiText const& f : files) c.files.push_back(f.name);
+    bool const is_incomplete = !environment || is_patch(*environment);
+    if (is_incomplete && files.size() == 1 && (section.empty() || environment)) {
+        TextNode const& at = environment ? *environment : *vrui;
+        throw c.error(at,
+                      environment ? "environment '" + environment->key.substr(0, 64) +
+                                        "' names screens, windows or viewers that this file does not have"
+                                  : "no environment of this file has screens: it is a patch of a configuration",
+                      "Vrui reads it on top of its Vrui.cfg (-mergeConfig)" +
+                          (others.empty() ? "" : "; it changes " + others),
+                      "give that file with --base, and the environment with --section");
+    }
+    if (environment && is_incomplete)
+        throw c.error(
+            *environment, "environment '" + environment->key.substr(0, 64) + "' of the patch stays incomplete",
+            files.front().name + " does not complete it", "it has: " + (others.empty() ? "none" : others));
     if (!environment)
         throw c.error(*vrui,
                       section.empty() ? "no environment has screenNames"
                                       : "there is no environment '" + section + "'",
                       "the environment lists the walls", "there are: " + (others.empty() ? "none" : others));
     if (other_count)
-        report.lose("Vrui environments other than the one imported", std::uint64_t(other_count),
-                    others.substr(0, 500));
+        log.lose("Vrui environments other than the one imported", std::uint64_t(other_count),
+                 others.substr(0, 500));
     read_units(*environment, c);
     std::set<std::string> used{"screenNames", "viewerNames",      "windowNames", "inchScale",
-                               "meterScale",  "forwardDirection", "upDirection"};
+                               "meterScale",  "forwardDirection", "upDirection", "environmentDefinition"};
+    if (environment->find("environmentDefinition")) used.insert(environment->text("environmentDefinition"));
     auto const read_windows = [&](std::string const& tag, int rank) {
         used.insert(tag);
         for (std::string const& window : names_in(*environment, tag)) {
             read_window(*environment, window, rank, c);
-            used.insert({window, section_of(*environment, window, "the list of windows", c).text("screenName")});
+            TextNode const& s = section_of(*environment, window, "the list of windows", c);
+            used.insert({window, s.text("screenName"), s.text("leftScreenName"), s.text("rightScreenName")});
         }
     };
     read_windows("windowNames", 0);
@@ -309,14 +551,16 @@ Display parse_vrui(std::string const& text, std::string const& name, std::string
                                       length == int(tag.key.size()) && node >= 0)
             read_windows(tag.key, node);
     for (User const& user : c.display.users) used.insert(user.name);
-    std::string left_out;
-    int count = 0;
     for (TextNode const& tag : environment->children)
-        if (!used.contains(tag.key)) left_out += (count++ ? ", " : "") + tag.key.substr(0, 64);
-    if (count)
-        report.lose("Vrui settings that are not about walls, windows and viewers: not imported",
-                    std::uint64_t(count), left_out.substr(0, 2000));
-    return finished(std::move(c.display), name, report);
+        if (!used.contains(tag.key))
+            log.lose("Vrui settings that are not about walls, windows and viewers: not imported", 1,
+                     tag.key.substr(0, 64) + ", " + c.where(tag));
+    return finished(std::move(c.display), name, log);
+}
+
+Display parse_vrui(std::string const& text, std::string const& name, std::string const& section, ImportLog log)
+{
+    return parse_vrui({{text, name}}, section, log);
 }
 
 } // namespace viewer

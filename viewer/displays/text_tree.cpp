@@ -45,6 +45,9 @@ std::vector<TextToken> tokens_of(std::string const& text, std::string const& mar
                                      "end it with \"");
             out.push_back({text.substr(i + 1, end - i - 1), true, line, column});
             i = end + 1;
+        } else if (c == '\'' && i + 2 < text.size() && text[i + 1] != '\n' && text[i + 2] == '\'') { // a character
+            out.push_back({text.substr(i + 1, 1), true, line, column});
+            i += 3;
         } else if (marks.find(c) != std::string::npos) {
             out.push_back({std::string(1, c), false, line, column});
             ++i;

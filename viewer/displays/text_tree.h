@@ -21,6 +21,7 @@ struct TextNode {
     std::vector<TextToken> values;
     std::vector<TextNode> children;
     int line = 0, column = 0;
+    int file = 0; ///< index, where several files are merged
 
     /// Child with this key; nullptr if there is none.
     TextNode const* find(std::string const& wanted) const;
@@ -28,8 +29,8 @@ struct TextNode {
     std::string text(std::string const& wanted, std::string const& otherwise = {}) const;
 };
 
-/// Text in double quotes is one token; '#' starts a comment to the end of the line; each character of `marks` is a
-/// separate token. Throws InputError on an unclosed quote or more than 1 MiB.
+/// Text in double quotes is one token, as is a character in single ones; '#' starts a comment to the end of the
+/// line; each character of `marks` is a separate token. Throws InputError on an unclosed quote or more than 1 MiB.
 std::vector<TextToken> tokens_of(std::string const& text, std::string const& marks, std::string const& file);
 /// Throws InputError, naming the token, if it is not a number.
 double number_of(TextToken const& token, std::string const& file);

@@ -15,6 +15,14 @@ std::vector<ViewSummary> summarise_views(Display const& display)
     std::vector<ViewSummary> out;
     for (DisplayView const& view : views_of(display, {})) {
         Wall const& wall = display.walls[std::size_t(view.wall)];
+        if (wall.surface) {
+            gi::ViewTangents const t = *view.camera->off_axis;
+            double const at_middle = glm::radians(1.0) * view.width_px / (t.right - t.left);
+            out.push_back({view, 0, 0, wall.surface->radius_m,
+                           glm::degrees(std::atan(t.right) - std::atan(t.left)),
+                           glm::degrees(std::atan(t.top) - std::atan(t.bottom)), at_middle, at_middle});
+            continue;
+        }
         WallFrame const frame = wall_frame(wall.corners);
         User const& user = display.users[std::size_t(wall.user)];
         Eyes const eyes = eyes_of(user, resting_head(user));

@@ -1,21 +1,40 @@
 #include "viewer/displays/views.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace viewer {
 namespace {
 
-DisplayView view_of(Display const& d, int wall_index, Eye eye, WallFrame const& frame, Eyes const& eyes)
+gi::dvec3 place_of_eye(Eyes const& eyes, Eye eye)
+{
+    return eye == Eye::left ? eyes.left : eye == Eye::right ? eyes.right : eyes.middle;
+}
+
+std::string name_of_view(Wall const& wall, Eye eye)
+{
+    return wall.name + ", " + name_of(eye) + (eye == Eye::middle ? "" : " eye");
+}
+
+/// Size of one eye's picture in the viewport.
+glm::ivec2 eye_px(Display const& d, Wall const& wall)
+{
+    PixelRectangle const area = viewport_px(wall, d.windows[std::size_t(wall.window)]);
+    return {std::max(1, area.width / (wall.stereo == StereoMode::side_by_side ? 2 : 1)),
+            std::max(1, area.height / (wall.stereo == StereoMode::top_bottom ? 2 : 1))};
+}
+
+DisplayView flat_view(Display const& d, int wall_index, Eye eye, WallFrame const& frame, Eyes const& eyes)
 {
     Wall const& wall = d.walls[std::size_t(wall_index)];
-    gi::dvec3 const from = eye == Eye::left ? eyes.left : eye == Eye::right ? eyes.right : eyes.middle;
-    PixelRectangle const area = viewport_px(wall, d.windows[std::size_t(wall.window)]);
+    gi::dvec3 const from = place_of_eye(eyes, eye);
+    glm::ivec2 const px = eye_px(d, wall);
     DisplayView view;
     view.wall = wall_index;
     view.eye = eye;
-    view.name = wall.name + ", " + name_of(eye) + (eye == Eye::middle ? "" : " eye");
-    view.width_px = std::max(1, area.width / (wall.stereo == StereoMode::side_by_side ? 2 : 1));
-    view.height_px = std::max(1, area.height / (wall.stereo == StereoMode::top_bottom ? 2 : 1));
+    view.name = name_of_view(wall, eye);
+    view.width_px = px.x;
+    view.height_px = px.y;
     if (wall.render_width_px > 0) {
         view.width_px = wall.render_width_px;
         view.height_px = wall.render_height_px;
@@ -26,9 +45,44 @@ DisplayView view_of(Display const& d, int wall_index, Eye eye, WallFrame const& 
     return view;
 }
 
-} // namespace
+void add_faces(std::vector<DisplayView>& views, Display const& d, int wall_index, std::span<FaceView const> faces,
+               Eye eye, Eyes const& eyes)
+{
+    Wall const& wall = d.walls[std::size_t(wall_index)];
+    gi::dvec3 const from = place_of_eye(eyes, eye);
+    bool const is_finite = std::isfinite(glm::dot(from, from));
+    for (FaceView const& face : faces) {
+        DisplayView view;
+        view.wall = wall_index;
+        view.eye = eye;
+        view.face = face.face;
+        view.name = name_of_view(wall, eye) + ", " + name_of(face.face) + " face";
+        view.width_px = face.width_px;
+        view.height_px = face.height_px;
+        view.place = is_finite ? EyePlace::before : EyePlace::unknown;
+        if (is_finite) {
+            view.camera = face_camera(*wall.surface, face, from);
+            view.camera->name = view.name;
+        }
+        views.push_back(std::move(view));
+    }
+}
 
-char const* name_of(Eye eye) { return eye == Eye::left ? "left" : eye == Eye::right ? "right" : "middle"; }
+/// The earlier view of the other eye on a wall of the same place, where each eye has its own projector.
+int partner_of(std::span<DisplayView const> views, Display const& d, Wall const& wall, DisplayView const& view)
+{
+    Eye const other = view.eye == Eye::left ? Eye::right : Eye::left;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        Wall const& w = d.walls[std::size_t(views[i].wall)];
+        if (views[i].eye == other && w.eye != Eye::middle && w.corners == wall.corners && !w.surface &&
+            w.user == wall.user && w.rank == wall.rank && views[i].width_px == view.width_px &&
+            views[i].height_px == view.height_px)
+            return int(i);
+    }
+    return -1;
+}
+
+} // namespace
 
 Eyes eyes_of(User const& user, RoomPose const& head)
 {
@@ -39,6 +93,21 @@ Eyes eyes_of(User const& user, RoomPose const& head)
 
 RoomPose resting_head(User const& user) { return pose_of(user.head); }
 
+std::vector<FaceView> faces_of(Display const& d, Wall const& wall)
+{
+    constexpr double kReach_m = 1,
+                     kShare = 0.5; // how far a tracked head goes, and at most this share of the radius
+    User const& user = d.users[std::size_t(wall.user)];
+    gi::dvec3 const rest = eyes_of(user, resting_head(user)).middle;
+    std::vector<gi::dvec3> eyes{rest};
+    double const reach = user.tracker < 0 ? 0.1 : kReach_m;
+    double const far = std::min(reach, kShare * wall.surface->radius_m);
+    if (far > 0)
+        for (int corner = 0; corner < 8; ++corner)
+            eyes.push_back(rest + far * gi::dvec3{corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1});
+    return faces_for(*wall.surface, eye_px(d, wall), eyes, wall.render_width_px);
+}
+
 std::vector<DisplayView> views_of(Display const& d, std::span<std::optional<RoomPose> const> heads, int rank)
 {
     std::vector<DisplayView> views;
@@ -48,15 +117,23 @@ std::vector<DisplayView> views_of(Display const& d, std::span<std::optional<Room
         auto const u = std::size_t(wall.user);
         bool const is_tracked = u < heads.size() && heads[u];
         Eyes const eyes = eyes_of(d.users[u], is_tracked ? *heads[u] : resting_head(d.users[u]));
-        WallFrame const frame = wall_frame(wall.corners);
-        if (wall.stereo == StereoMode::off) {
-            views.push_back(view_of(d, int(w), Eye::middle, frame, eyes));
-            continue;
-        }
+        std::vector<Eye> shown{Eye::left, Eye::right};
+        if (wall.stereo == StereoMode::off) shown = {wall.eye};
+        if (wall.swap_eyes)
+            for (Eye& eye : shown) eye = eye == Eye::left ? Eye::right : eye == Eye::right ? Eye::left : eye;
+        std::vector<FaceView> const faces = wall.surface ? faces_of(d, wall) : std::vector<FaceView>();
         int const first = int(views.size());
-        views.push_back(view_of(d, int(w), wall.swap_eyes ? Eye::right : Eye::left, frame, eyes));
-        views.push_back(view_of(d, int(w), wall.swap_eyes ? Eye::left : Eye::right, frame, eyes));
-        views.back().partner = first;
+        for (Eye const eye : shown) {
+            std::size_t const before = views.size();
+            if (wall.surface)
+                add_faces(views, d, int(w), faces, eye, eyes);
+            else
+                views.push_back(flat_view(d, int(w), eye, wall_frame(wall.corners), eyes));
+            if (int(before) > first)
+                for (std::size_t k = before; k < views.size(); ++k) views[k].partner = first + int(k - before);
+            else if (wall.eye != Eye::middle && !wall.surface)
+                views.back().partner = partner_of({views.data(), before}, d, wall, views.back());
+        }
     }
     return views;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Eyes, and their cameras through the walls.
 
+#include "viewer/displays/cube_faces.h"
 #include "viewer/displays/display.h"
 #include "viewer/protocol/frame_command.h"
 
@@ -9,9 +10,6 @@
 #include <vector>
 
 namespace viewer {
-
-enum class Eye { middle, left, right };
-char const* name_of(Eye eye);
 
 /// Room positions, m.
 struct Eyes {
@@ -22,19 +20,25 @@ Eyes eyes_of(User const& user, RoomPose const& head);
 /// Head pose without tracking.
 RoomPose resting_head(User const& user);
 
-/// View of one eye on one wall.
+/// View of one eye on one wall, or on one face of the cube for a wall that is not flat.
 struct DisplayView {
     int wall = 0;
     Eye eye = Eye::middle;
-    std::string name;                ///< "left wall, right eye"
+    std::optional<CubeFace> face;    ///< of a wall that is not flat
+    std::string name;                ///< "left wall, right eye" or "dome, right eye, front face"
     int width_px = 0, height_px = 0; ///< to render
     EyePlace place = EyePlace::before;
     std::optional<gi::Camera> camera; ///< in the room; none if the wall stays dark for this eye
     int partner = -1;                 ///< index of the other eye's view of this wall, if it is earlier
 };
 
+/// The faces of a wall with a surface, of a constant number and size: seen from around the user's resting head.
+std::vector<FaceView> faces_of(Display const& display, Wall const& wall);
+
 /// Two views per stereo wall (first the eye shown in the left eye's place: left, or right with swap_eyes), one
-/// from the midpoint between the eyes per mono wall. `heads` is indexed by user; missing or empty heads are at
+/// from the midpoint between the eyes per mono wall, one of its eye per wall for one eye; for a wall that is not
+/// flat as many of each as it needs faces. Walls of the same place for the left and the right eye are partners.
+/// `heads` is indexed by user; missing or empty heads are at
 /// rest. Walls are in order; walls of other ranks are skipped (-1 = all ranks).
 std::vector<DisplayView> views_of(Display const& display, std::span<std::optional<RoomPose> const> heads,
                                   int rank = -1);

@@ -9,6 +9,7 @@
 #include "gi/core/math.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@ namespace viewer {
 
 struct WarpNode {
     glm::dvec2 place{0}, picture{0};
+    double weight = 1; ///< factor on light, 0 to 1
 
     bool operator==(WarpNode const&) const = default;
 };
@@ -35,8 +37,18 @@ struct WallMesh {
 
 inline constexpr int kMostWarpNodes = 257; ///< along one side
 
+/// Triangles that draw nothing, and those turned against most others, which draw a part twice.
+struct MeshFlaws {
+    std::size_t flat = 0, folded = 0;
+    glm::ivec2 first_flat{}, first_fold{}; ///< cells
+
+    bool operator==(MeshFlaws const&) const = default;
+};
+MeshFlaws find_flaws(WallMesh const& mesh);
+
 /// Description of the first invalid cell; none if the mesh can be drawn. All triangles must have the same
 /// orientation (mirrored is allowed, folded is not) and area, and lie no farther outside the viewport than its
-/// size; `picture` must be within the picture. Overlaps of distant triangles are not checked.
+/// size; `picture` must be within the picture. Meshes of 1000 triangles and more, which come from calibrations,
+/// may have up to half flat and 1 in 100 folded. Overlaps of distant triangles are not checked.
 std::optional<std::string> find_fault(WallMesh const& mesh);
 } // namespace viewer

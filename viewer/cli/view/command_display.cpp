@@ -18,7 +18,7 @@ namespace viewer {
 namespace {
 
 struct DisplayOptions {
-    std::string file, out, out_folder, pattern = "grid", section, example;
+    std::string file, out, out_folder, pattern = "grid", section, base, example;
     bool json = false;
 };
 
@@ -26,6 +26,9 @@ nlohmann::ordered_json display_json(Display const& d, std::vector<ViewSummary> c
 {
     nlohmann::ordered_json j;
     j["name"] = d.name;
+    if (d.world)
+        j["world"] = {{"position_m", {d.world->position_m.x, d.world->position_m.y, d.world->position_m.z}},
+                      {"yaw_deg", d.world->yaw_deg}};
     for (ViewSummary const& v : views)
         j["views"].push_back({{"name", v.view.name},
                               {"wall", d.walls[std::size_t(v.view.wall)].name},
@@ -34,6 +37,7 @@ nlohmann::ordered_json display_json(Display const& d, std::vector<ViewSummary> c
                               {"width_px", v.view.width_px},
                               {"height_px", v.view.height_px},
                               {"stereo", name_of(d.walls[std::size_t(v.view.wall)].stereo)},
+                              {"eye", name_of(v.view.eye)},
                               {"rank", d.walls[std::size_t(v.view.wall)].rank},
                               {"eye_is", name_of(v.view.place)},
                               {"distance_m", v.distance_m},
@@ -46,10 +50,20 @@ nlohmann::ordered_json display_json(Display const& d, std::vector<ViewSummary> c
 
 void print_parts(Display const& d)
 {
+    if (d.world)
+        fmt::print(
+            "world: the room's origin is at ({:.4g}, {:.4g}, {:.4g}) m of the scene, turned by {:.4g} degrees\n",
+            d.world->position_m.x, d.world->position_m.y, d.world->position_m.z, d.world->yaw_deg);
     for (DisplayWindow const& w : d.windows)
         fmt::print("window {}: {} x {} px at ({}, {}){}{}\n", w.name, w.width_px, w.height_px, w.x_px, w.y_px,
                    w.monitor >= 0 ? fmt::format(" of monitor {}", w.monitor) : "",
-                   w.fullscreen ? ", full screen" : "");
+                   std::string(w.fullscreen ? ", full screen"
+                               : w.borders  ? ""
+                                            : ", without borders") +
+                       (w.swap_group > 0
+                            ? fmt::format(", swap group {}{} (needs GLX_NV_swap_group)", w.swap_group,
+                                          w.swap_barrier > 0 ? fmt::format(" at barrier {}", w.swap_barrier) : "")
+                            : ""));
     for (User const& u : d.users)
         fmt::print("user {}: eyes {:.4g} m apart, head at ({:.4g}, {:.4g}, {:.4g}) m{}\n", u.name,
                    u.interpupillary_m, u.head.translation_m.x, u.head.translation_m.y, u.head.translation_m.z,
@@ -76,14 +90,16 @@ int run_check(DisplayOptions const& o)
         return 0;
     }
     fmt::print("{}{}\n", o.file, d.name.empty() ? "" : ": " + d.name);
-    fmt::print("{:<28}{:>16}{:>14}  {:<18}{:>5}{:>10}{:>16}{:>14}\n", "view", "wall, m", "picture, px", "stereo",
+    fmt::print("{:<28}{:>18}{:>14}  {:<18}{:>5}{:>10}{:>16}{:>14}\n", "view", "wall, m", "picture, px", "stereo",
                "rank", "eye at, m", "angle, degrees", "px/degree");
     for (ViewSummary const& v : views) {
         Wall const& wall = d.walls[std::size_t(v.view.wall)];
-        fmt::print("{:<28}{:>16}{:>14}  {:<18}{:>5}{:>10}{:>16}{:>14}\n", v.view.name,
-                   fmt::format("{:.4g} x {:.4g}", v.width_m, v.height_m),
-                   fmt::format("{} x {}", v.view.width_px, v.view.height_px), name_of(wall.stereo), wall.rank,
-                   fmt::format("{:.3f}", v.distance_m),
+        fmt::print("{:<28}{:>18}{:>14}  {:<18}{:>5}{:>10}{:>16}{:>14}\n", v.view.name,
+                   wall.surface ? name_of(wall.surface->type)
+                                : fmt::format("{:.4g} x {:.4g}", v.width_m, v.height_m),
+                   fmt::format("{} x {}", v.view.width_px, v.view.height_px),
+                   wall.eye == Eye::middle ? name_of(wall.stereo) : std::string(name_of(wall.eye)) + " eye",
+                   wall.rank, fmt::format("{:.3f}", v.distance_m),
                    v.view.camera ? fmt::format("{:.1f} x {:.1f}", v.horizontal_deg, v.vertical_deg) : "dark",
                    v.view.camera ? fmt::format("{:.1f} x {:.1f}", v.px_per_deg_across, v.px_per_deg_upward) : "");
     }
@@ -93,12 +109,27 @@ int run_check(DisplayOptions const& o)
     return 0;
 }
 
+/// YAML comments with all that the display file does not say.
+std::string skipped_comment(std::string const& file, std::vector<SkippedPart> const& parts)
+{
+    auto const plain = [](std::string text) {
+        for (char& c : text)
+            if (static_cast<unsigned char>(c) < ' ') c = ' ';
+        return text;
+    };
+    std::string text = "# From " + plain(file) + ", a configuration of " + name_of(format_of(file)) + ".\n";
+    if (!parts.empty()) text += "# Not imported, or assumed:\n";
+    for (SkippedPart const& part : parts) text += "# - " + plain(part.where) + ": " + plain(part.what) + "\n";
+    return text;
+}
+
 int run_import(DisplayOptions const& o)
 {
     check_outputs({o.out}, {o.file});
     gi::Report report;
-    Display const d = import_display(o.file, o.section, report);
-    save_display(o.out, d);
+    std::vector<SkippedPart> skipped;
+    Display const d = import_display(o.file, {o.section, o.base}, report, &skipped);
+    gi::write_text(o.out, skipped_comment(o.file, skipped) + to_yaml(d));
     fmt::print("{}: {} walls, {} windows, {} users, from a configuration of {}\n", o.out, d.walls.size(),
                d.windows.size(), d.users.size(), name_of(format_of(o.file)));
     std::fflush(stdout);
@@ -135,8 +166,17 @@ int run_calibrate(DisplayOptions const& o)
         throw gi::InputError("the folder " + o.out_folder + " cannot be made", failure.message(), "name another");
     auto const views = views_of(d, {});
     for (std::size_t i = 0; i < views.size(); ++i) {
-        CalibrationPicture const picture = draw_calibration(*pattern, d, views[i]);
-        auto const file = std::filesystem::path(o.out_folder) / picture_name(i, views[i].name);
+        Wall const& wall = d.walls[std::size_t(views[i].wall)];
+        bool const is_next_face = i > 0 && wall.surface && views[i - 1].wall == views[i].wall;
+        if (is_next_face) continue; // one picture for the whole surface
+        if (wall.surface && *pattern != CalibrationPattern::grid) {
+            report.lose("projections that are not flat, which have only the pattern grid", 1, wall.name);
+            continue;
+        }
+        CalibrationPicture const picture =
+            wall.surface ? draw_curved_grid(d, wall) : draw_calibration(*pattern, d, views[i]);
+        auto const file =
+            std::filesystem::path(o.out_folder) / picture_name(i, wall.surface ? wall.name : views[i].name);
         gi::write_png(file, picture.width, picture.height, picture.rgb);
         fmt::print("{}\n", file.string());
     }
@@ -177,10 +217,14 @@ void add_display(CLI::App& app, int& exit_code)
 
     CLI::App* const import =
         display->add_subcommand("import", "Convert the configuration of another program to a display file.");
-    import->add_option("FILE", o->file, ".json (SGCT), .pvx (ParaView), .eqc (Equalizer) or .cfg (Vrui)")
+    import
+        ->add_option("FILE", o->file,
+                     ".json or .xml (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui or\n"
+                     "nDisplay's text) or .ndisplay")
         ->required();
     import->add_option("--out", o->out, "display file to write")->required();
     import->add_option("--section", o->section, "Vrui only: name of the environment, usually that of a machine");
+    import->add_option("--base", o->base, "Vrui only: configuration that FILE changes, usually its Vrui.cfg");
     import->callback([o, &exit_code] { exit_code = run_import(*o);
 });
 
@@ -196,7 +240,8 @@ CLI::App* const example = display->add_subcommand("example", "Write one of the b
 example
     ->add_option("NAME", o->example,
                  "desktop3d.yaml, powerwall.yaml, cave4.yaml, cave5.yaml, dome.yaml,\n"
-                 "cave.json, cave.pvx, cave.eqc or cave.cfg")
+                 "planetarium.yaml,\n"
+                 "cave.json, cave.pvx, cave.eqc, cave.cfg or cave.ndisplay")
     ->required();
 example->add_option("--out", o->out, "file to write")->required();
 example->callback([o, &exit_code] { exit_code = run_example(*o); });

@@ -74,6 +74,10 @@ void GlProgram::set(char const* name, glm::ivec2 v) const
 {
     glProgramUniform2i(program_.id(), location(name), v.x, v.y);
 }
+void GlProgram::set(char const* name, glm::vec2 v) const
+{
+    glProgramUniform2f(program_.id(), location(name), v.x, v.y);
+}
 void GlProgram::set(char const* name, glm::vec3 v) const
 {
     glProgramUniform3f(program_.id(), location(name), v.x, v.y, v.z);

@@ -24,6 +24,7 @@ public:
     void set(char const* name, int value) const;
     void set(char const* name, float value) const;
     void set(char const* name, glm::ivec2 value) const;
+    void set(char const* name, glm::vec2 value) const;
     void set(char const* name, glm::vec3 value) const;
     void set(char const* name, glm::vec4 value) const;
     void set(char const* name, glm::mat3 const& value) const;

@@ -76,7 +76,8 @@ WallSettings const& checked(WallSettings const& settings)
 
 WallPass::WallPass(WallSettings const& settings)
     : settings_(checked(settings)),
-      program_({"wall.vert"}, {"tone_map.glsl", "wall.frag"}, "#define CURVE 0\n#define CURVE_FILMIC 1\n")
+      program_({"wall.vert"}, {"tone_map.glsl", "bilinear.glsl", "wall.frag"},
+               "#define CURVE 0\n#define CURVE_FILMIC 1\n")
 {
     auto const& vertices = settings_.mesh.vertices;
     glNamedBufferStorage(buffer_.id(), GLsizeiptr(vertices.size() * sizeof(WarpVertex)), vertices.data(), 0);
@@ -108,7 +109,7 @@ WallPass::WallPass(WallSettings const& settings)
     program_.set("gamma", settings_.gamma);
 }
 
-void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded) const
+void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded, Outside outside) const
 {
     if (encoded.texture == 0)
         throw gi::InputError("a wall has no picture", "there is nothing to warp", "draw the eye's picture first");
@@ -117,7 +118,7 @@ void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded) const
     glEnable(GL_SCISSOR_TEST);
     glScissor(target.corner_px.x, target.corner_px.y, target.size_px.x, target.size_px.y);
     glClearColor(0, 0, 0, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
+    if (outside == Outside::black) glClear(GL_COLOR_BUFFER_BIT);
     program_.set("up", target.rows == RowOrder::top_last ? 1.0f : -1.0f);
     glBindTextureUnit(0, encoded.texture);
     glBindTextureUnit(1, map_.id());

@@ -9,6 +9,7 @@
 
 #include "viewer/devices/gl/draw_target.h"
 #include "viewer/devices/gl/gl_program.h"
+#include "viewer/displays/surface.h"
 
 #include <optional>
 #include <vector>
@@ -58,6 +59,7 @@ struct WallSettings {
     std::optional<BlendMap> blend_map; ///< multiplied with the formula
     glm::vec3 gain{1};                 ///< factor on light, per channel, >= 0; values above white are clipped
     glm::vec3 gamma{2.2f};             ///< of the display, > 0
+    std::optional<Surface> surface{};  ///< of a wall that is not flat: a SurfacePass goes before
 
     bool operator==(WallSettings const&) const = default;
 };
@@ -68,9 +70,10 @@ public:
     /// Throws InputError on a mesh with fewer than 2 x 2 vertices or the wrong number of vertices, non-finite
     /// values, overlaps larger than the picture, and gains or gammas out of range.
     explicit WallPass(WallSettings const& settings);
-    /// Draws the picture, black outside the mesh, with bilinear filtering. If mesh, size, blend and gain have no
-    /// effect, its bytes stay unchanged.
-    void draw(DrawTarget const& target, ShownPicture const& encoded) const;
+    enum class Outside { black, kept };
+    /// Draws the picture with bilinear filtering; outside the mesh it is black, or what was there stays, for walls
+    /// that share a viewport. If mesh, size, blend and gain have no effect, its bytes stay unchanged.
+    void draw(DrawTarget const& target, ShownPicture const& encoded, Outside outside = Outside::black) const;
 
 private:
     WallSettings settings_;

@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "viewer/devices/gl/glfw_library.h"
+#include "viewer/devices/gl/swap_group.h"
 #include "viewer/devices/gl/window_events.h"
 
 #include <GLFW/glfw3.h>
@@ -83,6 +84,7 @@ Window::Window(WindowSettings const& settings, gi::Report& report, Window const*
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
     glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE); // keep the other walls visible when one loses the focus
+    glfwWindowHint(GLFW_DECORATED, settings.borders);
     // Place it before showing it, so that it never appears elsewhere.
     bool const shown = settings.visibility == Visibility::shown;
     glfwWindowHint(GLFW_VISIBLE, shown && (monitor || !settings.position_px));
@@ -109,6 +111,13 @@ Window::Window(WindowSettings const& settings, gi::Report& report, Window const*
     }
     s.gl.emplace(GlContext::of_window(s.window, report));
     glfwSwapInterval(settings.swap_interval);
+    if (settings.swap_group > 0)
+        if (std::string const why = s.gl->glx().context
+                                        ? join_swap_group(settings.swap_group, settings.swap_barrier)
+                                        : "the window is not one of GLX";
+            !why.empty())
+            report.lose("windows outside their swap group, which swap by themselves", 1,
+                        fmt::format("{}: {}", settings.title, why));
     s.events.listen(s.window, next_number++);
 }
 

@@ -34,14 +34,17 @@ struct WindowSettings {
     int swap_interval = 1;                 ///< refreshes of the monitor per swap; 0 = do not wait
     QuadBuffer quad_buffer = QuadBuffer::no;
     Visibility visibility = Visibility::shown;
+    bool borders = true;  ///< the window system's frame and title
+    int swap_group = 0;   ///< of the driver, whose windows swap together; 0 = none
+    int swap_barrier = 0; ///< joins the groups of several machines; 0 = none
 };
 
 class Window {
 public:
-    /// Opens the window and makes its context current. If the driver has no quad-buffer stereo, the window is
-    /// opened without it and this is counted in the report. The textures and buffers of `shares` are shared with
-    /// this window. Throws InputError on an unknown monitor, a size that is not positive, or if no window can be
-    /// opened.
+    /// Opens the window and makes its context current. If the driver has no quad-buffer stereo or no swap groups,
+    /// the window is opened without them and this is counted in the report. The textures and buffers of `shares`
+    /// are shared with this window. Throws InputError on an unknown monitor, a size that is not positive, or if no
+    /// window can be opened.
     Window(WindowSettings const& settings, gi::Report& report, Window const* shares = nullptr);
     ~Window();
     Window(Window const&) = delete;

@@ -72,6 +72,10 @@ std::vector<ViewCommand> WindowScreen::own_views(gi::dmat4 const& world_from_cam
     gi::dvec3 const rest = display_->users.empty() ? gi::dvec3{0} : resting_head(display_->users[0]).position;
     Navigation const upright(world_from_camera, 1, gi::dvec3(world_from_camera[3]));
     gi::dmat4 const world_from_room = upright.world_from_room() * glm::translate(gi::dmat4(1), -rest);
+    {
+        std::lock_guard const lock(room_mutex_);
+        world_from_room_ = world_from_room;
+    }
     return display_layout(*display_, tracking_->heads(steady_s), world_from_room).views;
 }
 
@@ -154,7 +158,13 @@ void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, Scre
     auto const at = std::find_if(shown_.windows.begin(), shown_.windows.end(),
                                  [&](auto const& w) { return w.get() == &window; });
     auto const number = std::find(shown_.of.begin(), shown_.of.end(), int(at - shown_.windows.begin()));
-    auto const panes = display_panes(*display_, frame->command.views)[std::size_t(number - shown_.of.begin())];
+    gi::dmat4 world_from_room(1);
+    {
+        std::lock_guard const lock(room_mutex_);
+        world_from_room = world_from_room_;
+    }
+    auto const panes =
+        display_panes(*display_, frame->command.views, world_from_room)[std::size_t(number - shown_.of.begin())];
     taken_.resize(shown_.windows.size());
     auto& taken = taken_[std::size_t(at - shown_.windows.begin())];
     if (taken != frame) window.presenter.take(frame, panes);

@@ -9,6 +9,8 @@
 #include "viewer/devices/gl/panel.h"
 #include "viewer/experiment/screens/screen_settings.h"
 
+#include <mutex>
+
 namespace viewer {
 
 class WindowScreen : public Screen {
@@ -36,6 +38,8 @@ private:
     ShownWindow& first() const { return *shown_.windows.front(); }
 
     std::optional<Display> display_;
+    std::mutex room_mutex_;
+    gi::dmat4 world_from_room_{1};         ///< at the last views; the drawing thread reads it
     std::optional<UserTracking> tracking_; ///< for a display
     DisplayWindows shown_;                 ///< one window without a display
     std::unique_ptr<Panel> panel_;

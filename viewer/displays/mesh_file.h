@@ -1,0 +1,19 @@
+#pragma once
+// Warp meshes in files of other programs: P. Bourke's (.data: a type, columns and rows, then x, y, u, v, intensity
+// per node, rows from below; x from -aspect to aspect, y from -1 to 1) and Wavefront .obj of a grid (x, y like
+// that, one vt per v).
+
+#include "viewer/displays/warp_mesh.h"
+
+#include <filesystem>
+
+namespace viewer {
+
+/// @param aspect  width / height of the viewport
+/// Throws InputError, with the line, on other formats, on an .obj that is not a grid, and on meshes that cannot be
+/// drawn.
+WallMesh load_mesh_file(std::filesystem::path const& file, double aspect);
+/// @param name  its extension is the format
+WallMesh parse_mesh_file(std::string const& text, std::string const& name, double aspect);
+
+} // namespace viewer
