@@ -61,6 +61,11 @@ nlohmann::json UserTracking::stats(double steady_s) const
                                            {"malformed", r.counts.malformed},
                                            {"port", r.port},
                                            {"head_age_ms", 1e3 * r.bodies[0].age_s}};
+        if (r.counts.connects + r.counts.disconnects > 0 || !r.fault.empty()) {
+            j["connects"] = r.counts.connects;
+            j["disconnects"] = r.counts.disconnects;
+            j["fault"] = r.fault;
+        }
         for (auto const& [what, value] : numbers(r.latency)) j[what] = value;
     }
     return all;

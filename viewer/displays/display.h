@@ -7,6 +7,7 @@
 
 #include "viewer/displays/off_axis.h"
 #include "viewer/displays/stereo_mode.h"
+#include "viewer/displays/wand.h"
 #include "viewer/displays/warp_mesh.h"
 #include "viewer/protocol/frame_command.h"
 
@@ -85,7 +86,7 @@ struct User {
     bool operator==(User const&) const = default;
 };
 
-enum class DisplayTrackerType { osc, dtrack, openxr, file, fake };
+enum class DisplayTrackerType { osc, dtrack, vrpn, openxr, file, fake };
 
 enum class FilterType { none, one_euro };
 
@@ -103,13 +104,18 @@ struct DisplayTracker {
     DisplayTrackerType type = DisplayTrackerType::fake;
     std::string address = "127.0.0.1"; ///< of the interface to listen on (osc, dtrack)
     int port = 0;
-    std::string body; ///< osc: path; dtrack: number; openxr: head, left_hand, right_hand
+    std::string body; ///< osc: /name or name; dtrack: number, flystick0; vrpn: number of the sensor; openxr: head,
+                      ///< left_hand, right_hand
     std::string file; ///< recorded poses
     Placement room_from_tracker;
     double latency_ms = 0; ///< from motion to packet, measured
     TrackerFilter filter{};
     std::string left_hand_body{}, right_hand_body{}; ///< of the same sender, by its names; empty = default names
     std::string left_foot_body{}, right_foot_body{};
+    std::optional<WandSettings> wand{}; ///< the body is a wand
+    std::string device{};               ///< vrpn: Tracker0@host[:port]
+    std::string
+        controls{}; ///< vrpn: device of the same server with the wand's buttons and analogs; empty = `device`'s
 
     bool operator==(DisplayTracker const&) const = default;
 };
@@ -133,6 +139,9 @@ struct Display {
 
     bool operator==(Display const&) const = default;
 };
+
+/// The name of a body without the / with which it may begin: "/head" and "head" mean the same everywhere.
+inline std::string body_name(std::string const& id) { return id.starts_with('/') ? id.substr(1) : id; }
 
 char const* name_of(DisplayTrackerType type);
 std::optional<DisplayTrackerType> tracker_type(std::string const& name);

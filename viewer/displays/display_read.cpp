@@ -186,6 +186,37 @@ TrackerFilter read_filter(Yaml const& y)
     return filter;
 }
 
+/// Words of a list, each understood by `read`.
+template <typename Use, typename Read>
+std::vector<Use> uses(Yaml const& list, std::size_t most, Read const& read, char const* what,
+                      std::string const& known)
+{
+    std::vector<Use> all;
+    for (Yaml const& item : list.items()) {
+        if (all.size() == most)
+            throw item.error(fmt::format("more than {} entries", most), "a wand has no more of them",
+                             "shorten the list");
+        auto const use = read(item.text());
+        if (!use)
+            throw item.error("'" + item.text().substr(0, 64) + "' is nothing that " + what + " of a wand does",
+                             "the name is unknown", "there are: " + known);
+        all.push_back(*use);
+    }
+    return all;
+}
+
+WandSettings read_wand(Yaml const& y)
+{
+    check_display_keys(y, "wand");
+    WandSettings wand;
+    if (y.has("buttons"))
+        wand.buttons =
+            uses<WandAction>(y.at("buttons"), kMostWandButtons, wand_action, "a button", wand_action_names());
+    if (y.has("axes"))
+        wand.axes = uses<WandAxis>(y.at("axes"), kMostWandAxes, wand_axis, "an axis", wand_axis_names());
+    return wand;
+}
+
 DisplayTracker read_tracker(Yaml const& y)
 {
     check_display_keys(y, "tracker");
@@ -195,10 +226,13 @@ DisplayTracker read_tracker(Yaml const& y)
     auto const known = tracker_type(type);
     if (!known)
         throw y.at("type").error("'" + type.substr(0, 64) + "' is no type of tracker", "the name is unknown",
-                                 "osc, dtrack, openxr, file or fake");
+                                 "osc, dtrack, vrpn, openxr, file or fake");
     tracker.type = *known;
     if (y.has("address")) tracker.address = y.at("address").text();
     if (y.has("port")) tracker.port = int(y.at("port").integer(-1000000, 1000000));
+    if (y.has("device")) tracker.device = y.at("device").text();
+    if (y.has("controls")) tracker.controls = y.at("controls").text();
+    if (y.has("wand")) tracker.wand = read_wand(y.at("wand"));
     if (y.has("body")) tracker.body = y.at("body").text();
     for (LimbBody const& b : kLimbBodies)
         if (y.has(b.key)) tracker.*b.body = y.at(b.key).text();

@@ -90,6 +90,15 @@ void write_tracker(Writer& w, DisplayTracker const& t)
     w.key("type", name_of(t.type));
     if (t.address != DisplayTracker{}.address) w.key("address", quoted(t.address));
     if (t.port != 0) w.key("port", std::to_string(t.port));
+    if (!t.device.empty()) w.key("device", quoted(t.device));
+    if (!t.controls.empty()) w.key("controls", quoted(t.controls));
+    if (t.wand) {
+        std::string buttons, axes;
+        for (WandAction const a : t.wand->buttons)
+            buttons += (buttons.empty() ? "" : ", ") + std::string(name_of(a));
+        for (WandAxis const& a : t.wand->axes) axes += (axes.empty() ? "" : ", ") + name_of(a);
+        w.key("wand", "{buttons: [" + buttons + "], axes: [" + axes + "]}");
+    }
     if (!t.body.empty()) w.key("body", quoted(t.body));
     for (LimbBody const& b : kLimbBodies)
         if (!(t.*b.body).empty()) w.key(b.key, quoted(t.*b.body));
