@@ -57,7 +57,8 @@ TEST(DisplayFile, SaysWhatItSays)
     EXPECT_EQ(d.trackers[0].address, "127.0.0.1");
     Display const c = shipped("cave5.yaml");
     EXPECT_EQ(c.trackers[0].room_from_tracker, (Placement{{-1.5, 0, 1.5}, {-90, 0, 0}}));
-    EXPECT_EQ(c.trackers[1].body, "1");
+    EXPECT_EQ(c.trackers[1].body, "flystick0");
+    EXPECT_EQ(c.trackers[1].wand, WandSettings{});
     EXPECT_EQ(c.users[0].tracker, 0);
     EXPECT_EQ(d.users[0].avatar, "");
     EXPECT_FALSE(d.users[0].eye_height_m);

@@ -53,6 +53,7 @@ std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<V
             if (is_of(views[k], wall)) (pane.left < 0 ? pane.left : pane.right) = int(k);
         if (pane.left < 0) continue;
         pane.stereo = wall.stereo;
+        pane.of_wall = int(w);
         pane.wall = needs_finish(wall) ? int(w) : -1;
         auto const add = [&](int window, bool right_alone) {
             PixelRectangle const r = viewport_px(wall, display.windows[std::size_t(window)]);

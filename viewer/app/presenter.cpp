@@ -2,6 +2,8 @@
 
 #include "viewer/displays/compose.h"
 
+#include <epoxy/gl.h>
+
 namespace viewer {
 namespace {
 
@@ -67,8 +69,30 @@ ShownPicture Presenter::bent(Pane const& pane, EyeView const& eye, DisplaySettin
     DisplaySettings alone = settings;
     alone.stereo = StereoMode::off;
     pass_.draw(flat_[side]->target(), eye, eye, alone);
+    if (overlay_) draw_overlay(flat_[side]->target());
     walls_[std::size_t(pane.wall)].draw(bent_[side]->target(), flat_[side]->shown());
     return bent_[side]->shown();
+}
+
+/// @param wall_picture  of one eye, before it is bent, top row first
+void Presenter::draw_overlay(DrawTarget const& wall_picture)
+{
+    WallOverlay const& o = *overlay_;
+    if (uploaded_ != overlay_) {
+        if (!overlay_picture_ || overlay_picture_->shown().size_px != o.size_px)
+            overlay_picture_.emplace(TextureTarget::Format::bytes, o.size_px);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glTextureSubImage2D(overlay_picture_->shown().texture, 0, 0, 0, o.size_px.x, o.size_px.y, GL_RGB,
+                            GL_UNSIGNED_BYTE, o.rgb.data());
+        uploaded_ = overlay_;
+    }
+    glm::dvec2 const px(wall_picture.size_px);
+    glm::ivec2 const top_left(glm::round(px * glm::dvec2(o.place.left, 1 - o.place.bottom - o.place.height)));
+    glm::ivec2 const size(glm::round(px * glm::dvec2(o.place.width, o.place.height)));
+    bind(wall_picture);
+    glBlitNamedFramebuffer(overlay_picture_->target().framebuffer, wall_picture.framebuffer, 0, 0, o.size_px.x,
+                           o.size_px.y, top_left.x, top_left.y, top_left.x + size.x, top_left.y + size.y,
+                           GL_COLOR_BUFFER_BIT, GL_LINEAR);
 }
 
 void Presenter::draw_on_wall(Pane const& pane, DrawTarget const& target, EyeView const& left, EyeView const& right,
@@ -99,8 +123,11 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
         settings.comparison = s.comparison;
         settings.split = s.split;
         settings.on_screen_px = on_screen_px + pane.corner_px;
-        if (pane.wall >= 0)
-            draw_on_wall(pane, part, left, right, settings);
+        overlay_ = s.overlay && pane.of_wall >= 0 && pane.of_wall == s.overlay->wall ? s.overlay : nullptr;
+        Pane finished = pane;
+        if (overlay_) finished.wall = pane.of_wall; // also through a wall pass that changes nothing
+        if (finished.wall >= 0)
+            draw_on_wall(finished, part, left, right, settings);
         else
             pass_.draw(part, left, right, settings);
     }

@@ -5,6 +5,7 @@
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/reprojection.h"
 #include "viewer/devices/gl/wall_pass.h"
+#include "viewer/displays/wall_ray.h"
 #include "viewer/engine/live/live_renderer.h"
 
 #include <deque>
@@ -17,10 +18,20 @@ struct Pane {
     StereoMode stereo = StereoMode::off;
     int left = -1, right = -1; ///< views of the frame; -1 = none, stays dark
     bool right_alone = false;  ///< shows only the right eye: second of two windows
+    int of_wall = -1;          ///< wall of the display that it shows; -1 = none
     int wall = -1;             ///< index into the walls' settings; -1 = flat, without a wall pass
 };
 
+/// A picture on a part of a wall, at the wall's distance for both eyes.
+struct WallOverlay {
+    int wall = 0;
+    WallRectangle place;
+    glm::ivec2 size_px{};
+    std::vector<unsigned char> rgb; ///< rows from the top
+};
+
 struct PresentSettings {
+    std::shared_ptr<WallOverlay const> overlay; ///< null = none
     gi::ToneMapSettings tone;
     Comparison comparison = Comparison::off;
     float split = 0.5f;
@@ -51,9 +62,13 @@ private:
     EyeView eye(int view, std::vector<gi::Camera> const& now);
     void draw_on_wall(Pane const& pane, DrawTarget const& target, EyeView const& left, EyeView const& right,
                       DisplaySettings const& settings);
+    void draw_overlay(DrawTarget const& wall_picture);
     ShownPicture bent(Pane const& pane, EyeView const& eye, DisplaySettings const& settings, std::size_t side,
                       glm::ivec2 size_px);
 
+    std::shared_ptr<WallOverlay const> overlay_; ///< of the current call of draw, for the pane that has it
+    std::shared_ptr<WallOverlay const> uploaded_;
+    std::optional<TextureTarget> overlay_picture_;
     std::deque<Shown> shown_;
     std::shared_ptr<LiveFrame const> frame_;
     DisplayPass pass_;
