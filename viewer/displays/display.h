@@ -82,6 +82,7 @@ struct User {
     int tracker = -1;          ///< tracker of the head; -1 = none
     std::string avatar{};      ///< file of the user's skinned model, as written; empty = none
     std::optional<double> eye_height_m{}; ///< standing, above the floor y = 0; none = that of the resting head
+    std::string avatar_joints{};          ///< joint map of the model, as written; empty = by usual names
 
     bool operator==(User const&) const = default;
 };

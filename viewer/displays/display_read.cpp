@@ -151,6 +151,26 @@ DisplayWindow read_window(Yaml const& y)
     return window;
 }
 
+/// The file of a model, or {file: ..., joints: ...}.
+void read_avatar(User& user, Yaml const& y, std::filesystem::path const& folder)
+{
+    auto const is_file = [&folder](std::string const& name) {
+        std::error_code error;
+        return std::filesystem::is_regular_file(folder / name, error);
+    };
+    if (y.is_map()) check_display_keys(y, "avatar");
+    Yaml const file = y.is_map() ? needed(y, "file", "guide.glb") : y;
+    user.avatar = file.text();
+    if (user.avatar != "avatar" && !is_file(user.avatar))
+        throw file.error("there is no file '" + user.avatar.substr(0, 256) + "'", "it would be the user's body",
+                         "name a skinned model, or avatar");
+    if (!y.is_map() || !y.has("joints")) return;
+    user.avatar_joints = y.at("joints").text();
+    if (!is_file(user.avatar_joints))
+        throw y.at("joints").error("there is no file '" + user.avatar_joints.substr(0, 256) + "'",
+                                   "it would say which joints the model has", "lightwell avatar map proposes one");
+}
+
 User read_user(Yaml const& y, Display const& d, std::filesystem::path const& folder)
 {
     check_display_keys(y, "user");
@@ -161,13 +181,7 @@ User read_user(Yaml const& y, Display const& d, std::filesystem::path const& fol
     if (y.has("head_rotation_deg")) user.head.rotation_deg = y.at("head_rotation_deg").vector(-kAny, kAny);
     if (y.has("eye_offset_m")) user.eye_offset_m = y.at("eye_offset_m").vector(-kAny, kAny);
     if (y.has("head_tracker")) user.tracker = index_of(d.trackers, y.at("head_tracker"), "trackers");
-    if (y.has("avatar")) {
-        user.avatar = y.at("avatar").text();
-        std::error_code error;
-        if (user.avatar != "avatar" && !std::filesystem::is_regular_file(folder / user.avatar, error))
-            throw y.at("avatar").error("there is no file '" + user.avatar.substr(0, 256) + "'",
-                                       "it would be the user's body", "name a skinned model, or avatar");
-    }
+    if (y.has("avatar")) read_avatar(user, y.at("avatar"), folder);
     if (y.has("eye_height_m")) user.eye_height_m = y.at("eye_height_m").number(-kAny, kAny);
     return user;
 }

@@ -80,7 +80,10 @@ void write_user(Writer& w, User const& user, Display const& d)
     if (user.head.rotation_deg != gi::dvec3{0}) w.key("head_rotation_deg", vec(user.head.rotation_deg));
     if (user.eye_offset_m != gi::dvec3{0}) w.key("eye_offset_m", vec(user.eye_offset_m));
     if (user.tracker >= 0) w.key("head_tracker", quoted(d.trackers[std::size_t(user.tracker)].name));
-    if (!user.avatar.empty()) w.key("avatar", quoted(user.avatar));
+    if (!user.avatar.empty())
+        w.key("avatar", user.avatar_joints.empty() ? quoted(user.avatar)
+                                                   : fmt::format("{{file: {}, joints: {}}}", quoted(user.avatar),
+                                                                 quoted(user.avatar_joints)));
     if (user.eye_height_m) w.key("eye_height_m", fmt::format("{}", *user.eye_height_m));
 }
 

@@ -37,7 +37,7 @@ struct ViewArguments {
     RenderOptions scene; ///< scene, camera, sky
     std::vector<std::string> settings, fullscreen;
     std::string size, navigate = "fly", record, frame_log, remote, stats, screenshots, display, replay, out, video,
-                      avatar;
+                      avatar, avatar_joints;
     RankOptions ranks;
     double fps = 30, eye_height_m = 1.6;
     int paths = 0;
@@ -69,7 +69,8 @@ NavigationMode parse_navigation(std::string const& name)
 /// Avatars of --avatar and of the display; file names in a display file are relative to its folder.
 std::vector<AvatarChoice> choices_of(ViewArguments const& a, std::optional<Display> const& display)
 {
-    return avatar_choices(a.avatar, a.eye_height_m, display, std::filesystem::path(a.display).parent_path());
+    return avatar_choices(a.avatar, a.eye_height_m, display, std::filesystem::path(a.display).parent_path(),
+                          a.avatar_joints);
 }
 
 ViewOptions view_options(ViewArguments const& a, std::string const& command_line, gi::Report& report)
@@ -209,7 +210,7 @@ void check_results(ViewArguments const& a)
 {
     std::string const screenshot = a.screenshots.empty() ? "" : a.screenshots + "lightwell_000000.png";
     check_outputs({a.stats, a.record, a.frame_log, screenshot},
-                  {a.scene.scene, a.scene.environment, a.display, a.avatar});
+                  {a.scene.scene, a.scene.environment, a.display, a.avatar, a.avatar_joints});
 }
 
 int run(ViewArguments const& a, std::string const& command_line)
@@ -241,6 +242,7 @@ int run(ViewArguments const& a, std::string const& command_line)
     for (AvatarChoice const& avatar : choices_of(a, o.display)) {
         what += " with " + avatar.file;
         hash ^= file_hash(avatar.file) * (2 * avatar.user + 1); // so that equal files do not cancel out
+        if (!avatar.joints.empty()) hash ^= file_hash(avatar.joints) * (2 * avatar.user + 3);
     }
     ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks), [&report] {
         nlohmann::ordered_json const all = to_json(report);
@@ -309,7 +311,7 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
     if (replays)
         refuse({"scene", "--record", "--frame-log", "--remote", "--remote-port", "--remote-token", "--remote-open",
                 "--display", "--hmd", "--fullscreen", "--time-limit", "--navigate", "--screenshots", "--stats",
-                "--camera", "--envmap", "--avatar", "--eye-height"},
+                "--camera", "--envmap", "--avatar", "--avatar-joints", "--eye-height"},
                "with --replay");
     else
         refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
@@ -349,6 +351,9 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_flag("--hmd", a->hmd, "show in the headset of the OpenXR runtime (docs/hmd.md)");
     c->add_option("--avatar", a->avatar,
                   "skinned model, or avatar (built in): follows the first user's head and hands, seen in mirrors");
+    c->add_option("--avatar-joints", a->avatar_joints,
+                  "joint map of --avatar, YAML (lightwell avatar map proposes one); default: by usual names")
+        ->needs("--avatar");
     c->add_flag("--seated", a->seated, "with --hmd: space without a floor; the eyes start at --eye-height");
     c->add_option("--eye-height", a->eye_height_m,
                   "m above the floor, when walking, with --avatar or --seated; display files set their users' own")
