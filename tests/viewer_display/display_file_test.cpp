@@ -57,7 +57,8 @@ TEST(DisplayFile, SaysWhatItSays)
     EXPECT_EQ(d.trackers[0].address, "127.0.0.1");
     Display const c = shipped("cave5.yaml");
     EXPECT_EQ(c.trackers[0].room_from_tracker, (Placement{{-1.5, 0, 1.5}, {-90, 0, 0}}));
-    EXPECT_EQ(c.trackers[1].body, "1");
+    EXPECT_EQ(c.trackers[1].body, "flystick0");
+    EXPECT_EQ(c.trackers[1].wand, WandSettings{});
     EXPECT_EQ(c.users[0].tracker, 0);
     EXPECT_EQ(d.users[0].avatar, "");
     EXPECT_FALSE(d.users[0].eye_height_m);
@@ -119,6 +120,10 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"    window: w", "    window: w\n    user: me", "d.yaml:7:11: 'me' is not in users"},
         {"name: u,", "name: u, avatar: [1],", "d.yaml:10:23: "},
         {"name: u,", "name: u, avatar: nobody.glb,", "d.yaml:10:23: there is no file 'nobody.glb'"},
+        {"name: u,", "name: u, avatar: {joints: j.yaml},", "d.yaml:10:23: file is missing"},
+        {"name: u,", "name: u, avatar: {file: avatar, joints: nowhere.yaml},",
+         "d.yaml:10:46: there is no file 'nowhere.yaml'"},
+        {"name: u,", "name: u, avatar: {file: avatar, bones: x},", "bones"},
         {"name: u,", "name: u, eye_height_m: tall,", "d.yaml:10:29: "},
         {"name: u,", "name: u, eye_height_m: 165,", "d.yaml:10:29: eyes 165 m above the floor"},
         {"body: /head", "body: /head, left_foot_body: /head", "d.yaml:12:67: body '/head' twice"},
@@ -143,11 +148,28 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"{name: u, head_position_m: [0, 1.7, 0]}",
          "{name: u, head_position_m: [0, 1.7, 0]}\n  - {name: v, head_position_m: [0, 1, 0]}",
          "d.yaml:2:5: user is missing (there are several)"},
-        {"type: osc", "type: vrpn", "d.yaml:12:21: 'vrpn' is no type of tracker"},
+        {"type: osc", "type: vicon", "d.yaml:12:21: 'vicon' is no type of tracker"},
+        {"type: osc, port: 9000, body: /head", "type: vrpn, body: 0", "d.yaml:12:5: no device"},
+        {"type: osc, port: 9000, body: /head", "type: vrpn, device: Tracker0, body: 0",
+         "d.yaml:12:35: 'Tracker0' is no device of VRPN (it is the device's name, @ and its server) device: "
+         "Tracker0@localhost"},
+        {"type: osc, port: 9000, body: /head", "type: vrpn, device: T@h:99999, body: 0", "is no device of VRPN"},
+        {"type: osc, port: 9000, body: /head", "type: vrpn, device: T@h, port: 3883, body: 0",
+         "d.yaml:12:46: a port or address of our own with type: vrpn"},
+        {"type: osc, port: 9000, body: /head", "type: vrpn, device: T@h, body: head",
+         "'head' is no sensor of VRPN"},
+        {"body: /head", "body: /head, device: T@h", "a device with type: osc"},
+        {"body: /head", "body: /head, wand: {buttons: [jump]}",
+         "d.yaml:12:68: 'jump' is nothing that a button of a wand does (the name is unknown) there are: none, "
+         "select"},
+        {"body: /head", "body: /head, wand: {axes: [--up]}", "'--up' is nothing that an axis of a wand does"},
+        {"body: /head", "body: /head, wand: {keys: []}", "keys"},
+        {"type: osc, port: 9000, body: /head", "type: fake, wand: {}", "a wand with type: fake"},
         {"port: 9000", "port: 0", "d.yaml:12:32: port 0"},
         {"body: /head}", "body: /head}\n  - {name: wand, type: dtrack, port: 9000, body: 1}",
          "trackers 't' and 'wand' share 127.0.0.1 port 9000 (one speaks OSC, the other DTrack)"},
-        {"body: /head", "body: head", "'head' is no OSC path"},
+        {"body: /head", "body: /", "'/' is no body of OSC"},
+        {"body: /head", "body: /tracker/head", "'/tracker/head' is no body of OSC"},
         {"type: osc, port: 9000, body: /head", "type: dtrack, port: 5000, body: head",
          "'head' is no body of DTrack"},
         {"type: osc, port: 9000, body: /head", "type: openxr, body: foot", "'foot' is nothing that OpenXR tracks"},
@@ -166,6 +188,30 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
     EXPECT_NE(message_of([] { parsed("walls: []\nwindows: []\nusers: []"); }).find("the display has no walls"),
               std::string::npos);
     EXPECT_NE(message_of([] { parsed("walls: []"); }).find("windows is missing"), std::string::npos);
+}
+
+TEST(DisplayFile, BodiesOfOscMayBeginWithASlash)
+{
+    Display const with_slash = parsed(kSmall), without = parsed(with("body: /head", "body: head"));
+    EXPECT_EQ(with_slash.trackers[0].body, "/head");
+    EXPECT_EQ(without.trackers[0].body, "head");
+    EXPECT_EQ(body_name(with_slash.trackers[0].body), body_name(without.trackers[0].body));
+}
+
+TEST(DisplayFile, HoldsWandsAndDevicesOfVrpn)
+{
+    Display const d = parsed(with("type: osc, port: 9000, body: /head",
+                                  "type: vrpn, device: Wand@art.lab:4000, controls: Buttons, body: 3, "
+                                  "wand: {buttons: [menu, none, forward], axes: [-turn_right, up]}"));
+    DisplayTracker const& t = d.trackers[0];
+    EXPECT_EQ(t.device + "|" + t.controls + "|" + t.body, "Wand@art.lab:4000|Buttons|3");
+    EXPECT_EQ(t.wand->buttons, (std::vector{WandAction::menu, WandAction::none, WandAction::forward}));
+    EXPECT_EQ(t.wand->axes, (std::vector<WandAxis>{{WandMotion::turn_right, true}, {WandMotion::up, false}}));
+    EXPECT_EQ(parsed(to_yaml(d)), d);
+    Display const plain =
+        parsed(with("type: osc, port: 9000, body: /head", "type: dtrack, port: 5000, body: flystick1, wand: {}"));
+    EXPECT_EQ(plain.trackers[0].wand, WandSettings{});
+    EXPECT_EQ(parsed(to_yaml(plain)), plain);
 }
 
 TEST(DisplayFile, FaultsThatNoReaderLetsThrough)
@@ -270,10 +316,21 @@ Display random_display(std::mt19937& random)
     Display d;
     d.name = below(2) ? name(0) : "";
     for (int i = 0, n = below(3); i < n; ++i) {
-        DisplayTracker t{name(i), DisplayTrackerType(below(5)), "10.0.0.7",  0, "",
+        DisplayTracker t{name(i), DisplayTrackerType(below(6)), "10.0.0.7",  0, "",
                          "",      {vector(3), vector(180)},     real(0, 99), {}};
         t.port = 1 + below(65535);
-        t.body = t.type == DisplayTrackerType::osc ? "/b" : t.type == DisplayTrackerType::dtrack ? "3" : "head";
+        bool const is_vrpn = t.type == DisplayTrackerType::vrpn;
+        t.body = t.type == DisplayTrackerType::osc                 ? "/b"
+                 : is_vrpn || t.type == DisplayTrackerType::dtrack ? "3"
+                                                                   : "head";
+        if (is_vrpn) {
+            t.port = 0;
+            t.address = DisplayTracker{}.address;
+            t.device = "Tracker0@10.0.0.7:4000";
+            if (below(2)) t.controls = "Button0";
+        }
+        if (t.type != DisplayTrackerType::openxr && t.type != DisplayTrackerType::fake && below(2))
+            t.wand = {{WandAction(below(18)), WandAction(below(18))}, {{WandMotion(below(5)), below(2) == 1}}};
         if (t.type == DisplayTrackerType::file) t.file = "poses.csv";
         t.filter = {FilterType(below(2)), real(0.1, 9), real(0, 9)};
         if (t.type == DisplayTrackerType::osc && below(2)) t.left_foot_body = "/left", t.right_hand_body = "7";

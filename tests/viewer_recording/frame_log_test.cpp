@@ -2,6 +2,7 @@
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"
 #include "viewer/protocol/recording/frame_log.h"
+#include "viewer/protocol/recording/frame_summary.h"
 
 namespace viewer::test {
 namespace {
@@ -70,7 +71,6 @@ TEST(FrameLog, IsATableWithItsUnits)
     auto const commas = [](std::string const& line) { return std::count(line.begin(), line.end(), ','); };
     std::istringstream lines(names);
     for (std::string line; std::getline(lines, line);) EXPECT_EQ(commas(line), 18) << line;
-    EXPECT_EQ(log.summary().frames, 2u);
     EXPECT_THROW(FrameLog(folder / "frames.csv", "", report), gi::InputError);
     EXPECT_EQ(text_of(folder / "frames.csv"), text);
 }

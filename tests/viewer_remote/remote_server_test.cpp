@@ -5,6 +5,7 @@
 #include "viewer/protocol/remote/remote_client.h"
 
 #include <atomic>
+#include <fstream>
 #include <random>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -20,12 +21,10 @@ using nlohmann::json;
 /// much, "load" with an exception that is no InputError.
 class TestServer {
 public:
-    explicit TestServer(RemoteLimits const& limits = {})
+    explicit TestServer(RemoteLimits const& limits = {}) : TestServer(with_both(limits)) {}
+    explicit TestServer(RemoteOptions options)
     {
-        RemoteOptions options;
-        options.socket = folder_ / "s";
-        options.port = 0;
-        options.limits = limits;
+        if (!options.port || !options.open) options.socket = folder_ / "s";
         server_ = std::make_unique<RemoteServer>(
             options, [this](RemoteRequest const& r) { return handle(r); }, report);
         thread_ = std::thread([this] {
@@ -46,6 +45,7 @@ public:
 
     std::string path() const { return (folder_ / "s").string(); }
     std::string port() const { return std::to_string(server_->port()); }
+    std::filesystem::path token_file() const { return server_->token_file(); }
     std::vector<std::string> files() const { return folder_.files(); }
 
     gi::Report report;
@@ -53,6 +53,13 @@ public:
     std::atomic<bool> holds_back = false; ///< "screenshot" is never answered
 
 private:
+    static RemoteOptions with_both(RemoteLimits const& limits)
+    {
+        RemoteOptions options;
+        options.port = 0;
+        options.limits = limits;
+        return options;
+    }
     std::optional<json> handle(RemoteRequest const& r)
     {
         ++handled;
@@ -150,11 +157,99 @@ TEST(RemoteServer, TheLastLineMayLackItsEnd)
 TEST(RemoteServer, WebPagesCannotSpeakToIt)
 {
     TestServer server;
-    RemoteClient client(server.port());
+    RemoteClient client = RemoteClient::without_token(server.port());
     client.send("POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n{\"do\":\"ping\"}\n");
     EXPECT_NE(client.receive().find("no request"), std::string::npos);
     EXPECT_THROW(client.receive(), gi::InputError);
     EXPECT_EQ(server.handled, 0u);
+}
+
+TEST(RemoteToken, IsNeededOnThePortOnly)
+{
+    TestServer server;
+    RemoteClient without = RemoteClient::without_token(server.port());
+    EXPECT_EQ(
+        without.ask({{"do", "ping"}})["error"],
+        "the first line is no token (only who can read it may use this port) begin with {\"token\": ...} from the "
+        "file that the viewer printed");
+    EXPECT_THROW(without.ask({{"do", "ping"}}), gi::InputError) << "it is closed";
+    RemoteClient wrong = RemoteClient::without_token(server.port());
+    EXPECT_NE(wrong.ask({{"token", std::string(64, '0')}})["error"].get<std::string>().find("the token is wrong"),
+              std::string::npos);
+    RemoteClient number = RemoteClient::without_token(server.port());
+    EXPECT_EQ(number.ask({{"token", 7}}).count("error"), 1u);
+    RemoteClient both = RemoteClient::without_token(server.port());
+    EXPECT_EQ(both.ask({{"token", *read_token(server.token_file())}, {"do", "ping"}}).count("error"), 1u)
+        << "the token has a line of its own";
+    EXPECT_EQ(server.report.losses().at("remote clients without the port's token").count, 4u);
+    EXPECT_EQ(server.handled, 0u);
+    RemoteClient right = RemoteClient::without_token(server.port());
+    EXPECT_EQ(right.ask({{"id", 5}, {"token", *read_token(server.token_file())}}),
+              (json{{"id", 5}, {"result", json::object()}}));
+    EXPECT_EQ(right.ask({{"do", "ping"}}).count("result"), 1u);
+    RemoteClient at_path(server.path());
+    EXPECT_EQ(at_path.ask({{"token", "any"}}).count("result"), 1u) << "not needed there";
+}
+
+TEST(RemoteToken, FileIsTheOwnersAlone)
+{
+    std::filesystem::path file;
+    {
+        TestServer server;
+        file = server.token_file();
+        EXPECT_EQ(file, default_token_file(std::stoi(server.port())));
+        struct stat about {};
+        ASSERT_EQ(::stat(file.c_str(), &about), 0);
+        EXPECT_EQ(about.st_mode & 0777, 0600u);
+        ASSERT_EQ(::stat(file.parent_path().c_str(), &about), 0);
+        EXPECT_EQ(about.st_mode & 0777, 0700u);
+    }
+    EXPECT_FALSE(std::filesystem::exists(file)) << "left behind";
+    TemporaryFolder folder;
+    auto const mine = folder / "t";
+    std::string first;
+    {
+        TokenFile const a(mine);
+        first = a.token();
+        EXPECT_EQ(read_token(mine), first);
+        TokenFile const b(mine); // as after a crash: the older token is replaced
+        EXPECT_NE(b.token(), first);
+        EXPECT_EQ(read_token(mine), b.token());
+    }
+    std::ofstream(mine) << "my thesis";
+    EXPECT_THROW(TokenFile{mine}, gi::InputError) << "a file with something else is kept";
+    EXPECT_THROW(read_token(mine), gi::InputError);
+    EXPECT_THROW(TokenFile{folder / "none" / "t"}, gi::InputError);
+    EXPECT_FALSE(read_token(folder / "nothing"));
+    EXPECT_TRUE(is_token(first, first));
+    EXPECT_FALSE(is_token(first.substr(1), first));
+    EXPECT_FALSE(is_token(first + "0", first));
+    EXPECT_FALSE(is_token("", first));
+}
+
+TEST(RemoteToken, OpenPortsNeedNone)
+{
+    RemoteOptions options;
+    options.port = 0;
+    options.open = true;
+    TestServer server(options);
+    EXPECT_TRUE(server.token_file().empty());
+    EXPECT_FALSE(std::filesystem::exists(default_token_file(std::stoi(server.port()))));
+    EXPECT_EQ(RemoteClient(server.port()).ask({{"do", "ping"}}).count("result"), 1u);
+}
+
+TEST(RemoteToken, StrangersDoNotKeepAPlace)
+{
+    RemoteOptions options;
+    options.port = 0;
+    options.limits.without_token = 100ms;
+    TestServer server(options);
+    RemoteClient silent = RemoteClient::without_token(server.port());
+    EXPECT_NE(silent.receive().find("no token came in time"), std::string::npos);
+    RemoteClient chatty = RemoteClient::without_token(server.port());
+    chatty.send(std::string(10000, 'x'));
+    EXPECT_NE(chatty.receive().find("error"), std::string::npos);
+    EXPECT_TRUE(comes_true([&] { return server.connected == 0; }));
 }
 
 TEST(RemoteServer, LongLinesAreRefusedAndPassed)

@@ -51,6 +51,8 @@ TEST(DTrack, ReadsBodiesAndFlysticks)
     EXPECT_EQ(p.samples[2].buttons, 5u);
     EXPECT_TRUE(p.samples[2].visible);
     EXPECT_FALSE(p.samples[3].visible);
+    EXPECT_EQ(p.samples[2].axes, (std::vector<double>{0.25, -1})) << "joystick";
+    EXPECT_TRUE(p.samples[3].axes.empty());
     EXPECT_EQ(p.samples[3].buttons, 9u) << "buttons count where the flystick is not seen";
 }
 
@@ -78,6 +80,7 @@ TEST(DTrack, WritesWhatItReads)
     flystick.body = "flystick1";
     flystick.pose = {{-1, 0.5, 3}, gi::exp_rotation({-2, 0.1, 0})};
     flystick.buttons = 0x80000001u;
+    flystick.axes = {-0.5, 1};
     flystick.measured_s = 12.5;
     TrackerPacket const p = parse_dtrack(format_dtrack({body, flystick}, 99));
     EXPECT_EQ(p.malformed, 0u);
@@ -88,6 +91,7 @@ TEST(DTrack, WritesWhatItReads)
     EXPECT_LT(angle_between(p.samples[0].pose.rotation, body.pose.rotation), 1e-7);
     EXPECT_EQ(p.samples[0].measured_s, 12.5);
     EXPECT_LT(angle_between(p.samples[1].pose.rotation, flystick.pose.rotation), 1e-7);
+    EXPECT_EQ(p.samples[1].axes, flystick.axes);
     EXPECT_EQ(p.samples[1].buttons, 0x80000001u);
 }
 

@@ -105,9 +105,30 @@ TEST(Osc, PatternsAreConfigurable)
     for (OscPattern const& wrong :
          {OscPattern{"lab/<body>", "x y z"}, OscPattern{"/lab", "x y z"}, OscPattern{"/<body>", "x y"},
           OscPattern{"/<body>", "x y z x"}, OscPattern{"/<body>", "x y z qx qy qz"},
-          OscPattern{"/<body>", "height"}, OscPattern{"/<body>", "qx qy qz qw yaw pitch roll"}})
+          OscPattern{"/<body>", "height"}, OscPattern{"/<body>", "axes buttons"},
+          OscPattern{"/<body>", "qx qy qz qw yaw pitch roll"}})
         EXPECT_THROW(check(wrong), gi::InputError) << wrong.path << " " << wrong.arguments;
     for (OscPattern const& p2 : default_osc_patterns()) EXPECT_NO_THROW(check(p2)) << p2.path;
+}
+
+TEST(Osc, ReadsTheControlsOfAWand)
+{
+    TrackerPacket const p = parse_osc(
+        bundle(0, 1, {message("/tracker/wand/axes", {0.5f, -1}), message("/tracker/wand/buttons", {6})}));
+    ASSERT_EQ(p.samples.size(), 2u);
+    EXPECT_EQ(p.samples[0].parts, SampleParts::buttons);
+    EXPECT_EQ(p.samples[0].axes, (std::vector<double>{0.5, -1}));
+    EXPECT_EQ(p.samples[1].buttons, 6u);
+    EXPECT_EQ(parse_osc(message("/tracker/wand/axes", std::vector<float>(40, 1.0f))).samples[0].axes.size(),
+              kMostAxes);
+    EXPECT_EQ(parse_osc(message("/tracker/wand/axes", {1, std::numeric_limits<float>::infinity()})).malformed, 1u);
+    EXPECT_EQ(parse_osc(message("/tracker/wand/axes", {})).malformed, 1u);
+    TrackerSample wand;
+    wand.body = "wand";
+    wand.axes = {0.25, 1};
+    TrackerPacket const again = parse_osc(format_osc({wand}, 1));
+    ASSERT_EQ(again.samples.size(), 2u);
+    EXPECT_EQ(again.samples[1].axes, wand.axes);
 }
 
 TEST(Osc, CountsWhatIsMalformed)

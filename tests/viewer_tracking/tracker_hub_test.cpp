@@ -74,6 +74,44 @@ TEST(TrackerHub, BringsBodiesIntoTheRoomOnce)
     EXPECT_EQ(r.other_bodies, std::vector<std::string>{"right_hand"});
 }
 
+TEST(TrackerHub, ALeadingSlashOfABodyMeansNothing)
+{
+    for (auto const& [asked, sent] : {std::pair{"/head", "head"}, {"head", "/head"}, {"/head", "/head"}}) {
+        TrackerSettings settings;
+        settings.head.id = asked;
+        Given g(settings);
+        g.send(sample(sent, {0, 1.7, 0}, 1));
+        EXPECT_TRUE(g.hub->at(1).tracked.head) << asked << " " << sent;
+    }
+    TrackerSettings twice;
+    twice.right_hand.id = "/head";
+    EXPECT_THROW(check(twice), gi::InputError);
+}
+
+TEST(TrackerHub, ControlsOfABodyAndOfADevice)
+{
+    TrackerSettings settings;
+    settings.head.id = "0";
+    settings.right_hand.id = "flystick0";
+    settings.left_hand.id = "";
+    Given g(settings);
+    TrackerSample stick = sample("flystick0", {0, 1, 0}, 1);
+    stick.buttons = 5;
+    stick.axes = {0.5, -1};
+    g.send(stick);
+    std::size_t const right = std::size_t(Body::right_hand);
+    EXPECT_EQ(g.hub->at(1).buttons[right], 5u);
+    EXPECT_EQ(g.hub->at(1).axes[right], stick.axes);
+    EXPECT_TRUE(g.hub->at(1).axes[0].empty()) << "the head's";
+    TrackerSample device = sample(kDeviceControls, {}, 1.1);
+    device.parts = SampleParts::buttons;
+    device.buttons = 2;
+    g.send(device);
+    EXPECT_EQ(g.hub->at(1.1).buttons[0], 2u);
+    EXPECT_EQ(g.hub->at(1.1).buttons[right], 2u);
+    EXPECT_EQ(g.hub->at(1.1).axes[right], stick.axes) << "not sent, so not changed";
+}
+
 TEST(TrackerHub, MeasuredLatencyIsPredictedAway)
 {
     for (double const latency : {0.0, 0.03}) {

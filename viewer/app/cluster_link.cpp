@@ -41,11 +41,16 @@ auto ClusterLink::guarded(F const& call)
         }
     } catch (RankLoss const& e) {
         failure_ = e.what();
+        ends_ = cluster_->ends();
         throw;
     }
 }
 
-void ClusterLink::begin() { cluster_ = std::make_unique<Cluster>(identity_, settings_); }
+void ClusterLink::begin()
+{
+    cluster_ = std::make_unique<Cluster>(identity_, settings_);
+    cluster_->set_farewell(farewell_);
+}
 
 void ClusterLink::end()
 {
@@ -55,6 +60,7 @@ void ClusterLink::end()
     });
     alive_.reset();
     skew_ = cluster_->swap_skew();
+    ends_ = cluster_->ends();
     cluster_.reset();
 }
 

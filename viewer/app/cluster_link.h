@@ -10,8 +10,10 @@ namespace viewer {
 /// FrameLink between the ranks of mpirun: frames in lock step; lost ranks are reported by name.
 class ClusterLink : public FrameLink {
 public:
-    ClusterLink(ClusterIdentity identity, ClusterSettings const& settings)
-        : identity_(std::move(identity)), settings_(settings)
+    /// @param farewell  what a follower tells the leader at the end; called on any thread
+    ClusterLink(ClusterIdentity identity, ClusterSettings const& settings,
+                std::function<std::string()> farewell = {})
+        : identity_(std::move(identity)), settings_(settings), farewell_(std::move(farewell))
     {
     }
     void begin() override;
@@ -27,6 +29,8 @@ public:
     /// Swap skew, on the leader, valid after the end. failure(): why the link ended early; empty if it did not.
     SwapSkew const& skew() const { return skew_; }
     std::string const& failure() const { return failure_; }
+    /// How the other ranks ended, on the leader, valid after the end.
+    std::vector<RankEnd> const& ends() const { return ends_; }
 
 private:
     void report_swaps();
@@ -37,6 +41,8 @@ private:
     ClusterSettings settings_;
     std::unique_ptr<Cluster> cluster_; ///< used by the rendering thread
     std::unique_ptr<KeepAlive> alive_; ///< keeps the link alive between calls, which may be far apart
+    std::function<std::string()> farewell_;
+    std::vector<RankEnd> ends_;
     SwapSkew skew_;
     std::string failure_;
     std::mutex mutex_;

@@ -23,9 +23,9 @@ std::map<int, Command> const kCommands{
     {GLFW_KEY_KP_SUBTRACT, Command::darker},  {GLFW_KEY_SPACE, Command::play},
     {GLFW_KEY_P, Command::reproject}};
 
-double live(double axis) { return std::abs(axis) < kDeadZone ? 0 : axis; }
-
 } // namespace
+
+double live(double axis) { return std::abs(axis) < kDeadZone ? 0 : axis; }
 
 int key_code(std::string const& name)
 {

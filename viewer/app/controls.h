@@ -73,6 +73,9 @@ private:
     int stereo_mode_ = -1;
 };
 
+/// An axis of a stick; 0 in its dead zone, where it rests.
+double live(double axis);
+
 /// GLFW's key code for a name ("w", "F1", "escape"); -1 if unknown.
 int key_code(std::string const& name);
 

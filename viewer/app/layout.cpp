@@ -78,6 +78,7 @@ std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<V
         if (pane.left < 0 && pane.left_faces.views.empty()) continue;
         pane.stereo = wall.stereo;
         pane.wall = wall.surface || needs_finish(wall) ? int(w) : -1;
+        pane.of_wall = int(w);
         auto const add = [&](int window, bool right_alone) {
             PixelRectangle const r = viewport_px(wall, display.windows[std::size_t(window)]);
             if (r.width <= 0 || r.height <= 0) return;

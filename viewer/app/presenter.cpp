@@ -2,6 +2,8 @@
 
 #include "viewer/displays/compose.h"
 
+#include <epoxy/gl.h>
+
 namespace viewer {
 namespace {
 
@@ -14,6 +16,11 @@ std::span<float const> floats(gi::Picture const& picture, char const* layer)
 void upload(PictureTexture& to, gi::Picture const& picture)
 {
     to.upload({picture.width, picture.height}, floats(picture, "color"), floats(picture, picture.find("seen_depth") ? "seen_depth" : "depth"));
+}
+
+bool has_overlay(Pane const& pane, PresentSettings const& s)
+{
+    return s.overlay && pane.of_wall >= 0 && pane.of_wall == s.overlay->wall;
 }
 
 } // namespace
@@ -121,14 +128,39 @@ bool Presenter::bend(Pane const& pane, PresentSettings const& shown, DisplaySett
             draw_faces(pane, *faces[side], alone, side, now);
         else
             pass_.draw(flat_[side]->target(), eyes[side], eyes[side], alone);
+        if (has_overlay(pane, shown)) draw_overlay(shown.overlay, flat_[side]->target());
         walls_[std::size_t(pane.wall)].draw(bent_[side]->target(), flat_[side]->shown(), outside);
     }
     return true;
 }
 
-void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
+/// @param wall_picture  of one eye, before it is bent, top row first
+void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, DrawTarget const& wall_picture)
+{
+    WallOverlay const& o = *overlay;
+    if (uploaded_ != overlay) {
+        if (!overlay_picture_ || overlay_picture_->shown().size_px != o.size_px)
+            overlay_picture_.emplace(TextureTarget::Format::bytes, o.size_px);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glTextureSubImage2D(overlay_picture_->shown().texture, 0, 0, 0, o.size_px.x, o.size_px.y, GL_RGB,
+                            GL_UNSIGNED_BYTE, o.rgb.data());
+        uploaded_ = overlay;
+    }
+    glm::dvec2 const px(wall_picture.size_px);
+    glm::ivec2 const top_left(glm::round(px * glm::dvec2(o.place.left, 1 - o.place.bottom - o.place.height)));
+    glm::ivec2 const size(glm::round(px * glm::dvec2(o.place.width, o.place.height)));
+    bind(wall_picture);
+    glBlitNamedFramebuffer(overlay_picture_->target().framebuffer, wall_picture.framebuffer, 0, 0, o.size_px.x,
+                           o.size_px.y, top_left.x, top_left.y, top_left.x + size.x, top_left.y + size.y,
+                           GL_COLOR_BUFFER_BIT, GL_LINEAR);
+}
+
+void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& all,
                      PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
+    std::vector<Pane> panes = all;
+    for (Pane& pane : panes)
+        if (has_overlay(pane, s)) pane.wall = pane.of_wall; // also through a wall pass that changes nothing
     std::vector<char> is_drawn(panes.size());
     for (std::size_t k = 0; k < panes.size(); ++k) {
         if (is_drawn[k]) continue;

@@ -6,6 +6,7 @@
 #include "viewer/devices/gl/reprojection.h"
 #include "viewer/devices/gl/surface_pass.h"
 #include "viewer/devices/gl/wall_pass.h"
+#include "viewer/displays/wall_ray.h"
 #include "viewer/engine/live/live_renderer.h"
 
 #include <deque>
@@ -25,11 +26,21 @@ struct Pane {
     StereoMode stereo = StereoMode::off;
     int left = -1, right = -1;             ///< views of the frame; -1 = none, stays dark
     bool right_alone = false;              ///< shows only the right eye: second of two windows
+    int of_wall = -1;                      ///< wall of the display that it shows; -1 = none
     int wall = -1;                         ///< index into the walls' settings; -1 = flat, without a wall pass
     PaneFaces left_faces{}, right_faces{}; ///< instead of left and right, for a wall with a surface
 };
 
+/// A picture on a part of a wall, at the wall's distance for both eyes.
+struct WallOverlay {
+    int wall = 0;
+    WallRectangle place;
+    glm::ivec2 size_px{};
+    std::vector<unsigned char> rgb; ///< rows from the top
+};
+
 struct PresentSettings {
+    std::shared_ptr<WallOverlay const> overlay; ///< null = none
     gi::ToneMapSettings tone;
     Comparison comparison = Comparison::off;
     float split = 0.5f;
@@ -64,7 +75,10 @@ private:
     /// The picture of one eye on a wall that is not flat, in flat_.
     void draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings, std::size_t side,
                     std::vector<gi::Camera> const& now);
+    void draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, DrawTarget const& wall_picture);
 
+    std::shared_ptr<WallOverlay const> uploaded_;
+    std::optional<TextureTarget> overlay_picture_;
     std::deque<Shown> shown_;
     std::shared_ptr<LiveFrame const> frame_;
     DisplayPass pass_;

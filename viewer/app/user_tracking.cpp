@@ -43,6 +43,18 @@ Tracked UserTracking::bodies(std::size_t user, double steady_s)
     return of(sources_[std::size_t(display_.users[user].tracker)], steady_s);
 }
 
+std::vector<WandState> UserTracking::wands(double steady_s) const
+{
+    std::vector<WandState> all;
+    for (std::size_t t = 0; t < sources_.size(); ++t) {
+        if (!display_.trackers[t].wand) continue;
+        BodiesAt const now = hub_->of_tracker(sources_[t].in_hub, steady_s); // its body is the hub's head
+        bool const fresh = now.states[0] == TrackState::tracked;
+        all.push_back({now.tracked.head, fresh, now.buttons[0], now.axes[0]});
+    }
+    return all;
+}
+
 std::optional<double> UserTracking::age_ms(double steady_s) const
 {
     if (display_.users.empty() || display_.users[0].tracker < 0) return std::nullopt;
@@ -61,6 +73,11 @@ nlohmann::json UserTracking::stats(double steady_s) const
                                            {"malformed", r.counts.malformed},
                                            {"port", r.port},
                                            {"head_age_ms", 1e3 * r.bodies[0].age_s}};
+        if (r.counts.connects + r.counts.disconnects > 0 || !r.fault.empty()) {
+            j["connects"] = r.counts.connects;
+            j["disconnects"] = r.counts.disconnects;
+            j["fault"] = r.fault;
+        }
         for (auto const& [what, value] : numbers(r.latency)) j[what] = value;
     }
     return all;

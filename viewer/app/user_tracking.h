@@ -1,6 +1,7 @@
 #pragma once
 // Runs the trackers of a display: predicts the users' head poses for the time when a frame is seen.
 
+#include "viewer/app/wand_input.h"
 #include "viewer/devices/tracking/tracker_hub.h"
 #include "viewer/devices/xr/session.h"
 #include "viewer/displays/display.h"
@@ -17,6 +18,8 @@ public:
     std::vector<std::optional<RoomPose>> heads(double steady_s);
     /// Head, hands and feet of a user, for avatars and recordings.
     Tracked bodies(std::size_t user, double steady_s);
+    /// One per tracker of the display with `wand`, in its order.
+    std::vector<WandState> wands(double steady_s) const;
     /// Age of the newest packet from the first user's tracker, ms; none without a tracker.
     std::optional<double> age_ms(double steady_s) const;
     /// Packets, losses and latencies per tracker.

@@ -41,7 +41,7 @@ ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
         remote_ = std::make_unique<RemoteServer>(
             o.remote, [this](RemoteRequest const& request) { return requests.handle(request); }, r);
         requests.answer_with(remote_.get());
-        if (o.remote.port) fmt::print(stderr, "note: remote control at 127.0.0.1:{}\n", remote_->port());
+        if (o.remote.port) std::fputs(("note: " + describe_port(*remote_) + "\n").c_str(), stderr);
     }
 }
 
@@ -195,6 +195,7 @@ void ViewCore::obey(Command command)
 void ViewCore::log(FrameTimes const& times)
 {
     if (times.dropped > 0) report.lose("frames dropped", std::uint64_t(times.dropped));
+    frames_.add(times);
     if (log_) log_->append(times);
 }
 
@@ -223,8 +224,8 @@ void ViewCore::finish()
     }
     if (log_) {
         log_->close();
-        summary.frames = log_->summary();
     }
+    summary.frames = frames_.summary();
     watch_files();
 }
 

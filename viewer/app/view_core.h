@@ -55,6 +55,7 @@ private:
     std::unique_ptr<RemoteServer> remote_;
     std::unique_ptr<Recorder> recorder_;
     std::unique_ptr<FrameLog> log_;
+    FrameStatistics frames_;                    ///< of all frames, whether they are logged or not
     std::set<std::filesystem::path> unwritten_; ///< files that could not be completed
     double last_poll_s_ = 0;
 };

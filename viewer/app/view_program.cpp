@@ -8,6 +8,7 @@
 #include "viewer/app/user_body.h"
 #include "viewer/app/user_tracking.h"
 #include "viewer/app/view_core.h"
+#include "viewer/app/wands.h"
 #include "viewer/devices/gl/gamepads.h"
 #include "viewer/devices/gl/panel.h"
 #include "viewer/displays/compose.h"
@@ -38,6 +39,7 @@ public:
     {
         if (options.display) {
             if (!follows()) tracking_.emplace(*core_.display);
+            if (!follows()) wands_.emplace(*core_.display, core_.options.rank);
             shown_ = open_windows(*core_.display, core_.options.rank, core_.options.swap_interval, core_.report);
         } else {
             open_desktop();
@@ -196,7 +198,8 @@ private:
 
     void look(double seconds)
     {
-        NavigationInput const in = core_.controls.motion(seconds);
+        NavigationInput in = core_.controls.motion(seconds);
+        if (wands_ && wands_->any()) use_wands(seconds, in);
         state_.navigation.step(in, seconds);
         bodies_.step(core_.controls, seconds);
         Viewpoint at;
@@ -232,6 +235,20 @@ private:
             set_panes(layout.panes);
         }
         core_.renderer->look(std::move(at));
+    }
+
+    void use_wands(double seconds, NavigationInput& in)
+    {
+        // The resting head is at the navigation pose.
+        gi::dmat4 const world_from_room =
+            state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
+        NavigationInput const by_wands =
+            wands_->step(tracking_->wands(steady_s()), core_, world_from_room, seconds);
+        in.right += by_wands.right;
+        in.up += by_wands.up;
+        in.forward += by_wands.forward;
+        in.turn_right_rad += by_wands.turn_right_rad;
+        if (wands_->wants_picture(state_.clock.now_s())) dirty_ = true;
     }
 
     /// Resting pose of the first user's head, in the room.
@@ -305,6 +322,7 @@ private:
             fill_panel(state_, frames_per_s_);
             panel_->finish();
         }
+        if (wands_) wands_->prepare(state_, frames_per_s_, p->begun_s);
         presenting_->start([this, p] { draw(*p); },
                            [this, p] {
                                state_.inbox.put([this, p] { presented(*p); });
@@ -319,6 +337,7 @@ private:
             ShownWindow& shown = *shown_.windows[w];
             shown.window.gl().make_current();
             double const from = state_.clock.now_s();
+            if (w == 0 && wands_) p.settings.overlay = wands_->draw(shown.window.gl());
             if (p.fresh) shown.presenter.take(p.frame, shown.shown_panes);
             double const uploaded = state_.clock.now_s();
             clear(target_of(shown.window));
@@ -411,6 +430,7 @@ private:
     std::optional<UserTracking> tracking_;
     Gamepads gamepads_;
     DisplayWindows shown_;
+    std::optional<Wands> wands_;   ///< of a display, not on ranks that follow
     std::unique_ptr<Panel> panel_; ///< not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;

@@ -82,7 +82,21 @@ void ViewState::pick(glm::dvec2 at, double aspect, std::function<void(std::optio
         gi::ViewTangents const edge = *frame->command.views[0].camera.off_axis;
         aspect = (edge.right - edge.left) / (edge.top - edge.bottom);
     }
-    renderer->ask([this, at, aspect, eye = now(), done = std::move(done)](RenderSession& s) {
+    pick_by(now(), at, aspect, std::move(done));
+}
+
+void ViewState::pick_along(gi::dmat4 const& world_from_ray,
+                           std::function<void(std::optional<Selection> const&)> done)
+{
+    gi::Camera ray;
+    ray.world_from_camera = world_from_ray;
+    pick_by(ray, {0.5, 0.5}, 1, std::move(done));
+}
+
+void ViewState::pick_by(gi::Camera const& from, glm::dvec2 at, double aspect,
+                        std::function<void(std::optional<Selection> const&)> done)
+{
+    renderer->ask([this, at, aspect, eye = from, done = std::move(done)](RenderSession& s) {
         std::optional<Selection> found;
         if (auto const hit = viewer::pick(s.world(), eye, aspect, at)) {
             gi::Scene const& scene = *s.world().scene;

@@ -73,8 +73,13 @@ struct ViewState {
     gi::Camera now() const;
     /// @param at  in [0, 1]^2 of one eye's picture   @param aspect  of the view, if its camera does not define it
     void pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done);
+    /// The same along the -Z axis of a pose, from its origin.
+    void pick_along(gi::dmat4 const& world_from_ray, std::function<void(std::optional<Selection> const&)> done);
 
 private:
+    void pick_by(gi::Camera const& eye, glm::dvec2 at, double aspect,
+                 std::function<void(std::optional<Selection> const&)> done);
+
     std::weak_ptr<gi::Scene const> ground_of_; ///< scene of the navigation's ground
 };
 

@@ -20,6 +20,7 @@ constexpr CommandRow kCommands[]{
     {"remote", kView, "Send requests to a running viewer and print its answers."},
     {"track", kView, "Test trackers: listen, send, walk."},
     {"display", kView, "Displays of walls, windows, users and trackers: check, import, calibrate."},
+    {"avatar", kView, "Propose which joints of a model are head, arms and legs."},
     {"xr", kView, "Show the OpenXR runtime and headset."},
     {"study", kStudy, "Experiments from a script: check, plan, run, simulate, analyze, report."},
     {"study check", kTrials, "Check a script: make every participant's plan and report all problems."},

@@ -16,6 +16,7 @@ void add_recording(CLI::App& app, int& exit_code);
 void add_remote(CLI::App& app, int& exit_code);
 void add_track(CLI::App& app, int& exit_code);
 void add_display(CLI::App& app, int& exit_code);
+void add_avatar(CLI::App& app, int& exit_code);
 void add_xr(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, int& exit_code);
 void add_ar(CLI::App& app, int& exit_code);

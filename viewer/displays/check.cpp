@@ -1,5 +1,7 @@
 #include "viewer/displays/check.h"
 
+#include "viewer/displays/vrpn_address.h"
+
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
@@ -282,25 +284,48 @@ Fault tracker_fault(DisplayTracker const& t, std::size_t i)
                      t.type == DisplayTrackerType::osc ? "port: 9000" : "port: 5000");
     if (is_network && t.address.empty())
         return fault("address", "no address", "it listens on one interface only", "address: 127.0.0.1");
-    if (t.type == DisplayTrackerType::osc && (t.body.empty() || t.body[0] != '/'))
-        return fault("body", "'" + t.body + "' is no OSC path", "bodies are identified by paths", "body: /head");
-    if (t.type == DisplayTrackerType::dtrack &&
-        (t.body.empty() || t.body.size() > 4 || t.body.find_first_not_of("0123456789") != std::string::npos))
-        return fault("body", "'" + t.body + "' is no body of DTrack", "bodies have numbers from 0", "body: 0");
+    bool const is_vrpn = t.type == DisplayTrackerType::vrpn;
+    if (is_vrpn && !parse_vrpn_address(t.device))
+        return fault("device",
+                     t.device.empty() ? "no device" : "'" + t.device.substr(0, 64) + "' is no device of VRPN",
+                     "it is the device's name, @ and its server", "device: Tracker0@localhost");
+    if (is_vrpn && (t.port != 0 || t.address != DisplayTracker{}.address))
+        return fault(t.port != 0 ? "port" : "address", "a port or address of our own with type: vrpn",
+                     "the server is named by device", "device: Tracker0@host:3883");
+    if (!is_vrpn && !(t.device.empty() && t.controls.empty()))
+        return fault(t.device.empty() ? "controls" : "device",
+                     "a device with type: " + std::string(name_of(t.type)), "only VRPN has named devices",
+                     "type: vrpn");
+    if (t.type == DisplayTrackerType::osc &&
+        (body_name(t.body).empty() || body_name(t.body).find('/') != std::string::npos))
+        return fault("body", "'" + t.body.substr(0, 64) + "' is no body of OSC",
+                     "it is the part <body> of addresses such as /tracker/<body>/pose", "body: head, or /head");
+    auto const is_number = [](std::string const& id) {
+        return !id.empty() && id.size() <= 4 && id.find_first_not_of("0123456789") == std::string::npos;
+    };
+    bool const is_flystick = t.body.starts_with("flystick") && is_number(t.body.substr(8));
+    if (t.type == DisplayTrackerType::dtrack && !is_number(t.body) && !is_flystick)
+        return fault("body", "'" + t.body.substr(0, 64) + "' is no body of DTrack",
+                     "bodies have numbers from 0, flysticks are flystick0, flystick1, ...", "body: 0");
+    if (is_vrpn && !is_number(t.body))
+        return fault("body", "'" + t.body.substr(0, 64) + "' is no sensor of VRPN", "sensors have numbers from 0",
+                     "body: 0");
+    if (t.wand && (t.type == DisplayTrackerType::openxr || t.type == DisplayTrackerType::fake))
+        return fault("wand", "a wand with type: " + std::string(name_of(t.type)),
+                     "its controls are read of osc, dtrack, vrpn and file", "remove it");
     if (t.type == DisplayTrackerType::openxr && t.body != "head" && t.body != "left_hand" &&
         t.body != "right_hand")
         return fault("body", "'" + t.body + "' is nothing that OpenXR tracks", "it tracks a head and two hands",
                      "head, left_hand or right_hand");
-    bool const has_limbs = is_network || t.type == DisplayTrackerType::file;
-    auto const name = [](std::string const& id) { return id.starts_with('/') ? id.substr(1) : id; };
-    std::set<std::string> bodies{name(t.body)};
+    bool const has_limbs = is_network || is_vrpn || t.type == DisplayTrackerType::file;
+    std::set<std::string> bodies{body_name(t.body)};
     for (LimbBody const& b : kLimbBodies) {
         std::string const& id = t.*b.body;
         if (id.empty()) continue;
         if (!has_limbs)
             return fault(b.key, "a body for type: " + std::string(name_of(t.type)), "it has its own names",
                          "remove it");
-        if (!bodies.insert(name(id)).second)
+        if (!bodies.insert(body_name(id)).second)
             return fault(b.key, "body '" + id.substr(0, 64) + "' twice", "it cannot be two parts of a body",
                          "give each its own");
     }

@@ -20,6 +20,8 @@ char const* name_of(DisplayTrackerType type)
         return "osc";
     case DisplayTrackerType::dtrack:
         return "dtrack";
+    case DisplayTrackerType::vrpn:
+        return "vrpn";
     case DisplayTrackerType::openxr:
         return "openxr";
     case DisplayTrackerType::file:
@@ -33,8 +35,8 @@ char const* name_of(DisplayTrackerType type)
 std::optional<DisplayTrackerType> tracker_type(std::string const& name)
 {
     for (DisplayTrackerType const type :
-         {DisplayTrackerType::osc, DisplayTrackerType::dtrack, DisplayTrackerType::openxr,
-          DisplayTrackerType::file, DisplayTrackerType::fake})
+         {DisplayTrackerType::osc, DisplayTrackerType::dtrack, DisplayTrackerType::vrpn,
+          DisplayTrackerType::openxr, DisplayTrackerType::file, DisplayTrackerType::fake})
         if (name == name_of(type)) return type;
     return {};
 }

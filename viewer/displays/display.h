@@ -9,6 +9,7 @@
 #include "viewer/displays/placement.h"
 #include "viewer/displays/stereo_mode.h"
 #include "viewer/displays/surface.h"
+#include "viewer/displays/wand.h"
 #include "viewer/displays/warp_mesh.h"
 
 #include <cstdint>
@@ -83,11 +84,12 @@ struct User {
     int tracker = -1;          ///< tracker of the head; -1 = none
     std::string avatar{};      ///< file of the user's skinned model, as written; empty = none
     std::optional<double> eye_height_m{}; ///< standing, above the floor y = 0; none = that of the resting head
+    std::string avatar_joints{};          ///< joint map of the model, as written; empty = by usual names
 
     bool operator==(User const&) const = default;
 };
 
-enum class DisplayTrackerType { osc, dtrack, openxr, file, fake };
+enum class DisplayTrackerType { osc, dtrack, vrpn, openxr, file, fake };
 
 enum class FilterType { none, one_euro };
 
@@ -105,13 +107,18 @@ struct DisplayTracker {
     DisplayTrackerType type = DisplayTrackerType::fake;
     std::string address = "127.0.0.1"; ///< of the interface to listen on (osc, dtrack)
     int port = 0;
-    std::string body; ///< osc: path; dtrack: number; openxr: head, left_hand, right_hand
+    std::string body; ///< osc: /name or name; dtrack: number, flystick0; vrpn: number of the sensor; openxr: head,
+                      ///< left_hand, right_hand
     std::string file; ///< recorded poses
     Placement room_from_tracker;
     double latency_ms = 0; ///< from motion to packet, measured
     TrackerFilter filter{};
     std::string left_hand_body{}, right_hand_body{}; ///< of the same sender, by its names; empty = default names
     std::string left_foot_body{}, right_foot_body{};
+    std::optional<WandSettings> wand{}; ///< the body is a wand
+    std::string device{};               ///< vrpn: Tracker0@host[:port]
+    std::string
+        controls{}; ///< vrpn: device of the same server with the wand's buttons and analogs; empty = `device`'s
 
     bool operator==(DisplayTracker const&) const = default;
 };
@@ -145,6 +152,9 @@ struct Display {
 
     bool operator==(Display const&) const = default;
 };
+
+/// The name of a body without the / with which it may begin: "/head" and "head" mean the same everywhere.
+inline std::string body_name(std::string const& id) { return id.starts_with('/') ? id.substr(1) : id; }
 
 char const* name_of(DisplayTrackerType type);
 std::optional<DisplayTrackerType> tracker_type(std::string const& name);

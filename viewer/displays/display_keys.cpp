@@ -22,10 +22,13 @@ std::map<std::string, std::set<std::string>> const& display_keys()
         {"user",
          {"name", "interpupillary_m", "head_position_m", "head_rotation_deg", "eye_offset_m", "head_tracker",
           "avatar", "eye_height_m"}},
+        {"avatar", {"file", "joints"}},
         {"tracker",
-         {"name", "type", "address", "port", "body", "left_hand_body", "right_hand_body", "left_foot_body",
-          "right_foot_body", "file", "room_from_tracker", "latency_ms", "filter"}},
+         {"name", "type", "address", "port", "device", "controls", "wand", "body", "left_hand_body",
+          "right_hand_body", "left_foot_body", "right_foot_body", "file", "room_from_tracker", "latency_ms",
+          "filter"}},
         {"room_from_tracker", {"translation_m", "rotation_deg"}},
+        {"wand", {"buttons", "axes"}},
         {"filter", {"type", "min_cutoff_hz", "beta_per_m"}},
     };
     return keys;

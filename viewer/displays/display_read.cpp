@@ -205,6 +205,26 @@ DisplayWindow read_window(Yaml const& y)
     return window;
 }
 
+/// The file of a model, or {file: ..., joints: ...}.
+void read_avatar(User& user, Yaml const& y, std::filesystem::path const& folder)
+{
+    auto const is_file = [&folder](std::string const& name) {
+        std::error_code error;
+        return std::filesystem::is_regular_file(folder / name, error);
+    };
+    if (y.is_map()) check_display_keys(y, "avatar");
+    Yaml const file = y.is_map() ? needed(y, "file", "guide.glb") : y;
+    user.avatar = file.text();
+    if (user.avatar != "avatar" && !is_file(user.avatar))
+        throw file.error("there is no file '" + user.avatar.substr(0, 256) + "'", "it would be the user's body",
+                         "name a skinned model, or avatar");
+    if (!y.is_map() || !y.has("joints")) return;
+    user.avatar_joints = y.at("joints").text();
+    if (!is_file(user.avatar_joints))
+        throw y.at("joints").error("there is no file '" + user.avatar_joints.substr(0, 256) + "'",
+                                   "it would say which joints the model has", "lightwell avatar map proposes one");
+}
+
 User read_user(Yaml const& y, Display const& d, std::filesystem::path const& folder)
 {
     check_display_keys(y, "user");
@@ -215,13 +235,7 @@ User read_user(Yaml const& y, Display const& d, std::filesystem::path const& fol
     if (y.has("head_rotation_deg")) user.head.rotation_deg = y.at("head_rotation_deg").vector(-kAny, kAny);
     if (y.has("eye_offset_m")) user.eye_offset_m = y.at("eye_offset_m").vector(-kAny, kAny);
     if (y.has("head_tracker")) user.tracker = index_of(d.trackers, y.at("head_tracker"), "trackers");
-    if (y.has("avatar")) {
-        user.avatar = y.at("avatar").text();
-        std::error_code error;
-        if (user.avatar != "avatar" && !std::filesystem::is_regular_file(folder / user.avatar, error))
-            throw y.at("avatar").error("there is no file '" + user.avatar.substr(0, 256) + "'",
-                                       "it would be the user's body", "name a skinned model, or avatar");
-    }
+    if (y.has("avatar")) read_avatar(user, y.at("avatar"), folder);
     if (y.has("eye_height_m")) user.eye_height_m = y.at("eye_height_m").number(-kAny, kAny);
     return user;
 }
@@ -240,6 +254,37 @@ TrackerFilter read_filter(Yaml const& y)
     return filter;
 }
 
+/// Words of a list, each understood by `read`.
+template <typename Use, typename Read>
+std::vector<Use> uses(Yaml const& list, std::size_t most, Read const& read, char const* what,
+                      std::string const& known)
+{
+    std::vector<Use> all;
+    for (Yaml const& item : list.items()) {
+        if (all.size() == most)
+            throw item.error(fmt::format("more than {} entries", most), "a wand has no more of them",
+                             "shorten the list");
+        auto const use = read(item.text());
+        if (!use)
+            throw item.error("'" + item.text().substr(0, 64) + "' is nothing that " + what + " of a wand does",
+                             "the name is unknown", "there are: " + known);
+        all.push_back(*use);
+    }
+    return all;
+}
+
+WandSettings read_wand(Yaml const& y)
+{
+    check_display_keys(y, "wand");
+    WandSettings wand;
+    if (y.has("buttons"))
+        wand.buttons =
+            uses<WandAction>(y.at("buttons"), kMostWandButtons, wand_action, "a button", wand_action_names());
+    if (y.has("axes"))
+        wand.axes = uses<WandAxis>(y.at("axes"), kMostWandAxes, wand_axis, "an axis", wand_axis_names());
+    return wand;
+}
+
 DisplayTracker read_tracker(Yaml const& y)
 {
     check_display_keys(y, "tracker");
@@ -249,10 +294,13 @@ DisplayTracker read_tracker(Yaml const& y)
     auto const known = tracker_type(type);
     if (!known)
         throw y.at("type").error("'" + type.substr(0, 64) + "' is no type of tracker", "the name is unknown",
-                                 "osc, dtrack, openxr, file or fake");
+                                 "osc, dtrack, vrpn, openxr, file or fake");
     tracker.type = *known;
     if (y.has("address")) tracker.address = y.at("address").text();
     if (y.has("port")) tracker.port = int(y.at("port").integer(-1000000, 1000000));
+    if (y.has("device")) tracker.device = y.at("device").text();
+    if (y.has("controls")) tracker.controls = y.at("controls").text();
+    if (y.has("wand")) tracker.wand = read_wand(y.at("wand"));
     if (y.has("body")) tracker.body = y.at("body").text();
     for (LimbBody const& b : kLimbBodies)
         if (y.has(b.key)) tracker.*b.body = y.at(b.key).text();

@@ -116,7 +116,10 @@ void write_user(Writer& w, User const& user, Display const& d)
     if (user.head.rotation_deg != gi::dvec3{0}) w.key("head_rotation_deg", vec(user.head.rotation_deg));
     if (user.eye_offset_m != gi::dvec3{0}) w.key("eye_offset_m", vec(user.eye_offset_m));
     if (user.tracker >= 0) w.key("head_tracker", quoted(d.trackers[std::size_t(user.tracker)].name));
-    if (!user.avatar.empty()) w.key("avatar", quoted(user.avatar));
+    if (!user.avatar.empty())
+        w.key("avatar", user.avatar_joints.empty() ? quoted(user.avatar)
+                                                   : fmt::format("{{file: {}, joints: {}}}", quoted(user.avatar),
+                                                                 quoted(user.avatar_joints)));
     if (user.eye_height_m) w.key("eye_height_m", fmt::format("{}", *user.eye_height_m));
 }
 
@@ -126,6 +129,15 @@ void write_tracker(Writer& w, DisplayTracker const& t)
     w.key("type", name_of(t.type));
     if (t.address != DisplayTracker{}.address) w.key("address", quoted(t.address));
     if (t.port != 0) w.key("port", std::to_string(t.port));
+    if (!t.device.empty()) w.key("device", quoted(t.device));
+    if (!t.controls.empty()) w.key("controls", quoted(t.controls));
+    if (t.wand) {
+        std::string buttons, axes;
+        for (WandAction const a : t.wand->buttons)
+            buttons += (buttons.empty() ? "" : ", ") + std::string(name_of(a));
+        for (WandAxis const& a : t.wand->axes) axes += (axes.empty() ? "" : ", ") + name_of(a);
+        w.key("wand", "{buttons: [" + buttons + "], axes: [" + axes + "]}");
+    }
     if (!t.body.empty()) w.key("body", quoted(t.body));
     for (LimbBody const& b : kLimbBodies)
         if (!(t.*b.body).empty()) w.key(b.key, quoted(t.*b.body));

@@ -4,6 +4,7 @@
 #include "viewer/devices/gl/draw_target.h"
 #include "viewer/devices/gl/panel.h"
 #include "viewer/protocol/remote/remote_client.h"
+#include "viewer/protocol/remote/remote_token.h"
 
 #include <array>
 #include <epoxy/gl.h>
@@ -16,10 +17,11 @@ namespace {
 constexpr double kAsk_s = 0.2;
 constexpr std::chrono::milliseconds kAnswer{10000};
 
-RemoteClient connect(std::string const& where)
+RemoteClient connect(std::string const& where, std::string const& token_file)
 {
+    if (!token_file.empty()) read_token(token_file); // says itself what is wrong
     try {
-        return RemoteClient(where);
+        return RemoteClient(where, token_file);
     } catch (gi::InputError const&) { // its suggestion applies to the viewer only
         throw gi::InputError("cannot connect to '" + where + "'", "no session listens there, or not to this user",
                              "start lightwell study run with --remote and name the same, or the digits of its "
@@ -29,7 +31,7 @@ RemoteClient connect(std::string const& where)
 
 class Control {
 public:
-    explicit Control(std::string const& where) : client_(connect(where)) {}
+    Control(std::string const& where, std::string const& token_file) : client_(connect(where, token_file)) {}
 
     /// Sends a request. Returns false if the session has ended.
     bool ask(std::string const& action, std::string const& text = {})
@@ -101,9 +103,10 @@ private:
 
 } // namespace
 
-void run_control_window(std::string const& where, gi::StopRequest const& stop, gi::Report& report)
+void run_control_window(std::string const& where, std::string const& token_file, gi::StopRequest const& stop,
+                        gi::Report& report)
 {
-    Control control(where);
+    Control control(where, token_file);
     if (!control.ask("status"))
         throw gi::InputError("'" + where + "'", control.problem(), "give the --remote of a running study run");
     WindowSettings settings;

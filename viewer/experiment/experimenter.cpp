@@ -2,6 +2,8 @@
 
 #include "gi/core/error.h"
 
+#include <cstdio>
+
 namespace viewer {
 
 using study::ExperimenterAction;
@@ -11,6 +13,7 @@ Experimenter::Experimenter(RemoteOptions const& remote, gi::Report& report)
     if (remote.socket.empty() && !remote.port) return;
     server_ = std::make_unique<RemoteServer>(
         remote, [this](RemoteRequest const& request) { return handle(request); }, report);
+    if (remote.port) std::fputs(("note: " + describe_port(*server_) + "\n").c_str(), stderr);
 }
 
 void Experimenter::poll(double now_s)

@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/scene/load/load.h"
+#include "gi/scene/motion/avatar_map.h"
 #include "viewer/devices/tracking/own_avatar.h"
 #include "viewer/displays/views.h"
 #include "viewer/offline/load_world.h"
@@ -19,12 +20,12 @@ bool rests_above_floor(User const& user)
     return y >= 0.3 && y <= 3;
 }
 
-AvatarChoice choice_of(std::size_t user, std::string file, std::optional<Display> const& display,
-                       double otherwise_m)
+AvatarChoice choice_of(std::size_t user, std::string file, std::string joints,
+                       std::optional<Display> const& display, double otherwise_m)
 {
     bool const in_display = display && user < display->users.size();
     return {user, std::move(file), standing_eye_height_m(display, user, otherwise_m),
-            !in_display || rests_above_floor(display->users[user])};
+            !in_display || rests_above_floor(display->users[user]), std::move(joints)};
 }
 
 } // namespace
@@ -45,17 +46,19 @@ double resting_eye_height_m(std::optional<Display> const& display, double otherw
 
 std::vector<AvatarChoice> avatar_choices(std::string const& avatar, double eye_height_m,
                                          std::optional<Display> const& display,
-                                         std::filesystem::path const& folder)
+                                         std::filesystem::path const& folder, std::string const& joints)
 {
     std::vector<AvatarChoice> choices;
-    if (!avatar.empty()) choices.push_back(choice_of(0, avatar, display, eye_height_m));
+    if (!avatar.empty()) choices.push_back(choice_of(0, avatar, joints, display, eye_height_m));
     for (std::size_t u = 0; display && u < display->users.size(); ++u) {
         std::string const& stated = display->users[u].avatar;
         if (stated.empty() || (u == 0 && !avatar.empty())) continue;
         std::filesystem::path const file = folder / stated;
         std::error_code error;
         bool const is_file = std::filesystem::is_regular_file(file, error);
-        choices.push_back(choice_of(u, is_file ? file.string() : stated, display, eye_height_m));
+        std::string const& map = display->users[u].avatar_joints;
+        choices.push_back(choice_of(u, is_file ? file.string() : stated,
+                                    map.empty() ? "" : (folder / map).string(), display, eye_height_m));
     }
     return choices;
 }
@@ -65,6 +68,7 @@ void put_avatars(nlohmann::json& load, std::vector<AvatarChoice> const& avatars)
 {
     for (AvatarChoice const& a : avatars) {
         nlohmann::json kept{{"avatar", a.file}, {"eye_height_m", a.eye_height_m}};
+        if (!a.joints.empty()) kept["avatar_joints"] = a.joints;
         if (a.user == 0) {
             load.update(kept);
         } else {
@@ -86,7 +90,7 @@ std::vector<AvatarChoice> avatars_of(nlohmann::json const& load)
         if (file.empty()) return;
         if (std::ranges::find(avatars, user, &AvatarChoice::user) != avatars.end())
             refuse("user " + std::to_string(user) + " has two avatars");
-        avatars.push_back({user, file, j.value("eye_height_m", 1.6)});
+        avatars.push_back({user, file, j.value("eye_height_m", 1.6), true, j.value("avatar_joints", "")});
     };
     try {
         read(load, 0);
@@ -113,7 +117,10 @@ RecordedScenes scenes_with(RenderOptions const& options, std::vector<AvatarChoic
         if (a.file != "avatar" && !std::filesystem::exists(a.file))
             throw gi::InputError("there is no avatar '" + a.file + "'", "no such file",
                                  "give a skinned model, or avatar (built in)");
-        all.push_back(std::make_shared<OwnAvatar const>(gi::load_scene(a.file, report), a.eye_height_m, a.user));
+        gi::Scene model = gi::load_scene(a.file, report);
+        std::optional<gi::AvatarJoints> joints;
+        if (!a.joints.empty()) joints = gi::read_avatar_map(a.joints, model);
+        all.push_back(std::make_shared<OwnAvatar const>(std::move(model), a.eye_height_m, a.user, joints));
         s.avatars.push_back({a.user, a.on_floor ? all.back()->stance() : std::nullopt});
     }
     s.load = [options, all](std::string const& name, gi::Report& r) {

@@ -192,6 +192,12 @@ private:
 
 } // namespace
 
+int joint_side(std::string const& name)
+{
+    Side const side = parse_name(name).side;
+    return side == Side::left ? 1 : side == Side::right ? -1 : 0;
+}
+
 AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names, std::int32_t skin)
 {
     if (scene.skins.empty())
@@ -210,7 +216,7 @@ AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names, st
         for (std::int32_t const j : scene.skins[s].joints)
             if (known.size() < 2000) known += (known.empty() ? "" : ", ") + scene.nodes[std::size_t(j)].name;
     throw InputError(fmt::format("the avatar has no {}", fmt::join(missing, ", ")), "no joint has a known name",
-                     "name them; existing joints: " + known);
+                     "name them in a joint map (lightwell avatar map proposes one); existing joints: " + known);
 }
 
 } // namespace gi

@@ -36,6 +36,9 @@ struct AvatarNames {
     LegNames left_leg{}, right_leg{};
 };
 
+/// Side that a joint's name tells: +1 left, -1 right, 0 none.
+int joint_side(std::string const& name);
+
 /// Finds joints by the names of common skeletons: Mixamo ("mixamorig:LeftForeArm"), Quaternius and Blender
 /// ("LowerArm.L", "forearm.L"), Unreal ("lowerarm_l"), VRM, 3ds Max bipeds ("Bip01 L Forearm"), the glTF sample
 /// models. An elbow or wrist (knee or ankle) without such a name is taken to be the only joint below the previous

@@ -4,6 +4,7 @@
 #include "study/run/session.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
+#include "viewer/base/port_options.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/validators.h"
 #include "viewer/base/version.h"
@@ -27,6 +28,8 @@ namespace {
 struct RunOptions {
     std::string script, dir, size = "1280x720", fullscreen, remote, prepared, display;
     std::optional<int> remote_port;
+    std::string remote_token;
+    bool remote_open = false;
     int participant = 1, session = 1, threads = 0, marker_port = kMarkerPort;
     double font_px = 22;
     bool hmd = false, seated = false, resume = false, no_vsync = false, json = false;
@@ -150,6 +153,8 @@ int run(RunOptions const& o)
     trials.stem = fmt::format("sub-{}_ses-{:02}", plan.participant_id, o.session);
     trials.remote.socket = o.remote;
     trials.remote.port = o.remote_port;
+    trials.remote.token = o.remote_token;
+    trials.remote.open = o.remote_open;
     trials.marker_port = o.marker_port;
     trials.prepared = o.prepared;
     trials.version = version_text();
@@ -198,6 +203,7 @@ void add_study_run(CLI::App& study, int& exit_code)
     c->add_option("--remote", o->remote, "Unix socket for the experimenter (study control, docs/remote.md)");
     c->add_option("--remote-port", o->remote_port, "port on 127.0.0.1 for the experimenter; 0 = any free port")
         ->check(CLI::Range(0, 65535));
+    declare_port_options(*c, o->remote_token, o->remote_open);
     c->add_option("--marker-port", o->marker_port, "UDP port of 127.0.0.1 for markers")
         ->check(CLI::Range(1, 65535))
         ->capture_default_str();

@@ -15,7 +15,7 @@ namespace viewer {
 namespace {
 
 struct RemoteCommand {
-    std::string where, timeout = "5s";
+    std::string where, timeout = "5s", token;
     std::vector<std::string> requests;
 };
 
@@ -27,7 +27,7 @@ int run(RemoteCommand const& o)
         requests.push_back(parse_request(text));
         check_request(requests.back()); // check all before the first is sent
     }
-    RemoteClient client(o.where);
+    RemoteClient client(o.where, o.token);
     for (nlohmann::json const& request : requests) {
         nlohmann::json const answer = client.ask(request, timeout);
         if (!answer.contains("result"))
@@ -49,6 +49,7 @@ void add_remote(CLI::App& app, int& exit_code)
     c->add_option("WHERE", o->where, "the viewer's --remote (path of the socket) or --remote-port")->required();
     c->add_option("REQUESTS", o->requests, "JSON objects such as '{\"do\": \"stats\"}', sent in order")
         ->required();
+    c->add_option("--token", o->token, "file of the port's token, if --remote-token put it elsewhere than usual");
     c->add_option("--timeout", o->timeout, "longest wait for each answer")->capture_default_str();
     c->footer("Requests:\n" + requests_as_text());
     c->callback([o, &exit_code] { exit_code = run(*o); });

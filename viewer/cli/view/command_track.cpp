@@ -22,8 +22,9 @@ namespace viewer {
 namespace {
 
 struct TrackOptions {
-    std::string type = "osc", file, address = "127.0.0.1", out, head = "head", left_hand = "left_hand",
-                right_hand = "right_hand", left_foot = "left_foot", right_foot = "right_foot";
+    std::string type = "osc", file, device, controls, address = "127.0.0.1", out, head = "head",
+                left_hand = "left_hand", right_hand = "right_hand", left_foot = "left_foot",
+                right_foot = "right_foot";
     int port = -1, seed = 0;
     double seconds = 10, rate_hz = 60, loss = 0, jitter_ms = 0, frame_rate_hz = 0;
     bool json = false, quiet = false;
@@ -43,7 +44,10 @@ CLI::Validator port_from(int least)
 
 TrackerType type_of(std::string const& name)
 {
-    return name == "osc" ? TrackerType::osc : name == "dtrack" ? TrackerType::dtrack : TrackerType::file;
+    return name == "osc"      ? TrackerType::osc
+           : name == "dtrack" ? TrackerType::dtrack
+           : name == "vrpn"   ? TrackerType::vrpn
+                              : TrackerType::file;
 }
 
 bool wait_until(double time_s, gi::StopRequest const& stop)
@@ -77,6 +81,14 @@ std::string dtrack_name(std::string const& body)
     constexpr std::array<char const*, kBodies> kIds{"0", "flystick0", "flystick1", "1", "2"};
     for (std::size_t b = 0; b < kBodies; ++b)
         if (body == kBodyNames[b]) return kIds[b];
+    return body;
+}
+
+/// VRPN numbers sensors: head 0, left hand 1, right hand 2, left foot 3, right foot 4.
+std::string vrpn_name(std::string const& body)
+{
+    for (std::size_t b = 0; b < kBodies; ++b)
+        if (body == kBodyNames[b]) return std::to_string(b);
     return body;
 }
 
@@ -154,10 +166,18 @@ nlohmann::ordered_json tracker_json(TrackerReport const& r)
     nlohmann::ordered_json j;
     j["tracker"] = r.description;
     TrackerCounts const& c = r.counts;
-    j["counts"] = {
-        {"packets", c.packets},     {"samples", c.samples},   {"malformed", c.malformed},
-        {"ignored", c.ignored},     {"lost", c.lost},         {"out_of_order", c.out_of_order},
-        {"duplicate", c.duplicate}, {"restarts", c.restarts}, {"dropped_by_kernel", c.dropped_by_kernel}};
+    j["counts"] = {{"packets", c.packets},
+                   {"samples", c.samples},
+                   {"malformed", c.malformed},
+                   {"ignored", c.ignored},
+                   {"lost", c.lost},
+                   {"out_of_order", c.out_of_order},
+                   {"duplicate", c.duplicate},
+                   {"restarts", c.restarts},
+                   {"dropped_by_kernel", c.dropped_by_kernel},
+                   {"connects", c.connects},
+                   {"disconnects", c.disconnects}};
+    if (!r.fault.empty()) j["fault"] = r.fault;
     for (auto const& [name, value] : numbers(r.latency)) j["latency"][name] = value;
     for (std::size_t b = 0; b < kBodies; ++b) {
         BodyReport const& body = r.bodies[b];
@@ -183,8 +203,10 @@ void print(TrackerSample const& s, double start_s)
     if (s.visible && s.parts != SampleParts::buttons)
         fmt::print("{:8.4f} {:8.4f} {:8.4f}  {:7.4f} {:7.4f} {:7.4f} {:7.4f}", p.x, p.y, p.z, q.x, q.y, q.z, q.w);
     else
-        fmt::print("{}", s.visible ? "buttons" : "not visible");
-    fmt::print("{}\n", s.buttons ? fmt::format("  {:#x}", *s.buttons) : "");
+        fmt::print("{}", s.visible ? "controls" : "not visible");
+    if (s.buttons) fmt::print("  {:#x}", *s.buttons);
+    for (double const axis : s.axes) fmt::print(" {:6.3f}", axis);
+    fmt::print("\n");
 }
 
 int run_listen(TrackOptions const& o)
@@ -195,7 +217,17 @@ int run_listen(TrackOptions const& o)
     settings.port = o.port;
     settings.file = o.file;
     settings.frame_rate_hz = o.frame_rate_hz;
-    auto const id = [&](std::string const& name) { return o.type == "dtrack" ? dtrack_name(name) : name; };
+    auto const id = [&](std::string const& name) {
+        return o.type == "dtrack" ? dtrack_name(name) : o.type == "vrpn" ? vrpn_name(name) : name;
+    };
+    settings.device = o.device;
+    settings.controls = o.controls;
+    if (o.type != "vrpn" && !(o.device.empty() && o.controls.empty()))
+        throw gi::InputError("--device or --controls with --type " + o.type, "only VRPN has named devices",
+                             "add --type vrpn");
+    if (o.type == "vrpn" && o.port >= 0)
+        throw gi::InputError("--port with --type vrpn", "the server's port is part of the device",
+                             "--device Tracker0@host:" + std::to_string(o.port));
     settings.head.id = id(o.head);
     settings.left_hand.id = id(o.left_hand);
     settings.right_hand.id = id(o.right_hand);
@@ -227,6 +259,7 @@ int run_listen(TrackOptions const& o)
     for (auto const& [name, body] : j["bodies"].items())
         fmt::print("{:<20} {}\n", name, body["state"].get<std::string>());
     for (std::string const& name : r.other_bodies) fmt::print("{:<20} {}\n", "also sent", name);
+    if (!r.fault.empty()) fmt::print("{:<20} {}\n", "not connected", r.fault);
     return 0;
 }
 
@@ -234,12 +267,17 @@ void add_listen(CLI::App& track, int& exit_code)
 {
     auto const o = std::make_shared<TrackOptions>();
     CLI::App* const c = track.add_subcommand("listen", "Print the poses that a tracker sends, and their latency.");
-    c->add_option("--type", o->type, "osc, dtrack or file")
-        ->check(CLI::IsMember({"osc", "dtrack", "file"}))
+    c->add_option("--type", o->type, "osc, dtrack, vrpn or file")
+        ->check(CLI::IsMember({"osc", "dtrack", "vrpn", "file"}))
         ->capture_default_str();
     c->add_option("--address", o->address, "address of this machine to receive at; 0.0.0.0 = all")
         ->capture_default_str();
     c->add_option("--port", o->port, "UDP port; default: osc 9000, dtrack 5000; 0 = any")->check(port_from(0));
+    c->add_option("--device", o->device,
+                  "with --type vrpn: device and server, Tracker0@host or Tracker0@host:3883");
+    c->add_option(
+        "--controls", o->controls,
+        "with --type vrpn: device of the same server with buttons and analogs; default: the tracker's own");
     c->add_option("--file", o->file, "with --type file: recorded poses (docs/trackers.md)");
     c->add_option("--seconds", o->seconds, "duration")->check(in_range(0, 1e9))->capture_default_str();
     c->add_option("--frame-rate", o->frame_rate_hz, "Hz, for senders that send a frame number but no time")
@@ -257,7 +295,7 @@ void add_listen(CLI::App& track, int& exit_code)
   lightwell track listen --type osc --port 9123 --seconds 0.2 --json
 
 With --type dtrack the defaults are body 0 (head), flysticks 0 and 1 (left and right hand), bodies 1 and 2 (left
-and right foot). Poses are printed as sent, in the tracker's own axes: x y z (m), quaternion x y z w, buttons.
+and right foot); with --type vrpn sensors 0 to 4 (head, left and right hand, left and right foot). Poses are printed as sent, in the tracker's own axes: x y z (m), quaternion x y z w, buttons.
 Delays are relative to that of the fastest packet.)");
     c->callback([o, &exit_code] { exit_code = run_listen(*o); });
 }

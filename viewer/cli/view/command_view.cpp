@@ -7,6 +7,7 @@
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
+#include "viewer/base/port_options.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/validators.h"
 #include "viewer/base/version.h"
@@ -36,12 +37,14 @@ struct ViewArguments {
     RenderOptions scene; ///< scene, camera, sky
     std::vector<std::string> settings, fullscreen;
     std::string size, navigate = "fly", record, frame_log, remote, stats, screenshots, display, replay, out, video,
-                      avatar;
+                      avatar, avatar_joints;
     RankOptions ranks;
     double fps = 30, eye_height_m = 1.6;
     int paths = 0;
     bool hmd = false, seated = false;
     std::optional<int> remote_port;
+    std::string remote_token;
+    bool remote_open = false;
     double time_limit_s = 0;
     bool no_vsync = false;
 };
@@ -66,7 +69,8 @@ NavigationMode parse_navigation(std::string const& name)
 /// Avatars of --avatar and of the display; file names in a display file are relative to its folder.
 std::vector<AvatarChoice> choices_of(ViewArguments const& a, std::optional<Display> const& display)
 {
-    return avatar_choices(a.avatar, a.eye_height_m, display, std::filesystem::path(a.display).parent_path());
+    return avatar_choices(a.avatar, a.eye_height_m, display, std::filesystem::path(a.display).parent_path(),
+                          a.avatar_joints);
 }
 
 ViewOptions view_options(ViewArguments const& a, std::string const& command_line, gi::Report& report)
@@ -106,6 +110,8 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     put_avatars(o.load_options, avatars);
     o.remote.socket = a.remote;
     o.remote.port = a.remote_port;
+    o.remote.token = a.remote_token;
+    o.remote.open = a.remote_open;
     o.time_limit_s = a.time_limit_s;
     return o;
 }
@@ -152,6 +158,22 @@ void follow(ViewOptions& o)
     if (!o.frame_log.empty()) o.frame_log += fmt::format(".{}", o.rank);
 }
 
+/// Of the leader and of every other rank: what it lost, or how it was lost itself.
+nlohmann::ordered_json rank_stats(ClusterLink const& link, gi::Report const& report)
+{
+    nlohmann::ordered_json ranks;
+    ranks.push_back({{"rank", 0}, {"losses", to_json(report)["losses"]}});
+    for (RankEnd const& end : link.ends()) {
+        nlohmann::ordered_json rank{{"rank", end.rank}, {"name", end.name}};
+        auto const told = nlohmann::ordered_json::parse(end.farewell, nullptr, false);
+        if (told.is_object())
+            for (auto const& [key, value] : told.items()) rank[key] = value;
+        if (!end.lost.empty()) rank["lost"] = end.lost;
+        ranks.push_back(std::move(rank));
+    }
+    return ranks;
+}
+
 int finish(ViewArguments const& a, ViewRunSummary const& done, ClusterLink const* link, gi::Report const& report)
 {
     nlohmann::ordered_json stats;
@@ -165,7 +187,10 @@ int finish(ViewArguments const& a, ViewRunSummary const& done, ClusterLink const
     stats["frames"] = to_json(done.frames);
     stats["trackers"] = done.trackers;
     stats["headset"] = done.headset;
-    if (link != nullptr) stats["swap_skew"] = to_text(link->skew());
+    if (link != nullptr) {
+        stats["swap_skew"] = to_text(link->skew());
+        stats["ranks"] = rank_stats(*link, report);
+    }
     stats["report"] = to_json(report);
     if (!a.stats.empty()) gi::write_text(a.stats, to_text(stats));
     fmt::print("{} frames rendered, {} shown{}\n", done.rendered, done.presented,
@@ -185,7 +210,7 @@ void check_results(ViewArguments const& a)
 {
     std::string const screenshot = a.screenshots.empty() ? "" : a.screenshots + "lightwell_000000.png";
     check_outputs({a.stats, a.record, a.frame_log, screenshot},
-                  {a.scene.scene, a.scene.environment, a.display, a.avatar});
+                  {a.scene.scene, a.scene.environment, a.display, a.avatar, a.avatar_joints});
 }
 
 int run(ViewArguments const& a, std::string const& command_line)
@@ -217,8 +242,13 @@ int run(ViewArguments const& a, std::string const& command_line)
     for (AvatarChoice const& avatar : choices_of(a, o.display)) {
         what += " with " + avatar.file;
         hash ^= file_hash(avatar.file) * (2 * avatar.user + 1); // so that equal files do not cancel out
+        if (!avatar.joints.empty()) hash ^= file_hash(avatar.joints) * (2 * avatar.user + 3);
     }
-    ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks));
+    ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks), [&report] {
+        nlohmann::ordered_json const all = to_json(report);
+        return nlohmann::ordered_json{{"losses", all["losses"]}, {"peak_memory_bytes", all["peak_memory_bytes"]}}
+            .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    });
     if (o.rank == 0) check_results(a); // from here on the others are notified if the leader exits
     ViewRunSummary const done = run_view(o, &link, stop, report);
     if (o.rank == 0) return finish(a, done, &link, report);
@@ -279,9 +309,9 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
                 throw gi::InputError(std::string(name) + " " + when, "it would have no effect", "leave it out");
     };
     if (replays)
-        refuse({"scene", "--record", "--frame-log", "--remote", "--remote-port", "--display", "--hmd",
-                "--fullscreen", "--time-limit", "--navigate", "--screenshots", "--stats", "--camera", "--envmap",
-                "--avatar", "--eye-height"},
+        refuse({"scene", "--record", "--frame-log", "--remote", "--remote-port", "--remote-token", "--remote-open",
+                "--display", "--hmd", "--fullscreen", "--time-limit", "--navigate", "--screenshots", "--stats",
+                "--camera", "--envmap", "--avatar", "--avatar-joints", "--eye-height"},
                "with --replay");
     else
         refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
@@ -321,6 +351,9 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_flag("--hmd", a->hmd, "show in the headset of the OpenXR runtime (docs/hmd.md)");
     c->add_option("--avatar", a->avatar,
                   "skinned model, or avatar (built in): follows the first user's head and hands, seen in mirrors");
+    c->add_option("--avatar-joints", a->avatar_joints,
+                  "joint map of --avatar, YAML (lightwell avatar map proposes one); default: by usual names")
+        ->needs("--avatar");
     c->add_flag("--seated", a->seated, "with --hmd: space without a floor; the eyes start at --eye-height");
     c->add_option("--eye-height", a->eye_height_m,
                   "m above the floor, when walking, with --avatar or --seated; display files set their users' own")
@@ -333,6 +366,7 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_option("--frame-log", a->frame_log, "CSV file with the times of every frame");
     c->add_option("--remote", a->remote, "Unix socket for remote control (docs/remote.md)");
     c->add_option("--remote-port", a->remote_port, "port on 127.0.0.1 for remote control; 0 = any free port");
+    declare_port_options(*c, a->remote_token, a->remote_open);
     c->add_option("--replay", a->replay, "render a recording again, off-screen; --set changes settings");
     c->add_option("--paths", a->paths, "with --replay: paths per pixel and frame; 0 = as recorded")
         ->check(in_range(0, 1 << 20));

@@ -77,4 +77,6 @@ void Panel::claim(std::vector<InputEvent>& events) const
     }
 }
 
+void add_panel_font(float px) { add_font(px); }
+
 } // namespace viewer

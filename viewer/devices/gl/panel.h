@@ -33,4 +33,7 @@ private:
     ImGuiContext* context_;
 };
 
+/// Adds a font that is readable from a distance to the current ImGui context.
+void add_panel_font(float px);
+
 } // namespace viewer

@@ -12,14 +12,17 @@ TrackerSettings tracker_settings(DisplayTracker const& t)
     s.name = t.name;
     s.type = t.type == DisplayTrackerType::osc      ? TrackerType::osc
              : t.type == DisplayTrackerType::dtrack ? TrackerType::dtrack
+             : t.type == DisplayTrackerType::vrpn   ? TrackerType::vrpn
              : t.type == DisplayTrackerType::file   ? TrackerType::file
                                                     : TrackerType::fake;
     s.address = t.address;
     s.port = t.port > 0 ? t.port : -1;
+    s.device = t.device;
+    s.controls = t.controls;
     s.file = t.file;
     s.at_end = AtEnd::begin_again;
     auto const name = [](BodySettings& body, std::string const& id) {
-        if (!id.empty()) body.id = id.substr(id[0] == '/' ? 1 : 0); // for OSC, the display file gives a path
+        if (!id.empty()) body.id = body_name(id);
     };
     name(s.head, t.body);
     name(s.left_hand, t.left_hand_body);

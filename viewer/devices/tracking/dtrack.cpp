@@ -81,6 +81,8 @@ bool take_body(std::string_view& text, LineForm form, TrackerSample& sample)
             if (!(controls[0] >= 0 && controls[0] <= 4294967295.0)) return false;
             sample.buttons = std::uint32_t(controls[0]);
         }
+        auto const first = controls.begin() + std::ptrdiff_t(words);
+        sample.axes.assign(first, first + std::ptrdiff_t(std::min(std::size_t(controllers), kMostAxes)));
     }
     Rotation const rotation = read_rotation(matrix, sample.pose.rotation);
     if (rotation == Rotation::wrong) return false;
@@ -160,8 +162,10 @@ std::string format_dtrack(std::vector<TrackerSample> const& samples, std::uint64
         for (int i = 0; i < 9; ++i) matrix += fmt::format("{}{:.8f}", i == 0 ? "" : " ", m[i / 3][i % 3]);
         if (is_flystick) {
             ++flystick_count;
-            flysticks += fmt::format(" [{} {:.3f} 32 0][{}][{}][{}]", *id, s.visible ? 1.0 : -1.0, place, matrix,
-                                     s.buttons.value_or(0));
+            std::string controls = std::to_string(s.buttons.value_or(0));
+            for (double const axis : s.axes) controls += fmt::format(" {:.2f}", axis);
+            flysticks += fmt::format(" [{} {:.3f} 32 {}][{}][{}][{}]", *id, s.visible ? 1.0 : -1.0, s.axes.size(),
+                                     place, matrix, controls);
         } else {
             ++body_count;
             if (!s.visible) continue; // DTrack omits invisible bodies

@@ -7,7 +7,7 @@
 //   6dcal 2                                     number of calibrated bodies
 //   6d 1 [id qu][x y z a b c][b0 .. b8]         visible bodies
 //   6df 1 [id qu bt][x y z a b c][b0 .. b8]     flysticks, older form
-//   6df2 2 1 [id qu nbt nct][x y z][b0 .. b8][bt.. ct..]
+//   6df2 2 1 [id qu nbt nct][x y z][b0 .. b8][bt.. ct..]   buttons, 32 to a word, then axes of joysticks, -1..1
 //
 // Positions in mm, b0..b8 the rotation column by column; the angles (degrees) are redundant and not read.
 

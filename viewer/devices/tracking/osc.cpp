@@ -19,7 +19,7 @@ std::vector<std::string> const& argument_names()
 {
     static std::vector<std::string> const names{"x",       "y",       "z",       "qx",   "qy",   "qz",
                                                 "qw",      "yaw",     "pitch",   "roll", "time", "frame",
-                                                "buttons", "visible", "quality", "body", "_"};
+                                                "buttons", "visible", "quality", "axes", "body", "_"};
     return names;
 }
 
@@ -170,6 +170,12 @@ std::optional<TrackerSample> read_sample(Message const& m, OscPattern const& pat
         } else if (word == "buttons") {
             if (!(n >= -2147483648.0 && n <= 4294967295.0) || n != std::floor(n)) return std::nullopt;
             sample.buttons = std::uint32_t(std::int64_t(n)); // a negative int32 has the same bits
+        } else if (word == "axes") {                         // all that follow
+            sample.axes.push_back(n);
+            for (; at < m.numbers.size(); ++at) {
+                if (!m.numbers[at]) return std::nullopt;
+                if (sample.axes.size() < kMostAxes) sample.axes.push_back(*m.numbers[at]);
+            }
         } else if (word == "frame") {
             if (!(n >= 0) || n != std::floor(n)) return std::nullopt;
             sample.frame = std::uint64_t(n);
@@ -289,6 +295,7 @@ std::vector<OscPattern> const& default_osc_patterns()
         {"/tracker/<body>/euler", "yaw pitch roll [time frame]"},
         {"/tracker/<body>/pose_euler", "x y z yaw pitch roll [time frame]"},
         {"/tracker/<body>/buttons", "buttons"},
+        {"/tracker/<body>/axes", "axes"},
         {"/VMC/Ext/Hmd/Pos", "body x y z qx qy qz qw"},
         {"/VMC/Ext/Con/Pos", "body x y z qx qy qz qw"},
         {"/VMC/Ext/Tra/Pos", "body x y z qx qy qz qw"},
@@ -314,10 +321,14 @@ void check(OscPattern const& pattern)
         std::string const w(word);
         auto const& known = argument_names();
         if (std::find(known.begin(), known.end(), w) == known.end())
-            throw gi::InputError(name + " is not understood", "there is no argument '" + w + "'",
-                                 "use x y z qx qy qz qw yaw pitch roll time frame buttons visible quality body _");
+            throw gi::InputError(
+                name + " is not understood", "there is no argument '" + w + "'",
+                "use x y z qx qy qz qw yaw pitch roll time frame buttons visible quality axes body _");
         if (w != "_" && std::find(seen.begin(), seen.end(), w) != seen.end())
             throw gi::InputError(name + " is not understood", "'" + w + "' occurs twice", "name it once");
+        if (!seen.empty() && seen.back() == "axes")
+            throw gi::InputError(name + " is not understood",
+                                 "axes are all arguments that follow, but '" + w + "' comes", "put axes last");
         seen.push_back(w);
         has_body = has_body || w == "body";
         quaternion += w.front() == 'q' && w.size() == 2;
@@ -355,6 +366,10 @@ std::vector<unsigned char> format_osc(std::vector<TrackerSample> const& samples,
         lo_message_add_int64(m, s.buttons.value_or(0));
         lo_message_add_int32(m, s.visible ? 1 : 0);
         lo_bundle_add_message(bundle.get(), ("/tracker/" + s.body + "/pose").c_str(), m);
+        if (s.axes.empty()) continue;
+        lo_message const axes = lo_message_new();
+        for (double const axis : s.axes) lo_message_add_float(axes, float(axis));
+        lo_bundle_add_message(bundle.get(), ("/tracker/" + s.body + "/axes").c_str(), axes);
     }
     std::size_t size = lo_bundle_length(bundle.get());
     std::vector<unsigned char> bytes(size);

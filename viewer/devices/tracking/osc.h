@@ -16,6 +16,7 @@ namespace viewer {
 ///   time           s on the sender's clock; without it, the time tag of the bundle is used, if any
 ///   frame          sender's counter for this body
 ///   buttons        bits; visible: 0 = the body is not visible now; quality: 0..1
+///   axes           all arguments that follow: axes of joysticks, usually -1..1, of which 16 are kept
 ///   body           name, text or whole number; _ anything
 struct OscPattern {
     std::string path, arguments;
@@ -23,7 +24,7 @@ struct OscPattern {
     bool operator==(OscPattern const&) const = default;
 };
 
-/// /tracker/<body>/pose, position, rotation, euler, pose_euler, buttons; /VMC/Ext/{Hmd,Con,Tra}/Pos;
+/// /tracker/<body>/pose, position, rotation, euler, pose_euler, buttons, axes; /VMC/Ext/{Hmd,Con,Tra}/Pos;
 /// /tracking/trackers/<body>/{position,rotation}. Listed in docs/trackers.md.
 std::vector<OscPattern> const& default_osc_patterns();
 

@@ -110,13 +110,14 @@ double reach_before_head_m(gi::Scene const& scene, gi::Avatar const& avatar)
     return reach;
 }
 
-OwnAvatar::OwnAvatar(gi::Scene avatar, double eye_height_m, std::size_t user)
+OwnAvatar::OwnAvatar(gi::Scene avatar, double eye_height_m, std::size_t user,
+                     std::optional<gi::AvatarJoints> const& joints)
     : scene_(std::move(avatar)),
       eye_height_m_(eye_height_m),
       user_(user),
       root_(user == 0 ? "user's avatar" : fmt::format("user {}'s avatar", user + 1))
 {
-    joints_ = gi::find_avatar_joints(scene_);
+    joints_ = joints ? *joints : gi::find_avatar_joints(scene_);
     avatar_ = gi::make_avatar(scene_, joints_);
     for (gi::Node& n : scene_.nodes) n.camera = n.light = -1;
     scene_.cameras.clear();

@@ -26,8 +26,10 @@ public:
     ///   its clips do not play, but it takes the pose at the start of a clip with "idle" in its name
     /// @param eye_height_m  of the standing user, 0.3 to 3
     /// @param user  index in the display
-    /// Throws InputError if its head or arms cannot be identified by name (avatar_joints.h).
-    OwnAvatar(gi::Scene avatar, double eye_height_m, std::size_t user = 0);
+    /// @param joints  of a joint map (gi/scene/motion/avatar_map.h); none = found by their names (avatar_joints.h)
+    /// Throws InputError if its head or arms cannot be identified.
+    OwnAvatar(gi::Scene avatar, double eye_height_m, std::size_t user = 0,
+              std::optional<gi::AvatarJoints> const& joints = {});
 
     /// Returns the scene with the avatar added.
     gi::Scene joined(gi::Scene scene) const;

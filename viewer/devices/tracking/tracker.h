@@ -14,6 +14,8 @@ public:
     virtual TrackerCounts counts() const = 0;
     /// File descriptor to wait on with poll(2); -1 = poll again after a while.
     virtual int descriptor() const { return -1; }
+    /// Why nothing is received now, of protocols with connections; empty = all is well.
+    virtual std::string fault() const { return {}; }
     /// Description for messages: "osc at 127.0.0.1 port 9000".
     virtual std::string description() const = 0;
 };

@@ -4,6 +4,8 @@
 #include "gi/core/pose.h"
 #include "viewer/devices/tracking/arrival_clock.h"
 #include "viewer/devices/tracking/clock_offset.h"
+#include "viewer/devices/tracking/vrpn_tracker.h"
+#include "viewer/displays/display.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +33,8 @@ std::shared_ptr<Tracker> make_source(TrackerSettings const& s)
         return make_osc_tracker(s.address, port_of(s), s.osc_patterns, s.frame_rate_hz);
     case TrackerType::dtrack:
         return make_dtrack_tracker(s.address, port_of(s), s.frame_rate_hz);
+    case TrackerType::vrpn:
+        return std::make_unique<VrpnTracker>(*parse_vrpn_address(s.device), s.controls);
     case TrackerType::file:
         return std::make_unique<FileTracker>(read_tracker_file(s.file), s.file.string(), s.at_end, s.speed);
     case TrackerType::fake:
@@ -88,6 +92,7 @@ struct BodyTrack {
     SampleParts clocked = SampleParts::pose; ///< parts received when the arrival clock was last updated
     RoomPose last;                           ///< in the tracker's frame; completes partial samples
     std::uint32_t buttons = 0;
+    std::vector<double> axes;
     std::uint64_t not_visible = 0;
 
     double to_track(double local_s) const
@@ -113,6 +118,7 @@ struct BodyTrack {
     ClockNote take(TrackerSample const& s, TrackerToRoom const& transform)
     {
         if (s.buttons) buttons = *s.buttons;
+        if (!s.axes.empty()) axes = s.axes;
         not_visible += !s.visible;
         if (!s.visible || s.parts == SampleParts::buttons) return ClockNote::fits;
         if (s.parts != SampleParts::rotation) last.position = s.pose.position;
@@ -163,6 +169,9 @@ void check_rigid(TrackerSettings const& s, RoomPose const& p, char const* what)
 
 void check(TrackerSettings const& s)
 {
+    if (s.type == TrackerType::vrpn && !parse_vrpn_address(s.device))
+        refuse(s, "'" + s.device.substr(0, 128) + "' is no device of VRPN",
+               "it needs the device's name and its server", "write Tracker0@host, or Tracker0@host:3883");
     if (s.port < -1 || s.port > 65535)
         refuse(s, fmt::format("port {} does not exist", s.port), "ports are 1 to 65535, 0 = any",
                "choose another");
@@ -174,7 +183,7 @@ void check(TrackerSettings const& s)
         refuse(s, "its unit is invalid", "it must be above 0 and at most 1e6 m", "write 0.01 for cm");
     std::vector<std::string> ids;
     for (BodySettings const& b : bodies_of(s))
-        if (!b.id.empty()) ids.push_back(b.id);
+        if (!b.id.empty()) ids.push_back(body_name(b.id));
     std::sort(ids.begin(), ids.end());
     if (ids.empty())
         refuse(s, "it has no body", "it would have no effect", "name the id of head, left or right hand or foot");
@@ -207,6 +216,7 @@ struct TrackerHub::Source {
         std::array<BodySettings, kBodies> const of = bodies_of(s);
         for (std::size_t b = 0; b < kBodies; ++b) {
             bodies[b].settings = of[b];
+            bodies[b].settings.id = body_name(of[b].id);
             bodies[b].track = PoseTrack(s.filter, s.prediction);
             bodies[b].latency_s = s.prediction.latency_s;
         }
@@ -223,8 +233,9 @@ struct TrackerHub::Source {
             last_received_s = s.received_s;
         }
         bool known = false;
+        std::string const name = body_name(s.body);
         for (BodyTrack& b : bodies)
-            if (!b.settings.id.empty() && b.settings.id == s.body) {
+            if (!b.settings.id.empty() && (b.settings.id == name || s.body == kDeviceControls)) {
                 known = true;
                 if (b.take(s, settings.to_room) == ClockNote::was_set) latency.forget_delays();
             }
@@ -301,6 +312,7 @@ void TrackerHub::add_bodies(Source const& source, double time_s, BodiesAt& to)
         pose = p.pose;
         if (p.state != TrackState::never) to.states[b] = p.state;
         to.buttons[b] = body.buttons;
+        to.axes[b] = body.axes;
     }
 }
 
@@ -329,6 +341,7 @@ std::vector<TrackerReport> TrackerHub::report(double now_s) const
         r.name = source->settings.name;
         r.description = source->tracker->description();
         if (auto const* udp = dynamic_cast<UdpTracker const*>(source->tracker.get())) r.port = udp->port();
+        r.fault = source->tracker->fault();
         r.counts = source->tracker->counts();
         r.latency = source->latency.estimate();
         r.other_samples = source->other_samples;

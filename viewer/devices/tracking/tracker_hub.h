@@ -13,7 +13,7 @@
 
 namespace viewer {
 
-enum class TrackerType { osc, dtrack, file, fake };
+enum class TrackerType { osc, dtrack, vrpn, file, fake };
 enum class Body { head, left_hand, right_hand, left_foot, right_foot };
 inline constexpr std::size_t kBodies = kBodyMembers.size();
 
@@ -31,6 +31,8 @@ struct TrackerSettings {
     int port = -1;                     ///< -1: default of the type; 0: any free port
     std::vector<OscPattern> osc_patterns = default_osc_patterns();
     double frame_rate_hz = 0;   ///< osc, dtrack without time stamps: rate of the sender's counter; 0 = unknown
+    std::string device;         ///< vrpn: Tracker0@host[:port]
+    std::string controls;       ///< vrpn: device of the same server with buttons and analogs; empty = `device`'s
     std::filesystem::path file; ///< for type file: the file to play
     AtEnd at_end = AtEnd::stop;
     double speed = 1;
@@ -56,7 +58,8 @@ struct BodyReport {
 
 struct TrackerReport {
     std::string name, description;
-    int port = 0; ///< 0 = none
+    std::string fault; ///< why nothing is received now, if that is known
+    int port = 0;      ///< 0 = none
     TrackerCounts counts;
     Latency latency;
     std::uint64_t other_samples = 0;       ///< of bodies that are not assigned
@@ -69,6 +72,7 @@ struct BodiesAt {
     Tracked tracked;
     std::array<TrackState, kBodies> states{};
     std::array<std::uint32_t, kBodies> buttons{};
+    std::array<std::vector<double>, kBodies> axes{}; ///< of joysticks; empty = the body has none
 };
 
 enum class Polling { by_caller, by_thread };

@@ -13,6 +13,11 @@ namespace viewer {
 /// Numbers of larger magnitude are rejected: trackers do not send them, and integers would no longer be exact.
 inline constexpr double kLargestNumber = 1e15;
 
+/// Name of the body of samples that hold the controls of a whole device, not of one of its bodies.
+inline constexpr char const* kDeviceControls = "controls";
+/// Axes of joysticks and analogs that are read of one body or device.
+inline constexpr std::size_t kMostAxes = 16;
+
 /// Parts of a pose that a sample contains; senders may send positions and rotations in separate messages.
 enum class SampleParts { pose, position, rotation, buttons };
 
@@ -26,6 +31,7 @@ struct TrackerSample {
     bool visible = true;                  ///< false: the sender knows the body but does not see it now; no pose
     double quality = 1;                   ///< 0..1, if the sender reports it
     std::optional<std::uint32_t> buttons; ///< bit 0 = first button
+    std::vector<double> axes{};           ///< of joysticks, usually -1..1; empty = not sent
     std::optional<std::uint64_t> frame;   ///< sender's counter for this body
 };
 
@@ -47,6 +53,8 @@ struct TrackerCounts {
     std::uint64_t duplicate = 0;         ///< arrived twice
     std::uint64_t restarts = 0;          ///< the sender's counter restarted
     std::uint64_t dropped_by_kernel = 0; ///< the receive buffer was full, because it was polled too rarely
+    std::uint64_t connects = 0;          ///< to a server, of protocols with connections
+    std::uint64_t disconnects = 0;       ///< connections that ended, because the server was gone or sent nonsense
 
     bool operator==(TrackerCounts const&) const = default;
 };

@@ -177,8 +177,7 @@ void Cluster::finish()
         s.send_to_others(Writer(MessageKind::go).put(std::uint64_t(s.others_living())).put(now_s()));
     } else {
         s.await([&s] { return s.is_ended; }, [](int who) { return who == 0; }, s.settings.silence_s, "at the end");
-        Writer out(MessageKind::goodbye);
-        s.tell_swap(out);
+        Writer out = s.goodbye();
         s.gone.reset();
         s.is_leaving = true;
         s.send(0, std::move(out));
@@ -189,6 +188,18 @@ void Cluster::finish()
     s.messenger->flush(others, 0.5);
     s.over = true;
     if (all) s.messenger->finalize();
+}
+
+void Cluster::set_farewell(std::function<std::string()> farewell) { state_->farewell = std::move(farewell); }
+
+std::vector<RankEnd> Cluster::ends() const
+{
+    std::vector<RankEnd> all;
+    for (int r : state_->other_ranks()) {
+        State::Peer const& p = state_->peers[std::size_t(r)];
+        all.push_back({r, name(r), p.how_lost, p.farewell});
+    }
+    return all;
 }
 
 void Cluster::leave(std::string const& why)

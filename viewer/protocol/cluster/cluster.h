@@ -52,6 +52,14 @@ public:
 };
 
 /// Any call throws RankLoss if this rank must stop; after that only the destructor may be called.
+/// How a rank ended, as the leader knows at the end.
+struct RankEnd {
+    int rank = 0;
+    std::string name;     ///< "rank 2 on HOST"
+    std::string lost;     ///< how it was lost; empty = it was not
+    std::string farewell; ///< its last words; empty = none came
+};
+
 class Cluster {
 public:
     /// Waits for all ranks. Throws InputError, on all ranks, if their identities differ.
@@ -99,6 +107,11 @@ public:
     /// Leader: the next data that the rank gives; none if it is lost. Waits as long as that rank shows signs of
     /// life.
     std::optional<std::vector<std::uint8_t>> take(int from);
+
+    /// Follower: what it tells the leader when it ends in order, e.g. its losses; called then, on any thread.
+    void set_farewell(std::function<std::string()> farewell);
+    /// Leader: of the other ranks.
+    std::vector<RankEnd> ends() const;
 
     /// Leader: ends the session; followers' receive() then returns none. Follower: waits for that.
     void finish();

@@ -85,6 +85,7 @@ void Cluster::State::lose(int r, std::string const& how)
     if (lost.lost || !broken.empty() || over) return;
     std::string const text = fmt::format("{} {}", name(r), how);
     lost.lost = true;
+    lost.how_lost = how;
     if (!leads() && is_leaving) return; // the leader ended after all work was done
     if (!leads()) stop(text + "; it was the leader, so no rank can continue");
     bool const stops = settings.on_loss == OnRankLoss::stop;
@@ -236,9 +237,7 @@ void Cluster::State::handle(Message const& message)
         return;
     }
     case MessageKind::stop: {
-        Writer out(MessageKind::goodbye);
-        tell_swap(out);
-        send(message.from, std::move(out));
+        send(message.from, goodbye());
         int const to[] = {message.from};
         messenger->flush(to, 0.5);
         stop(in.text());
@@ -250,7 +249,9 @@ void Cluster::State::handle(Message const& message)
         return;
     case MessageKind::goodbye:
         from.said_goodbye = true;
-        return swap_of(message.from, in);
+        swap_of(message.from, in);
+        from.farewell = in.text();
+        return;
     }
     throw std::runtime_error(name(message.from) + " sent a message of unknown kind");
 }
@@ -259,6 +260,14 @@ void Cluster::State::tell_swap(Writer& message)
 {
     message.put(std::uint8_t(swap.known)).put(swap.frame).put(swap.time_s);
     swap.known = false;
+}
+
+Writer Cluster::State::goodbye()
+{
+    Writer out(MessageKind::goodbye);
+    tell_swap(out);
+    out.put(farewell ? farewell() : std::string());
+    return out;
 }
 
 void Cluster::State::swap_of(int from, Reader& in)

@@ -30,7 +30,9 @@ struct Cluster::State {
         double heard_s = 0; ///< time of its last message, on the clock listened_s
         RoundTripClockOffset clock;
         std::optional<Arrival> arrival;
-        std::string note; ///< sent with the arrival
+        std::string note;     ///< sent with the arrival
+        std::string how_lost; ///< if it is
+        std::string farewell; ///< sent with the goodbye
         std::deque<std::vector<std::uint8_t>> data;
     };
 
@@ -51,6 +53,7 @@ struct Cluster::State {
     [[noreturn]] void stop(std::string const& why);
     void note_order(std::span<std::uint8_t const> bytes);
     void tell_swap(Writer& message);
+    Writer goodbye();
     std::string name(int rank) const;
     bool leads() const { return rank == 0; }
     /// True for another rank that is not lost.
@@ -70,6 +73,7 @@ struct Cluster::State {
 
     ClusterIdentity identity;
     ClusterSettings settings;
+    std::function<std::string()> farewell;
     int rank = 0, size = 1;
     std::optional<Messenger> messenger; ///< none without other ranks
     ProcessId here;

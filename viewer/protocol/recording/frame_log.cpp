@@ -13,10 +13,6 @@ FrameLog::FrameLog(std::filesystem::path const& file, std::string const& about, 
     file_.append(top + frame_times_header());
 }
 
-void FrameLog::append(FrameTimes const& times)
-{
-    statistics_.add(times);
-    file_.append(csv_line(times));
-}
+void FrameLog::append(FrameTimes const& times) { file_.append(csv_line(times)); }
 
 } // namespace viewer

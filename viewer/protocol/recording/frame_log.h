@@ -2,7 +2,7 @@
 // --frame-log: one line of CSV per frame, written in the background and readable at any time.
 
 #include "viewer/protocol/recording/append_file.h"
-#include "viewer/protocol/recording/frame_summary.h"
+#include "viewer/protocol/recording/frame_times.h"
 
 namespace viewer {
 
@@ -14,13 +14,11 @@ public:
 
     /// Does not wait for the disk.
     void append(FrameTimes const& times);
-    FrameSummary summary() const { return statistics_.summary(); }
     std::string failure() const { return file_.failure(); }
     void close() { file_.close(); }
 
 private:
     AppendFile file_;
-    FrameStatistics statistics_;
 };
 
 } // namespace viewer

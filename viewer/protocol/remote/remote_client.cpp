@@ -1,8 +1,10 @@
 #include "viewer/protocol/remote/remote_client.h"
 
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 #include "viewer/protocol/bytes.h"
 #include "viewer/protocol/json_text.h"
+#include "viewer/protocol/remote/remote_token.h"
 
 #include <cerrno>
 #include <cstring>
@@ -18,6 +20,33 @@ gi::InputError no_answer(std::string const& why)
 }
 
 } // namespace
+
+RemoteClient::RemoteClient(std::string const& where, std::filesystem::path const& token_file)
+    : socket_(connect_to(where))
+{
+    auto const port = gi::parse_number<int>(where);
+    if (!port) return;
+    std::optional<std::string> const token =
+        read_token(token_file.empty() ? default_token_file(*port) : token_file);
+    if (!token && !token_file.empty())
+        throw gi::InputError("there is no file '" + token_file.string() + "'", "it would hold the port's token",
+                             "name the file that the viewer printed");
+    if (!token) return; // the port may be open
+    send(json_line({{"id", "token"}, {"token", *token}}) + "\n");
+    sent_token_ = true;
+}
+
+std::string RemoteClient::receive(std::chrono::milliseconds timeout)
+{
+    auto const until = Clock::now() + timeout;
+    std::string line = receive_line(timeout);
+    if (!std::exchange(sent_token_, false)) return line;
+    nlohmann::json const answer = nlohmann::json::parse(line, nullptr, false);
+    if (answer.is_object() && answer.contains("error"))
+        throw gi::InputError("the viewer refuses this client", answer["error"].dump(),
+                             "name the file of its token with --token");
+    return receive_line(std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()));
+}
 
 void RemoteClient::wait_for(short events, Clock::time_point until)
 {
@@ -40,7 +69,7 @@ void RemoteClient::send(std::string_view bytes, std::chrono::milliseconds timeou
     }
 }
 
-std::string RemoteClient::receive(std::chrono::milliseconds timeout)
+std::string RemoteClient::receive_line(std::chrono::milliseconds timeout)
 {
     auto const until = Clock::now() + timeout;
     for (std::size_t searched = 0;;) {

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kReadAtOnce = 65536;
 constexpr int kAcceptAtOnce = 256;
+constexpr std::size_t kLongestTokenLine = 4096;
 
 std::uint64_t inode_of(std::filesystem::path const& path)
 {
@@ -38,6 +39,7 @@ RemoteServer::RemoteServer(RemoteOptions const& options, Handler handler, gi::Re
     if (options.port) {
         port_ = *options.port;
         on_port_ = listen_on_loopback(port_);
+        if (!options.open) token_.emplace(options.token.empty() ? default_token_file(port_) : options.token);
     }
     if (!options.socket.empty()) {
         at_path_ = listen_at(options.socket);
@@ -51,15 +53,16 @@ RemoteServer::~RemoteServer()
     if (path_inode_ != 0 && inode_of(path_) == path_inode_) ::unlink(path_.c_str());
 }
 
-void RemoteServer::adopt(Socket connection)
+void RemoteServer::adopt(Socket connection, Trust trust)
 {
     Client& client = clients_[next_client_++];
+    client.trust = trust;
     client.socket = std::move(connection);
     int const yes = 1; // fails on Unix sockets, which do not need it
     ::setsockopt(client.socket.fd(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
 }
 
-void RemoteServer::accept_from(Socket const& listener)
+void RemoteServer::accept_from(Socket const& listener, Trust trust)
 {
     for (int i = 0; i < kAcceptAtOnce; ++i) {
         Socket connection(::accept4(listener.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
@@ -69,7 +72,7 @@ void RemoteServer::accept_from(Socket const& listener)
             return;
         }
         if (clients_.size() < limits_.clients) {
-            adopt(std::move(connection));
+            adopt(std::move(connection), trust);
             continue;
         }
         std::string const line =
@@ -102,13 +105,18 @@ void RemoteServer::poll(std::chrono::milliseconds timeout)
         if ((fd.revents & POLLOUT) != 0) flush(client);
         if ((fd.events & POLLIN) != 0 && fd.revents != 0) receive(client);
         handle_lines(numbers[i], client);
+        bool const is_stranger = client.trust == Trust::needs_token && !client.closing && !client.dead;
+        if (is_stranger && Clock::now() - client.since > limits_.without_token)
+            refuse_stranger(numbers[i], client, nullptr, "no token came in time");
+        else if (is_stranger && client.in.size() > kLongestTokenLine)
+            refuse_stranger(numbers[i], client, nullptr, "the first line is no token");
         // Hung up: no reader is left.
         if ((fd.revents & (POLLHUP | POLLERR)) != 0 && (fd.events & POLLIN) == 0 && !has_line(client))
             client.dead = true;
     }
     forget_dead();
-    if ((fds[0].revents & POLLIN) != 0) accept_from(at_path_);
-    if ((fds[1].revents & POLLIN) != 0) accept_from(on_port_);
+    if ((fds[0].revents & POLLIN) != 0) accept_from(at_path_, Trust::full);
+    if ((fds[1].revents & POLLIN) != 0) accept_from(on_port_, token_ ? Trust::needs_token : Trust::full);
 }
 
 void RemoteServer::receive(Client& client)
@@ -184,7 +192,38 @@ void RemoteServer::handle_line(std::uint64_t number, Client& client, std::string
         if (!client.spoke) client.closing = true;
         return;
     }
-    dispatch(number, client, request);
+    if (!take_token(number, client, request)) dispatch(number, client, request);
+}
+
+bool RemoteServer::take_token(std::uint64_t number, Client& client, nlohmann::json const& line)
+{
+    bool const is_token_line = line.contains("token") && !line.contains("do");
+    if (client.trust == Trust::full) {
+        if (is_token_line) send(number, client, {{"id", id_of(line)}, {"result", nlohmann::json::object()}});
+        return is_token_line; // not needed here, so that clients may always send theirs
+    }
+    if (!is_token_line || !line["token"].is_string()) {
+        refuse_stranger(number, client, id_of(line), "the first line is no token");
+    } else if (!is_token(line["token"].get_ref<std::string const&>(), token_->token())) {
+        refuse_stranger(number, client, id_of(line), "the token is wrong");
+    } else {
+        client.trust = Trust::full;
+        send(number, client, {{"id", id_of(line)}, {"result", nlohmann::json::object()}});
+    }
+    return true;
+}
+
+void RemoteServer::refuse_stranger(std::uint64_t number, Client& client, nlohmann::json const& id,
+                                   std::string const& problem)
+{
+    report_.lose("remote clients without the port's token", 1, fmt::format("client {}: {}", number, problem));
+    send_error(number, client, id,
+               problem +
+                   " (only who can read it may use this port) begin with {\"token\": ...} from the file that "
+                   "the viewer printed");
+    client.closing = true;
+    client.in.clear();
+    client.searched = 0;
 }
 
 void RemoteServer::dispatch(std::uint64_t number, Client& client, nlohmann::json const& json)
@@ -277,6 +316,13 @@ void RemoteServer::forget_dead()
             std::erase_if(waiting_, [&](auto const& w) { return w.second.client == at->first; });
         at = clients_.erase(at);
     }
+}
+
+std::string describe_port(RemoteServer const& server)
+{
+    return fmt::format("remote control at 127.0.0.1:{}, {}", server.port(),
+                       server.token_file().empty() ? "open to every account of this machine"
+                                                   : "token in " + server.token_file().string());
 }
 
 } // namespace viewer
