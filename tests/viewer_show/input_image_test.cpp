@@ -17,11 +17,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double ms_since(Clock::time_point t)
-{
-    return std::chrono::duration<double, std::milli>(Clock::now() - t).count();
-}
-
 class Input : public OnScreen {
 protected:
     void open(std::string const& arguments, std::string const& title)
@@ -110,6 +105,7 @@ TEST_F(Input, PictureFollowsTheWindowsSize)
 TEST_F(Input, ClosingTheWindowEndsInOrder)
 {
     open("cornell --size 200x150 --record walk.lwr", "Lightwell: cornell");
+    view->ask({{"do", "camera"}}); // answered when there is a scene
     window->ask_to_close();
     Outcome const o = view->program().wait(std::chrono::seconds(20));
     EXPECT_EQ(o.code, 0) << "signal " << o.signal << "\n" << o.err;

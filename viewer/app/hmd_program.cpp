@@ -24,6 +24,9 @@ WindowSettings hidden()
     return settings;
 }
 
+/// Of both eyes, before the runtime says their sizes; the method's start is planned for them.
+constexpr double kEyesPixels = 2.0 * 1440 * 1600;
+
 /// Compares bit by bit, so that NaN equals itself.
 bool same(HiddenMask const& a, HiddenMask const& b)
 {
@@ -40,7 +43,7 @@ public:
           keeper_(&context_.gl(), headset),
           bodies_(options.avatars)
     {
-        core_.start(nullptr, {});
+        core_.start(nullptr, [] { return kEyesPixels; }, {});
     }
 
     ViewRunSummary run(gi::StopRequest const& stop)
@@ -149,7 +152,7 @@ private:
             at.views.push_back(
                 {kEyes[eye], now[eye], frame.views[eye].width, frame.views[eye].height, eye == 0 ? -1 : 0});
         }
-        core_.renderer->look(std::move(at));
+        core_.look(std::move(at));
         auto const newest = core_.renderer->newest();
         if (!frame.should_render || !newest || newest->result.views.size() != 2) return session.end_frame();
         bool const fresh = newest != state_.frame;

@@ -32,8 +32,30 @@ void check_within(char const* what, double value, double limit, char const* unit
 
 } // namespace
 
+bool Requests::waits(RemoteRequest const& r) const
+{
+    static std::array const free{"ping", "stats", "get", "quit", "load", "session"};
+    static std::array const of_scene{"set", "pick", "screenshot", "seek"};
+    if (r.what == "set" && is_setting(r.arguments.at("key").get<std::string>())) return false;
+    if (state_.facts.scene.empty()) return std::ranges::find(free, r.what) == free.end();
+    return loading_ > 0 && std::ranges::find(of_scene, r.what) != of_scene.end();
+}
+
+void Requests::begin()
+{
+    for (RemoteRequest const& r : std::exchange(early_, {})) try {
+            if (std::optional<Json> const now = handle(r)) server_->answer(r.token, *now);
+        } catch (gi::InputError const& e) {
+            server_->refuse(r.token, e.what());
+        }
+}
+
 std::optional<Json> Requests::handle(RemoteRequest const& r)
 {
+    if (waits(r)) {
+        early_.push_back(r);
+        return std::nullopt;
+    }
     auto const done = [this, token = r.token](std::string const& wrong) {
         if (wrong.empty())
             server_->answer(token, Json::object());
@@ -139,18 +161,15 @@ Json Requests::camera(RemoteRequest const& r)
 void Requests::load(RemoteRequest const& r)
 {
     Change const change{"scene", r.arguments.at("scene")};
+    ++loading_;
     state_.change(change, [this, token = r.token](std::string const& wrong) {
+        changed_s_ = state_.clock.now_s();
+        if (--loading_ == 0) begin();
         if (!wrong.empty()) {
             server_->refuse(token, wrong);
             return;
         }
-        // Queued after the job that reads the scene's first camera, so that its result arrives first.
-        state_.renderer->ask([this, token](RenderSession&) {
-            state_.inbox.put([this, token] {
-                changed_s_ = state_.clock.now_s();
-                loads_.push_back({changed_s_, token});
-            });
-        });
+        loads_.push_back({state_.clock.now_s(), token});
     });
 }
 
@@ -284,6 +303,9 @@ void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsig
 Json Requests::stats() const
 {
     Json j{{"scene", state_.facts.scene}, {"triangles", state_.facts.triangles}};
+    if (std::optional<LoadProgress> const& l = state_.loading)
+        j["loading"] = {{"scene", l->scene}, {"step", l->step.what},    {"done", l->step.done},
+                        {"of", l->step.of},  {"fraction", l->fraction}, {"elapsed_s", l->elapsed_s}};
     if (state_.frame) {
         LiveFrame const& f = *state_.frame;
         j["frame"] = f.command.frame;
@@ -292,8 +314,8 @@ Json Requests::stats() const
         j["paths"] = f.command.paths;
         j["still_paths"] = f.still_paths;
         j["still_frames"] = f.result.still_frames;
-        j["at_rest"] = changed_s_ < stepped_s_ && !state_.drawing && state_.renderer->rests() &&
-                       state_.renderer->newest() == state_.frame;
+        j["at_rest"] = !state_.loading && loading_ == 0 && changed_s_ < stepped_s_ && !state_.drawing &&
+                       state_.renderer->rests() && state_.renderer->newest() == state_.frame;
         for (ViewCommand const& v : f.command.views)
             j["views"].push_back({{"name", v.name}, {"width", v.width}, {"height", v.height}});
         j["stages_ms"] = Json::object();

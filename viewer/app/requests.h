@@ -24,6 +24,8 @@ public:
     void presented(double shown_s, glm::ivec2 window_px, std::vector<unsigned char> const& window_bytes);
     /// Call before input is read: releases tapped keys.
     void step();
+    /// A scene is there: handles the requests that waited for it.
+    void begin();
     void answer_with(RemoteServer* server) { server_ = server; }
     /// True if the next call of presented() needs the window's bytes.
     bool wants_bytes() const { return !shots_.empty(); }
@@ -54,6 +56,9 @@ private:
     bool has_seen(double changed_s) const { return state_.frame && state_.frame->command.pose_s >= changed_s; }
     void save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
 
+    /// True for requests that wait: for the first scene, or for one that an earlier request loads.
+    bool waits(RemoteRequest const& request) const;
+
     ViewState& state_;
     Controls& controls_;
     gi::Report& report_;
@@ -62,6 +67,8 @@ private:
     std::list<Shot> shots_;
     std::list<Key> keys_;
     std::list<Loaded> loads_;
+    std::vector<RemoteRequest> early_;             ///< that wait for a scene
+    int loading_ = 0;                              ///< requests to load that are not done
     double changed_s_ = 0;                         ///< time of the last request that may change the picture
     double stepped_s_ = 0;                         ///< requests before this time were passed to the renderer
     std::vector<std::pair<double, int>> releases_; ///< session time, key code

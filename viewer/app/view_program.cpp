@@ -18,13 +18,14 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtx/component_wise.hpp>
 
 namespace viewer {
 namespace {
 
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
 constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture
-constexpr double kFlicker_Hz = 2;
+constexpr double kFlicker_Hz = 2, kMessages_Hz = 12;
 
 double steady_s()
 {
@@ -38,18 +39,20 @@ public:
     {
         if (options.display) {
             if (!follows()) tracking_.emplace(*core_.display);
-            shown_ = open_windows(*core_.display, core_.options.rank, core_.options.swap_interval, core_.report);
+            shown_ =
+                open_windows(*core_.display, core_.options.rank, core_.options.swap_interval, core_.report,
+                             [this](ShownWindow& w) { w.show_loading(core_.options.scene, PanelInput::none); });
         } else {
             open_desktop();
         }
-        if (!shown_.windows.empty()) shown_.windows.front()->window.gl().release(); // to the presenting thread
+        for (auto const& w : shown_.windows) w->window.gl().release(); // to the presenting thread
         std::function<std::vector<ViewCommand>(FrameCommand const&)> own;
         if (link != nullptr && options.display)
             own = [this](FrameCommand const& command) {
                 return views_of_rank(*core_.display, command.views, core_.options.rank);
             };
         core_.start(
-            link, [] { glfwPostEmptyEvent(); }, own);
+            link, [this] { return pixels_of_a_frame(); }, [] { glfwPostEmptyEvent(); }, own);
     }
 
     ViewRunSummary run(gi::StopRequest const& stop)
@@ -99,10 +102,21 @@ private:
             }
             shown_.windows.push_back(
                 std::make_unique<ShownWindow>(settings, std::vector<WallSettings>{}, core_.report));
+            if (i == 0) shown_.windows[0]->show_loading(core_.options.scene, PanelInput::taken);
         }
         state_.has_two_windows = two;
-        shown_.windows[0]->window.gl().make_current();
-        panel_ = std::make_unique<Panel>(shown_.windows[0]->window);
+        panel_ = shown_.windows[0]->panel.get();
+    }
+
+    /// Of all views of this process, at full size.
+    double pixels_of_a_frame()
+    {
+        if (core_.display) {
+            double sum = 0;
+            for (auto const& w : shown_.windows) sum += glm::compMul(glm::dvec2(w->window.framebuffer_px()));
+            return sum;
+        }
+        return glm::compMul(eye_px()) * (possible_mode() == StereoMode::off ? 1 : 2);
     }
 
     void take_input()
@@ -230,7 +244,7 @@ private:
             for (ViewCommand const& v : at.views) cameras_.push_back(v.camera);
             set_panes(layout.panes);
         }
-        core_.renderer->look(std::move(at));
+        core_.look(std::move(at));
     }
 
     /// Resting pose of the first user's head, in the room.
@@ -241,10 +255,13 @@ private:
 
     bool has_moved() const { return cameras_.size() == shown_cameras_.size() && !(cameras_ == shown_cameras_); }
 
+    /// What is drawn over the picture besides the panel.
+    bool has_messages() const { return state_.loading || state_.building; }
+
     void show()
     {
         auto const newest = core_.renderer->newest();
-        if (!newest || presenting_->busy()) return;
+        if (presenting_->busy()) return;
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
         bool const moved =
@@ -252,13 +269,15 @@ private:
         bool const flickers = state_.settings.view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
-        if (fresh || moved || flickers || dirty_ || resized || state_.wants_screenshot) present(newest, fresh);
+        bool const tells = has_messages() != had_messages_ || (has_messages() && since_s > 1 / kMessages_Hz);
+        if (fresh || moved || flickers || dirty_ || resized || tells || state_.wants_screenshot)
+            present(newest, fresh);
     }
 
     /// Data passed to the presenting thread and back.
     struct Presentation {
         std::shared_ptr<LiveFrame const> frame;
-        bool fresh = false, panel = false, wants_bytes = false, reprojected = false;
+        bool fresh = false, panel = false, messages = false, wants_bytes = false, reprojected = false;
         PresentSettings settings;
         std::vector<gi::Camera> cameras;
         std::vector<glm::ivec2> sizes;
@@ -278,9 +297,10 @@ private:
         p->fresh = fresh;
         p->begun_s = state_.clock.now_s();
         p->settings = present_settings();
-        p->wants_bytes = std::exchange(state_.wants_screenshot, false);
+        p->wants_bytes = newest && std::exchange(state_.wants_screenshot, false);
         std::vector<gi::Camera> rendered;
-        for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
+        if (newest)
+            for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
         bool const reprojects =
             state_.settings.reproject && link_ == nullptr && cameras_.size() == rendered.size();
         shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
@@ -297,17 +317,27 @@ private:
             w->shown_panes = w->panes;
             w->on_screen_px = w->window.position_px();
         }
-        p->panel = panel_ && state_.settings.panel;
-        if (p->panel) {
-            panel_->begin();
-            fill_panel(state_, frames_per_s_);
-            panel_->finish();
-        }
+        p->panel = panel_ && state_.settings.panel && newest;
+        p->messages = had_messages_ = has_messages();
+        if (p->panel || p->messages)
+            for (auto const& w : shown_.windows) fill(*w, *p);
         presenting_->start([this, p] { draw(*p); },
                            [this, p] {
                                state_.inbox.put([this, p] { presented(*p); });
                                glfwPostEmptyEvent();
                            });
+    }
+
+    void fill(ShownWindow& w, Presentation const& p)
+    {
+        if (!w.panel) return;
+        w.panel->begin();
+        if (p.panel && w.panel.get() == panel_) fill_panel(state_, frames_per_s_);
+        if (state_.loading)
+            fill_loading(*state_.loading, p.frame ? LoadingPlace::over_picture : LoadingPlace::alone);
+        else if (state_.building)
+            fill_building(*state_.building);
+        w.panel->finish();
     }
 
     /// Called on the presenting thread.
@@ -317,13 +347,14 @@ private:
             ShownWindow& shown = *shown_.windows[w];
             shown.window.gl().make_current();
             double const from = state_.clock.now_s();
-            if (p.fresh) shown.presenter.take(p.frame, shown.shown_panes);
+            if (p.fresh) shown.pictures().take(p.frame, shown.shown_panes);
             double const uploaded = state_.clock.now_s();
             clear(target_of(shown.window));
-            shown.presenter.draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
-                                 p.cameras);
+            if (p.frame)
+                shown.pictures().draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
+                                      p.cameras);
             if (w == 0 && p.wants_bytes) p.bytes = read_bytes(target_of(shown.window));
-            if (w == 0 && p.panel) panel_->draw();
+            if (shown.panel && (p.messages || p.panel)) shown.panel->draw();
             p.times.upload_ms += 1e3 * (uploaded - from);
             p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
         }
@@ -409,11 +440,11 @@ private:
     std::optional<UserTracking> tracking_;
     Gamepads gamepads_;
     DisplayWindows shown_;
-    std::unique_ptr<Panel> panel_; ///< not on the walls of a display
+    Panel* panel_ = nullptr; ///< of the first window, for the user; not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
-    bool dirty_ = true, fallback_told_ = false;
+    bool dirty_ = true, fallback_told_ = false, had_messages_ = false;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
 };
 

@@ -25,10 +25,10 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
         if (done) done({});
         return;
     }
+    if (c.key == "scene") return load(scene_change_of(c).name, std::move(done));
     renderer->post(c, [this, c, done = std::move(done)](std::string const& error) {
         inbox.put([this, c, error, done] {
             if (!error.empty()) message = error;
-            if (error.empty() && c.key == "scene" && loaded) loaded();
             if (done) done(error);
             refresh_facts();
         });

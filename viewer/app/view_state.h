@@ -5,6 +5,7 @@
 #include "viewer/app/live_error.h"
 #include "viewer/app/scene_facts.h"
 #include "viewer/engine/live/navigation.h"
+#include "viewer/engine/live/scene_loader.h"
 #include "viewer/engine/picking.h"
 
 #include <memory>
@@ -55,9 +56,12 @@ struct ViewState {
     std::string message; ///< last error, for the panel
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
-    bool is_one_of_ranks = false;                          ///< other ranks render the same frame commands
-    bool has_two_windows = false;                          ///< for StereoMode::two_windows
-    std::function<void()> loaded;                          ///< called after another scene was loaded
+    bool is_one_of_ranks = false; ///< other ranks render the same frame commands
+    bool has_two_windows = false; ///< for StereoMode::two_windows
+    /// Begins to load a scene; `done` as in change().
+    std::function<void(std::string const& name, std::function<void(std::string const&)> done)> load;
+    std::optional<LoadProgress> loading;                   ///< of a scene that is not shown yet
+    std::optional<LoadProgress> building;                  ///< what a frame that takes long is at
     bool wants_screenshot = false, own_screenshot = false; ///< own_screenshot: requested by key
 
     /// Applies a setting to the display at once and to the rendering with the next frame. Throws InputError if a

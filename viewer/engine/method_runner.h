@@ -4,6 +4,7 @@
 #include "gi/filter/temporal.h"
 #include "gi/methods/registry.h"
 #include "viewer/engine/hidden_views.h"
+#include "viewer/engine/scene_start.h"
 #include "viewer/engine/settings.h"
 
 #include <memory>
@@ -15,9 +16,10 @@ gi::SceneChange scene_change(gi::Changes const& changes, bool camera_moved);
 
 class MethodRunner {
 public:
-    /// The world and the report must outlive it. @param first  views whose sizes the plan is made for
+    /// The world and the report must outlive it. @param start  what the plan is made for
+    /// @param ahead  the world may change before the first frame
     MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
-                 std::vector<ViewCommand> const& first, gi::Report& report);
+                 SceneStart const& start, gi::Report& report, bool ahead = false);
 
     /// Returns one picture per view. @param hidden  per view  @param changes  of the world since the last frame
     std::vector<gi::RenderResult> render(FrameCommand const& command, std::span<HiddenPixels const> hidden,
@@ -44,7 +46,7 @@ private:
     int threads_;
     std::unique_ptr<gi::FrameRenderer> renderer_;
     std::vector<Seen> seen_;
-    bool first_ = true;
+    bool first_ = true, ahead_;
     int still_ = 0; ///< frames since the scene, a setting or the camera last changed
 };
 

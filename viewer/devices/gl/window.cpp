@@ -142,6 +142,13 @@ int Window::refresh_hz() const
     return 0;
 }
 
+float Window::content_scale() const
+{
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(state_->window, &x, &y);
+    return y;
+}
+
 bool Window::has_quad_buffer() const { return state_->quad_buffer == QuadBuffer::wanted; }
 bool Window::wants_close() const { return glfwWindowShouldClose(state_->window) != 0; }
 void Window::set_title(std::string const& title) { glfwSetWindowTitle(state_->window, title.c_str()); }

@@ -55,6 +55,7 @@ public:
     glm::ivec2 position_px() const;
     /// Refresh rate of the monitor under the window's centre; 0 = unknown.
     int refresh_hz() const;
+    float content_scale() const; ///< of the desktop's text on the window's monitor; 1 = usual
     bool has_quad_buffer() const;
     bool wants_close() const;
     void set_title(std::string const& title);

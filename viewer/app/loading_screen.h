@@ -1,0 +1,14 @@
+#pragma once
+#include "viewer/engine/live/scene_loader.h"
+
+namespace viewer {
+
+/// A loading screen where there is no picture yet; a line over the picture of the previous scene.
+enum class LoadingPlace { alone, over_picture };
+
+/// Draws the progress between Panel::begin and finish.
+void fill_loading(LoadProgress const& progress, LoadingPlace where);
+/// Draws what a frame that takes long is at: the start of a method, usually.
+void fill_building(LoadProgress const& progress);
+
+} // namespace viewer
