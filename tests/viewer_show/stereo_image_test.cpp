@@ -394,6 +394,9 @@ users:
     LiveView view("cornell --display " + (folder / "corner.yaml").string() + kStill);
     XWindow const left("Lightwell: left"), front("Lightwell: front"), right("Lightwell: right");
     view.settle();
+    view.screenshot("shot.png");
+    gi::Picture const shot = gi::read_picture(view.folder() / "shot.png");
+    EXPECT_EQ(glm::ivec2(shot.width, shot.height), glm::ivec2(360, 120)) << "the windows beside each other";
     Outcome const o = view.quit();
     EXPECT_EQ(o.err.find("OpenGL"), std::string::npos) << o.err;
 }

@@ -140,7 +140,7 @@ void fill_panel(ViewState& s, double frames_per_s)
     if (ImGui::Begin("Lightwell  (F1 hides this)")) {
         show_numbers(s, frames_per_s);
         if (!s.message.empty()) ImGui::TextWrapped("%s", s.message.c_str());
-        if (ImGui::Button("screenshot")) s.wants_screenshot = true;
+        if (ImGui::Button("screenshot")) s.wants_screenshot = s.own_screenshot = true;
         ImGui::SameLine();
         if (ImGui::Button("first camera")) s.navigation.go_to(s.first_camera.world_from_camera);
         ImGui::SameLine();

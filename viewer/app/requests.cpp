@@ -98,6 +98,8 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         if (r.has("view") && r.arguments.at("view").get<int>() < 0)
             throw gi::InputError(fmt::format("view {}", r.arguments.at("view").get<int>()), "there is none",
                                  "count from 0");
+        if (!r.has("view") && file.ends_with(".png") && !no_picture_.empty())
+            throw gi::InputError("a screenshot of what is shown", no_picture_, "give the number of a view");
         shots_.push_back(
             {r.arguments.at("file").get<std::string>(), r.has("view") ? r.arguments.at("view").get<int>() : -1,
              r.has("converged") && r.arguments.at("converged").get<bool>(), changed_s_, false, r.token});
@@ -234,11 +236,10 @@ void Requests::pick(RemoteRequest const& r)
 
 namespace {
 
-void write(std::string const& file, int view, LiveFrame const& f, glm::ivec2 window_px,
-           std::vector<unsigned char> const& bytes, gi::Report& report)
+void write(std::string const& file, int view, LiveFrame const& f, Snapshot const& shown, gi::Report& report)
 {
     bool const exr = file.ends_with(".exr");
-    if (view < 0 && !exr) return gi::write_png(file, window_px.x, window_px.y, bytes);
+    if (view < 0 && !exr) return gi::write_png(file, shown.size_px.x, shown.size_px.y, shown.bytes);
     std::size_t const k = std::size_t(std::max(0, view));
     if (k >= f.result.views.size())
         throw gi::InputError(fmt::format("view {}", k), fmt::format("there are {}", f.result.views.size()),
@@ -252,12 +253,12 @@ void write(std::string const& file, int view, LiveFrame const& f, glm::ivec2 win
 } // namespace
 
 /// Runs in the background, so that input does not wait for files.
-void Requests::save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+void Requests::save(Shot const& shot, Snapshot const& shown)
 {
-    saving_.push_back(std::async(std::launch::async, [this, shot, window_px, bytes, frame = state_.frame] {
+    saving_.push_back(std::async(std::launch::async, [this, shot, shown, frame = state_.frame] {
         std::string wrong;
         try {
-            write(shot.file, shot.view, *frame, window_px, bytes, report_);
+            write(shot.file, shot.view, *frame, shown, report_);
         } catch (gi::InputError const& e) {
             wrong = e.what();
         }
@@ -270,15 +271,15 @@ void Requests::save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned
     }));
 }
 
-void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+void Requests::presented(double shown_s, Snapshot const& picture)
 {
     if (!state_.frame) return;
     LiveFrame const& f = *state_.frame;
     std::erase_if(shots_, [&](Shot const& shot) {
         if (!has_seen(shot.since_s)) return false;
-        if (bytes.empty() && shot.view < 0 && !shot.file.ends_with(".exr")) return false;
+        if (picture.empty() && shot.view < 0 && !shot.file.ends_with(".exr")) return false;
         if (shot.converged && state_.settings.refine && f.still_paths < kConvergedPaths) return false;
-        save(shot, window_px, bytes);
+        save(shot, picture);
         return true;
     });
     std::erase_if(saving_, [](std::future<void> const& s) {

@@ -303,6 +303,8 @@ void ViewCore::finish()
     bar_.reset();
     loader_.stop();
     renderer->stop();
+    saving_.clear(); // waits
+    state.inbox.read();
     if (failure_) std::rethrow_exception(failure_);
     if (!recorder_ && !options.record.empty())
         fmt::print(stderr, "note: nothing was recorded: the program ended before a scene was shown\n");
@@ -317,16 +319,28 @@ void ViewCore::finish()
     watch_files();
 }
 
-void ViewCore::save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+void ViewCore::save_screenshot(Snapshot shown)
 {
-    std::string const base = fmt::format("{}lightwell_{:06}", options.screenshots, state.frame->command.frame);
-    try {
-        gi::write_png(base + ".png", window_px.x, window_px.y, bytes);
-        gi::write_exr(base + ".exr", state.frame->result.views[0].picture, gi::PixelType::single, report);
-        state.message = "saved " + base + ".png and .exr";
-    } catch (gi::InputError const& e) {
-        state.message = e.what();
-    }
+    std::erase_if(saving_, [](std::future<void> const& f) {
+        return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    });
+    saving_.push_back(std::async(std::launch::async, [this, shown = std::move(shown), frame = state.frame] {
+        std::string const base = fmt::format("{}lightwell_{:06}", options.screenshots, frame->command.frame);
+        std::vector<ViewPicture> const& views = frame->result.views;
+        std::string told = fmt::format("saved {}.png and .exr{}", base, views.size() > 1 ? " of each view" : "");
+        try {
+            gi::write_png(base + ".png", shown.size_px.x, shown.size_px.y, shown.bytes);
+            for (std::size_t k = 0; k < views.size(); ++k)
+                gi::write_exr(k == 0 ? base + ".exr" : fmt::format("{}_{}.exr", base, k), views[k].picture,
+                              gi::PixelType::single, report);
+        } catch (gi::InputError const& e) {
+            told = e.what();
+        }
+        state.inbox.put([this, told] {
+            state.message = told;
+            fmt::print(stderr, "note: {}\n", told);
+        });
+    }));
 }
 
 } // namespace viewer

@@ -8,6 +8,7 @@
 #include "viewer/protocol/recording/recording.h"
 #include "viewer/protocol/remote/remote_server.h"
 
+#include <future>
 #include <set>
 
 namespace viewer {
@@ -35,8 +36,8 @@ public:
     /// Ends the rendering thread and closes files. Throws what kept the first scene from being shown.
     void finish();
 
-    /// Saves a screenshot requested by key: the window's bytes, and all layers of its first view.
-    void save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
+    /// Saves a screenshot requested by key, in the background: what is shown, and all layers of each view.
+    void save_screenshot(Snapshot shown);
 
     ViewOptions const& options;
     std::optional<Display> display; ///< adapted to the capabilities of the windows
@@ -76,6 +77,7 @@ private:
     std::unique_ptr<FrameLog> log_;
     std::set<std::filesystem::path> unwritten_; ///< files that could not be completed
     double last_poll_s_ = 0;
+    std::vector<std::future<void>> saving_;
     SceneLoader loader_; ///< ends first
 };
 

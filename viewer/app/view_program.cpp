@@ -46,6 +46,8 @@ public:
             open_desktop();
         }
         for (auto const& w : shown_.windows) w->window.gl().release(); // to the presenting thread
+        if (shown_.windows.empty())
+            core_.requests.no_picture("this process has no window, those of the display belong to other ranks");
         std::function<std::vector<ViewCommand>(FrameCommand const&)> own;
         if (link != nullptr && options.display)
             own = [this](FrameCommand const& command) {
@@ -285,7 +287,7 @@ private:
         FrameTimes times;
         SwapTime swap;
         double shown_s = 0;
-        std::vector<unsigned char> bytes;
+        std::vector<Snapshot> shots; ///< per window or eye of a window
     };
 
     void present(std::shared_ptr<LiveFrame const> const& newest, bool fresh)
@@ -340,6 +342,12 @@ private:
         w.panel->finish();
     }
 
+    static void shoot(DrawTarget const& window, std::vector<Snapshot>& shots)
+    {
+        shots.push_back({window.size_px, read_bytes(window, window.left_buffer)});
+        if (window.right_buffer != 0) shots.push_back({window.size_px, read_bytes(window, window.right_buffer)});
+    }
+
     /// Called on the presenting thread.
     void draw(Presentation& p)
     {
@@ -353,7 +361,7 @@ private:
             if (p.frame)
                 shown.pictures().draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
                                       p.cameras);
-            if (w == 0 && p.wants_bytes) p.bytes = read_bytes(target_of(shown.window));
+            if (p.wants_bytes) shoot(target_of(shown.window), p.shots);
             if (shown.panel && (p.messages || p.panel)) shown.panel->draw();
             p.times.upload_ms += 1e3 * (uploaded - from);
             p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
@@ -376,10 +384,10 @@ private:
 
     void presented(Presentation const& p)
     {
-        glm::ivec2 const px = shown_.windows.empty() ? glm::ivec2(0) : shown_.windows[0]->shown_px;
-        if (p.wants_bytes && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(px, p.bytes);
+        Snapshot const shot = p.shots.empty() ? Snapshot{} : side_by_side(p.shots);
+        if (!shot.empty() && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(shot);
         state_.drawing = false;
-        core_.requests.presented(p.shown_s, px, p.bytes);
+        core_.requests.presented(p.shown_s, shot);
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
         ++core_.summary.presented;
         if (p.fresh) log(*p.frame, p.times, p.swap, p.begun_s, p.shown_s, p.reprojected);
