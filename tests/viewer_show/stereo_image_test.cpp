@@ -231,6 +231,8 @@ TEST_F(Stereo, QuadBufferFallsBackToSideBySide)
     for (auto const& [what, count] : stats.at("losses").items())
         said |= what.find("quad-buffer") != std::string::npos;
     if (!said) GTEST_SKIP() << "SKIPPED: this driver has quad-buffer stereo";
+    EXPECT_NE(view->program().errors().find("quad-buffer"), std::string::npos) << "at once, not at the end";
+    EXPECT_NE(stats.value("message", "").find("quad-buffer"), std::string::npos) << "in the window";
     eye(0);
     EXPECT_EQ(eye_px, glm::ivec2(160, 240)) << "the eyes are rendered at the shape in which they are shown";
     check_mode(StereoMode::side_by_side, "quad_buffer");

@@ -48,4 +48,30 @@ void fill_building(LoadProgress const& p)
     ImGui::End();
 }
 
+void fill_help(std::span<KeyMeaning const> keys)
+{
+    begin_at("help", ImVec2(0.5f, 0.5f));
+    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+        for (KeyMeaning const& k : keys) {
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(k.keys);
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(k.meaning);
+        }
+        ImGui::EndTable();
+    }
+    ImGui::TextDisabled("H closes this. Everything else: docs/viewer.md");
+    ImGui::End();
+}
+
+void fill_message(std::string const& message)
+{
+    begin_at("message", ImVec2(0.5f, 0));
+    ImGui::PushTextWrapPos(std::min(40 * ImGui::GetFontSize(), 0.9f * ImGui::GetIO().DisplaySize.x));
+    ImGui::TextUnformatted(message.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+}
+
 } // namespace viewer

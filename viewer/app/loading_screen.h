@@ -1,4 +1,5 @@
 #pragma once
+#include "viewer/app/controls.h"
 #include "viewer/engine/live/scene_loader.h"
 
 namespace viewer {
@@ -10,5 +11,9 @@ enum class LoadingPlace { alone, over_picture };
 void fill_loading(LoadProgress const& progress, LoadingPlace where);
 /// Draws what a frame that takes long is at: the start of a method, usually.
 void fill_building(LoadProgress const& progress);
+/// Draws the table of keys.
+void fill_help(std::span<KeyMeaning const> keys);
+/// Draws a message at the upper edge.
+void fill_message(std::string const& message);
 
 } // namespace viewer

@@ -140,6 +140,10 @@ void fill_panel(ViewState& s, double frames_per_s)
     if (ImGui::Begin("Lightwell  (F1 hides this)")) {
         show_numbers(s, frames_per_s);
         if (!s.message.empty()) ImGui::TextWrapped("%s", s.message.c_str());
+        if (ImGui::Button("open scene")) s.open_dialog.toggle(s.facts.scene);
+        ImGui::SameLine();
+        if (ImGui::Button("help")) s.shows_help = !s.shows_help;
+        ImGui::SameLine();
         if (ImGui::Button("screenshot")) s.wants_screenshot = s.own_screenshot = true;
         ImGui::SameLine();
         if (ImGui::Button("first camera")) s.navigation.go_to(s.first_camera.world_from_camera);

@@ -95,6 +95,9 @@ void ViewCore::loaded(SceneFacts const& facts, SceneChange const& scene)
     state.facts = facts;
     state.selection.reset();
     state.message.clear();
+    if (keeps_recent)
+        if (std::string const why = state.open_dialog.recent().add(scene.name); !why.empty())
+            report.lose("scenes not kept among the recent ones", 1, why);
     start_at(scene.start->camera);
     state.refresh_ground();
     resumes_ = true;
@@ -234,6 +237,14 @@ void ViewCore::obey(Command command)
         break;
     case Command::panel:
         state.change({"panel", !s.panel});
+        break;
+    case Command::help:
+        state.shows_help = !state.shows_help;
+        break;
+    case Command::open_scene:
+        state.open_dialog.toggle(state.facts.scene);
+        break;
+    case Command::hold_exposure:
         break;
     case Command::screenshot:
         state.wants_screenshot = state.own_screenshot = true;

@@ -39,6 +39,8 @@ public:
     /// Saves a screenshot requested by key, in the background: what is shown, and all layers of each view.
     void save_screenshot(Snapshot shown);
 
+    bool keeps_recent = false; ///< scene files that are shown are kept among the recent ones
+
     ViewOptions const& options;
     std::optional<Display> display; ///< adapted to the capabilities of the windows
     gi::Report& report;

@@ -16,6 +16,7 @@
 
 #include <GLFW/glfw3.h>
 #include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtx/component_wise.hpp>
@@ -25,7 +26,7 @@ namespace {
 
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
 constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture
-constexpr double kFlicker_Hz = 2, kMessages_Hz = 12;
+constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 8;
 
 double steady_s()
 {
@@ -108,6 +109,7 @@ private:
         }
         state_.has_two_windows = two;
         panel_ = shown_.windows[0]->panel.get();
+        core_.keeps_recent = true;
     }
 
     /// Of all views of this process, at full size.
@@ -126,9 +128,12 @@ private:
         for (std::size_t w = 0; w < shown_.windows.size(); ++w) {
             std::vector<InputEvent> events = shown_.windows[w]->window.take_events();
             if (w == 0) gamepads_.poll(events);
-            if (panel_ && w == 0 && state_.settings.panel) panel_->claim(events);
+            if (panel_ && w == 0 && uses_panel()) panel_->claim(events);
             if (!events.empty()) dirty_ = true;
-            for (InputEvent const& e : events) core_.controls.take(e, height_px());
+            for (InputEvent const& e : events) {
+                core_.controls.take(e, height_px());
+                if (e.kind == InputKind::drop && !follows()) state_.open_scene(e.text);
+            }
         }
         for (CommandEvent const& c : core_.controls.commands()) {
             dirty_ = true;
@@ -185,8 +190,10 @@ private:
     {
         StereoMode const mode = *stereo_mode(state_.settings.stereo);
         if (mode != StereoMode::quad_buffer || shown_.windows[0]->window.has_quad_buffer()) return mode;
-        if (!std::exchange(fallback_told_, true))
+        if (!std::exchange(fallback_told_, true)) {
             core_.report.lose("quad-buffer stereo not supported by this window: side by side instead");
+            tell("quad-buffer stereo is not supported by this window (the driver has none) shown side by side");
+        }
         return StereoMode::side_by_side;
     }
 
@@ -257,8 +264,26 @@ private:
 
     bool has_moved() const { return cameras_.size() == shown_cameras_.size() && !(cameras_ == shown_cameras_); }
 
-    /// What is drawn over the picture besides the panel.
-    bool has_messages() const { return state_.loading || state_.building; }
+    /// The user works with panel or dialog.
+    bool uses_panel() const { return state_.settings.panel || state_.open_dialog.is_open(); }
+
+    /// At once, in the window and on stderr.
+    void tell(std::string const& what)
+    {
+        state_.message = what;
+        std::fputs(("note: " + what + "\n").c_str(), stderr);
+    }
+
+    /// What is drawn over the picture besides the panel. A new message stays for a while.
+    bool has_messages()
+    {
+        if (state_.message != message_) {
+            message_ = state_.message;
+            message_until_s_ = state_.clock.now_s() + kMessage_s;
+        }
+        bool const is_new = !message_.empty() && state_.clock.now_s() < message_until_s_;
+        return state_.loading || state_.building || is_new || state_.shows_help || state_.open_dialog.is_open();
+    }
 
     void show()
     {
@@ -271,7 +296,8 @@ private:
         bool const flickers = state_.settings.view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
-        bool const tells = has_messages() != had_messages_ || (has_messages() && since_s > 1 / kMessages_Hz);
+        bool const messages = has_messages();
+        bool const tells = messages != had_messages_ || (messages && since_s > 1 / kMessages_Hz);
         if (fresh || moved || flickers || dirty_ || resized || tells || state_.wants_screenshot)
             present(newest, fresh);
     }
@@ -339,6 +365,11 @@ private:
             fill_loading(*state_.loading, p.frame ? LoadingPlace::over_picture : LoadingPlace::alone);
         else if (state_.building)
             fill_building(*state_.building);
+        if (w.panel.get() == panel_)
+            if (auto const scene = state_.open_dialog.draw()) state_.open_scene(*scene);
+        if (state_.shows_help) fill_help(key_meanings());
+        if (!message_.empty() && state_.clock.now_s() < message_until_s_ && !(p.panel && w.panel.get() == panel_))
+            fill_message(message_);
         w.panel->finish();
     }
 
@@ -453,6 +484,8 @@ private:
     ErrorMeter meter_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
     bool dirty_ = true, fallback_told_ = false, had_messages_ = false;
+    std::string message_; ///< the last one, told until message_until_s_
+    double message_until_s_ = 0;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
 };
 

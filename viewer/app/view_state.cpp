@@ -35,6 +35,12 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
     });
 }
 
+void ViewState::open_scene(std::string const& name)
+{
+    message.clear();
+    change({"scene", name});
+}
+
 void ViewState::move_selection(gi::dvec3 by)
 {
     selection->picked.position += by;

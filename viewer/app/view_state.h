@@ -3,6 +3,7 @@
 // them.
 
 #include "viewer/app/live_error.h"
+#include "viewer/app/open_dialog.h"
 #include "viewer/app/scene_facts.h"
 #include "viewer/engine/live/navigation.h"
 #include "viewer/engine/live/scene_loader.h"
@@ -52,7 +53,8 @@ struct ViewState {
     bool drawing = false;                   ///< `frame` is not in the windows yet
     std::optional<LiveError> live_error;
     double screen_distance_m = 2; ///< distance where both eyes' pictures coincide
-    bool ends = false;
+    bool ends = false, shows_help = false;
+    OpenDialog open_dialog;
     std::string message; ///< last error, for the panel
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
@@ -67,6 +69,8 @@ struct ViewState {
     /// Applies a setting to the display at once and to the rendering with the next frame. Throws InputError if a
     /// setting is invalid. Errors in edits of the scene are passed to `done` later, through the inbox.
     void change(Change const& change, std::function<void(std::string const&)> done = {});
+    /// Loads a scene that the user chose.
+    void open_scene(std::string const& name);
     /// Moves the selected object by an offset, m, in the world.
     void move_selection(gi::dvec3 by);
     /// Requests an update of the facts, and of the ground in walk mode.

@@ -96,7 +96,7 @@ Window::Window(WindowSettings const& settings, gi::Report& report, Window const*
     GLFWwindow* const other = shares ? shares->glfw() : nullptr;
     s.open(settings, monitor, other);
     if (!s.window && s.quad_buffer == QuadBuffer::wanted) {
-        report.lose("windows without the requested quad-buffer stereo", 1, glfw_error());
+        report.lose(kNoQuadBuffer, 1, glfw_error());
         s.quad_buffer = QuadBuffer::no;
         s.open(settings, monitor, other);
     }

@@ -24,6 +24,8 @@ struct MonitorInfo {
 std::vector<MonitorInfo> monitors();
 
 enum class QuadBuffer { no, wanted };
+/// Name of the loss where a driver has none.
+inline constexpr char const* kNoQuadBuffer = "windows without the requested quad-buffer stereo";
 enum class Visibility { shown, hidden };
 
 struct WindowSettings {
