@@ -144,6 +144,22 @@ TEST_F(Input, RemoteKeysThatChangeNothingAreAnsweredToo)
 }
 
 /// "Until the picture refines no further" is at once where it does not refine.
+TEST_F(Input, ExposureFollowsAndHolds)
+{
+    open("cornell --size 80x60 --set exposure=-6 --record walk.lwr" + kStill, "Lightwell: cornell");
+    view->settle();
+    view->ask({{"do", "key"}, {"key", "t"}}); // on
+    EXPECT_TRUE(is_soon([&] { return view->settle().value("exposure", -6.0) > -3; })) << "it is not that dark";
+    double const found = view->settle().at("exposure");
+    EXPECT_EQ(view->ask({{"do", "get"}, {"key", "auto_exposure"}}).at("value"), "on");
+    view->ask({{"do", "key"}, {"key", "+"}});
+    EXPECT_EQ(view->ask({{"do", "get"}, {"key", "auto_exposure"}}).at("value"), "hold");
+    EXPECT_NEAR(view->settle().at("exposure").get<double>(), found + 0.25, 1e-6);
+    view->quit();
+    Outcome const o = run_well("view --replay walk.lwr", view->folder().path());
+    EXPECT_NE(o.out.find(" 0 not, 0 unknown"), std::string::npos) << o.out;
+}
+
 TEST_F(Input, ConvergedScreenshotOfAPictureThatRests)
 {
     open("cornell --size 200x150" + kStill, "Lightwell: cornell");

@@ -166,6 +166,7 @@ private:
             state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
             eyes_.take(*newest);
             note_hidden(*newest);
+            core_.expose(*newest);
         }
         double const uploaded = state_.clock.now_s();
         HmdPicture picture;

@@ -313,6 +313,7 @@ Json Requests::stats() const
         j["scene_s"] = f.command.scene_s;
         j["render_ms"] = 1e3 * (f.done_s - f.begun_s);
         j["paths"] = f.command.paths;
+        j["exposure"] = state_.settings.exposure_ev;
         j["still_paths"] = f.still_paths;
         j["still_frames"] = f.result.still_frames;
         j["at_rest"] = !state_.loading && loading_ == 0 && changed_s_ < stepped_s_ && !state_.drawing &&

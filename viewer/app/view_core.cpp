@@ -98,6 +98,7 @@ void ViewCore::loaded(SceneFacts const& facts, SceneChange const& scene)
     if (keeps_recent)
         if (std::string const why = state.open_dialog.recent().add(scene.name); !why.empty())
             report.lose("scenes not kept among the recent ones", 1, why);
+    auto_exposure_.begin();
     start_at(scene.start->camera);
     state.refresh_ground();
     resumes_ = true;
@@ -245,6 +246,7 @@ void ViewCore::obey(Command command)
         state.open_dialog.toggle(state.facts.scene);
         break;
     case Command::hold_exposure:
+        state.change({"auto_exposure", s.auto_exposure == "on" ? "hold" : "on"});
         break;
     case Command::screenshot:
         state.wants_screenshot = state.own_screenshot = true;
@@ -287,6 +289,15 @@ void ViewCore::obey(Command command)
     }
 }
 
+void ViewCore::expose(LiveFrame const& frame)
+{
+    if (state.settings.auto_exposure != "on") return auto_exposure_.begin();
+    auto const ev = auto_exposure_.see(frame.result.views, state.settings.exposure_ev, state.clock.now_s());
+    if (!ev || *ev == state.settings.exposure_ev) return;
+    state.settings.exposure_ev = *ev;
+    renderer->post({"exposure", *ev});
+}
+
 void ViewCore::log(FrameTimes const& times)
 {
     if (times.dropped > 0) report.lose("frames dropped", std::uint64_t(times.dropped));
@@ -311,6 +322,7 @@ void ViewCore::report_failure(std::filesystem::path const& file, std::string con
 
 void ViewCore::finish()
 {
+    summary.exposure_ev = state.settings.exposure_ev;
     bar_.reset();
     loader_.stop();
     renderer->stop();

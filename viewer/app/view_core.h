@@ -2,6 +2,7 @@
 // The parts of a viewer that do not depend on the output device: the session and its rendering thread, settings
 // and commands, remote control, recording and frame log.
 
+#include "viewer/app/auto_exposure.h"
 #include "viewer/app/requests.h"
 #include "viewer/app/view_program.h"
 #include "viewer/protocol/recording/frame_log.h"
@@ -30,6 +31,8 @@ public:
     bool poll(gi::StopRequest const& stop);
     /// Passes the users' views on to the rendering thread.
     void look(Viewpoint viewpoint);
+    /// A fresh frame is shown: automatic exposure follows it.
+    void expose(LiveFrame const& frame);
     /// Executes a command, except selecting and dragging.
     void obey(Command command);
     void log(FrameTimes const& times);
@@ -80,6 +83,7 @@ private:
     std::set<std::filesystem::path> unwritten_; ///< files that could not be completed
     double last_poll_s_ = 0;
     std::vector<std::future<void>> saving_;
+    AutoExposure auto_exposure_;
     SceneLoader loader_; ///< ends first
 };
 

@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtx/component_wise.hpp>
+#include <imgui.h>
 
 namespace viewer {
 namespace {
@@ -324,7 +325,6 @@ private:
         p->frame = newest;
         p->fresh = fresh;
         p->begun_s = state_.clock.now_s();
-        p->settings = present_settings();
         p->wants_bytes = newest && std::exchange(state_.wants_screenshot, false);
         std::vector<gi::Camera> rendered;
         if (newest)
@@ -338,7 +338,12 @@ private:
             state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
             if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->command.views));
             meter_.see(newest);
+            if (follows())
+                state_.settings = newest->settings; // those of the leader
+            else
+                core_.expose(*newest);
         }
+        p->settings = present_settings();
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();
@@ -360,6 +365,7 @@ private:
     {
         if (!w.panel) return;
         w.panel->begin();
+        ImGui::GetIO().FontGlobalScale = float(state_.settings.font_scale);
         if (p.panel && w.panel.get() == panel_) fill_panel(state_, frames_per_s_);
         if (state_.loading)
             fill_loading(*state_.loading, p.frame ? LoadingPlace::over_picture : LoadingPlace::alone);

@@ -20,6 +20,8 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
         if (c.key == "stereo" && changed.stereo == name_of(StereoMode::two_windows) && !has_two_windows)
             throw gi::InputError("'stereo' = two-windows", "there is no second window",
                                  "start with --set stereo=two-windows");
+        if (c.key == "exposure" && settings.auto_exposure == "on") change({"auto_exposure", "hold"});
+        changed.auto_exposure = c.key == "exposure" ? settings.auto_exposure : changed.auto_exposure;
         settings = std::move(changed);
         renderer->post(c);
         if (done) done({});

@@ -65,6 +65,8 @@ std::vector<SettingKey> make_keys()
          own("denoise", gi::filter_names(), "filter that removes noise", &S::denoise),
          own("share-eyes", {}, "each eye may reuse light computed for the other eye", &S::share_eyes),
          own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),
+         own("auto-exposure", {"off", "on", "hold"},
+             "exposure follows what is shown: off, on, or held as it is now", &S::auto_exposure),
          own("tone", {"srgb", "filmic"}, "tone curve", &S::tone),
          own("rate", {0.1, 1000}, "target frame rate, Hz", &S::rate_hz),
          own("paths", {0, 65536}, "paths per pixel and frame, 0 = as the frame rate allows", &S::paths),
@@ -79,7 +81,9 @@ std::vector<SettingKey> make_keys()
          own("split", {0, 1}, "position of the split, as a share of the picture's width", &S::split),
          own("reproject", {}, "reproject the last picture to the current head pose", &S::reproject),
          own("refine", {}, "keep adding paths while nothing moves", &S::refine),
-         own("panel", {}, "show the panel", &S::panel)});
+         own("panel", {}, "show the panel", &S::panel),
+         own("font-scale", {0.5, 4}, "size of letters in the panel and of messages, 1 = usual on this monitor",
+             &S::font_scale)});
     return keys;
 }
 

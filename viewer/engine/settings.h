@@ -21,6 +21,8 @@ struct Settings {
     std::string denoise = "atrous";
     bool share_eyes = true; ///< each eye may reuse light computed for the other
     double exposure_ev = 0;
+    std::string auto_exposure =
+        "off"; ///< on: windows and headsets set exposure_ev by what is shown; hold: they did
     std::string tone = "srgb";
     // Settings of the interactive loop
     double rate_hz = 20;           ///< target frame rate
@@ -36,6 +38,7 @@ struct Settings {
     bool reproject = true;        ///< reproject the last picture to the current head pose
     bool refine = true;           ///< keep adding paths while nothing moves
     bool panel = true;
+    double font_scale = 1; ///< of the letters in the panel, over the usual size on the monitor
 
     bool has_automatic_schedule() const { return render.slhb.schedule == gi::Schedule::automatic; }
 };

@@ -159,6 +159,7 @@ int finish(ViewArguments const& a, ViewRunSummary const& done, ClusterLink const
     stats["gl"] = done.gl;
     stats["frames_rendered"] = done.rendered;
     stats["schedule"] = done.schedule;
+    stats["exposure"] = done.exposure_ev;
     stats["presented"] = done.presented;
     stats["recorded"] = done.recorded;
     stats["longest_block_ms"] = done.longest_block_ms;
