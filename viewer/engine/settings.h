@@ -13,8 +13,8 @@
 namespace viewer {
 
 struct Settings {
-    std::string method = "slhb", compare;    ///< compare: second method, shown beside the first; empty = none
-    gi::RenderSettings render{.bounces = 3}; ///< those of gi::render_options() that are live count
+    std::string method = "slhb", compare; ///< compare: second method, shown beside the first; empty = none
+    gi::RenderSettings render;            ///< those of gi::render_options() that are live count
     int updated_axes = 0; ///< stored axes per bounce updated each frame for dynamic geometry; 0 = all. With the
                           ///< schedule auto, the live viewer sets it every frame (update_governor.h)
     int reuse = 16;       ///< frames of temporal reuse; 1 = none

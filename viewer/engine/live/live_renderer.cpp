@@ -334,7 +334,9 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget)
         command.views = hooks_.own_views(command);
     }
     gi::StepListener const listener([this](gi::Step const& step) {
-        if (quit_ && link_ == nullptr) throw gi::Interrupted();
+        bool const builds =
+            step.of > 0 || step.what.starts_with("build"); // of a method that starts: may take long
+        if (quit_ && link_ == nullptr && builds) throw gi::Interrupted();
         if (hooks_.at_step) hooks_.at_step(step);
     });
     try {
