@@ -6,6 +6,8 @@
 #include "gi/methods/registry.h"
 #include "viewer/displays/stereo_mode.h"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -127,6 +129,27 @@ std::span<SettingKey const> setting_keys()
 {
     static std::vector<SettingKey> const keys = make_keys();
     return keys;
+}
+
+std::string label_of(SettingKey const& key)
+{
+    constexpr std::size_t kMost = 46, kMethodName = 16, kUnit = 4;
+    std::string text = key.meaning;
+    if (std::size_t const colon = text.find(": "); colon != std::string::npos && colon < kMethodName)
+        text = text.substr(colon + 2); // "slhb: ..."
+    text = text.substr(0, text.find_first_of(";:("));
+    if (text.size() < kUnit) { // "m; where ..."
+        std::string name = key.key;
+        std::ranges::replace(name, '_', ' ');
+        text = name + ", " + text;
+    }
+    if (text.size() > kMost) {
+        std::size_t const comma = text.rfind(", ", kMost), blank = text.rfind(' ', kMost);
+        text = text.substr(0, comma != std::string::npos ? comma : blank) + " ...";
+    }
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+    return text;
 }
 
 bool is_setting(std::string const& key) { return find(key) != nullptr; }

@@ -48,6 +48,8 @@ struct SettingKey : gi::Option<Settings> {
     bool restarts = false; ///< a change begins the methods anew
 };
 std::span<SettingKey const> setting_keys();
+/// The beginning of its meaning, with the unit, as the label of a control: "Target frame rate, Hz".
+std::string label_of(SettingKey const& key);
 bool is_setting(std::string const& key);
 /// The current name of a key: older recordings and scripts may use a former one.
 std::string current_key(std::string const& key);
