@@ -94,7 +94,7 @@ void ViewCore::loaded(SceneFacts const& facts, SceneChange const& scene)
     bool const first = state.facts.scene.empty();
     state.facts = facts;
     state.selection.reset();
-    state.message.clear();
+    if (!first) state.message.clear();
     if (keeps_recent)
         if (std::string const why = state.open_dialog.recent().add(scene.name); !why.empty())
             report.lose("scenes not kept among the recent ones", 1, why);
