@@ -235,6 +235,7 @@ TEST_F(Stereo, QuadBufferFallsBackToSideBySide)
     EXPECT_NE(stats.value("message", "").find("quad-buffer"), std::string::npos) << "in the window";
     eye(0);
     EXPECT_EQ(eye_px, glm::ivec2(160, 240)) << "the eyes are rendered at the shape in which they are shown";
+    sleep_ms(5500); // until the message has gone
     check_mode(StereoMode::side_by_side, "quad_buffer");
     Outcome const o = view->quit();
     EXPECT_NE(o.err.find("quad-buffer"), std::string::npos) << o.err;

@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
 constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture
-constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 8;
+constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
 double steady_s()
 {
