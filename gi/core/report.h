@@ -3,6 +3,8 @@
 // skipped, clamped or missing). Nothing is dropped without an entry here; the command line prints the
 // losses on stderr and writes the whole report with --stats.
 
+#include "gi/core/step.h"
+
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -38,10 +40,14 @@ private:
     std::vector<std::pair<std::string, double>> times_;
 };
 
-/// Adds the time from its construction to its destruction to a stage of the report.
+/// Adds the time from its construction to its destruction to a stage of the report, which is a step of this
+/// thread's work (at_step).
 class StageTimer {
 public:
-    StageTimer(Report& report, std::string stage) : report_(report), stage_(std::move(stage)) {}
+    StageTimer(Report& report, std::string stage) : report_(report), stage_(std::move(stage))
+    {
+        at_step(stage_.c_str());
+    }
     ~StageTimer()
     {
         std::chrono::duration<double> const d = Clock::now() - start_;

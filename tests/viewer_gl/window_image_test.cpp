@@ -177,6 +177,20 @@ TEST_F(WindowOnX, TwoWindowsShareTextures)
     glDeleteTextures(1, &texture);
 }
 
+TEST_F(WindowOnX, DroppedFilesAreEvents)
+{
+    Window window(window_settings({64, 64}, {0, 0}), report);
+    GLFWdropfun const dropped = glfwSetDropCallback(window.glfw(), nullptr);
+    ASSERT_NE(dropped, nullptr);
+    char const* files[] = {"/a/room.glb", "/b/hall.yaml"};
+    window.take_events();
+    dropped(window.glfw(), 2, files);
+    std::vector<InputEvent> const events = window.take_events();
+    ASSERT_EQ(events.size(), 2u);
+    EXPECT_EQ(events[1].kind, InputKind::drop);
+    EXPECT_EQ(events[1].text, "/b/hall.yaml");
+}
+
 TEST_F(WindowOnX, PanelDrawsAndClaimsTheMouseOverIt)
 {
     Window window(window_settings({320, 240}, {0, 0}), report);

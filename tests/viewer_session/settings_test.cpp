@@ -5,6 +5,7 @@
 #include "viewer/engine/settings.h"
 
 #include <gtest/gtest.h>
+#include <map>
 #include <set>
 
 namespace viewer {
@@ -134,6 +135,21 @@ TEST(Settings, ValuesThatAreNoneAreRefused)
                                                {"axes", {1, 2}}})
         EXPECT_NE(refusal([&] { set(s, c); }).find("'" + c.key + "' = "), std::string::npos) << c.key;
     EXPECT_EQ(all_settings(s), all_settings({}));
+}
+
+TEST(Settings, HaveLabelsInPlainWords)
+{
+    std::map<std::string, std::string> labels;
+    for (SettingKey const& k : setting_keys()) {
+        labels[k.key] = label_of(k);
+        EXPECT_GE(label_of(k).size(), 4u) << k.key;
+        EXPECT_LE(label_of(k).size(), 50u) << k.key;
+        EXPECT_EQ(label_of(k).find('_'), std::string::npos) << k.key;
+    }
+    EXPECT_EQ(labels.at("rate"), "Target frame rate, Hz");
+    EXPECT_EQ(labels.at("exposure"), "Exposure, stops");
+    EXPECT_EQ(labels.at("ao_radius"), "Ao radius, m");
+    EXPECT_EQ(labels.at("play"), "Animation clips run");
 }
 
 } // namespace

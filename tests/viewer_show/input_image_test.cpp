@@ -17,11 +17,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double ms_since(Clock::time_point t)
-{
-    return std::chrono::duration<double, std::milli>(Clock::now() - t).count();
-}
-
 class Input : public OnScreen {
 protected:
     void open(std::string const& arguments, std::string const& title)
@@ -110,6 +105,7 @@ TEST_F(Input, PictureFollowsTheWindowsSize)
 TEST_F(Input, ClosingTheWindowEndsInOrder)
 {
     open("cornell --size 200x150 --record walk.lwr", "Lightwell: cornell");
+    view->ask({{"do", "camera"}}); // answered when there is a scene
     window->ask_to_close();
     Outcome const o = view->program().wait(std::chrono::seconds(20));
     EXPECT_EQ(o.code, 0) << "signal " << o.signal << "\n" << o.err;
@@ -148,6 +144,22 @@ TEST_F(Input, RemoteKeysThatChangeNothingAreAnsweredToo)
 }
 
 /// "Until the picture refines no further" is at once where it does not refine.
+TEST_F(Input, ExposureFollowsAndHolds)
+{
+    open("cornell --size 80x60 --set exposure=-6 --record walk.lwr" + kStill, "Lightwell: cornell");
+    view->settle();
+    view->ask({{"do", "key"}, {"key", "t"}}); // on
+    EXPECT_TRUE(is_soon([&] { return view->settle().value("exposure", -6.0) > -3; })) << "it is not that dark";
+    double const found = view->settle().at("exposure");
+    EXPECT_EQ(view->ask({{"do", "get"}, {"key", "auto_exposure"}}).at("value"), "on");
+    view->ask({{"do", "key"}, {"key", "+"}});
+    EXPECT_EQ(view->ask({{"do", "get"}, {"key", "auto_exposure"}}).at("value"), "hold");
+    EXPECT_NEAR(view->settle().at("exposure").get<double>(), found + 0.25, 1e-6);
+    view->quit();
+    Outcome const o = run_well("view --replay walk.lwr", view->folder().path());
+    EXPECT_NE(o.out.find(" 0 not, 0 unknown"), std::string::npos) << o.out;
+}
+
 TEST_F(Input, ConvergedScreenshotOfAPictureThatRests)
 {
     open("cornell --size 200x150" + kStill, "Lightwell: cornell");

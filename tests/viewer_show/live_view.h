@@ -27,6 +27,10 @@ protected:
     static inline std::unique_ptr<gi::test::Xvfb> server;
 };
 
+inline double ms_since(std::chrono::steady_clock::time_point t)
+{
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - t).count();
+}
 inline void sleep_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
 /// Waits until it is so; false after 20 seconds, in which a machine with more to do gets there too.

@@ -231,8 +231,11 @@ TEST_F(Stereo, QuadBufferFallsBackToSideBySide)
     for (auto const& [what, count] : stats.at("losses").items())
         said |= what.find("quad-buffer") != std::string::npos;
     if (!said) GTEST_SKIP() << "SKIPPED: this driver has quad-buffer stereo";
+    EXPECT_NE(view->program().errors().find("quad-buffer"), std::string::npos) << "at once, not at the end";
+    EXPECT_NE(stats.value("message", "").find("quad-buffer"), std::string::npos) << "in the window";
     eye(0);
     EXPECT_EQ(eye_px, glm::ivec2(160, 240)) << "the eyes are rendered at the shape in which they are shown";
+    sleep_ms(5500); // until the message has gone
     check_mode(StereoMode::side_by_side, "quad_buffer");
     Outcome const o = view->quit();
     EXPECT_NE(o.err.find("quad-buffer"), std::string::npos) << o.err;
@@ -394,6 +397,9 @@ users:
     LiveView view("cornell --display " + (folder / "corner.yaml").string() + kStill);
     XWindow const left("Lightwell: left"), front("Lightwell: front"), right("Lightwell: right");
     view.settle();
+    view.screenshot("shot.png");
+    gi::Picture const shot = gi::read_picture(view.folder() / "shot.png");
+    EXPECT_EQ(glm::ivec2(shot.width, shot.height), glm::ivec2(360, 120)) << "the windows beside each other";
     Outcome const o = view.quit();
     EXPECT_EQ(o.err.find("OpenGL"), std::string::npos) << o.err;
 }

@@ -1,6 +1,9 @@
 // lightwell xr info: with a runtime and without.
 
+#include "gi/core/error.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer_xr/monado.h"
+#include "viewer/protocol/remote/remote_client.h"
 
 namespace viewer::test {
 namespace {
@@ -23,6 +26,52 @@ TEST_F(Monado, IsDescribedByXrInfo)
     EXPECT_EQ(j["width"], 320);
     EXPECT_EQ(j["height"], 240);
     EXPECT_FALSE(j["extensions_used"].empty());
+}
+
+TEST_F(Monado, ScreenshotsHaveBothEyes)
+{
+    start_service();
+    std::string const socket = folder / "remote";
+    Child view({kScript, "client", "--dir", runtime_folder(), "--", LIGHTWELL_PROGRAM, "view", "mirror", "--hmd",
+                "--set", "paths=1", "--remote", socket, "--screenshots", folder / "key_"},
+               folder.path(), "view");
+    std::optional<RemoteClient> client;
+    ASSERT_TRUE(wait_for(
+        [&] {
+            try {
+                client.emplace(socket);
+            } catch (gi::InputError const&) {
+            }
+            return client.has_value();
+        },
+        Seconds(60)))
+        << view.err();
+    std::string const shown = folder / "shown.png", light = folder / "light.exr";
+    for (std::string const& file : {shown, light}) {
+        auto const answer = client->ask({{"do", "screenshot"}, {"file", file}}, std::chrono::seconds(60));
+        EXPECT_TRUE(answer.contains("result")) << answer;
+    }
+    gi::Picture const png = gi::read_picture(shown), exr = gi::read_picture(light);
+    EXPECT_EQ(png.width, 2 * 320);
+    EXPECT_EQ(png.height, 240);
+    EXPECT_GT(exr.width, 0);
+    std::vector<float> const& color = png.find("color")->data;
+    double halves[2] = {};
+    for (std::size_t i = 0; i < color.size(); ++i) halves[i / 3 % 640 / 320] += double(color[i]);
+    EXPECT_GT(halves[0], 0.01 * double(color.size()));
+    EXPECT_NEAR(halves[1] / halves[0], 1, 0.3) << "the eyes see the same room";
+    client->ask({{"do", "key"}, {"key", "F2"}}, std::chrono::seconds(60));
+    auto const saved = [&] {
+        nlohmann::json const stats = client->ask({{"do", "stats"}}, std::chrono::seconds(60));
+        return stats.at("result").value("message", std::string()).starts_with("saved ");
+    };
+    EXPECT_TRUE(wait_for(saved, Seconds(60)));
+    std::size_t files = 0;
+    for (auto const& f : std::filesystem::directory_iterator(folder.path()))
+        files += f.path().filename().string().starts_with("key_");
+    EXPECT_EQ(files, 3u) << "what is shown, and all layers of each eye";
+    client->ask({{"do", "quit"}}, std::chrono::seconds(60));
+    EXPECT_EQ(view.wait(Seconds(60)), 0) << view.err();
 }
 
 TEST(XrInfo, RefusesWithoutARuntimeInOneLine)

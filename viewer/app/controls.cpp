@@ -13,19 +13,55 @@ constexpr double kClick_px = 4;      // a drag shorter than this is a click
 constexpr double kStick_rad_s = 1.5; // full turn of a stick
 constexpr double kDeadZone = 0.15;
 
-std::map<int, Command> const kCommands{
-    {GLFW_KEY_ESCAPE, Command::close},        {GLFW_KEY_F1, Command::panel},
-    {GLFW_KEY_F2, Command::screenshot},       {GLFW_KEY_F11, Command::swap_eyes},
-    {GLFW_KEY_TAB, Command::next_navigation}, {GLFW_KEY_R, Command::first_camera},
-    {GLFW_KEY_V, Command::next_view},         {GLFW_KEY_C, Command::compare},
-    {GLFW_KEY_M, Command::next_method},       {GLFW_KEY_EQUAL, Command::brighter},
-    {GLFW_KEY_KP_ADD, Command::brighter},     {GLFW_KEY_MINUS, Command::darker},
-    {GLFW_KEY_KP_SUBTRACT, Command::darker},  {GLFW_KEY_SPACE, Command::play},
-    {GLFW_KEY_P, Command::reproject}};
+std::map<int, Command> const kCommands{{GLFW_KEY_ESCAPE, Command::close},
+                                       {GLFW_KEY_F1, Command::panel},
+                                       {GLFW_KEY_H, Command::help},
+                                       {GLFW_KEY_SLASH, Command::help},
+                                       {GLFW_KEY_O, Command::open_scene},
+                                       {GLFW_KEY_T, Command::hold_exposure},
+                                       {GLFW_KEY_F2, Command::screenshot},
+                                       {GLFW_KEY_F11, Command::swap_eyes},
+                                       {GLFW_KEY_TAB, Command::next_navigation},
+                                       {GLFW_KEY_R, Command::first_camera},
+                                       {GLFW_KEY_V, Command::next_view},
+                                       {GLFW_KEY_C, Command::compare},
+                                       {GLFW_KEY_M, Command::next_method},
+                                       {GLFW_KEY_EQUAL, Command::brighter},
+                                       {GLFW_KEY_KP_ADD, Command::brighter},
+                                       {GLFW_KEY_MINUS, Command::darker},
+                                       {GLFW_KEY_KP_SUBTRACT, Command::darker},
+                                       {GLFW_KEY_SPACE, Command::play},
+                                       {GLFW_KEY_P, Command::reproject}};
+
+constexpr KeyMeaning kMeanings[]{{"W A S D, arrows", "move"},
+                                 {"E Q", "up, down"},
+                                 {"shift, control", "four times as fast, a quarter"},
+                                 {"drag, wheel", "look around, move closer"},
+                                 {"click", "select"},
+                                 {"control + drag", "move the selected object"},
+                                 {"Tab", "fly, walk, orbit"},
+                                 {"R", "to the first camera"},
+                                 {"O", "open a scene (or drop its file on the window)"},
+                                 {"space", "play, pause"},
+                                 {"+ -", "exposure by a quarter stop"},
+                                 {"T", "exposure: automatic, held"},
+                                 {"M", "next method"},
+                                 {"C", "compare with the reference"},
+                                 {"V", "picture, split, flicker, difference"},
+                                 {"P", "reprojection"},
+                                 {"1 to 9, 0", "stereo modes, in their order"},
+                                 {"F11", "swap eyes"},
+                                 {"Z, X (held)", "raise the avatar's left, right hand"},
+                                 {"F1", "panel"},
+                                 {"H, ?", "this help"},
+                                 {"F2", "screenshot (PNG and EXR)"},
+                                 {"Esc", "quit"}};
 
 } // namespace
 
 double live(double axis) { return std::abs(axis) < kDeadZone ? 0 : axis; }
+
+std::span<KeyMeaning const> key_meanings() { return kMeanings; }
 
 int key_code(std::string const& name)
 {
@@ -38,6 +74,7 @@ int key_code(std::string const& name)
         if (c >= '0' && c <= '9') return GLFW_KEY_0 + (c - '0');
         if (c == '+' || c == '=') return GLFW_KEY_EQUAL;
         if (c == '-') return GLFW_KEY_MINUS;
+        if (c == '?') return GLFW_KEY_SLASH;
         if (c == ' ') return GLFW_KEY_SPACE;
     }
     static std::map<std::string, int> const kNames{{"escape", GLFW_KEY_ESCAPE},

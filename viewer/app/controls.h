@@ -1,21 +1,12 @@
 #pragma once
 // Maps keys, mouse and gamepads to motion through the world and to commands.
-//
-//   W A S D, arrows   move            1 .. 9, 0  stereo modes        F1   panel
-//   Q, E              down, up        V          picture, split,     F2   screenshot
-//   shift, control    fast, slow                 flicker, difference F11  swap the eyes
-//   drag              look around     C          compare with the    Tab  fly, walk, orbit
-//   wheel             nearer, farther            reference           R    to the first camera
-//   click             select          M          next method         P    reproject
-//   control + drag    move selected   + -        exposure            Esc  quit
-//                     object          space      play, pause
-//   Z, X (held)       raise the avatar's left, right hand
-//   Gamepad: left stick moves, right stick looks, triggers down and up, A selects, start plays and pauses.
+// key_meanings() is the table of all keys.
 
 #include "viewer/devices/gl/input_event.h"
 #include "viewer/engine/live/navigation.h"
 
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +15,9 @@ namespace viewer {
 enum class Command {
     close,
     panel,
+    help,
+    open_scene,
+    hold_exposure,
     screenshot,
     swap_eyes,
     next_navigation,
@@ -75,6 +69,14 @@ private:
 
 /// An axis of a stick; 0 in its dead zone, where it rests.
 double live(double axis);
+
+/// What a key or a movement of the mouse does, for people: the help overlay, `lightwell view --help`,
+/// docs/viewer.md.
+struct KeyMeaning {
+    char const* keys;    ///< "W A S D, arrows"
+    char const* meaning; ///< "move"
+};
+std::span<KeyMeaning const> key_meanings();
 
 /// GLFW's key code for a name ("w", "F1", "escape"); -1 if unknown.
 int key_code(std::string const& name);

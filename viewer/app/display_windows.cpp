@@ -6,7 +6,8 @@
 
 namespace viewer {
 
-DisplayWindows open_windows(Display& display, int rank, int swap_interval, gi::Report& report)
+DisplayWindows open_windows(Display& display, int rank, int swap_interval, gi::Report& report,
+                            std::function<void(ShownWindow&)> const& opened)
 {
     DisplayWindows shown;
     shown.of.assign(display.windows.size(), -1);
@@ -29,6 +30,7 @@ DisplayWindows open_windows(Display& display, int rank, int swap_interval, gi::R
                 settings.quad_buffer = QuadBuffer::wanted;
         shown.of[std::size_t(w)] = int(shown.windows.size());
         shown.windows.push_back(std::make_unique<ShownWindow>(settings, wall_settings(display), report));
+        if (opened) opened(*shown.windows.back());
         if (shown.windows.back()->window.has_quad_buffer()) continue;
         for (Wall& wall : display.walls)
             if (wall.window == w && wall.stereo == StereoMode::quad_buffer) wall.stereo = StereoMode::side_by_side;

@@ -2,6 +2,7 @@
 #include "viewer/app/shown_window.h"
 #include "viewer/displays/display.h"
 
+#include <functional>
 #include <memory>
 
 namespace viewer {
@@ -14,7 +15,9 @@ struct DisplayWindows {
 
 /// Opens the windows. Falls back to side by side for walls whose window lacks quad buffers. Throws InputError.
 /// @param rank  as in windows_of; -1 = all
-DisplayWindows open_windows(Display& display, int rank, int swap_interval, gi::Report& report);
+/// @param opened  called for each window before the next is opened; may be empty
+DisplayWindows open_windows(Display& display, int rank, int swap_interval, gi::Report& report,
+                            std::function<void(ShownWindow&)> const& opened = {});
 /// Sets the actual sizes of the windows, which may differ from those in the file.
 void note_sizes(Display& display, DisplayWindows const& shown);
 

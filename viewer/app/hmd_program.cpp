@@ -24,6 +24,9 @@ WindowSettings hidden()
     return settings;
 }
 
+/// Of both eyes, before the runtime says their sizes; the method's start is planned for them.
+constexpr double kEyesPixels = 2.0 * 1440 * 1600;
+
 /// Compares bit by bit, so that NaN equals itself.
 bool same(HiddenMask const& a, HiddenMask const& b)
 {
@@ -40,7 +43,7 @@ public:
           keeper_(&context_.gl(), headset),
           bodies_(options.avatars)
     {
-        core_.start(nullptr, {});
+        core_.start(nullptr, [] { return kEyesPixels; }, {});
     }
 
     ViewRunSummary run(gi::StopRequest const& stop)
@@ -54,6 +57,7 @@ public:
                 std::fputs(fmt::format("note: {}; waiting for the headset\n", keeper_.trouble()).c_str(), stderr);
             }
             if (session == nullptr) {
+                shoot_unseen();
                 std::this_thread::sleep_for(std::chrono::milliseconds(10));
                 continue;
             }
@@ -149,9 +153,12 @@ private:
             at.views.push_back(
                 {kEyes[eye], now[eye], frame.views[eye].width, frame.views[eye].height, eye == 0 ? -1 : 0});
         }
-        core_.renderer->look(std::move(at));
+        core_.look(std::move(at));
         auto const newest = core_.renderer->newest();
-        if (!frame.should_render || !newest || newest->result.views.size() != 2) return session.end_frame();
+        if (!frame.should_render || !newest || newest->result.views.size() != 2) {
+            shoot_unseen();
+            return session.end_frame();
+        }
         bool const fresh = newest != state_.frame;
         double const begun = state_.clock.now_s();
         if (fresh) {
@@ -159,6 +166,7 @@ private:
             state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
             eyes_.take(*newest);
             note_hidden(*newest);
+            core_.expose(*newest);
         }
         double const uploaded = state_.clock.now_s();
         HmdPicture picture;
@@ -176,7 +184,7 @@ private:
         ++shown_;
         if (moved) ++reprojected_;
         ++core_.summary.presented;
-        core_.requests.presented(state_.clock.now_s(), {0, 0}, {});
+        shoot();
         FrameTimes times;
         times.frame = newest->command.frame;
         times.pose_s = newest->command.pose_s;
@@ -193,6 +201,40 @@ private:
         times.late_ms = 1e3 * (times.swap_s - newest->command.display_s);
         times.reprojected = moved;
         core_.log(times);
+    }
+
+    /// Saves what the eyes see now, if asked to.
+    void shoot()
+    {
+        Snapshot shot;
+        if (std::exchange(state_.wants_screenshot, false)) {
+            std::array<Snapshot, 2> eyes;
+            for (std::size_t eye = 0; eye < 2; ++eye) {
+                DrawTarget const target = eyes_.target(eye);
+                eyes[eye] = {target.size_px, read_bytes(target)};
+            }
+            shot = side_by_side(eyes);
+            if (std::exchange(state_.own_screenshot, false)) core_.save_screenshot(shot);
+        }
+        core_.requests.presented(state_.clock.now_s(), shot);
+        if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
+    }
+
+    /// While the headset shows nothing (put aside, lost), screenshots have the eyes as they were rendered last.
+    void shoot_unseen()
+    {
+        auto const newest = core_.renderer->newest();
+        if (!state_.wants_screenshot || !newest || newest->result.views.size() != 2) return;
+        std::array<gi::Camera, 2> rendered;
+        std::array<glm::ivec2, 2> sizes;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            rendered[eye] = newest->command.views[eye].camera;
+            sizes[eye] = {newest->command.views[eye].width, newest->command.views[eye].height};
+        }
+        state_.frame = newest;
+        eyes_.take(*newest);
+        eyes_.draw(*newest, rendered, sizes, false, tone_settings(state_.settings));
+        shoot();
     }
 
     static double steady_s()

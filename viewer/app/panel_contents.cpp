@@ -22,29 +22,38 @@ void try_change(ViewState& s, Change const& c)
 void edit_setting(ViewState& s, SettingKey const& k)
 {
     nlohmann::json const value = get(s.settings, k.key);
-    if (k.type == gi::OptionType::yes_or_no) {
+    std::string const label = label_of(k), id = "##" + k.key;
+    bool const is_box = k.type == gi::OptionType::yes_or_no;
+    bool hovered = false;
+    if (!is_box) {
+        ImGui::TextUnformatted(label.c_str());
+        hovered = ImGui::IsItemHovered();
+        ImGui::SetNextItemWidth(-1);
+    }
+    if (is_box) {
         bool on = value.get<bool>();
-        if (ImGui::Checkbox(k.key.c_str(), &on)) try_change(s, {k.key, on});
+        if (ImGui::Checkbox((label + id).c_str(), &on)) try_change(s, {k.key, on});
     } else if (k.type == gi::OptionType::word) {
         std::string const now = value.get<std::string>();
-        if (ImGui::BeginCombo(k.key.c_str(), now.empty() ? "(none)" : now.c_str())) {
+        if (ImGui::BeginCombo(id.c_str(), now.empty() ? "(none)" : now.c_str())) {
             for (std::string const& w : k.words)
                 if (ImGui::Selectable(w.empty() ? "(none)" : w.c_str(), w == now)) try_change(s, {k.key, w});
             ImGui::EndCombo();
         }
     } else if (k.type == gi::OptionType::whole_number) {
         int n = value.get<int>();
-        bool const done = ImGui::InputInt(k.key.c_str(), &n, 1, 16, ImGuiInputTextFlags_EnterReturnsTrue);
+        bool const done = ImGui::InputInt(id.c_str(), &n, 1, 16, ImGuiInputTextFlags_EnterReturnsTrue);
         if (done || (n != value.get<int>() && ImGui::IsItemDeactivated())) try_change(s, {k.key, n});
     } else {
         float v = value.get<float>();
         bool const narrow = k.high - k.low <= 64;
         bool const moved =
-            narrow ? ImGui::SliderFloat(k.key.c_str(), &v, float(k.low), float(k.high))
-                   : ImGui::InputFloat(k.key.c_str(), &v, 0, 0, "%.3f", ImGuiInputTextFlags_EnterReturnsTrue);
+            narrow ? ImGui::SliderFloat(id.c_str(), &v, float(k.low), float(k.high))
+                   : ImGui::InputFloat(id.c_str(), &v, 0, 0, "%.3f", ImGuiInputTextFlags_EnterReturnsTrue);
         if (moved) try_change(s, {k.key, double(v)});
     }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", k.meaning.c_str());
+    if (hovered || ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s\n%s, %s", k.meaning.c_str(), k.key.c_str(), k.values_text().c_str());
 }
 
 /// Settings under the headings of their groups, the viewer's own first.
@@ -61,7 +70,7 @@ void edit_settings(ViewState& s)
 
 void show_numbers(ViewState& s, double frames_per_s)
 {
-    ImGui::Text("%s: %u triangles", s.facts.scene.c_str(), s.facts.triangles);
+    ImGui::TextWrapped("%s: %u triangles", s.facts.scene.c_str(), s.facts.triangles);
     if (!s.frame) return;
     LiveFrame const& f = *s.frame;
     ViewCommand const& v = f.command.views[0];
@@ -71,6 +80,7 @@ void show_numbers(ViewState& s, double frames_per_s)
     ImGui::ProgressBar(float(f.still_paths) / float(kConvergedPaths), ImVec2(-1, 0),
                        fmt::format("{} paths while still", f.still_paths).c_str());
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("rests at %u", kConvergedPaths);
+    for (std::string const& line : frame_notes(s, f)) ImGui::TextWrapped("%s", line.c_str());
     if (s.live_error)
         ImGui::Text("%s - %s: relMSE %.2e, FLIP %.4f", s.settings.method.c_str(), s.settings.compare.c_str(),
                     s.live_error->relmse, s.live_error->flip);
@@ -133,21 +143,45 @@ void edit_scene(ViewState& s)
 
 } // namespace
 
+std::vector<std::string> frame_notes(ViewState const& s, LiveFrame const& f)
+{
+    std::vector<std::string> notes;
+    bool const still = f.result.still_frames > 1;
+    if (s.facts.moves && s.settings.play && s.settings.speed != 0)
+        notes.emplace_back("Animation plays: press space to let the picture refine");
+    else if (still && !s.settings.refine)
+        notes.emplace_back("Refinement of still pictures is off");
+    if (!still && (f.budget.scale < 1 || s.settings.paths == 0))
+        notes.push_back(fmt::format("To hold {:g} Hz: {} path{} per pixel, {:.0f} % of the window's width",
+                                    f.settings.rate_hz, f.command.paths, f.command.paths == 1 ? "" : "s",
+                                    100 * f.budget.scale));
+    if (s.settings.auto_exposure != "off")
+        notes.push_back(fmt::format("Exposure {:+.2f} stops, {} (T)", s.settings.exposure_ev,
+                                    s.settings.auto_exposure == "on" ? "automatic" : "held"));
+    return notes;
+}
+
 void fill_panel(ViewState& s, double frames_per_s)
 {
     ImGui::SetNextWindowPos(ImVec2(8, 8), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(300, 440), ImGuiCond_FirstUseEver);
+    float const em = ImGui::GetFontSize();
+    ImVec2 const screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowSize(ImVec2(std::min(24 * em, 0.6f * screen.x), std::min(34 * em, screen.y - 16)),
+                             ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Lightwell  (F1 hides this)")) {
         show_numbers(s, frames_per_s);
         if (!s.message.empty()) ImGui::TextWrapped("%s", s.message.c_str());
-        if (ImGui::Button("screenshot")) s.wants_screenshot = true;
+        if (ImGui::Button("open scene")) s.open_dialog.toggle(s.facts.scene);
         ImGui::SameLine();
+        if (ImGui::Button("help")) s.shows_help = !s.shows_help;
+        ImGui::SameLine();
+        if (ImGui::Button("screenshot")) s.wants_screenshot = s.own_screenshot = true;
         if (ImGui::Button("first camera")) s.navigation.go_to(s.first_camera.world_from_camera);
         ImGui::SameLine();
         if (ImGui::Button(name_of(s.navigation.mode())))
             s.navigation.set_mode(NavigationMode((int(s.navigation.mode()) + 1) % 3));
-        ImGui::PushItemWidth(150);
         edit_settings(s);
+        ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
         edit_scene(s);
         ImGui::PopItemWidth();
     }

@@ -32,8 +32,30 @@ void check_within(char const* what, double value, double limit, char const* unit
 
 } // namespace
 
+bool Requests::waits(RemoteRequest const& r) const
+{
+    static std::array const free{"ping", "stats", "get", "quit", "load", "session"};
+    static std::array const of_scene{"set", "pick", "screenshot", "seek"};
+    if (r.what == "set" && is_setting(r.arguments.at("key").get<std::string>())) return false;
+    if (state_.facts.scene.empty()) return std::ranges::find(free, r.what) == free.end();
+    return loading_ > 0 && std::ranges::find(of_scene, r.what) != of_scene.end();
+}
+
+void Requests::begin()
+{
+    for (RemoteRequest const& r : std::exchange(early_, {})) try {
+            if (std::optional<Json> const now = handle(r)) server_->answer(r.token, *now);
+        } catch (gi::InputError const& e) {
+            server_->refuse(r.token, e.what());
+        }
+}
+
 std::optional<Json> Requests::handle(RemoteRequest const& r)
 {
+    if (waits(r)) {
+        early_.push_back(r);
+        return std::nullopt;
+    }
     auto const done = [this, token = r.token](std::string const& wrong) {
         if (wrong.empty())
             server_->answer(token, Json::object());
@@ -76,6 +98,8 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         if (r.has("view") && r.arguments.at("view").get<int>() < 0)
             throw gi::InputError(fmt::format("view {}", r.arguments.at("view").get<int>()), "there is none",
                                  "count from 0");
+        if (!r.has("view") && file.ends_with(".png") && !no_picture_.empty())
+            throw gi::InputError("a screenshot of what is shown", no_picture_, "give the number of a view");
         shots_.push_back(
             {r.arguments.at("file").get<std::string>(), r.has("view") ? r.arguments.at("view").get<int>() : -1,
              r.has("converged") && r.arguments.at("converged").get<bool>(), changed_s_, false, r.token});
@@ -139,18 +163,15 @@ Json Requests::camera(RemoteRequest const& r)
 void Requests::load(RemoteRequest const& r)
 {
     Change const change{"scene", r.arguments.at("scene")};
+    ++loading_;
     state_.change(change, [this, token = r.token](std::string const& wrong) {
+        changed_s_ = state_.clock.now_s();
+        if (--loading_ == 0) begin();
         if (!wrong.empty()) {
             server_->refuse(token, wrong);
             return;
         }
-        // Queued after the job that reads the scene's first camera, so that its result arrives first.
-        state_.renderer->ask([this, token](RenderSession&) {
-            state_.inbox.put([this, token] {
-                changed_s_ = state_.clock.now_s();
-                loads_.push_back({changed_s_, token});
-            });
-        });
+        loads_.push_back({state_.clock.now_s(), token});
     });
 }
 
@@ -215,11 +236,10 @@ void Requests::pick(RemoteRequest const& r)
 
 namespace {
 
-void write(std::string const& file, int view, LiveFrame const& f, glm::ivec2 window_px,
-           std::vector<unsigned char> const& bytes, gi::Report& report)
+void write(std::string const& file, int view, LiveFrame const& f, Snapshot const& shown, gi::Report& report)
 {
     bool const exr = file.ends_with(".exr");
-    if (view < 0 && !exr) return gi::write_png(file, window_px.x, window_px.y, bytes);
+    if (view < 0 && !exr) return gi::write_png(file, shown.size_px.x, shown.size_px.y, shown.bytes);
     std::size_t const k = std::size_t(std::max(0, view));
     if (k >= f.result.views.size())
         throw gi::InputError(fmt::format("view {}", k), fmt::format("there are {}", f.result.views.size()),
@@ -233,12 +253,12 @@ void write(std::string const& file, int view, LiveFrame const& f, glm::ivec2 win
 } // namespace
 
 /// Runs in the background, so that input does not wait for files.
-void Requests::save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+void Requests::save(Shot const& shot, Snapshot const& shown)
 {
-    saving_.push_back(std::async(std::launch::async, [this, shot, window_px, bytes, frame = state_.frame] {
+    saving_.push_back(std::async(std::launch::async, [this, shot, shown, frame = state_.frame] {
         std::string wrong;
         try {
-            write(shot.file, shot.view, *frame, window_px, bytes, report_);
+            write(shot.file, shot.view, *frame, shown, report_);
         } catch (gi::InputError const& e) {
             wrong = e.what();
         }
@@ -251,15 +271,15 @@ void Requests::save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned
     }));
 }
 
-void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+void Requests::presented(double shown_s, Snapshot const& picture)
 {
     if (!state_.frame) return;
     LiveFrame const& f = *state_.frame;
     std::erase_if(shots_, [&](Shot const& shot) {
         if (!has_seen(shot.since_s)) return false;
-        if (bytes.empty() && shot.view < 0 && !shot.file.ends_with(".exr")) return false;
+        if (picture.empty() && shot.view < 0 && !shot.file.ends_with(".exr")) return false;
         if (shot.converged && state_.settings.refine && f.still_paths < kConvergedPaths) return false;
-        save(shot, window_px, bytes);
+        save(shot, picture);
         return true;
     });
     std::erase_if(saving_, [](std::future<void> const& s) {
@@ -284,16 +304,20 @@ void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsig
 Json Requests::stats() const
 {
     Json j{{"scene", state_.facts.scene}, {"triangles", state_.facts.triangles}};
+    if (std::optional<LoadProgress> const& l = state_.loading)
+        j["loading"] = {{"scene", l->scene}, {"step", l->step.what},    {"done", l->step.done},
+                        {"of", l->step.of},  {"fraction", l->fraction}, {"elapsed_s", l->elapsed_s}};
     if (state_.frame) {
         LiveFrame const& f = *state_.frame;
         j["frame"] = f.command.frame;
         j["scene_s"] = f.command.scene_s;
         j["render_ms"] = 1e3 * (f.done_s - f.begun_s);
         j["paths"] = f.command.paths;
+        j["exposure"] = state_.settings.exposure_ev;
         j["still_paths"] = f.still_paths;
         j["still_frames"] = f.result.still_frames;
-        j["at_rest"] = changed_s_ < stepped_s_ && !state_.drawing && state_.renderer->rests() &&
-                       state_.renderer->newest() == state_.frame;
+        j["at_rest"] = !state_.loading && loading_ == 0 && changed_s_ < stepped_s_ && !state_.drawing &&
+                       state_.renderer->rests() && state_.renderer->newest() == state_.frame;
         for (ViewCommand const& v : f.command.views)
             j["views"].push_back({{"name", v.name}, {"width", v.width}, {"height", v.height}});
         j["stages_ms"] = Json::object();

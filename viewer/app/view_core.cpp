@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -30,13 +31,12 @@ ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
 {
     if (o.drive) session.drive_bodies(o.drive);
     for (Change const& c : o.settings) session.apply(c);
-    session.apply({"scene", o.scene});
     state.settings = session.settings();
-    state.facts = facts_of(session);
-    start_at(o.first_camera(session.world()));
     state.navigation.set_eye_height(o.eye_height_m);
     state.navigation.set_mode(o.navigation);
-    state.loaded = [this] { reset_view(); };
+    state.load = [this](std::string const& name, std::function<void(std::string const&)> done) {
+        load(name, std::move(done));
+    };
     if (!o.remote.socket.empty() || o.remote.port) {
         remote_ = std::make_unique<RemoteServer>(
             o.remote, [this](RemoteRequest const& request) { return requests.handle(request); }, r);
@@ -60,50 +60,129 @@ void ViewCore::start_at(gi::Camera const& of_scene)
     state.first_camera = state.camera = camera;
     // Crossing a scene takes seconds, whatever its size.
     double const speed = std::clamp(0.2 * state.facts.radius_m, 0.05, 20.0);
-    NavigationMode const mode = state.navigation.mode();
+    Navigation const before = state.navigation;
     state.navigation = Navigation(camera.world_from_camera, speed, state.facts.center);
-    state.navigation.set_mode(mode);
+    state.navigation.set_eye_height(before.eye_height_m());
+    state.navigation.set_mode(before.mode());
     gi::dvec3 const from(camera.world_from_camera[3]);
     state.screen_distance_m = std::clamp(glm::length(state.facts.center - from), 0.2, 1e4);
 }
 
-void ViewCore::reset_view()
+void ViewCore::load(std::string const& name, std::function<void(std::string const&)> done)
 {
-    renderer->ask([this](RenderSession& s) {
+    auto const made = std::make_shared<PreparedScene>();
+    bool const first = state.facts.scene.empty(), known = first && name == options.scene;
+    auto const choose = [this, first, pixels = std::max(1.0, pixels_())](gi::World const& world) {
         try {
-            state.inbox.put([this, facts = facts_of(s), camera = options.first_camera(s.world())] {
-                state.facts = facts;
-                state.selection.reset();
-                start_at(camera);
-            });
-        } catch (gi::InputError const& e) { // the scene has no camera of the requested name
+            return SceneStart{options.first_camera(world), pixels};
+        } catch (gi::InputError const& e) { // it has no camera of the name given for the first one
+            if (first || world.cameras.empty()) throw;
             state.inbox.put([this, why = std::string(e.what())] { state.message = why; });
+            return SceneStart{world.cameras.front(), pixels};
         }
-    });
+    };
+    loader_.begin(
+        name,
+        [this, made, name, choose, settings = state.settings] { *made = session.prepare(name, settings, choose); },
+        [this, made, done, known](std::exception_ptr const& failure) {
+            if (failure) return state.inbox.put([this, failure, done] { not_loaded(failure, done); });
+            renderer->adopt(made, known ? LiveRenderer::SceneKnown::yes : LiveRenderer::SceneKnown::no,
+                            [this, done](RenderSession const& s) {
+                                state.inbox.put([this, done, facts = facts_of(s), scene = s.shown_scene()] {
+                                    loaded(facts, scene);
+                                    if (done) done({});
+                                });
+                            });
+        });
 }
 
-void ViewCore::make_files()
+void ViewCore::loaded(SceneFacts const& facts, SceneChange const& scene)
+{
+    bool const first = state.facts.scene.empty();
+    state.facts = facts;
+    state.selection.reset();
+    if (!first) state.message.clear();
+    if (keeps_recent)
+        if (std::string const why = state.open_dialog.recent().add(scene.name); !why.empty())
+            report.lose("scenes not kept among the recent ones", 1, why);
+    auto_exposure_.begin();
+    start_at(scene.start->camera);
+    state.refresh_ground();
+    resumes_ = true;
+    if (first) make_files(scene);
+    if (first) requests.begin();
+}
+
+void ViewCore::not_loaded(std::exception_ptr const& failure, std::function<void(std::string const&)> const& done)
+{
+    std::string why;
+    try {
+        std::rethrow_exception(failure);
+    } catch (gi::Interrupted const&) {
+        why = "the scene was not loaded (another was chosen meanwhile)";
+    } catch (std::exception const& e) {
+        why = e.what();
+        if (state.facts.scene.empty()) failure_ = failure; // there is nothing to show
+        state.message = why;
+    }
+    if (done) done(why);
+}
+
+void ViewCore::look(Viewpoint viewpoint)
+{
+    renderer->look(std::move(viewpoint));
+    if (std::exchange(resumes_, false)) renderer->resume();
+}
+
+/// In the state, for windows, and on stderr.
+void ViewCore::show_progress()
+{
+    constexpr double kLongFrame_s = 0.5;
+    state.loading = loader_.progress();
+    state.building.reset();
+    {
+        std::lock_guard const lock(frame_step_.mutex);
+        double const since_s = state.clock.now_s() - frame_step_.begun_s;
+        if (frame_step_.begun_s >= 0 && since_s > kLongFrame_s)
+            state.building = LoadProgress{state.facts.scene, frame_step_.step, since_s, 0};
+    }
+    if (!state.loading) {
+        bar_.reset();
+        return;
+    }
+    if (!bar_) bar_ = std::make_unique<gi::ProgressBar>("load " + state.loading->scene);
+    bar_->update(state.loading->fraction, text_of(*state.loading));
+}
+
+void ViewCore::check_files() const
 {
     for (auto const& file : {options.record, options.frame_log})
         if (!file.empty() && std::filesystem::exists(file))
             throw gi::InputError("'" + file.string() + "' exists already", "it would be replaced",
                                  "give another name, or delete it");
+}
+
+void ViewCore::make_files(SceneChange const& scene)
+{
     if (!options.frame_log.empty())
         log_ = std::make_unique<FrameLog>(options.frame_log,
                                           options.header.program + "\n" + options.header.command_line, report);
     if (options.record.empty()) return;
     RecordingHeader header = options.header;
-    header.scene = options.scene;
-    header.settings = {{"settings", all_settings(state.settings)}, {"load", options.load_options}};
+    header.scene = scene.name;
+    header.settings = {{"settings", all_settings(state.settings)},
+                       {"load", options.load_options},
+                       {"start", to_json(*scene.start)}};
     for (Change const& c : options.settings)
         if (is_hidden_mask(c.key)) header.settings["settings"][c.key] = c.value;
     recorder_ = std::make_unique<Recorder>(options.record, header, report);
 }
 
-void ViewCore::start(FrameLink* link, std::function<void()> published,
+void ViewCore::start(FrameLink* link, std::function<double()> pixels, std::function<void()> published,
                      std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views)
 {
-    make_files();
+    check_files();
+    pixels_ = std::move(pixels);
     state.is_one_of_ranks = link != nullptr;
     LiveRenderer::Hooks hooks;
     hooks.finished = [this](LiveFrame const& f) {
@@ -116,15 +195,30 @@ void ViewCore::start(FrameLink* link, std::function<void()> published,
         // differ.
         recorder_->append({command, f.ordered.empty() ? std::optional(frame_hash(f.result)) : std::nullopt, {}});
     };
-    hooks.published = std::move(published);
+    hooks.at_step = [this](gi::Step const& step) {
+        std::lock_guard const lock(frame_step_.mutex);
+        frame_step_.step = step;
+        if (frame_step_.begun_s < 0) frame_step_.begun_s = state.clock.now_s();
+    };
+    hooks.published = [this, published = std::move(published)] {
+        {
+            std::lock_guard const lock(frame_step_.mutex);
+            frame_step_.begun_s = -1;
+        }
+        if (published) published();
+    };
     hooks.own_views = std::move(own_views);
     hooks.failed = [this](std::string const& why) {
         report.lose("frames that could not be rendered", 1, why);
+        {
+            std::lock_guard const lock(frame_step_.mutex);
+            frame_step_.begun_s = -1;
+        }
         state.inbox.put([this, why] { state.message = why; });
     };
     renderer = std::make_unique<LiveRenderer>(session, state.clock, link, hooks);
     state.renderer = renderer.get();
-    state.refresh_ground();
+    load(options.scene, {});
 }
 
 bool ViewCore::poll(gi::StopRequest const& stop)
@@ -135,9 +229,10 @@ bool ViewCore::poll(gi::StopRequest const& stop)
     last_poll_s_ = now;
     watch_files();
     state.inbox.read();
+    show_progress();
     requests.step();
     if (remote_) remote_->poll();
-    return !state.ends && !stop.requested() && !renderer->stopped() &&
+    return !state.ends && !failure_ && !stop.requested() && !renderer->stopped() &&
            !(options.time_limit_s > 0 && now > options.time_limit_s);
 }
 
@@ -150,6 +245,15 @@ void ViewCore::obey(Command command)
         break;
     case Command::panel:
         state.change({"panel", !s.panel});
+        break;
+    case Command::help:
+        state.shows_help = !state.shows_help;
+        break;
+    case Command::open_scene:
+        state.open_dialog.toggle(state.facts.scene);
+        break;
+    case Command::hold_exposure:
+        state.change({"auto_exposure", s.auto_exposure == "on" ? "hold" : "on"});
         break;
     case Command::screenshot:
         state.wants_screenshot = state.own_screenshot = true;
@@ -192,6 +296,15 @@ void ViewCore::obey(Command command)
     }
 }
 
+void ViewCore::expose(LiveFrame const& frame)
+{
+    if (state.settings.auto_exposure != "on") return auto_exposure_.begin();
+    auto const ev = auto_exposure_.see(frame.result.views, state.settings.exposure_ev, state.clock.now_s());
+    if (!ev || *ev == state.settings.exposure_ev) return;
+    state.settings.exposure_ev = *ev;
+    renderer->post({"exposure", *ev});
+}
+
 void ViewCore::log(FrameTimes const& times)
 {
     if (times.dropped > 0) report.lose("frames dropped", std::uint64_t(times.dropped));
@@ -217,7 +330,15 @@ void ViewCore::report_failure(std::filesystem::path const& file, std::string con
 
 void ViewCore::finish()
 {
+    summary.exposure_ev = state.settings.exposure_ev;
+    bar_.reset();
+    loader_.stop();
     renderer->stop();
+    saving_.clear(); // waits
+    state.inbox.read();
+    if (failure_) std::rethrow_exception(failure_);
+    if (!recorder_ && !options.record.empty())
+        fmt::print(stderr, "note: nothing was recorded: the program ended before a scene was shown\n");
     if (recorder_) {
         recorder_->finish();
         summary.recorded = recorder_->written_frames();
@@ -229,16 +350,28 @@ void ViewCore::finish()
     watch_files();
 }
 
-void ViewCore::save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+void ViewCore::save_screenshot(Snapshot shown)
 {
-    std::string const base = fmt::format("{}lightwell_{:06}", options.screenshots, state.frame->command.frame);
-    try {
-        gi::write_png(base + ".png", window_px.x, window_px.y, bytes);
-        gi::write_exr(base + ".exr", state.frame->result.views[0].picture, gi::PixelType::single, report);
-        state.message = "saved " + base + ".png and .exr";
-    } catch (gi::InputError const& e) {
-        state.message = e.what();
-    }
+    std::erase_if(saving_, [](std::future<void> const& f) {
+        return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    });
+    saving_.push_back(std::async(std::launch::async, [this, shown = std::move(shown), frame = state.frame] {
+        std::string const base = fmt::format("{}lightwell_{:06}", options.screenshots, frame->command.frame);
+        std::vector<ViewPicture> const& views = frame->result.views;
+        std::string told = fmt::format("saved {}.png and .exr{}", base, views.size() > 1 ? " of each view" : "");
+        try {
+            gi::write_png(base + ".png", shown.size_px.x, shown.size_px.y, shown.bytes);
+            for (std::size_t k = 0; k < views.size(); ++k)
+                gi::write_exr(k == 0 ? base + ".exr" : fmt::format("{}_{}.exr", base, k), views[k].picture,
+                              gi::PixelType::single, report);
+        } catch (gi::InputError const& e) {
+            told = e.what();
+        }
+        state.inbox.put([this, told] {
+            state.message = told;
+            fmt::print(stderr, "note: {}\n", told);
+        });
+    }));
 }
 
 } // namespace viewer

@@ -2,37 +2,47 @@
 // The parts of a viewer that do not depend on the output device: the session and its rendering thread, settings
 // and commands, remote control, recording and frame log.
 
+#include "viewer/app/auto_exposure.h"
 #include "viewer/app/requests.h"
 #include "viewer/app/view_program.h"
 #include "viewer/protocol/recording/frame_log.h"
 #include "viewer/protocol/recording/recording.h"
 #include "viewer/protocol/remote/remote_server.h"
 
+#include <future>
 #include <set>
 
 namespace viewer {
 
 class ViewCore {
 public:
-    /// Loads the scene and opens sockets. Throws InputError. All arguments must outlive it.
+    /// Applies the settings and opens sockets. Throws InputError. All arguments must outlive it.
     ViewCore(ViewOptions const& options, gi::Report& report);
     ~ViewCore();
 
-    /// Creates the output files, after all checks that may fail, and starts rendering. Throws InputError.
+    /// Starts the rendering thread and begins to load the scene. The output files are created when it is ready.
+    /// Throws InputError if one exists already.
     /// @param link  null without other ranks   @param published  called on the rendering thread
-    void start(FrameLink* link, std::function<void()> published,
+    /// @param pixels  of all views of a frame, about; the method's start is planned for them
+    void start(FrameLink* link, std::function<double()> pixels, std::function<void()> published,
                std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views = {});
     /// Handles answers from the rendering thread, tapped keys and sockets. Returns false when the viewer should
     /// end.
     bool poll(gi::StopRequest const& stop);
+    /// Passes the users' views on to the rendering thread.
+    void look(Viewpoint viewpoint);
+    /// A fresh frame is shown: automatic exposure follows it.
+    void expose(LiveFrame const& frame);
     /// Executes a command, except selecting and dragging.
     void obey(Command command);
     void log(FrameTimes const& times);
-    /// Ends the rendering thread and closes files.
+    /// Ends the rendering thread and closes files. Throws what kept the first scene from being shown.
     void finish();
 
-    /// Saves a screenshot requested by key: the window's bytes, and all layers of its first view.
-    void save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
+    /// Saves a screenshot requested by key, in the background: what is shown, and all layers of each view.
+    void save_screenshot(Snapshot shown);
+
+    bool keeps_recent = false; ///< scene files that are shown are kept among the recent ones
 
     ViewOptions const& options;
     std::optional<Display> display; ///< adapted to the capabilities of the windows
@@ -46,18 +56,36 @@ public:
 
 private:
     void start_at(gi::Camera const& camera);
-    void make_files();
+    void load(std::string const& name, std::function<void(std::string const&)> done);
+    /// Called for a scene that is shown from now on.
+    void loaded(SceneFacts const& facts, SceneChange const& scene);
+    void not_loaded(std::exception_ptr const& failure, std::function<void(std::string const&)> const& done);
+    void show_progress();
+    void check_files() const;
+    void make_files(SceneChange const& scene);
     /// Reports each file that can no longer be written, once.
     void watch_files();
     void report_failure(std::filesystem::path const& file, std::string const& why);
-    void reset_view(); ///< to the first camera of a newly loaded scene
 
+    std::function<double()> pixels_;
+    std::exception_ptr failure_; ///< of the first scene
+    bool resumes_ = false;       ///< the next look is at a new scene
+    std::unique_ptr<gi::ProgressBar> bar_;
+    /// What the current frame is at, from the rendering thread.
+    struct FrameStep {
+        std::mutex mutex;
+        gi::Step step;
+        double begun_s = -1; ///< of the frame; -1 = none is being rendered
+    } frame_step_;
     std::unique_ptr<RemoteServer> remote_;
     std::unique_ptr<Recorder> recorder_;
     std::unique_ptr<FrameLog> log_;
     FrameStatistics frames_;                    ///< of all frames, whether they are logged or not
     std::set<std::filesystem::path> unwritten_; ///< files that could not be completed
     double last_poll_s_ = 0;
+    std::vector<std::future<void>> saving_;
+    AutoExposure auto_exposure_;
+    SceneLoader loader_; ///< ends first
 };
 
 } // namespace viewer

@@ -17,15 +17,18 @@
 
 #include <GLFW/glfw3.h>
 #include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtx/component_wise.hpp>
+#include <imgui.h>
 
 namespace viewer {
 namespace {
 
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
 constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture
-constexpr double kFlicker_Hz = 2;
+constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
 double steady_s()
 {
@@ -40,18 +43,22 @@ public:
         if (options.display) {
             if (!follows()) tracking_.emplace(*core_.display);
             if (!follows()) wands_.emplace(*core_.display, core_.options.rank);
-            shown_ = open_windows(*core_.display, core_.options.rank, core_.options.swap_interval, core_.report);
+            shown_ =
+                open_windows(*core_.display, core_.options.rank, core_.options.swap_interval, core_.report,
+                             [this](ShownWindow& w) { w.show_loading(core_.options.scene, PanelInput::none); });
         } else {
             open_desktop();
         }
-        if (!shown_.windows.empty()) shown_.windows.front()->window.gl().release(); // to the presenting thread
+        for (auto const& w : shown_.windows) w->window.gl().release(); // to the presenting thread
+        if (shown_.windows.empty())
+            core_.requests.no_picture("this process has no window, those of the display belong to other ranks");
         std::function<std::vector<ViewCommand>(FrameCommand const&)> own;
         if (link != nullptr && options.display)
             own = [this](FrameCommand const& command) {
                 return views_of_rank(*core_.display, command.views, core_.options.rank);
             };
         core_.start(
-            link, [] { glfwPostEmptyEvent(); }, own);
+            link, [this] { return pixels_of_a_frame(); }, [] { glfwPostEmptyEvent(); }, own);
     }
 
     ViewRunSummary run(gi::StopRequest const& stop)
@@ -101,10 +108,22 @@ private:
             }
             shown_.windows.push_back(
                 std::make_unique<ShownWindow>(settings, std::vector<WallSettings>{}, core_.report));
+            if (i == 0) shown_.windows[0]->show_loading(core_.options.scene, PanelInput::taken);
         }
         state_.has_two_windows = two;
-        shown_.windows[0]->window.gl().make_current();
-        panel_ = std::make_unique<Panel>(shown_.windows[0]->window);
+        panel_ = shown_.windows[0]->panel.get();
+        core_.keeps_recent = true;
+    }
+
+    /// Of all views of this process, at full size.
+    double pixels_of_a_frame()
+    {
+        if (core_.display) {
+            double sum = 0;
+            for (auto const& w : shown_.windows) sum += glm::compMul(glm::dvec2(w->window.framebuffer_px()));
+            return sum;
+        }
+        return glm::compMul(eye_px()) * (possible_mode() == StereoMode::off ? 1 : 2);
     }
 
     void take_input()
@@ -112,9 +131,12 @@ private:
         for (std::size_t w = 0; w < shown_.windows.size(); ++w) {
             std::vector<InputEvent> events = shown_.windows[w]->window.take_events();
             if (w == 0) gamepads_.poll(events);
-            if (panel_ && w == 0 && state_.settings.panel) panel_->claim(events);
+            if (panel_ && w == 0 && uses_panel()) panel_->claim(events);
             if (!events.empty()) dirty_ = true;
-            for (InputEvent const& e : events) core_.controls.take(e, height_px());
+            for (InputEvent const& e : events) {
+                core_.controls.take(e, height_px());
+                if (e.kind == InputKind::drop && !follows()) state_.open_scene(e.text);
+            }
         }
         for (CommandEvent const& c : core_.controls.commands()) {
             dirty_ = true;
@@ -171,8 +193,10 @@ private:
     {
         StereoMode const mode = *stereo_mode(state_.settings.stereo);
         if (mode != StereoMode::quad_buffer || shown_.windows[0]->window.has_quad_buffer()) return mode;
-        if (!std::exchange(fallback_told_, true))
+        if (!std::exchange(fallback_told_, true)) {
             core_.report.lose("quad-buffer stereo not supported by this window: side by side instead");
+            tell("quad-buffer stereo is not supported by this window (the driver has none) shown side by side");
+        }
         return StereoMode::side_by_side;
     }
 
@@ -234,7 +258,7 @@ private:
             for (ViewCommand const& v : at.views) cameras_.push_back(v.camera);
             set_panes(layout.panes);
         }
-        core_.renderer->look(std::move(at));
+        core_.look(std::move(at));
     }
 
     void use_wands(double seconds, NavigationInput& in)
@@ -259,10 +283,31 @@ private:
 
     bool has_moved() const { return cameras_.size() == shown_cameras_.size() && !(cameras_ == shown_cameras_); }
 
+    /// The user works with panel or dialog.
+    bool uses_panel() const { return state_.settings.panel || state_.open_dialog.is_open(); }
+
+    /// At once, in the window and on stderr.
+    void tell(std::string const& what)
+    {
+        state_.message = what;
+        std::fputs(("note: " + what + "\n").c_str(), stderr);
+    }
+
+    /// What is drawn over the picture besides the panel. A new message stays for a while.
+    bool has_messages()
+    {
+        if (state_.message != message_) {
+            message_ = state_.message;
+            message_until_s_ = state_.clock.now_s() + kMessage_s;
+        }
+        bool const is_new = !message_.empty() && state_.clock.now_s() < message_until_s_;
+        return state_.loading || state_.building || is_new || state_.shows_help || state_.open_dialog.is_open();
+    }
+
     void show()
     {
         auto const newest = core_.renderer->newest();
-        if (!newest || presenting_->busy()) return;
+        if (presenting_->busy()) return;
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
         bool const moved =
@@ -270,13 +315,16 @@ private:
         bool const flickers = state_.settings.view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
-        if (fresh || moved || flickers || dirty_ || resized || state_.wants_screenshot) present(newest, fresh);
+        bool const messages = has_messages();
+        bool const tells = messages != had_messages_ || (messages && since_s > 1 / kMessages_Hz);
+        if (fresh || moved || flickers || dirty_ || resized || tells || state_.wants_screenshot)
+            present(newest, fresh);
     }
 
     /// Data passed to the presenting thread and back.
     struct Presentation {
         std::shared_ptr<LiveFrame const> frame;
-        bool fresh = false, panel = false, wants_bytes = false, reprojected = false;
+        bool fresh = false, panel = false, messages = false, wants_bytes = false, reprojected = false;
         PresentSettings settings;
         std::vector<gi::Camera> cameras;
         std::vector<glm::ivec2> sizes;
@@ -284,7 +332,7 @@ private:
         FrameTimes times;
         SwapTime swap;
         double shown_s = 0;
-        std::vector<unsigned char> bytes;
+        std::vector<Snapshot> shots; ///< per window or eye of a window
     };
 
     void present(std::shared_ptr<LiveFrame const> const& newest, bool fresh)
@@ -295,10 +343,10 @@ private:
         p->frame = newest;
         p->fresh = fresh;
         p->begun_s = state_.clock.now_s();
-        p->settings = present_settings();
-        p->wants_bytes = std::exchange(state_.wants_screenshot, false);
+        p->wants_bytes = newest && std::exchange(state_.wants_screenshot, false);
         std::vector<gi::Camera> rendered;
-        for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
+        if (newest)
+            for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
         bool const reprojects =
             state_.settings.reproject && link_ == nullptr && cameras_.size() == rendered.size();
         shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
@@ -309,25 +357,52 @@ private:
             if (link_ != nullptr && core_.display)
                 set_panes(display_panes(*core_.display, newest->command.views, newest->command.world_from_room));
             meter_.see(newest);
+            if (follows())
+                state_.settings = newest->settings; // those of the leader
+            else
+                core_.expose(*newest);
         }
+        p->settings = present_settings();
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();
             w->shown_panes = w->panes;
             w->on_screen_px = w->window.position_px();
         }
-        p->panel = panel_ && state_.settings.panel;
-        if (p->panel) {
-            panel_->begin();
-            fill_panel(state_, frames_per_s_);
-            panel_->finish();
-        }
+        p->panel = panel_ && state_.settings.panel && newest;
+        p->messages = had_messages_ = has_messages();
+        if (p->panel || p->messages)
+            for (auto const& w : shown_.windows) fill(*w, *p);
         if (wands_) wands_->prepare(state_, frames_per_s_, p->begun_s);
         presenting_->start([this, p] { draw(*p); },
                            [this, p] {
                                state_.inbox.put([this, p] { presented(*p); });
                                glfwPostEmptyEvent();
                            });
+    }
+
+    void fill(ShownWindow& w, Presentation const& p)
+    {
+        if (!w.panel) return;
+        w.panel->begin();
+        ImGui::GetIO().FontGlobalScale = float(state_.settings.font_scale);
+        if (p.panel && w.panel.get() == panel_) fill_panel(state_, frames_per_s_);
+        if (state_.loading)
+            fill_loading(*state_.loading, p.frame ? LoadingPlace::over_picture : LoadingPlace::alone);
+        else if (state_.building)
+            fill_building(*state_.building);
+        if (w.panel.get() == panel_)
+            if (auto const scene = state_.open_dialog.draw()) state_.open_scene(*scene);
+        if (state_.shows_help) fill_help(key_meanings());
+        if (!message_.empty() && state_.clock.now_s() < message_until_s_ && !(p.panel && w.panel.get() == panel_))
+            fill_message(message_);
+        w.panel->finish();
+    }
+
+    static void shoot(DrawTarget const& window, std::vector<Snapshot>& shots)
+    {
+        shots.push_back({window.size_px, read_bytes(window, window.left_buffer)});
+        if (window.right_buffer != 0) shots.push_back({window.size_px, read_bytes(window, window.right_buffer)});
     }
 
     /// Called on the presenting thread.
@@ -338,13 +413,14 @@ private:
             shown.window.gl().make_current();
             double const from = state_.clock.now_s();
             if (w == 0 && wands_) p.settings.overlay = wands_->draw(shown.window.gl());
-            if (p.fresh) shown.presenter.take(p.frame, shown.shown_panes);
+            if (p.fresh) shown.pictures().take(p.frame, shown.shown_panes);
             double const uploaded = state_.clock.now_s();
             clear(target_of(shown.window));
-            shown.presenter.draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
-                                 p.cameras);
-            if (w == 0 && p.wants_bytes) p.bytes = read_bytes(target_of(shown.window));
-            if (w == 0 && p.panel) panel_->draw();
+            if (p.frame)
+                shown.pictures().draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
+                                      p.cameras);
+            if (p.wants_bytes) shoot(target_of(shown.window), p.shots);
+            if (shown.panel && (p.messages || p.panel)) shown.panel->draw();
             p.times.upload_ms += 1e3 * (uploaded - from);
             p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
         }
@@ -366,10 +442,10 @@ private:
 
     void presented(Presentation const& p)
     {
-        glm::ivec2 const px = shown_.windows.empty() ? glm::ivec2(0) : shown_.windows[0]->shown_px;
-        if (p.wants_bytes && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(px, p.bytes);
+        Snapshot const shot = p.shots.empty() ? Snapshot{} : side_by_side(p.shots);
+        if (!shot.empty() && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(shot);
         state_.drawing = false;
-        core_.requests.presented(p.shown_s, px, p.bytes);
+        core_.requests.presented(p.shown_s, shot);
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
         ++core_.summary.presented;
         if (p.fresh) log(*p.frame, p.times, p.swap, p.begun_s, p.shown_s, p.reprojected);
@@ -431,11 +507,13 @@ private:
     Gamepads gamepads_;
     DisplayWindows shown_;
     std::optional<Wands> wands_;   ///< of a display, not on ranks that follow
-    std::unique_ptr<Panel> panel_; ///< not on the walls of a display
+    Panel* panel_ = nullptr; ///< of the first window, for the user; not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
-    bool dirty_ = true, fallback_told_ = false;
+    bool dirty_ = true, fallback_told_ = false, had_messages_ = false;
+    std::string message_; ///< the last one, told until message_until_s_
+    double message_until_s_ = 0;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
 };
 

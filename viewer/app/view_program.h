@@ -42,7 +42,8 @@ struct ViewRunSummary {
     bool files_whole = true;     ///< recording and frame log are complete
     double longest_block_ms = 0; ///< longest time between two reads of input on the main thread
     std::string gl;
-    std::string schedule; ///< of slhb: schedule of the last frame and why; empty for other methods
+    double exposure_ev = 0; ///< of the last frame
+    std::string schedule;   ///< of slhb: schedule of the last frame and why; empty for other methods
     nlohmann::json trackers, headset;
 };
 

@@ -20,19 +20,27 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
         if (c.key == "stereo" && changed.stereo == name_of(StereoMode::two_windows) && !has_two_windows)
             throw gi::InputError("'stereo' = two-windows", "there is no second window",
                                  "start with --set stereo=two-windows");
+        if (c.key == "exposure" && settings.auto_exposure == "on") change({"auto_exposure", "hold"});
+        changed.auto_exposure = c.key == "exposure" ? settings.auto_exposure : changed.auto_exposure;
         settings = std::move(changed);
         renderer->post(c);
         if (done) done({});
         return;
     }
+    if (c.key == "scene") return load(scene_change_of(c).name, std::move(done));
     renderer->post(c, [this, c, done = std::move(done)](std::string const& error) {
         inbox.put([this, c, error, done] {
             if (!error.empty()) message = error;
-            if (error.empty() && c.key == "scene" && loaded) loaded();
             if (done) done(error);
             refresh_facts();
         });
     });
+}
+
+void ViewState::open_scene(std::string const& name)
+{
+    message.clear();
+    change({"scene", name});
 }
 
 void ViewState::move_selection(gi::dvec3 by)

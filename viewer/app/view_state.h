@@ -3,8 +3,10 @@
 // them.
 
 #include "viewer/app/live_error.h"
+#include "viewer/app/open_dialog.h"
 #include "viewer/app/scene_facts.h"
 #include "viewer/engine/live/navigation.h"
+#include "viewer/engine/live/scene_loader.h"
 #include "viewer/engine/picking.h"
 
 #include <memory>
@@ -51,18 +53,24 @@ struct ViewState {
     bool drawing = false;                   ///< `frame` is not in the windows yet
     std::optional<LiveError> live_error;
     double screen_distance_m = 2; ///< distance where both eyes' pictures coincide
-    bool ends = false;
+    bool ends = false, shows_help = false;
+    OpenDialog open_dialog;
     std::string message; ///< last error, for the panel
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
-    bool is_one_of_ranks = false;                          ///< other ranks render the same frame commands
-    bool has_two_windows = false;                          ///< for StereoMode::two_windows
-    std::function<void()> loaded;                          ///< called after another scene was loaded
+    bool is_one_of_ranks = false; ///< other ranks render the same frame commands
+    bool has_two_windows = false; ///< for StereoMode::two_windows
+    /// Begins to load a scene; `done` as in change().
+    std::function<void(std::string const& name, std::function<void(std::string const&)> done)> load;
+    std::optional<LoadProgress> loading;                   ///< of a scene that is not shown yet
+    std::optional<LoadProgress> building;                  ///< what a frame that takes long is at
     bool wants_screenshot = false, own_screenshot = false; ///< own_screenshot: requested by key
 
     /// Applies a setting to the display at once and to the rendering with the next frame. Throws InputError if a
     /// setting is invalid. Errors in edits of the scene are passed to `done` later, through the inbox.
     void change(Change const& change, std::function<void(std::string const&)> done = {});
+    /// Loads a scene that the user chose.
+    void open_scene(std::string const& name);
     /// Moves the selected object by an offset, m, in the world.
     void move_selection(gi::dvec3 by);
     /// Requests an update of the facts, and of the ground in walk mode.

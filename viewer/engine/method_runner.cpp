@@ -59,21 +59,19 @@ gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
 }
 
 MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings,
-                           int threads, std::vector<ViewCommand> const& first, gi::Report& report)
-    : report_(report), threads_(threads), origin_(world.world().origin)
+                           int threads, SceneStart const& start, gi::Report& report, bool ahead)
+    : report_(report), threads_(threads), ahead_(ahead), origin_(world.world().origin)
 {
     gi::RenderSettings s = settings.render;
     s.threads = threads;
     s.paths = 1;
-    s.slhb.cache = gi::RadianceCaching::automatic; // render() says for every frame whether paths end in it
-    double pixels = 0;
-    for (ViewCommand const& v : first) pixels += double(v.width) * v.height;
-    s.width = std::max(1, int(std::sqrt(pixels))); // the plan needs only the number of pixels
-    s.height = std::max(1, int(std::lround(pixels / s.width)));
+    s.slhb.cache = gi::RadianceCaching::automatic;       // render() says for every frame whether paths end in it
+    s.width = std::max(1, int(std::sqrt(start.pixels))); // the plan needs only the number of pixels
+    s.height = std::max(1, int(std::lround(start.pixels / s.width)));
     // Use the same axes for all frames: fresh axes in every frame would flicker.
     if (s.slhb.schedule == gi::Schedule::automatic && method == "slhb") s.slhb.schedule = gi::Schedule::stored;
     s.slhb.interleave = 1;
-    renderer_ = gi::find_method(method).frames(world, first.front().camera, s, report);
+    renderer_ = gi::find_method(method).frames(world, start.camera, s, report);
 }
 
 std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
@@ -83,7 +81,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
                                                    gi::StopRequest const& stop)
 {
     left_out_punctual_ = renderer_->leave_out_punctual(leaves_out_punctual) && leaves_out_punctual;
-    if (!first_) renderer_->changed(changes);
+    if (!first_ || ahead_) renderer_->changed(changes);
     bool anything_moved = first_ || seen_.size() != command.views.size() || changes.any();
     seen_.resize(command.views.size());
     std::vector<bool> moved(command.views.size());

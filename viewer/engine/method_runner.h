@@ -5,6 +5,7 @@
 #include "gi/methods/registry.h"
 #include "gi/surfaces/lit_picture.h"
 #include "viewer/engine/hidden_views.h"
+#include "viewer/engine/scene_start.h"
 #include "viewer/engine/settings.h"
 
 #include <memory>
@@ -16,9 +17,10 @@ gi::SceneChange scene_change(gi::Changes const& changes, bool camera_moved);
 
 class MethodRunner {
 public:
-    /// The world and the report must outlive it. @param first  views whose sizes the plan is made for
+    /// The world and the report must outlive it. @param start  what the plan is made for
+    /// @param ahead  the world may change before the first frame
     MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
-                 std::vector<ViewCommand> const& first, gi::Report& report);
+                 SceneStart const& start, gi::Report& report, bool ahead = false);
 
     /// Returns one picture per view. @param hidden  per view  @param changes  of the world since the last frame
     /// @param seen  surfaces of the world; null = not needed
@@ -56,6 +58,7 @@ private:
     std::unique_ptr<gi::FrameRenderer> renderer_;
     std::vector<Seen> seen_;
     bool first_ = true, left_out_punctual_ = false;
+    bool ahead_;
     int still_ = 0; ///< frames since the scene, a setting or the camera last changed
 };
 

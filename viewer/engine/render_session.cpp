@@ -10,6 +10,16 @@
 #include <malloc.h>
 
 namespace viewer {
+namespace {
+
+SceneStart start_of(FrameCommand const& command)
+{
+    SceneStart start{command.views.front().camera, 0};
+    for (ViewCommand const& v : command.views) start.pixels += double(v.width) * v.height;
+    return start;
+}
+
+} // namespace
 
 bool has_own_surfaces(FrameCommand const& command)
 {
@@ -33,7 +43,12 @@ bool RenderSession::moves() const
 
 void RenderSession::apply(Change const& change)
 {
-    if (change.key == "scene") return load(change);
+    if (change.key == "scene") {
+        SceneChange const wanted = scene_change_of(change);
+        ChooseStart choose;
+        if (wanted.start) choose = [&](gi::World const&) { return *wanted.start; };
+        return adopt(prepare(wanted.name, settings_, choose));
+    }
     if (is_scene_edit(change.key)) {
         if (!world_) throw gi::InputError("'" + change.key + "'", "no scene is loaded", "load one first");
         if (is_object_edit(change.key)) return place_object(change);
@@ -61,17 +76,54 @@ void RenderSession::restart()
     compared_.reset();
 }
 
-void RenderSession::load(Change const& change)
+PreparedScene RenderSession::prepare(std::string const& name, Settings const& settings,
+                                     ChooseStart const& choose) const
 {
-    if (!change.value.is_string())
-        throw gi::InputError("'scene' = " + change.value.dump(), "a scene's name is a text",
-                             "set a file or a built-in scene");
-    std::string const name = change.value.get<std::string>();
-    auto scene = load_(name, report_);
+    PreparedScene made;
+    made.change.name = name;
+    gi::at_step("reading");
+    made.scene = load_(name, report_);
+    gi::at_step("world");
+    // Not at the time of the last frame, which is not known before the scene is ready.
+    made.world = std::make_unique<gi::MovingWorld>(made.scene, 0.0, report_);
+    made.settings = settings;
+    if (!choose) return made;
+    gi::at_step("first camera");
+    made.change.start = choose(made.world->world());
+    start_method(made);
+    return made;
+}
+
+/// A method that cannot start with the scene says so when a frame is rendered: the user may choose another.
+void RenderSession::start_method(PreparedScene& scene) const
+{
+    gi::at_step("start of the method");
+    try {
+        scene.method = std::make_unique<MethodRunner>(scene.settings.method, *scene.world, scene.settings,
+                                                      threads_, *scene.change.start, report_, true);
+    } catch (gi::InputError const&) {
+        scene.method.reset();
+    }
+}
+
+void RenderSession::adopt(PreparedScene p)
+{
+    bool const as_set = std::ranges::all_of(
+        setting_keys(), [&](SettingKey const& k) { return !k.restarts || k.get(p.settings) == k.get(settings_); });
+    if (!as_set) {
+        p.settings = settings_;
+        p.method.reset();
+        if (p.change.start) start_method(p);
+    }
+    restart(); // method runners refer to the old world
+    seen_.reset();
     placed_.clear();
     edits_.clear();
-    rebuild(std::move(scene));
-    name_ = name;
+    pending_ = {};
+    world_ = std::move(p.world);
+    scene_ = std::move(p.scene);
+    main_ = std::move(p.method);
+    shown_ = std::move(p.change);
     malloc_trim(0); // return the previous scene's memory to the system: a session may load many
 }
 
@@ -170,9 +222,9 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
     }
     bool const leaves_out = smaller && gi::SeenSurfaces::has_few_lights(world_->world());
     gi::SeenSurfaces* const seen = smaller || settings_.first_surfaces ? seen_.get() : nullptr;
+    SceneStart const start = start_of(light);
     if (!main_)
-        main_ =
-            std::make_unique<MethodRunner>(settings_.method, *world_, settings_, threads_, light.views, report_);
+        main_ = std::make_unique<MethodRunner>(settings_.method, *world_, settings_, threads_, start, report_);
     std::vector<HiddenPixels> hidden, hidden_light;
     for (ViewCommand const& v : command.views) hidden.push_back(hidden_.pixels(v));
     for (ViewCommand const& v : light.views) hidden_light.push_back(smaller ? hidden_light_.pixels(v) : hidden_.pixels(v));
@@ -187,8 +239,8 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
     }
     if (!settings_.compare.empty() && settings_.compare != settings_.method) {
         if (!compared_)
-            compared_ = std::make_unique<MethodRunner>(settings_.compare, *world_, settings_, threads_,
-                                                       light.views, report_);
+            compared_ =
+                std::make_unique<MethodRunner>(settings_.compare, *world_, settings_, threads_, start, report_);
         std::vector<gi::RenderResult> others = compared_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
         for (std::size_t k = 0; k < others.size(); ++k) {
             frame.rays += others[k].rays;

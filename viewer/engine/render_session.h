@@ -6,6 +6,7 @@
 #include "viewer/engine/hidden_views.h"
 #include "viewer/engine/method_runner.h"
 #include "viewer/engine/scene_edits.h"
+#include "viewer/engine/scene_start.h"
 #include "viewer/engine/settings.h"
 
 #include <functional>
@@ -16,6 +17,18 @@ namespace viewer {
 using LoadScene = std::function<std::shared_ptr<gi::Scene const>(std::string const& name, gi::Report&)>;
 /// Moves bodies in the scene to their tracked poses.
 using DriveBodies = std::function<void(gi::Scene const&, FrameCommand const&, gi::Pose&)>;
+
+/// A scene made ready beside the session: read, its world built at scene time 0, and its method started.
+struct PreparedScene {
+    SceneChange change; ///< what a recording says of it
+    std::shared_ptr<gi::Scene const> scene;
+    std::unique_ptr<gi::MovingWorld> world;
+    Settings settings; ///< that the method was started with
+    std::unique_ptr<MethodRunner>
+        method; ///< refers to the world; null: it did not start, or `change` has no start
+};
+/// Chooses what a scene starts with, once its world is known.
+using ChooseStart = std::function<SceneStart(gi::World const&)>;
 
 struct ViewPicture {
     gi::Picture picture;
@@ -47,6 +60,11 @@ public:
     /// Valid keys are those of Settings, scene_edits.h and hidden_mask.h, and "scene". Throws InputError and
     /// changes nothing if the value is invalid.
     void apply(Change const& change);
+    /// Makes a scene ready; may run on any thread while the session is in use. The steps (gi/core/step.h) are
+    /// those of reading, "world", "start" and of the method. Throws InputError if there is no such scene.
+    PreparedScene prepare(std::string const& name, Settings const& settings, ChooseStart const& choose) const;
+    /// Shows it from now on, as apply(prepared.change) does.
+    void adopt(PreparedScene prepared);
     /// Renders a frame command, whose changes must have been applied already. Throws InputError without a scene.
     SessionFrame render(FrameCommand const& command, gi::StopRequest const& stop);
 
@@ -54,7 +72,8 @@ public:
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
 
     Settings const& settings() const { return settings_; }
-    std::string const& scene_name() const { return name_; }
+    std::string const& scene_name() const { return shown_.name; }
+    SceneChange const& shown_scene() const { return shown_; } ///< as it was prepared
     bool has_scene() const { return world_ != nullptr; }
     gi::World const& world() const { return world_->world(); }
     /// Current position of an object, m, world. Throws InputError if no object has this name.
@@ -62,7 +81,7 @@ public:
     bool moves() const; ///< true if something in the scene can move by itself
 
 private:
-    void load(Change const& change);
+    void start_method(PreparedScene& scene) const;
     void rebuild(std::shared_ptr<gi::Scene const> scene);
     void place_object(Change const& change);
     void restart();
@@ -74,7 +93,7 @@ private:
     gi::Report& report_;
     gi::ReportReader added_{report_};
     Settings settings_;
-    std::string name_;
+    SceneChange shown_;
     std::shared_ptr<gi::Scene const> scene_;
     std::unique_ptr<gi::MovingWorld> world_;
     std::vector<PlacedObject> placed_;

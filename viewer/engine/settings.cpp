@@ -6,6 +6,8 @@
 #include "gi/methods/registry.h"
 #include "viewer/displays/stereo_mode.h"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -68,6 +70,8 @@ std::vector<SettingKey> make_keys()
              &S::first_surfaces),
          own("share-eyes", {}, "each eye may reuse light computed for the other eye", &S::share_eyes),
          own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),
+         own("auto-exposure", {"off", "on", "hold"},
+             "exposure follows what is shown: off, on, or held as it is now", &S::auto_exposure),
          own("tone", {"srgb", "filmic"}, "tone curve", &S::tone),
          own("rate", {0.1, 1000}, "target frame rate, Hz", &S::rate_hz),
          own("paths", {0, 65536}, "paths per pixel and frame, 0 = as the frame rate allows", &S::paths),
@@ -84,7 +88,9 @@ std::vector<SettingKey> make_keys()
              &S::predict),
          own("reproject", {}, "reproject the last picture to the current head pose", &S::reproject),
          own("refine", {}, "keep adding paths while nothing moves", &S::refine),
-         own("panel", {}, "show the panel", &S::panel)});
+         own("panel", {}, "show the panel", &S::panel),
+         own("font-scale", {0.5, 4}, "size of letters in the panel and of messages, 1 = usual on this monitor",
+             &S::font_scale)});
     return keys;
 }
 
@@ -128,6 +134,27 @@ std::span<SettingKey const> setting_keys()
 {
     static std::vector<SettingKey> const keys = make_keys();
     return keys;
+}
+
+std::string label_of(SettingKey const& key)
+{
+    constexpr std::size_t kMost = 46, kMethodName = 16, kUnit = 4;
+    std::string text = key.meaning;
+    if (std::size_t const colon = text.find(": "); colon != std::string::npos && colon < kMethodName)
+        text = text.substr(colon + 2); // "slhb: ..."
+    text = text.substr(0, text.find_first_of(";:("));
+    if (text.size() < kUnit) { // "m; where ..."
+        std::string name = key.key;
+        std::ranges::replace(name, '_', ' ');
+        text = name + ", " + text;
+    }
+    if (text.size() > kMost) {
+        std::size_t const comma = text.rfind(", ", kMost), blank = text.rfind(' ', kMost);
+        text = text.substr(0, comma != std::string::npos ? comma : blank) + " ...";
+    }
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+    return text;
 }
 
 bool is_setting(std::string const& key) { return find(key) != nullptr; }

@@ -13,8 +13,8 @@
 namespace viewer {
 
 struct Settings {
-    std::string method = "slhb", compare;    ///< compare: second method, shown beside the first; empty = none
-    gi::RenderSettings render{.bounces = 3}; ///< those of gi::render_options() that are live count
+    std::string method = "slhb", compare; ///< compare: second method, shown beside the first; empty = none
+    gi::RenderSettings render;            ///< those of gi::render_options() that are live count
     int updated_axes = 0; ///< stored axes per bounce updated each frame for dynamic geometry; 0 = all. With the
                           ///< schedule auto, the live viewer sets it every frame (update_governor.h)
     int reuse = 16;       ///< frames of temporal reuse; 1 = none
@@ -22,6 +22,8 @@ struct Settings {
     bool first_surfaces = true; ///< surfaces are drawn at full size where light is computed at a smaller one
     bool share_eyes = true; ///< each eye may reuse light computed for the other
     double exposure_ev = 0;
+    std::string auto_exposure =
+        "off"; ///< on: windows and headsets set exposure_ev by what is shown; hold: they did
     std::string tone = "srgb";
     // Settings of the interactive loop
     double rate_hz = 20;           ///< target frame rate
@@ -38,6 +40,7 @@ struct Settings {
     bool reproject = true;        ///< reproject the last picture to the current head pose
     bool refine = true;           ///< keep adding paths while nothing moves
     bool panel = true;
+    double font_scale = 1; ///< of the letters in the panel, over the usual size on the monitor
 
     bool has_automatic_schedule() const { return render.slhb.schedule == gi::Schedule::automatic; }
 };
@@ -47,6 +50,8 @@ struct SettingKey : gi::Option<Settings> {
     bool restarts = false; ///< a change begins the methods anew
 };
 std::span<SettingKey const> setting_keys();
+/// The beginning of its meaning, with the unit, as the label of a control: "Target frame rate, Hz".
+std::string label_of(SettingKey const& key);
 bool is_setting(std::string const& key);
 /// The current name of a key: older recordings and scripts may use a former one.
 std::string current_key(std::string const& key);

@@ -1,6 +1,7 @@
 #include "viewer/offline/choose_camera.h"
 
 #include "gi/core/error.h"
+#include "viewer/offline/first_view.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -31,12 +32,6 @@ gi::Camera const& named_camera(gi::World const& world, std::string const& name)
     throw gi::InputError("there is no camera '" + name + "'", "the scene does not have it",
                          known.empty() ? "it has none: give --look-from and --look-at"
                                        : "choose one of: " + known);
-}
-
-gi::Camera framing_camera(gi::dvec3 center, double radius, double fov_deg)
-{
-    double const distance = 1.05 * radius / std::sin(0.5 * glm::radians(fov_deg));
-    return gi::look_at(center + distance * glm::normalize(gi::dvec3{0.5, 0.35, 1}), center, fov_deg);
 }
 
 } // namespace
@@ -89,7 +84,6 @@ ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
     double const fov_deg = choice.fov_deg.value_or(kDefaultFov_deg);
     bool const empty = world.bounds.empty();
     gi::dvec3 const center = gi::dvec3(empty ? gi::vec3{0} : world.bounds.center()) + world.origin;
-    double const radius = empty ? 1.0 : std::max(double(world.bounds.radius()), 1e-6);
     ChosenCamera chosen;
     if (choice.look_from) {
         chosen.camera = gi::look_at(*choice.look_from, choice.look_at.value_or(center), fov_deg);
@@ -98,8 +92,11 @@ ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
     } else if (!world.cameras.empty()) {
         chosen.camera = with_fov(world.cameras.front(), choice.fov_deg);
     } else {
-        chosen.camera = framing_camera(center, radius, fov_deg);
-        chosen.note = "the scene has no camera: looking at all of it from the front";
+        std::optional<gi::Camera> inside;
+        if (!choice.turns) inside = view_from_inside(world, choice.fov_deg.value_or(kInsideFov_deg));
+        chosen.camera = inside.value_or(view_from_outside(world, detailed_part(world), fov_deg));
+        chosen.note = inside ? "the scene has no camera: inside it, at eye height"
+                             : "the scene has no camera: looking at all of it from the front";
     }
     check_distance(world, chosen.camera);
     std::string const lens = put_lens(chosen.camera, choice, choice.look_at.value_or(center),

@@ -8,6 +8,7 @@
 namespace viewer {
 
 inline constexpr double kDefaultFov_deg = 45;
+inline constexpr double kInsideFov_deg = 65; ///< of a camera chosen inside a room
 
 /// One of the two eyes of a stereo pair, beside the camera. Both share a virtual screen.
 struct EyeChoice {
@@ -22,6 +23,7 @@ struct CameraChoice {
     std::string name;
     std::optional<gi::dvec3> look_from, look_at;
     std::optional<double> fov_deg, aperture_radius_m, focus_distance_m;
+    bool turns = false;           ///< the camera will turn around the scene, so it has to be outside
     std::optional<EyeChoice> eye; ///< used by FrameCamera only
 };
 
@@ -37,7 +39,7 @@ struct ChosenCamera {
 std::string put_lens(gi::Camera& camera, CameraChoice const& choice, std::optional<gi::dvec3> focus,
                      std::string const& what);
 
-/// Returns the named camera, the one of look_from, the scene's first, or one that frames the whole scene.
+/// Returns the named camera, the one of look_from, the scene's first, or one chosen for the scene (first_view.h).
 /// Throws InputError on unknown names (listing the known ones), incomplete or contradictory positions, a field of
 /// view or a lens for an orthographic camera, a lens without a focus, and cameras too far away for float.
 ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice);

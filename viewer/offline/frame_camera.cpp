@@ -35,7 +35,8 @@ FrameCamera::FrameCamera(gi::World const& first, CameraChoice const& choice, Cam
         if (choice_.eye) place_screen(first);
         return;
     }
-    first_ = choose_camera(first, choice);
+    choice_.turns = motion_.turn_rad != 0;
+    first_ = choose_camera(first, choice_);
     choice_.aperture_radius_m = first_.camera.aperture_radius_m;
     if (first_.camera.aperture_radius_m > 0) choice_.focus_distance_m = first_.camera.focus_distance_m;
     of_scene_ = !choice.look_from && !first.cameras.empty();

@@ -90,7 +90,9 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
         if (!overridden.contains(current_key(key)))
             session.apply({key, value}); // e.g. a device that is missing here
     for (Change const& c : o.settings) session.apply(c);
-    session.apply({"scene", header.scene});
+    SceneChange scene{header.scene, {}};
+    if (header.settings.contains("start")) scene.start = start_from_json(header.settings.at("start"));
+    session.apply(to_change(scene));
     ReplaySummary summary;
     gi::ProgressBar bar("replay " + o.file);
     while (auto frame = reader.next()) {

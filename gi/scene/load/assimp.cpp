@@ -147,6 +147,19 @@ ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces
     return files;
 }
 
+std::vector<std::string> assimp_extensions()
+{
+    std::string list; // "*.3d;*.3ds;..."
+    Assimp::Importer().GetExtensionList(list);
+    std::vector<std::string> all;
+    for (std::size_t at = 0; at < list.size();) {
+        std::size_t const end = std::min(list.find(';', at), list.size());
+        if (end > at + 1) all.push_back(list.substr(at + 1, end - at - 1));
+        at = end + 1;
+    }
+    return all;
+}
+
 void lose_material_libraries(std::filesystem::path const& file, ImportedFiles const& files, Report& report)
 {
     if (files.missing.empty() || strcasecmp(file.extension().c_str(), ".obj") != 0) return;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
 struct aiScene;
 
@@ -25,6 +26,9 @@ struct ImportedFiles {
 /// Imports a file and passes it to `use`. Throws InputError if it cannot be read within limits of time and memory.
 ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces,
                             std::function<void(aiScene const&)> const& use);
+
+/// Endings of the files that Assimp reads, lower case with the dot.
+std::vector<std::string> assimp_extensions();
 
 /// Counts the missing material libraries of an OBJ file.
 void lose_material_libraries(std::filesystem::path const& file, ImportedFiles const& files, Report& report);

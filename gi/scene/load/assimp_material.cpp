@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/core/step.h"
 #include "gi/scene/load/load.h"
 
 #include <algorithm>
@@ -154,6 +155,7 @@ private:
         if (source.GetTexture(type, 0, &path, nullptr, &uv_set) != AI_SUCCESS) return ref;
         auto const key = std::pair(std::string(path.C_Str()), srgb);
         auto [it, fresh] = textures_.try_emplace(key, -1);
+        if (fresh) at_step("textures decoded", textures_.size() - 1);
         if (fresh) try {
                 std::string name;
                 std::vector<unsigned char> const bytes = texture_bytes(path.C_Str(), name);

@@ -1,11 +1,13 @@
 #include "gi/scene/load/child_process.h"
 
 #include "gi/core/error.h"
+#include "gi/core/step.h"
 
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <ctime>
+#include <exception>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -14,7 +16,7 @@
 namespace gi {
 namespace {
 
-constexpr int kStallSeconds = 5;
+constexpr int kStallSeconds = 5, kLooksPerSecond = 20;
 
 std::int64_t processor_time_ns(pid_t process)
 {
@@ -28,9 +30,10 @@ std::int64_t processor_time_ns(pid_t process)
 bool read_all(int pipe, pid_t process, std::string& told)
 {
     std::int64_t used_ns = 0;
-    for (int idle_s = 0; idle_s < kStallSeconds;) {
+    for (int idle = 0; idle < kStallSeconds * kLooksPerSecond;) {
+        at_step("reading");
         pollfd waiting{pipe, POLLIN, 0};
-        int const ready = poll(&waiting, 1, 1000);
+        int const ready = poll(&waiting, 1, 1000 / kLooksPerSecond);
         if (ready > 0) {
             char chunk[4096];
             ssize_t const n = read(pipe, chunk, sizeof chunk);
@@ -38,7 +41,7 @@ bool read_all(int pipe, pid_t process, std::string& told)
             if (n == 0 || (n < 0 && errno != EINTR)) return true;
         } else if (ready == 0) {
             std::int64_t const now_ns = processor_time_ns(process);
-            idle_s = now_ns == used_ns ? idle_s + 1 : 0;
+            idle = now_ns == used_ns ? idle + 1 : 0;
             used_ns = now_ns;
         }
     }
@@ -60,7 +63,13 @@ std::optional<int> run_child(std::function<void(int pipe)> const& work, std::str
         _exit(1);
     }
     close(ends[1]);
-    bool const ended = child < 0 || read_all(ends[0], child, told);
+    bool ended = child < 0;
+    std::exception_ptr abandoned;
+    try {
+        ended = ended || read_all(ends[0], child, told);
+    } catch (...) { // by a listener of steps
+        abandoned = std::current_exception();
+    }
     close(ends[0]);
     if (child < 0)
         throw InputError("a file cannot be tested", "no process can be started", "close other programs");
@@ -68,6 +77,7 @@ std::optional<int> run_child(std::function<void(int pipe)> const& work, std::str
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
+    if (abandoned) std::rethrow_exception(abandoned);
     return ended ? std::optional(status) : std::nullopt;
 }
 

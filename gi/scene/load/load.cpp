@@ -2,21 +2,48 @@
 
 #include "gi/core/error.h"
 #include "gi/scene/generate/generate.h"
+#include "gi/scene/load/assimp_import.h"
 
 #include <algorithm>
 
 namespace gi {
+
+namespace {
+
+struct BuiltIn {
+    char const* name;
+    Scene (*make)();
+};
+constexpr BuiltIn kBuiltIn[]{{"atrium", [] { return generate_atrium({}); }},
+                             {"cornell", [] { return generate_cornell(); }},
+                             {"mirror", [] { return generate_mirror(); }},
+                             {"ring", [] { return generate_ring(); }},
+                             {"avatar", [] { return generate_avatar(); }}};
+
+} // namespace
+
+std::vector<std::string> built_in_scenes()
+{
+    std::vector<std::string> names;
+    for (BuiltIn const& b : kBuiltIn) names.emplace_back(b.name);
+    return names;
+}
+
+std::vector<std::string> scene_extensions()
+{
+    std::vector<std::string> all{".gltf", ".glb", ".yaml", ".yml"};
+    for (std::string const& e : assimp_extensions())
+        if (std::ranges::find(all, e) == all.end()) all.push_back(e);
+    return all;
+}
 
 Scene load_scene(std::string const& file_or_name, Report& report)
 {
     std::filesystem::path const file = file_or_name;
     std::error_code error;
     if (!std::filesystem::exists(file, error)) {
-        if (file_or_name == "atrium") return generate_atrium({});
-        if (file_or_name == "cornell") return generate_cornell();
-        if (file_or_name == "mirror") return generate_mirror();
-        if (file_or_name == "ring") return generate_ring();
-        if (file_or_name == "avatar") return generate_avatar();
+        for (BuiltIn const& b : kBuiltIn)
+            if (file_or_name == b.name) return b.make();
         throw InputError("there is no scene '" + file_or_name + "'",
                          "no such file, and no built-in scene of that name",
                          "give a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of frames, or one of: atrium, "

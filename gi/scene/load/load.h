@@ -16,6 +16,11 @@ namespace gi {
 /// report.
 Scene load_scene(std::string const& file_or_name, Report& report);
 
+/// Names of the generated scenes that load_scene knows.
+std::vector<std::string> built_in_scenes();
+/// Endings of files that load_scene reads, lower case with the dot: ".glb", ".yaml", ".obj", ...
+std::vector<std::string> scene_extensions();
+
 Scene load_gltf(std::filesystem::path const& file, Report& report);
 /// Parses glTF JSON or GLB from memory; external files are searched in `folder`, empty = none allowed.
 Scene parse_gltf(unsigned char const* bytes, std::size_t size, std::filesystem::path const& folder,

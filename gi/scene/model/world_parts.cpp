@@ -1,6 +1,7 @@
 #include "gi/scene/model/world_parts.h"
 
 #include "gi/core/huge_pages.h"
+#include "gi/core/step.h"
 
 #include <algorithm>
 #include <tbb/parallel_for.h>
@@ -125,7 +126,8 @@ WorldParts build_world_parts(std::shared_ptr<Scene const> scene, SceneTime time_
     if (!origin) choose_origin(world, pose, instances);
 
     std::uint64_t unusable = 0;
-    for (Instance& i : instances) {
+    for (std::size_t done = 0; Instance & i : instances) {
+        at_step("world", done++, instances.size());
         world.placed.push_back({std::uint32_t(i.node), std::uint32_t(world.triangles.size())});
         if (!i.moves()) {
             append_static_triangles(world, i, report);

@@ -181,6 +181,7 @@ int finish(ViewArguments const& a, ViewRunSummary const& done, ClusterLink const
     stats["gl"] = done.gl;
     stats["frames_rendered"] = done.rendered;
     stats["schedule"] = done.schedule;
+    stats["exposure"] = done.exposure_ev;
     stats["presented"] = done.presented;
     stats["recorded"] = done.recorded;
     stats["longest_block_ms"] = done.longest_block_ms;
@@ -381,7 +382,8 @@ void add_view(CLI::App& app, int& exit_code)
         R"(Keys: W A S D Q E move, drag to look around, wheel to approach, click to select,
 Ctrl + drag to move the selection, 1..9 0 stereo mode, V split/flicker/difference, C compare with the reference,
 M method, + - exposure, Space play/pause, Tab fly/walk/orbit, Z X raise the avatar's hands, P reprojection,
-R back to the first camera, F1 panel, F2 screenshot, F11 swap eyes, Esc end. All settings: docs/viewer.md.
+R back to the first camera, O open a scene, T automatic exposure, H help, F1 panel, F2 screenshot, F11 swap eyes,
+Esc end. All settings: docs/viewer.md.
 
 Exit code 1: the recording or the frame log is not complete, or a rank was lost.
 Esc, Ctrl-C and --time-limit close all files and exit with 0; a replay interrupted by Ctrl-C exits with 130.

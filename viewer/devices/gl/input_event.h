@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 namespace viewer {
 
@@ -18,6 +19,7 @@ enum class InputKind : std::uint8_t {
     close,          ///< the user wants to close the window; it stays open until it is destroyed
     gamepad_axis,   ///< device, code: GLFW_GAMEPAD_AXIS_*, x: -1..1 (triggers: -1 = released)
     gamepad_button, ///< device, code: GLFW_GAMEPAD_BUTTON_*, action
+    drop,           ///< text: the path of a file that the user dropped on the window
     hand_button,    ///< of a headset; device: 0 left, 1 right, code: 0 select, 1 trigger, 2 menu, action
 };
 
@@ -37,6 +39,7 @@ struct InputEvent {
     int scan_code = 0;
     int modifiers = 0; ///< GLFW_MOD_*
     double x = 0, y = 0;
+    std::string text{};
     Clock::time_point time; ///< time of polling, because GLFW gives no event times
 };
 

@@ -1,7 +1,9 @@
 #include "viewer/devices/gl/panel.h"
 
+#include <algorithm>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <cmath>
 #include <epoxy/gl.h>
 #include <filesystem>
 #include <imgui.h>
@@ -27,7 +29,9 @@ void add_font(float px)
 
 } // namespace
 
-Panel::Panel(Window& window, float font_px) : window_(window)
+float panel_font_px(float content_scale) { return std::round(16 * std::clamp(content_scale, 0.5f, 4.0f)); }
+
+Panel::Panel(Window& window, float font_px, PanelInput input) : window_(window)
 {
     IMGUI_CHECKVERSION();
     context_ = ImGui::CreateContext();
@@ -35,7 +39,7 @@ Panel::Panel(Window& window, float font_px) : window_(window)
     ImGui::GetIO().IniFilename = nullptr; // write no settings file
     ImGui::StyleColorsDark();
     if (font_px > 0) add_font(font_px);
-    ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
+    ImGui_ImplGlfw_InitForOpenGL(window.glfw(), input == PanelInput::taken);
     ImGui_ImplOpenGL3_Init("#version 450 core");
     ImGui_ImplOpenGL3_NewFrame(); // creates its textures and programs
 }
@@ -61,6 +65,7 @@ void Panel::finish() { ImGui::Render(); }
 void Panel::draw()
 {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    ImGui::SetCurrentContext(context_);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 

@@ -8,12 +8,19 @@ struct ImGuiContext;
 
 namespace viewer {
 
+/// Whether a panel takes part in its window's input: buttons and texts, or only shows something.
+enum class PanelInput { taken, none };
+
+/// Letter height, px, on a monitor of this content scale (1 = about 96 px per inch).
+float panel_font_px(float content_scale);
+
 class Panel {
 public:
-    /// Receives the window's input in addition to its event queue. Only one panel may exist at a time, because
-    /// ImGui's callbacks are global. The window must outlive it, and its context must be current here; the
-    /// destructor leaves it current too. @param font_px  letter height; 0 = small, for tools
-    explicit Panel(Window& window, float font_px = 0);
+    /// With PanelInput::taken it receives the window's input in addition to its event queue, by callbacks of ImGui
+    /// that are global: then it must be the only panel. Of others there may be one for each window. The window
+    /// must outlive it, and its context must be current here; the destructor leaves it current too. @param font_px
+    /// letter height; 0 = small, for tools
+    explicit Panel(Window& window, float font_px = 0, PanelInput input = PanelInput::taken);
     ~Panel();
     Panel(Panel const&) = delete;
     Panel& operator=(Panel const&) = delete;

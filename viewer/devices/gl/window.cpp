@@ -98,7 +98,7 @@ Window::Window(WindowSettings const& settings, gi::Report& report, Window const*
     GLFWwindow* const other = shares ? shares->glfw() : nullptr;
     s.open(settings, monitor, other);
     if (!s.window && s.quad_buffer == QuadBuffer::wanted) {
-        report.lose("windows without the requested quad-buffer stereo", 1, glfw_error());
+        report.lose(kNoQuadBuffer, 1, glfw_error());
         s.quad_buffer = QuadBuffer::no;
         s.open(settings, monitor, other);
     }
@@ -149,6 +149,13 @@ int Window::refresh_hz() const
         if (at.x >= 0 && at.y >= 0 && at.x < m.size_px.x && at.y < m.size_px.y) return m.refresh_hz;
     }
     return 0;
+}
+
+float Window::content_scale() const
+{
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(state_->window, &x, &y);
+    return y;
 }
 
 bool Window::has_quad_buffer() const { return state_->quad_buffer == QuadBuffer::wanted; }

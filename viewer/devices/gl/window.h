@@ -24,6 +24,8 @@ struct MonitorInfo {
 std::vector<MonitorInfo> monitors();
 
 enum class QuadBuffer { no, wanted };
+/// Name of the loss where a driver has none.
+inline constexpr char const* kNoQuadBuffer = "windows without the requested quad-buffer stereo";
 enum class Visibility { shown, hidden };
 
 struct WindowSettings {
@@ -58,6 +60,7 @@ public:
     glm::ivec2 position_px() const;
     /// Refresh rate of the monitor under the window's centre; 0 = unknown.
     int refresh_hz() const;
+    float content_scale() const; ///< of the desktop's text on the window's monitor; 1 = usual
     bool has_quad_buffer() const;
     bool wants_close() const;
     void set_title(std::string const& title);

@@ -61,6 +61,13 @@ void WindowEvents::listen(GLFWwindow* window, int number)
     glfwSetWindowPosCallback(window, [](GLFWwindow* w, int x, int y) { of(w).add(at(InputKind::move, x, y)); });
     glfwSetWindowFocusCallback(
         window, [](GLFWwindow* w, int gained) { of(w).add(with_code(InputKind::focus, 0, gained, 0)); });
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, char const** paths) {
+        for (int i = 0; i < count; ++i) {
+            InputEvent event = at(InputKind::drop, 0, 0);
+            event.text = paths[i];
+            of(w).add(event);
+        }
+    });
     glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).add(at(InputKind::close, 0, 0)); });
 }
 

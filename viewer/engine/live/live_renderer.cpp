@@ -71,6 +71,22 @@ void LiveRenderer::post(Change change, std::function<void(std::string const&)> d
     wake_.notify_all();
 }
 
+void LiveRenderer::adopt(std::shared_ptr<PreparedScene> scene, SceneKnown known,
+                         std::function<void(RenderSession const&)> done)
+{
+    ask([this, scene = std::move(scene), known, done = std::move(done)](RenderSession& s) {
+        s.adopt(std::move(*scene));
+        if (known == SceneKnown::no) changes_.push_back(to_change(s.shown_scene()));
+        awaits_look_ = true;
+        done(s);
+    });
+}
+
+void LiveRenderer::resume()
+{
+    ask([this](RenderSession&) { awaits_look_ = false; });
+}
+
 void LiveRenderer::go_to(double scene_s)
 {
     ask([this, scene_s](RenderSession&) { scene_s_ = scene_s; });
@@ -163,6 +179,11 @@ void LiveRenderer::run()
 
 void LiveRenderer::run_linked()
 {
+    while (!quit_ && !session_.has_scene()) {
+        wait_until(clock_.now_s() + 0.1);
+        do_jobs();
+    }
+    if (quit_) return; // no scene: the other ranks find out for themselves
     link_->begin();
     if (link_->leads())
         run_leading();
@@ -241,7 +262,13 @@ void LiveRenderer::run_leading()
             looked = looked_.exchange(false);
             if (looked || !jobs_.empty()) resting_ = false;
         }
+        bool const awaited_look = awaits_look_;
         do_jobs(); // after reading the viewpoint, so that a frame includes every job posted before it
+        if (awaited_look || awaits_look_) { // `now` is of the old scene
+            if (looked) looked_ = true;
+            if (awaits_look_) wait_until(clock_.now_s() + 0.01);
+            continue;
+        }
         double const begun = clock_.now_s();
         Settings const& s = session_.settings();
         if (has_last_ && s.play && session_.moves()) scene_s_ += s.speed * (begun - last_begun_s_);
@@ -284,7 +311,12 @@ void LiveRenderer::run_following()
     while (!quit_) {
         std::optional<FrameCommand> command = link_->receive();
         if (!command) return;
-        for (Change const& c : command->changes) session_.apply(c);
+        {
+            gi::StepListener const listener([this](gi::Step const& step) {
+                if (hooks_.at_step) hooks_.at_step(step);
+            });
+            for (Change const& c : command->changes) session_.apply(c);
+        }
         render(std::move(*command), {});
     }
 }
@@ -313,8 +345,16 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
         frame->ordered = command.views;
         command.views = hooks_.own_views(command);
     }
+    gi::StepListener const listener([this](gi::Step const& step) {
+        bool const builds =
+            step.of > 0 || step.what.starts_with("build"); // of a method that starts: may take long
+        if (quit_ && link_ == nullptr && builds) throw gi::Interrupted();
+        if (hooks_.at_step) hooks_.at_step(step);
+    });
     try {
         frame->result = session_.render(command, stop ? *stop : never);
+    } catch (gi::Interrupted const&) {
+        frame->result = {};
     } catch (gi::InputError const& e) {
         if (hooks_.failed) hooks_.failed(e.what());
         frame->result = {};

@@ -83,6 +83,7 @@ public:
     struct Hooks {
         std::function<void(LiveFrame const&)> finished; ///< before the frame is published
         std::function<void()> published;                ///< a newer frame is available
+        std::function<void(gi::Step const&)> at_step;   ///< where the current frame is; may be empty
         std::function<void(std::string const&)> failed; ///< a frame could not be rendered; rendering continues
         std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views; ///< views of this rank; empty =
                                                                                 ///< all
@@ -95,6 +96,14 @@ public:
     /// Queues a change, from any thread. `done` is called on the rendering thread with the error message, empty if
     /// there was none.
     void post(Change change, std::function<void(std::string const& error)> done = {});
+    /// Whether recordings and other ranks have a scene from their start, or need the change "scene".
+    enum class SceneKnown { no, yes };
+    /// Queues a scene that is ready. Nothing is rendered from then on until `resume`, so that the new scene is not
+    /// seen from the old one's camera; followers do not wait. `done` as that of post, with the scene adopted.
+    void adopt(std::shared_ptr<PreparedScene> scene, SceneKnown known,
+               std::function<void(RenderSession const&)> done);
+    /// Call after the first `look` at the new scene.
+    void resume();
     /// Runs `question` on the rendering thread between two frames.
     void ask(std::function<void(RenderSession&)> question);
     void look(Viewpoint viewpoint);
@@ -151,7 +160,7 @@ private:
     std::vector<Change> changes_;
     FrameCommand last_;
     Viewpoint last_look_; ///< that the last frame was made for, before it was moved on
-    bool has_last_ = false;
+    bool has_last_ = false, awaits_look_ = false; ///< awaits_look_: at a new scene
     double scene_s_ = 0, last_begun_s_ = 0;
     double last_scene_s_ = 0; ///< scene_s_ in the last frame
     double frame_s_ = 0;      ///< time that frames take, smoothed

@@ -70,9 +70,27 @@ void Anticipation::see(Viewpoint const& now)
                                             return a.name == b.name && a.camera.name == b.camera.name &&
                                                    a.camera.off_axis.has_value() == b.camera.off_axis.has_value();
                                         });
-    if (!same_people) seen_.clear();
+    if (!same_people || jumps(now)) seen_.clear();
     seen_.push_back(now);
     while (seen_.size() > 2 && now.time_s() - seen_[1].time_s() >= kBaseline_s) seen_.pop_front();
+}
+
+/// True if a view is elsewhere than any motion would have led it: at another camera, in another scene.
+bool Anticipation::jumps(Viewpoint const& now) const
+{
+    constexpr double kFar_m = 0.2, kTurned_rad = 0.2, kTimes = 6; // times the speed before
+    if (seen_.empty() || now.views.empty()) return false;
+    auto const speed = [](Viewpoint const& a, Viewpoint const& b, bool turning) {
+        gi::dmat4 const &m = a.views[0].camera.world_from_camera, &n = b.views[0].camera.world_from_camera;
+        double const way = turning ? glm::length(gi::dvec3(n[2]) - gi::dvec3(m[2])) : glm::length(gi::dvec3(n[3]) - gi::dvec3(m[3]));
+        return std::pair{way, way / std::max(b.time_s() - a.time_s(), 1e-4)};
+    };
+    for (bool const turning : {false, true}) {
+        auto const [way, per_s] = speed(seen_.back(), now, turning);
+        double const before = seen_.size() > 1 ? speed(seen_.front(), seen_.back(), turning).second : 0;
+        if (way > (turning ? kTurned_rad : kFar_m) && per_s > kTimes * before) return true;
+    }
+    return false;
 }
 
 Viewpoint Anticipation::at(double now_s, double time_s) const

@@ -36,6 +36,8 @@ public:
     Viewpoint at(double now_s, double time_s) const;
 
 private:
+    bool jumps(Viewpoint const& now) const;
+
     std::deque<Viewpoint> seen_; ///< the newest last
 };
 

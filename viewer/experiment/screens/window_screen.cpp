@@ -43,6 +43,10 @@ WindowScreen::WindowScreen(ScreenSettings const& settings, gi::Report& report)
         shown_.windows.push_back(
             std::make_unique<ShownWindow>(settings.window, std::vector<WallSettings>{}, report));
     }
+    for (auto const& w : shown_.windows) { // compile now what draws pictures, not for the first stimulus
+        w->window.gl().make_current();
+        w->pictures();
+    }
     first().window.gl().make_current();
     panel_ = std::make_unique<Panel>(first().window, settings.font_px);
     first().window.gl().release(); // to the drawing thread
@@ -167,9 +171,9 @@ void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, Scre
         display_panes(*display_, frame->command.views, world_from_room)[std::size_t(number - shown_.of.begin())];
     taken_.resize(shown_.windows.size());
     auto& taken = taken_[std::size_t(at - shown_.windows.begin())];
-    if (taken != frame) window.presenter.take(frame, panes);
+    if (taken != frame) window.pictures().take(frame, panes);
     taken = frame;
-    window.presenter.draw(whole, window.on_screen_px, panes, settings_of(*frame), {});
+    window.pictures().draw(whole, window.on_screen_px, panes, settings_of(*frame), {});
 }
 
 /// Runs on the drawing thread. Draws all windows first and then swaps them, so that they change together.

@@ -47,7 +47,7 @@ std::span<RequestRule const> request_rules()
          "`{\"file\": ..., \"frame\": ...}`, once the file is written",
          {{"file", text, required, ".png: the picture as shown; .exr: all layers"},
           {"view", integer, optional,
-           "index of the view to save, from 0; default: .png saves the window, .exr saves view 0"},
+           "index of the view to save, from 0; default: .png saves what is shown, .exr saves view 0"},
           {"converged", boolean, optional, "wait until the picture has its final 4096 paths per pixel"}}},
         {"key",
          "simulates a key press",

@@ -1,6 +1,7 @@
 #include "gi/methods/slhb/directions/axis_set.h"
 
 #include "gi/core/rqmc.h"
+#include "gi/core/step.h"
 
 #include <algorithm>
 #include <atomic>
@@ -51,8 +52,10 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
     BuildStop const building(source_.stop);
     std::atomic<std::size_t> bytes = 0;
     for (HitBuffer const& b : buffers_) bytes += bytes_of(b);
+    std::atomic<std::size_t> begun = 0;
     auto const build_one = [&](std::size_t k) {
         if (bytes > source_.most_bytes || building.given_up()) return;
+        at_step("hit buffers", begun++, axes.size());
         thread_local Fragments fragments;
         NewAxis const& axis = axes[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(axis.slot), axis.number);

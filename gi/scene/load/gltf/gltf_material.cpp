@@ -1,5 +1,6 @@
 #include "gi/scene/load/gltf/gltf_material.h"
 
+#include "gi/core/step.h"
 #include "gi/scene/load/load.h"
 
 #include <algorithm>
@@ -244,6 +245,7 @@ private:
             scene_.textures.textures.push_back(t);
             return std::int32_t(scene_.textures.textures.size()) - 1;
         }
+        at_step("textures decoded", texels_of_.size(), d_.images.size());
         try {
             std::int32_t const index =
                 add_texture(scene_.textures, image.bytes.data(), image.bytes.size(), srgb, image.name);

@@ -1,5 +1,6 @@
 #include "gi/scene/load/gltf/gltf_mesh.h"
 
+#include "gi/core/step.h"
 #include "gi/scene/load/gltf/gltf_accessor.h"
 #include "gi/scene/load/gltf/gltf_draco.h"
 
@@ -247,6 +248,7 @@ std::vector<GltfMesh> read_meshes(GltfDocument& document, Scene& scene, Report& 
 {
     std::vector<GltfMesh> out;
     for (std::size_t m = 0; m < document.model.meshes.size(); ++m) {
+        at_step("meshes read", m, document.model.meshes.size());
         tinygltf::Mesh const& source = document.model.meshes[m];
         std::string const name = source.name.empty() ? fmt::format("mesh {}", m) : source.name;
         GltfMesh made;

@@ -1,0 +1,24 @@
+#include "gi/core/step.h"
+
+#include <utility>
+
+namespace gi {
+namespace {
+
+thread_local StepListener* g_listener = nullptr;
+
+} // namespace
+
+StepListener::StepListener(std::function<void(Step const&)> hear)
+    : hear_(std::move(hear)), before_(std::exchange(g_listener, this))
+{
+}
+
+StepListener::~StepListener() { g_listener = before_; }
+
+void at_step(char const* what, std::uint64_t done, std::uint64_t of)
+{
+    if (g_listener != nullptr) g_listener->hear_({what, done, of});
+}
+
+} // namespace gi

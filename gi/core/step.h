@@ -1,0 +1,37 @@
+#pragma once
+// Where long work is: what loads and builds says its steps, and whoever shows progress hears them, on the same
+// thread.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace gi {
+
+struct Step {
+    std::string what;               ///< "textures decoded", "build (hit buffers)"
+    std::uint64_t done = 0, of = 0; ///< "3 of 24"; of = 0: its parts are not counted
+
+    bool operator==(Step const&) const = default;
+};
+
+/// Hears the steps of this thread while it exists; an earlier listener hears nothing meanwhile. What it throws
+/// (Interrupted, when the work should end) leaves the work.
+class StepListener {
+public:
+    explicit StepListener(std::function<void(Step const&)> hear);
+    ~StepListener();
+    StepListener(StepListener const&) = delete;
+    StepListener& operator=(StepListener const&) = delete;
+
+private:
+    friend void at_step(char const*, std::uint64_t, std::uint64_t);
+    std::function<void(Step const&)> hear_;
+    StepListener* before_;
+};
+
+/// Says that this thread's work begins a step, or has done `done` parts of it. Throws what the listener throws, so
+/// call it only where the work may be abandoned; on a thread without a listener it does nothing.
+void at_step(char const* what, std::uint64_t done = 0, std::uint64_t of = 0);
+
+} // namespace gi

@@ -1,0 +1,121 @@
+#include "viewer/engine/live/scene_loader.h"
+
+#include "viewer/engine/live/background_priority.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+/// Steps in their order, with the share of the time at their beginning (a scene of 25 textures and 260,000
+/// triangles).
+struct Share {
+    std::string_view step;
+    double begins, ends;
+};
+constexpr std::array kShares{Share{"reading", 0.0, 0.05},
+                             Share{"load", 0.0, 0.05},
+                             Share{"textures decoded", 0.05, 0.3},
+                             Share{"meshes read", 0.3, 0.4},
+                             Share{"world", 0.4, 0.45},
+                             Share{"first camera", 0.45, 0.5},
+                             Share{"start of the method", 0.5, 0.5},
+                             Share{"build (Embree BVH)", 0.5, 0.6},
+                             Share{"build (BVH)", 0.5, 0.6},
+                             Share{"build (hit buffers)", 0.6, 0.6},
+                             Share{"hit buffers", 0.6, 1.0}};
+
+} // namespace
+
+double fraction_of(gi::Step const& step)
+{
+    auto const s = std::ranges::find(kShares, step.what, &Share::step);
+    if (s == kShares.end()) return 0.5;
+    double const part = step.of > 0 ? std::min(1.0, double(step.done) / double(step.of)) : 0;
+    return s->begins + part * (s->ends - s->begins);
+}
+
+std::string text_of(LoadProgress const& p)
+{
+    std::string const counted = p.step.of > 0     ? fmt::format(" {} of {}", p.step.done, p.step.of)
+                                : p.step.done > 0 ? fmt::format(" {}", p.step.done)
+                                                  : "";
+    return fmt::format("loading {}: {}{}, {:.1f} s", p.scene, p.step.what, counted, p.elapsed_s);
+}
+
+struct SceneLoader::Load {
+    using Clock = std::chrono::steady_clock;
+    std::string scene;
+    Clock::time_point begun = Clock::now();
+    gi::StopRequest stop;
+    std::atomic<bool> ended{false};
+    std::mutex mutex;
+    gi::Step step{"reading"};
+    double fraction = 0; ///< never decreases
+    std::thread thread;
+
+    void run(std::function<void()> const& work, Done const& done)
+    {
+        BackgroundPriority const priority;
+        std::exception_ptr failure;
+        try {
+            gi::StepListener const listener([this](gi::Step const& now) {
+                if (stop.requested()) throw gi::Interrupted();
+                std::lock_guard const lock(mutex);
+                step = now;
+                fraction = std::max(fraction, fraction_of(now));
+            });
+            work();
+            if (stop.requested()) throw gi::Interrupted();
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        done(failure);
+        ended = true;
+    }
+};
+
+SceneLoader::~SceneLoader()
+{
+    stop();
+    for (auto const& l : loads_) l->thread.join();
+}
+
+void SceneLoader::stop()
+{
+    for (auto const& l : loads_) l->stop.request();
+}
+
+void SceneLoader::collect()
+{
+    loads_.remove_if([](auto const& l) {
+        if (!l->ended) return false;
+        l->thread.join();
+        return true;
+    });
+}
+
+void SceneLoader::begin(std::string scene, std::function<void()> work, Done done)
+{
+    stop();
+    collect();
+    auto const load = std::make_shared<Load>();
+    load->scene = std::move(scene);
+    load->thread = std::thread([load, work = std::move(work), done = std::move(done)] { load->run(work, done); });
+    loads_.push_back(load);
+}
+
+std::optional<LoadProgress> SceneLoader::progress() const
+{
+    if (loads_.empty() || loads_.back()->ended) return {};
+    Load& l = *loads_.back();
+    std::lock_guard const lock(l.mutex);
+    return LoadProgress{l.scene, l.step, std::chrono::duration<double>(Load::Clock::now() - l.begun).count(),
+                        l.fraction};
+}
+
+} // namespace viewer
