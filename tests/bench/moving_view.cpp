@@ -305,6 +305,8 @@ void run(Options const& o)
     {
         LiveRenderer renderer(session, clock, nullptr, hooks);
         Presenter presenter({});
+        PresentSettings settings;
+        settings.tone = tone_settings(session.settings());
         std::vector<Pane> panes;
         std::vector<TextureTarget> targets;
         for (int e = 0; e < o.eyes; ++e) {
@@ -332,7 +334,7 @@ void run(Options const& o)
             shown = newest;
             double const drawing = clock.now_s();
             for (int e = 0; e < o.eyes; ++e)
-                presenter.draw(targets[std::size_t(e)].target(), {0, 0}, {panes[std::size_t(e)]}, {tone_settings(session.settings())}, cameras);
+                presenter.draw(targets[std::size_t(e)].target(), {0, 0}, {panes[std::size_t(e)]}, settings, cameras);
             ++presented;
             glFinish();
             draw_s += clock.now_s() - drawing;

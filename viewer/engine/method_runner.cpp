@@ -60,7 +60,7 @@ gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
 
 MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings,
                            int threads, SceneStart const& start, gi::Report& report, bool ahead)
-    : report_(report), threads_(threads), ahead_(ahead), origin_(world.world().origin)
+    : report_(report), threads_(threads), origin_(world.world().origin), ahead_(ahead)
 {
     gi::RenderSettings s = settings.render;
     s.threads = threads;
