@@ -27,7 +27,8 @@ namespace viewer {
 namespace {
 
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
-constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture
+constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture,
+constexpr double kDrawings = 3;         // but at most a third of the time: software drivers take it from the renderer
 constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
 double steady_s()
@@ -311,7 +312,8 @@ private:
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
         bool const moved =
-            state_.settings.reproject && link_ == nullptr && has_moved() && since_s > 1 / kPresentation_Hz;
+            state_.settings.reproject && link_ == nullptr && has_moved() &&
+            since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_);
         bool const flickers = state_.settings.view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
@@ -442,6 +444,7 @@ private:
 
     void presented(Presentation const& p)
     {
+        if (p.reprojected) draw_s_ = 1e-3 * p.times.draw_ms;
         Snapshot const shot = p.shots.empty() ? Snapshot{} : side_by_side(p.shots);
         if (!shot.empty() && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(shot);
         state_.drawing = false;
@@ -515,6 +518,7 @@ private:
     std::string message_; ///< the last one, told until message_until_s_
     double message_until_s_ = 0;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
+    double draw_s_ = 0; ///< that the last reprojected picture took
 };
 
 } // namespace

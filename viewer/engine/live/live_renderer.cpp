@@ -379,9 +379,8 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
     constexpr double kNewest = 0.2;
     double const took_s = frame->done_s - frame->begun_s;
     if (done) frame_s_ = frame_s_ > 0 ? frame_s_ + kNewest * (took_s - frame_s_) : took_s;
-    FrameWork const own{frame->done_s - frame->begun_s,
-                        surfaces == frame->result.stages_s.end() ? 0 : surfaces->second,
-                        frame->result.dynamic_update, frame->result.moved};
+    FrameWork const own{took_s, frame->result.dynamic_update, frame->result.moved,
+                        surfaces == frame->result.stages_s.end() ? 0 : surfaces->second};
     if (done && link_ == nullptr) measure(own, budget);
     if (!frame->result.views.empty()) stored_ = own.dynamic_update.stored;
     if (Settings const& s = frame->settings; s.method == "slhb")

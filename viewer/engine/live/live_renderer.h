@@ -50,9 +50,9 @@ inline constexpr std::uint32_t kConvergedPaths = 4096;
 /// Cost of a frame on the ranks that rendered it.
 struct FrameWork {
     double seconds = 0;
-    double surfaces_s = 0; ///< the part of it spent on surfaces of another size than light
     gi::DynamicUpdate dynamic_update{};
-    bool moved = false; ///< something in the scene moved
+    bool moved = false;    ///< something in the scene moved
+    double surfaces_s = 0; ///< the part of `seconds` spent on surfaces of another size than light
 };
 
 /// Link to other processes that render the same frame commands: the ranks of a cluster. Called on the rendering
