@@ -52,7 +52,8 @@ KeptLight::KeptLight(Picture const& picture, CameraRays const& camera, dvec3 ori
             vec3 const a = rgb(albedo, i), n = rgb(normal, i), p{dvec3(rgb(position, i)) - origin};
             t = {p, 0, n, 0, over_albedo(rgb(l1, i), a), over_albedo(rgb(l2, i), a)};
             for (int c = 0; c < 3; ++c) t.dark |= a[c] < kDarkest ? 1u << c : 0;
-            bool const known = n != vec3{0} && in_range(p) && in_range(t.direct) && in_range(t.indirect) && t.dark != 7;
+            bool const known =
+                n != vec3{0} && in_range(p) && in_range(t.direct) && in_range(t.indirect) && t.dark != 7;
             if (!known) continue;
             t.normal = glm::normalize(n);
             float const depth = glm::dot(p - camera_.origin, camera_.forward);
@@ -94,7 +95,8 @@ FoundLight KeptLight::find(vec3 position, vec3 normal, vec2 place) const
 std::optional<FoundLight> KeptLight::find(vec3 position, vec3 normal) const
 {
     vec3 const at = project_(position);
-    if (!(at.z > 0) || !(at.x > -0.5f && at.y > -0.5f && at.x < float(width_) + 0.5f && at.y < float(height_) + 0.5f))
+    if (!(at.z > 0) ||
+        !(at.x > -0.5f && at.y > -0.5f && at.x < float(width_) + 0.5f && at.y < float(height_) + 0.5f))
         return std::nullopt;
     return find(position, normal, vec2(at));
 }

@@ -1,8 +1,8 @@
 #pragma once
-// The light of a finished picture, kept by the surfaces that receive it, so that another picture can show it: one of
-// another size or camera, or a later one. Light is that of L1 and L2 over the albedo; where a surface of the other
-// picture lies in this one, the nearest pixels that show a similar surface are averaged (joint bilateral upsampling,
-// Kopf et al. 2007).
+// The light of a finished picture, kept by the surfaces that receive it, so that another picture can show it: one
+// of another size or camera, or a later one. Light is that of L1 and L2 over the albedo; where a surface of the
+// other picture lies in this one, the nearest pixels that show a similar surface are averaged (joint bilateral
+// upsampling, Kopf et al. 2007).
 
 #include "gi/image_io/picture.h"
 #include "gi/scene/model/projection.h"
@@ -13,8 +13,8 @@ namespace gi {
 
 struct FoundLight {
     vec3 direct{0}, indirect{0}; ///< L1 and L2 over the albedo
-    float likeness = 0; ///< of the most similar surface used, 0..1; below kUnlike the light is that of some surface
-                        ///< around
+    float likeness = 0; ///< of the most similar surface used, 0..1; below kUnlike the light is that of some
+                        ///< surface around
 };
 
 class KeptLight {

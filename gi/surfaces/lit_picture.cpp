@@ -57,8 +57,8 @@ MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, 
 {
     MirrorLayers was;
     Layer *const albedo = picture.find("albedo"), *const normal = picture.find("normal"),
-                *const position = picture.find("position"), *const depth = picture.find("depth"),
-                *const motion = picture.find("motion");
+                 *const position = picture.find("position"), *const depth = picture.find("depth"),
+                 *const motion = picture.find("motion");
     if (!albedo || !normal || !position || !depth || !motion) return was;
     Projection const project_now(now), project_before(before);
     std::vector<MirrorLayers> rows(std::size_t(picture.height));
@@ -80,7 +80,8 @@ MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, 
             depth->data[i] = s.depth;
             vec3 const from = project_now(s.position), at = project_before(s.position - s.moved);
             bool const known = s.depth > 0 && at.z > 0;
-            put(*motion, i, known ? vec3{at.x - from.x, at.y - from.y, at.z} : vec3{std::numeric_limits<float>::quiet_NaN()});
+            put(*motion, i,
+                known ? vec3{at.x - from.x, at.y - from.y, at.z} : vec3{std::numeric_limits<float>::quiet_NaN()});
         }
     });
     for (MirrorLayers const& r : rows) {

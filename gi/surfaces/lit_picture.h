@@ -1,5 +1,6 @@
 #pragma once
-// A picture of any size whose surfaces, textures and outlines are its own, and whose light is that of a smaller one.
+// A picture of any size whose surfaces, textures and outlines are its own, and whose light is that of a smaller
+// one.
 
 #include "gi/surfaces/kept_light.h"
 #include "gi/surfaces/seen_surfaces.h"
@@ -24,8 +25,8 @@ struct MirrorLayers {
 };
 
 /// Replaces albedo, normal, position, depth and motion of pixels that show a mirror or a pane by those of what is
-/// seen in it, so that filters and temporal reuse follow that. Returns what they were. The last view of `seen` must
-/// be that of the picture. @param before  the camera of the previous frame
+/// seen in it, so that filters and temporal reuse follow that. Returns what they were. The last view of `seen`
+/// must be that of the picture. @param before  the camera of the previous frame
 MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, CameraRays const& before,
                                dvec3 origin, Picture& picture);
 /// Undoes it for albedo, normal and position; keeps the depth in "seen_depth".

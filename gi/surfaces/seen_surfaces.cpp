@@ -1,6 +1,5 @@
 #include "gi/surfaces/seen_surfaces.h"
 
-#include "gi/scene/model/plan.h"
 #include "gi/render/path_step.h"
 #include "gi/render/ray_path.h"
 #include "gi/scene/model/plan.h"
@@ -92,7 +91,7 @@ void SeenSurfaces::changed(Changes const& changes)
 
 void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights lights)
 {
-    constexpr float kNear = 1e-5f; // of the world's radius
+    constexpr float kNear = 1e-5f;         // of the world's radius
     constexpr std::uint32_t kSeed = 0x5ee; // of partial coverage: the same in all frames
     camera_ = camera;
     camera_.focus = 0;
@@ -120,7 +119,8 @@ void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights 
 std::optional<bool> SeenSurfaces::known_shadow(SeenSurface const& s, std::uint32_t light, int x, int y) const
 {
     if (coarse_.empty()) return std::nullopt;
-    int const columns = (int(map_.width) + kCoarse - 1) / kCoarse, rows = (int(map_.height) + kCoarse - 1) / kCoarse;
+    int const columns = (int(map_.width) + kCoarse - 1) / kCoarse,
+              rows = (int(map_.height) + kCoarse - 1) / kCoarse;
     int const left = (x + kCoarse / 2) / kCoarse - 1, top = (y + kCoarse / 2) / kCoarse - 1;
     int lit = 0;
     for (int j = top; j < top + 2; ++j)
@@ -181,8 +181,8 @@ bool SeenSurfaces::arrive(std::uint32_t triangle, vec2 weights, int y, Way& way,
     out.depth = glm::dot(out.position - camera_.origin, camera_.forward);
     out.in_mirror = way.mirrors > 0;
     if (out.in_mirror && triangle >= earlier_.first_moving && !earlier_.corners.empty())
-        out.moved = way.image *
-                    (at.position - point_on(earlier_.corners[triangle - earlier_.first_moving], weights));
+        out.moved =
+            way.image * (at.position - point_on(earlier_.corners[triangle - earlier_.first_moving], weights));
     if (lights_ > 0) light(at, way, out, y, sent, out);
     return false;
 }
@@ -212,8 +212,7 @@ void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
             found.emitted = background_radiance(view_, ray.direction);
         } else {
             Way way{x, ray.direction, ray};
-            vec3 const at =
-                ray.origin + ray.direction / (seen.key * glm::dot(ray.direction, camera_.forward));
+            vec3 const at = ray.origin + ray.direction / (seen.key * glm::dot(ray.direction, camera_.forward));
             if (arrive(seen.primitive, barycentric_at(view_.surfaces[seen.primitive], at), y, way, sent, found))
                 ways.push_back(way);
             else if (only_mirrors)

@@ -1,7 +1,7 @@
 #pragma once
-// The surfaces that a picture shows, one per pixel, without their light: the nearest one by rasterisation; where that
-// is a mirror or a pane, the one that it shows, found by exact rays. A surface seen in a mirror is described as its
-// image behind the mirror: where it seems to be and how it seems to face.
+// The surfaces that a picture shows, one per pixel, without their light: the nearest one by rasterisation; where
+// that is a mirror or a pane, the one that it shows, found by exact rays. A surface seen in a mirror is described
+// as its image behind the mirror: where it seems to be and how it seems to face.
 
 #include "gi/raster/cut_outs.h"
 #include "gi/render/exact_visibility.h"
@@ -15,13 +15,13 @@
 namespace gi {
 
 struct SeenSurface {
-    vec3 albedo{0};   ///< times what mirrors and panes on the way leave of the light
-    vec3 normal{0};   ///< of shading, unit, as mirrored
-    vec3 position{0}; ///< m, from the world's origin; on the pixel's ray, as far away as light has travelled
-    vec3 emitted{0};  ///< radiance of emission, or of the background; times the same as the albedo
-    vec3 moved{0};    ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
-    vec3 direct{0};   ///< radiance of the light of punctual lights; times the same
-    float depth = 0;  ///< m along the camera's axis; 0 = no surface
+    vec3 albedo{0};       ///< times what mirrors and panes on the way leave of the light
+    vec3 normal{0};       ///< of shading, unit, as mirrored
+    vec3 position{0};     ///< m, from the world's origin; on the pixel's ray, as far away as light has travelled
+    vec3 emitted{0};      ///< radiance of emission, or of the background; times the same as the albedo
+    vec3 moved{0};        ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
+    vec3 direct{0};       ///< radiance of the light of punctual lights; times the same
+    float depth = 0;      ///< m along the camera's axis; 0 = no surface
     std::uint8_t lit = 0; ///< bits of those lights that reach it, of pixels with shadow rays of their own
     bool in_mirror = false;
 };
@@ -43,10 +43,7 @@ public:
     /// Surfaces of a row of the last view. Safe for concurrent calls.
     void row(int y, std::span<SeenSurface> out) const { fill(y, out, Pixels::all); }
     /// The same for those pixels of a row that show a mirror or a pane; the others stay as they are.
-    void row_of_mirrors(int y, std::span<SeenSurface> out) const
-    {
-        fill(y, out, Pixels::mirrors);
-    }
+    void row_of_mirrors(int y, std::span<SeenSurface> out) const { fill(y, out, Pixels::mirrors); }
     /// True if some triangle's material is a mirror or a pane all over.
     static bool mirrors_in(World const& world);
     bool has_mirrors() const { return mirrors_; }
@@ -78,7 +75,7 @@ private:
     NearestMap map_;
     std::uint32_t lights_ = 0;        ///< punctual lights in the last view
     std::vector<SeenSurface> coarse_; ///< every fourth pixel, with its own shadow rays
-    std::vector<Corners> now_; ///< of triangles that can move, if there are mirrors
+    std::vector<Corners> now_;        ///< of triangles that can move, if there are mirrors
     EarlierCorners earlier_;
 };
 

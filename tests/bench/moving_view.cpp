@@ -1,6 +1,7 @@
 // What people see while they move: the viewer's rendering thread and its presenter run in real time, driven by a
 // recorded head, and what they show at given moments is compared with converged pictures of those moments.
-//   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--size WxH] [--eyes 1|2] [--fov DEG]
+//   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--size WxH] [--eyes 1|2] [--fov
+//   DEG]
 //                     [--avatar FILE] [--scored N] [--set KEY=VALUE]...
 // HEAD.csv: time_s, then the head relative to the scene's first camera: x_m,y_m,z_m (right, up, back), yaw_deg,
 // pitch_deg (left, up). --fov is the vertical field of view (60). The truth is that of the method reference at the
@@ -55,7 +56,8 @@ std::vector<HeadSample> read_head(std::string const& file)
         std::ranges::replace(line, ',', ' ');
         std::istringstream words(line);
         HeadSample s;
-        if (words >> s.time_s >> s.pose[0] >> s.pose[1] >> s.pose[2] >> s.pose[3] >> s.pose[4]) samples.push_back(s);
+        if (words >> s.time_s >> s.pose[0] >> s.pose[1] >> s.pose[2] >> s.pose[3] >> s.pose[4])
+            samples.push_back(s);
     }
     if (samples.size() < 2) throw gi::InputError("'" + file + "' has no samples", "", "give a recorded head");
     return samples;
@@ -92,7 +94,12 @@ constexpr double kEyeHeight_m = 1.6;
 class Walk {
 public:
     Walk(Options const& o, gi::Camera const& first, std::optional<Stance> const& stance)
-        : o_(o), samples_(read_head(o.head)), first_(first), start_(level(first.world_from_camera)), has_body_(!o.avatar.empty()), body_(stance)
+        : o_(o),
+          samples_(read_head(o.head)),
+          first_(first),
+          start_(level(first.world_from_camera)),
+          has_body_(!o.avatar.empty()),
+          body_(stance)
     {
     }
     double seconds() const { return samples_.back().time_s; }
@@ -113,8 +120,10 @@ public:
             c.yfov_rad = glm::radians(o_.fov_deg);
             double const aside = o_.eyes == 1 ? 0 : (e - 0.5) * 0.063;
             c.world_from_camera = head * glm::translate(gi::dmat4(1), gi::dvec3(aside, 0, 0));
-            v.views.push_back({o_.eyes == 1 ? "window" : e == 0 ? "left eye" : "right eye", c, o_.width, o_.height,
-                               e == 0 ? -1 : 0});
+            v.views.push_back({o_.eyes == 1 ? "window"
+                               : e == 0     ? "left eye"
+                                            : "right eye",
+                               c, o_.width, o_.height, e == 0 ? -1 : 0});
         }
         return v;
     }
@@ -147,14 +156,20 @@ std::vector<float> decoded(std::vector<unsigned char> const& bytes)
 }
 
 /// Time of the scene's clips at a moment, if the frame's is that of the moment in which it is seen.
-double scene_now(LiveFrame const& f, double now_s) { return f.command.scene_s - f.ahead_s * f.settings.speed + f.settings.speed * (f.settings.play ? now_s - f.begun_s : 0); }
+double scene_now(LiveFrame const& f, double now_s)
+{
+    return f.command.scene_s - f.ahead_s * f.settings.speed +
+           f.settings.speed * (f.settings.play ? now_s - f.begun_s : 0);
+}
 
 double mean(std::vector<float> const& v) { return std::accumulate(v.begin(), v.end(), 0.0) / double(v.size()); }
 
 /// Mean difference of the eyes' errors (display-encoded, 0..255) at points that both see.
-double rivalry(Seen const& s, std::vector<gi::Picture> const& truth, std::vector<std::vector<unsigned char>> const& right, gi::dvec3 origin, int w, int h)
+double rivalry(Seen const& s, std::vector<gi::Picture> const& truth,
+               std::vector<std::vector<unsigned char>> const& right, gi::dvec3 origin, int w, int h)
 {
-    gi::CameraRays const a = gi::camera_rays(s.at.views[0].camera, w, h, origin), b = gi::camera_rays(s.at.views[1].camera, w, h, origin);
+    gi::CameraRays const a = gi::camera_rays(s.at.views[0].camera, w, h, origin),
+                         b = gi::camera_rays(s.at.views[1].camera, w, h, origin);
     gi::Projection const project(b);
     gi::Layer const &da = *truth[0].find("depth"), &db = *truth[1].find("depth");
     double sum = 0;
@@ -164,7 +179,8 @@ double rivalry(Seen const& s, std::vector<gi::Picture> const& truth, std::vector
             std::size_t const i = std::size_t(y) * std::size_t(w) + std::size_t(x);
             if (!(da.data[i] > 0)) continue;
             gi::Ray const ray = a.through({float(x) + 0.5f, float(y) + 0.5f});
-            gi::vec3 const at = project(ray.origin + ray.direction * (da.data[i] / glm::dot(ray.direction, a.forward)));
+            gi::vec3 const at =
+                project(ray.origin + ray.direction * (da.data[i] / glm::dot(ray.direction, a.forward)));
             int const u = int(std::floor(at.x)), v = int(std::floor(at.y));
             if (!(at.z > 0) || u < 0 || v < 0 || u >= w || v >= h) continue;
             std::size_t const j = std::size_t(v) * std::size_t(w) + std::size_t(u);
@@ -193,8 +209,14 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
                 exact = std::make_unique<RenderSession>(scenes.load, 0, truth_report);
                 if (scenes.drive) exact->drive_bodies(scenes.drive);
                 for (Change const& c : o.settings) exact->apply(c);
-                for (Change const& c : std::vector<Change>{{"method", "reference"}, {"denoise", o.truth_paths < 512 ? "atrous" : "none"}, {"reuse", 1}, {"first_surfaces", "off"}})
-                    try { exact->apply(c); } catch (gi::InputError const&) {}
+                for (Change const& c : std::vector<Change>{{"method", "reference"},
+                                                           {"denoise", o.truth_paths < 512 ? "atrous" : "none"},
+                                                           {"reuse", 1},
+                                                           {"first_surfaces", "off"}})
+                    try {
+                        exact->apply(c);
+                    } catch (gi::InputError const&) {
+                    }
                 exact->apply({"scene", o.scene});
             }
             FrameCommand command;
@@ -205,20 +227,26 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
             command.views = {seen[k].at.views[e]};
             command.views[0].partner = -1;
             command.paths = o.truth_paths;
-            fs::path const kept = o.truth / fmt::format("{}_{}_{}x{}_{}_{}_{:.4f}_{}.exr", fs::path(o.scene).stem().string(), fs::path(o.head).stem().string(), o.width, o.height, o.fov_deg, o.truth_paths, seen[k].scene_s, e);
+            fs::path const kept =
+                o.truth / fmt::format("{}_{}_{}x{}_{}_{}_{:.4f}_{}.exr", fs::path(o.scene).stem().string(),
+                                      fs::path(o.head).stem().string(), o.width, o.height, o.fov_deg,
+                                      o.truth_paths, seen[k].scene_s, e);
             if (o.offline_hz > 0 && fs::exists(kept)) {
                 truth.push_back(gi::read_exr(kept));
             } else {
                 truth.push_back(exact->render(command, {}).views[0].picture);
-                std::erase_if(truth.back().layers, [](gi::Layer const& l) { return l.name != "color" && l.name != "depth"; });
+                std::erase_if(truth.back().layers,
+                              [](gi::Layer const& l) { return l.name != "color" && l.name != "depth"; });
                 if (o.offline_hz > 0) gi::write_exr(kept, truth.back(), gi::PixelType::single, truth_report);
             }
             right.push_back(gi::tone_map_bytes(*truth.back().find("color"), tone_settings(exact->settings())));
-            std::vector<float> const error = gi::flip(decoded(seen[k].shown[e]), decoded(right.back()), o.width, o.height);
+            std::vector<float> const error =
+                gi::flip(decoded(seen[k].shown[e]), decoded(right.back()), o.width, o.height);
             flip_sum += mean(error) / double(o.eyes) / double(seen.size());
             flip_most = std::max(flip_most, mean(error));
             std::vector<unsigned char> grey;
-            for (float const v : error) grey.insert(grey.end(), 3, (unsigned char)(255 * std::clamp(v, 0.0f, 1.0f)));
+            for (float const v : error)
+                grey.insert(grey.end(), 3, (unsigned char)(255 * std::clamp(v, 0.0f, 1.0f)));
             auto const save = [&](char const* what, std::vector<unsigned char> const& bytes) {
                 gi::write_png(o.out / fmt::format("{}_{}_{}.png", what, k, e), o.width, o.height, bytes);
             };
@@ -226,9 +254,11 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
             save("truth", right.back());
             save("error", grey);
         }
-        if (o.eyes == 2) rivalry_sum += rivalry(seen[k], truth, right, origin, o.width, o.height) / double(seen.size());
+        if (o.eyes == 2)
+            rivalry_sum += rivalry(seen[k], truth, right, origin, o.width, o.height) / double(seen.size());
     }
-    fmt::print("  FLIP {:.4f} (most of a moment {:.4f}){}\n", flip_sum, flip_most, o.eyes == 2 ? fmt::format("; rivalry {:.2f}/255", rivalry_sum) : "");
+    fmt::print("  FLIP {:.4f} (most of a moment {:.4f}){}\n", flip_sum, flip_most,
+               o.eyes == 2 ? fmt::format("; rivalry {:.2f}/255", rivalry_sum) : "");
 }
 
 /// Frames at a fixed rate, each for its own moment, at a fixed scale of light and one path.
@@ -247,19 +277,24 @@ void render_offline(Options const& o, RenderSession& session, Walk& walk, std::v
         command.light_scale = o.light_scale;
         if (!session.settings().first_surfaces) {
             command.light_scale = 1;
-            for (ViewCommand& v : command.views) v.width = int(v.width * o.light_scale), v.height = int(v.height * o.light_scale);
+            for (ViewCommand& v : command.views)
+                v.width = int(v.width * o.light_scale), v.height = int(v.height * o.light_scale);
         }
         SessionFrame const frame = session.render(command, {});
         if (t < 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored) continue;
         ++k;
         Seen s{at, t, {}};
         for (ViewPicture const& v : frame.views) {
-            std::vector<unsigned char> const bytes = gi::tone_map_bytes(*v.picture.find("color"), tone_settings(session.settings()));
+            std::vector<unsigned char> const bytes =
+                gi::tone_map_bytes(*v.picture.find("color"), tone_settings(session.settings()));
             std::vector<unsigned char> full(std::size_t(o.width) * std::size_t(o.height) * 3);
             for (int y = 0; y < o.height; ++y)
                 for (int x = 0; x < o.width; ++x)
                     for (int c = 0; c < 3; ++c)
-                        full[std::size_t(3 * (y * o.width + x) + c)] = bytes[std::size_t(3 * (y * v.picture.height / o.height * v.picture.width + x * v.picture.width / o.width) + c)];
+                        full[std::size_t(3 * (y * o.width + x) + c)] =
+                            bytes[std::size_t(3 * (y * v.picture.height / o.height * v.picture.width +
+                                                   x * v.picture.width / o.width) +
+                                              c)];
             s.shown.push_back(std::move(full));
         }
         seen.push_back(std::move(s));
@@ -334,7 +369,8 @@ void run(Options const& o)
             shown = newest;
             double const drawing = clock.now_s();
             for (int e = 0; e < o.eyes; ++e)
-                presenter.draw(targets[std::size_t(e)].target(), {0, 0}, {panes[std::size_t(e)]}, settings, cameras);
+                presenter.draw(targets[std::size_t(e)].target(), {0, 0}, {panes[std::size_t(e)]}, settings,
+                               cameras);
             ++presented;
             glFinish();
             draw_s += clock.now_s() - drawing;
@@ -362,12 +398,18 @@ void run(Options const& o)
     }
     double const took = clock.now_s() - begun;
     std::vector<double> gaps;
-    for (std::size_t k = std::max<std::size_t>(1, first_frame); k < done_s.size(); ++k) gaps.push_back(1e3 * (done_s[k] - done_s[k - 1]));
+    for (std::size_t k = std::max<std::size_t>(1, first_frame); k < done_s.size(); ++k)
+        gaps.push_back(1e3 * (done_s[k] - done_s[k - 1]));
     std::ranges::sort(gaps);
     double const frames = double(std::max<std::size_t>(1, gaps.size()));
-    fmt::print("{} {} {}x{} x{}: {:.1f} frames/s rendered, {:.1f} shown; ms between frames: median {:.0f}, 95 % {:.0f}, most {:.0f}; drawn in {:.1f} ms; scale of light {:.3f}, of surfaces {:.3f}, paths {:.1f}\n", o.scene,
-               fs::path(o.head).stem().string(), o.width, o.height, o.eyes, frames / took, presented / took, gaps[gaps.size() / 2], gaps[gaps.size() * 95 / 100], gaps.back(), 1e3 * draw_s / presented, light_scale / frames, surfaces / frames, paths / frames);
-    for (auto const& [stage, s] : stages_s) if (1e3 * s / frames >= 0.5) fmt::print("  {}: {:.1f} ms\n", stage, 1e3 * s / frames);
+    fmt::print(
+        "{} {} {}x{} x{}: {:.1f} frames/s rendered, {:.1f} shown; ms between frames: median {:.0f}, 95 % {:.0f}, "
+        "most {:.0f}; drawn in {:.1f} ms; scale of light {:.3f}, of surfaces {:.3f}, paths {:.1f}\n",
+        o.scene, fs::path(o.head).stem().string(), o.width, o.height, o.eyes, frames / took, presented / took,
+        gaps[gaps.size() / 2], gaps[gaps.size() * 95 / 100], gaps.back(), 1e3 * draw_s / presented,
+        light_scale / frames, surfaces / frames, paths / frames);
+    for (auto const& [stage, s] : stages_s)
+        if (1e3 * s / frames >= 0.5) fmt::print("  {}: {:.1f} ms\n", stage, 1e3 * s / frames);
     for (auto const& [loss, entry] : report.losses()) fmt::print("  lost: {}\n", loss);
 
     score(o, scenes, seen, origin);
@@ -382,20 +424,35 @@ try {
     for (int i = 1; i < argc; ++i) {
         std::string const a = argv[i];
         auto const value = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
-        if (a == "--out") o.out = value();
-        else if (a == "--truth") o.truth = value();
-        else if (a == "--truth-paths") o.truth_paths = std::stoi(value());
-        else if (a == "--size") { if (std::sscanf(value().c_str(), "%dx%d", &o.width, &o.height) != 2) return 2; }
-        else if (a == "--eyes") o.eyes = std::stoi(value());
-        else if (a == "--fov") o.fov_deg = std::stod(value());
-        else if (a == "--offline") o.offline_hz = std::stod(value());
-        else if (a == "--light-scale") o.light_scale = std::stod(value());
-        else if (a == "--avatar") o.avatar = value();
-        else if (a == "--scored") o.scored = std::stoi(value());
-        else if (a == "--set") o.settings.push_back(parse_change(value()));
-        else files.push_back(a);
+        if (a == "--out")
+            o.out = value();
+        else if (a == "--truth")
+            o.truth = value();
+        else if (a == "--truth-paths")
+            o.truth_paths = std::stoi(value());
+        else if (a == "--size") {
+            if (std::sscanf(value().c_str(), "%dx%d", &o.width, &o.height) != 2) return 2;
+        } else if (a == "--eyes")
+            o.eyes = std::stoi(value());
+        else if (a == "--fov")
+            o.fov_deg = std::stod(value());
+        else if (a == "--offline")
+            o.offline_hz = std::stod(value());
+        else if (a == "--light-scale")
+            o.light_scale = std::stod(value());
+        else if (a == "--avatar")
+            o.avatar = value();
+        else if (a == "--scored")
+            o.scored = std::stoi(value());
+        else if (a == "--set")
+            o.settings.push_back(parse_change(value()));
+        else
+            files.push_back(a);
     }
-    if (files.size() != 2 || o.out.empty()) { fmt::print(stderr, "usage: bench_moving_view SCENE HEAD.csv --out DIR ...\n"); return 2; }
+    if (files.size() != 2 || o.out.empty()) {
+        fmt::print(stderr, "usage: bench_moving_view SCENE HEAD.csv --out DIR ...\n");
+        return 2;
+    }
     o.scene = files[0];
     o.head = files[1];
     run(o);

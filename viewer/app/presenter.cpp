@@ -15,7 +15,8 @@ std::span<float const> floats(gi::Picture const& picture, char const* layer)
 
 void upload(PictureTexture& to, gi::Picture const& picture)
 {
-    to.upload({picture.width, picture.height}, floats(picture, "color"), floats(picture, picture.find("seen_depth") ? "seen_depth" : "depth"));
+    to.upload({picture.width, picture.height}, floats(picture, "color"),
+              floats(picture, picture.find("seen_depth") ? "seen_depth" : "depth"));
 }
 
 bool has_overlay(Pane const& pane, PresentSettings const& s)

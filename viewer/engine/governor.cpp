@@ -49,7 +49,8 @@ FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed, bool ow
     return b;
 }
 
-void Governor::measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz, double surfaces_s)
+void Governor::measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz,
+                        double surfaces_s)
 {
     constexpr double kLeast = 0.05, kGrowth = 1.25;
     double const done = pixels * budget.scale * budget.scale * (budget.paths + kBesides);

@@ -1,17 +1,18 @@
 #pragma once
-// Holds the frame rate by choosing the paths per pixel and the sizes of the pictures: that of light, and that of the
-// surfaces which it falls on.
+// Holds the frame rate by choosing the paths per pixel and the sizes of the pictures: that of light, and that of
+// the surfaces which it falls on.
 //
-// Work on light is counted in paths: s^2 N (p + k), with N the pixels of all views at full size, s the scale of the
-// sides of the pictures of light, p the paths per pixel, and k the other cost of such a pixel in paths (G-buffer,
-// reuse, filter). After a frame that took too long, the next one gets proportionally less work; work grows slowly.
-// So a frame's fixed costs need no model. Surfaces have the full size while they take at most half of the time.
+// Work on light is counted in paths: s^2 N (p + k), with N the pixels of all views at full size, s the scale of
+// the sides of the pictures of light, p the paths per pixel, and k the other cost of such a pixel in paths
+// (G-buffer, reuse, filter). After a frame that took too long, the next one gets proportionally less work; work
+// grows slowly. So a frame's fixed costs need no model. Surfaces have the full size while they take at most half
+// of the time.
 
 namespace viewer {
 
 struct FrameBudget {
-    int paths = 1;    ///< per pixel of the pictures of light
-    double scale = 1; ///< side of the pictures of light over full-size side
+    int paths = 1;       ///< per pixel of the pictures of light
+    double scale = 1;    ///< side of the pictures of light over full-size side
     double surfaces = 1; ///< side of the pictures that are shown over full-size side; at least scale
 
     bool operator==(FrameBudget const&) const = default;
@@ -34,11 +35,11 @@ private:
 
     double work_ = 1e5; ///< of the next frame, in paths
     double last_scale_ = 0;
-    double surface_s_ = 0; ///< per frame at the scale surfaces_, smoothed; 0 = unknown
-    double surfaces_ = 1;  ///< scale of the last frame's
+    double surface_s_ = 0;                ///< per frame at the scale surfaces_, smoothed; 0 = unknown
+    double surfaces_ = 1;                 ///< scale of the last frame's
     int to_wait_ = 0, wait_ = kFirstWait; ///< frames until surfaces may grow; the same after they shrank next
     static constexpr int kFirstWait = 16, kLongestWait = 512;
-    double rate_hz_ = 20;  ///< of the last frame
+    double rate_hz_ = 20; ///< of the last frame
 };
 
 } // namespace viewer

@@ -95,7 +95,8 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         anything_moved |= moved[k];
         gi::CameraRays const rays = gi::camera_rays(now.camera, now.width, now.height, origin_);
         bool const follows = s.name == now.name && s.width == now.width && s.height == now.height;
-        s = {now.name, now.camera, now.width, now.height, std::move(s.reuse), settings.reuse, hidden[k], std::move(s.light), s.punctual, rays, follows ? s.rays : rays};
+        s = {now.name,  now.camera,         now.width,  now.height, std::move(s.reuse),     settings.reuse,
+             hidden[k], std::move(s.light), s.punctual, rays,       follows ? s.rays : rays};
     }
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
@@ -140,7 +141,8 @@ void MethodRunner::finish(std::size_t view, std::vector<gi::RenderResult>& resul
         gi::StageTimer const timer(report_, "temporal reuse");
         without_motion(result.picture);
         if (own.light && own.reuse->is_new()) {
-            float const add = own.punctual ? (left_out_punctual_ ? -1.0f : 0.0f) : (left_out_punctual_ ? 0.0f : 1.0f);
+            float const add =
+                own.punctual ? (left_out_punctual_ ? -1.0f : 0.0f) : (left_out_punctual_ ? 0.0f : 1.0f);
             own.reuse->begin_with(known_light(*own.light, result.picture, origin_, add, seen, own.rays));
         }
         own.punctual = !left_out_punctual_;

@@ -26,12 +26,16 @@ public:
     /// @param seen  surfaces of the world; null = not needed
     /// @param leaves_out_punctual  as gi::FrameRenderer::leave_out_punctual, if the method can
     std::vector<gi::RenderResult> render(FrameCommand const& command, std::span<HiddenPixels const> hidden,
-                                         gi::Changes const& changes, Settings const& settings, gi::SeenSurfaces* seen,
-                                         bool leaves_out_punctual, gi::StopRequest const& stop);
+                                         gi::Changes const& changes, Settings const& settings,
+                                         gi::SeenSurfaces* seen, bool leaves_out_punctual,
+                                         gi::StopRequest const& stop);
     /// The last frame lacks the light of punctual lights.
     bool left_out_punctual() const { return left_out_punctual_; }
     /// Light of a view of the last frame; null without `seen`.
-    gi::KeptLight const* light(std::size_t view) const { return seen_[view].light ? &*seen_[view].light : nullptr; }
+    gi::KeptLight const* light(std::size_t view) const
+    {
+        return seen_[view].light ? &*seen_[view].light : nullptr;
+    }
     int still_frames() const { return still_; }
     gi::DynamicUpdate dynamic_update() const { return renderer_->dynamic_update(); } ///< of the last frame
 
@@ -44,7 +48,7 @@ private:
         int most_frames = 0;
         HiddenPixels hidden;
         std::optional<gi::KeptLight> light; ///< of its last picture
-        bool punctual = true; ///< the light of punctual lights is in its L1
+        bool punctual = true;               ///< the light of punctual lights is in its L1
         gi::CameraRays rays{}, earlier{};   ///< of this frame and the one before
     };
     /// Applies temporal reuse and the filter to a view. @param partner  view whose light it may have reused; it

@@ -28,7 +28,6 @@ bool has_own_surfaces(FrameCommand const& command)
     });
 }
 
-
 RenderSession::RenderSession(LoadScene load, int threads, gi::Report& report)
     : load_(std::move(load)), threads_(threads), report_(report)
 {
@@ -179,11 +178,14 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
     gi::LitCounts counts;
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& v = command.views[k];
-        std::span<std::uint8_t const> const hidden =
-            frame.views[k].hidden ? std::span<std::uint8_t const>(*frame.views[k].hidden) : std::span<std::uint8_t const>();
+        std::span<std::uint8_t const> const hidden = frame.views[k].hidden
+                                                         ? std::span<std::uint8_t const>(*frame.views[k].hidden)
+                                                         : std::span<std::uint8_t const>();
         auto const draw = [&](MethodRunner const& runner) {
-            auto const lights = runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
-            seen_->look(gi::camera_rays(v.camera, v.width, v.height, world_->world().origin), v.width, v.height, lights);
+            auto const lights =
+                runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
+            seen_->look(gi::camera_rays(v.camera, v.width, v.height, world_->world().origin), v.width, v.height,
+                        lights);
             return gi::lit_picture(*seen_, v.width, v.height, *runner.light(k), hidden, counts);
         };
         frame.views[k].picture = draw(*main_);
@@ -227,8 +229,10 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
         main_ = std::make_unique<MethodRunner>(settings_.method, *world_, settings_, threads_, start, report_);
     std::vector<HiddenPixels> hidden, hidden_light;
     for (ViewCommand const& v : command.views) hidden.push_back(hidden_.pixels(v));
-    for (ViewCommand const& v : light.views) hidden_light.push_back(smaller ? hidden_light_.pixels(v) : hidden_.pixels(v));
-    std::vector<gi::RenderResult> results = main_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
+    for (ViewCommand const& v : light.views)
+        hidden_light.push_back(smaller ? hidden_light_.pixels(v) : hidden_.pixels(v));
+    std::vector<gi::RenderResult> results =
+        main_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
     frame.still_frames = main_->still_frames();
     frame.dynamic_update = main_->dynamic_update();
     frame.options = results[0].options;
@@ -241,7 +245,8 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
         if (!compared_)
             compared_ =
                 std::make_unique<MethodRunner>(settings_.compare, *world_, settings_, threads_, start, report_);
-        std::vector<gi::RenderResult> others = compared_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
+        std::vector<gi::RenderResult> others =
+            compared_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
         for (std::size_t k = 0; k < others.size(); ++k) {
             frame.rays += others[k].rays;
             frame.views[k].compared = std::move(others[k].picture);

@@ -66,7 +66,8 @@ std::vector<SettingKey> make_keys()
          own("reuse", {1, 256}, "frames that temporal reuse averages over, 1 = none", &S::reuse),
          own("denoise", gi::filter_names(), "filter that removes noise", &S::denoise),
          own("first-surfaces", {},
-             "while things move, draw surfaces, textures and what mirrors show at full size, and only light at a smaller one",
+             "while things move, draw surfaces, textures and what mirrors show at full size, and only light at a "
+             "smaller one",
              &S::first_surfaces),
          own("share-eyes", {}, "each eye may reuse light computed for the other eye", &S::share_eyes),
          own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),

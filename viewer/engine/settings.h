@@ -20,7 +20,7 @@ struct Settings {
     int reuse = 16;       ///< frames of temporal reuse; 1 = none
     std::string denoise = "atrous";
     bool first_surfaces = true; ///< surfaces are drawn at full size where light is computed at a smaller one
-    bool share_eyes = true; ///< each eye may reuse light computed for the other
+    bool share_eyes = true;     ///< each eye may reuse light computed for the other
     double exposure_ev = 0;
     std::string auto_exposure =
         "off"; ///< on: windows and headsets set exposure_ev by what is shown; hold: they did

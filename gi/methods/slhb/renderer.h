@@ -120,7 +120,7 @@ private:
     std::vector<SkyAlong> sky_;          ///< in a pass
     std::optional<RadianceCache> cache_; ///< none if switched off
     ViewPaths paths_;
-    bool spread_ = false;            ///< see Pass::spread
+    bool spread_ = false; ///< see Pass::spread
     bool leaves_out_punctual_ = false;
     std::uint64_t earlier_maps_ = 0; ///< built for earlier light points that no longer exist
 };

@@ -217,17 +217,15 @@ void LiveRenderer::choose_updated_axes(bool may_move)
 }
 
 /// How long after its beginning a frame will have been seen for half of its time, s.
-double LiveRenderer::seen_after_s() const
-{
-    return std::min(1.5 * frame_s_, Anticipation::kFarthest_s);
-}
+double LiveRenderer::seen_after_s() const { return std::min(1.5 * frame_s_, Anticipation::kFarthest_s); }
 
 FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameBudget& budget)
 {
     Settings const& s = session_.settings();
     FrameCommand command;
     command.views = now.views;
-    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale, s.scale}, s.first_surfaces && has_own_surfaces(command));
+    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale, s.scale},
+                            s.first_surfaces && has_own_surfaces(command));
     command.frame = frame_++;
     command.pose_s = now.pose_s;
     command.display_s = now.display_s;
@@ -327,8 +325,7 @@ void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
     Settings const& s = session_.settings();
     FrameBudget done = budget;
     done.paths = last_.paths;
-    governor_.measured(done, pixels_of(last_look_.views), work.seconds, s.rate_hz,
-                       work.surfaces_s);
+    governor_.measured(done, pixels_of(last_look_.views), work.seconds, s.rate_hz, work.surfaces_s);
     if (s.method == "slhb" && s.has_automatic_schedule())
         update_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
 }

@@ -39,7 +39,7 @@ struct LiveFrame {
     SessionFrame result;
     FrameBudget budget;
     double begun_s = 0, done_s = 0; ///< session clock
-    double ahead_s = 0; ///< the command's scene_s is that of so much after begun_s
+    double ahead_s = 0;             ///< the command's scene_s is that of so much after begun_s
     std::uint32_t still_paths = 0;  ///< per pixel since anything last moved
     Settings settings;              ///< used for this frame
     std::string schedule;           ///< of slhb: schedule in use and why, a sentence; empty for other methods
@@ -159,7 +159,7 @@ private:
     int stored_ = 0; ///< stored axes in the last measured frame
     std::vector<Change> changes_;
     FrameCommand last_;
-    Viewpoint last_look_; ///< that the last frame was made for, before it was moved on
+    Viewpoint last_look_;                         ///< that the last frame was made for, before it was moved on
     bool has_last_ = false, awaits_look_ = false; ///< awaits_look_: at a new scene
     double scene_s_ = 0, last_begun_s_ = 0;
     double last_scene_s_ = 0; ///< scene_s_ in the last frame

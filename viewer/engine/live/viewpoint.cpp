@@ -82,7 +82,8 @@ bool Anticipation::jumps(Viewpoint const& now) const
     if (seen_.empty() || now.views.empty()) return false;
     auto const speed = [](Viewpoint const& a, Viewpoint const& b, bool turning) {
         gi::dmat4 const &m = a.views[0].camera.world_from_camera, &n = b.views[0].camera.world_from_camera;
-        double const way = turning ? glm::length(gi::dvec3(n[2]) - gi::dvec3(m[2])) : glm::length(gi::dvec3(n[3]) - gi::dvec3(m[3]));
+        double const way = turning ? glm::length(gi::dvec3(n[2]) - gi::dvec3(m[2]))
+                                   : glm::length(gi::dvec3(n[3]) - gi::dvec3(m[3]));
         return std::pair{way, way / std::max(b.time_s() - a.time_s(), 1e-4)};
     };
     for (bool const turning : {false, true}) {

@@ -21,8 +21,8 @@ struct Viewpoint {
 
 bool same_cameras(std::vector<ViewCommand> const& a, std::vector<ViewCommand> const& b);
 
-/// Predicts viewpoints at constant linear and angular velocity, as a picture is seen while the next one is made: by
-/// then its viewer has moved on.
+/// Predicts viewpoints at constant linear and angular velocity, as a picture is seen while the next one is made:
+/// by then its viewer has moved on.
 class Anticipation {
 public:
     /// Farthest prediction, s.

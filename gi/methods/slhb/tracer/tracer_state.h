@@ -82,9 +82,9 @@ struct SlhbTracer::Direct {
 /// A surface that a path leaves.
 struct SlhbTracer::Leaving {
     ShadingPoint const& at;
-    vec3 wo;     ///< local
-    bool narrow; ///< some lobe is sampled by exact rays
-    bool alone;  ///< light samples must account for all light, as no path continues to hit it
+    vec3 wo;                  ///< local
+    bool narrow;              ///< some lobe is sampled by exact rays
+    bool alone;               ///< light samples must account for all light, as no path continues to hit it
     bool no_punctual = false; ///< light of punctual lights is left out
 
     /// Probability density with which paths leave along wi, 1/sr. @param bsdf  for wi, see evaluate
