@@ -29,6 +29,11 @@ struct MirrorLayers {
 /// must be that of the picture. @param before  the camera of the previous frame
 MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, CameraRays const& before,
                                dvec3 origin, Picture& picture);
+/// The layer of depths of what a picture shows, also in mirrors: "seen_depth", or "depth" without mirrors.
+inline char const* seen_depth_of(Picture const& picture)
+{
+    return picture.find("seen_depth") != nullptr ? "seen_depth" : "depth";
+}
 /// Undoes it for albedo, normal and position; keeps the depth in "seen_depth".
 void describe_mirrors(MirrorLayers const& was, Picture& picture);
 

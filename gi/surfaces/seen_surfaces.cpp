@@ -127,7 +127,7 @@ std::optional<bool> SeenSurfaces::known_shadow(SeenSurface const& s, std::uint32
         for (int i = left; i < left + 2; ++i) {
             if (i < 0 || j < 0 || i >= columns || j >= rows) return std::nullopt;
             SeenSurface const& c = coarse_[std::size_t(j) * std::size_t(columns) + std::size_t(i)];
-            if (!(c.depth > 0) || !one_surface(s, c)) return std::nullopt;
+            if (!(c.depth > 0) || (c.tested >> light & 1) == 0 || !one_surface(s, c)) return std::nullopt;
             lit += c.lit >> light & 1;
         }
     if (lit != 0 && lit != 4) return std::nullopt;
@@ -148,11 +148,15 @@ void SeenSurfaces::light(ShadingPoint const& at, Way const& way, SeenSurface con
             if (*lit) out.direct += radiance;
             continue;
         }
+        std::uint8_t const bit = std::uint8_t(1u << k);
+        out.tested |= bit;
         RayQuery const ray = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
-        if (ray.reach > 0)
+        if (ray.reach > 0) {
             sent.push_back({way.pixel, k, radiance, ray});
-        else
+        } else {
             out.direct += radiance;
+            out.lit |= bit;
+        }
     }
 }
 

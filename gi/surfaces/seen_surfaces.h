@@ -22,7 +22,8 @@ struct SeenSurface {
     vec3 moved{0};        ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
     vec3 direct{0};       ///< radiance of the light of punctual lights; times the same
     float depth = 0;      ///< m along the camera's axis; 0 = no surface
-    std::uint8_t lit = 0; ///< bits of those lights that reach it, of pixels with shadow rays of their own
+    /// Bits of those lights whose shadow this pixel found by itself, and of those that reach it.
+    std::uint8_t tested = 0, lit = 0;
     bool in_mirror = false;
 };
 

@@ -66,7 +66,7 @@ public:
     void check() override {}
     FrameWork wait_for_all(FrameCommand const&, FrameWork const& own) override
     {
-        return {seconds_, own.surfaces_s, dynamic_update_.value_or(own.dynamic_update), own.moved};
+        return {seconds_, dynamic_update_.value_or(own.dynamic_update), own.moved, own.surfaces_s};
     }
     void drawn(std::uint64_t) override {}
     void swapped(std::uint64_t, double) override {}

@@ -65,9 +65,38 @@ TEST(SceneLoader, TheNextReplacesIt)
             "a", [&] { work_until(never); }, [&](std::exception_ptr const& e) { first = e, ended = true; });
         loader.begin(
             "b", [&] { work_until(at_once); }, [&](std::exception_ptr const& e) { second = e == nullptr; });
-        EXPECT_TRUE(comes_soon([&] { return ended && second; }));
+        EXPECT_TRUE(comes_soon([&] {
+            loader.progress(); // begins the next one
+            return ended && second;
+        }));
     }
     EXPECT_TRUE(is_interrupted(first));
+}
+
+TEST(SceneLoader, LoadsOneAtATime)
+{
+    std::atomic<bool> may_end{false}, replaced_ran{false}, last{false};
+    std::atomic<int> at_once{0}, most{0};
+    auto const work = [&] {
+        most = std::max(most.load(), ++at_once);
+        while (!may_end) std::this_thread::sleep_for(std::chrono::milliseconds(1)); // without a step
+        --at_once;
+    };
+    std::exception_ptr why;
+    SceneLoader loader;
+    loader.begin("a", work, [](std::exception_ptr const&) {});
+    loader.begin(
+        "b", [&] { replaced_ran = true; }, [&](std::exception_ptr const& e) { why = e; });
+    loader.begin("c", work, [&](std::exception_ptr const& e) { last = e == nullptr; });
+    EXPECT_TRUE(is_interrupted(why)); // at once
+    EXPECT_EQ(loader.progress()->scene, "c");
+    may_end = true;
+    EXPECT_TRUE(comes_soon([&] {
+        loader.progress();
+        return last.load();
+    }));
+    EXPECT_FALSE(replaced_ran);
+    EXPECT_EQ(most, 1);
 }
 
 TEST(SceneLoader, EndsWithItsOwner)

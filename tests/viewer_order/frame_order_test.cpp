@@ -134,12 +134,12 @@ TEST(FrameCommand, EveryCutAndEveryFlippedByteIsAnOrderOrAnInputError)
     longer.push_back(0);
     EXPECT_THROW(command_from_bytes(longer), gi::InputError);
     longer = whole;
-    longer[0] = 2;
+    longer[0] = 3;
     try {
         command_from_bytes(longer);
         FAIL();
     } catch (gi::InputError const& e) {
-        EXPECT_NE(std::string(e.what()).find("version 2"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("version 3"), std::string::npos) << e.what();
     }
 }
 

@@ -114,8 +114,10 @@ FrameWork ClusterLink::wait_for_all(FrameCommand const& command, FrameWork const
     FrameWork slowest = own;
     for (std::string const& bytes : others) {
         FrameWork const other = work_from(bytes);
-        slowest.seconds = std::max(slowest.seconds, other.seconds);
-        slowest.surfaces_s = std::max(slowest.surfaces_s, other.surfaces_s);
+        if (other.seconds > slowest.seconds) {
+            slowest.seconds = other.seconds;
+            slowest.surfaces_s = other.surfaces_s;
+        }
         slowest.moved |= other.moved;
         gi::DynamicUpdate const &a = other.dynamic_update, &b = slowest.dynamic_update;
         if (std::tie(a.seconds, a.stored) > std::tie(b.seconds, b.stored)) slowest.dynamic_update = a;

@@ -1,5 +1,6 @@
 #include "viewer/app/hmd_eyes.h"
 
+#include "gi/surfaces/lit_picture.h"
 #include "viewer/app/fill_hidden.h"
 
 #include <cstdlib>
@@ -29,7 +30,7 @@ void HmdEyes::take(LiveFrame const& frame)
     for (std::size_t eye = 0; eye < 2; ++eye) {
         ViewPicture const& view = frame.result.views[eye];
         gi::Picture const& p = view.picture;
-        gi::Layer const* const depth = p.find(p.find("seen_depth") ? "seen_depth" : "depth");
+        gi::Layer const* const depth = p.find(gi::seen_depth_of(p));
         std::span<float const> color = p.find("color")->data,
                                depths = depth == nullptr ? std::span<float const>() : depth->data;
         if (view.hidden) {

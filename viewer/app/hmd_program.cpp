@@ -57,6 +57,7 @@ public:
                 std::fputs(fmt::format("note: {}; waiting for the headset\n", keeper_.trouble()).c_str(), stderr);
             }
             if (session == nullptr) {
+                core_.look(at_last_);
                 shoot_unseen();
                 std::this_thread::sleep_for(std::chrono::milliseconds(10));
                 continue;
@@ -153,6 +154,7 @@ private:
             at.views.push_back(
                 {kEyes[eye], now[eye], frame.views[eye].width, frame.views[eye].height, eye == 0 ? -1 : 0});
         }
+        at_last_ = at;
         core_.look(std::move(at));
         auto const newest = core_.renderer->newest();
         if (!frame.should_render || !newest || newest->result.views.size() != 2) {
@@ -249,6 +251,7 @@ private:
     HmdKeeper keeper_; ///< declared after the context, so that its sessions end first
     UserBodies bodies_;
     gi::dvec3 start_{0};
+    Viewpoint at_last_; ///< while there is no headset, too
     bool started_ = false;
     int losses_ = 0;
     std::vector<std::string> phases_;

@@ -1,5 +1,6 @@
 #include "viewer/app/presenter.h"
 
+#include "gi/surfaces/lit_picture.h"
 #include "viewer/displays/compose.h"
 
 #include <epoxy/gl.h>
@@ -16,7 +17,7 @@ std::span<float const> floats(gi::Picture const& picture, char const* layer)
 void upload(PictureTexture& to, gi::Picture const& picture)
 {
     to.upload({picture.width, picture.height}, floats(picture, "color"),
-              floats(picture, picture.find("seen_depth") ? "seen_depth" : "depth"));
+              floats(picture, gi::seen_depth_of(picture)));
 }
 
 bool has_overlay(Pane const& pane, PresentSettings const& s)

@@ -87,9 +87,10 @@ void ViewCore::load(std::string const& name, std::function<void(std::string cons
         [this, made, done, known](std::exception_ptr const& failure) {
             if (failure) return state.inbox.put([this, failure, done] { not_loaded(failure, done); });
             renderer->adopt(made, known ? LiveRenderer::SceneKnown::yes : LiveRenderer::SceneKnown::no,
-                            [this, done](RenderSession const& s) {
-                                state.inbox.put([this, done, facts = facts_of(s), scene = s.shown_scene()] {
+                            [this, done](RenderSession const& s, std::uint64_t number) {
+                                state.inbox.put([this, done, number, facts = facts_of(s), scene = s.shown_scene()] {
                                     loaded(facts, scene);
+                                    resumes_ = number;
                                     if (done) done({});
                                 });
                             });
@@ -108,7 +109,6 @@ void ViewCore::loaded(SceneFacts const& facts, SceneChange const& scene)
     auto_exposure_.begin();
     start_at(scene.start->camera);
     state.refresh_ground();
-    resumes_ = true;
     if (first) make_files(scene);
     if (first) requests.begin();
 }
@@ -131,7 +131,7 @@ void ViewCore::not_loaded(std::exception_ptr const& failure, std::function<void(
 void ViewCore::look(Viewpoint viewpoint)
 {
     renderer->look(std::move(viewpoint));
-    if (std::exchange(resumes_, false)) renderer->resume();
+    if (std::uint64_t const scene = std::exchange(resumes_, 0)) renderer->resume(scene);
 }
 
 /// In the state, for windows, and on stderr.
@@ -143,7 +143,8 @@ void ViewCore::show_progress()
     {
         std::lock_guard const lock(frame_step_.mutex);
         double const since_s = state.clock.now_s() - frame_step_.begun_s;
-        if (frame_step_.begun_s >= 0 && since_s > kLongFrame_s)
+        bool const builds = frame_step_.step.of > 0 || frame_step_.step.what.starts_with("build");
+        if (frame_step_.begun_s >= 0 && since_s > kLongFrame_s && builds)
             state.building = LoadProgress{state.facts.scene, frame_step_.step, since_s, 0};
     }
     if (!state.loading) {

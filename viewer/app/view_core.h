@@ -69,7 +69,7 @@ private:
 
     std::function<double()> pixels_;
     std::exception_ptr failure_; ///< of the first scene
-    bool resumes_ = false;       ///< the next look is at a new scene
+    std::uint64_t resumes_ = 0;  ///< scene that the next look is at, if it is a new one
     std::unique_ptr<gi::ProgressBar> bar_;
     /// What the current frame is at, from the rendering thread.
     struct FrameStep {

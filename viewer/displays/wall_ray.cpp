@@ -30,7 +30,7 @@ std::optional<WallHit> hit_wall(Display const& display, RoomPose const& wand, in
 {
     std::optional<WallHit> nearest;
     for (std::size_t w = 0; w < display.walls.size(); ++w) {
-        if (rank >= 0 && display.walls[w].rank != rank) continue;
+        if ((rank >= 0 && display.walls[w].rank != rank) || display.walls[w].surface) continue;
         auto const hit = hit_plane(display, int(w), wand);
         if (!hit || hit->u < 0 || hit->u > 1 || hit->v < 0 || hit->v > 1) continue;
         if (!nearest || hit->distance_m < nearest->distance_m) nearest = hit;

@@ -86,6 +86,8 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     std::set<std::string> overridden;
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
     for (Change const& c : o.settings) overridden.insert(current_key(c.key));
+    if (!settings.contains("first_surfaces") && !overridden.contains("first_surfaces"))
+        session.apply({"first_surfaces", false}); // recorded before there were any
     for (auto const& [key, value] : settings.items())
         if (!overridden.contains(current_key(key)))
             session.apply({key, value}); // e.g. a device that is missing here

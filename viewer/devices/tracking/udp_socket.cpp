@@ -136,6 +136,16 @@ UdpReceiver::UdpReceiver(std::string const& address, int port) : buffer_(kLarges
                                             : reinterpret_cast<sockaddr_in6&>(bound.storage).sin6_port);
 }
 
+std::vector<unsigned char> address_bytes(sockaddr_storage const& a)
+{
+    auto const bytes = [](auto const& address) {
+        auto const* const first = reinterpret_cast<unsigned char const*>(&address);
+        return std::vector<unsigned char>(first, first + sizeof address);
+    };
+    if (a.ss_family == AF_INET) return bytes(reinterpret_cast<sockaddr_in const&>(a).sin_addr);
+    return a.ss_family == AF_INET6 ? bytes(reinterpret_cast<sockaddr_in6 const&>(a).sin6_addr) : std::vector<unsigned char>();
+}
+
 UdpReceiver::~UdpReceiver() { close(socket_); }
 
 std::optional<Datagram> UdpReceiver::receive()
@@ -145,6 +155,9 @@ std::optional<Datagram> UdpReceiver::receive()
     msghdr message{};
     message.msg_iov = &data;
     message.msg_iovlen = 1;
+    sockaddr_storage from{};
+    message.msg_name = &from;
+    message.msg_namelen = sizeof from;
     message.msg_control = control;
     message.msg_controllen = sizeof control;
     ssize_t n = -1;
@@ -153,6 +166,7 @@ std::optional<Datagram> UdpReceiver::receive()
     if (n < 0) return std::nullopt;
     Datagram d;
     d.bytes.assign(buffer_.begin(), buffer_.begin() + n);
+    d.from = address_bytes(from);
     d.cut = (message.msg_flags & MSG_TRUNC) != 0;
     d.received_s = steady_seconds();
     for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <sys/socket.h>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,7 +14,11 @@ struct Datagram {
     std::vector<unsigned char> bytes;
     double received_s = 0; ///< steady clock, when the kernel received it
     bool cut = false;      ///< truncated, because it was too long
+    std::vector<unsigned char> from{}; ///< the sender's address, 4 or 16 bytes, without its port
 };
+
+/// The bytes of an address, without its port; empty if it is not of IP.
+std::vector<unsigned char> address_bytes(sockaddr_storage const& address);
 
 /// Receives packets at one address. Invariant: bound.
 class UdpReceiver {

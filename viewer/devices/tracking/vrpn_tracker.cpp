@@ -52,6 +52,15 @@ std::string own_address(int socket)
     return text;
 }
 
+/// The address of the server that a socket is connected to.
+std::vector<unsigned char> server_of(int socket)
+{
+    sockaddr_storage server{};
+    socklen_t size = sizeof server;
+    if (getpeername(socket, reinterpret_cast<sockaddr*>(&server), &size) != 0) return {};
+    return address_bytes(server);
+}
+
 void watch(int wakes, int descriptor, std::uint32_t events)
 {
     epoll_event event{};
@@ -188,6 +197,10 @@ void VrpnTracker::read_datagrams(std::vector<TrackerSample>& samples)
     for (int i = 0; datagrams_ && i < kMostReads; ++i) {
         auto const datagram = datagrams_->receive();
         if (!datagram) return;
+        if (datagram->from != server_of(socket_)) { // anybody could send poses
+            ++counts_.ignored;
+            continue;
+        }
         heard_s_ = std::max(heard_s_, datagram->received_s);
         TrackerPacket packet;
         reader_.take_datagram(datagram->bytes, packet);

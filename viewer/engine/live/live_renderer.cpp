@@ -72,24 +72,31 @@ void LiveRenderer::post(Change change, std::function<void(std::string const&)> d
 }
 
 void LiveRenderer::adopt(std::shared_ptr<PreparedScene> scene, SceneKnown known,
-                         std::function<void(RenderSession const&)> done)
+                         std::function<void(RenderSession const&, std::uint64_t)> done)
 {
     ask([this, scene = std::move(scene), known, done = std::move(done)](RenderSession& s) {
+        bool const is_first = !s.has_scene();
         s.adopt(std::move(*scene));
-        if (known == SceneKnown::no) changes_.push_back(to_change(s.shown_scene()));
+        if (known == SceneKnown::no || !is_first) changes_.push_back(to_change(s.shown_scene()));
         awaits_look_ = true;
-        done(s);
+        ++adopted_;
+        done(s, adopted_);
     });
 }
 
-void LiveRenderer::resume()
+void LiveRenderer::resume(std::uint64_t scene)
 {
-    ask([this](RenderSession&) { awaits_look_ = false; });
+    ask([this, scene](RenderSession&) {
+        if (scene == adopted_) awaits_look_ = false;
+    });
 }
 
 void LiveRenderer::go_to(double scene_s)
 {
-    ask([this, scene_s](RenderSession&) { scene_s_ = scene_s; });
+    ask([this, scene_s](RenderSession&) {
+        scene_s_ = scene_s;
+        ahead_s_ = 0;
+    });
 }
 
 void LiveRenderer::look(Viewpoint viewpoint)
@@ -269,7 +276,10 @@ void LiveRenderer::run_leading()
         }
         double const begun = clock_.now_s();
         Settings const& s = session_.settings();
-        if (has_last_ && s.play && session_.moves()) scene_s_ += s.speed * (begun - last_begun_s_);
+        bool const plays = s.play && session_.moves();
+        if (!plays && ahead_s_ > 0) scene_s_ = last_.scene_s; // clips stop where they were seen last
+        if (!plays) ahead_s_ = 0;
+        if (has_last_ && plays) scene_s_ += s.speed * (begun - last_begun_s_);
         last_begun_s_ = begun;
         bool const still = !anything_moves(now);
         bool const rests = !session_.has_scene() || now.views.empty() ||
@@ -298,8 +308,8 @@ void LiveRenderer::run_leading()
             bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
             refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
         }
-        double const ahead_s = command.scene_s != scene_s_ ? seen_after_s() : 0;
-        if (!render(std::move(command), budget, ahead_s)) wait_until(clock_.now_s() + 0.2);
+        ahead_s_ = command.scene_s != scene_s_ ? seen_after_s() : 0;
+        if (!render(std::move(command), budget, ahead_s_)) wait_until(clock_.now_s() + 0.2);
         if (!still) wait_until(begun + 1 / s.rate_hz);
     }
 }

@@ -101,9 +101,9 @@ public:
     /// Queues a scene that is ready. Nothing is rendered from then on until `resume`, so that the new scene is not
     /// seen from the old one's camera; followers do not wait. `done` as that of post, with the scene adopted.
     void adopt(std::shared_ptr<PreparedScene> scene, SceneKnown known,
-               std::function<void(RenderSession const&)> done);
+               std::function<void(RenderSession const&, std::uint64_t scene)> done);
     /// Call after the first `look` at the new scene.
-    void resume();
+    void resume(std::uint64_t scene);
     /// Runs `question` on the rendering thread between two frames.
     void ask(std::function<void(RenderSession&)> question);
     void look(Viewpoint viewpoint);
@@ -160,9 +160,11 @@ private:
     std::vector<Change> changes_;
     FrameCommand last_;
     Viewpoint last_look_;                         ///< that the last frame was made for, before it was moved on
+    std::uint64_t adopted_ = 0; ///< number of scenes so far
     bool has_last_ = false, awaits_look_ = false; ///< awaits_look_: at a new scene
     double scene_s_ = 0, last_begun_s_ = 0;
     double last_scene_s_ = 0; ///< scene_s_ in the last frame
+    double ahead_s_ = 0;      ///< its command's scene_s is that of so much later
     double frame_s_ = 0;      ///< time that frames take, smoothed
     std::uint64_t frame_ = 0;
     std::uint32_t still_paths_ = 0;

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <fmt/format.h>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -57,8 +58,10 @@ struct SceneLoader::Load {
     gi::Step step{"reading"};
     double fraction = 0; ///< never decreases
     std::thread thread;
+    std::function<void()> work;
+    Done done;
 
-    void run(std::function<void()> const& work, Done const& done)
+    void run()
     {
         BackgroundPriority const priority;
         std::exception_ptr failure;
@@ -82,40 +85,50 @@ struct SceneLoader::Load {
 SceneLoader::~SceneLoader()
 {
     stop();
-    for (auto const& l : loads_) l->thread.join();
+    if (running_) running_->thread.join();
+}
+
+void SceneLoader::drop_next()
+{
+    if (auto const dropped = std::exchange(next_, nullptr))
+        dropped->done(std::make_exception_ptr(gi::Interrupted()));
 }
 
 void SceneLoader::stop()
 {
-    for (auto const& l : loads_) l->stop.request();
+    drop_next();
+    if (running_) running_->stop.request();
 }
 
 void SceneLoader::collect()
 {
-    loads_.remove_if([](auto const& l) {
-        if (!l->ended) return false;
-        l->thread.join();
-        return true;
-    });
+    if (running_ && running_->ended) {
+        running_->thread.join();
+        running_.reset();
+    }
+    if (running_ || !next_) return;
+    running_ = std::exchange(next_, nullptr);
+    running_->thread = std::thread([load = running_] { load->run(); });
 }
 
 void SceneLoader::begin(std::string scene, std::function<void()> work, Done done)
 {
     stop();
+    next_ = std::make_shared<Load>();
+    next_->scene = std::move(scene);
+    next_->work = std::move(work);
+    next_->done = std::move(done);
     collect();
-    auto const load = std::make_shared<Load>();
-    load->scene = std::move(scene);
-    load->thread = std::thread([load, work = std::move(work), done = std::move(done)] { load->run(work, done); });
-    loads_.push_back(load);
 }
 
-std::optional<LoadProgress> SceneLoader::progress() const
+std::optional<LoadProgress> SceneLoader::progress()
 {
-    if (loads_.empty() || loads_.back()->ended) return {};
-    Load& l = *loads_.back();
-    std::lock_guard const lock(l.mutex);
-    return LoadProgress{l.scene, l.step, std::chrono::duration<double>(Load::Clock::now() - l.begun).count(),
-                        l.fraction};
+    collect();
+    Load* const l = next_ ? next_.get() : running_.get();
+    if (l == nullptr || l->ended) return {};
+    std::lock_guard const lock(l->mutex);
+    return LoadProgress{l->scene, l->step, std::chrono::duration<double>(Load::Clock::now() - l->begun).count(),
+                        l->fraction};
 }
 
 } // namespace viewer

@@ -36,17 +36,21 @@ public:
 
     ~SceneLoader(); ///< stops and waits
 
-    /// Starts the work; a load that still runs is told to stop at its next step, and its result is not used.
+    /// Starts the work; a load that still runs is told to stop at its next step, and its result is not used. The
+    /// new one begins when that has ended (call progress() now and then), so that memory holds one load at a time.
     void begin(std::string scene, std::function<void()> work, Done done);
     /// Of the newest load, while it runs.
-    std::optional<LoadProgress> progress() const;
+    std::optional<LoadProgress> progress();
     /// Tells all loads to stop at their next step.
     void stop();
 
 private:
     struct Load;
-    std::list<std::shared_ptr<Load>> loads_; ///< the newest last; used by the thread that begins them
     void collect();
+    void drop_next();
+
+    // Used by the thread that begins loads.
+    std::shared_ptr<Load> running_, next_; ///< null = none
 };
 
 } // namespace viewer

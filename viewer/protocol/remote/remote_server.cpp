@@ -16,6 +16,7 @@
 namespace viewer {
 namespace {
 
+constexpr std::size_t kMostStrangers = 8; // clients that have not sent a token yet
 constexpr std::size_t kReadAtOnce = 65536;
 constexpr int kAcceptAtOnce = 256;
 constexpr std::size_t kLongestTokenLine = 4096;
@@ -70,6 +71,17 @@ void RemoteServer::accept_from(Socket const& listener, Trust trust)
             if (errno == EINTR || errno == ECONNABORTED) continue;
             if (errno != EAGAIN) report_.lose("remote clients not accepted", 1, std::strerror(errno));
             return;
+        }
+        if (trust == Trust::needs_token) { // strangers never fill the places of others
+            std::size_t strangers = 0;
+            auto oldest = clients_.end();
+            for (auto c = clients_.begin(); c != clients_.end(); ++c) {
+                if (c->second.trust != Trust::needs_token || c->second.closing) continue;
+                ++strangers;
+                if (oldest == clients_.end() || c->second.since < oldest->second.since) oldest = c;
+            }
+            if (strangers >= kMostStrangers)
+                refuse_stranger(oldest->first, oldest->second, nullptr, "too many clients without a token");
         }
         if (clients_.size() < limits_.clients) {
             adopt(std::move(connection), trust);
