@@ -149,10 +149,12 @@ void SeenSurfaces::light(ShadingPoint const& at, Way const& way, SeenSurface con
             continue;
         }
         RayQuery const ray = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
-        if (ray.reach > 0)
+        if (ray.reach > 0) {
             sent.push_back({way.pixel, k, radiance, ray});
-        else
+        } else { // the light lies on the surface
             out.direct += radiance;
+            out.lit |= std::uint8_t(1u << k);
+        }
     }
 }
 
