@@ -82,16 +82,11 @@ TEST(SeenLight, OfNoneAndOfMoreThanFourIsNone)
     }
 }
 
-/// Several lights, each of whose shadows lies elsewhere: found together as by rays of every pixel.
-TEST(SeenLight, CoarseShadowsAreThoseOfEveryPixel)
+/// Pixels whose light is not that of a shadow ray of their own.
+std::size_t unlike_by_rays(World const& world, Camera const& camera, int size)
 {
-    Scene scene = floor_with_block();
-    for (int k = 0; k < 4; ++k)
-        add_light(scene, point_light({std::cos(1.5f * float(k)), 1.6f, std::sin(1.5f * float(k))}, 2));
-    World const world = world_of(scene);
-    int const size = 120;
-    SeenPicture const seen = look(world, eye(), size, size, SeenSurfaces::Lights::few);
-    CameraRays const rays = camera_rays(eye(), size, size, world.origin);
+    SeenPicture const seen = look(world, camera, size, size, SeenSurfaces::Lights::few);
+    CameraRays const rays = camera_rays(camera, size, size, world.origin);
     ExactVisibility const exact(world, false, 0);
     WorldView const w = view(world);
     std::size_t other = 0;
@@ -104,19 +99,45 @@ TEST(SeenLight, CoarseShadowsAreThoseOfEveryPixel)
             if (hit.triangle != kNoTriangle) {
                 ShadingPoint const at = shading_point(w, hit.triangle, hit.barycentric, query.ray.direction);
                 for (Light const& light : world.lights) {
-                    vec3 const to = light.position - at.position;
-                    float const cosine = glm::dot(glm::normalize(to), at.frame.normal);
-                    RayQuery shadow{.ray = {leave(at, glm::normalize(to)), glm::normalize(to)},
-                                    .reach = 0.999f * glm::length(to)};
+                    bool const far = light.type == LightType::directional;
+                    vec3 const way = light.position - at.position,
+                               to = far ? -light.direction : glm::normalize(way);
+                    float const cosine = glm::dot(to, at.frame.normal);
+                    RayQuery shadow{.ray = {leave(at, to), to}};
+                    if (!far) shadow.reach = 0.999f * glm::length(way);
                     std::uint8_t blocked = 0;
                     exact.occluded({&shadow, 1}, {&blocked, 1});
                     if (blocked == 0 && cosine > 0)
-                        truth += at.bsdf.diffuse * kInvPi * light.intensity * cosine / glm::dot(to, to);
+                        truth +=
+                            at.bsdf.diffuse * kInvPi * light.intensity * (cosine / (far ? 1 : glm::dot(way, way)));
                 }
             }
             other += glm::length(seen.at(x, y).direct - truth) > 0.01f * (0.01f + glm::length(truth));
         }
-    EXPECT_LT(other, std::size_t(size * size) / 200); // slivers of shadow between coarse pixels
+    return other;
+}
+
+/// Several lights, each of whose shadows lies elsewhere: found together as by rays of every pixel.
+TEST(SeenLight, CoarseShadowsAreThoseOfEveryPixel)
+{
+    Scene scene = floor_with_block();
+    for (int k = 0; k < 4; ++k)
+        add_light(scene, point_light({std::cos(1.5f * float(k)), 1.6f, std::sin(1.5f * float(k))}, 2));
+    EXPECT_LT(unlike_by_rays(world_of(scene), eye(), 120), std::size_t(120 * 120) / 200); // slivers of shadow
+}
+
+/// A sun low over fine grooves, whose one side faces away from it: where pixels around face away, that says
+/// nothing.
+TEST(SeenLight, OfSurfacesBesideOthersThatFaceAway)
+{
+    Scene scene;
+    int const material = add_material(scene, lambert(vec3{0.5f}));
+    float const width = 0.021f, rise = width * std::tan(0.14f);
+    for (int k = -50; k < 50; ++k)
+        add_quad(scene, {width * float(k), k % 2 == 0 ? 0 : rise, 1}, {width, k % 2 == 0 ? rise : -rise, 0},
+                 {0, 0, -2}, material);
+    add_light(scene, {.type = LightType::directional, .direction = {1, -0.1f, 0}, .intensity = vec3{3}});
+    EXPECT_LT(unlike_by_rays(world_of(scene), look_at({0, 2, 0.1}, {0, 0, 0}, 45), 80), std::size_t(80 * 80) / 50);
 }
 
 class LeftOutLight : public testing::TestWithParam<int> {};
