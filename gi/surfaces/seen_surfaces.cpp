@@ -122,15 +122,16 @@ std::optional<bool> SeenSurfaces::known_shadow(SeenSurface const& s, std::uint32
     int const columns = (int(map_.width) + kCoarse - 1) / kCoarse,
               rows = (int(map_.height) + kCoarse - 1) / kCoarse;
     int const left = (x + kCoarse / 2) / kCoarse - 1, top = (y + kCoarse / 2) / kCoarse - 1;
-    int lit = 0;
+    int lit = 0, blocked = 0; // of those that face the light
     for (int j = top; j < top + 2; ++j)
         for (int i = left; i < left + 2; ++i) {
             if (i < 0 || j < 0 || i >= columns || j >= rows) return std::nullopt;
             SeenSurface const& c = coarse_[std::size_t(j) * std::size_t(columns) + std::size_t(i)];
-            if (!(c.depth > 0) || (c.tested >> light & 1) == 0 || !one_surface(s, c)) return std::nullopt;
+            if (!(c.depth > 0) || !one_surface(s, c)) return std::nullopt;
             lit += c.lit >> light & 1;
+            blocked += c.blocked >> light & 1;
         }
-    if (lit != 0 && lit != 4) return std::nullopt;
+    if (lit != 4 && blocked != 4) return std::nullopt;
     return lit == 4;
 }
 
@@ -148,14 +149,12 @@ void SeenSurfaces::light(ShadingPoint const& at, Way const& way, SeenSurface con
             if (*lit) out.direct += radiance;
             continue;
         }
-        std::uint8_t const bit = std::uint8_t(1u << k);
-        out.tested |= bit;
         RayQuery const ray = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
         if (ray.reach > 0) {
             sent.push_back({way.pixel, k, radiance, ray});
-        } else {
+        } else { // the light lies on the surface
             out.direct += radiance;
-            out.lit |= bit;
+            out.lit |= std::uint8_t(1u << k);
         }
     }
 }
@@ -248,9 +247,14 @@ void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
     blocked.resize(rays.size());
     exact_->occluded(rays, blocked);
     for (std::size_t k = 0; k < sent.size(); ++k) {
-        if (blocked[k] != 0) continue;
-        out[sent[k].pixel].direct += sent[k].radiance;
-        out[sent[k].pixel].lit |= std::uint8_t(1u << sent[k].light);
+        SeenSurface& to = out[sent[k].pixel];
+        auto const bit = std::uint8_t(1u << sent[k].light);
+        if (blocked[k] != 0) {
+            to.blocked |= bit;
+            continue;
+        }
+        to.direct += sent[k].radiance;
+        to.lit |= bit;
     }
 }
 

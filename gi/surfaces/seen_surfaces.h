@@ -15,15 +15,14 @@
 namespace gi {
 
 struct SeenSurface {
-    vec3 albedo{0};       ///< times what mirrors and panes on the way leave of the light
-    vec3 normal{0};       ///< of shading, unit, as mirrored
-    vec3 position{0};     ///< m, from the world's origin; on the pixel's ray, as far away as light has travelled
-    vec3 emitted{0};      ///< radiance of emission, or of the background; times the same as the albedo
-    vec3 moved{0};        ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
-    vec3 direct{0};       ///< radiance of the light of punctual lights; times the same
-    float depth = 0;      ///< m along the camera's axis; 0 = no surface
-    /// Bits of those lights whose shadow this pixel found by itself, and of those that reach it.
-    std::uint8_t tested = 0, lit = 0;
+    vec3 albedo{0};   ///< times what mirrors and panes on the way leave of the light
+    vec3 normal{0};   ///< of shading, unit, as mirrored
+    vec3 position{0}; ///< m, from the world's origin; on the pixel's ray, as far away as light has travelled
+    vec3 emitted{0};  ///< radiance of emission, or of the background; times the same as the albedo
+    vec3 moved{0};    ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
+    vec3 direct{0};   ///< radiance of the light of punctual lights; times the same
+    float depth = 0;  ///< m along the camera's axis; 0 = no surface
+    std::uint8_t lit = 0, blocked = 0; ///< bits of lights that reach it or would, by shadow rays of its own
     bool in_mirror = false;
 };
 

@@ -104,6 +104,42 @@ TEST(Temporal, VariancesAreThoseOfTheMeans)
     }
 }
 
+/// Light known beforehand is worth some frames of it, where it is known, and only for a first frame.
+TEST(Temporal, BeginsWithWhatIsKnown)
+{
+    auto const first = [](SceneChange change, std::size_t known) {
+        TemporalReuse reuse({.most_frames = 16});
+        EXPECT_TRUE(reuse.is_new());
+        std::vector<KnownLight> light(known);
+        for (std::size_t i = 0; i < known; ++i)
+            if (i % 2 == 0) light[i] = {vec3{4}, vec3{8}, 3};
+        reuse.begin_with(std::move(light));
+        Picture p = picture([](int, int) { return Values{.l1 = vec3{1}, .l2 = vec3{0.5f}}; });
+        TemporalCounts const counts = reuse.add(p, change);
+        EXPECT_EQ(counts.started, counts.surfaces);
+        EXPECT_FALSE(reuse.is_new());
+        return std::pair{p, reuse};
+    };
+    std::size_t const all = std::size_t(kWidth * kHeight);
+    auto const [p, reuse] = first(SceneChange::motion, all);
+    for (int x = 0; x < kWidth; ++x) { // an albedo of a half; kWidth is even
+        bool const known = x % 2 == 0;
+        EXPECT_NEAR(value(p, "L1", x, 7), 0.5f * (known ? (3 * 4 + 2) / 4.0f : 2.0f), 1e-5f) << x;
+        EXPECT_NEAR(value(p, "L2", x, 7), 0.5f * (known ? (3 * 8 + 1) / 4.0f : 1.0f), 1e-5f) << x;
+    }
+    TemporalReuse again = reuse; // what is known later is of no use
+    again.begin_with(std::vector<KnownLight>(all, {vec3{100}, vec3{100}, 8}));
+    Picture next = picture([](int, int) { return Values{.l1 = vec3{1}, .l2 = vec3{0.5f}}; });
+    again.add(next, SceneChange::motion);
+    for (int x = 0; x < kWidth; ++x) EXPECT_LT(value(next, "L1", x, 7), 2) << x;
+
+    Picture const changed = first(SceneChange::light, all).first, none = first(SceneChange::motion, 0).first;
+    for (int x = 0; x < kWidth; ++x) {
+        EXPECT_NEAR(value(changed, "L1", x, 7), 1, 1e-5f) << "the light has changed";
+        EXPECT_NEAR(value(none, "L1", x, 7), 1, 1e-5f);
+    }
+}
+
 TEST(Temporal, LightFollowsItsSurface)
 {
     for (vec3 const motion : {vec3{3, -2, 2}, vec3{0.5f, 0.25f, 2}}) {

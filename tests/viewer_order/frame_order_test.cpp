@@ -92,6 +92,30 @@ TEST(FrameCommand, OldOnesAreRead)
     EXPECT_EQ(to_bytes(o), old);
 }
 
+/// The second version has a light scale; where that is 1, bytes are those of the first.
+TEST(FrameCommand, LightMayBeSmaller)
+{
+    FrameCommand o = cave_order();
+    std::vector<std::uint8_t> const full = to_bytes(o);
+    EXPECT_EQ(full[0], 1);
+    o.light_scale = 0.375;
+    std::vector<std::uint8_t> const small = to_bytes(o);
+    EXPECT_EQ(small[0], 2);
+    EXPECT_EQ(small.size(), full.size() + 8);
+    EXPECT_EQ(command_from_bytes(small), o);
+    EXPECT_EQ(to_bytes(command_from_bytes(small)), small);
+    for (double const wrong : {0.0, -0.25, 1.001, 1e300, kNaN, std::numeric_limits<double>::infinity()}) {
+        o.light_scale = wrong;
+        std::string const why = why_refused(o);
+        EXPECT_NE(why.find("of the size of the views"), std::string::npos) << wrong << why;
+    }
+    std::vector<std::uint8_t> unknown = full;
+    for (std::uint8_t const version : {std::uint8_t(0), std::uint8_t(3), std::uint8_t(255)}) {
+        unknown[0] = version;
+        EXPECT_THROW(command_from_bytes(unknown), gi::InputError) << int(version);
+    }
+}
+
 TEST(FrameCommand, RandomNumbersComeBackExactly)
 {
     std::mt19937_64 random(7);

@@ -66,5 +66,78 @@ TEST(Governor, WhatIsHeldFixedStays)
     EXPECT_GE(g.next(1e6, false).paths, 1);
 }
 
+/// A machine whose surfaces need a fixed time and one per pixel, beside light that needs a multiple of the above.
+struct SurfaceMachine {
+    double fixed_s, pixel_s;
+    double pixels = 300e3, rate_hz = 20;
+    double surfaces_s(FrameBudget const& b) const { return fixed_s + pixel_s * pixels * b.surfaces * b.surfaces; }
+    std::vector<double> run(Governor& g, int frames) const
+    {
+        std::vector<double> scales;
+        for (int i = 0; i < frames; ++i) {
+            FrameBudget const b = g.next(pixels, false, {0, 0, 0}, true);
+            EXPECT_GE(b.surfaces, b.scale);
+            // Surfaces of the size of light cost nothing besides.
+            double const own_s = b.surfaces > b.scale ? surfaces_s(b) : 0;
+            g.measured(b, pixels, 8 * seconds_of(b, pixels) + own_s, rate_hz, own_s);
+            scales.push_back(b.surfaces);
+        }
+        return scales;
+    }
+};
+
+TEST(Governor, SurfacesHaveTheirFullSizeWhereThereIsTime)
+{
+    Governor g;
+    for (double const s : SurfaceMachine{0.001, 30e-9}.run(g, 100)) EXPECT_EQ(s, 1);
+    EXPECT_EQ(g.next(300e3, false).surfaces, g.next(300e3, false).scale) << "none of their own";
+    FrameBudget const fixed = g.next(300e3, false, {0, 0.4, 0.4}, true);
+    EXPECT_EQ(fixed.surfaces, 0.4);
+    FrameBudget const still = g.next(300e3, true, {0, 0, 0}, true);
+    EXPECT_EQ(still.scale, 1);
+    EXPECT_EQ(still.surfaces, 1);
+}
+
+TEST(Governor, SurfacesShrinkWhereTheyTakeTooLongAndGrowAgain)
+{
+    Governor g;
+    SurfaceMachine const slow{0.002, 150e-9}, fast{0.001, 30e-9}; // 47 ms and 10 ms of 50 ms at full size
+    std::vector<double> const shrunk = slow.run(g, 60);
+    EXPECT_LT(shrunk.back(), 1);
+    EXPECT_LT(slow.surfaces_s({1, 0.25, shrunk.back()}), 0.5 / slow.rate_hz);
+    std::vector<double> const grown = fast.run(g, 200);
+    EXPECT_EQ(grown.back(), 1);
+    EXPECT_GE(grown[0], 0.5);
+}
+
+/// Changes of size are seen: on a machine on which a size nearly fits, they are rare, and become rarer.
+TEST(Governor, SurfacesDoNotFlap)
+{
+    for (double const pixel_s : {60e-9, 75e-9, 82e-9, 90e-9, 110e-9, 140e-9, 200e-9}) {
+        Governor g;
+        std::vector<double> const scales = SurfaceMachine{0.001, pixel_s}.run(g, 2000);
+        auto const changes = [&](std::size_t first, std::size_t last) {
+            int n = 0;
+            for (std::size_t i = first + 1; i < last; ++i) n += scales[i] != scales[i - 1];
+            return n;
+        };
+        EXPECT_LE(changes(0, 1000), 16) << pixel_s;
+        EXPECT_LE(changes(1000, 2000), 5) << pixel_s;
+    }
+}
+
+/// Frames that now and then take five times as long do not keep surfaces small.
+TEST(Governor, SingleSlowFramesChangeLittle)
+{
+    Governor g;
+    SurfaceMachine const machine{0.001, 30e-9}, hiccup{0.005, 150e-9};
+    int full = 0;
+    for (int i = 0; i < 20; ++i) {
+        hiccup.run(g, 1);
+        for (double const s : machine.run(g, 40)) full += s == 1;
+    }
+    EXPECT_GT(full, 700);
+}
+
 } // namespace
 } // namespace viewer::test

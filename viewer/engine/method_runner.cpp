@@ -145,9 +145,9 @@ void MethodRunner::finish(std::size_t view, std::vector<gi::RenderResult>& resul
                 own.punctual ? (left_out_punctual_ ? -1.0f : 0.0f) : (left_out_punctual_ ? 0.0f : 1.0f);
             own.reuse->begin_with(known_light(*own.light, result.picture, origin_, add, seen, own.rays));
         }
-        own.punctual = !left_out_punctual_;
         own.reuse->add(result.picture, change, past, taken.from);
     }
+    own.punctual = !left_out_punctual_;
     gi::DenoiseSettings const filter = denoise_settings(settings, threads_);
     if (gi::can_filter(filter, result.paths, settings.reuse > 1) && still_ <= kFilteredFrames) {
         gi::StageTimer const timer(report_, "denoise");

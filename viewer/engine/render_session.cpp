@@ -212,9 +212,10 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
         seen_->changed(changes);
     }
     FrameCommand light = command; // the views of the pictures of light
-    light.light_scale = 1;
     bool const smaller = command.light_scale < 1 && has_own_surfaces(command);
+    light.light_scale = 1;
     for (ViewCommand& v : light.views) {
+        if (!smaller) break;
         v.width = std::max(1, int(std::lround(v.width * command.light_scale)));
         v.height = std::max(1, int(std::lround(v.height * command.light_scale)));
     }

@@ -49,7 +49,7 @@ struct SessionFrame {
 
 /// Stage of SessionFrame::stages_s in which surfaces of another size than light are drawn.
 inline constexpr char const* kSurfacesStage = "first surfaces";
-/// False if a view is orthographic or has a lens: then its light has its own size.
+/// False if a view is orthographic or has a lens: then light has the size of the views.
 bool has_own_surfaces(FrameCommand const& command);
 
 class RenderSession {

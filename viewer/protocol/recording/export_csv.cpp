@@ -46,7 +46,8 @@ std::vector<CsvColumn> columns(Most const& most)
                              {"pose_s", "s, when the poses were measured; the session's clock starts at 0"},
                              {"display_s", "s, expected display time of the frame"},
                              {"scene_s", "s, time of the scene's animations"},
-                             {"paths", "paths per pixel"},
+                             {"paths", "paths per pixel of the pictures of light"},
+                             {"light_scale", "side of the pictures of light over that of the views"},
                              {"pixel_hash", "XXH64 of the pixels, hexadecimal; empty = not recorded"},
                              {"swap_s", "s, when the frame was shown; empty = not measured"},
                              {"render_ms", "ms of rendering; empty = not measured"},
@@ -125,6 +126,7 @@ std::string row_of(RecordedFrame const& f, Most const& most)
     row.add(std::to_string(o.frame));
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) row.add(t);
     row.add(o.paths);
+    row.add(o.light_scale);
     row.add(f.pixel_hash ? fmt::format("{:016x}", *f.pixel_hash) : "");
     row.add(f.times ? fmt::format("{}", f.times->swap_s) : "");
     row.add(f.times ? fmt::format("{}", f.times->render_ms) : "");
