@@ -15,6 +15,7 @@ constexpr int kFireflyReach = 3; // pixels to each side of a window
 constexpr int kFireflyWindow = (2 * kFireflyReach + 1) * (2 * kFireflyReach + 1);
 constexpr float kBrighter = 2;    // light of a pixel over that of those which support it
 constexpr float kSupport = 0.06f; // of a window's pixels, which have to support a pixel
+constexpr int kGiveReach = 10;    // pixels to each side that get the light of a firefly
 constexpr int kFewest = 6;        // similar pixels that a window needs
 constexpr float kUnseen = 0.5f;   // light below this share of the light around is not worth clamping
 constexpr float kLikeNormals = 0.8f,
@@ -101,6 +102,20 @@ bool is_supported(LitSurfaces const& in, std::size_t at, LikeSurface const& surf
     return direct >= kEnough && indirect >= kEnough;
 }
 
+/// The pixels of a pixel's window that show a similar surface, itself included.
+std::vector<std::size_t> similar_around(LitSurfaces const& in, std::size_t at)
+{
+    std::vector<std::size_t> around;
+    LikeSurface const surface(in, at);
+    int const x = int(at % std::size_t(in.width)), y = int(at / std::size_t(in.width));
+    for (int v = std::max(0, y - kGiveReach); v <= std::min(in.height - 1, y + kGiveReach); ++v)
+        for (int u = std::max(0, x - kGiveReach); u <= std::min(in.width - 1, x + kGiveReach); ++u) {
+            std::size_t const j = std::size_t(v) * std::size_t(in.width) + std::size_t(u);
+            if (j == at || (in.known(j) && surface.is(in, j))) around.push_back(j);
+        }
+    return around;
+}
+
 /// Light of the similar pixels of a window.
 struct FireflyWindow {
     std::array<vec2, kFireflyWindow> light;
@@ -143,7 +158,7 @@ void FireflyCounts::add(FireflyCounts const& more)
     clamped += more.clamped;
     by_eye += more.by_eye;
     light += more.light;
-    removed += more.removed;
+    moved += more.moved;
 }
 
 std::vector<Firefly> find_fireflies(FireflyView const& view, FireflyCounts& total)
@@ -176,7 +191,7 @@ std::vector<Firefly> find_fireflies(FireflyView const& view, FireflyCounts& tota
             rows[std::size_t(y)].push_back(f);
             ++count.clamped;
             count.by_eye += here.x <= around.x && here.y <= around.y;
-            count.removed +=
+            count.moved +=
                 double((1 - f.direct) * luminance(rgb(own.l1, i)) + (1 - f.indirect) * luminance(rgb(own.l2, i)));
         }
     });
@@ -195,6 +210,14 @@ void clamp_fireflies(Picture& picture, std::span<Firefly const> fireflies)
           &color = needed_layer(picture, "color");
     Layer *const variance1 = picture.find("variance_direct"), *const variance2 = picture.find("variance_indirect"),
                  *const variance = picture.find("variance");
+    LitSurfaces const surfaces(picture);
+    // Before anything changes, as windows overlap.
+    std::vector<std::array<vec3, 2>> excess;
+    for (Firefly const& f : fireflies) {
+        vec3 const a = rgb(surfaces.albedo, f.pixel);
+        excess.push_back({(1 - f.direct) * over_albedo(rgb(l1, f.pixel), a),
+                          (1 - f.indirect) * over_albedo(rgb(l2, f.pixel), a)});
+    }
     for (Firefly const& f : fireflies) {
         for (std::size_t c = 0; c < 3; ++c) {
             std::size_t const k = 3 * f.pixel + c;
@@ -207,6 +230,19 @@ void clamp_fireflies(Picture& picture, std::span<Firefly const> fireflies)
         // A value below 0 says that it is not known.
         if (variance1) variance1->data[f.pixel] *= square(f.direct);
         if (variance2) variance2->data[f.pixel] *= square(f.indirect);
+    }
+    for (std::size_t k = 0; k < fireflies.size(); ++k) {
+        std::vector<std::size_t> const around = similar_around(surfaces, fireflies[k].pixel);
+        float const share = 1 / float(around.size());
+        for (std::size_t const j : around)
+            for (std::size_t c = 0; c < 3; ++c) {
+                float const a = rgb(surfaces.albedo, j)[int(c)];
+                if (a < kDarkest) continue;
+                float const e1 = share * excess[k][0][int(c)] * a, e2 = share * excess[k][1][int(c)] * a;
+                l1.data[3 * j + c] += e1;
+                l2.data[3 * j + c] += e2;
+                color.data[3 * j + c] += e1 + e2;
+            }
     }
 }
 

@@ -6,8 +6,9 @@
 // enough of these are at least half as bright. Light without support is scaled down, keeping its hue, to the
 // largest that is supported. Light that hardly shows beside the surface's other light is left alone, and so are
 // pixels whose neighbourhood says nothing, as it is dark or too small. Where the other eye sees the same surface,
-// its window has to support the light too. Clamping loses light, so it is for what a filter reads, never for a
-// mean that has to converge.
+// its window has to support the light too. What is taken from a pixel is spread over the similar pixels of a
+// wider window: lost, it would darken scenes that few paths light. This blurs, so it is for what a filter reads,
+// never for a mean that has to converge.
 
 #include "gi/filter/reused_light.h"
 
@@ -35,8 +36,8 @@ struct Firefly {
 struct FireflyCounts {
     std::size_t pixels = 0; ///< with a surface
     std::size_t clamped = 0,
-                by_eye = 0;        ///< of these; by_eye: of these, those that only the other eye did not support
-    double light = 0, removed = 0; ///< luminance of L1 + L2, summed over pixels, and what clamping took of it
+                by_eye = 0;      ///< of these; by_eye: of these, those that only the other eye did not support
+    double light = 0, moved = 0; ///< luminance of L1 + L2, summed over pixels, and the part of it that is spread
 
     void add(FireflyCounts const& more);
 };
@@ -45,7 +46,8 @@ struct FireflyCounts {
 /// layer is missing.
 std::vector<Firefly> find_fireflies(FireflyView const& view, FireflyCounts& counts);
 
-/// Scales L1, L2 and the variances, if there are any, and makes color = L0 + L1 + L2.
+/// Scales L1, L2 and the variances, if there are any, spreads what this takes over the similar pixels within 10
+/// pixels to each side, and keeps color = L0 + L1 + L2. The sum of light over the albedo stays.
 void clamp_fireflies(Picture& picture, std::span<Firefly const> fireflies);
 
 } // namespace gi

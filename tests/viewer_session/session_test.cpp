@@ -138,7 +138,7 @@ TEST(RenderSession, FirefliesAreClampedForTheFilterAndKeptInTheMean)
     ASSERT_TRUE(counts.contains("fireflies clamped"));
     EXPECT_GE(counts.at("fireflies clamped"), counts.at("fireflies clamped, as the other eye does not see them"));
     EXPECT_GT(counts.at("pixels searched for fireflies"), 48 * 2 * 40 * 30 / 2);
-    EXPECT_LT(counts.at("light removed with fireflies, share"), 0.1);
+    EXPECT_LT(counts.at("light of fireflies spread around them, share"), 0.1);
     EXPECT_FALSE(plain_report.counts().contains("fireflies clamped"));
 }
 

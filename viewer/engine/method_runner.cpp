@@ -185,7 +185,7 @@ void MethodRunner::clamp(Results& results, std::span<ViewCommand const> views)
     report_.count("fireflies clamped", double(fireflies_.clamped));
     report_.count("fireflies clamped, as the other eye does not see them", double(fireflies_.by_eye));
     report_.count("pixels searched for fireflies", double(fireflies_.pixels));
-    report_.count("light removed with fireflies, share", fireflies_.light > 0 ? fireflies_.removed / fireflies_.light : 0);
+    report_.count("light of fireflies spread around them, share", fireflies_.light > 0 ? fireflies_.moved / fireflies_.light : 0);
 }
 
 void MethodRunner::finish(std::size_t view, Results& results, int partner, Settings const& settings,
