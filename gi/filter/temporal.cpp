@@ -16,9 +16,6 @@ namespace {
 constexpr float kCosine = 0.8f, kDepth = 0.02f;
 // Motion below this, in pixels, counts as static.
 constexpr float kStill = 1e-3f;
-// L1 is clamped to mean +- kSpread standard deviations of a window of kWindow pixels.
-constexpr int kWindow = 5;
-constexpr float kSpread = 1;
 
 Layer const& layer_of(Picture const& picture, char const* name)
 {
@@ -55,15 +52,22 @@ bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::is
 /// pixel if only few are needed.
 class Neighbourhoods {
 public:
-    Neighbourhoods(Layer const& l1, Layer const& albedo, int width, int height, bool few)
-        : l1_(l1), albedo_(albedo), width_(width), height_(height), few_(few)
+    Neighbourhoods(Layer const& l1, Layer const& albedo, int width, int height, bool few,
+                   TemporalSettings const& settings)
+        : l1_(l1),
+          albedo_(albedo),
+          width_(width),
+          height_(height),
+          window_(settings.window),
+          spread_(settings.spread),
+          few_(few)
     {
         if (few) return;
         cv::Mat direct(height, width, CV_32FC3);
         tbb::parallel_for(0, height, [&](int y) {
             for (int x = 0; x < width; ++x) direct.ptr<vec3>(y)[x] = direct_at(x, y);
         });
-        cv::Size const size(kWindow, kWindow);
+        cv::Size const size(window_, window_);
         cv::boxFilter(direct, mean_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
         cv::sqrBoxFilter(direct, squares_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
     }
@@ -76,22 +80,22 @@ public:
     }
 
 private:
-    static float clamped(float v, float mean, float squares)
+    float clamped(float v, float mean, float squares) const
     {
-        float const spread = kSpread * std::sqrt(std::max(0.0f, squares - mean * mean));
+        float const spread = spread_ * std::sqrt(std::max(0.0f, squares - mean * mean));
         return glm::clamp(v, mean - spread, mean + spread);
     }
     vec3 clamped_here(vec3 v, int x, int y) const
     {
         vec3 mean{0}, squares{0};
-        for (int j = -kWindow / 2; j <= kWindow / 2; ++j)
-            for (int i = -kWindow / 2; i <= kWindow / 2; ++i) {
+        for (int j = -window_ / 2; j <= window_ / 2; ++j)
+            for (int i = -window_ / 2; i <= window_ / 2; ++i) {
                 vec3 const d = direct_at(std::clamp(x + i, 0, width_ - 1), std::clamp(y + j, 0, height_ - 1));
                 mean += d;
                 squares += d * d;
             }
-        constexpr float kPixels = kWindow * kWindow;
-        for (int c = 0; c < 3; ++c) v[c] = clamped(v[c], mean[c] / kPixels, squares[c] / kPixels);
+        float const pixels = float(window_ * window_);
+        for (int c = 0; c < 3; ++c) v[c] = clamped(v[c], mean[c] / pixels, squares[c] / pixels);
         return v;
     }
     vec3 direct_at(int x, int y) const
@@ -101,7 +105,8 @@ private:
     }
 
     Layer const &l1_, &albedo_;
-    int width_, height_;
+    int width_, height_, window_;
+    float spread_;
     bool few_;
     cv::Mat mean_, squares_; ///< 3 channels
 };
@@ -166,7 +171,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
         return;
     }
     bool const few = std::size_t(std::ranges::count(takes, 1)) > 3 * pixels / 4;
-    Neighbourhoods const neighbourhoods(l1, albedo, width, height, few);
+    Neighbourhoods const neighbourhoods(l1, albedo, width, height, few, settings_);
     // True if a surface still shows now, in a pixel next to this one.
     auto const is_beside = [&](Surface const& s, int x, int y) {
         for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)

@@ -20,6 +20,10 @@ namespace gi {
 
 struct TemporalSettings {
     int most_frames = 16; ///< >= 1; 1 = no reuse
+    /// Earlier L1 is clamped to the mean +- `spread` standard deviations of a window of so many pixels. Small ones
+    /// follow shadows, but where light is found by few paths, windows without any make pictures dark.
+    int window = 5;
+    float spread = 1;
 };
 
 /// What has changed since the previous frame.

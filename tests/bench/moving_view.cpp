@@ -2,12 +2,14 @@
 // recorded head, and what they show at given moments is compared with converged pictures of those moments.
 //   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--size WxH] [--eyes 1|2] [--fov
 //   DEG]
-//                     [--avatar FILE] [--scored N] [--set KEY=VALUE]...
+//                     [--avatar FILE] [--scored N] [--set KEY=VALUE]... [--offline HZ] [--light-scale S] [--young
+//                     N]
 // HEAD.csv: time_s, then the head relative to the scene's first camera: x_m,y_m,z_m (right, up, back), yaw_deg,
 // pitch_deg (left, up). --fov is the vertical field of view (60). The truth is that of the method reference at the
 // session's bounces; it is kept in its folder and reused. With two eyes (0.063 m apart), rivalry is the mean
-// difference of the eyes' errors at points that both see.
-// Writes shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment, E eye) and prints a row of figures.
+// difference of the eyes' errors at points that both see. --offline: frames at a fixed rate instead of real time,
+// with light at a fixed scale; --young: N frames of a head that holds still, scored after 1, 2, 4, ... Writes
+// shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment, E eye) and prints a row of figures.
 
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
@@ -37,7 +39,7 @@ namespace fs = std::filesystem;
 struct Options {
     std::string scene, head, avatar;
     fs::path out, truth;
-    int truth_paths = 128, width = 640, height = 480, eyes = 1, scored = 8;
+    int truth_paths = 128, width = 640, height = 480, eyes = 1, scored = 8, young = 0;
     double fov_deg = 60, offline_hz = 0, light_scale = 0.25;
     std::vector<Change> settings;
 };
@@ -203,6 +205,7 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
     for (std::size_t k = 0; k < seen.size(); ++k) {
         std::vector<gi::Picture> truth;
         std::vector<std::vector<unsigned char>> right;
+        double flip_of_moment = 0;
         for (std::size_t e = 0; e < std::size_t(o.eyes); ++e) {
             // Moments of different runs differ by some ms: the truth is made for each.
             if (!exact) {
@@ -243,6 +246,7 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
             std::vector<float> const error =
                 gi::flip(decoded(seen[k].shown[e]), decoded(right.back()), o.width, o.height);
             flip_sum += mean(error) / double(o.eyes) / double(seen.size());
+            flip_of_moment += mean(error);
             flip_most = std::max(flip_most, mean(error));
             std::vector<unsigned char> grey;
             for (float const v : error)
@@ -254,8 +258,10 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
             save("truth", right.back());
             save("error", grey);
         }
-        if (o.eyes == 2)
-            rivalry_sum += rivalry(seen[k], truth, right, origin, o.width, o.height) / double(seen.size());
+        double const rival = o.eyes == 2 ? rivalry(seen[k], truth, right, origin, o.width, o.height) : 0;
+        rivalry_sum += rival / double(seen.size());
+        if (o.young > 0)
+            fmt::print("  frame {}: FLIP {:.4f}, rivalry {:.2f}/255\n", 1 << k, flip_of_moment / o.eyes, rival);
     }
     fmt::print("  FLIP {:.4f} (most of a moment {:.4f}){}\n", flip_sum, flip_most,
                o.eyes == 2 ? fmt::format("; rivalry {:.2f}/255", rivalry_sum) : "");
@@ -265,8 +271,8 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
 void render_offline(Options const& o, RenderSession& session, Walk& walk, std::vector<Seen>& seen)
 {
     int const frames = int(walk.seconds() * o.offline_hz);
-    for (int f = 0, k = 0; f < frames && k < o.scored; ++f) {
-        double const t = f / o.offline_hz;
+    for (int f = 0, k = 0; o.young > 0 ? f < o.young : f < frames && k < o.scored; ++f) {
+        double const t = o.young > 0 ? 0 : f / o.offline_hz;
         Viewpoint const at = walk.at(t, 1 / o.offline_hz);
         FrameCommand command;
         command.frame = std::uint64_t(f);
@@ -281,7 +287,7 @@ void render_offline(Options const& o, RenderSession& session, Walk& walk, std::v
                 v.width = int(v.width * o.light_scale), v.height = int(v.height * o.light_scale);
         }
         SessionFrame const frame = session.render(command, {});
-        if (t < 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored) continue;
+        if (o.young > 0 ? ((f + 1) & f) != 0 : t < 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored) continue;
         ++k;
         Seen s{at, t, {}};
         for (ViewPicture const& v : frame.views) {
@@ -331,6 +337,10 @@ void run(Options const& o)
     std::vector<Seen> seen;
     if (o.offline_hz > 0) {
         render_offline(o, session, walk, seen);
+        fmt::print("{} {} {}x{} x{}\n", o.scene, o.young > 0 ? "still" : fs::path(o.head).stem().string(), o.width,
+                   o.height, o.eyes);
+        for (auto const& [what, n] : report.counts()) fmt::print("  {}: {:.6g}\n", what, n);
+        for (auto const& [stage, s] : report.times()) fmt::print("  {}: {:.2f} s\n", stage, s);
         return score(o, scenes, seen, origin);
     }
     int presented = 0;
@@ -438,6 +448,8 @@ try {
             o.fov_deg = std::stod(value());
         else if (a == "--offline")
             o.offline_hz = std::stod(value());
+        else if (a == "--young")
+            o.young = std::stoi(value());
         else if (a == "--light-scale")
             o.light_scale = std::stod(value());
         else if (a == "--avatar")

@@ -121,6 +121,27 @@ TEST(RenderSession, WhatStandsStillConvergesToTheReference)
     EXPECT_NEAR(mean(color(frame, 1)) / mean(color(truth, 1)), 1, 0.02);
 }
 
+TEST(RenderSession, FirefliesAreClampedForTheFilterAndKeptInTheMean)
+{
+    // Once a still picture is no longer filtered, it is the mean of all light, as if it had never been.
+    gi::Report report, plain_report;
+    RenderSession filtered = started(report), plain = started(plain_report);
+    plain.apply({"denoise", "none"});
+    SessionFrame a, b;
+    for (std::uint64_t f = 0; f < 49; ++f) {
+        a = filtered.render(command(f, 0, true), {});
+        b = plain.render(command(f, 0, true), {});
+    }
+    for (std::size_t eye = 0; eye < 2; ++eye)
+        EXPECT_EQ(a.views[eye].picture.find("color")->data, b.views[eye].picture.find("color")->data);
+    std::map<std::string, double> const counts = report.counts();
+    ASSERT_TRUE(counts.contains("fireflies clamped"));
+    EXPECT_GE(counts.at("fireflies clamped"), counts.at("fireflies clamped, as the other eye does not see them"));
+    EXPECT_GT(counts.at("pixels searched for fireflies"), 48 * 2 * 40 * 30 / 2);
+    EXPECT_LT(counts.at("light of fireflies spread around them, share"), 0.1);
+    EXPECT_FALSE(plain_report.counts().contains("fireflies clamped"));
+}
+
 TEST(RenderSession, ComparesTwoMethods)
 {
     gi::Report report;

@@ -88,11 +88,12 @@ void ViewCore::load(std::string const& name, std::function<void(std::string cons
             if (failure) return state.inbox.put([this, failure, done] { not_loaded(failure, done); });
             renderer->adopt(made, known ? LiveRenderer::SceneKnown::yes : LiveRenderer::SceneKnown::no,
                             [this, done](RenderSession const& s, std::uint64_t number) {
-                                state.inbox.put([this, done, number, facts = facts_of(s), scene = s.shown_scene()] {
-                                    loaded(facts, scene);
-                                    resumes_ = number;
-                                    if (done) done({});
-                                });
+                                state.inbox.put(
+                                    [this, done, number, facts = facts_of(s), scene = s.shown_scene()] {
+                                        loaded(facts, scene);
+                                        resumes_ = number;
+                                        if (done) done({});
+                                    });
                             });
         });
 }

@@ -28,7 +28,7 @@ namespace {
 
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
 constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture,
-constexpr double kDrawings = 3;         // but at most a third of the time: software drivers take it from the renderer
+constexpr double kDrawings = 3; // but at most a third of the time: software drivers take it from the renderer
 constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
 double steady_s()
@@ -311,9 +311,8 @@ private:
         if (presenting_->busy()) return;
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
-        bool const moved =
-            state_.settings.reproject && link_ == nullptr && has_moved() &&
-            since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_);
+        bool const moved = state_.settings.reproject && link_ == nullptr && has_moved() &&
+                           since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_);
         bool const flickers = state_.settings.view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
@@ -509,8 +508,8 @@ private:
     std::optional<UserTracking> tracking_;
     Gamepads gamepads_;
     DisplayWindows shown_;
-    std::optional<Wands> wands_;   ///< of a display, not on ranks that follow
-    Panel* panel_ = nullptr; ///< of the first window, for the user; not on the walls of a display
+    std::optional<Wands> wands_; ///< of a display, not on ranks that follow
+    Panel* panel_ = nullptr;     ///< of the first window, for the user; not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown

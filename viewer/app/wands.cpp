@@ -74,8 +74,9 @@ void Wands::toggle(std::optional<RoomPose> const& wand, ViewState& state)
     if (wand) hit = hit_wall(display_, *wand, rank_);
     if (wand && !hit) elsewhere = hit_wall(display_, *wand);
     if (!hit) {
-        auto const own = std::find_if(display_.walls.begin(), display_.walls.end(),
-                                      [this](Wall const& w) { return (rank_ < 0 || w.rank == rank_) && !w.surface; });
+        auto const own = std::find_if(display_.walls.begin(), display_.walls.end(), [this](Wall const& w) {
+            return (rank_ < 0 || w.rank == rank_) && !w.surface;
+        });
         if (own == display_.walls.end()) {
             state.message = "no flat wall of this process can show the menu";
             return;

@@ -1,6 +1,7 @@
 #include "viewer/engine/method_runner.h"
 
 #include "gi/filter/filter_names.h"
+#include "viewer/engine/same_surfaces.h"
 
 #include <limits>
 #include <tbb/parallel_for.h>
@@ -82,6 +83,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
 {
     left_out_punctual_ = renderer_->leave_out_punctual(leaves_out_punctual) && leaves_out_punctual;
     if (!first_ || ahead_) renderer_->changed(changes);
+    bool const small = command.light_scale < 1;
     bool anything_moved = first_ || seen_.size() != command.views.size() || changes.any();
     seen_.resize(command.views.size());
     std::vector<bool> moved(command.views.size());
@@ -89,14 +91,18 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         ViewCommand const& now = command.views[k];
         Seen& s = seen_[k];
         bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
-                          s.most_frames == settings.reuse && s.punctual != left_out_punctual_;
-        if (!same) s.reuse = std::make_unique<gi::TemporalReuse>(gi::TemporalSettings{settings.reuse});
+                          s.most_frames == settings.reuse && s.punctual != left_out_punctual_ && s.small == small;
+        if (!same)
+            s.reuse = std::make_unique<gi::TemporalReuse>(small ? gi::TemporalSettings{settings.reuse, 17, 2}
+                                                                : gi::TemporalSettings{settings.reuse});
+        s.small = small;
         moved[k] = !same || !(s.camera == now.camera) || s.hidden != hidden[k];
         anything_moved |= moved[k];
         gi::CameraRays const rays = gi::camera_rays(now.camera, now.width, now.height, origin_);
         bool const follows = s.name == now.name && s.width == now.width && s.height == now.height;
-        s = {now.name,  now.camera,         now.width,  now.height, std::move(s.reuse),     settings.reuse,
-             hidden[k], std::move(s.light), s.punctual, rays,       follows ? s.rays : rays};
+        s = {now.name,           now.camera,     now.width, now.height,
+             std::move(s.reuse), settings.reuse, hidden[k], std::move(s.light),
+             s.punctual,         small,          rays,      follows ? s.rays : rays};
     }
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
@@ -114,13 +120,29 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     auto const sharing = cached ? gi::VertexSharing::cached : gi::VertexSharing::exact;
     renderer_->update_axes(settings.has_automatic_schedule() ? settings.updated_axes : 0);
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
+    std::vector<gi::MirrorLayers> mirrors;
     for (std::size_t k = 0; k < results.size(); ++k)
-        finish(k, results, views[k].partner, scene_change(changes, moved[k]), settings, seen);
+        mirrors.push_back(reuse(k, results, views[k].partner, scene_change(changes, moved[k]), settings, seen));
+    if (is_filtered(results[0], settings)) clamp(results, command.views);
+    for (std::size_t k = 0; k < results.size(); ++k)
+        finish(k, results, views[k].partner, settings, seen, mirrors[k]);
     return results;
 }
 
-void MethodRunner::finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner,
-                          gi::SceneChange change, Settings const& settings, gi::SeenSurfaces* seen)
+gi::ReusedLight MethodRunner::taken(std::size_t view, int partner, Results const& results) const
+{
+    if (results[view].light_from.empty()) return {};
+    return {&results[std::size_t(partner)].picture, results[view].light_from};
+}
+
+bool MethodRunner::is_filtered(gi::RenderResult const& result, Settings const& settings) const
+{
+    return still_ <= kFilteredFrames &&
+           gi::can_filter(denoise_settings(settings, threads_), result.paths, settings.reuse > 1);
+}
+
+gi::MirrorLayers MethodRunner::reuse(std::size_t view, Results& results, int partner, gi::SceneChange change,
+                                     Settings const& settings, gi::SeenSurfaces* seen)
 {
     gi::RenderResult& result = results[view];
     Seen& own = seen_[view];
@@ -131,12 +153,6 @@ void MethodRunner::finish(std::size_t view, std::vector<gi::RenderResult>& resul
         seen->look(own.rays, own.width, own.height);
         mirrors = gi::describe_mirrored(*seen, own.rays, own.earlier, origin_, result.picture);
     }
-    gi::ReusedLight taken;
-    gi::TemporalReuse const* past = nullptr;
-    if (!result.light_from.empty()) {
-        taken = {&results[std::size_t(partner)].picture, result.light_from};
-        past = seen_[std::size_t(partner)].reuse.get();
-    }
     if (settings.reuse > 1) {
         gi::StageTimer const timer(report_, "temporal reuse");
         without_motion(result.picture);
@@ -145,17 +161,56 @@ void MethodRunner::finish(std::size_t view, std::vector<gi::RenderResult>& resul
                 own.punctual ? (left_out_punctual_ ? -1.0f : 0.0f) : (left_out_punctual_ ? 0.0f : 1.0f);
             own.reuse->begin_with(known_light(*own.light, result.picture, origin_, add, seen, own.rays));
         }
-        own.reuse->add(result.picture, change, past, taken.from);
+        gi::ReusedLight const from = taken(view, partner, results);
+        own.reuse->add(result.picture, change, from.partner ? seen_[std::size_t(partner)].reuse.get() : nullptr,
+                       from.from);
     }
     own.punctual = !left_out_punctual_;
-    gi::DenoiseSettings const filter = denoise_settings(settings, threads_);
-    if (gi::can_filter(filter, result.paths, settings.reuse > 1) && still_ <= kFilteredFrames) {
+    return mirrors;
+}
+
+void MethodRunner::clamp(Results& results, std::span<ViewCommand const> views)
+{
+    gi::StageTimer const timer(report_, "fireflies");
+    std::vector<std::vector<gi::Firefly>> found;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        gi::FireflyView view{&results[k].picture, results[k].light_from, nullptr, {}};
+        // The other eye: a view's partner, or the view whose partner it is, unless that has taken its light.
+        std::size_t other = results.size();
+        for (std::size_t j = 0; j < results.size(); ++j)
+            if (views[k].partner == int(j) || (views[j].partner == int(k) && results[j].light_from.empty()))
+                other = j;
+        std::vector<std::uint32_t> same;
+        if (other < results.size()) {
+            view.other = &results[other].picture;
+            same = same_surfaces(*view.picture, *view.other, seen_[other].rays, origin_);
+            view.same = same;
+        }
+        found.push_back(gi::find_fireflies(view, fireflies_));
+    }
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        gi::clamp_fireflies(results[k].picture, found[k]);
+    }
+    report_.count("fireflies clamped", double(fireflies_.clamped));
+    report_.count("fireflies clamped, as the other eye does not see them", double(fireflies_.by_eye));
+    report_.count("pixels searched for fireflies", double(fireflies_.pixels));
+    report_.count("light of fireflies spread around them, share",
+                  fireflies_.light > 0 ? fireflies_.moved / fireflies_.light : 0);
+}
+
+void MethodRunner::finish(std::size_t view, Results& results, int partner, Settings const& settings,
+                          gi::SeenSurfaces* seen, gi::MirrorLayers const& mirrors)
+{
+    gi::RenderResult& result = results[view];
+    Seen& own = seen_[view];
+    if (is_filtered(result, settings)) {
         gi::StageTimer const timer(report_, "denoise");
-        gi::DenoiseReport const done = gi::denoise(result.picture, filter, taken);
+        gi::DenoiseReport const done =
+            gi::denoise(result.picture, denoise_settings(settings, threads_), taken(view, partner, results));
         if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
     }
     own.light.reset();
-    if (seen != nullptr) own.light.emplace(result.picture, own.rays, origin_);
+    if (seen != nullptr && !own.rays.orthographic) own.light.emplace(result.picture, own.rays, origin_);
     gi::describe_mirrors(mirrors, result.picture);
 }
 

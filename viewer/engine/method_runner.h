@@ -1,6 +1,7 @@
 #pragma once
 // Runs one light-transport method on the frames of a render session, with its temporal reuse and filter.
 
+#include "gi/filter/fireflies.h"
 #include "gi/filter/temporal.h"
 #include "gi/methods/registry.h"
 #include "gi/surfaces/lit_picture.h"
@@ -47,14 +48,25 @@ private:
         std::unique_ptr<gi::TemporalReuse> reuse;
         int most_frames = 0;
         HiddenPixels hidden;
-        std::optional<gi::KeptLight> light; ///< of its last picture
-        bool punctual = true;               ///< the light of punctual lights is in its L1
-        gi::CameraRays rays{}, earlier{};   ///< of this frame and the one before
+        std::optional<gi::KeptLight> light;  ///< of its last picture
+        bool punctual = true, small = false; ///< small: of a picture of light that is smaller than the view;
+                                             ///< punctual: the light of punctual lights is in its L1
+        gi::CameraRays rays{}, earlier{};    ///< of this frame and the one before
     };
-    /// Applies temporal reuse and the filter to a view. @param partner  view whose light it may have reused; it
-    /// must be finished already
-    void finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner, gi::SceneChange change,
-                Settings const& settings, gi::SeenSurfaces* seen);
+    using Results = std::vector<gi::RenderResult>;
+    /// Light that a view has taken from another of the same frame.
+    gi::ReusedLight taken(std::size_t view, int partner, Results const& results) const;
+    /// Averages a view over frames, if there is temporal reuse. The partner must have been averaged already.
+    /// @return what pixels that show mirrors were
+    gi::MirrorLayers reuse(std::size_t view, Results& results, int partner, gi::SceneChange change,
+                           Settings const& settings, gi::SeenSurfaces* seen);
+    /// The views of this frame are filtered.
+    bool is_filtered(gi::RenderResult const& result, Settings const& settings) const;
+    /// Clamps the fireflies of all views.
+    void clamp(Results& results, std::span<ViewCommand const> views);
+    /// Filters a view, if it is young, and keeps its light. The partner must have been filtered already.
+    void finish(std::size_t view, Results& results, int partner, Settings const& settings, gi::SeenSurfaces* seen,
+                gi::MirrorLayers const& mirrors);
 
     gi::Report& report_;
     int threads_;
@@ -63,7 +75,8 @@ private:
     std::vector<Seen> seen_;
     bool first_ = true, left_out_punctual_ = false;
     bool ahead_;
-    int still_ = 0; ///< frames since the scene, a setting or the camera last changed
+    gi::FireflyCounts fireflies_; ///< of all frames
+    int still_ = 0;               ///< frames since the scene, a setting or the camera last changed
 };
 
 } // namespace viewer

@@ -213,7 +213,7 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
     }
     FrameCommand light = command; // the views of the pictures of light
     bool const smaller = command.light_scale < 1 && has_own_surfaces(command);
-    light.light_scale = 1;
+    if (!smaller) light.light_scale = 1;
     for (ViewCommand& v : light.views) {
         if (!smaller) break;
         v.width = std::max(1, int(std::lround(v.width * command.light_scale)));

@@ -143,7 +143,8 @@ std::vector<unsigned char> address_bytes(sockaddr_storage const& a)
         return std::vector<unsigned char>(first, first + sizeof address);
     };
     if (a.ss_family == AF_INET) return bytes(reinterpret_cast<sockaddr_in const&>(a).sin_addr);
-    return a.ss_family == AF_INET6 ? bytes(reinterpret_cast<sockaddr_in6 const&>(a).sin6_addr) : std::vector<unsigned char>();
+    return a.ss_family == AF_INET6 ? bytes(reinterpret_cast<sockaddr_in6 const&>(a).sin6_addr)
+                                   : std::vector<unsigned char>();
 }
 
 UdpReceiver::~UdpReceiver() { close(socket_); }

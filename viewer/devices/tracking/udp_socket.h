@@ -3,17 +3,17 @@
 
 #include <cstdint>
 #include <optional>
-#include <sys/socket.h>
 #include <span>
 #include <string>
+#include <sys/socket.h>
 #include <vector>
 
 namespace viewer {
 
 struct Datagram {
     std::vector<unsigned char> bytes;
-    double received_s = 0; ///< steady clock, when the kernel received it
-    bool cut = false;      ///< truncated, because it was too long
+    double received_s = 0;             ///< steady clock, when the kernel received it
+    bool cut = false;                  ///< truncated, because it was too long
     std::vector<unsigned char> from{}; ///< the sender's address, 4 or 16 bytes, without its port
 };
 

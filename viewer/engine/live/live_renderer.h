@@ -160,7 +160,7 @@ private:
     std::vector<Change> changes_;
     FrameCommand last_;
     Viewpoint last_look_;                         ///< that the last frame was made for, before it was moved on
-    std::uint64_t adopted_ = 0; ///< number of scenes so far
+    std::uint64_t adopted_ = 0;                   ///< number of scenes so far
     bool has_last_ = false, awaits_look_ = false; ///< awaits_look_: at a new scene
     double scene_s_ = 0, last_begun_s_ = 0;
     double last_scene_s_ = 0; ///< scene_s_ in the last frame
