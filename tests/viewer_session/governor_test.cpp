@@ -104,7 +104,7 @@ TEST(Governor, SurfacesShrinkWhereTheyTakeTooLongAndGrowAgain)
     SurfaceMachine const slow{0.002, 150e-9}, fast{0.001, 30e-9}; // 47 ms and 10 ms of 50 ms at full size
     std::vector<double> const shrunk = slow.run(g, 60);
     EXPECT_LT(shrunk.back(), 1);
-    EXPECT_LT(slow.surfaces_s({1, 0.25, shrunk.back()}), 0.5 / slow.rate_hz);
+    EXPECT_LT(slow.surfaces_s({1, 0.25, shrunk.back()}), 0.75 / slow.rate_hz);
     std::vector<double> const grown = fast.run(g, 200);
     EXPECT_EQ(grown.back(), 1);
     EXPECT_GE(grown[0], 0.5);

@@ -15,7 +15,7 @@ constexpr double kSurfaceScales[] = {1, 0.75, 0.5};
 constexpr int kMostPaths = 256;
 /// A larger picture must fit with this margin, because a change of size costs sharpness and reused light.
 constexpr double kToGrow = 1.15;
-constexpr double kForSurfaces = 0.5; // of the time between frames
+constexpr double kForSurfaces = 0.75; // of the time between frames: what is sharp counts more than the rate
 
 } // namespace
 
@@ -62,6 +62,7 @@ void Governor::measured(FrameBudget const& budget, double pixels, double seconds
     last_scale_ = budget.scale;
     rate_hz_ = rate_hz;
     if (!(surfaces_s > 0)) return;
+    if (++drawn_ <= kFirstFrames) return; // they build what lasts
     to_wait_ = std::max(0, to_wait_ - 1);
     if (budget.surfaces != surfaces_) {
         surface_s_ = 0;

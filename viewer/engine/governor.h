@@ -35,8 +35,10 @@ private:
 
     double work_ = 1e5; ///< of the next frame, in paths
     double last_scale_ = 0;
-    double surface_s_ = 0;                ///< per frame at the scale surfaces_, smoothed; 0 = unknown
-    double surfaces_ = 1;                 ///< scale of the last frame's
+    double surface_s_ = 0; ///< per frame at the scale surfaces_, smoothed; 0 = unknown
+    double surfaces_ = 1;  ///< scale of the last frame's
+    int drawn_ = 0;        ///< frames with such surfaces
+    static constexpr int kFirstFrames = 3;
     int to_wait_ = 0, wait_ = kFirstWait; ///< frames until surfaces may grow; the same after they shrank next
     static constexpr int kFirstWait = 16, kLongestWait = 512;
     double rate_hz_ = 20; ///< of the last frame
