@@ -51,7 +51,6 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Any call throws RankLoss if this rank must stop; after that only the destructor may be called.
 /// How a rank ended, as the leader knows at the end.
 struct RankEnd {
     int rank = 0;
@@ -60,6 +59,7 @@ struct RankEnd {
     std::string farewell; ///< its last words; empty = none came
 };
 
+/// Any call throws RankLoss if this rank must stop; after that only the destructor may be called.
 class Cluster {
 public:
     /// Waits for all ranks. Throws InputError, on all ranks, if their identities differ.
