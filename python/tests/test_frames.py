@@ -98,7 +98,7 @@ def test_a_stimulus_brings_its_scene_and_settings_and_leaves_none_behind():
     frames.show(stimulus(scene="cornell", bounces="0"))
     assert frames.scene == "cornell" and frames.get("bounces") == 0
     frames.show(stimulus(scene="cornell"))
-    assert frames.get("bounces") == 3
+    assert frames.get("bounces") == 64
     with pytest.raises(lightwell.InputError, match="no_such"):
         frames.show(stimulus(scene="cornell", no_such="1"))
 

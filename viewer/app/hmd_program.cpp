@@ -147,6 +147,7 @@ private:
         at.world_from_room = world_from_room();
         at.tracked = frame.tracked;
         if (UserBody* const body = bodies_.first()) body->stand(at.tracked, at.world_from_room, seconds);
+        at.jump = state_.navigation.jump();
         std::array<gi::Camera, 2> now;
         for (std::size_t eye = 0; eye < 2; ++eye) {
             now[eye] = frame.views[eye].camera;

@@ -254,6 +254,7 @@ private:
             layout = desktop_layout(state_, possible_mode(), window_sizes());
         }
         at.views = std::move(layout.views);
+        at.jump = state_.navigation.jump();
         if (link_ == nullptr) {
             cameras_.clear();
             for (ViewCommand const& v : at.views) cameras_.push_back(v.camera);

@@ -1,6 +1,7 @@
 #include "viewer/engine/live/navigation.h"
 
 #include <algorithm>
+#include <atomic>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace viewer {
@@ -32,6 +33,8 @@ Navigation::Navigation(dmat4 const& world_from_camera, double speed_m_s, dvec3 p
 
 void Navigation::go_to(dmat4 const& world_from_camera)
 {
+    static std::atomic<std::uint64_t> jumps{0};
+    jump_ = ++jumps;
     dvec3 const back = glm::normalize(dvec3(world_from_camera[2]));
     position_ = dvec3(world_from_camera[3]);
     standing_.reset();

@@ -37,6 +37,8 @@ public:
     /// @param seconds  since the last step; at most 0.1 counts
     void step(NavigationInput const& input, double seconds);
 
+    /// A number of its own for each place that was not walked to: the start, and where go_to led.
+    std::uint64_t jump() const { return jump_; }
     gi::dvec3 position() const { return position_; }
     /// Rigid, without roll.
     gi::dmat4 world_from_camera() const;
@@ -53,6 +55,7 @@ private:
     std::shared_ptr<Ground const> ground_;
     std::optional<WalkStance> standing_; ///< while walking, from the first step on
     double eye_height_m_ = 1.6;
+    std::uint64_t jump_ = 0;
 };
 
 } // namespace viewer

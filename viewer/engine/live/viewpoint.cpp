@@ -70,7 +70,7 @@ void Anticipation::see(Viewpoint const& now)
                                             return a.name == b.name && a.camera.name == b.camera.name &&
                                                    a.camera.off_axis.has_value() == b.camera.off_axis.has_value();
                                         });
-    if (!same_people || jumps(now)) seen_.clear();
+    if (!same_people || seen_.back().jump != now.jump || jumps(now)) seen_.clear();
     seen_.push_back(now);
     while (seen_.size() > 2 && now.time_s() - seen_[1].time_s() >= kBaseline_s) seen_.pop_front();
 }

@@ -15,6 +15,7 @@ struct Viewpoint {
     Tracked tracked;
     std::vector<Tracked> others;    ///< as in FrameCommand
     std::vector<ViewCommand> views; ///< at full size
+    std::uint64_t jump = 0;         ///< Navigation::jump
 
     double time_s() const { return valid_s < 0 ? pose_s : valid_s; }
 };
