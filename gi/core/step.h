@@ -2,6 +2,8 @@
 // Where long work is: what loads and builds says its steps, and whoever shows progress hears them, on the same
 // thread.
 
+#include "gi/core/progress.h"
+
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -19,13 +21,16 @@ struct Step {
 /// (Interrupted, when the work should end) leaves the work.
 class StepListener {
 public:
-    explicit StepListener(std::function<void(Step const&)> hear);
+    /// @param stop  of the work, must outlive this object; null = it cannot be stopped between steps
+    explicit StepListener(std::function<void(Step const&)> hear, StopRequest const* stop = nullptr);
     ~StepListener();
     StepListener(StepListener const&) = delete;
     StepListener& operator=(StepListener const&) = delete;
 
 private:
     friend void at_step(char const*, std::uint64_t, std::uint64_t);
+    friend StopRequest const* stop_of_steps();
+    StopRequest const* stop_;
     std::function<void(Step const&)> hear_;
     StepListener* before_;
 };
@@ -33,5 +38,7 @@ private:
 /// Says that this thread's work begins a step, or has done `done` parts of it. Throws what the listener throws, so
 /// call it only where the work may be abandoned; on a thread without a listener it does nothing.
 void at_step(char const* what, std::uint64_t done = 0, std::uint64_t of = 0);
+/// Whether this thread's work should stop, for long parts of a step; null on a thread without such a listener.
+StopRequest const* stop_of_steps();
 
 } // namespace gi

@@ -1,5 +1,6 @@
 #include "viewer/offline/first_view.h"
 
+#include "gi/core/step.h"
 #include "gi/render/exact_visibility.h"
 
 #include <algorithm>
@@ -36,7 +37,10 @@ std::vector<vec3> sphere_directions()
 class Explorer {
 public:
     explicit Explorer(gi::World const& world)
-        : world_(world), rays_(world, false, 0), directions_(sphere_directions()), part_(detailed_part(world))
+        : world_(world),
+          rays_(world, false, 0, ~std::size_t(0), gi::stop_of_steps()),
+          directions_(sphere_directions()),
+          part_(detailed_part(world))
     {
         add_room();
         size_ = part_.high - part_.low;

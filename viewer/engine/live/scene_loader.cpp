@@ -66,12 +66,14 @@ struct SceneLoader::Load {
         BackgroundPriority const priority;
         std::exception_ptr failure;
         try {
-            gi::StepListener const listener([this](gi::Step const& now) {
-                if (stop.requested()) throw gi::Interrupted();
-                std::lock_guard const lock(mutex);
-                step = now;
-                fraction = std::max(fraction, fraction_of(now));
-            });
+            gi::StepListener const listener(
+                [this](gi::Step const& now) {
+                    if (stop.requested()) throw gi::Interrupted();
+                    std::lock_guard const lock(mutex);
+                    step = now;
+                    fraction = std::max(fraction, fraction_of(now));
+                },
+                &stop);
             work();
             if (stop.requested()) throw gi::Interrupted();
         } catch (...) {
