@@ -1,5 +1,7 @@
 #include "gi/render/interleaving.h"
 
+#include "gi/render/surface_likeness.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,11 +17,9 @@ constexpr float kDarkest = 1e-3f;
 /// without a similar neighbour still get light instead of turning dark.
 float likeness(PathSample const& to, PathSample const& from)
 {
-    constexpr float kPlane = 0.005f, kLeast = 1e-4f; // distance to the plane, relative to the depth
-    float const cosine = std::max(0.0f, glm::dot(to.normal, from.normal));
+    constexpr float kPlane = 0.005f; // distance to the plane, relative to the depth
     float const off = glm::dot(to.normal, from.position - to.position) / (kPlane * std::max(to.depth, 1e-6f));
-    float const cosine2 = cosine * cosine, cosine8 = cosine2 * cosine2 * cosine2 * cosine2;
-    return kLeast + cosine8 / (1 + off * off * off * off);
+    return kLeastLikeness + surface_likeness(to.normal, from.normal, off);
 }
 
 } // namespace

@@ -1,16 +1,16 @@
 #include "gi/surfaces/kept_light.h"
 
 #include "gi/filter/filter_input.h"
+#include "gi/render/surface_likeness.h"
 
 #include <tbb/parallel_for.h>
 
 namespace gi {
-
 namespace {
-/// Distance from the plane of a surface at which another one begins, relative to the depth and to a pixel's width.
+
+/// Distance from the plane of a surface at which another one begins, relative to the depth.
 constexpr float kOfDepth = 0.005f;
-/// Weight of a dissimilar surface: small objects between pixels get the light around them instead of none.
-constexpr float kLeast = 1e-4f;
+
 } // namespace
 
 struct KeptLight::Sum {
@@ -19,7 +19,7 @@ struct KeptLight::Sum {
 
     void add(Texel const& t, float weight, float like)
     {
-        vec3 w{weight * (like + kLeast)};
+        vec3 w{weight * (like + kLeastLikeness)};
         for (int c = 0; c < 3; ++c)
             if ((t.dark >> c & 1) != 0) w[c] = 0;
         direct += w * t.direct;
@@ -64,10 +64,7 @@ KeptLight::KeptLight(Picture const& picture, CameraRays const& camera, dvec3 ori
 
 float KeptLight::likeness(Texel const& t, vec3 position, vec3 normal)
 {
-    float const cosine = std::max(0.0f, glm::dot(t.normal, normal));
-    float const off = glm::dot(t.normal, position - t.position) * t.reach;
-    float const cosine2 = cosine * cosine, cosine8 = cosine2 * cosine2 * cosine2 * cosine2;
-    return cosine8 / (1 + off * off * off * off);
+    return surface_likeness(t.normal, normal, glm::dot(t.normal, position - t.position) * t.reach);
 }
 
 FoundLight KeptLight::find(vec3 position, vec3 normal, vec2 place) const

@@ -21,7 +21,7 @@ class KeptLight {
 public:
     static constexpr float kUnlike = 0.01f;
 
-    /// Needs the layers L1, L2, albedo, normal, position and depth (throws InputError if one is missing).
+    /// Needs the layers L1, L2, albedo, normal and position (throws InputError if one is missing).
     /// @param origin  of the world, from which camera and later positions are measured
     KeptLight(Picture const& picture, CameraRays const& camera, dvec3 origin);
 
@@ -31,7 +31,6 @@ public:
     /// The same, for a place in this picture, in its pixels from the top left corner.
     FoundLight find(vec3 position, vec3 normal, vec2 place) const;
 
-    CameraRays const& camera() const { return camera_; }
     int width() const { return width_; }
     int height() const { return height_; }
 

@@ -1,6 +1,5 @@
 #include "gi/surfaces/lit_picture.h"
 
-#include <mutex>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 

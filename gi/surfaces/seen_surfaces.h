@@ -1,7 +1,7 @@
 #pragma once
-// The surfaces that a picture shows, one per pixel, without their light: the nearest one by rasterisation; where
-// that is a mirror or a pane, the one that it shows, found by exact rays. A surface seen in a mirror is described
-// as its image behind the mirror: where it seems to be and how it seems to face.
+// The surfaces that a picture shows, one per pixel, and the light of a few punctual lights on them: the nearest
+// one by rasterisation; where that is a mirror or a pane, the one that it shows, found by exact rays. A surface
+// seen in a mirror is described as its image behind the mirror: where it seems to be and how it seems to face.
 
 #include "gi/raster/cut_outs.h"
 #include "gi/render/exact_visibility.h"

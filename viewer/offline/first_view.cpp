@@ -36,11 +36,12 @@ std::vector<vec3> sphere_directions()
 
 class Explorer {
 public:
-    explicit Explorer(gi::World const& world)
+    /// @param part  of the world, where places are looked for
+    Explorer(gi::World const& world, gi::Bounds const& part)
         : world_(world),
           rays_(world, false, 0, ~std::size_t(0), gi::stop_of_steps()),
           directions_(sphere_directions()),
-          part_(detailed_part(world))
+          part_(part)
     {
         add_room();
         size_ = part_.high - part_.low;
@@ -54,6 +55,7 @@ public:
         std::vector<vec3> const all = places();
         std::size_t inside = 0;
         for (vec3 const place : all) {
+            gi::at_step("first camera");
             std::vector<gi::Hit> const hits = look_around(place);
             if (enclosure(hits) < kInside) continue;
             ++inside;
@@ -263,9 +265,13 @@ gi::Bounds detailed_part(gi::World const& world)
     if (corners.empty()) return part;
     auto const cut = std::size_t(kCut * double(corners.size()));
     for (int axis = 0; axis < 3; ++axis) {
-        std::ranges::sort(corners, {}, [axis](vec3 p) { return p[axis]; });
-        float const low = corners[cut][axis], high = corners[corners.size() - 1 - cut][axis],
-                    more = float(kWiden) * (high - low);
+        gi::at_step("first camera");
+        auto const at = [&](std::size_t rank) {
+            auto const nth = corners.begin() + std::ptrdiff_t(rank);
+            std::ranges::nth_element(corners, nth, {}, [axis](vec3 p) { return p[axis]; });
+            return (*nth)[axis];
+        };
+        float const low = at(cut), high = at(corners.size() - 1 - cut), more = float(kWiden) * (high - low);
         part.low[axis] = std::max(world.bounds.low[axis], low - more);
         part.high[axis] = std::min(world.bounds.high[axis], high + more);
     }
@@ -278,7 +284,7 @@ std::optional<gi::Camera> view_from_inside(gi::World const& world, double fov_de
     gi::Bounds const part = detailed_part(world);
     vec3 const size = part.high - part.low;
     if (!(std::min(size.x, std::min(size.y, size.z)) > 0)) return {}; // flat: nobody can be inside
-    return Explorer(world).best(fov_deg);
+    return Explorer(world, part).best(fov_deg);
 }
 
 gi::Camera view_from_outside(gi::World const& world, gi::Bounds const& bounds, double fov_deg)

@@ -98,7 +98,7 @@ Viewpoint Anticipation::at(double now_s, double time_s) const
 {
     Viewpoint v = seen_.empty() ? Viewpoint{} : seen_.back();
     if (seen_.size() < 2 || now_s - v.pose_s > kForgotten_s) return v;
-    Viewpoint const &before = seen_.front(), last = seen_[seen_.size() - 2];
+    Viewpoint const &before = seen_.front(), &last = seen_[seen_.size() - 2];
     double const over_s = v.time_s() - before.time_s(),
                  ahead_s = std::clamp(time_s - v.time_s(), 0.0, kFarthest_s);
     bool const stands = same_cameras(last.views, v.views) && last.tracked == v.tracked && last.others == v.others;
