@@ -113,15 +113,70 @@ private:
 
 } // namespace
 
-/// Adds this frame's light to an earlier mean.
-void TemporalReuse::Light::add_to(KnownLight const& before, vec2 variance_before, int most_frames)
+/// Adds this frame's light to earlier means.
+void TemporalReuse::Light::add_to(Light const& before, TemporalSettings const& settings)
 {
-    frames = std::min(before.frames + 1, float(most_frames));
-    float const share = 1 / frames;
+    frames = std::min(before.frames + 1, float(std::max(settings.most_frames, settings.most_unchanged)));
+    float const share = 1 / frames, recent = std::max(share, 1 / float(settings.most_frames));
     vec2 const step{luminance(direct - before.direct), luminance(indirect - before.indirect)};
-    variance = (1 - share) * (variance_before + share * step * step);
+    variance = (1 - share) * (before.variance + share * step * step);
+    recent_direct = glm::mix(before.recent_direct, direct, recent);
+    recent_indirect = glm::mix(before.recent_indirect, indirect, recent);
     direct = glm::mix(before.direct, direct, share);
     indirect = glm::mix(before.indirect, indirect, share);
+}
+
+void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
+{
+    // Standard errors of the mean difference in a window (a quarter of whose pixels are independent, since means
+    // are interpolated), and relative difference: below the first, light is unchanged; from the second on, it is
+    // new.
+    constexpr int kWindow = 7;
+    constexpr float kIndependent = 0.25f;
+    constexpr vec2 kErrors{1.5f, 3}, kRelative{0.01f, 0.03f};
+    // Channels: differences of direct and indirect light, the means, number of pixels with a surface.
+    using Values = cv::Vec<float, 5>;
+    cv::Mat values(height, width, CV_32FC(5)), squares(height, width, CV_32FC2);
+    tbb::parallel_for(0, height, [&](int y) {
+        for (int x = 0; x < width; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            Light const& l = lights_[i];
+            bool const is_surface = surfaces_[i].depth > 0;
+            float const d1 = is_surface ? luminance(l.recent_direct - l.direct) : 0,
+                        d2 = is_surface ? luminance(l.recent_indirect - l.indirect) : 0;
+            values.at<Values>(y, x) = {d1, d2, is_surface ? luminance(l.direct) : 0,
+                                       is_surface ? luminance(l.indirect) : 0, float(is_surface)};
+            squares.at<cv::Vec2f>(y, x) = {d1 * d1, d2 * d2};
+        }
+    });
+    cv::Size const size(kWindow, kWindow);
+    cv::boxFilter(values, values, CV_32F, size, {-1, -1}, false, cv::BORDER_CONSTANT);
+    cv::boxFilter(squares, squares, CV_32F, size, {-1, -1}, false, cv::BORDER_CONSTANT);
+    tbb::combinable<double> renewed;
+    tbb::parallel_for(0, height, [&](int y) {
+        double& sum = renewed.local();
+        for (int x = 0; x < width; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            Light& l = lights_[i];
+            if (!(surfaces_[i].depth > 0) || !(l.frames > float(settings_.most_frames))) continue;
+            Values const& v = values.at<Values>(y, x);
+            float const n = v[4], whole = std::max(v[2] + v[3], 1e-20f);
+            float most = 0;
+            for (int k = 0; k < 2; ++k) {
+                float const mean = v[k] / n,
+                            variance = std::max(0.0f, squares.at<cv::Vec2f>(y, x)[k] / n - mean * mean),
+                            error = std::sqrt(variance / std::max(1.0f, kIndependent * n));
+                most =
+                    std::max(most, glm::smoothstep(kErrors.x * error, kErrors.y * error + 1e-20f, std::abs(mean)) *
+                                       glm::smoothstep(kRelative.x, kRelative.y, std::abs(v[k]) / whole));
+            }
+            l.direct = glm::mix(l.direct, l.recent_direct, most);
+            l.indirect = glm::mix(l.indirect, l.recent_indirect, most);
+            l.frames = glm::mix(l.frames, 0.5f * float(settings_.most_frames), most); // the shorter one lags, too
+            sum += most;
+        }
+    });
+    total.renewed += renewed.combine(std::plus<>());
 }
 
 /// Averages the light of this frame with the surface's earlier light.
@@ -150,9 +205,13 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                 light.indirect = there.indirect;
                 light.frames = there.frames;
                 light.variance = there.variance;
+                light.recent_direct = there.recent_direct;
+                light.recent_indirect = there.recent_indirect;
             } else {
                 light.direct = over(rgb(l1, i), a);
                 light.indirect = over(rgb(l2, i), a);
+                light.recent_direct = light.direct;
+                light.recent_indirect = light.indirect;
                 light.frames = 1;
                 light.variance = vec2{0};
             }
@@ -164,7 +223,13 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
     });
     if (frames_ == 0) {
         for (std::size_t i = 0; i < known_.size() && i < pixels; ++i)
-            if (known_[i].frames > 0) lights_[i].add_to(known_[i], vec2{0}, settings_.most_frames);
+            if (KnownLight const& k = known_[i]; k.frames > 0) {
+                Light before{};
+                before.direct = before.recent_direct = k.direct;
+                before.indirect = before.recent_indirect = k.indirect;
+                before.frames = k.frames;
+                lights_[i].add_to(before, settings_);
+            }
         known_.clear();
         total.surfaces = total.started =
             std::size_t(std::ranges::count_if(surfaces_, [](Surface const& s) { return s.depth > 0; }));
@@ -220,6 +285,8 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                     Light const& l = last_lights_[t];
                     before.direct += w * l.direct;
                     before.indirect += w * l.indirect;
+                    before.recent_direct += w * l.recent_direct;
+                    before.recent_indirect += w * l.recent_indirect;
                     before.frames += w * l.frames;
                     before.variance += w * l.variance;
                     weight += w;
@@ -238,10 +305,16 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                 now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);
             }
             if (taken) continue;
-            vec3 const held = neighbourhoods.clamped(before.direct / weight, x, y);
-            local.held += held != before.direct / weight;
-            now.add_to({held, before.indirect / weight, before.frames / weight}, before.variance / weight,
-                       settings_.most_frames);
+            before.direct /= weight;
+            vec3 const held = neighbourhoods.clamped(before.direct, x, y);
+            local.held += held != before.direct;
+            before.direct = held;
+            before.recent_direct = neighbourhoods.clamped(before.recent_direct / weight, x, y);
+            before.indirect /= weight;
+            before.recent_indirect /= weight;
+            before.frames /= weight;
+            before.variance /= weight;
+            now.add_to(before, settings_);
         }
     });
     counts.combine_each([&](TemporalCounts const& c) {
@@ -249,6 +322,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
         total.started += c.started;
         total.held += c.held;
     });
+    if (settings_.most_unchanged > settings_.most_frames) renew_changed(width, height, total);
 }
 
 /// Adds one more picture of a static scene, and replaces it by a combination of both means.
@@ -271,8 +345,11 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
             for (std::size_t k = 0; k < 3; ++k) mean[k] = first ? now[k] : glm::mix(mean[k], now[k], 1 / n);
             Light const& light = lights_[i];
             // Frames since the last motion are in both means; earlier ones count while they are many in
-            // comparison.
-            float const earlier = std::max(0.0f, light.frames - n), share = first ? 1 : earlier / (earlier + n);
+            // comparison, those of long means for as many frames as those of others.
+            float const most = float(settings_.most_frames), surplus = std::max(0.0f, light.frames - most),
+                        earlier = std::max(0.0f, std::min(light.frames, most) - n) +
+                                  surplus * std::max(0.0f, 1 - n / most),
+                        share = first ? 1 : earlier / (earlier + n);
             vec3 const e0 = glm::mix(mean[0], light.l0, share),
                        e1 = glm::mix(mean[1], times(light.direct, light.albedo), share),
                        e2 = glm::mix(mean[2], times(light.indirect, light.albedo), share);

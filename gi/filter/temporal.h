@@ -5,11 +5,13 @@
 // Two means are kept. While anything moves (camera, triangles), L1 and L2 over the albedo follow their surfaces:
 // they are interpolated from four pixels of the previous frame, using those whose depth and normal fit. This mean
 // covers at most `most_frames` frames, and L1 is clamped to the range of its current neighbourhood, because
-// shadows move faster than the mean adapts (Yang, Liu and Salvi 2020, sec. 4.2). Where the image is static,
-// albedo and L0 are averaged too, so that edges and textures are antialiased. While nothing moves at all, the
-// pictures themselves are averaged over all frames since the last motion, so that a static picture converges to
-// the method's result. After a change of lights, materials or environment, all earlier frames are discarded: the
-// lag is zero frames.
+// shadows move faster than the mean adapts (Yang, Liu and Salvi 2020, sec. 4.2). Where the light has not changed,
+// it covers up to `most_unchanged` frames: it is compared with a second mean of the latest `most_frames`, and
+// where the two differ by more than their noise in the pixels around, the shorter one replaces it. Where the image
+// is static, albedo and L0 are averaged too, so that edges and textures are antialiased. While nothing moves at
+// all, the pictures themselves are averaged over all frames since the last motion, so that a static picture
+// converges to the method's result. After a change of lights, materials or environment, all earlier frames are
+// discarded: the lag is zero frames.
 //
 // Where a second eye reuses the first one's light, it takes the first one's temporal mean with it instead of
 // reading its own previous frame.
@@ -19,7 +21,8 @@
 namespace gi {
 
 struct TemporalSettings {
-    int most_frames = 16; ///< >= 1; 1 = no reuse
+    int most_frames = 16;   ///< >= 1; 1 = no reuse
+    int most_unchanged = 0; ///< where the light has not changed; fewer than most_frames = that
     /// Earlier L1 is clamped to the mean +- `spread` standard deviations of a window of so many pixels. Small ones
     /// follow shadows, but where light is found by few paths, windows without any make pictures dark.
     int window = 5;
@@ -37,6 +40,7 @@ struct TemporalCounts {
     std::size_t surfaces = 0; ///< pixels with a surface
     std::size_t started = 0;  ///< of these, pixels with no history to reuse
     std::size_t held = 0;     ///< of these, pixels whose earlier L1 was clamped to the neighbourhood
+    double renewed = 0;       ///< of these, pixels whose light had changed: the weight of its shorter mean, summed
     double frames = 0;        ///< number of frames in a pixel's mean, averaged over pixels
     int still_frames = 0;     ///< frames since the last motion, including this one; 1 = something moved
 };
@@ -75,13 +79,16 @@ private:
         float frames;          ///< number of frames in these means
         vec2 variance;         ///< of their luminances, over those frames
         vec3 l0, albedo;
-        float still_frames; ///< number of frames in l0 and albedo
-        bool still;         ///< true if its surface did not move in the image
+        float still_frames;                  ///< number of frames in l0 and albedo
+        bool still;                          ///< true if its surface did not move in the image
+        vec3 recent_direct, recent_indirect; ///< means of the latest most_frames
 
-        void add_to(KnownLight const& before, vec2 variance_before, int most_frames);
+        void add_to(Light const& before, TemporalSettings const& settings);
     };
     void follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                 TemporalCounts& counts);
+    /// Where the light has changed, replaces means by those of the latest frames.
+    void renew_changed(int width, int height, TemporalCounts& counts);
     void rest(Picture& frame, TemporalCounts& counts);
 
     TemporalSettings settings_;

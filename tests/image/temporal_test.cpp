@@ -104,6 +104,50 @@ TEST(Temporal, VariancesAreThoseOfTheMeans)
     }
 }
 
+/// A camera that moves, light that stays: the mean covers more frames than where light changes.
+TEST(Temporal, UnchangedLightIsAveragedOverMoreFrames)
+{
+    TemporalReuse reuse({.most_frames = 8, .most_unchanged = 64}), shorter({.most_frames = 8});
+    Pcg32 rng(6, 6);
+    double noise_of_64 = 0, noise_of_8 = 0, renewed = 0;
+    for (int frame = 1; frame <= 80; ++frame) {
+        Picture p =
+            picture([&](int, int) { return Values{.l1 = vec3{rng.uniform()}, .l2 = vec3{rng.uniform()}}; });
+        Picture again = p;
+        renewed += reuse.add(p, SceneChange::motion).renewed;
+        shorter.add(again, SceneChange::motion);
+        if (frame > 70) noise_of_64 += noise(p, "L2", 0.5f), noise_of_8 += noise(again, "L2", 0.5f);
+    }
+    EXPECT_LT(noise_of_64, 0.25 * noise_of_8);
+    EXPECT_LT(renewed, 0.01 * 80 * kWidth * kHeight) << "noise is taken for a change";
+}
+
+/// Where light changes, in a part of the picture, without anything that announces it.
+TEST(Temporal, ChangedLightIsAsNewAsWithoutLongMeans)
+{
+    TemporalReuse reuse({.most_frames = 8, .most_unchanged = 64}), shorter({.most_frames = 8});
+    Pcg32 rng(7, 7);
+    auto const left = [](Picture const& p) {
+        double sum = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth / 2; ++x) sum += value(p, "L2", x, y);
+        return sum / (kHeight * kWidth / 2);
+    };
+    double renewed = 0;
+    for (int frame = 1; frame <= 76; ++frame) {
+        Picture p = picture([&](int x, int) {
+            float const light = frame > 60 && x < kWidth / 2 ? 1.2f : 1.0f;
+            return Values{.l2 = light * vec3{0.5f + rng.uniform()}};
+        });
+        Picture again = p;
+        renewed += reuse.add(p, SceneChange::motion).renewed;
+        shorter.add(again, SceneChange::motion);
+        EXPECT_NEAR(left(p), left(again), frame > 60 && frame < 72 ? 0.1 : 0.03) << frame;
+    }
+    EXPECT_GT(renewed, 0.5 * kWidth * kHeight / 2) << "of the changed pixels, most";
+    EXPECT_LT(renewed, 3.0 * kWidth * kHeight / 2) << "hardly others, and not again and again";
+}
+
 /// Light known beforehand is worth some frames of it, where it is known, and only for a first frame.
 TEST(Temporal, BeginsWithWhatIsKnown)
 {

@@ -9,8 +9,11 @@
 namespace viewer {
 namespace {
 
-/// A still picture is filtered only while it has few paths, so that it converges to the method's own result.
-constexpr int kFilteredFrames = 48;
+/// A still picture is filtered while it has few paths, then less and less, so that it converges to the method's
+/// own result without a leap.
+constexpr float kFiltered = 48, kUnfiltered = 1024; // paths per pixel
+/// Where light does not change, temporal reuse averages over so many times the frames of the setting.
+constexpr int kUnchanged = 8;
 /// Likewise, light is reused from the other eye only at first.
 constexpr int kSharedFrames = 16;
 
@@ -49,6 +52,24 @@ std::vector<gi::KnownLight> known_light(gi::KeptLight const& before, gi::Picture
         }
     });
     return known;
+}
+
+/// Share of the filtered picture in what is shown.
+float filtered_share(double paths)
+{
+    return std::clamp(1 - std::log2(float(paths) / kFiltered) / std::log2(kUnfiltered / kFiltered), 0.0f, 1.0f);
+}
+
+/// Replaces light by (1 - share) of what it was before the filter.
+void mix_light(gi::Picture& picture, gi::Picture const& unfiltered, float share)
+{
+    for (char const* const name : {"color", "L0", "L1", "L2"}) {
+        gi::Layer* const to = picture.find(name);
+        gi::Layer const* const from = unfiltered.find(name);
+        if (to == nullptr || from == nullptr) continue;
+        tbb::parallel_for(std::size_t(0), to->data.size(),
+                          [&](std::size_t i) { to->data[i] = glm::mix(from->data[i], to->data[i], share); });
+    }
 }
 
 } // namespace
@@ -93,8 +114,9 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
                           s.most_frames == settings.reuse && s.punctual != left_out_punctual_ && s.small == small;
         if (!same)
-            s.reuse = std::make_unique<gi::TemporalReuse>(small ? gi::TemporalSettings{settings.reuse, 17, 2}
-                                                                : gi::TemporalSettings{settings.reuse});
+            s.reuse = std::make_unique<gi::TemporalReuse>(
+                small ? gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse, 17, 2}
+                      : gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse});
         s.small = small;
         moved[k] = !same || !(s.camera == now.camera) || s.hidden != hidden[k];
         anything_moved |= moved[k];
@@ -106,6 +128,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     }
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
+    still_paths_ = (anything_moved ? 0 : still_paths_) + command.paths;
     std::vector<gi::FrameView> views;
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& v = command.views[k];
@@ -123,9 +146,13 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     std::vector<gi::MirrorLayers> mirrors;
     for (std::size_t k = 0; k < results.size(); ++k)
         mirrors.push_back(reuse(k, results, views[k].partner, scene_change(changes, moved[k]), settings, seen));
-    if (is_filtered(results[0], settings)) clamp(results, command.views);
+    std::vector<gi::Picture> unfiltered(results.size());
+    bool const filtered = is_filtered(results[0], settings);
+    for (std::size_t k = 0; k < results.size() && filtered && filtered_share(still_paths_) < 1; ++k)
+        unfiltered[k] = results[k].picture;
+    if (filtered) clamp(results, command.views);
     for (std::size_t k = 0; k < results.size(); ++k)
-        finish(k, results, views[k].partner, settings, seen, mirrors[k]);
+        finish(k, results, views[k].partner, settings, unfiltered[k], seen, mirrors[k]);
     return results;
 }
 
@@ -137,7 +164,7 @@ gi::ReusedLight MethodRunner::taken(std::size_t view, int partner, Results const
 
 bool MethodRunner::is_filtered(gi::RenderResult const& result, Settings const& settings) const
 {
-    return still_ <= kFilteredFrames &&
+    return filtered_share(still_paths_) > 0 &&
            gi::can_filter(denoise_settings(settings, threads_), result.paths, settings.reuse > 1);
 }
 
@@ -199,7 +226,7 @@ void MethodRunner::clamp(Results& results, std::span<ViewCommand const> views)
 }
 
 void MethodRunner::finish(std::size_t view, Results& results, int partner, Settings const& settings,
-                          gi::SeenSurfaces* seen, gi::MirrorLayers const& mirrors)
+                          gi::Picture const& unfiltered, gi::SeenSurfaces* seen, gi::MirrorLayers const& mirrors)
 {
     gi::RenderResult& result = results[view];
     Seen& own = seen_[view];
@@ -208,6 +235,7 @@ void MethodRunner::finish(std::size_t view, Results& results, int partner, Setti
         gi::DenoiseReport const done =
             gi::denoise(result.picture, denoise_settings(settings, threads_), taken(view, partner, results));
         if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
+        if (!unfiltered.layers.empty()) mix_light(result.picture, unfiltered, filtered_share(still_paths_));
     }
     own.light.reset();
     if (seen != nullptr && !own.rays.orthographic) own.light.emplace(result.picture, own.rays, origin_);

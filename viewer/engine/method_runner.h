@@ -65,8 +65,9 @@ private:
     /// Clamps the fireflies of all views.
     void clamp(Results& results, std::span<ViewCommand const> views);
     /// Filters a view, if it is young, and keeps its light. The partner must have been filtered already.
-    void finish(std::size_t view, Results& results, int partner, Settings const& settings, gi::SeenSurfaces* seen,
-                gi::MirrorLayers const& mirrors);
+    /// @param unfiltered  shown in part; empty = not
+    void finish(std::size_t view, Results& results, int partner, Settings const& settings,
+                gi::Picture const& unfiltered, gi::SeenSurfaces* seen, gi::MirrorLayers const& mirrors);
 
     gi::Report& report_;
     int threads_;
@@ -77,6 +78,7 @@ private:
     bool ahead_;
     gi::FireflyCounts fireflies_; ///< of all frames
     int still_ = 0;               ///< frames since the scene, a setting or the camera last changed
+    double still_paths_ = 0;      ///< paths per pixel of these frames
 };
 
 } // namespace viewer
