@@ -32,6 +32,7 @@ struct SeenSurfaces::Way {
     mat3 image{1};       ///< from directions where the way is, to their images
     float length_m = 0;  ///< up to the last piece
     int mirrors = 0;
+    bool aside = false; ///< of a pane's other lobe: only what shines by itself counts
 };
 
 /// Light on its way to a surface.
@@ -159,25 +160,36 @@ void SeenSurfaces::light(ShadingPoint const& at, Way const& way, SeenSurface con
     }
 }
 
-/// Describes a surface that a way arrives at. Returns true if it is a mirror: the way's ray then leads on.
-bool SeenSurfaces::arrive(std::uint32_t triangle, vec2 weights, int y, Way& way, std::vector<Sent>& sent,
-                          SeenSurface& out) const
+/// Describes a surface that a way arrives at. Returns true if it is a mirror: the way's ray then leads on, and
+/// those of its other lobes are appended to `aside`.
+bool SeenSurfaces::arrive(std::uint32_t triangle, vec2 weights, int y, Way& way, std::vector<Way>& aside,
+                          std::vector<Sent>& sent, SeenSurface& out) const
 {
     ShadingPoint const at = shading_point(view_, triangle, weights, way.ray.direction);
     out.emitted += way.left * at.emission;
     way.length_m += glm::length(at.position - way.ray.origin);
     vec3 const wo = at.frame.to_local(-way.ray.direction);
-    if (BsdfSample mirror; exact_ && way.mirrors < kMostMirrors && find_mirror(at, wo, mirror)) {
-        vec3 const on = at.frame.to_world(mirror.wi);
-        if (mirror.wi.z > 0) { // reflected; what is seen through a pane stays where it is
-            vec3 const n = at.frame.normal;
-            way.image = way.image - 2.0f * glm::outerProduct(way.image * n, n);
+    BsdfSample lobes[3];
+    if (int const n = exact_ && way.mirrors < kMostMirrors ? find_mirror(at, wo, lobes) : 0) {
+        auto const follow = [&](BsdfSample const& lobe, Way& on) {
+            vec3 const direction = at.frame.to_world(lobe.wi);
+            on.left *= lobe.weight;
+            on.ray = {leave(at, direction), direction};
+            ++on.mirrors;
+        };
+        for (int k = 1; k < n && !way.aside; ++k) {
+            aside.push_back(way);
+            aside.back().aside = true;
+            follow(lobes[k], aside.back());
         }
-        way.left *= mirror.weight;
-        way.ray = {leave(at, on), on};
-        ++way.mirrors;
+        if (lobes[0].wi.z > 0) { // reflected; what is seen through a pane stays where it is
+            vec3 const normal = at.frame.normal;
+            way.image = way.image - 2.0f * glm::outerProduct(way.image * normal, normal);
+        }
+        follow(lobes[0], way);
         return true;
     }
+    if (way.aside) return false;
     out.albedo = way.left * albedo(at.bsdf);
     out.normal = way.image * at.frame.normal;
     out.position = way.mirrors == 0 ? at.position : camera_.origin + way.length_m * way.eye_direction;
@@ -196,10 +208,11 @@ void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
     thread_local std::vector<Sent> sent;
     thread_local std::vector<std::uint8_t> blocked;
     sent.clear();
-    thread_local std::vector<Way> ways;
+    thread_local std::vector<Way> ways, aside;
     thread_local std::vector<RayQuery> rays;
     thread_local std::vector<Hit> hits;
     ways.clear();
+    aside.clear();
     NearestTexel const* const texels = &map_.texels[std::size_t(y) * map_.width];
     for (std::uint32_t x = 0; x < map_.width; ++x) {
         NearestTexel const& seen = texels[x];
@@ -216,14 +229,18 @@ void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
         } else {
             Way way{x, ray.direction, ray};
             vec3 const at = ray.origin + ray.direction / (seen.key * glm::dot(ray.direction, camera_.forward));
-            if (arrive(seen.primitive, barycentric_at(view_.surfaces[seen.primitive], at), y, way, sent, found))
+            if (arrive(seen.primitive, barycentric_at(view_.surfaces[seen.primitive], at), y, way, aside, sent,
+                       found))
                 ways.push_back(way);
             else if (only_mirrors)
                 continue;
         }
         out[x] = found;
     }
-    while (!ways.empty()) {
+    while (true) {
+        if (which == Pixels::all) ways.insert(ways.end(), aside.begin(), aside.end());
+        aside.clear();
+        if (ways.empty()) break;
         rays.clear();
         for (Way const& w : ways) rays.push_back({.ray = w.ray});
         hits.resize(rays.size());
@@ -234,8 +251,8 @@ void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
             SeenSurface& to = out[way.pixel];
             if (hits[k].triangle == kNoTriangle) {
                 to.emitted += way.left * environment_radiance(view_, way.ray.direction);
-                to.in_mirror = true;
-            } else if (arrive(hits[k].triangle, hits[k].barycentric, y, way, sent, to)) {
+                to.in_mirror |= !way.aside;
+            } else if (arrive(hits[k].triangle, hits[k].barycentric, y, way, aside, sent, to)) {
                 ways[left++] = way;
             }
         }

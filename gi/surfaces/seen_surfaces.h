@@ -18,10 +18,12 @@ struct SeenSurface {
     vec3 albedo{0};   ///< times what mirrors and panes on the way leave of the light
     vec3 normal{0};   ///< of shading, unit, as mirrored
     vec3 position{0}; ///< m, from the world's origin; on the pixel's ray, as far away as light has travelled
-    vec3 emitted{0};  ///< radiance of emission, or of the background; times the same as the albedo
-    vec3 moved{0};    ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
-    vec3 direct{0};   ///< radiance of the light of punctual lights; times the same
-    float depth = 0;  ///< m along the camera's axis; 0 = no surface
+    vec3 emitted{
+        0}; ///< radiance of emission, or of the background; times the same as the albedo. Plus what mirrors and
+            ///< panes on the way bring of it by their other lobes (a lamp reflected in a window)
+    vec3 moved{0};   ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
+    vec3 direct{0};  ///< radiance of the light of punctual lights; times the same
+    float depth = 0; ///< m along the camera's axis; 0 = no surface
     std::uint8_t lit = 0, blocked = 0; ///< bits of lights that reach it or would, by shadow rays of its own
     bool in_mirror = false;
 };
@@ -55,8 +57,8 @@ private:
     struct Sent;
     enum class Pixels : std::uint8_t { all, mirrors, coarse };
     void fill(int y, std::span<SeenSurface> out, Pixels which) const;
-    bool arrive(std::uint32_t triangle, vec2 weights, int y, Way& way, std::vector<Sent>& sent,
-                SeenSurface& out) const;
+    bool arrive(std::uint32_t triangle, vec2 weights, int y, Way& way, std::vector<Way>& aside,
+                std::vector<Sent>& sent, SeenSurface& out) const;
     std::optional<bool> known_shadow(SeenSurface const& s, std::uint32_t light, int x, int y) const;
     void light(ShadingPoint const& at, Way const& way, SeenSurface const& s, int y, std::vector<Sent>& sent,
                SeenSurface& out) const;

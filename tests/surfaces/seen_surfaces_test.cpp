@@ -216,6 +216,23 @@ TEST(SeenSurfaces, WhatShinesByItselfIsSeenBesideWhatItMirrors)
     EXPECT_EQ(s.depth, 0);
 }
 
+/// A thin pane reflects 2 F / (1 + F) with F = 0.04: of a lamp behind the eye that is light besides what is behind
+/// it.
+TEST(SeenSurfaces, APaneReflectsLampsToo)
+{
+    Scene scene;
+    Material lamp = lambert(vec3{0});
+    lamp.emission = vec3{10};
+    lamp.double_sided = true;
+    add_quad(scene, {-1, -1, 3}, {2, 0, 0}, {0, 2, 0}, add_material(scene, lamp));
+    add_quad(scene, {-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, add_material(scene, glass(1.5f, true)));
+    add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, add_material(scene, lambert(vec3{0.5f})));
+    SeenSurface const s = look(world_of(scene), look_at({0, 0, 0}, {0, 0, -1}, 10), 9, 9).middle();
+    expect_near(s.emitted, vec3{10 * 0.08f / 1.04f}, 0.01f, "light of the lamp");
+    EXPECT_NEAR(s.depth, 4, 1e-3f);
+    EXPECT_NEAR(s.albedo.x, 0.5f * (1 - 0.08f / 1.04f), 0.005f);
+}
+
 /// A wall that comes 0.1 m nearer to the mirror comes 0.1 m nearer in it, from the other side.
 TEST(SeenSurfaces, WhatMovesMovesInTheMirrorToo)
 {

@@ -220,9 +220,9 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     // mirrors or glass exist), and at first surfaces whose pixels wait for indirect light.
     bool const waits = s.vertex == 0 && pass.spread && interleaving_.n > 1 && bounces_ > 0;
     bool const alone = waits ? !has_narrow_lobe(at.bsdf) : !narrow && s.scatterings == bounces_ && !pass.smooth;
-    BsdfSample mirror;
+    BsdfSample mirror[3];
     bool const seen = pass.no_punctual && s.seen;
-    bool const shows_other = seen && s.vertex < kMostMirrors && find_mirror(at, wo, mirror);
+    bool const shows_other = seen && s.vertex < kMostMirrors && find_mirror(at, wo, mirror) > 0;
     Leaving const from{at, wo, narrow, alone, seen && !shows_other};
     if (!last && !world_.light_select.empty() && !only_delta(at.bsdf)) {
         if (pass.lights != nullptr)
@@ -252,7 +252,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     s.along_axis = !next.exact;
     if (seen)
         s.seen = shows_other && scattered == Scattered::by_delta_lobe &&
-                 (glm::dot(s.direction, at.geometric_normal) > 0) == (mirror.wi.z > 0);
+                 (glm::dot(s.direction, at.geometric_normal) > 0) == (mirror[0].wi.z > 0);
     if (scattered == Scattered::widely) ++s.scatterings;
     ++s.vertex;
     return true;
