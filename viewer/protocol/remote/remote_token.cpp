@@ -92,13 +92,13 @@ std::optional<std::string> read_token(fs::path const& file)
     std::error_code failure;
     if (!fs::exists(file, failure)) return {};
     std::ifstream in(file);
-    std::optional<std::string> token(std::in_place);
-    if (!std::getline(in, *token) || token->size() != 2 * kBytes ||
-        token->find_first_not_of("0123456789abcdef") != std::string::npos)
+    std::string token;
+    if (!std::getline(in, token) || token.size() != 2 * kBytes ||
+        token.find_first_not_of("0123456789abcdef") != std::string::npos)
         throw gi::InputError("'" + file.string() + "' holds no token of a remote port",
                              in.bad() || !in.is_open() ? "it cannot be read" : "a token is 64 hexadecimal digits",
                              "name the file that the viewer printed");
-    return token;
+    return {std::move(token)};
 }
 
 bool is_token(std::string_view given, std::string_view right)
