@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
+#include <utility>
 
 namespace study {
 namespace {
@@ -99,10 +101,84 @@ bool DelimitedText::is_missing(std::string const& text)
     return false;
 }
 
+DelimitedText joined(std::vector<DelimitedText> const& tables)
+{
+    DelimitedText all;
+    for (DelimitedText const& t : tables) {
+        all.file += (all.file.empty() ? "" : ", ") + t.file;
+        int const first_file = int(all.files.size());
+        all.files.insert(all.files.end(), t.files.begin(), t.files.end());
+        std::vector<std::size_t> at;
+        for (std::string const& name : t.columns) {
+            if (all.column(name) < 0) all.columns.push_back(name);
+            at.push_back(std::size_t(all.column(name)));
+        }
+        for (auto const& row : t.rows) {
+            std::vector<TextCell> cells(all.columns.size(), TextCell{"", {row.front().place.line, 0}, first_file});
+            for (std::size_t c = 0; c < row.size(); ++c) {
+                cells[at[c]] = row[c];
+                cells[at[c]].file += first_file;
+            }
+            all.rows.push_back(std::move(cells));
+        }
+    }
+    for (auto& row : all.rows)
+        row.resize(all.columns.size(), TextCell{"", {row.front().place.line, 0}, row.front().file});
+    if (all.files.size() > 3) all.file = fmt::format("{} and {} others", all.files.front(), all.files.size() - 1);
+    return all;
+}
+
+DelimitedText to_wide(DelimitedText const& table, std::string const& names, std::string const& values)
+{
+    int const name_at = table.column(names), value_at = table.column(values);
+    for (auto const& [column, at] : {std::pair(names, name_at), std::pair(values, value_at)})
+        if (at < 0)
+            throw ScriptError(table.file, {1, 1}, fmt::format("there is no column '{}'", column),
+                              "--long names it", "check the names in the first line");
+    DelimitedText wide;
+    wide.file = table.file;
+    wide.files = table.files;
+    std::vector<std::size_t> keys;
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+        if (int(c) != name_at && int(c) != value_at) {
+            keys.push_back(c);
+            wide.columns.push_back(table.columns[c]);
+        }
+    std::map<std::vector<std::string>, std::size_t> trials;
+    std::vector<std::vector<bool>> is_set;
+    for (auto const& row : table.rows) {
+        std::vector<std::string> key{std::to_string(row.front().file)};
+        for (std::size_t const k : keys) key.push_back(row[k].text);
+        auto const [it, is_new] = trials.emplace(key, wide.rows.size());
+        if (is_new) {
+            wide.rows.emplace_back();
+            is_set.emplace_back();
+            for (std::size_t const k : keys) wide.rows.back().push_back(row[k]);
+        }
+        TextCell const& name = row[std::size_t(name_at)];
+        if (wide.column(name.text) < 0) wide.columns.push_back(name.text);
+        auto const at = std::size_t(wide.column(name.text));
+        auto& cells = wide.rows[it->second];
+        auto& set = is_set[it->second];
+        cells.resize(std::max(cells.size(), at + 1), TextCell{"", row.front().place, row.front().file});
+        set.resize(std::max(set.size(), at + 1), false);
+        if (set[at] || at < keys.size())
+            throw ScriptError(table.files[std::size_t(name.file)], name.place,
+                              fmt::format("'{}' for the second time", name.text),
+                              "the other columns do not tell the trials apart",
+                              "add a column with the number of the trial");
+        set[at] = true;
+        cells[at] = row[std::size_t(value_at)];
+    }
+    for (auto& row : wide.rows) row.resize(wide.columns.size(), TextCell{"", row.front().place, row.front().file});
+    return wide;
+}
+
 DelimitedText read_delimited(std::string const& text, std::string const& file)
 {
     DelimitedText t;
     t.file = file;
+    t.files = {file};
     Reader reader(text, file);
     std::vector<TextCell> const head = reader.at_end() ? std::vector<TextCell>{} : reader.row();
     for (TextCell const& c : head) {

@@ -71,7 +71,8 @@ private:
     [[noreturn]] void refuse_cell(TextCell const& c, std::string const& column, std::string const& why,
                                   std::string const& suggestion) const
     {
-        throw ScriptError(t_.file, c.place, fmt::format("'{}' in column '{}'", c.text, column), why, suggestion);
+        throw ScriptError(t_.files[std::size_t(c.file)], c.place,
+                          fmt::format("'{}' in column '{}'", c.text, column), why, suggestion);
     }
     [[noreturn]] void refuse_roles(std::string const& problem, std::string const& suggestion) const
     {

@@ -46,6 +46,36 @@ TEST(DelimitedText, ReadsQuotesOtherSeparatorsAndEmptyLines)
     EXPECT_EQ(t.column("d"), -1);
 }
 
+TEST(DelimitedText, OfSeveralFilesIsJoinedByNames)
+{
+    DelimitedText const t = joined({read_delimited("a,b\n1,2\n", "1.csv"), read_delimited("b,c\n3,x\n", "2.csv")});
+    ASSERT_EQ(t.rows.size(), 2u);
+    EXPECT_EQ(t.rows[0][2].text, "");
+    EXPECT_EQ(t.rows[1][0].text, "");
+    EXPECT_EQ(t.rows[1][1].text, "3");
+    EXPECT_EQ(t.files[std::size_t(t.rows[1][2].file)], "2.csv");
+    ColumnRoles const roles = with("item=b,value=c");
+    try {
+        import_trials(t, roles);
+        ADD_FAILURE();
+    } catch (ScriptError const& e) {
+        EXPECT_EQ(std::string(e.what()).find("2.csv:2:3: 'x'"), 0u) << e.what();
+    }
+}
+
+TEST(DelimitedText, OfOneRowPerValueBecomesWide)
+{
+    DelimitedText const t = to_wide(
+        read_delimited("who,trial,name,value\n1,0,level,0.5\n1,0,right,1\n1,1,right,0\n1,1,level,0.2\n", "l.csv"),
+        "name", "value");
+    ASSERT_EQ(t.rows.size(), 2u);
+    ASSERT_EQ(t.columns.size(), 4u);
+    EXPECT_EQ(t.rows[1][std::size_t(t.column("level"))].text, "0.2");
+    EXPECT_EQ(t.rows[1][std::size_t(t.column("right"))].place.line, 4);
+    EXPECT_THROW(to_wide(read_delimited("who,name,value\n1,a,1\n1,a,2\n", "l.csv"), "name", "value"), ScriptError);
+    EXPECT_THROW(to_wide(t, "name", "value"), ScriptError);
+}
+
 TEST(DelimitedText, RefusesWhatIsNoTable)
 {
     auto const refused = [](std::string const& text, std::string const& place) {

@@ -84,7 +84,8 @@ TEST(Coverage, OfScoresOfPairsIs93To97PerCentInManyKindsOfExperiments)
                                           {"unequal units, wide", wide, 30, 2, 0.2, 0, 0.5},
                                           {"gaps", mid, 16, 2, 0.4, 0, 0, 0.4},
                                           {"seven items", seven, 30, 1, 0.7},
-                                          {"very different people", mid, 20, 6, 0.8}};
+                                          {"very different people", mid, 20, 6, 0.8},
+                                          {"no differences", {0, 0, 0, 0, 0}, 20, 2, 0.3}};
     int const simulations = 1000;
     for (PairExperiment const& e : all) {
         PairSettings settings;
@@ -101,9 +102,11 @@ TEST(Coverage, OfScoresOfPairsIs93To97PerCentInManyKindsOfExperiments)
                 Contrast const c = score_of(scale, int(i));
                 covered[i] += (c.interval.low <= truth[i] && truth[i] <= c.interval.high) / double(simulations);
             }
-            double const range = truth.back() - truth.front();
-            bias += ((scale.fit.score.back() - scale.fit.score.front()) / range - 1) / simulations;
-            reduced += ((scale.reduced.score.back() - scale.reduced.score.front()) / range - 1) / simulations;
+            double const range = truth.back() > 0.1 ? truth.back() - truth.front() : kInfinity;
+            bias +=
+                ((scale.fit.score.back() - scale.fit.score.front()) / range - (range < kInfinity)) / simulations;
+            reduced += ((scale.reduced.score.back() - scale.reduced.score.front()) / range - (range < kInfinity)) /
+                       simulations;
         }
         for (double const c : covered) {
             EXPECT_GE(c, 0.915) << e.name;

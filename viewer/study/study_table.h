@@ -9,7 +9,9 @@
 namespace viewer {
 
 struct TableOptions {
-    std::string file, columns, task, scale = "linear", harder = "down";
+    std::vector<std::string> files; ///< their rows, one after another
+    std::string columns, task, scale = "linear", harder = "down";
+    std::string names_and_values;           ///< "name=value" of a long table; empty = one row per trial
     std::vector<std::string> factors, only; ///< only: "column=value"
     bool is_matrix = false;
 };

@@ -27,7 +27,7 @@ struct AnalyzeOptions {
 /// The records of DIR, or those made from --table.
 study::Dataset load(AnalyzeOptions& o)
 {
-    if (o.dir.empty() == o.table.file.empty())
+    if (o.dir.empty() == o.table.files.empty())
         throw gi::InputError(o.dir.empty() ? "no records" : "DIR and --table",
                              "what is analysed is either a folder of records or a table",
                              "give DIR, or --table FILE --columns ROLES");
@@ -67,7 +67,9 @@ std::optional<study::SimulatedTruth> truth_beside(std::filesystem::path const& d
 
 int run_report(AnalyzeOptions& o)
 {
-    check_outputs({o.out}, {o.script, o.table.file});
+    std::vector<std::string> inputs = o.table.files;
+    inputs.push_back(o.script);
+    check_outputs({o.out}, inputs);
     study::Dataset const records = load(o);
     study::Analysis const analysis = study::analyze(records.script, records.sessions, o.settings);
     study::ReportFacts facts;
@@ -85,7 +87,8 @@ void add_options(CLI::App& command, AnalyzeOptions& o)
 {
     command.add_option("DIR", o.dir, "folder of the records");
     command.add_option("--script", o.script, "script of the experiment (default: the one in DIR/code)");
-    command.add_option("--table", o.table.file, "instead of DIR: trials of another program (CSV, TSV)");
+    command.add_option("--table", o.table.files,
+                       "instead of DIR: trials of another program (CSV, TSV; several files)");
     command.add_option(
         "--columns", o.table.columns,
         "what its columns are: ROLE=COLUMN,... with the roles participant, run; pairs: first, second and "
@@ -97,6 +100,9 @@ void add_options(CLI::App& command, AnalyzeOptions& o)
                     "its columns with conditions or groups of participants: scene,age")
         ->delimiter(',');
     command.add_option("--only", o.table.only, "use only rows with COLUMN=VALUE (repeatable)");
+    command.add_option(
+        "--long", o.table.names_and_values,
+        "the table has a row per value: NAME=VALUE, its columns with the names and values of variables");
     command.add_option("--task", o.table.task,
                        "task of its trials, if the roles do not tell: magnitude, abx, oddity, ...");
     command.add_option("--scale", o.table.scale, "scale of its levels")
