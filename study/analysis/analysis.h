@@ -5,6 +5,7 @@
 #include "study/stats/agreement.h"
 #include "study/stats/binomial.h"
 #include "study/stats/effect_size.h"
+#include "study/stats/hierarchical_pairs.h"
 #include "study/stats/mixed_anova.h"
 #include "study/stats/psychometric.h"
 #include "study/tables/recorded_session.h"
@@ -23,6 +24,7 @@ struct AnalysisSettings {
     int permutations = 1999;            ///< of tests of effects; 0 = none
     double confidence = 0.95;
     std::uint64_t seed = 1;
+    bool has_hierarchy = false;             ///< also hierarchical scales of pairs: a second or so for each
     std::optional<double> guess{}, lapse{}; ///< fixed rates of psychometric functions; none = as the task requires
 };
 
@@ -84,6 +86,7 @@ struct ScaleResult {
     std::vector<std::vector<int>> spread;    ///< for ratings: how often each value was given, by item
     std::vector<NamedValue> facts;           ///< goodness of fit, agreement, order effect
     std::optional<Cheapest> cheapest;
+    std::optional<HierarchicalScale> hierarchy; ///< of pairs, if the settings ask for it
     std::vector<std::string> notes;
     std::string refused; ///< why there is no scale
 };

@@ -1,6 +1,42 @@
 #include "study/analysis/effect_tables.h"
 
+#include "study/stats/pair_scale.h"
+
 namespace study {
+
+ResultTable hierarchy_table(Analysis const& a)
+{
+    ResultTable t{
+        "hierarchical_scores",
+        "Scores of pairs with observers as random effects",
+        "Bayesian: means over observers of their own scales, larger than those of pooled choices, which shrink "
+        "where observers differ. 1 JOD: one observer chooses the better one in 75 %.",
+        false,
+        {}};
+    t.table.columns = {{"block", "Block"},
+                       {"group", "Trials that share this level"},
+                       {"item", "Scored item; 'between observers': standard deviation of their scores"},
+                       {"score", "Posterior mean", "JOD"},
+                       {"low", "Lower end of the credible interval"},
+                       {"high", "Upper end"},
+                       {"r_hat", "Convergence of chains: up to 1.01"},
+                       {"bulk", "Effective number of draws of the centre"},
+                       {"tail", "Effective number of draws of the tails"}};
+    double const jod = jod_per_unit(PairModel::thurstone_v);
+    for (BlockResult const& b : a.blocks)
+        for (ScaleResult const& s : b.scales) {
+            if (!s.hierarchy) continue;
+            auto const row = [&](std::string const& item, Posterior const& p) {
+                t.table.rows.push_back({cell(b.name), cell(s.group), cell(item), cell(jod * p.mean),
+                                        cell(jod * p.low), cell(jod * p.high), cell(p.convergence.r_hat),
+                                        cell(p.convergence.bulk), cell(p.convergence.tail)});
+            };
+            for (std::size_t i = 0; i < s.items.size(); ++i) row(s.items[i].name, s.hierarchy->score[i]);
+            row("between observers", s.hierarchy->between_sd);
+            if (s.hierarchy->tie_threshold.mean > 0) row("threshold of ties", s.hierarchy->tie_threshold);
+        }
+    return t;
+}
 
 ResultTable effects_table(Analysis const& a)
 {

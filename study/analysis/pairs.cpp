@@ -170,6 +170,13 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
                 add_fact(r, "bias-reduced JOD " + r.items[i].name,
                          over->reduced.score[i] * jod_per_unit(fit.model));
             add_fact(r, "dispersion over observers", over->dispersion);
+            if (settings.has_hierarchy) {
+                SamplerSettings draws;
+                draws.draws = 1000;
+                draws.seed = settings.seed;
+                r.hierarchy = hierarchical_scale(observers, items.count(), settings.confidence, draws);
+                if (!r.hierarchy->note.empty()) add_note(r, "hierarchical scale: " + r.hierarchy->note);
+            }
         }
         if (fit.tie_threshold) {
             add_fact(r, "threshold of ties JOD", fit.tie_threshold->value * jod_per_unit(fit.model));

@@ -233,8 +233,9 @@ ResultTable refusals(Analysis const& a)
 
 std::vector<ResultTable> result_tables(Analysis const& a)
 {
-    std::vector<ResultTable> all{exclusions(a),  observers(a), scores(a),        cheapest(a),
-                                 differences(a), fits(a),      effects_table(a), group_differences_table(a)};
+    std::vector<ResultTable> all{exclusions(a),      observers(a),     scores(a),
+                                 cheapest(a),        differences(a),   fits(a),
+                                 hierarchy_table(a), effects_table(a), group_differences_table(a)};
     for (ResultTable& t : detail_tables(a)) all.push_back(std::move(t));
     all.push_back(refusals(a));
     std::erase_if(all, [](ResultTable const& t) { return t.table.rows.empty(); });

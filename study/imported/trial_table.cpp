@@ -59,6 +59,9 @@ public:
         made_.harder_up = roles_.harder_up;
         made_.level_name = has("level") ? roles_.column.at("level") : "level";
         for (std::string const& f : roles_.factors) made_.factors.push_back(f);
+        if (rounded_ > 0)
+            made_.notes.push_back(fmt::format(
+                "{} percentages are no whole numbers of trials: they are rounded to the nearest", rounded_));
         ImportedTable out = sessions_of(made_);
         for (auto const& [why, n] : left_out_)
             out.notes.insert(out.notes.begin(), fmt::format("{} of {} rows left out: {}", n, t_.rows.size(), why));
@@ -290,9 +293,11 @@ private:
             double const share = number(row, "percent") / 100;
             int const n = count(row, "trials");
             hits = int(std::lround(share * n));
-            if (share < 0 || share > 1 || std::abs(share * n - hits) > 0.06 * std::max(1.0, n / 20.0))
-                refuse_cell(cell(row, "percent"), roles_.column.at("percent"),
-                            fmt::format("it is no whole number of {} trials", n), "check the table");
+            if (share < 0 || share > 1)
+                refuse_cell(cell(row, "percent"), roles_.column.at("percent"), "it is from 0 to 100",
+                            "use correct_count or yes_count for numbers of trials");
+            // Published percentages are often rounded, or means of sessions of other lengths.
+            rounded_ += std::abs(share * n - hits) > 0.0051 * n;
             rest = n - hits;
         } else if (has(role + "_count")) {
             hits = count(row, role + "_count");
@@ -350,6 +355,7 @@ private:
     std::vector<int> factors_;
     std::vector<std::string> needed_;
     std::map<std::string, int> left_out_;
+    int rounded_ = 0;
     MadeExperiment made_;
 };
 

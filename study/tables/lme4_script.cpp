@@ -55,10 +55,15 @@ run <- function(formula, data, family = NULL, guess = 0) {{
 # The model with all interactions; each term that no other contains is tested by the likelihood ratio.
 fit <- function(response, columns, data, random = "(1 | participant)", family = NULL, guess = 0) {{
   columns <- varying(data, columns)
-  model <- run(as.formula(paste(response, "~", crossed(columns), "+", random)), data, family, guess)
+  formula <- as.formula(paste(response, "~", crossed(columns), "+", random))
+  model <- run(formula, data, family, guess)
   if (is.null(model)) return(invisible(NULL))
   print(summary(model), correlation = FALSE)
-  if (length(columns) > 0) print(drop1(model, test = "Chisq"))
+  for (term in drop.scope(nobars(formula))) {{
+    cat("\nwithout", term, ":\n")
+    other <- run(update(formula, paste(". ~ . -", term)), data, family, guess)
+    print(anova(other, model))
+  }}
   invisible(model)
 }}
 

@@ -29,10 +29,11 @@ trials["correct"] = trials["correct"].astype(str).str.lower() == "true"
 reference = {2}
 
 
-class Guessing(sm.families.links.Link):
+class Guessing(sm.families.links.Probit):
     """Probit above the proportion of correct answers by guessing: P = guess + (1 - guess) Phi(eta)."""
 
     def __init__(self, guess):
+        super().__init__()
         self.guess = guess
 
     def __call__(self, p):

@@ -103,7 +103,7 @@ TEST(PublishedTables, OfFlashesSeenHaveTheirThresholds)
 {
     LIGHTWELL_NEED_STUDY_DATA();
     if (!std::filesystem::exists(perceptual())) GTEST_SKIP() << "SKIPPED: no reference data at " << perceptual();
-    // Hecht, Shlaer & Pirenne 1942: percentages of N flashes. Their rounded numbers are those of whole flashes.
+    // Hecht, Shlaer & Pirenne 1942: percentages, which are no whole numbers of the N flashes.
     AnalysisSettings fixed;
     fixed.guess = 0;
     fixed.lapse = 0;

@@ -105,7 +105,7 @@ TEST(TrialTable, OfPsychoPyLeavesOutOtherRowsAndFindsGroups)
                     (i % 3 == 0   ? ",0.1"
                      : i % 3 == 1 ? ",0.2"
                                   : ",0.4") +
-                    ",left," + (i % 3 == 2 || i % 2 == 0 ? "1" : "0") + ",0.5,main," + std::to_string(p) +
+                    ",left," + (i % 3 == 2 || (i * p) % 4 != 1 ? "1" : "0") + ",0.5,main," + std::to_string(p) +
                     (p < 3 ? ",old,\n" : ",young,\n");
     ColumnRoles roles =
         with("participant=participant,level=contrast,correct=key_resp.corr,reaction_s=key_resp.rt", {"group"});

@@ -120,6 +120,8 @@ void add_options(CLI::App& command, AnalyzeOptions& o)
     command.add_option("--replicates", o.settings.replicates, "number of bootstrap samples over observers")
         ->check(CLI::Range(100, 100000))
         ->capture_default_str();
+    command.add_flag("--hierarchical", o.settings.has_hierarchy,
+                     "also scales of pairs with observers as random effects (Bayesian; seconds each)");
     command.add_option("--confidence", o.settings.confidence, "confidence level of intervals")
         ->check(CLI::Range(0.5, 0.999))
         ->capture_default_str();
