@@ -183,34 +183,45 @@ std::vector<Measure> detections(Script const& script, Block const& b, std::vecto
             if (is_used(row) && row.done->level && !row.step->trial.is_noise) levels.insert(*row.done->level);
     for (double const level : levels)
         if (compared < 0) shown.levels.push_back(fmt::format("{:g}", level));
+    // Answers without a signal, by condition: they belong to all levels of the signal.
+    std::map<std::pair<std::string, std::vector<int>>, AnswerCounts> without_signal;
+    auto const add = [](AnswerCounts& t, TrialRow const& row) {
+        bool const is_right = *row.done->is_correct, is_signal = row.step->trial.answer == "yes";
+        t.correct += is_right;
+        t.trials += 1;
+        (is_signal ? t.signals : t.noises) += 1;
+        if (is_signal)
+            t.hits += is_right;
+        else
+            t.false_alarms += !is_right;
+    };
     for (ObserverTrials const& o : trials)
         for (TrialRow const& row : o.rows) {
             if (!is_used(row)) continue;
             std::vector<int> at = conditions.of(row);
-            if (compared >= 0)
+            if (compared >= 0) {
                 at.push_back(place_on(shown, stimulus_label(script, b, row.step->trial.stimuli.front())));
-            else if (row.done->level && levels.count(*row.done->level))
-                at.push_back(place_on(shown, fmt::format("{:g}", *row.done->level)));
-            else
-                at.push_back(shown.levels.empty() ? place_on(shown, "all") : 0);
-            AnswerCounts& t = tallies[{o.participant, at}];
-            bool const is_right = *row.done->is_correct;
-            t.correct += is_right;
-            t.trials += 1;
-            bool const is_signal = row.step->trial.answer == "yes";
-            (is_signal ? t.signals : t.noises) += 1;
-            if (is_signal)
-                t.hits += is_right;
-            else
-                t.false_alarms += !is_right;
+            } else if (!levels.empty() && row.step->trial.is_noise) {
+                add(without_signal[{o.participant, at}], row);
+                continue;
+            } else
+                at.push_back(
+                    place_on(shown, levels.empty() ? "all" : fmt::format("{:g}", row.done->level.value_or(0))));
+            add(tallies[{o.participant, at}], row);
         }
     correct.axes.push_back(shown);
     Measure dprime = correct;
     dprime.name = "d'";
     for (auto const& [key, t] : tallies) {
         correct.observations.push_back({key.first, key.second, t.correct / t.trials});
+        AnswerCounts both = t;
+        std::vector<int> const condition(key.second.begin(), key.second.end() - 1);
+        if (auto const noise = without_signal.find({key.first, condition}); noise != without_signal.end()) {
+            both.noises += noise->second.noises;
+            both.false_alarms += noise->second.false_alarms;
+        }
         double const d =
-            b.task == Task::two_interval || b.task == Task::yes_no ? signed_dprime(b.task, t) : kUnknown;
+            b.task == Task::two_interval || b.task == Task::yes_no ? signed_dprime(b.task, both) : kUnknown;
         if (std::isfinite(d)) dprime.observations.push_back({key.first, key.second, d});
     }
     return {correct, dprime};
