@@ -4,21 +4,28 @@
 
 #include "study/stats/agreement.h"
 #include "study/stats/binomial.h"
+#include "study/stats/effect_size.h"
+#include "study/stats/hierarchical_pairs.h"
+#include "study/stats/mixed_anova.h"
 #include "study/stats/psychometric.h"
 #include "study/tables/recorded_session.h"
 
 #include <limits>
 #include <map>
+#include <span>
 
 namespace study {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct AnalysisSettings {
-    std::vector<std::string> exclude; ///< ids of excluded participants
-    int replicates = 1000;            ///< of bootstraps over observers
+    std::vector<std::string> exclude{}; ///< ids of excluded participants
+    int replicates = 1000;              ///< of bootstraps over observers
+    int permutations = 1999;            ///< of tests of effects; 0 = none
     double confidence = 0.95;
     std::uint64_t seed = 1;
+    bool has_hierarchy = false;             ///< also hierarchical scales of pairs: a second or so for each
+    std::optional<double> guess{}, lapse{}; ///< fixed rates of psychometric functions; none = as the task requires
 };
 
 /// A number with its interval; NaN = unknown.
@@ -79,6 +86,7 @@ struct ScaleResult {
     std::vector<std::vector<int>> spread;    ///< for ratings: how often each value was given, by item
     std::vector<NamedValue> facts;           ///< goodness of fit, agreement, order effect
     std::optional<Cheapest> cheapest;
+    std::optional<HierarchicalScale> hierarchy; ///< of pairs, if the settings ask for it
     std::vector<std::string> notes;
     std::string refused; ///< why there is no scale
 };
@@ -182,6 +190,25 @@ struct TransitionResult {
     double switched = 0, by_chance = 0;
 };
 
+/// One effect of an analysis of variance of observers' means, with groups of participants and conditions.
+struct EffectResult {
+    std::string block, measure, effect; ///< "display x scene"
+    int observers = 0;                  ///< with all cells
+    AnovaEffect test;
+    double p_holm = kUnknown; ///< of p_gg, over the effects of one measure
+};
+/// Difference of two groups of participants (Welch 1947).
+struct GroupDifference {
+    std::string block, measure, cell; ///< cell: "mean" over all conditions, or one of them
+    std::string a, b;                 ///< "display=hmd"
+    WelchTest test;
+    double p_holm = kUnknown; ///< over the comparisons of one measure
+};
+/// Why a measure was not tested, or with fewer observers.
+struct EffectNote {
+    std::string block, measure, text;
+};
+
 struct Analysis {
     std::string experiment, title;
     AnalysisSettings settings;
@@ -191,6 +218,9 @@ struct Analysis {
     std::vector<BlockResult> blocks;
     std::vector<QuestionnaireResult> questionnaires;
     std::vector<QuestionnaireChange> changes;
+    std::vector<EffectResult> effects;
+    std::vector<GroupDifference> group_differences;
+    std::vector<EffectNote> effect_notes;
     TimingResult timing;
     std::vector<TransitionResult> transitions;
     std::vector<std::string> cautions; ///< warnings about the validity of the results
@@ -199,5 +229,8 @@ struct Analysis {
 /// @throws ScriptError as trial_rows and answered_questionnaires, and if a participant to exclude does not exist
 Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessions,
                  AnalysisSettings const& settings = {});
+/// Scales, thresholds and effects of one block, without timing, order and questionnaires: for simulations.
+Analysis analyze_one_block(Script const& script, std::span<RecordedSession const> sessions, int block,
+                           AnalysisSettings const& settings);
 
 } // namespace study

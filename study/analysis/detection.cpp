@@ -89,6 +89,8 @@ CurveResult curve_of(Block const& b, std::string const& cell, std::vector<std::v
     s.guess.value = guess_rate(b.task);
     if (guess_rate(b.task) == 0) s.guess.limit = 0.5;
     s.lapse = {0.01, 0.06};
+    if (settings.guess) s.guess = {*settings.guess, 0};
+    if (settings.lapse) s.lapse = {*settings.lapse, 0};
     auto const level = [&](std::span<int const> observers) {
         std::vector<LevelCount> all;
         for (int const o : observers)

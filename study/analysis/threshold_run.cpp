@@ -71,6 +71,8 @@ void add_maximum_likelihood(ThresholdRun& run, Block const& b, std::optional<dou
         s.shape = shape_of(*b.compare);
         s.guess.value = guess.value_or(0);
         s.lapse.value = 0.02; // one run cannot determine lapses
+        if (settings.guess) s.guess.value = *settings.guess;
+        if (settings.lapse) s.lapse.value = *settings.lapse;
         auto const fit = fit_psychometric(count_levels(run.levels, run.correct), s);
         auto const on_u = [&](double level) { return transformed(fit.shape, level); };
         double const level = level_at(fit.shape, fit.parameters, proportion);

@@ -71,7 +71,8 @@ private:
             double const lapse = std::min(o_.model.lapse, 1 - guess);
             right = proportion_at(is_linear ? QuestFunction::gaussian : QuestFunction::weibull,
                                   c.harder_up ? Direction::falling : Direction::rising,
-                                  {v.threshold, v.slope, guess, lapse}, r_.level.value_or(v.low));
+                                  {o_.threshold(v, stimulus('a').levels), v.slope, guess, lapse},
+                                  r_.level.value_or(v.low));
         }
         return random_.uniform() < right ? t_.answer : blindly(t_.answer);
     }
@@ -144,7 +145,8 @@ private:
     {
         VariedModel const& v = o_.varied(block_.compare->vary);
         double const low = to_scale(v.scale, block_.compare->low), high = to_scale(v.scale, block_.compare->high);
-        double const set = to_scale(v.scale, v.threshold) + (high - low) / 24 * o_.model.noise * random_.normal();
+        double const set = to_scale(v.scale, o_.threshold(v, stimulus('a').levels)) +
+                           (high - low) / 24 * o_.model.noise * random_.normal();
         return from_scale(v.scale, std::clamp(set, low, high));
     }
 

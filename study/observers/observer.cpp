@@ -83,7 +83,20 @@ Observer draw_observer(ObserverModel const& model, std::uint64_t seed, int parti
 
 Random Observer::random(std::uint64_t purpose) const { return Random::part(seed, purpose); }
 
-double Observer::quality(std::vector<int> const& levels) const { return sum_of(model.quality, levels); }
+double Observer::quality(std::vector<int> const& levels) const
+{
+    double q = sum_of(model.quality, levels);
+    for (QualityInteraction const& i : model.interactions)
+        if (std::all_of(i.levels.begin(), i.levels.end(),
+                        [&](LevelChoice const& c) { return levels[std::size_t(c.factor)] == c.level; }))
+            q += i.jod;
+    return q;
+}
+double Observer::threshold(VariedModel const& v, std::vector<int> const& levels) const
+{
+    double const shift = sum_of(v.shift, levels);
+    return shift == 0 ? v.threshold : from_scale(v.scale, to_scale(v.scale, v.threshold) + shift);
+}
 double Observer::render_ms(std::vector<int> const& levels) const { return sum_of(model.render_ms, levels); }
 
 VariedModel const& Observer::varied(std::string const& setting) const

@@ -126,7 +126,7 @@ std::string scales_html(Script const& s, Block const& b, BlockResult const& r, A
     }
     std::string note;
     if (r.task == "pair" || r.task == "pair_with_reference")
-        note = "1 JOD: 75 % choose the better one (Thurstone, case V; mean 0). Intervals by a bootstrap over "
+        note = "1 JOD: 75 % choose the better one (Thurstone, case V; mean 0). Intervals by errors over "
                "observers. ";
     note += "Grey bars at the right join items that do not differ significantly.";
     if (has_truth) note += " Diamonds: true values of the simulated observers.";

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
+#include <boost/math/special_functions/owens_t.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -38,6 +39,8 @@ double normal_quantile(double p)
 {
     return std::isnan(p) ? p : -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p, Quiet());
 }
+
+double owens_t(double h, double a) { return boost::math::owens_t(h, a, Quiet()); }
 
 double log_choose(double n, double k) { return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1); }
 

@@ -206,7 +206,11 @@ TEST(Exports, SayWhatWasChosen)
     EXPECT_EQ(end, (std::vector<std::string>{"x", "y", "x", "pair"}));
     auto const files = export_files(s, tables);
     EXPECT_EQ(files.front().path, "data/study-t_description-trials_data.csv");
-    EXPECT_NE(files.back().text.find("levels <- c(\"x\", \"y\")"), std::string::npos);
+    ASSERT_EQ(files.back().path, "analysis.py");
+    EXPECT_NE(files.back().text.find("fit_pairs(d, [\"x\", \"y\"]"), std::string::npos);
+    TextFile const& r = files.at(files.size() - 2);
+    ASSERT_EQ(r.path, "analysis.R");
+    EXPECT_NE(r.text.find("levels <- c(\"x\", \"y\")"), std::string::npos);
 }
 
 TEST(Exports, AreADatabaseToo)

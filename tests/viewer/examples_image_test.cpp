@@ -39,7 +39,7 @@ TEST_P(HelpExamples, Run)
 INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                          testing::Values("", "render", "compare", "info", "generate", "display", "study",
                                          "study simulate", "study rebuild", "study export", "study analyze",
-                                         "study report", "bench", "bench sweep", "bench pictures", "bench report",
+                                         "study report", "study power", "bench", "bench sweep", "bench pictures", "bench report",
                                          "bench views", "bench schedules", "bench raster", "bench rays",
                                          "bench accuracy", "bench thesis", "track", "track listen", "track send",
                                          "track walk", "ar", "ar synthesize", "ar run", "ar track", "ar bench",

@@ -117,6 +117,7 @@ void add_study(CLI::App& app, int& exit_code)
     for (CommandRow const& c : commands()) // commands of the other program, for --help
         if (c.name.starts_with("study ")) add_elsewhere(*study, c);
     add_study_simulate(*study, exit_code);
+    add_study_power(*study, exit_code);
     add_study_tables(*study, exit_code);
     add_study_analyze(*study, exit_code);
 
