@@ -47,6 +47,11 @@ struct StimulusShown {
     int frames_planned = 0, frames_shown = 0, frames_dropped = 0;
     double render_ms_mean = 0, render_ms_p99 = 0; ///< of the frames rendered for it
     std::string settings_sha256;
+    // With a display model only:
+    std::optional<double> mean_cd_m2{}, peak_cd_m2{}; ///< of its first frame, as shown
+    std::optional<int>
+        clipped_pixels{}; ///< of its first frame: brighter than the display or darker than its black
+    std::optional<double> width_deg{}, height_deg{};
 };
 
 /// A trial that ran to its end, valid or not. A trial without this entry was not done.
@@ -65,6 +70,11 @@ struct TrialDone {
     bool is_valid = true;
     std::string reason;        ///< why not: dropped_frames, timeout, skipped, lost_focus, ...
     double bookkeeping_ms = 0; ///< time after the previous trial for journal and choice of the next step
+    // Of gaze, while stimuli were visible; none if gaze was not recorded:
+    std::optional<int> gaze_samples{}, gaze_valid{};
+    std::optional<int> gaze_dropped{}; ///< missing between samples
+    std::optional<int>
+        gaze_fixating{}; ///< samples near the place of fixation; none without gaze.hold or gaze.start
 };
 
 /// Instructions, a rest or a walk has ended.

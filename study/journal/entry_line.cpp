@@ -27,6 +27,12 @@ struct Put {
         out[name] = json(value);
     }
 
+    template <class T>
+    void operator()(LaterField field, std::optional<T> const& value) const
+    {
+        if (value) out[field.name] = json(*value);
+    }
+
     static Json json(double v)
     {
         if (std::isfinite(v)) return v;
@@ -69,6 +75,16 @@ struct Take {
         auto const found = in.find(name);
         if (found == in.end()) throw BadLine(fmt::format("it has no '{}'", name), false);
         if (!read(*found, value)) throw BadLine(fmt::format("its '{}' has another type", name), false);
+    }
+
+    template <class T>
+    void operator()(LaterField field, std::optional<T>& value) const
+    {
+        known.insert(field.name);
+        value.reset();
+        auto const found = in.find(field.name);
+        if (found != in.end() && !read(*found, value))
+            throw BadLine(fmt::format("its '{}' has another type", field.name), false);
     }
 
     static bool read(Json const& j, double& v)

@@ -11,12 +11,16 @@ std::map<std::string, std::set<std::string>> const& script_keys()
         {"participants", {"count", "id", "ask", "consent"}},
         {"timing",
          {"vsync", "onset", "max_dropped_frames", "on_bad_trial", "sync_patch", "calibrate", "display_lag_ms",
-          "expected_hz"}},
+          "display_lag_uncertainty_ms", "expected_hz"}},
         {"sync_patch", {"corner", "px"}},
         {"calibrate", {"frames", "max_sd_ms", "max_deviation"}},
         {"defaults",
          {"camera", "warmup_frames", "isi_ms", "iti_ms", "stimulus_ms", "timeout_ms", "expected_response_ms",
-          "feedback_ms", "stimuli", "settings"}},
+          "feedback_ms", "stimuli", "settings", "gaze"}},
+        {"gaze", {"start", "hold", "follow"}},
+        {"gaze_start", {"within_deg", "for_ms", "timeout_ms"}},
+        {"gaze_hold", {"within_deg", "grace_ms"}},
+        {"gaze_follow", {"show", "radius_deg", "edge_deg"}},
         {"counterbalance", {"method", "of"}},
         {"sequence_item", {"instructions", "questionnaire", "per", "do", "free_walk", "break"}},
         {"free_walk", {"duration_s", "prompt", "condition"}},
@@ -27,7 +31,8 @@ std::map<std::string, std::set<std::string>> const& script_keys()
           "warmup_frames", "isi_ms",  "iti_ms",       "stimulus_ms", "timeout_ms",    "expected_response_ms",
           "feedback_ms",   "camera",  "stimuli",      "settings",    "pairs",         "ties",
           "presentation",  "compare", "procedure",    "interleave",  "feedback",      "catch",
-          "rank",          "scale",   "modulus",      "standard",    "questionnaire", "duration_s"}},
+          "rank",          "scale",   "modulus",      "standard",    "questionnaire", "duration_s",
+          "gaze"}},
         {"pairs", {"factor", "omit", "list", "order"}},
         {"rank", {"factor", "omit"}},
         {"compare", {"vary", "factor", "omit", "against", "with", "scale", "range", "harder"}},
@@ -45,7 +50,7 @@ std::map<std::string, std::set<std::string>> const& script_keys()
         {"questionnaire", {"title", "instructions", "scale", "items", "scales"}},
         {"item", {"id", "text", "min", "max", "step", "labels", "reverse"}},
         {"subscale", {"items", "score", "weight", "offset", "at_least"}},
-        {"record", {"dir", "head_pose_hz", "markers", "compress_frames"}},
+        {"record", {"dir", "head_pose_hz", "markers", "compress_frames", "gaze"}},
         {"resume", {"max_gap_min", "repeat"}},
     };
     return keys;
@@ -65,7 +70,7 @@ std::set<std::string> block_keys(Task task)
     else if (task == Task::free_walk)
         keys.insert("duration_s");
     else
-        keys.insert({"practice", "stimulus_ms", "timeout_ms"});
+        keys.insert({"practice", "stimulus_ms", "timeout_ms", "gaze"});
     if (shows_several) keys.insert("isi_ms");
     if (shows_several && task != Task::two_interval) keys.insert("presentation"); // intervals follow each other
     if (f.takes_pairs) keys.insert({"pairs", "catch"});

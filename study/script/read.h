@@ -19,6 +19,8 @@ std::vector<int> read_levels_of(gi::Yaml const& y, Script const& s, int factor, 
 
 /// Sets the members that the mapping gives. @param y defaults or a block
 void read_trial_timing(gi::Yaml const& y, TrialTiming& timing);
+/// Sets the rules that the mapping gives; `none` removes one. @param y gaze of defaults or a block
+void read_gaze(gi::Yaml const& y, GazeRules& gaze);
 RatingScale read_scale(gi::Yaml const& y);
 std::vector<Questionnaire> read_questionnaires(gi::Yaml const& y);
 /// Reads a number, a list, or "a..b/n" (n values from a to b, evenly spaced on the scale). Values must rise and

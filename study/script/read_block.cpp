@@ -280,6 +280,7 @@ Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s)
     b.camera = s.defaults.camera;
     b.stimuli = s.defaults.stimuli;
     b.settings = s.defaults.settings;
+    b.gaze = s.defaults.gaze;
     read_trial_timing(y, b.timing);
     read_conditions(y, s, b);
     read_stimuli(y, s, b);
@@ -303,6 +304,7 @@ Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s)
     if (y.has("stimuli")) b.stimuli = Stimuli(y.at("stimuli").one_of({"live", "prepared"}, "way to make stimuli"));
     if (y.has("settings"))
         for (auto const& [key, value] : read_patch(y.at("settings"))) set_setting(b.settings, key, value);
+    if (y.has("gaze")) read_gaze(y.at("gaze"), b.gaze);
     if (y.has("catch")) b.catches = read_catch(y.at("catch"), b, s);
     if (y.has("practice")) read_practice(y.at("practice"), b);
     if (y.has("constraints"))

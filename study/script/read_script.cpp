@@ -72,6 +72,8 @@ Timing read_timing(gi::Yaml const& y)
             t.calibrate.max_deviation = calibrate.at("max_deviation").number(1e-4, 1);
     }
     if (y.has("display_lag_ms")) t.display_lag_ms = y.at("display_lag_ms").number(0, 10000);
+    if (y.has("display_lag_uncertainty_ms"))
+        t.display_lag_uncertainty_ms = y.at("display_lag_uncertainty_ms").number(0, 10000);
     if (y.has("expected_hz")) t.expected_hz = y.at("expected_hz").number(1, 1000);
     return t;
 }
@@ -84,6 +86,7 @@ Defaults read_defaults(gi::Yaml const& y)
     if (y.has("camera")) d.camera = y.at("camera").text();
     if (y.has("stimuli")) d.stimuli = Stimuli(y.at("stimuli").one_of({"live", "prepared"}, "way to make stimuli"));
     if (y.has("settings")) d.settings = read_patch(y.at("settings"));
+    if (y.has("gaze")) read_gaze(y.at("gaze"), d.gaze);
     return d;
 }
 
@@ -175,6 +178,16 @@ Record read_record(gi::Yaml const& y)
             r.markers.push_back(m.text());
         }
     if (y.has("compress_frames")) r.compress_frames = y.at("compress_frames").boolean();
+    if (y.has("gaze")) {
+        gi::Yaml const gaze = y.at("gaze");
+        r.gaze = gaze.text();
+        if (r.gaze == "none") r.gaze.clear();
+        bool const is_known =
+            r.gaze.empty() || r.gaze == "lsl" || (r.gaze.starts_with("lsl:") && r.gaze.size() > 4);
+        if (!is_known)
+            throw gaze.error("'" + r.gaze.substr(0, 64) + "' is no source of gaze", "it would not be recorded",
+                             "write lsl (any stream of type Gaze), lsl:NAME or none");
+    }
     return r;
 }
 

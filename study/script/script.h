@@ -6,6 +6,7 @@
 #include "study/script/procedure.h"
 #include "study/script/questionnaire.h"
 #include "study/script/task.h"
+#include "study/signals/gaze.h"
 
 #include <cstdint>
 #include <optional>
@@ -63,8 +64,9 @@ struct Timing {
     BadTrial on_bad_trial = BadTrial::repeat_at_end;
     std::optional<SyncPatch> sync_patch;
     Calibrate calibrate;
-    double display_lag_ms = 0; ///< as measured by a photodiode: recorded, never subtracted
-    double expected_hz = 60;   ///< for planning only
+    double display_lag_ms = 0;             ///< as measured by a photodiode: recorded, never subtracted
+    double display_lag_uncertainty_ms = 0; ///< half the width of its 95 % interval
+    double expected_hz = 60;               ///< for planning only
 };
 
 /// Timing of a trial, from the end of the previous one to its own end.
@@ -83,6 +85,7 @@ struct Defaults {
     std::string camera; ///< a camera of the scene, or path:NAME
     Stimuli stimuli = Stimuli::live;
     Patch settings;
+    GazeRules gaze;
 };
 
 /// The inputs that give an answer: "key:left", "pad:x", "xr:left/trigger", "mouse:left".
@@ -212,6 +215,7 @@ struct Block {
     std::string camera;
     Stimuli stimuli = Stimuli::live;
     Patch settings;
+    GazeRules gaze;
 };
 
 struct Record {
@@ -220,6 +224,7 @@ struct Record {
     double head_pose_hz = 0; ///< used if poses are not recorded per frame; 0 = none
     std::vector<std::string> markers;
     bool compress_frames = false;
+    std::string gaze; ///< where it comes from: lsl, lsl:NAME; empty = none
 };
 struct Resume {
     double max_gap_min = 60; ///< after a longer gap, the steps listed in `repeat` are shown again

@@ -25,7 +25,8 @@ std::vector<double> levels_of(study::Script const& script, study::Block const& b
 } // namespace
 
 std::map<std::string, PreparedStimulus> prepared_list(study::Script const& script, glm::ivec2 screen_px,
-                                                      float font_px, std::string const& version)
+                                                      float font_px, std::string const& version,
+                                                      study::DisplayModel const* model)
 {
     std::map<std::string, PreparedStimulus> list;
     bool const is_any = std::any_of(script.blocks.begin(), script.blocks.end(),
@@ -36,7 +37,7 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
         p.stimulus = stimulus_settings(script, block, stimulus);
         std::size_t const together =
             block.is_sequential ? 1 : trial.order.size() + (trial.reference.has_value() ? 1 : 0);
-        p.view = view_of(block, p.stimulus, together, screen_px, font_px);
+        p.view = view_of(block, p.stimulus, together, screen_px, font_px, model);
         p.where = script.file + ": block " + block.name + ", " + stimulus_label(script, block, stimulus);
         list.emplace(prepared_key(p, version), p);
     };

@@ -1,5 +1,6 @@
 #include "gi/core/error.h"
 #include "gi/core/host_name.h"
+#include "study/display/model_file.h"
 #include "study/plan/plan.h"
 #include "study/run/session.h"
 #include "viewer/base/arguments.h"
@@ -14,6 +15,7 @@
 #include "viewer/experiment/stimuli/prepared_files.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 #include "viewer/experiment/trial_presenter.h"
+#include "viewer/report/machine.h"
 #include "viewer/study/study_outcome.h"
 
 #include <CLI/CLI.hpp>
@@ -26,7 +28,7 @@ namespace viewer {
 namespace {
 
 struct RunOptions {
-    std::string script, dir, size = "1280x720", fullscreen, remote, prepared, display;
+    std::string script, dir, size = "1280x720", fullscreen, remote, prepared, display, display_model, gaze;
     std::optional<int> remote_port;
     std::string remote_token;
     bool remote_open = false;
@@ -58,9 +60,10 @@ void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scen
     }
 }
 
-void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o)
+void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o,
+                    study::DisplayModel const* model)
 {
-    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text())) {
+    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text(), model)) {
         std::filesystem::path const folder = std::filesystem::path(o.prepared) / key;
         if (!std::filesystem::exists(folder))
             throw gi::InputError(
@@ -107,6 +110,26 @@ void check_one_at_a_time(study::Script const& script, study::Plan const& plan, b
     }
 }
 
+/// Throws unless sizes, luminances and rules of gaze can be met.
+void check_measured(study::Script const& script, std::vector<PlannedStimulus> const& stimuli, RunOptions const& o,
+                    study::DisplayModel const* model)
+{
+    if (model != nullptr && (o.hmd || !o.display.empty()))
+        throw gi::InputError("--display-model with --hmd or --display", "it describes the monitor of a window",
+                             "leave one out");
+    check_physical_of(stimuli, model, o.hmd || !o.display.empty());
+    std::string const& gaze = o.gaze.empty() ? script.record.gaze : o.gaze;
+    for (study::Block const& block : script.blocks) {
+        if (!block.gaze.any()) continue;
+        std::string const where = fmt::format("{}: block {}: gaze", script.file, block.name);
+        if (gaze.empty() || gaze == "none")
+            throw gi::InputError(where, "nothing measures it", "give --gaze, or write record: {gaze: lsl}");
+        if (model == nullptr || !model->screen || !(model->screen->distance_cm > 0))
+            throw gi::InputError(where, "degrees need the screen's size and distance",
+                                 "name a display model that has them with --display-model");
+    }
+}
+
 int run(RunOptions const& o)
 {
     LoadedScript const loaded = load_script(o.script);
@@ -138,6 +161,9 @@ int run(RunOptions const& o)
     ar.check();
     std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // throws on invalid settings
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
+    if (!o.display_model.empty()) trials.screen.model = study::load_display_model(o.display_model);
+    study::DisplayModel const* const model = trials.screen.model ? &*trials.screen.model : nullptr;
+    check_measured(script, stimuli, o, model);
     check_stimuli(stimuli, trials.scenes);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
     trials.view = o.hmd ? StimulusViewer::headset : StimulusViewer::window;
@@ -156,15 +182,20 @@ int run(RunOptions const& o)
     trials.remote.token = o.remote_token;
     trials.remote.open = o.remote_open;
     trials.marker_port = o.marker_port;
+    trials.session = o.session;
+    trials.gaze = o.gaze;
     trials.prepared = o.prepared;
     trials.version = version_text();
     trials.stop = &stop;
-    trials.about = {{"host", gi::host_name()}, {"program", version_text()}};
+    trials.about = {{"host", gi::host_name()},
+                    {"program", version_text()},
+                    {"processor", to_text(this_machine())},
+                    {"os", operating_system()}};
 
     study::SessionOutcome outcome;
     {
         TrialPresenter presenter(script, trials, report);
-        check_prepared(script, presenter.screen_px(), o);
+        check_prepared(script, presenter.screen_px(), o, model);
         outcome = study::run_session(script, o.participant, presenter, settings);
     }
     if (!outcome.folder.empty()) keep_tables(settings.dir, o.script);
@@ -192,6 +223,10 @@ void add_study_run(CLI::App& study, int& exit_code)
     c->add_option("--size", o->size, "window size, px")->capture_default_str();
     c->add_option("--fullscreen", o->fullscreen, "full screen on the monitor with this number or name");
     c->add_option("--display", o->display, "display file: walls instead of a window (docs/displays.md)");
+    c->add_option("--display-model", o->display_model,
+                  "display model of the monitor (study calibrate): degrees, cd/m2, linear light");
+    c->add_option("--gaze", o->gaze,
+                  "gaze instead of record.gaze: lsl, lsl:NAME, none, or a table to replay (t_s,x_px,y_px,valid)");
     c->add_flag("--hmd", o->hmd,
                 "show stimuli in a headset (OpenXR, docs/hmd.md) unless their `view` is set otherwise");
     c->add_flag("--seated", o->seated, "with --hmd: space without a floor, as in lightwell view");

@@ -65,7 +65,7 @@ Json text_of(ArStimulus const& s)
 void check_beside_ar(study::Patch const& patch, std::string const& camera)
 {
     for (auto const& [key, value] : patch) {
-        if (is_ar_setting(key) || (key == "view" && value == "window")) continue;
+        if (is_ar_setting(key) || is_physical_setting(key) || (key == "view" && value == "window")) continue;
         throw ArSettingError(key, value, fmt::format("{}: {} of a stimulus with an AR session", key, value),
                              "the session sets viewpoint and rendering, and it is shown in a window",
                              "leave it out, or write a setting of the session: ar.render.paths");
@@ -90,10 +90,11 @@ std::string text_of(StimulusSettings const& s)
     if (s.ar) all["ar"] = text_of(*s.ar);
     Json edits = Json::array();
     for (Change const& c : s.edits) edits.push_back({c.key, c.value});
-    return Json{{"scene", s.scene},    {"camera", s.camera},
-                {"path", int(s.path)}, {"view", s.view ? int(*s.view) : -1},
-                {"settings", all},     {"edits", edits}}
-        .dump();
+    Json whole{{"scene", s.scene},    {"camera", s.camera},
+               {"path", int(s.path)}, {"view", s.view ? int(*s.view) : -1},
+               {"settings", all},     {"edits", edits}};
+    if (s.physical.any()) whole["physical"] = text_of(s.physical);
+    return whole.dump();
 }
 
 } // namespace
@@ -114,7 +115,13 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
     s.settings.panel = false;
     s.settings.refine = false;
     if (std::any_of(patch.begin(), patch.end(), [](auto const& one) { return is_ar_setting(one.first); })) {
-        s.ar = ar_stimulus(patch, folder);
+        study::Patch of_session;
+        for (auto const& one : patch)
+            if (is_physical_setting(one.first))
+                set_physical(s.physical, one.first, one.second);
+            else
+                of_session.push_back(one);
+        s.ar = ar_stimulus(of_session, folder);
         check_beside_ar(patch, camera);
         s.view = StimulusViewer::window;
         s.sha256 = gi::sha256(text_of(s));
@@ -144,6 +151,8 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
             throw gi::InputError("device: " + text,
                                  "stimuli are rendered on the CPU, so that they are equal at all sites",
                                  "leave it out");
+        } else if (is_physical_setting(key)) {
+            set_physical(s.physical, key, text);
         } else if (is_scene_edit(key)) {
             s.edits.push_back({key, json_value_of(text)});
         } else {
@@ -166,6 +175,21 @@ study::Block plain_block(study::Script const& script)
     block.settings = script.defaults.settings;
     block.camera = script.defaults.camera;
     return block;
+}
+
+void check_physical_of(std::vector<PlannedStimulus> const& stimuli, study::DisplayModel const* model,
+                       bool has_own_views)
+{
+    for (auto const& [s, where] : stimuli) try {
+            bool const in_headset = s.view == StimulusViewer::headset;
+            if (s.physical.any() && (has_own_views || in_headset))
+                throw gi::InputError("a size, place or luminance on walls or in a headset",
+                                     "they are those of a picture in a window",
+                                     "leave them out, or run in a window");
+            check_physical(s.physical, model);
+        } catch (gi::InputError const& e) {
+            throw gi::InputError(where, e.what(), "see Physical units in docs/study.md");
+        }
 }
 
 std::vector<PlannedStimulus> stimuli_of(study::Script const& script, study::Plan const& plan)

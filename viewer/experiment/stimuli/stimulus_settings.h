@@ -9,6 +9,7 @@
 #include "study/plan/plan.h"
 #include "viewer/engine/settings.h"
 #include "viewer/experiment/stimuli/ar_stimulus.h"
+#include "viewer/experiment/stimuli/physical.h"
 
 namespace viewer {
 
@@ -31,6 +32,7 @@ struct StimulusSettings {
     Settings settings;                  ///< complete, with defaults
     std::vector<Change> edits;          ///< edits of the scene
     std::optional<ArStimulus> ar;       ///< if set, replaces all of the above
+    PhysicalStimulus physical;          ///< degrees, cd/m2
     std::string sha256; ///< of all of the above as written in the script: equal hashes mean equal pictures
 };
 
@@ -57,5 +59,10 @@ struct PlannedStimulus {
 /// Every stimulus of a plan once, by its sha256; stimuli whose level is chosen during the session are included at
 /// both ends of the range. Throws InputError, naming the block, if a stimulus is invalid.
 std::vector<PlannedStimulus> stimuli_of(study::Script const& script, study::Plan const& plan);
+
+/// Throws InputError, naming the block, unless sizes and luminances can be shown (check_physical).
+/// @param model  null = none   @param has_own_views  on walls or in a headset, where they have no meaning
+void check_physical_of(std::vector<PlannedStimulus> const& stimuli, study::DisplayModel const* model,
+                       bool has_own_views);
 
 } // namespace viewer
