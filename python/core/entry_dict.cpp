@@ -20,6 +20,7 @@ py::object to_python(T const& value)
 {
     return py::cast(value);
 }
+py::object to_python(study::LaterText const& text) { return py::str(static_cast<std::string const&>(text)); }
 py::object to_python(Pairs const& pairs)
 {
     py::dict d;
@@ -46,6 +47,7 @@ void from_python(py::handle value, T& field)
 {
     field = py::cast<T>(value);
 }
+void from_python(py::handle value, study::LaterText& text) { text = py::cast<std::string>(value); }
 void from_python(py::handle value, std::vector<StimulusShown>& shown)
 {
     shown.clear();

@@ -49,6 +49,16 @@ struct StimulusShown {
     std::string settings_sha256;
 };
 
+/// A field that journals of earlier versions do not have: written only if it is not empty.
+struct LaterText : std::string {
+    using std::string::string;
+    LaterText() = default;
+    LaterText(std::string text) : std::string(std::move(text)) {}
+};
+
+/// Reasons of trials with an answer that never counts: before min_response_ms, after max_response_ms.
+inline constexpr char const *kAnticipation = "anticipation", *kTooSlow = "too_slow";
+
 /// A trial that ran to its end, valid or not. A trial without this entry was not done.
 struct TrialDone {
     int step = 0;                       ///< of the plan, from 0
@@ -63,7 +73,8 @@ struct TrialDone {
     double response_uncertainty_ms = 0; ///< of reaction_ms, including that of the onset
     std::string device;                 ///< input that gave the answer: "key:left"
     bool is_valid = true;
-    std::string reason;        ///< why not: dropped_frames, timeout, skipped, lost_focus, ...
+    std::string reason; ///< why not: dropped_frames, timeout, anticipation, too_slow, skipped, lost_focus, ...
+    LaterText chosen;   ///< the pair of a trial whose pair was chosen when it came: "best/fair"; else empty
     double bookkeeping_ms = 0; ///< time after the previous trial for journal and choice of the next step
 };
 

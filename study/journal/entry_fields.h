@@ -85,6 +85,7 @@ struct Fields<TrialDone> {
         f("is_valid", e.is_valid);
         f("reason", e.reason);
         f("bookkeeping_ms", e.bookkeeping_ms);
+        f("chosen", e.chosen);
     }
 };
 

@@ -26,6 +26,10 @@ struct Put {
     {
         out[name] = json(value);
     }
+    void operator()(char const* name, LaterText const& value) const
+    {
+        if (!value.empty()) out[name] = json(static_cast<std::string const&>(value));
+    }
 
     static Json json(double v)
     {
@@ -69,6 +73,15 @@ struct Take {
         auto const found = in.find(name);
         if (found == in.end()) throw BadLine(fmt::format("it has no '{}'", name), false);
         if (!read(*found, value)) throw BadLine(fmt::format("its '{}' has another type", name), false);
+    }
+
+    void operator()(char const* name, LaterText& value) const
+    {
+        known.insert(name);
+        value.clear();
+        auto const found = in.find(name);
+        if (found != in.end() && !read(*found, static_cast<std::string&>(value)))
+            throw BadLine(fmt::format("its '{}' has another type", name), false);
     }
 
     static bool read(Json const& j, double& v)

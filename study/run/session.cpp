@@ -302,9 +302,10 @@ private:
         done.step = due.step;
         done.attempt = due.attempt;
         done.level = due.level;
+        if (due.pair) done.chosen = pair_text(s_, *r.block, *due.pair);
         done.bookkeeping_ms = has_shown_ ? total : 0;
         has_shown_ = true;
-        judge(s_, step(due).trial, done);
+        judge(s_, step(due), done);
         ++(done.is_valid ? outcome_.trials : outcome_.bad_trials);
         keep(done);
     }

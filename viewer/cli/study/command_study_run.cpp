@@ -2,6 +2,7 @@
 #include "gi/core/host_name.h"
 #include "study/plan/plan.h"
 #include "study/run/session.h"
+#include "study/script/setting_place.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/port_options.h"
@@ -12,6 +13,7 @@
 #include "viewer/displays/display_file.h"
 #include "viewer/experiment/prepared_list.h"
 #include "viewer/experiment/stimuli/prepared_files.h"
+#include "viewer/experiment/stimuli/stimulus_check.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 #include "viewer/experiment/trial_presenter.h"
 #include "viewer/study/study_outcome.h"
@@ -35,27 +37,20 @@ struct RunOptions {
     bool hmd = false, seated = false, resume = false, no_vsync = false, json = false;
 };
 
-/// Checks before the session that all stimuli can be loaded, set up and seen from their cameras.
-void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
+/// Checks before the session that all settings are known, and that stimuli can be loaded, set up and seen from
+/// their cameras. Pictures are not rendered: `study check` does.
+void check_stimuli(LoadedScript const& loaded, study::Plan const& plan, SceneAccess const& scenes)
 {
-    gi::Report report; // losses are reported when the scenes are shown
-    RenderSession session(scenes.load, 0, report);
-    std::stable_sort(stimuli.begin(), stimuli.end(),
-                     [](auto const& a, auto const& b) { return a.settings.scene < b.settings.scene; });
-    bool is_edited = false;
-    for (auto const& [s, where] : stimuli) {
-        if (s.ar) continue; // checked by ArStimulusCheck
-        try {
-            if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
-            scenes.camera(session.world(), s.camera);
-            for (Change const& c : s.edits) session.apply(c);
-        } catch (gi::InputError const& e) {
-            throw gi::InputError(
-                where, e.what(),
-                "correct its settings; scenes are searched beside the script, then in the current folder");
-        }
-        is_edited = !s.edits.empty();
-    }
+    study::Mistakes m;
+    StimulusCollection stimuli(loaded.script, find_wrong_settings(loaded.script, loaded.text, loaded.folder, m));
+    stimuli.add(plan, m);
+    StimulusCheckOptions options;
+    options.renders = false;
+    options.place_of = [&](std::string const& key, std::string const& value) {
+        return study::place_of_setting(loaded.text, key, value);
+    };
+    if (m.empty()) find_wrong_stimuli(stimuli.list(), scenes, options, m);
+    throw_first(m);
 }
 
 void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o)
@@ -136,9 +131,8 @@ int run(RunOptions const& o)
     ArStimulusCheck ar(loaded);
     ar.add(plan);
     ar.check();
-    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // throws on invalid settings
+    check_stimuli(loaded, plan, trials.scenes);
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
-    check_stimuli(stimuli, trials.scenes);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
     trials.view = o.hmd ? StimulusViewer::headset : StimulusViewer::window;
     trials.headset.space = o.seated ? HmdSpace::local : HmdSpace::stage;

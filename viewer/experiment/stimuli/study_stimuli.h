@@ -22,10 +22,13 @@ public:
     /// Reads all their files without making pictures. Throws ScriptError at the setting that is the cause; errors
     /// within a session are reported with their own position.
     void check() const;
+    /// As check(), but adds everything that is wrong.
+    void find_wrong(study::Mistakes& m) const;
     std::size_t count() const { return patches_.size(); }
 
 private:
     void add(study::Block const& block, study::Stimulus const& stimulus);
+    void check_one(study::Patch const& patch, std::string const& camera) const;
 
     LoadedScript const& loaded_;
     std::set<std::pair<study::Patch, std::string>> patches_; ///< settings and camera
