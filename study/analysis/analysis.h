@@ -122,6 +122,7 @@ struct ThresholdSummary {
 };
 struct CurveResult {
     std::string cell;
+    std::string function; ///< its name, or the formula
     int observers = 0;
     std::vector<LevelCount> counts;
     PsychometricFit fit; ///< of all trials pooled

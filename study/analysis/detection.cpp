@@ -1,5 +1,6 @@
 #include "study/analysis/blocks.h"
 #include "study/analysis/threshold_run.h"
+#include "study/script/procedure_settings.h"
 #include "study/stats/bootstrap.h"
 #include "study/stats/dprime.h"
 #include "study/stats/summary.h"
@@ -85,7 +86,9 @@ CurveResult curve_of(Block const& b, std::string const& cell, std::vector<std::v
         if (auto c = counts_of(rows); !c.empty()) counts.push_back(std::move(c));
     r.observers = int(counts.size());
     PsychometricSettings s;
-    s.shape = shape_of(*b.compare);
+    PsychometricChoice const function = fitted_function(b.procedures);
+    r.function = function.name();
+    s.shape = shape_of(b.compare->scale, b.compare->harder_up, function);
     s.guess.value = guess_rate(b.task);
     if (guess_rate(b.task) == 0) s.guess.limit = 0.5;
     s.lapse = {0.01, 0.06};

@@ -139,7 +139,8 @@ ResultTable curves(Analysis const& a)
                        {"trials", "Trials"},
                        {"share", "Proportion correct at the threshold"},
                        {"threshold", "Level"}},
-                      {{"scale", "Spread of the function"},
+                      {{"function", "Psychometric function, or its formula"},
+                       {"scale", "Spread of the function; of a formula its slope"},
                        {"lapse", "Lapse rate"},
                        {"deviance", "Deviance"},
                        {"df", "Degrees of freedom"},
@@ -153,8 +154,9 @@ ResultTable curves(Analysis const& a)
             add_estimate(row, c.threshold);
             bool const is_fitted = !c.counts.empty();
             auto const fitted = [&](double v) { return is_fitted ? cell(v) : cell(""); };
-            row.insert(row.end(), {fitted(c.fit.parameters.scale), fitted(c.fit.parameters.lapse),
-                                   fitted(c.fit.deviance), fitted(c.fit.degrees_of_freedom), fitted(c.fit.fit_p)});
+            row.insert(row.end(),
+                       {cell(c.function), fitted(c.fit.parameters.scale), fitted(c.fit.parameters.lapse),
+                        fitted(c.fit.deviance), fitted(c.fit.degrees_of_freedom), fitted(c.fit.fit_p)});
             t.table.rows.push_back(std::move(row));
         }
     return t;

@@ -63,12 +63,12 @@ std::optional<double> lowest_share(Task task, std::vector<TrialRow> const& trial
 }
 
 void add_maximum_likelihood(ThresholdRun& run, Block const& b, std::optional<double> guess, double proportion,
-                            AnalysisSettings const& settings)
+                            PsychometricChoice const& function, AnalysisSettings const& settings)
 {
     ThresholdEstimate e{"maximum likelihood", proportion, {}, {}};
     try {
         PsychometricSettings s;
-        s.shape = shape_of(*b.compare);
+        s.shape = shape_of(b.compare->scale, b.compare->harder_up, function);
         s.guess.value = guess.value_or(0);
         s.lapse.value = 0.02; // one run cannot determine lapses
         if (settings.guess) s.guess.value = *settings.guess;
@@ -104,9 +104,9 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
 {
     Compare const& c = *b.compare;
     ThresholdEstimate e{"QUEST+ posterior", proportion, {}, {}};
-    bool const is_weibull = p.psychometric == Psychometric::weibull;
     QuestSettings const s = quest_settings(p, c);
-    auto const on_axis = [&](double level) { return is_weibull ? level : to_scale(c.scale, level); };
+    bool const takes_levels = assumed_function(p).takes_levels();
+    auto const on_axis = [&](double level) { return takes_levels ? level : to_scale(c.scale, level); };
     try {
         QuestPlus quest(s);
         for (std::size_t i = 0; i < run.levels.size(); ++i) {
@@ -131,7 +131,7 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
         double const width = to_scale(c.scale, c.high) - to_scale(c.scale, c.low);
         double const low = to_scale(c.scale, c.low) - width, high = to_scale(c.scale, c.high) + width;
         auto const above = [&](double at) { // the wanted proportion
-            return proportion_at(s.function, s.direction, mean, on_axis(from_scale(c.scale, at))) - proportion;
+            return proportion_by(s, mean, on_axis(from_scale(c.scale, at))) - proportion;
         };
         double const at_low = above(low), at_high = above(high);
         if (at_low * at_high < 0) {
@@ -148,17 +148,6 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
 }
 
 } // namespace
-
-PsychometricShape shape_of(Compare const& c, Psychometric function)
-{
-    PsychometricShape s;
-    s.sigmoid = function == Psychometric::weibull  ? Sigmoid::weibull
-                : function == Psychometric::normal ? Sigmoid::gaussian
-                                                   : Sigmoid::logistic;
-    s.axis = c.scale == Scale::linear ? Axis::linear : Axis::log10;
-    s.direction = c.harder_up ? Direction::falling : Direction::rising;
-    return s;
-}
 
 double guess_rate(Task task)
 {
@@ -183,9 +172,10 @@ ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<Trial
     // Every method at the middle of the rise; staircases also at the proportion to which they converge.
     if (p.method == Method::staircase) {
         add_staircase(run, b, p);
-        if (settles_at(p) > guess_rate(b.task)) add_maximum_likelihood(run, b, guess, settles_at(p), settings);
+        if (settles_at(p) > guess_rate(b.task))
+            add_maximum_likelihood(run, b, guess, settles_at(p), fitted_function({p}), settings);
     }
-    add_maximum_likelihood(run, b, guess, middle(b.task), settings);
+    add_maximum_likelihood(run, b, guess, middle(b.task), fitted_function({p}), settings);
     if (p.method == Method::questplus) add_questplus(run, b, p, middle(b.task), settings);
     return run;
 }

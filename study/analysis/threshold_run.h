@@ -3,8 +3,6 @@
 
 namespace study {
 
-/// Shape and axis of a psychometric function for the scale of a comparison: harder levels are lower on the axis.
-PsychometricShape shape_of(Compare const& compare, Psychometric function = Psychometric::normal);
 /// Proportion correct by guessing.
 double guess_rate(Task task);
 /// Converts a value in units of the scale, such as a mean of reversals, to a level.

@@ -54,6 +54,9 @@ struct StimulusShown {
     std::optional<double> width_deg{}, height_deg{};
 };
 
+/// Reasons of trials with an answer that never counts: before min_response_ms, after max_response_ms.
+inline constexpr char const *kAnticipation = "anticipation", *kTooSlow = "too_slow";
+
 /// A trial that ran to its end, valid or not. A trial without this entry was not done.
 struct TrialDone {
     int step = 0;                       ///< of the plan, from 0
@@ -68,7 +71,8 @@ struct TrialDone {
     double response_uncertainty_ms = 0; ///< of reaction_ms, including that of the onset
     std::string device;                 ///< input that gave the answer: "key:left"
     bool is_valid = true;
-    std::string reason;        ///< why not: dropped_frames, timeout, skipped, lost_focus, ...
+    std::string reason; ///< why not: dropped_frames, timeout, anticipation, too_slow, skipped, lost_focus, ...
+    std::string chosen; ///< the pair of a trial whose pair was chosen when it came: "best/fair"; else empty
     double bookkeeping_ms = 0; ///< time after the previous trial for journal and choice of the next step
     // Of gaze, while stimuli were visible; none if gaze was not recorded:
     std::optional<int> gaze_samples{}, gaze_valid{};

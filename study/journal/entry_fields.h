@@ -5,7 +5,8 @@
 
 namespace study {
 
-/// A field that was added later, and is written only if it has a value: older versions read journals without it.
+/// A field that was added later, and is written only if it has a value or is not empty: journals of earlier
+/// versions do not have it.
 struct LaterField {
     char const* name;
     operator char const*() const { return name; }
@@ -100,6 +101,7 @@ struct Fields<TrialDone> {
         f(LaterField{"gaze_valid"}, e.gaze_valid);
         f(LaterField{"gaze_dropped"}, e.gaze_dropped);
         f(LaterField{"gaze_fixating"}, e.gaze_fixating);
+        f(LaterField{"chosen"}, e.chosen);
     }
 };
 

@@ -26,11 +26,14 @@ struct Put {
     {
         out[name] = json(value);
     }
-
     template <class T>
     void operator()(LaterField field, std::optional<T> const& value) const
     {
         if (value) out[field.name] = json(*value);
+    }
+    void operator()(LaterField field, std::string const& value) const
+    {
+        if (!value.empty()) out[field.name] = json(value);
     }
 
     static Json json(double v)
@@ -78,10 +81,10 @@ struct Take {
     }
 
     template <class T>
-    void operator()(LaterField field, std::optional<T>& value) const
+    void operator()(LaterField field, T& value) const
     {
         known.insert(field.name);
-        value.reset();
+        value = T{};
         auto const found = in.find(field.name);
         if (found != in.end() && !read(*found, value))
             throw BadLine(fmt::format("its '{}' has another type", field.name), false);

@@ -1,6 +1,6 @@
 #include "study/observers/answer.h"
 
-#include "study/stats/questplus.h"
+#include "study/script/procedure_settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,12 +67,10 @@ private:
         double const guess = may_miss ? o_.model.false_alarms : block_.task == Task::oddity ? 1.0 / 3 : 0.5;
         double right = 1 - guess;
         if (!t_.is_noise) {
-            bool const is_linear = v.scale == Scale::linear;
             double const lapse = std::min(o_.model.lapse, 1 - guess);
-            right = proportion_at(is_linear ? QuestFunction::gaussian : QuestFunction::weibull,
-                                  c.harder_up ? Direction::falling : Direction::rising,
-                                  {o_.threshold(v, stimulus('a').levels), v.slope, guess, lapse},
-                                  r_.level.value_or(v.low));
+            double const threshold = o_.threshold(v, stimulus('a').levels);
+            right = proportion_correct(v.function, v.scale, c.harder_up, {threshold, v.slope, guess, lapse},
+                                       r_.level.value_or(v.low));
         }
         return random_.uniform() < right ? t_.answer : blindly(t_.answer);
     }

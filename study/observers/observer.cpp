@@ -24,11 +24,20 @@ std::set<int> judged_factors(Script const& s)
     return judged.empty() ? crossed : judged;
 }
 
-VariedModel usual_varied(Compare const& c)
+VariedModel usual_varied(Block const& b)
 {
+    Compare const& c = *b.compare;
     double const low = to_scale(c.scale, c.low), high = to_scale(c.scale, c.high);
     VariedModel v{c.vary, c.scale, c.low, c.high, from_scale(c.scale, (low + high) / 2), 2, (high - low) / 16};
-    if (c.scale == Scale::linear) v.slope = (high - low) / 8;
+    bool const is_named = !b.procedures.empty() && b.procedures[0].psychometric &&
+                          fitted_function(b.procedures) == *b.procedures[0].psychometric;
+    v.function =
+        is_named ? fitted_function(b.procedures)
+                 : PsychometricChoice{c.scale == Scale::linear ? Psychometric::normal : Psychometric::weibull, {}};
+    if (v.function.function == Psychometric::logistic)
+        v.slope = 14 / (high - low); // about as steep as the normal one
+    else if (!v.function.takes_levels())
+        v.slope = (high - low) / 8;
     return v;
 }
 
@@ -61,7 +70,7 @@ ObserverModel usual_observers(Script const& s)
         if (!b.compare || b.compare->vary.empty()) continue;
         bool const is_known = std::any_of(m.varied.begin(), m.varied.end(),
                                           [&](VariedModel const& v) { return v.setting == b.compare->vary; });
-        if (!is_known) m.varied.push_back(usual_varied(*b.compare));
+        if (!is_known) m.varied.push_back(usual_varied(b));
     }
     return m;
 }

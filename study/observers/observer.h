@@ -9,15 +9,16 @@
 
 namespace study {
 
-/// How well an observer sees the level of a setting: P(correct) = guess + (1 - guess - lapse) F, where F is the
-/// Weibull function 1 - exp(-(level / threshold)^slope) on logarithmic scales, and Phi((level - threshold) /
-/// slope) on the linear one; signs are reversed if higher levels are harder. guess is that of the task.
+/// How well an observer sees the level of a setting: P(correct) = guess + (1 - guess - lapse) F; signs are
+/// reversed if higher levels are harder. guess is that of the task. F is the function that the procedures name; if
+/// they name none, the Weibull function on logarithmic scales, and the normal one on the linear one.
 struct VariedModel {
     std::string setting;
     Scale scale = Scale::linear;
     double low = 0, high = 0; ///< of the setting
     double threshold = 0, slope = 1;
     double between_sd = 0; ///< standard deviation of participants' thresholds, in units of the scale
+    PsychometricChoice function{};
     std::vector<std::vector<double>> shift{}; ///< by factor and level, of the threshold, in units of the scale
 };
 

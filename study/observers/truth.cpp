@@ -23,7 +23,8 @@ Json of_varied(Script const& s, std::vector<VariedModel> const& varied)
     for (VariedModel const& v : varied) {
         out[v.setting] = {{"threshold", v.threshold},
                           {"slope", v.slope},
-                          {"function", v.scale == Scale::linear ? "normal" : "weibull"},
+                          {"function", v.function.name()},
+                          {"scale", name_of(v.scale)},
                           {"between_sd", v.between_sd}};
         if (!v.shift.empty()) out[v.setting]["shift"] = by_level(s, v.shift);
     }

@@ -35,14 +35,12 @@ RecordedSession simulated_record(Script const& script, Plan plan, Observer const
             keep(StepDone{due->step, presenter.now(), presenter.now(), ""});
         } else {
             TrialDone done = presenter.show(request_of(script, session.plan, progress, *due));
-            done.step = due->step;
-            done.attempt = due->attempt;
-            done.level = due->level;
-            judge(script, step.trial, done);
+            complete(script, session.plan, *due, done);
             keep(std::move(done));
         }
     }
     keep(SessionEnded{presenter.now(), "", true, ""});
+    fill_chosen(script, session);
     return session;
 }
 

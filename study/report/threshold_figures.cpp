@@ -47,8 +47,9 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
                                                 gi::short_number(c.threshold.interval.high))
                                   : "";
     return p.figure("psychometric function, " + c.cell,
-                    fmt::format("<b>{}</b> {:.0f} % correct at {}{}; {} observers{}", gi::escaped(c.cell),
-                                100 * c.proportion, gi::short_number(c.threshold.value), range, c.observers,
+                    fmt::format("<b>{}</b> {:.0f} % correct at {}{}; {}; {} observers{}", gi::escaped(c.cell),
+                                100 * c.proportion, gi::short_number(c.threshold.value), range,
+                                gi::escaped(c.function), c.observers,
                                 c.fit.note.empty() ? "" : ". Doubtful: " + gi::escaped(c.fit.note)));
 }
 

@@ -299,12 +299,9 @@ private:
         watch_.restart();
         synced_before_ = files_.journal.synced_ms();
         if (!done.is_valid && done.reason == "aborted") throw Aborted();
-        done.step = due.step;
-        done.attempt = due.attempt;
-        done.level = due.level;
         done.bookkeeping_ms = has_shown_ ? total : 0;
         has_shown_ = true;
-        judge(s_, step(due).trial, done);
+        complete(s_, plan_, due, done);
         ++(done.is_valid ? outcome_.trials : outcome_.bad_trials);
         keep(done);
     }

@@ -15,4 +15,14 @@ StaircaseSettings staircase_settings(Procedure const& procedure, Compare const& 
 /// Stimuli and thresholds are in levels for the Weibull function, otherwise on the scale.
 QuestSettings quest_settings(Procedure const& procedure, Compare const& compare);
 
+QuestFunction quest_function(Psychometric function);
+/// Shape and axis of a function to fit: harder levels are lower on the axis.
+PsychometricShape shape_of(Scale scale, bool harder_up, PsychometricChoice const& function = {});
+/// Proportion correct at a level. @param p  threshold as a level, the slope in its function's units
+double proportion_correct(PsychometricChoice const& function, Scale scale, bool harder_up, QuestParameters p,
+                          double level);
+/// Level at which it is `proportion`, within 60 dB of the threshold or 1000 slopes; NaN if there is none.
+double level_of_proportion(PsychometricChoice const& function, Scale scale, bool harder_up,
+                           QuestParameters const& p, double proportion);
+
 } // namespace study

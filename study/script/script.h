@@ -71,11 +71,13 @@ struct Timing {
 
 /// Timing of a trial, from the end of the previous one to its own end.
 struct TrialTiming {
-    int warmup_frames = 0;                      ///< rendered before a trial's first stimulus is shown
-    double isi_ms = 500;                        ///< between the stimuli of a trial
-    double iti_ms = 500;                        ///< between trials
-    std::optional<double> stimulus_ms;          ///< of each stimulus; none = until the answer
-    std::optional<double> timeout_ms;           ///< for the answer, from the last onset; none = no timeout
+    int warmup_frames = 0;                 ///< rendered before a trial's first stimulus is shown
+    double isi_ms = 500;                   ///< between the stimuli of a trial
+    double iti_ms = 500;                   ///< between trials
+    std::optional<double> stimulus_ms;     ///< of each stimulus; none = until the answer
+    std::optional<double> timeout_ms;      ///< for the answer, from the last onset; none = no timeout
+    double min_response_ms = 100;          ///< faster answers are anticipations: the trial is invalid; 0 = none
+    std::optional<double> max_response_ms; ///< slower answers make it invalid; none = no limit
     std::optional<double> expected_response_ms; ///< for planning; none = the task's default
     double feedback_ms = 500;
 };
@@ -127,6 +129,9 @@ struct Pairs {
     int factor = -1;
     std::vector<std::pair<int, int>> pairs; ///< levels
     PairOrder order = PairOrder::balanced;
+    int active_trials = 0; ///< of each cell, whose pairs are chosen during the session; 0 = the plan has all pairs
+    bool is_batch = true;  ///< active: chosen for a spanning tree at a time; false: after each answer
+    bool is_active() const { return active_trials > 0; }
 };
 
 /// What is compared in tasks that have a correct answer, and what is adjusted in adjustment.
@@ -216,6 +221,8 @@ struct Block {
     Stimuli stimuli = Stimuli::live;
     Patch settings;
     GazeRules gaze;
+    bool knows_task = true; ///< false: its task is none
+    bool is_broken = false; ///< read with mistakes: it cannot be planned
 };
 
 struct Record {

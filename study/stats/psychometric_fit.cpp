@@ -1,4 +1,5 @@
 #include "study/stats/error.h"
+#include "study/stats/formula_fit.h"
 #include "study/stats/likelihood.h"
 #include "study/stats/psychometric.h"
 #include "study/stats/sigmoid.h"
@@ -186,6 +187,7 @@ PsychometricFit describe(Model const& m, PsychometricShape const& shape, Maximum
 
 PsychometricFit fit_psychometric(std::span<LevelCount const> counts, PsychometricSettings const& settings)
 {
+    if (settings.shape.formula) return fit_formula(counts, settings);
     Model const m = make_model(counts, settings);
     return describe(m, settings.shape, best_fit(m));
 }

@@ -49,7 +49,7 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
             if (block.task == study::Task::adjustment)
                 throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
                                      "adjusted stimuli are rendered while they are shown", "write stimuli: live");
-            for (study::Stimulus s : step.trial.stimuli) {
+            for (study::Stimulus s : possible_stimuli(block, step.trial)) {
                 bool const has_levels = block.compare && !block.compare->vary.empty();
                 if (!s.is_varied || s.level || !has_levels) {
                     add(block, step.trial, s);
@@ -60,7 +60,6 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
                     add(block, step.trial, s);
                 }
             }
-            if (step.trial.reference) add(block, step.trial, *step.trial.reference);
         }
     return list;
 }

@@ -401,7 +401,7 @@ study::TrialDone TrialPresenter::show(study::TrialRequest const& request)
         fmt::format("trial {} of {}, {}", request.trials_done + 1, request.trials_planned, request.block->name);
     study::TrialDone done = Trial(*this, request).run();
     study::TrialDone judged = done;
-    judge(script_, request.step->trial, judged);
+    judge(script_, *request.step, judged);
     status.bad_trials += !judged.is_valid;
     status.trials_done += request.attempt == 1 ? 1 : 0; // count each planned trial once
     status.last =

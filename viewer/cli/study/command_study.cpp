@@ -11,7 +11,7 @@
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
 #include "viewer/cli/program.h"
-#include "viewer/study/study_script.h"
+#include "viewer/study/setting_lookup.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ namespace {
 struct StudyOptions {
     std::string script, out, example, display_model;
     int participant = 1;
-    bool json = false;
+    bool json = false, any_settings = false;
 };
 
 nlohmann::ordered_json to_json(study::Script const& s, study::Plan const& plan)
@@ -58,7 +58,7 @@ nlohmann::ordered_json to_json(study::Script const& s, study::Plan const& plan)
 int run_plan(StudyOptions const& o)
 {
     check_outputs({o.out}, {o.script});
-    study::Script const s = load_script(o.script).script;
+    study::Script const s = load_looked_up(o.script, o.any_settings).script;
     if (o.participant > s.participants.count)
         throw gi::InputError(fmt::format("participant {} of {}", o.participant, s.participants.count),
                              "the script has no more", "name a smaller number, or raise participants.count");
@@ -116,6 +116,7 @@ void add_study(CLI::App& app, int& exit_code)
     plan->add_option("--display-model", o->display_model,
                      "display model (study calibrate): prints pixels per degree and luminances");
     plan->add_flag("--json", o->json, "print JSON, without the steps");
+    plan->add_flag("--any-settings", o->any_settings, "do not look settings up (as for study check)");
     plan->callback([o, &exit_code] { exit_code = run_plan(*o); });
 
     CLI::App* const example = study->add_subcommand("example", "Write one of the built-in example experiments.");

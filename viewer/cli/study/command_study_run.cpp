@@ -3,6 +3,7 @@
 #include "study/display/model_file.h"
 #include "study/plan/plan.h"
 #include "study/run/session.h"
+#include "study/script/setting_place.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/port_options.h"
@@ -13,6 +14,8 @@
 #include "viewer/displays/display_file.h"
 #include "viewer/experiment/prepared_list.h"
 #include "viewer/experiment/stimuli/prepared_files.h"
+#include "viewer/experiment/stimuli/script_check.h"
+#include "viewer/experiment/stimuli/stimulus_check.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 #include "viewer/experiment/trial_presenter.h"
 #include "viewer/report/machine.h"
@@ -37,27 +40,22 @@ struct RunOptions {
     bool hmd = false, seated = false, resume = false, no_vsync = false, json = false;
 };
 
-/// Checks before the session that all stimuli can be loaded, set up and seen from their cameras.
-void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
+/// Checks before the session that all settings are known, and that stimuli can be loaded, set up and seen from
+/// their cameras. Pictures are not rendered: `study check` does.
+void check_stimuli(LoadedScript const& loaded, study::Plan const& plan, SceneAccess const& scenes,
+                   ShownOn const& shown_on)
 {
-    gi::Report report; // losses are reported when the scenes are shown
-    RenderSession session(scenes.load, 0, report);
-    std::stable_sort(stimuli.begin(), stimuli.end(),
-                     [](auto const& a, auto const& b) { return a.settings.scene < b.settings.scene; });
-    bool is_edited = false;
-    for (auto const& [s, where] : stimuli) {
-        if (s.ar) continue; // checked by ArStimulusCheck
-        try {
-            if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
-            scenes.camera(session.world(), s.camera);
-            for (Change const& c : s.edits) session.apply(c);
-        } catch (gi::InputError const& e) {
-            throw gi::InputError(
-                where, e.what(),
-                "correct its settings; scenes are searched beside the script, then in the current folder");
-        }
-        is_edited = !s.edits.empty();
-    }
+    study::Mistakes m;
+    StimulusCollection stimuli(loaded.script, find_wrong_settings(loaded.script, loaded.text, loaded.folder, m));
+    stimuli.add(plan, m);
+    StimulusCheckOptions options;
+    options.renders = false;
+    options.shown_on = shown_on;
+    options.place_of = [&](std::string const& key, std::string const& value) {
+        return study::place_of_setting(loaded.text, key, value);
+    };
+    if (m.empty()) find_wrong_stimuli(stimuli.list(), scenes, options, m);
+    throw_first(m);
 }
 
 void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o,
@@ -110,24 +108,13 @@ void check_one_at_a_time(study::Script const& script, study::Plan const& plan, b
     }
 }
 
-/// Throws unless sizes, luminances and rules of gaze can be met.
-void check_measured(study::Script const& script, std::vector<PlannedStimulus> const& stimuli, RunOptions const& o,
-                    study::DisplayModel const* model)
+/// Throws unless rules of gaze can be met.
+void check_gaze(study::Script const& script, RunOptions const& o, study::DisplayModel const* model)
 {
-    if (model != nullptr && (o.hmd || !o.display.empty()))
-        throw gi::InputError("--display-model with --hmd or --display", "it describes the monitor of a window",
-                             "leave one out");
-    check_physical_of(stimuli, model, o.hmd || !o.display.empty());
     std::string const& gaze = o.gaze.empty() ? script.record.gaze : o.gaze;
-    for (study::Block const& block : script.blocks) {
-        if (!block.gaze.any()) continue;
-        std::string const where = fmt::format("{}: block {}: gaze", script.file, block.name);
-        if (gaze.empty() || gaze == "none")
-            throw gi::InputError(where, "nothing measures it", "give --gaze, or write record: {gaze: lsl}");
-        if (model == nullptr || !model->screen || !(model->screen->distance_cm > 0))
-            throw gi::InputError(where, "degrees need the screen's size and distance",
-                                 "name a display model that has them with --display-model");
-    }
+    study::Mistakes m;
+    find_wrong_gaze(script, gaze != "none" && !gaze.empty(), model, m);
+    throw_first(m);
 }
 
 int run(RunOptions const& o)
@@ -156,15 +143,18 @@ int run(RunOptions const& o)
     InterruptGuard const guard(stop);
     if (o.hmd && !o.display.empty())
         throw gi::InputError("--hmd with --display", "a session is shown in only one of them", "give one");
-    ArStimulusCheck ar(loaded);
-    ar.add(plan);
-    ar.check();
-    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // throws on invalid settings
-    check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
+    if (!o.display_model.empty() && (o.hmd || !o.display.empty()))
+        throw gi::InputError("--display-model with --hmd or --display", "it describes the monitor of a window",
+                             "leave one out");
     if (!o.display_model.empty()) trials.screen.model = study::load_display_model(o.display_model);
     study::DisplayModel const* const model = trials.screen.model ? &*trials.screen.model : nullptr;
-    check_measured(script, stimuli, o, model);
-    check_stimuli(stimuli, trials.scenes);
+    ShownOn const shown_on{model, o.hmd || !o.display.empty()};
+    ArStimulusCheck ar(loaded, shown_on);
+    ar.add(plan);
+    ar.check();
+    check_stimuli(loaded, plan, trials.scenes, shown_on);
+    check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
+    check_gaze(script, o, model);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
     trials.view = o.hmd ? StimulusViewer::headset : StimulusViewer::window;
     trials.headset.space = o.seated ? HmdSpace::local : HmdSpace::stage;

@@ -1,7 +1,6 @@
 #include "viewer/experiment/stimuli/physical.h"
 
 #include "gi/core/error.h"
-#include "gi/core/text.h"
 #include "study/display/geometry.h"
 
 #include <cmath>
@@ -9,57 +8,6 @@
 
 namespace viewer {
 namespace {
-
-char const* name_of_unit(StimulusUnit unit)
-{
-    constexpr char const* kNames[]{"deg", "cm", "px"};
-    return kNames[int(unit)];
-}
-
-/// Numbers, then perhaps a unit: "4 x 3 deg".
-struct Measure {
-    std::vector<double> numbers;
-    std::string unit;
-};
-std::optional<Measure> measure_of(std::string const& text)
-{
-    Measure m;
-    std::string_view rest = text;
-    while (true) {
-        std::string_view const word = gi::take_word(rest);
-        if (word.empty()) return m.numbers.empty() ? std::nullopt : std::optional(m);
-        if (auto const v = gi::parse_finite(word, 1e6); v && m.unit.empty())
-            m.numbers.push_back(*v);
-        else if (word == "x" && m.numbers.size() == 1 && m.unit.empty())
-            continue;
-        else if (m.unit.empty())
-            m.unit = word;
-        else
-            return {};
-    }
-}
-
-StimulusLength length_of(std::string const& key, std::string const& text, bool is_size)
-{
-    auto const m = measure_of(text);
-    std::string const unit = m && !m->unit.empty() ? m->unit : "deg";
-    bool const is_known = unit == "deg" || unit == "cm" || unit == "px";
-    std::size_t const wanted = is_size ? 1 : 2;
-    if (!m || !is_known || m->numbers.size() < wanted || m->numbers.size() > 2)
-        throw gi::InputError(key + ": " + text, "this is no length in deg, cm or px",
-                             is_size ? "write size: 4 deg, or size: 4 x 3 deg"
-                                     : "write place: -5 2.5 deg (right, up)");
-    StimulusLength l{m->numbers[0], m->numbers.back(),
-                     unit == "deg"  ? StimulusUnit::deg
-                     : unit == "cm" ? StimulusUnit::cm
-                                    : StimulusUnit::px};
-    double const most = l.unit == StimulusUnit::deg ? (is_size ? 170 : 80) : 1e5;
-    double const least = is_size ? 1e-3 : -most;
-    if (!(l.x >= least && l.x <= most && l.y >= least && l.y <= most))
-        throw gi::InputError(key + ": " + text, fmt::format("lengths are {:g} to {:g} {}", least, most, unit),
-                             "correct it");
-    return l;
-}
 
 glm::dvec2 in_px(StimulusLength const& l, study::DisplayModel const* model, bool is_size)
 {
@@ -95,43 +43,7 @@ double white_for_mean(gi::Layer const& first, gi::ToneMapSettings const& tone,
     return std::sqrt(low * high);
 }
 
-bool is_physical_unit(std::optional<StimulusLength> const& l) { return l && l->unit != StimulusUnit::px; }
-
 } // namespace
-
-bool PhysicalStimulus::needs_screen() const { return is_physical_unit(size) || is_physical_unit(place); }
-
-bool is_physical_setting(std::string const& key)
-{
-    return key == "size" || key == "place" || key == "luminance" || key == "mean_luminance" ||
-           key == "peak_luminance";
-}
-
-void set_physical(PhysicalStimulus& s, std::string const& key, std::string const& text)
-{
-    if (key == "size" || key == "place") {
-        (key == "size" ? s.size : s.place) = length_of(key, text, key == "size");
-        return;
-    }
-    auto const m = measure_of(text);
-    if (!m || m->numbers.size() != 1 || !(m->unit.empty() || m->unit == "cd/m2"))
-        throw gi::InputError(key + ": " + text, "this is no luminance", "write " + key + ": 80 cd/m2");
-    if (!(m->numbers[0] > 0))
-        throw gi::InputError(key + ": " + text, "luminances are above 0", "write a positive number");
-    s.luminance = {key == "luminance"        ? LuminanceOf::white
-                   : key == "mean_luminance" ? LuminanceOf::mean
-                                             : LuminanceOf::peak,
-                   m->numbers[0]};
-}
-
-std::string text_of(PhysicalStimulus const& s)
-{
-    std::string text;
-    for (auto const& [name, l] : {std::pair{"size", s.size}, {"place", s.place}})
-        if (l) text += fmt::format("{} {} {} {};", name, l->x, l->y, name_of_unit(l->unit));
-    if (s.luminance) text += fmt::format("luminance {} {};", int(s.luminance->of), s.luminance->cd_m2);
-    return text;
-}
 
 void check_physical(PhysicalStimulus const& s, study::DisplayModel const* model)
 {
@@ -162,11 +74,22 @@ void check_physical(PhysicalStimulus const& s, study::DisplayModel const* model)
         glm::dvec2 const px = in_px(*s.size, model, true);
         if (px.x > model->screen->width_px || px.y > model->screen->height_px)
             throw gi::InputError(
-                fmt::format("a stimulus of {:g} x {:g} {}", s.size->x, s.size->y, name_of_unit(s.size->unit)),
+                fmt::format("a stimulus of {:g} x {:g} {}", s.size->x, s.size->y, name_of(s.size->unit)),
                 fmt::format("it would have {:.0f} x {:.0f} px, the screen has {} x {}", px.x, px.y,
                             model->screen->width_px, model->screen->height_px),
                 "make it smaller, or sit closer");
     }
+}
+
+void check_physical(std::string const& key, std::string const& text, ShownOn const& shown_on)
+{
+    PhysicalStimulus s;
+    set_physical(s, key, text);
+    if (shown_on.has_own_views)
+        throw gi::InputError(key + " of a stimulus on walls or in a headset",
+                             "sizes, places and luminances are those of a picture in a window",
+                             "leave it out, or run in a window");
+    check_physical(s, shown_on.model);
 }
 
 DisplayLight light_of(PhysicalStimulus const& s, study::DisplayLuminance const& display,
