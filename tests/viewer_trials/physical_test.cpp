@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "study/display/geometry.h"
 #include "viewer/experiment/gaze/lsl_gaze.h"
+#include "viewer/experiment/stimuli/physical.h"
 #include "viewer/experiment/stimuli/stimulus_settings.h"
 
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "study/run/trial.h"
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/screens/refresh.h"
+#include "viewer/experiment/stimuli/physical.h"
 
 #include <algorithm>
 #include <cmath>

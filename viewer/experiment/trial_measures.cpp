@@ -1,6 +1,7 @@
 // What a trial measures of its stimuli and of the participant's gaze, and what others are told of it.
 
 #include "viewer/experiment/page.h"
+#include "viewer/experiment/stimuli/physical.h"
 #include "viewer/experiment/trial.h"
 
 #include <fmt/format.h>
