@@ -46,11 +46,11 @@ std::optional<Found> find_test(Analysis const& a, std::string const& name)
     return {};
 }
 
-/// The plans of the participants, reduced to the tested block.
-std::vector<Plan> plans_of(Script const& s, int block, int participants)
+/// The plans of the participants, reduced to the tested block; fewer if stopped.
+std::vector<Plan> plans_of(Script const& s, int block, int participants, std::function<bool(double)> const& go_on)
 {
     std::vector<Plan> plans;
-    for (int p = 1; p <= participants; ++p) {
+    for (int p = 1; p <= participants && go_on(0); ++p) {
         plans.push_back(make_plan(s, p));
         std::erase_if(plans.back().steps, [&](PlanStep const& step) {
             return step.kind != PlanStepKind::trial || step.block != block || step.trial.phase == Phase::practice;
@@ -74,7 +74,6 @@ public:
             own.participants.count = std::max(own.participants.count, most_ * kLarge);
             scripts_.push_back(std::move(own));
         }
-        for (Script const& s : scripts_) plans_.push_back(plans_of(s, settings.block, most_));
         study_.block = script.blocks[std::size_t(settings.block)].name;
         study_.test = settings.test;
         study_.simulations_planned = settings.simulations;
@@ -93,7 +92,11 @@ public:
 
     PowerStudy run()
     {
-        if (settings_.has_recovery) study_.is_complete = find_truth();
+        for (Script const& s : scripts_) {
+            plans_.push_back(plans_of(s, settings_.block, most_, go_on_));
+            study_.is_complete = study_.is_complete && int(plans_.back().size()) == most_;
+        }
+        if (settings_.has_recovery && study_.is_complete) study_.is_complete = find_truth();
         for (int i = 0; i < settings_.simulations && study_.is_complete; ++i) study_.is_complete = simulate(i);
         for (std::size_t k = 0; k < study_.points.size(); ++k) {
             PowerPoint& p = study_.points[k];
@@ -123,6 +126,7 @@ private:
         AnalysisSettings a;
         a.replicates = 2;
         a.permutations = 0;
+        a.has_outliers = false;
         a.confidence = 1 - settings_.alpha;
         return analyze_one_block(s, sessions.first(std::size_t(participants)), settings_.block, a);
     }
@@ -193,7 +197,8 @@ private:
         std::size_t at = 0;
         for (std::size_t r = 0; r < scripts_.size(); ++r) {
             int const n = most_ * kLarge;
-            std::vector<Plan> const plans = plans_of(scripts_[r], settings_.block, n);
+            std::vector<Plan> const plans = plans_of(scripts_[r], settings_.block, n, go_on_);
+            if (int(plans.size()) < n) return false;
             for (double const effect : settings_.effects) {
                 std::vector<RecordedSession> sessions;
                 if (!simulate_all(scripts_[r], plans, scaled_model(model_, settings_.scaled, effect),
