@@ -28,10 +28,19 @@ std::vector<std::string> tests_in(Analysis const& a)
     return names;
 }
 
-std::optional<Found> find_test(Analysis const& a, std::string const& name)
+/// The name without blanks, with colons for crosses: "light:method", "exact-good".
+std::string compact(std::string name)
 {
+    for (std::size_t at; (at = name.find(" x ")) != std::string::npos;) name.replace(at, 3, ":");
+    std::erase(name, ' ');
+    return name;
+}
+
+std::optional<Found> find_test(Analysis const& a, std::string const& wanted)
+{
+    std::string const name = compact(wanted);
     for (EffectResult const& e : a.effects)
-        if (name == e.effect || name == e.measure + ": " + e.effect)
+        if (name == compact(e.effect) || name == compact(e.measure + ":" + e.effect))
             return Found{e.test.p_gg, e.test.partial_eta2, e.test.eta2, "partial eta squared"};
     for (BlockResult const& b : a.blocks)
         if (!b.scales.empty())
@@ -40,8 +49,9 @@ std::optional<Found> find_test(Analysis const& a, std::string const& name)
                 std::string const& second = b.scales[0].items[std::size_t(d.b)].name;
                 double const v = d.value.value;
                 Interval const i = d.value.interval;
-                if (name == first + " - " + second) return Found{d.p, v, i, b.scales[0].unit};
-                if (name == second + " - " + first) return Found{d.p, -v, {-i.high, -i.low}, b.scales[0].unit};
+                if (name == compact(first + "-" + second)) return Found{d.p, v, i, b.scales[0].unit};
+                if (name == compact(second + "-" + first))
+                    return Found{d.p, -v, {-i.high, -i.low}, b.scales[0].unit};
             }
     return {};
 }
