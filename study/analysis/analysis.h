@@ -24,6 +24,7 @@ struct AnalysisSettings {
     int permutations = 1999;            ///< of tests of effects; 0 = none
     double confidence = 0.95;
     std::uint64_t seed = 1;
+    bool has_outliers = true;               ///< outlier scores of observers of pairs: a scale without each of them
     bool has_hierarchy = false;             ///< also hierarchical scales of pairs: a second or so for each
     std::optional<double> guess{}, lapse{}; ///< fixed rates of psychometric functions; none = as the task requires
 };

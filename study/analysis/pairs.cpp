@@ -295,7 +295,7 @@ void analyze_pairs(Script const& script, std::vector<ObserverTrials> const& obse
     auto const cells = cells_of_observers(script, counted(observers, block), groups);
     add_consistency(items, cells, result, summaries);
     // An observer without trials in the last cells has rows of length 0 there.
-    if (!cells.empty()) add_outliers(items, cells, b.name, observers.size(), summaries);
+    if (settings.has_outliers && !cells.empty()) add_outliers(items, cells, b.name, observers.size(), summaries);
 }
 
 } // namespace study

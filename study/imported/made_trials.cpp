@@ -206,6 +206,7 @@ ImportedTable sessions_of(MadeExperiment const& made)
             start.experiment = out.script.id;
             start.participant_id = t.participant;
             start.participant = session.plan.participant;
+            start.about.emplace_back("table", made.file);
             session.record.entries.emplace_back(std::move(start));
             out.sessions.push_back(std::move(session));
             runs.emplace_back();

@@ -28,10 +28,19 @@ std::vector<std::string> tests_in(Analysis const& a)
     return names;
 }
 
-std::optional<Found> find_test(Analysis const& a, std::string const& name)
+/// The name without blanks, with colons for crosses: "light:method", "exact-good".
+std::string compact(std::string name)
 {
+    for (std::size_t at; (at = name.find(" x ")) != std::string::npos;) name.replace(at, 3, ":");
+    std::erase(name, ' ');
+    return name;
+}
+
+std::optional<Found> find_test(Analysis const& a, std::string const& wanted)
+{
+    std::string const name = compact(wanted);
     for (EffectResult const& e : a.effects)
-        if (name == e.effect || name == e.measure + ": " + e.effect)
+        if (name == compact(e.effect) || name == compact(e.measure + ":" + e.effect))
             return Found{e.test.p_gg, e.test.partial_eta2, e.test.eta2, "partial eta squared"};
     for (BlockResult const& b : a.blocks)
         if (!b.scales.empty())
@@ -40,17 +49,18 @@ std::optional<Found> find_test(Analysis const& a, std::string const& name)
                 std::string const& second = b.scales[0].items[std::size_t(d.b)].name;
                 double const v = d.value.value;
                 Interval const i = d.value.interval;
-                if (name == first + " - " + second) return Found{d.p, v, i, b.scales[0].unit};
-                if (name == second + " - " + first) return Found{d.p, -v, {-i.high, -i.low}, b.scales[0].unit};
+                if (name == compact(first + "-" + second)) return Found{d.p, v, i, b.scales[0].unit};
+                if (name == compact(second + "-" + first))
+                    return Found{d.p, -v, {-i.high, -i.low}, b.scales[0].unit};
             }
     return {};
 }
 
-/// The plans of the participants, reduced to the tested block.
-std::vector<Plan> plans_of(Script const& s, int block, int participants)
+/// The plans of the participants, reduced to the tested block; fewer if stopped.
+std::vector<Plan> plans_of(Script const& s, int block, int participants, std::function<bool(double)> const& go_on)
 {
     std::vector<Plan> plans;
-    for (int p = 1; p <= participants; ++p) {
+    for (int p = 1; p <= participants && go_on(0); ++p) {
         plans.push_back(make_plan(s, p));
         std::erase_if(plans.back().steps, [&](PlanStep const& step) {
             return step.kind != PlanStepKind::trial || step.block != block || step.trial.phase == Phase::practice;
@@ -74,7 +84,6 @@ public:
             own.participants.count = std::max(own.participants.count, most_ * kLarge);
             scripts_.push_back(std::move(own));
         }
-        for (Script const& s : scripts_) plans_.push_back(plans_of(s, settings.block, most_));
         study_.block = script.blocks[std::size_t(settings.block)].name;
         study_.test = settings.test;
         study_.simulations_planned = settings.simulations;
@@ -93,7 +102,11 @@ public:
 
     PowerStudy run()
     {
-        if (settings_.has_recovery) study_.is_complete = find_truth();
+        for (Script const& s : scripts_) {
+            plans_.push_back(plans_of(s, settings_.block, most_, go_on_));
+            study_.is_complete = study_.is_complete && int(plans_.back().size()) == most_;
+        }
+        if (settings_.has_recovery && study_.is_complete) study_.is_complete = find_truth();
         for (int i = 0; i < settings_.simulations && study_.is_complete; ++i) study_.is_complete = simulate(i);
         for (std::size_t k = 0; k < study_.points.size(); ++k) {
             PowerPoint& p = study_.points[k];
@@ -123,6 +136,7 @@ private:
         AnalysisSettings a;
         a.replicates = 2;
         a.permutations = 0;
+        a.has_outliers = false;
         a.confidence = 1 - settings_.alpha;
         return analyze_one_block(s, sessions.first(std::size_t(participants)), settings_.block, a);
     }
@@ -193,7 +207,8 @@ private:
         std::size_t at = 0;
         for (std::size_t r = 0; r < scripts_.size(); ++r) {
             int const n = most_ * kLarge;
-            std::vector<Plan> const plans = plans_of(scripts_[r], settings_.block, n);
+            std::vector<Plan> const plans = plans_of(scripts_[r], settings_.block, n, go_on_);
+            if (int(plans.size()) < n) return false;
             for (double const effect : settings_.effects) {
                 std::vector<RecordedSession> sessions;
                 if (!simulate_all(scripts_[r], plans, scaled_model(model_, settings_.scaled, effect),

@@ -12,7 +12,8 @@ namespace study {
 
 struct PowerSettings {
     int block = 0; ///< the one that is tested
-    /// An effect of the table `effects` ("display x scene"), or "A - B", two items whose scores are compared.
+    /// An effect of the table `effects` ("display x scene" or "display:scene"), or "A - B", two items whose scores
+    /// are compared; blanks do not matter.
     std::string test;
     std::vector<double> effects{1}; ///< factors on what the observers' model says of `scaled`; 0 = no effect
     std::vector<int> scaled;        ///< factors of the script; empty = all, and interactions

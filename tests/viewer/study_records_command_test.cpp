@@ -108,16 +108,16 @@ TEST(StudyPower, PrintsPowerAndWritesACurve)
     TemporaryFolder const folder;
     run_well("study example pairs --out pairs.yaml", folder.path());
     Outcome const o =
-        run_well("study power pairs.yaml --block better --test 'none - wide' --participants 6,12 --effects "
+        run_well("study power pairs.yaml --block better --test none-wide --participants 6,12 --effects "
                  "0,1 --simulations 10 --out power",
                  folder.path());
     EXPECT_NE(o.out.find("10 of 10 simulations"), std::string::npos) << o.out;
     EXPECT_EQ(nlohmann::json::parse(file_text(folder / "power/power.json"))["points"].size(), 4u);
     EXPECT_TRUE(file_text(folder / "power/power.csv").starts_with("repeats,participants,effect,power"));
     EXPECT_NE(file_text(folder / "power/power.html").find("<svg"), std::string::npos);
-    expect_refused("study power pairs.yaml --block better --test 'none - best'", folder, "it has: ");
-    expect_refused("study power pairs.yaml --block worse --test 'none - wide'", folder, "it has: better");
-    expect_refused("study power pairs.yaml --block better --test 'none - wide' --effect-of sound", folder,
+    expect_refused("study power pairs.yaml --block better --test none-best", folder, "it has: ");
+    expect_refused("study power pairs.yaml --block worse --test none-wide", folder, "it has: better");
+    expect_refused("study power pairs.yaml --block better --test none-wide --effect-of sound", folder,
                    "the script has no such factor");
 }
 

@@ -94,8 +94,9 @@ void add_study_power(CLI::App& study, int& exit_code)
         "power", "Power by simulation: how often the analysis finds an effect, by its size and the participants.");
     power->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
     power
-        ->add_option("--test", o->test,
-                     "an effect as analyze names it ('display x scene'), or two items ('exact - none')")
+        ->add_option(
+            "--test", o->test,
+            "an effect as analyze names it (display:scene, or 'display x scene'), or two items (exact-none)")
         ->required();
     power->add_option("--block", o->block, "the block that is tested (needed if there are several)");
     power->add_option("--observer", o->observer, "model of the observers (YAML, docs/study.md)");
@@ -125,7 +126,7 @@ void add_study_power(CLI::App& study, int& exit_code)
     power->callback([o, &exit_code] { exit_code = run_power(*o); });
     power->footer(R"(Examples:
   lightwell study example pairs --out pairs.yaml
-  lightwell study power pairs.yaml --block better --test "none - wide" --participants 6,12 --effects 0,1 --simulations 20
+  lightwell study power pairs.yaml --block better --test none-wide --participants 6,12 --effects 0,1 --simulations 20
 
 Ctrl-C ends it and keeps the simulations that are complete.)");
 }
