@@ -22,7 +22,7 @@ void read_gaze(gi::Yaml const& y, GazeRules& gaze)
         gaze.start.reset();
         if (!is_none(start)) {
             check_keys(start, "gaze_start");
-            GazeRules::Fixation& f = gaze.start.emplace();
+            GazeFixation& f = gaze.start.emplace();
             take_number(start, "within_deg", 0.01, kMost_deg, f.within_deg);
             take_number(start, "for_ms", 1, kMinute_ms, f.for_ms);
             take_number(start, "timeout_ms", 1, 10 * kMinute_ms, f.timeout_ms);
@@ -36,7 +36,7 @@ void read_gaze(gi::Yaml const& y, GazeRules& gaze)
         gaze.hold.reset();
         if (!is_none(hold)) {
             check_keys(hold, "gaze_hold");
-            GazeRules::Hold& h = gaze.hold.emplace();
+            GazeHold& h = gaze.hold.emplace();
             take_number(hold, "within_deg", 0.01, kMost_deg, h.within_deg);
             take_number(hold, "grace_ms", 0, kMinute_ms, h.grace_ms);
         }
@@ -46,9 +46,9 @@ void read_gaze(gi::Yaml const& y, GazeRules& gaze)
     gaze.moving.reset();
     if (is_none(follow)) return;
     check_keys(follow, "gaze_follow");
-    GazeRules::Moving& m = gaze.moving.emplace();
+    GazeCircleRule& m = gaze.moving.emplace();
     if (follow.has("show"))
-        m.kind = GazeRules::Follow(follow.at("show").one_of({"window", "mask"}, "thing that follows gaze"));
+        m.kind = GazeFollow(follow.at("show").one_of({"window", "mask"}, "thing that follows gaze"));
     take_number(follow, "radius_deg", 0.01, kMost_deg, m.radius_deg);
     take_number(follow, "edge_deg", 0, kMost_deg, m.edge_deg);
 }
