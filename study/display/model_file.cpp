@@ -125,10 +125,10 @@ std::string curve_text(char const* name, ChannelCurve const& c)
 DisplayModel parse_display_model(std::string const& text, std::string const& file)
 {
     Yaml const y = Yaml::parse(text, file, "display model");
-    y.only_keys({"schema", "date", "by", "instrument", "room", "monitor", "connector", "refresh_hz", "bits",
-                 "screen", "ipd_mm", "luminance", "colour"});
     Yaml const schema = y.needed("schema", "display-model/1");
     if (schema.text() != "display-model/1") throw schema.unknown("known schema", {"display-model/1"});
+    y.only_keys({"schema", "date", "by", "instrument", "room", "monitor", "connector", "refresh_hz", "bits",
+                 "screen", "ipd_mm", "luminance", "colour"});
     DisplayModel m;
     m.date = text_of_key(y, "date");
     m.by = text_of_key(y, "by");

@@ -25,7 +25,7 @@ void take_rule(gi::Yaml const& y, char const* key, std::optional<Rule>& rule, Mi
     });
 }
 
-void read_start(gi::Yaml const& y, GazeRules::Fixation& f, Mistakes& m)
+void read_start(gi::Yaml const& y, GazeFixation& f, Mistakes& m)
 {
     take_number(y, "within_deg", 0.01, kMost_deg, f.within_deg, m);
     take_number(y, "for_ms", 1, kMinute_ms, f.for_ms, m);
@@ -35,16 +35,16 @@ void read_start(gi::Yaml const& y, GazeRules::Fixation& f, Mistakes& m)
                       "raise timeout_ms above for_ms");
 }
 
-void read_hold(gi::Yaml const& y, GazeRules::Hold& h, Mistakes& m)
+void read_hold(gi::Yaml const& y, GazeHold& h, Mistakes& m)
 {
     take_number(y, "within_deg", 0.01, kMost_deg, h.within_deg, m);
     take_number(y, "grace_ms", 0, kMinute_ms, h.grace_ms, m);
 }
 
-void read_follow(gi::Yaml const& y, GazeRules::Moving& f, Mistakes& m)
+void read_follow(gi::Yaml const& y, GazeCircleRule& f, Mistakes& m)
 {
     m.take(y, "show", [&](gi::Yaml const& v) {
-        f.kind = GazeRules::Follow(v.one_of({"window", "mask"}, "thing that follows gaze"));
+        f.kind = GazeFollow(v.one_of({"window", "mask"}, "thing that follows gaze"));
     });
     take_number(y, "radius_deg", 0.01, kMost_deg, f.radius_deg, m);
     take_number(y, "edge_deg", 0, kMost_deg, f.edge_deg, m);

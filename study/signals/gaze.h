@@ -18,23 +18,26 @@ struct GazeSample {
     bool is_valid = false;     ///< false: a blink, or the eye was not found
 };
 
+/// A fixation that comes before the first stimulus.
+struct GazeFixation {
+    double within_deg = 2, for_ms = 300;
+    double timeout_ms = 10000; ///< without a fixation the trial is invalid
+};
+/// Gaze that stays.
+struct GazeHold {
+    double within_deg = 3, grace_ms = 100; ///< shorter absences, and blinks, are no leaving
+};
+enum class GazeFollow { window, mask };
+/// A circle that follows gaze.
+struct GazeCircleRule {
+    GazeFollow kind = GazeFollow::window; ///< window: only around the gaze; mask: hidden around it
+    double radius_deg = 2.5, edge_deg = 0.5;
+};
 /// What a block demands of gaze; degrees of visual angle.
 struct GazeRules {
-    struct Fixation {
-        double within_deg = 2, for_ms = 300;
-        double timeout_ms = 10000; ///< without a fixation the trial is invalid
-    };
-    struct Hold {
-        double within_deg = 3, grace_ms = 100; ///< shorter absences, and blinks, are no leaving
-    };
-    enum class Follow { window, mask };
-    struct Moving {
-        Follow kind = Follow::window; ///< window: only around the gaze; mask: hidden around it
-        double radius_deg = 2.5, edge_deg = 0.5;
-    };
-    std::optional<Fixation> start;
-    std::optional<Hold> hold;
-    std::optional<Moving> moving;
+    std::optional<GazeFixation> start;
+    std::optional<GazeHold> hold;
+    std::optional<GazeCircleRule> moving;
     bool any() const { return start || hold || moving; }
 };
 

@@ -44,19 +44,37 @@ ShownTogether together(TrialDone const& done)
     return t;
 }
 
-/// A trial shows something, then somebody answers (HED 8.3.0).
-std::vector<std::pair<std::string, std::string>> hed_of_phases()
+/// HED 8.3.0 refers to other columns as {name}; names with other characters have no tags.
+bool is_hed_column(std::string const& name) { return hed_name(name) == name; }
+
+std::string hed_references(std::vector<std::string> const& columns)
 {
-    std::string const shown = "Sensory-event, Visual-presentation, Experimental-stimulus, Label/";
-    return {{"practice", shown + "practice"},
-            {"main", shown + "main"},
-            {"catch", shown + "catch"},
-            {"repeat", shown + "repeat"}};
+    std::string list;
+    for (std::string const& name : columns)
+        if (is_hed_column(name)) list += ", {" + name + "}";
+    return list;
 }
 
-std::vector<std::pair<std::string, std::string>> hed_of_levels(Factor const& factor)
+/// A trial shows something, then somebody answers. Each row is one group that holds the numbers of its trial,
+/// because validators take rows of one onset (or of none) together, where no tag may be there twice.
+std::vector<std::pair<std::string, std::string>> hed_of_phases(Script const& script)
+{
+    std::string const more = hed_references({"trial", "pass", "attempt"}) +
+                             hed_references(factor_columns(script)) + hed_references({"correct"}) + ")";
+    std::vector<std::pair<std::string, std::string>> tags;
+    for (char const* phase : {"practice", "main", "catch", "repeat"})
+        tags.emplace_back(phase, "(Sensory-event, Visual-presentation, Experimental-stimulus, Label/" +
+                                     std::string(phase) + more);
+    return tags;
+}
+
+/// HED of a column of numbers.
+std::string hed_number(std::string const& name) { return "(Parameter-label/" + name + ", Parameter-value/#)"; }
+
+std::vector<std::pair<std::string, std::string>> hed_of_levels(Factor const& factor, std::string const& column)
 {
     std::vector<std::pair<std::string, std::string>> tags;
+    if (!is_hed_column(column)) return tags;
     for (FactorLevel const& level : factor.levels)
         tags.emplace_back(level.name, fmt::format("(Condition-variable/{}, Label/{})", hed_name(factor.name),
                                                   hed_name(level.name)));
@@ -83,10 +101,10 @@ std::vector<Column> event_columns(Script const& s)
         {"response_time", "From the onset of the last stimulus to the answer", "s"},
         {"trial", "Number of the trial in its pass of the block, from 1", "", {}, "Experimental-trial/#"},
         {"block", "Block of the script"},
-        {"pass", "Number of the pass of the block, from 1"},
+        {"pass", "Number of the pass of the block, from 1", "", {}, hed_number("pass")},
         {"part", "Part of the session, from 1; each resumption adds one"},
-        {"phase", "Kind of trial", "", kPhases, "", hed_of_phases()},
-        {"attempt", "Number of the attempt at the trial, from 1"},
+        {"phase", "Kind of trial", "", kPhases, "", hed_of_phases(s)},
+        {"attempt", "Number of the attempt at the trial, from 1", "", {}, hed_number("attempt")},
         {"repeat", "Repeat of the condition, from 1; number of the run for adaptive procedures"}};
     auto const names = factor_columns(s);
     for (std::size_t f = 0; f < s.factors.size(); ++f)
@@ -95,7 +113,7 @@ std::vector<Column> event_columns(Script const& s)
                            "",
                            {},
                            "",
-                           hed_of_levels(s.factors[f])});
+                           hed_of_levels(s.factors[f], names[f])});
     std::vector<Column> const more{
         {"cond_a", "Stimulus a"},
         {"cond_b", "Stimulus b"},
@@ -313,20 +331,22 @@ Table events_table(Script const& script, std::vector<TrialRow> const& rows, int 
 
 Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int block)
 {
+    auto const names = factor_columns(script);
     Table table{{{"onset", "Onset of the stimulus, since the beginning of the session", "s"},
                  {"duration", "How long it was shown", "s"},
-                 {"trial", "Number of the trial in its pass of the block, from 1"},
+                 {"trial", "Number of the trial in its pass of the block, from 1", "", {}, "Experimental-trial/#"},
                  {"pass", "Number of the pass of the block, from 1"},
                  {"attempt", "Number of the attempt at the trial, from 1"},
-                 {"place", "Place in the order of presentation, from 1"},
+                 {"place", "Place in the order of presentation, from 1", "", {}, hed_number("place")},
                  {"stimulus",
                   "Letter of the stimulus; r is the reference",
                   "",
                   {},
-                  "Sensory-event, Visual-presentation, Experimental-stimulus, Label/#"}}};
-    auto const names = factor_columns(script);
+                  "(Sensory-event, Visual-presentation, Experimental-stimulus, Label/#" +
+                      hed_references({"trial", "place"}) + hed_references(names) + ")"}}};
     for (std::size_t f = 0; f < names.size(); ++f)
-        table.columns.push_back({names[f], "Level of the factor", "", {}, "", hed_of_levels(script.factors[f])});
+        table.columns.push_back(
+            {names[f], "Level of the factor", "", {}, "", hed_of_levels(script.factors[f], names[f])});
     bool const is_physical = std::any_of(rows.begin(), rows.end(), [&](TrialRow const& row) {
         return row.step->block == block &&
                std::any_of(row.done->shown.begin(), row.done->shown.end(),

@@ -15,11 +15,10 @@ std::string calibration_text(CalibrationDone const& c)
            (c.reason.empty() ? "" : ": " + c.reason);
 }
 
-/// HED 8.3.0
+/// HED 8.3.0. Calibrations have none: without an onset, those of all parts would be one event.
 std::vector<std::pair<std::string, std::string>> hed_of_session_events()
 {
     return {{"start", "Experiment-structure, Label/session-start"},
-            {"calibration", "Experiment-control, Label/display-test"},
             {"instructions", "Experiment-structure, Instructional"},
             {"rest", "Experiment-structure, Label/rest"},
             {"free_walk", "Experiment-structure, Label/free-walk"},

@@ -26,7 +26,7 @@ TEST(GazeKeys, SetTheRulesOfABlock)
     EXPECT_EQ(g.start->for_ms, 250);
     EXPECT_EQ(g.start->timeout_ms, 10000);
     EXPECT_EQ(g.hold->grace_ms, 50);
-    EXPECT_EQ(g.moving->kind, GazeRules::Follow::mask);
+    EXPECT_EQ(g.moving->kind, GazeFollow::mask);
     EXPECT_EQ(g.moving->radius_deg, 3);
     EXPECT_EQ(s.record.gaze, "lsl:Tobii");
 }

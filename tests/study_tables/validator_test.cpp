@@ -50,10 +50,20 @@ void write_dataset(fs::path const& folder, StudyExample const& example)
                 shown.clipped_pixels = 3;
                 shown.width_deg = shown.height_deg = 4;
             }
+            if (!b.is_sequential) // they appear together
+                for (StimulusShown& shown : done.shown) shown.onset_s = done.shown[0].onset_s;
             done.gaze_samples = 250;
             done.gaze_valid = 240;
             done.gaze_dropped = 1;
         }));
+        auto& all = sessions.back().record.entries;
+        all.insert(all.begin() + 2, CalibrationDone{600, 60, 16.7, 0.1, "swap_finish", true, ""}); // as resumed
+        for (JournalEntry& entry : all) // two trials that never began: rows without an onset
+            if (auto* const t = std::get_if<TrialDone>(&entry); t != nullptr && t->step % 9 == 4) {
+                t->shown.clear();
+                t->is_valid = false;
+                t->reason = "no_fixation";
+            }
         auto& started = std::get<SessionStarted>(sessions.back().record.entries.front());
         for (auto const& [key, value] : {std::pair{"os", "Linux"},
                                          {"screen_px", "1920 x 1080"},

@@ -217,15 +217,15 @@ TEST_F(Measured, DisplaysAreCalibratedInTheWindow)
     window.focus();
     auto const centre = [&] { return int(window.picture({198, 140}, {1, 1}).at(0)); };
     ASSERT_TRUE(is_soon([&] { return centre() == 190; })) << "the card";
-    for (int i = 0; i < 3; ++i) window.tap("Prior"); // 320 + 48 px
-    window.tap("Right");
+    tap_slowly(window, "Prior", 3); // 320 + 48 px
+    tap_slowly(window, "Right");
     sleep_ms(150);
     window.tap("Return");
     for (int const value : {0, 64, 128, 191, 255}) {
         ASSERT_TRUE(is_soon([&] { return std::abs(centre() - value) <= 1; })) << value << " " << centre();
         sleep_ms(100);
         for (char const c : fmt::format("{:.0f}", 200 * std::pow(value / 255.0, 2.2) + 1))
-            window.tap(std::string(1, c));
+            tap_slowly(window, std::string(1, c));
         sleep_ms(150);
         window.tap("Return");
     }
@@ -256,8 +256,8 @@ TEST_F(Measured, GammaIsMatchedByEye)
         for (std::size_t i = 0; i < lines.size(); i += 3) bright += lines[i] == 255;
         EXPECT_NEAR(bright, 80 * share, 1) << "lines that are bright";
         int value = 128;
-        for (; value + 16 <= wanted; value += 16) window.tap("Prior");
-        for (; value < wanted; ++value) window.tap("Up");
+        for (; value + 16 <= wanted; value += 16) tap_slowly(window, "Prior");
+        for (; value < wanted; ++value) tap_slowly(window, "Up");
         ASSERT_TRUE(is_soon([&] { return window.picture({240, 150}, {1, 1}).at(0) == wanted; }));
         window.tap("Return");
     }

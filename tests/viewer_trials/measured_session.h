@@ -27,7 +27,7 @@ inline void write_gaze(TemporaryFolder const& folder, double length_s)
     out << "t_s,x_px,y_px,pupil_mm,valid\n";
     for (int i = 0; i < int(250 * length_s); ++i) {
         bool const away = i / 250.0 > length_s - 0.3;
-        out << fmt::format("{:.3f},{},{},3.1,{}\n", i / 250.0, away ? 5000 : 118 + i % 5, 90, i % 100 != 7);
+        out << fmt::format("{:.3f},{},{},3.1,{}\n", i / 250.0, away ? 5000 : 118 + i % 5, 90, int(i % 100 != 7));
     }
 }
 
@@ -51,6 +51,15 @@ blocks:
   seen: {{task: rating, scale: {{min: 1, max: 7}}, cross: [bounces], {}}}
 )",
                        sequence, markers, trials);
+}
+
+/// Taps that come within a millisecond would be one.
+inline void tap_slowly(XWindow& window, std::string const& key, int times = 1)
+{
+    for (; times > 0; --times) {
+        window.tap(key);
+        sleep_ms(40);
+    }
 }
 
 inline std::filesystem::path peer_python()

@@ -29,7 +29,7 @@ void TrialPresenter::Trial::calibrate_light(LoadedStimulus& k, bool counts)
 bool TrialPresenter::Trial::await_fixation()
 {
     if (!block_.gaze.start) return true;
-    study::GazeRules::Fixation const& rule = *block_.gaze.start;
+    study::GazeFixation const& rule = *block_.gaze.start;
     study::GazeWatch watch(p_.gaze_screen(), {0, 0}, rule.within_deg);
     p_.gaze_.watch(&watch);
     ScreenContent empty = content("");

@@ -159,11 +159,11 @@ void TrialPresenter::add_patch(ScreenContent& content, bool white) const
 }
 
 /// None = nothing is known of the gaze: a mask hides nothing then, a window everything.
-std::optional<GazeCircle> TrialPresenter::gaze_circle(study::GazeRules::Moving const& rule)
+std::optional<GazeCircle> TrialPresenter::gaze_circle(study::GazeCircleRule const& rule)
 {
     gaze_.poll(screen_->gaze_place(), now()); // what has come until this frame
     auto const gaze = gaze_.latest(now());
-    bool const is_window = rule.kind == study::GazeRules::Follow::window;
+    bool const is_window = rule.kind == study::GazeFollow::window;
     if (!gaze && !is_window) return {};
     study::ScreenGeometry const& screen = gaze_screen();
     glm::vec2 const middle = 0.5f * glm::vec2(screen_->size_px());

@@ -84,7 +84,7 @@ private:
     {
         return *model()->screen;
     } ///< for blocks with rules of gaze
-    std::optional<GazeCircle> gaze_circle(study::GazeRules::Moving const& rule);
+    std::optional<GazeCircle> gaze_circle(study::GazeCircleRule const& rule);
     void keep_gaze_table();
 
     study::Script const& script_;
