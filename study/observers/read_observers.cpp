@@ -47,9 +47,11 @@ void read_varied(gi::Yaml const& y, ObserverModel& m)
     for (VariedModel const& v : m.varied) known.push_back(v.setting);
     for (auto const& [name, values] : y.entries()) {
         VariedModel& v = m.varied[std::size_t(name.one_of(known, "setting that a block varies"))];
-        read_all_numbers(values, {{"threshold", &v.threshold, v.low, v.high},
-                                  {"slope", &v.slope, 1e-6, kAny},
-                                  {"between_sd", &v.between_sd, 0, kAny}});
+        std::vector<Number> numbers{{"threshold", &v.threshold, v.low, v.high},
+                                    {"slope", &v.slope, 1e-6, kAny},
+                                    {"between_sd", &v.between_sd, 0, kAny}};
+        for (auto& [parameter, value] : v.parameters) numbers.push_back({parameter.c_str(), &value, -kAny, kAny});
+        read_all_numbers(values, numbers);
     }
 }
 

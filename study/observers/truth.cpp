@@ -20,12 +20,14 @@ Json by_level(Script const& s, std::vector<std::vector<double>> const& values)
 Json of_varied(std::vector<VariedModel> const& varied)
 {
     Json out = Json::object();
-    for (VariedModel const& v : varied)
+    for (VariedModel const& v : varied) {
         out[v.setting] = {{"threshold", v.threshold},
                           {"slope", v.slope},
                           {"function", v.function.name()},
                           {"scale", name_of(v.scale)},
                           {"between_sd", v.between_sd}};
+        for (auto const& [name, value] : v.parameters) out[v.setting]["parameters"][name] = value;
+    }
     return out;
 }
 

@@ -8,6 +8,7 @@
 #include "study/run/session_files.h"
 #include "study/run/stopwatch.h"
 #include "study/run/trial.h"
+#include "study/script/procedure_settings.h"
 
 #include <chrono>
 #include <cmath>
@@ -174,8 +175,7 @@ private:
         std::string reason;
         is_under_way_ = true;
         try {
-            if (!s_.participants.ask.empty() && !progress_.was_asked())
-                keep(call([&] { return p_.ask_participant(s_.participants.ask); }));
+            if (!s_.participants.ask.empty() && !progress_.was_asked()) ask_participant();
             for (auto due = progress_.next(); due; due = progress_.next())
                 if (between_steps())
                     skip(*due);
@@ -190,6 +190,16 @@ private:
             note("abort", "");
         }
         end(reason);
+    }
+
+    void ask_participant()
+    {
+        ParticipantAsked const asked = call([&] { return p_.ask_participant(s_.participants.ask); });
+        keep(asked);
+        for (AskedQuestion const& q : s_.participants.ask)
+            for (auto const& [id, answer] : asked.answers)
+                if (std::string const flaw = flaw_of_answer(q, answer); id == q.id && !flaw.empty())
+                    note("warning", fmt::format("the answer to '{}' is '{}': {}", id, answer, flaw));
     }
 
     /// Handles notes, experimenter commands and clocks. @return true if the next step is to be skipped
@@ -302,6 +312,7 @@ private:
         done.step = due.step;
         done.attempt = due.attempt;
         done.level = due.level;
+        if (!due.also.empty()) done.chosen = further_text(*r.block->compare, due.also);
         if (due.pair) done.chosen = pair_text(s_, *r.block, *due.pair);
         done.bookkeeping_ms = has_shown_ ? total : 0;
         has_shown_ = true;

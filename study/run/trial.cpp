@@ -25,8 +25,10 @@ TrialRequest request_of(Script const& script, Plan const& plan, Progress const& 
         r.stimuli[0].levels[factor] = due.pair->first;
         r.stimuli[1].levels[factor] = due.pair->second;
     }
-    for (Stimulus& stimulus : r.stimuli)
+    for (Stimulus& stimulus : r.stimuli) {
         if (stimulus.is_varied && !stimulus.level) stimulus.level = due.level;
+        stimulus.also = due.also; // the stimuli differ only in the setting of vary
+    }
     return r;
 }
 
