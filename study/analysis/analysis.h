@@ -107,6 +107,11 @@ struct ThresholdEstimate {
     Uncertain level;
     std::string note;
 };
+/// Posterior of one parameter of QUEST+ with several settings or further parameters.
+struct ParameterEstimate {
+    std::string name;
+    double mean = kUnknown, sd = kUnknown;
+};
 struct ThresholdRun {
     std::string participant, procedure, cell;
     int run = 1;
@@ -114,6 +119,8 @@ struct ThresholdRun {
     std::vector<int> correct;
     std::vector<int> reversals; ///< trials, from 0
     std::vector<ThresholdEstimate> estimates;
+    std::vector<ParameterEstimate> parameters{};
+    std::string note{}; ///< why there are no parameters although the procedure has them
 };
 /// Mean threshold of one procedure and method over observers: geometric on logarithmic scales.
 struct ThresholdSummary {

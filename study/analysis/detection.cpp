@@ -256,6 +256,9 @@ void analyze_detection(Script const& script, std::vector<ObserverTrials> const& 
     result.is_log = b.compare->scale != Scale::linear;
     add_runs(script, b, trials, groups, settings, result);
     add_summaries(*b.compare, settings, result);
+    bool const is_many =
+        std::any_of(b.procedures.begin(), b.procedures.end(), [](Procedure const& p) { return p.is_many(); });
+    if (is_many) return; // no curve of one setting
     std::map<std::string, std::vector<std::vector<TrialRow>>> cells;
     for (std::size_t o = 0; o < trials.size(); ++o)
         for (TrialRow const& row : trials[o].rows) {

@@ -123,6 +123,40 @@ ResultTable runs(Analysis const& a)
     return t;
 }
 
+ResultTable parameters(Analysis const& a)
+{
+    ResultTable t{
+        "parameters",
+        "Parameters of QUEST+ with several settings",
+        "Posterior mean and standard deviation of each run. Compare their spread over observers with the "
+        "standard deviations.",
+        true,
+        {}};
+    t.table.columns = {{"block", "Block"},
+                       {"cell", "Condition"},
+                       {"participant", "Participant"},
+                       {"procedure", "Procedure"},
+                       {"run", "Run, from 1"},
+                       {"trials", "Trials"},
+                       {"parameter", "Parameter of the formula"},
+                       {"mean", "Posterior mean"},
+                       {"sd", "Posterior standard deviation"},
+                       {"note", "Remark"}};
+    for (BlockResult const& b : a.blocks)
+        for (ThresholdRun const& r : b.runs) {
+            std::vector<std::string> const start{cell(b.name),      cell(r.cell), cell(r.participant),
+                                                 cell(r.procedure), cell(r.run),  cell(double(r.levels.size()))};
+            auto const add = [&](std::vector<std::string> const& rest) {
+                t.table.rows.push_back(start);
+                t.table.rows.back().insert(t.table.rows.back().end(), rest.begin(), rest.end());
+            };
+            for (ParameterEstimate const& e : r.parameters)
+                add({cell(e.name), cell(e.mean), cell(e.sd), cell("")});
+            if (!r.note.empty()) add({cell(""), cell(""), cell(""), cell(r.note)});
+        }
+    return t;
+}
+
 ResultTable curves(Analysis const& a)
 {
     ResultTable t{
@@ -322,8 +356,8 @@ ResultTable transitions(Analysis const& a)
 
 std::vector<ResultTable> detail_tables(Analysis const& a)
 {
-    return {agreement(a), thresholds(a), runs(a),         curves(a),    detection(a),  questionnaires(a),
-            changes(a),   timing(a),     calibrations(a), reactions(a), transitions(a)};
+    return {agreement(a),      thresholds(a), runs(a),   parameters(a),   curves(a),    detection(a),
+            questionnaires(a), changes(a),    timing(a), calibrations(a), reactions(a), transitions(a)};
 }
 
 } // namespace study

@@ -147,6 +147,30 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
     run.estimates.push_back(std::move(e));
 }
 
+/// Replays QUEST+ of several settings on the recorded trials.
+void add_parameters(ThresholdRun& run, Block const& b, Procedure const& p, std::vector<TrialRow> const& trials)
+{
+    try {
+        QuestPlusMany quest(quest_many_settings(p));
+        for (TrialRow const& row : trials) {
+            if (!row.done->level || !row.done->is_correct || row.step->trial.is_noise) continue;
+            std::vector<double> stimulus{*row.done->level};
+            for (double const level : further_of_text(*b.compare, row.done->chosen)) stimulus.push_back(level);
+            auto const index = stimulus.size() == 1 + p.also.size() ? quest.index_of(stimulus) : std::nullopt;
+            if (!index) {
+                run.note = "a recorded level is not on the grid";
+                return;
+            }
+            quest.respond(*index, *row.done->is_correct);
+        }
+        auto const mean = quest.mean(), sd = quest.standard_deviation();
+        auto const names = names_of({}, quest_many_settings(p).parameters);
+        for (std::size_t i = 0; i < names.size(); ++i) run.parameters.push_back({names[i], mean[i], sd[i]});
+    } catch (std::invalid_argument const& e) {
+        run.note = e.what();
+    }
+}
+
 } // namespace
 
 double guess_rate(Task task)
@@ -168,6 +192,10 @@ ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<Trial
             run.levels.push_back(*row.done->level);
             run.correct.push_back(*row.done->is_correct ? 1 : 0);
         }
+    if (p.is_many()) {
+        add_parameters(run, b, p, trials);
+        return run;
+    }
     auto const guess = lowest_share(b.task, trials);
     // Every method at the middle of the rise; staircases also at the proportion to which they converge.
     if (p.method == Method::staircase) {

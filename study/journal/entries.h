@@ -72,7 +72,8 @@ struct TrialDone {
     std::string device;                 ///< input that gave the answer: "key:left"
     bool is_valid = true;
     std::string reason; ///< why not: dropped_frames, timeout, anticipation, too_slow, skipped, lost_focus, ...
-    std::string chosen; ///< the pair of a trial whose pair was chosen when it came: "best/fair"; else empty
+    std::string chosen; ///< what was chosen when it came: a pair, "best/fair", or levels of further
+                        ///< varied settings, "camera.fov=40"; else empty
     double bookkeeping_ms = 0; ///< time after the previous trial for journal and choice of the next step
     // Of gaze, while stimuli were visible; none if gaze was not recorded:
     std::optional<int> gaze_samples{}, gaze_valid{};

@@ -69,10 +69,28 @@ private:
         if (!t_.is_noise) {
             double const lapse = std::min(o_.model.lapse, 1 - guess);
             double const threshold = o_.threshold(v, stimulus('a').levels);
-            right = proportion_correct(v.function, v.scale, c.harder_up, {threshold, v.slope, guess, lapse},
-                                       r_.level.value_or(v.low));
+            right = is_many() ? of_many(v, threshold, guess, lapse)
+                              : proportion_correct(v.function, v.scale, c.harder_up,
+                                                   {threshold, v.slope, guess, lapse}, r_.level.value_or(v.low));
         }
         return random_.uniform() < right ? t_.answer : blindly(t_.answer);
+    }
+
+    bool is_many() const
+    {
+        return std::any_of(block_.procedures.begin(), block_.procedures.end(),
+                           [](Procedure const& p) { return p.is_many(); });
+    }
+    /// By the formula, of all varied settings.
+    double of_many(VariedModel const& v, double threshold, double guess, double lapse) const
+    {
+        std::vector<double> values{r_.level.value_or(v.low)};
+        auto const& also = block_.compare->also;
+        for (std::size_t i = 0; i < also.size(); ++i)
+            values.push_back(r_.stimuli[0].also.empty() ? also[i].usual : r_.stimuli[0].also[i]);
+        values.insert(values.end(), {threshold, v.slope, guess, lapse});
+        for (auto const& [name, value] : v.parameters) values.push_back(value);
+        return std::clamp((*v.function.formula)(values), 0.0, 1.0);
     }
 
     std::string of_percepts()

@@ -34,6 +34,15 @@ VariedModel usual_varied(Block const& b)
     v.function =
         is_named ? fitted_function(b.procedures)
                  : PsychometricChoice{c.scale == Scale::linear ? Psychometric::normal : Psychometric::weibull, {}};
+    for (Procedure const& p : b.procedures)
+        if (p.is_many()) {
+            v.function = *p.psychometric;
+            v.threshold = p.threshold[p.threshold.size() / 2];
+            v.slope = p.slope[p.slope.size() / 2];
+            for (QuestGrid const& g : p.parameters)
+                v.parameters.emplace_back(g.name, g.values[g.values.size() / 2]);
+            return v;
+        }
     if (v.function.function == Psychometric::logistic)
         v.slope = 14 / (high - low); // about as steep as the normal one
     else if (!v.function.takes_levels())

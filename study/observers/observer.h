@@ -19,6 +19,7 @@ struct VariedModel {
     double threshold = 0, slope = 1;
     double between_sd = 0; ///< standard deviation of participants' thresholds, in units of the scale
     PsychometricChoice function{};
+    std::vector<std::pair<std::string, double>> parameters{}; ///< of a formula, besides the usual ones
     std::vector<std::vector<double>> shift{}; ///< by factor and level, of the threshold, in units of the scale
 };
 

@@ -47,10 +47,14 @@ void read_varied(gi::Yaml const& y, Script const& s, ObserverModel& m)
     for (VariedModel const& v : m.varied) known.push_back(v.setting);
     for (auto const& [name, values] : y.entries()) {
         VariedModel& v = m.varied[std::size_t(name.one_of(known, "setting that a block varies"))];
-        values.only_keys({"threshold", "slope", "between_sd", "shift"});
-        read_numbers(values, {{"threshold", &v.threshold, v.low, v.high},
-                              {"slope", &v.slope, 1e-6, kAny},
-                              {"between_sd", &v.between_sd, 0, kAny}});
+        std::vector<Number> numbers{{"threshold", &v.threshold, v.low, v.high},
+                                    {"slope", &v.slope, 1e-6, kAny},
+                                    {"between_sd", &v.between_sd, 0, kAny}};
+        for (auto& [parameter, value] : v.parameters) numbers.push_back({parameter.c_str(), &value, -kAny, kAny});
+        std::set<std::string> keys{"shift"};
+        for (Number const& n : numbers) keys.insert(n.key);
+        values.only_keys(keys);
+        read_numbers(values, numbers);
         if (!values.has("shift")) continue;
         v.shift.resize(s.factors.size());
         read_by_level(values.at("shift"), s, -kAny, kAny, v.shift);

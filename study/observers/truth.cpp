@@ -26,6 +26,7 @@ Json of_varied(Script const& s, std::vector<VariedModel> const& varied)
                           {"function", v.function.name()},
                           {"scale", name_of(v.scale)},
                           {"between_sd", v.between_sd}};
+        for (auto const& [name, value] : v.parameters) out[v.setting]["parameters"][name] = value;
         if (!v.shift.empty()) out[v.setting]["shift"] = by_level(s, v.shift);
     }
     return out;

@@ -26,6 +26,7 @@ SimulatedTruth read_truth(std::string const& json, std::string const& name)
         for (auto const& [factor, levels] : j.at("quality_jod").items())
             for (auto const& [level, jod] : levels.items()) t.quality_jod[factor][level] = jod.get<double>();
         for (auto const& [setting, v] : j.at("varied").items()) {
+            if (v.contains("parameters")) continue; // no threshold of one setting
             SimulatedTruth::Varied varied{v.at("threshold").get<double>(), v.at("slope").get<double>()};
             varied.function = function_of(v.at("function").get<std::string>());
             bool const is_linear = varied.function.function == Psychometric::normal; // before scales were recorded

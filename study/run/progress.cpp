@@ -1,5 +1,7 @@
 #include "study/run/progress.h"
 
+#include "study/script/procedure_settings.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -93,7 +95,10 @@ NextStep Progress::due_of(int step) const
     NextStep due{step, attempts_[std::size_t(step)] + 1, false, {}};
     if (at(step).kind != PlanStepKind::trial) return due;
     due.level = at(step).trial.level;
-    if (AdaptiveRun const* const run = run_of_step_[std::size_t(step)]) due.level = run->level();
+    if (AdaptiveRun const* const run = run_of_step_[std::size_t(step)]) {
+        due.level = run->level();
+        due.also = run->also();
+    }
     if (PairRun const* const run = pair_run_of_step_[std::size_t(step)]) {
         auto const shown = pair_of_step_.find(step);
         due.pair = shown != pair_of_step_.end() ? shown->second : run->next();
@@ -151,6 +156,10 @@ void Progress::apply_trial(TrialDone const& t)
         throw std::invalid_argument(fmt::format("a trial of step {} at level {} although {} is due", t.step + 1,
                                                 t.level ? level_text(*t.level) : "none",
                                                 due->level ? level_text(*due->level) : "none"));
+    if (t.reason != "skipped" && !due->also.empty() &&
+        t.chosen != further_text(*script_.blocks[std::size_t(at(t.step).block)].compare, due->also))
+        throw std::invalid_argument(
+            fmt::format("a trial of step {} with '{}', which is not due", t.step + 1, t.chosen));
     pass(t.step);
     attempts_[std::size_t(t.step)] = t.attempt;
     if (pair_run_of_step_[std::size_t(t.step)] != nullptr) apply_pair(t, !pair_of_step_.contains(t.step));
@@ -172,8 +181,8 @@ void Progress::apply_pair(TrialDone const& t, bool is_first)
     PlanStep const& s = at(t.step);
     auto const pair = pair_of_text(script_, script_.blocks[std::size_t(s.block)], t.chosen);
     if (!pair || (!is_first && pair_of_step_[t.step] != *pair))
-        throw std::invalid_argument(fmt::format("a trial of step {} with the pair '{}', which is not due",
-                                                t.step + 1, t.chosen));
+        throw std::invalid_argument(
+            fmt::format("a trial of step {} with the pair '{}', which is not due", t.step + 1, t.chosen));
     pair_of_step_[t.step] = *pair;
     pair_run_of_step_[std::size_t(t.step)]->shown(*pair, s.trial.order, t.is_valid ? t.response : "");
 }

@@ -16,6 +16,7 @@ struct NextStep {
     int step = 0, attempt = 1;
     bool is_questionnaire_of_trial = false;    ///< the trial of the step is done, its questionnaire is not
     std::optional<double> level;               ///< of the varied setting
+    std::vector<double> also{};                ///< levels of further varied settings
     std::optional<std::pair<int, int>> pair{}; ///< levels of the paired factor, if the pair is chosen at the trial
 };
 

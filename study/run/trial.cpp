@@ -1,5 +1,7 @@
 #include "study/run/trial.h"
 
+#include "study/script/procedure_settings.h"
+
 namespace study {
 
 TrialRequest request_of(Script const& script, Plan const& plan, Progress const& progress, NextStep const& due)
@@ -25,8 +27,10 @@ TrialRequest request_of(Script const& script, Plan const& plan, Progress const& 
         r.stimuli[0].levels[factor] = due.pair->first;
         r.stimuli[1].levels[factor] = due.pair->second;
     }
-    for (Stimulus& stimulus : r.stimuli)
+    for (Stimulus& stimulus : r.stimuli) {
         if (stimulus.is_varied && !stimulus.level) stimulus.level = due.level;
+        stimulus.also = due.also; // the stimuli differ only in the setting of vary
+    }
     return r;
 }
 
@@ -63,6 +67,7 @@ void complete(Script const& script, Plan const& plan, NextStep const& due, Trial
     done.step = due.step;
     done.attempt = due.attempt;
     done.level = due.level;
+    if (!due.also.empty()) done.chosen = further_text(*script.blocks[std::size_t(step.block)].compare, due.also);
     if (due.pair) done.chosen = pair_text(script, script.blocks[std::size_t(step.block)], *due.pair);
     judge(script, step, done);
 }

@@ -3,6 +3,7 @@
 
 #include "study/script/script_error.h"
 #include "study/stats/formula.h"
+#include "study/stats/questplus_many.h"
 
 #include <memory>
 #include <optional>
@@ -74,7 +75,10 @@ struct Procedure {
 
     // questplus (Watson 2017): grids of the prior. threshold in levels, slope of the function on the scale.
     std::vector<double> threshold, slope, guess, lapse;
-    std::vector<double> stimuli; ///< levels that it may present
+    std::vector<double> stimuli;       ///< levels that it may present
+    std::vector<QuestGrid> also;       ///< levels of further settings that it may present, by name
+    std::vector<QuestGrid> parameters; ///< of the formula, besides threshold, slope, guess and lapse
+    bool is_many() const { return !also.empty() || !parameters.empty(); }
 
     /// The function that QUEST+ assumes and that fits use; none = usual: weibull of QUEST+, normal in fits.
     std::optional<PsychometricChoice> psychometric;

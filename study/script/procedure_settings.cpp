@@ -1,7 +1,11 @@
 #include "study/script/procedure_settings.h"
 
+#include "gi/core/text.h"
+#include "study/script/condition.h"
+
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace study {
 
@@ -45,6 +49,39 @@ QuestSettings quest_settings(Procedure const& p, Compare const& c)
     s.guess = p.guess;
     s.lapse = p.lapse;
     return s;
+}
+
+QuestManySettings quest_many_settings(Procedure const& p)
+{
+    QuestManySettings s;
+    s.stimulus = {{"x", p.stimuli}};
+    s.stimulus.insert(s.stimulus.end(), p.also.begin(), p.also.end());
+    s.parameters = {{"threshold", p.threshold}, {"slope", p.slope}, {"guess", p.guess}, {"lapse", p.lapse}};
+    s.parameters.insert(s.parameters.end(), p.parameters.begin(), p.parameters.end());
+    s.formula = p.psychometric ? p.psychometric->formula : nullptr;
+    return s;
+}
+
+std::string further_text(Compare const& c, std::vector<double> const& levels)
+{
+    std::string text;
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        text += (i > 0 ? " " : "") + c.also[i].setting + "=" + level_text(levels[i]);
+    return text;
+}
+
+std::vector<double> further_of_text(Compare const& c, std::string const& text)
+{
+    std::vector<double> levels;
+    std::istringstream in(text);
+    std::string word;
+    for (FurtherSetting const& f : c.also) {
+        if (!(in >> word) || !word.starts_with(f.setting + "=")) return {};
+        auto const level = gi::parse_finite(std::string_view(word).substr(f.setting.size() + 1));
+        if (!level) return {};
+        levels.push_back(*level);
+    }
+    return levels;
 }
 
 QuestFunction quest_function(Psychometric function)

@@ -15,6 +15,14 @@ StaircaseSettings staircase_settings(Procedure const& procedure, Compare const& 
 /// Stimuli and thresholds are in levels for the Weibull function, otherwise on the scale.
 QuestSettings quest_settings(Procedure const& procedure, Compare const& compare);
 
+/// Of a procedure with further settings or parameters (is_many): x, then further levels; threshold, slope, guess,
+/// lapse, then further parameters.
+QuestManySettings quest_many_settings(Procedure const& procedure);
+/// Levels of further settings as text for journals: "camera.fov=40 light.0.scale=2"; empty = none.
+std::string further_text(Compare const& compare, std::vector<double> const& levels);
+/// Inverse of further_text; empty if the text is not one of these settings.
+std::vector<double> further_of_text(Compare const& compare, std::string const& text);
+
 QuestFunction quest_function(Psychometric function);
 /// Shape and axis of a function to fit: harder levels are lower on the axis.
 PsychometricShape shape_of(Scale scale, bool harder_up, PsychometricChoice const& function = {});

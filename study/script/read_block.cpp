@@ -84,9 +84,44 @@ Choice read_against(gi::Yaml const& y, Script const& s, Mistakes& m)
     return s.reference;
 }
 
+std::string formula_name(std::string setting)
+{
+    std::replace_if(
+        setting.begin(), setting.end(), [](char c) { return c == '.' || c == '-' || c == '+'; }, '_');
+    return setting;
+}
+
+FurtherSetting read_further(gi::Yaml const& key, gi::Yaml const& y, Mistakes& m)
+{
+    m.check_keys(y, "also");
+    FurtherSetting f;
+    f.setting = key.name();
+    f.name = formula_name(f.setting);
+    m.take(y, "name", [&](gi::Yaml const& v) {
+        f.name = v.name();
+        if (f.name != formula_name(f.name))
+            throw v.error("'" + f.name + "' in a formula", "its names have letters, digits and _",
+                          "write another");
+    });
+    m.take(y, "scale", [&](gi::Yaml const& v) {
+        f.scale = Scale(v.one_of({"linear", "log2", "log10", "db"}, "scale"));
+    });
+    gi::Yaml const range = y.needed("range", "[1, 10]");
+    auto const ends = range.numbers(2, -1e12, 1e12);
+    f.low = ends[0];
+    f.high = ends[1];
+    if (!(f.low < f.high)) throw range.error("a range that does not rise", "low comes first", "swap them");
+    if (f.scale != Scale::linear && f.low <= 0)
+        throw range.error(fmt::format("a range from {:g}", f.low), "a logarithmic scale begins above 0",
+                          "start above 0 or write scale: linear");
+    f.usual = from_scale(f.scale, (to_scale(f.scale, f.low) + to_scale(f.scale, f.high)) / 2);
+    m.take(y, "usual", [&](gi::Yaml const& v) { f.usual = v.number(f.low, f.high); });
+    return f;
+}
+
 void read_compared_factor(gi::Yaml const& y, Script const& s, Compare& c, bool knows_against, Mistakes& m)
 {
-    for (char const* key : {"scale", "range", "harder"})
+    for (char const* key : {"scale", "range", "harder", "also"})
         if (y.has(key))
             m.add(y.at(key).error(fmt::format("'{}' with a factor", key), "levels of a factor have no scale",
                                   "vary a setting or remove it"));
@@ -125,6 +160,16 @@ void read_varied_range(gi::Yaml const& y, Compare& c, Mistakes& m)
                                  "start above 0 or write scale: linear");
         c.low = low;
         c.high = high;
+    });
+    m.take(y, "also", [&](gi::Yaml const& v) {
+        for (auto const& [key, value] : m.entries(v))
+            m.attempt([&, k = key, further = value] {
+                c.also.push_back(read_further(k, further, m));
+                for (std::size_t i = 0; i + 1 < c.also.size(); ++i)
+                    if (c.also[i].name == c.also.back().name)
+                        throw k.error("two settings named '" + c.also[i].name + "'",
+                                      "the formula could not tell them", "give one a name");
+            });
     });
     m.need(y, "harder", "up", [&](gi::Yaml const& v) {
         c.harder_up = v.one_of({"up", "down"}, "direction") == 0;
@@ -435,6 +480,15 @@ Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s, Mista
     bool const knows_stimuli = !b.is_broken;
     if (knows_stimuli) m.take(y, "catch", [&](gi::Yaml const& v) { b.catches = read_catch(v, b, s, m); });
     m.take(y, "practice", [&](gi::Yaml const& v) { read_practice(v, b, m); });
+    bool const is_many = b.compare && !b.compare->also.empty();
+    if (is_many && b.stimuli == Stimuli::prepared)
+        m.add(y.error("prepared stimuli of several varied settings", "there would be too many",
+                      "write stimuli: live"));
+    for (Procedure const& p : b.procedures)
+        if (is_many && p.method != Method::questplus && !b.is_broken)
+            m.add(ScriptError(s.file, p.place,
+                              fmt::format("procedure '{}' varies one setting, and compare.also has more", p.name),
+                              "they would keep their usual levels", "use questplus, or remove also"));
     return b;
 }
 

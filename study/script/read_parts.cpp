@@ -145,10 +145,9 @@ void read_trial_timing(gi::Yaml const& y, TrialTiming& timing, Mistakes& m)
         m.take(y, key, [into = value](gi::Yaml const& v) { *into = v.number(0, kHour_ms); });
     auto const optional = [&](char const* key, char const* word, std::optional<double>& value) {
         m.take(y, key, [&](gi::Yaml const& v) {
-            if (v.is_text() && v.text() == word)
-                value.reset();
-            else
-                value = v.number(1, kHour_ms);
+            if (v.is_text() && v.text() == word) return value.reset();
+            value = kHour_ms; // if it is none: there is a value, so that nothing else seems to lack it
+            value = v.number(1, kHour_ms);
         });
     };
     optional("stimulus_ms", "until_response", timing.stimulus_ms);

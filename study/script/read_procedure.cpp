@@ -59,6 +59,17 @@ Stop read_stop(gi::Yaml const& y, bool may_reverse)
     return stop;
 }
 
+/// The values that formulas of a procedure may use; the first ones, of the stimulus, must be used.
+std::vector<std::string> formula_names(Procedure const& p)
+{
+    if (!p.is_many()) return {kPsychometricValues.begin(), kPsychometricValues.end()};
+    std::vector<std::string> names{"x"};
+    for (QuestGrid const& g : p.also) names.push_back(g.name);
+    names.insert(names.end(), kPsychometricValues.begin() + 1, kPsychometricValues.end());
+    for (QuestGrid const& g : p.parameters) names.push_back(g.name);
+    return names;
+}
+
 /// A name, or a formula, which has more than letters.
 void read_psychometric(gi::Yaml const& y, Procedure& p, Mistakes& m)
 {
@@ -68,11 +79,16 @@ void read_psychometric(gi::Yaml const& y, Procedure& p, Mistakes& m)
             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
         });
         if (is_word) {
+            if (p.is_many())
+                throw v.error("'" + text + "' of several settings or further parameters", "it is of one setting",
+                              "write a formula of x, their names and the parameters");
             p.psychometric = {Psychometric(v.one_of(psychometric_names(), "psychometric function")), {}};
             return;
         }
         try {
-            p.psychometric = {Psychometric::formula, std::make_shared<Formula const>(Formula::psychometric(text))};
+            std::size_t const needed = p.is_many() ? 1 + p.also.size() : 2;
+            p.psychometric = {Psychometric::formula,
+                              std::make_shared<Formula const>(text, formula_names(p), needed)};
         } catch (FormulaError const& e) {
             gi::TextLocation where = v.place();
             where.column += e.column - 1 + (v.is_quoted() ? 1 : 0);
@@ -133,6 +149,16 @@ void check_function(gi::Yaml const& y, Compare const& c, Procedure const& p, Mis
 
 void check_grids(gi::Yaml const& y, Compare const& c, Procedure const& p, Mistakes& m)
 {
+    if (p.is_many()) {
+        m.attempt([&] {
+            try {
+                QuestPlusMany const unused(quest_many_settings(p));
+            } catch (std::invalid_argument const& e) {
+                throw y.error(e.what(), "", "");
+            }
+        });
+        return;
+    }
     if (p.stimuli.size() < 2)
         m.add(y.error("questplus has only one level to present", "it could not choose",
                       "give 'levels' as 64..16384/33"));
@@ -142,6 +168,35 @@ void check_grids(gi::Yaml const& y, Compare const& c, Procedure const& p, Mistak
                       "computing them would delay trials", "make the grids coarser"));
     else
         check_function(y, c, p, m);
+}
+
+/// Levels of further settings and values of further parameters.
+void read_further_grids(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes& m)
+{
+    std::vector<std::string> further;
+    for (FurtherSetting const& f : c.also) further.push_back(f.name);
+    if (y.has("also"))
+        for (auto const& [key, unused] : m.entries(y.at("also")))
+            m.attempt([&, k = key] { k.one_of(further, "setting of compare.also"); });
+    for (FurtherSetting const& f : c.also) // in the order of compare
+        if (y.has("also") && y.at("also").has(f.name))
+            m.attempt([&] {
+                p.also.push_back({f.name, read_grid(y.at("also").at(f.name), f.scale, f.low, f.high)});
+            });
+        else
+            m.add(y.error(fmt::format("no levels of '{}', which compare.also varies", f.name),
+                          "it could not choose", fmt::format("write also: {{{}: [...]}}", f.name)));
+    std::vector<std::string> taken{"x", "threshold", "slope", "guess", "lapse"};
+    taken.insert(taken.end(), further.begin(), further.end());
+    if (!y.has("parameters")) return;
+    for (auto const& [key, value] : m.entries(y.at("parameters")))
+        m.attempt([&, k = key, v = value] {
+            std::string const name = k.name();
+            if (std::find(taken.begin(), taken.end(), name) != taken.end())
+                throw k.error("a parameter named '" + name + "'", "the formula has that name already",
+                              "rename it");
+            p.parameters.push_back({name, read_grid(v, Scale::linear, -kAny, kAny)});
+        });
 }
 
 void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes& m)
@@ -157,7 +212,11 @@ void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes&
            [&](gi::Yaml const& v) { p.lapse = read_grid(v, Scale::linear, 0, 0.5); });
     p.stimuli = p.threshold;
     m.take(y, "levels", [&](gi::Yaml const& v) { p.stimuli = read_grid(v, c.scale, c.low, c.high); });
+    read_further_grids(y, c, p, m);
     read_psychometric(y, p, m);
+    if (p.is_many() && !p.psychometric && m.count() == before)
+        m.add(y.error("several settings or further parameters without a formula", "the function is unknown",
+                      "write psychometric: FORMULA"));
     if (m.count() == before) check_grids(y, c, p, m);
     m.need(y, "stop", "{trials: 32}", [&](gi::Yaml const& v) { p.stop = read_stop(v, false); });
 }

@@ -26,6 +26,65 @@ void check_id_pattern(gi::Yaml const& y)
                       "it must have the number once and otherwise only letters and digits", "write \"P{n:03}\"");
 }
 
+/// The keys that a type of question has need of, and no others.
+void check_type_keys(gi::Yaml const& y, AskedQuestion const& q, Mistakes& m)
+{
+    for (char const* const key : {"min", "max", "whole"})
+        if (y.has(key) && q.type != AskedType::number)
+            m.add(y.at(key).error(fmt::format("'{}' of a question without a number", key), "it would be ignored",
+                                  "write type: number, or remove it"));
+    if (y.has("choices") && q.type != AskedType::choice)
+        m.add(y.at("choices").error("choices of a question that has none", "they would be ignored",
+                                    "write type: choice, or remove them"));
+}
+
+AskedQuestion read_question(gi::Yaml const& y, Mistakes& m)
+{
+    AskedQuestion q;
+    if (y.is_text()) {
+        q.id = q.text = y.name();
+        return q;
+    }
+    m.check_keys(y, "ask");
+    m.need(y, "id", "age", [&](gi::Yaml const& v) { q.id = v.name(); });
+    q.text = q.id;
+    m.take(y, "text", [&](gi::Yaml const& v) { q.text = v.text(); });
+    m.take(y, "type", [&](gi::Yaml const& v) {
+        q.type = AskedType(v.one_of({"text", "number", "choice"}, "type of question"));
+    });
+    check_type_keys(y, q, m);
+    if (q.type == AskedType::number) {
+        m.need(y, "min", "18", [&](gi::Yaml const& v) { q.low = v.number(-1e9, 1e9); });
+        m.need(y, "max", "99", [&](gi::Yaml const& v) {
+            q.high = v.number(-1e9, 1e9);
+            if (q.high < q.low) throw v.error("a range that does not rise", "min comes first", "swap them");
+        });
+        m.take(y, "whole", [&](gi::Yaml const& v) { q.is_whole = v.boolean(); });
+    }
+    if (q.type == AskedType::choice)
+        m.need(y, "choices", "[left, right]", [&](gi::Yaml const& v) {
+            for (gi::Yaml const& choice : v.items(2, 9)) {
+                std::string const text = choice.text();
+                if (std::find(q.choices.begin(), q.choices.end(), text) != q.choices.end())
+                    throw choice.error("'" + text + "' twice", "answers could not be distinguished", "remove one");
+                q.choices.push_back(text);
+            }
+        });
+    return q;
+}
+
+void read_asked(gi::Yaml const& y, Participants& p, Mistakes& m)
+{
+    for (gi::Yaml const& item : y.one_or_more())
+        m.attempt([&] {
+            p.ask.push_back(read_question(item, m));
+            for (std::size_t i = 0; i + 1 < p.ask.size(); ++i)
+                if (p.ask[i].id == p.ask.back().id)
+                    throw item.error("question '" + p.ask[i].id + "' twice", "tables could not distinguish them",
+                                     "rename one");
+        });
+}
+
 Participants read_participants(gi::Yaml const& y, Mistakes& m)
 {
     m.check_keys(y, "participants");
@@ -37,9 +96,7 @@ Participants read_participants(gi::Yaml const& y, Mistakes& m)
         check_id_pattern(v);
         p.id = v.text();
     });
-    m.take(y, "ask", [&](gi::Yaml const& v) {
-        for (gi::Yaml const& item : v.one_or_more()) m.attempt([&] { p.ask.push_back(item.name()); });
-    });
+    m.take(y, "ask", [&](gi::Yaml const& v) { read_asked(v, p, m); });
     m.take(y, "consent", [&](gi::Yaml const& v) { p.consent = v.text(); });
     return p;
 }

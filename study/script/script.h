@@ -3,6 +3,7 @@
 // blocks and questionnaires are indices into the lists of the Script; -1 = none. Times are in milliseconds unless
 // their names end in another unit.
 
+#include "study/script/asked_question.h"
 #include "study/script/procedure.h"
 #include "study/script/questionnaire.h"
 #include "study/script/task.h"
@@ -38,7 +39,7 @@ using Choice = std::vector<LevelChoice>;
 struct Participants {
     int count = 0;
     std::string id = "P{n:03}"; ///< {n} or {n:03}: the participant's number
-    std::vector<std::string> ask;
+    std::vector<AskedQuestion> ask;
     std::string consent; ///< a Markdown file, or the text; empty = none
     Place place;
 };
@@ -134,6 +135,14 @@ struct Pairs {
     bool is_active() const { return active_trials > 0; }
 };
 
+/// A setting that QUEST+ varies besides the one of `vary`, in all stimuli of a trial alike.
+struct FurtherSetting {
+    std::string setting, name; ///< name: in formulas
+    Scale scale = Scale::linear;
+    double low = 0, high = 0;
+    double usual = 0; ///< level in practice and catch trials
+};
+
 /// What is compared in tasks that have a correct answer, and what is adjusted in adjustment.
 struct Compare {
     std::string vary; ///< the setting whose level is varied; empty: the levels of a factor are compared
@@ -143,6 +152,7 @@ struct Compare {
     Patch with;              ///< settings of the varied stimulus, overridden by the level
     Scale scale = Scale::linear;
     double low = 0, high = 0;
+    std::vector<FurtherSetting> also;
     bool harder_up = true; ///< a higher level is harder to distinguish from the other stimulus
 };
 

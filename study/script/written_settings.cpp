@@ -63,7 +63,12 @@ private:
         if (!compare.has("vary") || !compare.at("vary").is_text() || block == s_.blocks.end()) return;
         gi::Yaml const vary = compare.at("vary");
         found.push_back({vary.text(), "", vary.place(), vary.place(), name, {}});
-        if (block->compare && !block->is_broken) found.back().varied = presented_ends(*block);
+        if (!block->compare || block->is_broken) return;
+        found.back().varied = presented_ends(*block);
+        for (auto const& [key, value] : entries(compare, "also"))
+            for (FurtherSetting const& f : block->compare->also)
+                if (f.setting == key.text())
+                    found.push_back({f.setting, "", key.place(), key.place(), name, std::pair{f.low, f.high}});
     }
 
     Script const& s_;

@@ -177,8 +177,11 @@ Table participants_table(Script const& script, std::vector<RecordedSession> cons
                  {"sessions", "Number of sessions started"},
                  {"complete", "Whether all of them were finished"},
                  {"simulated", "Whether the participant is a model observer"}}};
-    for (std::string const& question : script.participants.ask)
-        table.columns.push_back({asked_column(question), "Answer to the question: " + question});
+    for (AskedQuestion const& q : script.participants.ask) {
+        Column column{asked_column(q.id), "Answer to the question: " + q.text};
+        for (std::string const& choice : q.choices) column.meanings.emplace_back(choice, choice);
+        table.columns.push_back(std::move(column));
+    }
     std::map<std::string, std::vector<RecordedSession const*>> people;
     for (RecordedSession const& s : sessions) people[s.plan.participant_id].push_back(&s);
     for (auto const& [id, theirs] : people) {
@@ -193,7 +196,7 @@ Table participants_table(Script const& script, std::vector<RecordedSession> cons
         }
         std::vector<std::string> row{"sub-" + id, cell(theirs.front()->plan.participant), cell(int(theirs.size())),
                                      cell(complete), cell(simulated)};
-        for (std::string const& question : script.participants.ask) row.push_back(cell(answers[question]));
+        for (AskedQuestion const& q : script.participants.ask) row.push_back(cell(answers[q.id]));
         table.rows.push_back(std::move(row));
     }
     return table;

@@ -91,18 +91,19 @@ TEST(ActivePairs, DependOnSeedAndAnswersOnly)
 
 TEST(ActivePairs, AreNotThoseWhoseOrderIsKnown)
 {
-    // Three near each other and one far away: after some answers the far one is compared less.
-    std::vector<double> const truth{0, 0.2, 0.4, 6};
+    // Ten levels 1 JOD apart: neighbours say more about the scale than the two ends.
     Random random(3);
-    ActivePairs pairs(4, all_pairs(4), {false, 3, 9});
-    int far = 0;
-    for (int i = 0; i < 120; ++i) {
+    ActivePairs pairs(10, all_pairs(10), {true, 3, 9});
+    int near = 0, far = 0;
+    for (int i = 0; i < 270; ++i) {
         auto const [a, b] = pairs.next();
-        double const p = normal_cdf(truth[std::size_t(a)] - truth[std::size_t(b)]);
-        far += i >= 20 && (a == 3 || b == 3);
+        double const p = normal_cdf((a - b) / 1.4826);
+        near += b - a <= 2;
+        far += b - a >= 6;
         pairs.shown({a, b}, random.uniform() < p ? 1 : 0);
     }
-    EXPECT_LT(far, 30) << "of 100; 50 at random";
+    EXPECT_GT(near, 1.3 * 270 * 17 / 45.0) << "17 of 45 pairs";
+    EXPECT_LT(far, 0.7 * 270 * 10 / 45.0) << "10 of 45 pairs";
 }
 
 TEST(ActivePairs, RefuseWhatCannotBeShown)

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
+#include <map>
 
 namespace viewer::test {
 namespace {
@@ -50,9 +51,23 @@ Template read_template()
     }
 }
 
+/// Loads each scene once.
+SceneAccess cached_scenes()
+{
+    SceneAccess scenes = study_scenes();
+    scenes.load = [load = scenes.load](std::string const& name, gi::Report& report) {
+        static std::map<std::string, std::shared_ptr<gi::Scene const>> known;
+        auto& scene = known[name];
+        if (!scene) scene = load(name, report);
+        return scene;
+    };
+    return scenes;
+}
+
 std::vector<std::string> told(std::string const& text, bool renders)
 {
-    test::TemporaryFolder const folder;
+    static TemporaryFolder const folder;
+    static SceneAccess const scenes = cached_scenes();
     std::string const file = (folder.path() / "t.yaml").string();
     gi::write_text(file, text);
     for (char const* const scene : {"room.yaml", "hall.yaml"})
@@ -65,7 +80,7 @@ std::vector<std::string> told(std::string const& text, bool renders)
     ScriptToCheck read = load_script_to_check(file);
     ScriptCheckOptions options;
     options.stimuli.renders = renders;
-    check_script(read, study_scenes(), options);
+    check_script(read, scenes, options);
     std::vector<std::string> out;
     for (study::ScriptError const& e : read.mistakes.in_order()) out.emplace_back(e.what());
     return out;

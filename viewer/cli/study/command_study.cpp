@@ -120,7 +120,10 @@ void add_study(CLI::App& app, int& exit_code)
     plan->callback([o, &exit_code] { exit_code = run_plan(*o); });
 
     CLI::App* const example = study->add_subcommand("example", "Write one of the built-in example experiments.");
-    example->add_option("NAME", o->example, "visibility2026, pairs, staircase, rating or ar_paths")->required();
+    example
+        ->add_option("NAME", o->example,
+                     "visibility2026, pairs, active, staircase, sensitivity, rating or ar_paths")
+        ->required();
     example->add_option("--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 

@@ -123,16 +123,40 @@ bool check_one(RenderSession& session, PlannedStimulus const& stimulus, SceneAcc
     }
 }
 
+/// The stimulus, with the lowest and highest of all levels that are chosen at the trial.
+std::vector<study::Stimulus> at_ends(study::Block const& block, study::Stimulus const& stimulus)
+{
+    std::vector<study::Stimulus> all{stimulus};
+    bool const is_open = stimulus.is_varied && !stimulus.level && !block.procedures.empty();
+    if (is_open) {
+        auto const [low, high] = presented_ends(block);
+        all = {stimulus, stimulus};
+        all[0].level = low;
+        all[1].level = high;
+    }
+    if (!block.compare || block.compare->also.empty()) return all;
+    std::size_t const count = all.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        all.push_back(all[i]); // besides the usual levels of further settings, which practice has
+        all.push_back(all[i]);
+        for (study::FurtherSetting const& f : block.compare->also) {
+            all[all.size() - 2].also.push_back(f.low);
+            all.back().also.push_back(f.high);
+        }
+    }
+    return all;
+}
+
 } // namespace
 
 void StimulusCollection::add(int index, study::Stimulus const& stimulus, study::Mistakes& m)
 {
     if (std::ranges::any_of(stimulus.levels, [](int level) { return level < 0; })) return; // told
-    if (!seen_.emplace(index, stimulus.levels, stimulus.is_varied, stimulus.level).second) return;
+    if (!seen_.emplace(index, stimulus.levels, stimulus.is_varied, stimulus.level, stimulus.also).second) return;
     study::Block const block = index >= 0 ? script_.blocks[std::size_t(index)] : plain_block(script_);
     study::Patch patch = settings_of(script_, block, stimulus);
     auto const is_wrong = [&](std::pair<std::string, std::string> const& setting) {
-        return wrong_.contains(setting) || (stimulus.level && wrong_.contains({setting.first, ""}));
+        return wrong_.contains(setting) || wrong_.contains({setting.first, ""});
     };
     for (auto const& setting : patch)
         if (is_ar_key(setting.first) || (is_wrong(setting) && setting.first.ends_with("scene"))) return;
@@ -161,18 +185,9 @@ void StimulusCollection::add(study::Plan const& plan, study::Mistakes& m)
         if (step.kind != study::PlanStepKind::trial && !walks) continue;
         if (walks) add(-1, study::Stimulus{step.levels, false, {}}, m);
         if (walks) continue;
-        for (study::Stimulus stimulus : possible_stimuli(script_.blocks[std::size_t(step.block)], step.trial)) {
-            if (!stimulus.is_varied || stimulus.level ||
-                script_.blocks[std::size_t(step.block)].procedures.empty()) {
-                add(step.block, stimulus, m);
-                continue;
-            }
-            auto const [low, high] = presented_ends(script_.blocks[std::size_t(step.block)]);
-            for (double const level : {low, high}) {
-                stimulus.level = level;
-                add(step.block, stimulus, m);
-            }
-        }
+        study::Block const& block = script_.blocks[std::size_t(step.block)];
+        for (study::Stimulus const& stimulus : possible_stimuli(block, step.trial))
+            for (study::Stimulus const& end : at_ends(block, stimulus)) add(step.block, end, m);
     }
 }
 

@@ -29,7 +29,7 @@ private:
 
     study::Script const& script_;
     std::set<std::pair<std::string, std::string>> wrong_;
-    std::set<std::tuple<int, std::vector<int>, bool, std::optional<double>>> seen_;
+    std::set<std::tuple<int, std::vector<int>, bool, std::optional<double>, std::vector<double>>> seen_;
     std::map<std::string, PlannedStimulus> all_;
 };
 
