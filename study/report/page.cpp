@@ -278,7 +278,7 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
                                                     "from the row to the column.") +
                                           figures(orders));
     html += gi::html_section(
-        "Numbers", shown({"scores", "thresholds", "curves", "detection", "questionnaires", "changes", "remarks"}));
+        "Numbers", shown({"scores", "thresholds", "curves", "detection", "population", "questionnaires", "changes", "remarks"}));
     std::string const about = fmt::format("<p class=\"about\">Experiment {}: {} of {} participants, {} sessions, "
                                           "{} complete. Intervals of {:.0f} %, "
                                           "{} replicates of bootstraps.</p>\n",
