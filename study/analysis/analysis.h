@@ -8,6 +8,7 @@
 #include "study/stats/hierarchical_pairs.h"
 #include "study/stats/mixed_anova.h"
 #include "study/stats/psychometric.h"
+#include "study/stats/sampler.h"
 #include "study/tables/recorded_session.h"
 
 #include <limits>
@@ -22,10 +23,11 @@ struct AnalysisSettings {
     std::vector<std::string> exclude{}; ///< ids of excluded participants
     int replicates = 1000;              ///< of bootstraps over observers
     int permutations = 1999;            ///< of tests of effects; 0 = none
+    int draws = 700;                    ///< of each of 4 chains of hierarchical models; 0 = no such models
     double confidence = 0.95;
     std::uint64_t seed = 1;
     bool has_outliers = true;               ///< outlier scores of observers of pairs: a scale without each of them
-    bool has_hierarchy = false;             ///< also hierarchical scales of pairs: a second or so for each
+    bool has_hierarchy = false;             ///< hierarchical models of pairs, too: a second or so for each
     std::optional<double> guess{}, lapse{}; ///< fixed rates of psychometric functions; none = as the task requires
 };
 
@@ -102,7 +104,7 @@ struct AgreementResult {
 
 /// Estimate of one threshold by one method, at one proportion correct.
 struct ThresholdEstimate {
-    std::string method; ///< mean of reversals, maximum likelihood, QUEST+ posterior
+    std::string method; ///< mean of reversals, likelihood, QUEST+ posterior
     double proportion = kUnknown;
     Uncertain level;
     std::string note;
@@ -122,21 +124,28 @@ struct ThresholdRun {
     std::vector<ParameterEstimate> parameters{};
     std::string note{}; ///< why there are no parameters although the procedure has them
 };
-/// Mean threshold of one procedure and method over observers: geometric on logarithmic scales.
+/// Mean threshold of the population by one procedure and method, on the scale of levels.
 struct ThresholdSummary {
     std::string procedure, cell, method;
     double proportion = kUnknown;
     Uncertain level;
+    double deviation = kUnknown; ///< of thresholds between observers, in units of the scale
+    std::string note;
 };
+/// The psychometric function of the average observer in one condition, from all procedures.
 struct CurveResult {
     std::string cell;
     std::string function; ///< its name, or the formula
     int observers = 0;
-    std::vector<LevelCount> counts;
-    PsychometricFit fit; ///< of all trials pooled
-    Uncertain threshold; ///< the level at `proportion`
+    std::vector<LevelCount> counts; ///< of all observers
+    PsychometricShape shape;
+    PsychometricParameters parameters; ///< scale and lapse rate are common to the observers
+    double eta = 0;                    ///< overdispersion
+    Uncertain threshold;               ///< mean over the population of the level at `proportion`
+    double deviation = kUnknown;       ///< of these levels between observers, in units of the scale
     double proportion = kUnknown;
-    std::string refused;
+    PsychometricFit pooled; ///< one function through all trials, for its deviance
+    std::string note, refused;
 };
 
 /// Correct answers of one condition, for tasks that have them.
@@ -144,10 +153,25 @@ struct DetectionResult {
     std::string condition;
     int observers = 0;
     double correct = 0, trials = 0;
-    Interval interval;        ///< Wilson, all trials pooled
-    double dprime = kUnknown; ///< all trials pooled, log-linear correction
-    Uncertain observer_dprime;
-    std::string model;
+    Interval interval;           ///< Wilson, all trials pooled
+    double dprime = kUnknown;    ///< all trials pooled, log-linear correction; negative below chance
+    Uncertain observer_dprime;   ///< mean of the population
+    double deviation = kUnknown; ///< of d' between observers
+    double p = kUnknown;         ///< of "the mean is 0"
+    double criterion = kUnknown; ///< mean; unknown for oddity
+    std::string model, note;
+};
+
+/// A hierarchical Bayesian model of one parameter of the observers in one condition.
+struct HierarchicalResult {
+    std::string condition, parameter; ///< parameter: "d'", "threshold at 75 %"
+    int observers = 0;
+    Uncertain mean, deviation; ///< of the population; deviation of thresholds in units of the scale
+    std::vector<std::string> participants;
+    std::vector<Uncertain> each;               ///< of the participants: shrunken towards the mean
+    double scale = kUnknown, lapse = kUnknown; ///< of psychometric functions, the population's
+    SamplerReport report;
+    std::string note, refused;
 };
 
 struct BlockResult {
@@ -159,6 +183,7 @@ struct BlockResult {
     std::vector<ThresholdSummary> thresholds;
     std::vector<CurveResult> curves;
     std::vector<DetectionResult> detections;
+    std::vector<HierarchicalResult> hierarchical;
 };
 
 struct QuestionnaireResult {

@@ -19,6 +19,11 @@ void analyze_values(Script const& script, std::vector<ObserverTrials> const& obs
 void analyze_rankings(Script const& script, std::vector<ObserverTrials> const& observers, int block,
                       AnalysisSettings const& settings, BlockResult& result);
 
+/// Thresholds by each procedure, and psychometric functions, of a block whose level varies.
+/// @param trials counted ones of the block, by observer
+void analyze_thresholds(Script const& script, Block const& block, std::vector<ObserverTrials> const& trials,
+                        std::vector<Group> const& groups, AnalysisSettings const& settings, BlockResult& result);
+
 /// Thresholds, psychometric functions and d' of tasks with a correct answer.
 void analyze_detection(Script const& script, std::vector<ObserverTrials> const& observers, int block,
                        AnalysisSettings const& settings, BlockResult& result);

@@ -118,8 +118,7 @@ void test_variance(Measure const& m, CellTable const& t, std::vector<Participant
     if (design.within.empty() && design.between.empty()) return;
     try {
         if (complete.empty()) throw std::invalid_argument("no observer has all cells");
-        auto effects =
-            mixed_anova(cells, design, {settings.permutations, settings.seed, settings.confidence});
+        auto effects = mixed_anova(cells, design, {settings.permutations, settings.seed, settings.confidence});
         // Effects that average over items whose mean is 0 by definition do not exist.
         if (t.relative_to >= 0 && t.is_crossed)
             std::erase_if(effects, [&](AnovaEffect const& e) {

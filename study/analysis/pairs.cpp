@@ -170,9 +170,9 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
                 add_fact(r, "bias-reduced JOD " + r.items[i].name,
                          over->reduced.score[i] * jod_per_unit(fit.model));
             add_fact(r, "dispersion over observers", over->dispersion);
-            if (settings.has_hierarchy) {
+            if (settings.has_hierarchy && settings.draws > 0) {
                 SamplerSettings draws;
-                draws.draws = 1000;
+                draws.draws = settings.draws;
                 draws.seed = settings.seed;
                 r.hierarchy = hierarchical_scale(observers, items.count(), settings.confidence, draws);
                 if (!r.hierarchy->note.empty()) add_note(r, "hierarchical scale: " + r.hierarchy->note);

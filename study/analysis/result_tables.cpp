@@ -222,7 +222,13 @@ ResultTable refusals(Analysis const& a)
         for (AgreementResult const& g : b.agreement) say(b.name, g.cell, g.refused);
         for (CurveResult const& c : b.curves) {
             say(b.name, c.cell, c.refused);
-            say(b.name, c.cell, c.fit.note);
+            say(b.name, c.cell, c.note);
+        }
+        for (ThresholdSummary const& h : b.thresholds) say(b.name, h.cell + ", " + h.procedure, h.note);
+        for (DetectionResult const& d : b.detections) say(b.name, d.condition, d.note);
+        for (HierarchicalResult const& h : b.hierarchical) {
+            say(b.name, h.condition, h.refused);
+            if (!h.note.empty()) say(b.name, h.condition, "hierarchical " + h.parameter + ": " + h.note);
         }
     }
     for (EffectNote const& n : a.effect_notes) say(n.block, n.measure, n.text);

@@ -94,6 +94,7 @@ void add_levels(MadeExperiment const& made, Block& b)
     c.harder_up = made.harder_up;
     b.compare = c;
     Procedure p;
+    p.psychometric = PsychometricChoice{Psychometric::normal, {}}; // probit, as most programs fit
     p.name = "table";
     p.method = Method::constant;
     p.levels.assign(levels.begin(), levels.end());

@@ -29,11 +29,7 @@ VariedModel usual_varied(Block const& b)
     Compare const& c = *b.compare;
     double const low = to_scale(c.scale, c.low), high = to_scale(c.scale, c.high);
     VariedModel v{c.vary, c.scale, c.low, c.high, from_scale(c.scale, (low + high) / 2), 2, (high - low) / 16};
-    bool const is_named = !b.procedures.empty() && b.procedures[0].psychometric &&
-                          fitted_function(b.procedures) == *b.procedures[0].psychometric;
-    v.function =
-        is_named ? fitted_function(b.procedures)
-                 : PsychometricChoice{c.scale == Scale::linear ? Psychometric::normal : Psychometric::weibull, {}};
+    v.function = fitted_function(b.procedures, c.scale);
     for (Procedure const& p : b.procedures)
         if (p.is_many()) {
             v.function = *p.psychometric;

@@ -136,6 +136,7 @@ private:
         AnalysisSettings a;
         a.replicates = 2;
         a.permutations = 0;
+        a.draws = 0;
         a.has_outliers = false;
         a.confidence = 1 - settings_.alpha;
         return analyze_one_block(s, sessions.first(std::size_t(participants)), settings_.block, a);

@@ -320,7 +320,7 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
                                           figures(orders));
     html += gi::html_section("Numbers",
                              shown({"scores", "hierarchical_scores", "effects", "group_differences", "thresholds",
-                                    "curves", "detection", "questionnaires", "changes", "remarks"}));
+                                    "curves", "detection", "population", "questionnaires", "changes", "remarks"}));
     std::string const about = fmt::format("<p class=\"about\">Experiment {}: {} of {} participants, {} sessions, "
                                           "{} complete. Intervals of {:.0f} %, "
                                           "{} replicates of bootstraps.</p>\n",

@@ -76,13 +76,14 @@ PsychometricChoice assumed_function(Procedure const& p)
     return p.psychometric.value_or(PsychometricChoice{Psychometric::weibull, {}});
 }
 
-PsychometricChoice fitted_function(std::vector<Procedure> const& procedures)
+PsychometricChoice fitted_function(std::vector<Procedure> const& procedures, Scale scale)
 {
-    if (procedures.empty() || !procedures[0].psychometric) return {};
+    PsychometricChoice const usual{scale == Scale::linear ? Psychometric::normal : Psychometric::weibull, {}};
+    if (procedures.empty() || !procedures[0].psychometric) return usual;
     bool const agree = std::all_of(procedures.begin(), procedures.end(), [&](Procedure const& p) {
         return p.psychometric && *p.psychometric == *procedures[0].psychometric;
     });
-    return agree ? *procedures[0].psychometric : PsychometricChoice{};
+    return agree ? *procedures[0].psychometric : usual;
 }
 
 bool is_adaptive(Procedure const& procedure)

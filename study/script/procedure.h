@@ -80,15 +80,16 @@ struct Procedure {
     std::vector<QuestGrid> parameters; ///< of the formula, besides threshold, slope, guess and lapse
     bool is_many() const { return !also.empty() || !parameters.empty(); }
 
-    /// The function that QUEST+ assumes and that fits use; none = usual: weibull of QUEST+, normal in fits.
+    /// The function that QUEST+ assumes and that fits use; none = usual: assumed_function(), fitted_function().
     std::optional<PsychometricChoice> psychometric;
 
     Stop stop;
 };
 /// The function that QUEST+ assumes.
 PsychometricChoice assumed_function(Procedure const& questplus);
-/// The function that is fitted to trials of these procedures: the one that they name, if they agree, else normal.
-PsychometricChoice fitted_function(std::vector<Procedure> const& procedures);
+/// The function that is fitted to trials of these procedures, and by which model observers answer: the one that
+/// they name, if they agree, else Weibull's on logarithmic scales and the normal one on the linear scale.
+PsychometricChoice fitted_function(std::vector<Procedure> const& procedures, Scale scale);
 
 /// Number of trials of one run; the maximum for an adaptive procedure.
 int planned_trials(Procedure const& procedure);

@@ -164,6 +164,7 @@ SamplerReport report_of(Draws const& draws)
     r.draws = draws.chains * draws.per_chain;
     r.divergences = draws.divergences;
     r.longest_paths = draws.longest_paths;
+    r.evaluations = draws.evaluations;
     return r;
 }
 

@@ -23,7 +23,7 @@ Minimum minimise(std::function<double(std::span<double const>)> const& f, std::v
 }
 
 Minimum minimise(std::function<double(std::span<double const>)> const& f, GradientAt const& gradient_of,
-                 std::vector<double> const& start, int max_iterations, double tolerance)
+                 std::vector<double> const& start, int max_iterations, double tolerance, double first_step)
 {
     using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
     auto const n = Index(start.size());
@@ -35,7 +35,7 @@ Minimum minimise(std::function<double(std::span<double const>)> const& f, Gradie
     };
 
     VectorXd at = VectorXd::Map(start.data(), n), gradient = gradient_at(at);
-    MatrixXd inverse = MatrixXd::Identity(n, n); // of the second derivatives
+    MatrixXd inverse = first_step * MatrixXd::Identity(n, n); // of the second derivatives
     Minimum m{start, value_at(at), n == 0};
     for (int iteration = 0; iteration < max_iterations && !m.converged; ++iteration) {
         VectorXd const direction = -(inverse * gradient);
@@ -57,7 +57,7 @@ Minimum minimise(std::function<double(std::span<double const>)> const& f, Gradie
         gradient = new_gradient;
         double const sy = s.dot(y);
         if (!(sy > 1e-14)) {
-            inverse.setIdentity();
+            inverse = first_step * MatrixXd::Identity(n, n);
             continue;
         }
         VectorXd const hy = inverse * y;

@@ -21,7 +21,8 @@ Minimum minimise(std::function<double(std::span<double const>)> const& f, std::v
 using GradientAt = std::function<void(std::span<double const>, std::span<double>)>;
 
 /// @param tolerance on the gain of a step, relative to 1 + |value|: the accuracy of the function and its gradient
+/// @param first_step about the inverse of the function's second derivatives
 Minimum minimise(std::function<double(std::span<double const>)> const& f, GradientAt const& gradient,
-                 std::vector<double> const& start, int max_iterations, double tolerance);
+                 std::vector<double> const& start, int max_iterations, double tolerance, double first_step = 1);
 
 } // namespace study

@@ -3,6 +3,7 @@
 #include "study/stats/descent.h"
 #include "study/stats/error.h"
 #include "study/stats/gauss_hermite.h"
+#include "study/stats/profile.h"
 #include "study/stats/special.h"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ private:
 
     double integrate(Observer& o, Population const& at, Population& gradient)
     {
-        static auto const wide = gauss_hermite(11), narrow = gauss_hermite(7), none = gauss_hermite(1);
+        static auto const wide = gauss_hermite(9), narrow = gauss_hermite(5), none = gauss_hermite(1);
         Prior const d{at[0], deviation(at[1])}, c{at[2], deviation(at[3])};
         auto const h = find_mode(o, d, c);
         // h = R^T R; points are mode + sqrt 2 R^-1 z.
@@ -207,7 +208,7 @@ private:
             if (!std::equal(v.begin(), v.end(), known.begin(), known.end())) evaluate(v);
             for (std::size_t i = 0; i < free.size(); ++i) g[i] = -gradient[std::size_t(free[i])];
         };
-        Minimum const m = minimise(evaluate, slope, x, 60, 1e-7);
+        Minimum const m = minimise(evaluate, slope, x, 60, 1e-6, 1 / double(marginal_.observers().size()));
         for (std::size_t i = 0; i < free.size(); ++i) at[std::size_t(free[i])] = m.at[i];
         return -m.value;
     }
@@ -217,35 +218,6 @@ private:
     Population best_{}, last_{};
     double most_ = 0;
 };
-
-/// Where the loss reaches the limit, from the best mean outwards; infinite if it does not.
-double limit_of(Fit& fit, double limit, double direction)
-{
-    fit.start_over();
-    double inside = fit.best()[0], outside = inside, lost_inside = 0, lost = 0, step = 0.1;
-    while (lost < limit) {
-        inside = outside;
-        lost_inside = lost;
-        outside += direction * step;
-        if (direction * outside > kLargestMean) return direction * kInfinity;
-        lost = fit.loss(outside);
-        // The loss grows about as the square of the distance.
-        step = lost > 0.05
-                   ? std::clamp(std::abs(outside - fit.best()[0]) * (std::sqrt(limit / lost) - 0.97), 0.02, 1.0)
-                   : 2 * step;
-    }
-    for (int i = 0; i < 20 && std::abs(outside - inside) > 2e-3; ++i) {
-        // Between the two by square roots, and never near the ends.
-        double const a = std::sqrt(lost_inside), b = std::sqrt(lost);
-        double const share = std::clamp((std::sqrt(limit) - a) / (b - a), 0.05, 0.95);
-        double const middle = inside + share * (outside - inside);
-        double const here = fit.loss(middle);
-        if (std::abs(here - limit) < 2e-3) return middle;
-        (here < limit ? inside : outside) = middle;
-        (here < limit ? lost_inside : lost) = here;
-    }
-    return inside + 0.5 * (outside - inside);
-}
 
 void check(std::span<DetectionCounts const> observers)
 {
@@ -288,21 +260,21 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
     }
     auto const n = double(g.observer.size());
     information /= n;
-    double const z = normal_quantile((1 + confidence) / 2), between = g.deviation * g.deviation * information,
-                 share = n > 1 ? between / (1 + between) : 0;
-    double limit = z * z;
-    if (n > 1) {
-        double const t = student_quantile((1 + confidence) / 2, n - 1);
-        limit += share * (n * std::log1p(t * t / (n - 1)) - limit);
-    }
+    double const between = g.deviation * g.deviation * information;
+    double const limit = profile_limit(confidence, n, between / (1 + between));
     if (std::abs(g.mean) > kLargestMean) {
         g.mean = std::copysign(kInfinity, g.mean);
         g.note = "all answers are right (or all wrong): d' has no upper limit";
     }
     fit.start_over();
     double const at_0 = fit.loss(0);
-    g.p = chi_square_tail(at_0 * z * z / limit, 1);
-    g.interval = {limit_of(fit, limit, -1), limit_of(fit, limit, 1)};
+    g.p = chi_square_tail(at_0 * profile_limit(confidence, 1, 0) / limit, 1);
+    auto const end = [&](double direction) {
+        fit.start_over();
+        return profile_end({best[0], limit, direction, direction * kLargestMean},
+                           [&](double mean) { return fit.loss(mean); });
+    };
+    g.interval = {end(-1), end(1)};
     return g;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tbb/parallel_for.h>
 
 namespace study {
 namespace {
@@ -308,7 +309,17 @@ Draws sample(LogDensity const& density, std::span<double const> start, SamplerSe
     d.parameters = start.size();
     d.chains = settings.chains;
     d.per_chain = settings.draws;
-    for (int c = 0; c < settings.chains; ++c) Chain(density, start, settings, c, d).run();
+    std::vector<Draws> by_chain(std::size_t(settings.chains), Draws{});
+    tbb::parallel_for(0, settings.chains,
+                      [&](int c) { Chain(density, start, settings, c, by_chain[std::size_t(c)]).run(); });
+    for (Draws const& c : by_chain) {
+        d.values.insert(d.values.end(), c.values.begin(), c.values.end());
+        d.step.insert(d.step.end(), c.step.begin(), c.step.end());
+        d.divergences += c.divergences;
+        d.longest_paths += c.longest_paths;
+        d.acceptance += c.acceptance;
+        d.evaluations += c.evaluations;
+    }
     return d;
 }
 

@@ -8,19 +8,20 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace study {
 
 /// Returns the logarithm of the density at x, up to a constant, and writes its gradient, of the same size.
-/// -infinity or NaN = impossible.
+/// -infinity or NaN = impossible. Chains call it from several threads at once.
 using LogDensity = std::function<double(std::span<double const> x, std::span<double> gradient)>;
 
 struct SamplerSettings {
     int chains = 4;
-    int warm_up = 400;       ///< draws of each chain that adapt it and are thrown away
-    int draws = 500;         ///< of each chain that are kept
-    double acceptance = 0.9; ///< wanted mean probability of acceptance: higher = smaller steps, fewer divergences
+    int warm_up = 300;       ///< draws of each chain that adapt it and are thrown away
+    int draws = 700;         ///< of each chain that are kept
+    double acceptance = 0.8; ///< wanted mean probability of acceptance: higher = smaller steps, fewer divergences
     int most_doublings = 8;  ///< of a path: at most 2^n - 1 steps per draw
     double spread = 0.5; ///< chains start at the given point plus this much standard normal noise per parameter
     std::uint64_t seed = 1;
@@ -74,6 +75,7 @@ Posterior posterior(Draws const& draws, std::function<double(std::span<double co
 struct SamplerReport {
     double worst_r_hat = 0, least_bulk = 0, least_tail = 0; ///< over the quantities that were looked at
     int draws = 0, divergences = 0, longest_paths = 0;
+    long evaluations = 0; ///< of the density
 };
 void look_at(SamplerReport& report, Convergence const& quantity);
 SamplerReport report_of(Draws const& draws);

@@ -52,6 +52,11 @@ double chi_square_tail(double x, double degrees_of_freedom)
     return boost::math::gamma_q(degrees_of_freedom / 2, x / 2, Quiet());
 }
 
+double chi_square_quantile(double p, double degrees_of_freedom)
+{
+    return 2 * boost::math::gamma_p_inv(degrees_of_freedom / 2, p, Quiet());
+}
+
 double student_cdf(double t, double degrees_of_freedom)
 {
     return boost::math::cdf(Student(degrees_of_freedom), t);

@@ -24,6 +24,7 @@ double log_choose(double n, double k);
 
 /// P(X >= x) of a chi-square distribution; 1 if x <= 0. With no degrees of freedom X is 0.
 double chi_square_tail(double x, double degrees_of_freedom);
+double chi_square_quantile(double p, double degrees_of_freedom);
 /// P(T <= t) of Student's distribution.
 double student_cdf(double t, double degrees_of_freedom);
 double student_quantile(double p, double degrees_of_freedom);

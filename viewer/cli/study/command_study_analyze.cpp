@@ -120,12 +120,18 @@ void add_options(CLI::App& command, AnalyzeOptions& o)
     command.add_option("--replicates", o.settings.replicates, "number of bootstrap samples over observers")
         ->check(CLI::Range(100, 100000))
         ->capture_default_str();
+    command
+        .add_option("--draws", o.settings.draws,
+                    "draws of each of 4 chains of the hierarchical models of d' and thresholds; 0 = none")
+        ->check(CLI::Range(0, 20000))
+        ->capture_default_str();
     command.add_flag("--hierarchical", o.settings.has_hierarchy,
                      "also scales of pairs with observers as random effects (Bayesian; seconds each)");
     command.add_option("--confidence", o.settings.confidence, "confidence level of intervals")
         ->check(CLI::Range(0.5, 0.999))
         ->capture_default_str();
-    command.add_option("--seed", o.settings.seed, "seed of the bootstraps")->capture_default_str();
+    command.add_option("--seed", o.settings.seed, "seed of bootstraps, chains and simulated runs")
+        ->capture_default_str();
 }
 
 } // namespace
