@@ -89,8 +89,8 @@ public:
         }
         gradient[kScale] -= from_usual;
         if (is_repeated_) {
-            sum += std::log(eta) + 10 * std::log1p(-eta);
-            gradient[kEta] += 1 - 11 * eta;
+            sum += std::log(eta) + 2 * std::log1p(-eta); // weaker than for one observer: there are many levels
+            gradient[kEta] += 1 - 3 * eta;
         }
         return sum;
     }

@@ -123,7 +123,7 @@ MaximumLikelihood best_fit(Model const& m)
     MaximumLikelihood best;
     int tried = 0;
     for (auto const& [unused, x] : starts) {
-        MaximumLikelihood const fit = maximise(at, x, m.bounds());
+        MaximumLikelihood const fit = maximise(at, x, m.bounds(), 800);
         if (tried == 0 || fit.log_likelihood > best.log_likelihood) best = fit;
         if (++tried == 3) break;
     }

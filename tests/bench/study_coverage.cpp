@@ -1,5 +1,5 @@
 // Bias and coverage of what `study analyze` reports, over many simulated experiments:
-//   bench_study_coverage [detection|thresholds|observers] [EXPERIMENTS]
+//   bench_study_coverage [detection|false_alarms|thresholds|observers] [EXPERIMENTS]
 // Rows are printed as they are finished, as a Markdown table.
 
 #include "tests/study_analysis/coverage.h"
@@ -21,10 +21,21 @@ void print(Tally const& t, char const* unit)
     std::fflush(stdout);
 }
 
-void detection(int experiments)
+void detection_row(DetectionExperiment const& e, std::string const& name, int experiments)
 {
     AnalysisSettings settings;
     settings.draws = 0;
+    Tally t{name};
+    for (int i = 0; i < experiments; ++i) {
+        Analysis const a = analyse_detection(e, 1000 * std::uint64_t(i) + std::uint64_t(e.task), settings);
+        Uncertain const& d = a.blocks.at(0).detections.at(0).observer_dprime;
+        t.add(d.value, d.interval, e.mean);
+    }
+    print(t, "");
+}
+
+void detection(int experiments)
+{
     for (double const sd : {0.0, 0.3})
         for (double const mean : {0.0, 0.5, 1.0, 2.0})
             for (int k = 0; k < 5; ++k) {
@@ -33,15 +44,21 @@ void detection(int experiments)
                 e.task = DetectionTask(k);
                 e.mean = mean;
                 e.sd = sd;
-                int const n = mean == 0 ? experiments : std::max(1, experiments / 3);
-                Tally t{fmt::format("d' of {}, mean {}, sd {}", name_of(e.task), mean, sd)};
-                for (int i = 0; i < n; ++i) {
-                    Analysis const a = analyse_detection(e, 1000 * std::uint64_t(i) + std::uint64_t(k), settings);
-                    Uncertain const& d = a.blocks.at(0).detections.at(0).observer_dprime;
-                    t.add(d.value, d.interval, mean);
-                }
-                print(t, "");
+                detection_row(e, fmt::format("d' of {}, mean {}, sd {}", name_of(e.task), mean, sd),
+                              mean == 0 ? experiments : std::max(1, experiments / 3));
             }
+}
+
+/// Same-different by observers with many false alarms.
+void false_alarms(int experiments)
+{
+    for (double const mean : {0.0, 1.0, 2.0, 4.0}) {
+        DetectionExperiment e;
+        e.task = DetectionTask::same_different;
+        e.mean = mean;
+        e.criterion = -0.15;
+        detection_row(e, fmt::format("d' of same_different, mean {}, 40 % false alarms", mean), experiments);
+    }
 }
 
 Interval decades(Interval const& i) { return {std::log10(i.low), std::log10(i.high)}; }
@@ -159,6 +176,7 @@ int main(int argc, char** argv)
     fmt::print("| estimate | intervals | bias | coverage % | below | above | no estimate or end | +- % |\n"
                "|---|---|---|---|---|---|---|---|\n");
     if (what.empty() || what == "detection") detection(experiments);
+    if (what.empty() || what == "false_alarms") false_alarms(experiments);
     if (what.empty() || what == "thresholds") thresholds(experiments);
     if (what.empty() || what == "observers") observers(experiments);
     return 0;
