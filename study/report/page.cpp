@@ -318,9 +318,9 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
     html += gi::html_section("Order", gi::html_note("How trials followed each other, summed over participants: "
                                                     "from the row to the column.") +
                                           figures(orders));
-    html += gi::html_section("Numbers",
-                             shown({"scores", "hierarchical_scores", "effects", "group_differences", "thresholds",
-                                    "curves", "detection", "population", "questionnaires", "changes", "remarks"}));
+    html += gi::html_section("Numbers", shown({"scores", "hierarchical_scores", "effects", "group_differences",
+                                               "thresholds", "parameters", "curves", "detection", "population",
+                                               "questionnaires", "changes", "remarks"}));
     std::string const about = fmt::format("<p class=\"about\">Experiment {}: {} of {} participants, {} sessions, "
                                           "{} complete. Intervals of {:.0f} %, "
                                           "{} replicates of bootstraps.</p>\n",

@@ -46,38 +46,19 @@ int part_of(std::vector<int>& parent, int item)
 
 } // namespace
 
-ActivePairs::ActivePairs(int items, std::vector<Pair> allowed, ActiveSettings const& settings)
-    : items_(items), allowed_(std::move(allowed)), settings_(settings), random_(settings.seed)
+/// Newton's method; the posterior is log-concave.
+PairPosterior pair_posterior(int items, std::span<PairAnswer const> answers, double prior_sd,
+                             std::vector<double> const& start)
 {
-    if (allowed_.empty()) refuse("active sampling of no pair", "there is nothing to show", "name pairs");
-    for (auto const& [a, b] : allowed_)
-        if (a < 0 || b < 0 || a >= items || b >= items || a == b)
-            refuse("a pair of items " + std::to_string(a) + " and " + std::to_string(b),
-                   "there are " + std::to_string(items) + ", counted from 0", "name two of them");
-    update();
-    choose();
-}
-
-double ActivePairs::gain(Pair pair) const
-{
-    auto const [a, b] = std::pair{std::size_t(pair.first), std::size_t(pair.second)};
-    double const m = scores_[a] - scores_[b];
-    double const v = std::max(0.0, covariance_(a, a) + covariance_(b, b) - 2 * covariance_(a, b));
-    return entropy_bits(normal_cdf(m / std::sqrt(1 + v))) - mean_entropy(m, v);
-}
-
-/// Newton's method from the earlier mode; the posterior is log-concave.
-void ActivePairs::update()
-{
-    Eigen::Index const n = items_;
+    Eigen::Index const n = items;
     Eigen::VectorXd s = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index i = 0; i < n && !scores_.empty(); ++i) s[i] = scores_[std::size_t(i)];
-    double const prior = 1 / (settings_.prior_sd * settings_.prior_sd);
+    for (Eigen::Index i = 0; i < n && !start.empty(); ++i) s[i] = start[std::size_t(i)];
+    double const prior = 1 / (prior_sd * prior_sd);
     Eigen::MatrixXd information;
     for (int iteration = 0; iteration < 50; ++iteration) {
         Eigen::VectorXd gradient = -prior * s;
         information = Eigen::MatrixXd::Identity(n, n) * prior;
-        for (Answer const& answer : answers_) {
+        for (PairAnswer const& answer : answers) {
             auto const [a, b] = answer.pair;
             double const d = s[a] - s[b];
             // A tie is half a win of each.
@@ -100,16 +81,36 @@ void ActivePairs::update()
         if (longest < 1e-10) break;
     }
     Eigen::MatrixXd const inverse = information.llt().solve(Eigen::MatrixXd::Identity(n, n));
-    scores_.assign(s.data(), s.data() + n);
-    covariance_ = Matrix(std::size_t(n), std::size_t(n));
+    PairPosterior out{{s.data(), s.data() + n}, Matrix(std::size_t(n), std::size_t(n))};
     for (Eigen::Index i = 0; i < n; ++i)
-        for (Eigen::Index j = 0; j < n; ++j) covariance_(std::size_t(i), std::size_t(j)) = inverse(i, j);
-    is_outdated_ = false;
+        for (Eigen::Index j = 0; j < n; ++j) out.covariance(std::size_t(i), std::size_t(j)) = inverse(i, j);
+    return out;
+}
+
+ActivePairs::ActivePairs(int items, std::vector<Pair> allowed, ActiveSettings const& settings)
+    : items_(items), allowed_(std::move(allowed)), settings_(settings), random_(settings.seed)
+{
+    if (allowed_.empty()) refuse("active sampling of no pair", "there is nothing to show", "name pairs");
+    for (auto const& [a, b] : allowed_)
+        if (a < 0 || b < 0 || a >= items || b >= items || a == b)
+            refuse("a pair of items " + std::to_string(a) + " and " + std::to_string(b),
+                   "there are " + std::to_string(items) + ", counted from 0", "name two of them");
+    posterior_ = pair_posterior(items_, answers_, settings_.prior_sd);
+    choose();
+}
+
+double ActivePairs::gain(Pair pair) const
+{
+    auto const [a, b] = std::pair{std::size_t(pair.first), std::size_t(pair.second)};
+    double const m = scores()[a] - scores()[b];
+    double const v = std::max(0.0, covariance()(a, a) + covariance()(b, b) - 2 * covariance()(a, b));
+    return entropy_bits(normal_cdf(m / std::sqrt(1 + v))) - mean_entropy(m, v);
 }
 
 void ActivePairs::choose()
 {
-    if (is_outdated_) update();
+    if (is_outdated_) posterior_ = pair_posterior(items_, answers_, settings_.prior_sd, posterior_.mode);
+    is_outdated_ = false;
     std::vector<std::size_t> order(allowed_.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     random_.shuffle(order); // the order of ties

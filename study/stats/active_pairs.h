@@ -15,6 +15,7 @@
 
 #include <deque>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace study {
@@ -24,6 +25,20 @@ struct ActiveSettings {
     double prior_sd = 3;  ///< of scores, in units of F
     std::uint64_t seed = 0;
 };
+
+/// An answer about a pair of items. first_wins  1: the first was chosen, 0: the second, 1/2: neither
+struct PairAnswer {
+    std::pair<int, int> pair;
+    double first_wins = 0;
+};
+/// Normal approximation of the posterior of the scores at its mode, in units of F; the prior makes their mean 0.
+struct PairPosterior {
+    std::vector<double> mode;
+    Matrix covariance;
+};
+/// @param start  of the search, such as an earlier mode; empty = all 0
+PairPosterior pair_posterior(int items, std::span<PairAnswer const> answers, double prior_sd,
+                             std::vector<double> const& start = {});
 
 class ActivePairs {
 public:
@@ -41,26 +56,20 @@ public:
 
     int answers() const { return int(answers_.size()); }
     /// Mode and covariance of the posterior, in units of F; the prior makes the mean of the scores 0.
-    std::vector<double> const& scores() const { return scores_; }
-    Matrix const& covariance() const { return covariance_; }
+    std::vector<double> const& scores() const { return posterior_.mode; }
+    Matrix const& covariance() const { return posterior_.covariance; }
     /// Expected information of an answer, bits.
     double gain(Pair pair) const;
 
 private:
-    struct Answer {
-        Pair pair;
-        double first_wins;
-    };
     void choose();
-    void update();
 
     int items_;
     std::vector<Pair> allowed_;
     ActiveSettings settings_;
     Random random_;
-    std::vector<Answer> answers_;
-    std::vector<double> scores_;
-    Matrix covariance_;
+    std::vector<PairAnswer> answers_;
+    PairPosterior posterior_;
     bool is_outdated_ = false;
     std::deque<Pair> queue_;
 };
