@@ -23,7 +23,6 @@ constexpr double kFarThreshold = 2;         ///< in ranges from the centre: infi
 enum Part { kMean, kSpread, kScale, kLapse, kEta, kGuess, kParts };
 using Thresholds = std::array<double, kParts>;
 
-double from_logit(double x) { return 1 / (1 + std::exp(-x)); }
 double spread_of(double parameter) { return kLeastThresholdSd + std::exp(parameter); }
 
 /// Beta-binomial distributions are of whole numbers; counts from percentages are none.
@@ -77,11 +76,12 @@ public:
         gradient.fill(0);
         double sum = 0;
         for (Person& p : people_) {
-            auto const curve = curve_of(at, s_.fits_guess ? from_logit(at[kGuess]) : p.guess);
+            auto const curve = curve_of(at, s_.fits_guess ? inverse_logit(at[kGuess]) : p.guess);
             if (!curve) return -kInfinity;
             sum += integrate(p, at, *curve, gradient);
         }
-        double const lapse = lapse_of(at), eta = from_logit(at[kEta]), from_usual = at[kScale] - std::log(0.125);
+        double const lapse = lapse_of(at), eta = inverse_logit(at[kEta]),
+                     from_usual = at[kScale] - std::log(0.125);
         sum -= 0.5 * from_usual * from_usual;
         if (!s_.lapse) {
             sum += std::log(lapse) + 20 * std::log1p(-lapse);
@@ -95,7 +95,7 @@ public:
         return sum;
     }
 
-    double lapse_of(Thresholds const& at) const { return s_.lapse.value_or(from_logit(at[kLapse])); }
+    double lapse_of(Thresholds const& at) const { return s_.lapse.value_or(inverse_logit(at[kLapse])); }
 
 private:
     void add(ObserverLevels const& o)
@@ -120,7 +120,7 @@ private:
     std::optional<LevelCurve> curve_of(Thresholds const& at, double guess) const
     {
         return level_curve(s_.shape.sigmoid, s_.proportion, std::exp(at[kScale]), lapse_of(at), guess,
-                           is_repeated_ ? from_logit(at[kEta]) : 0);
+                           is_repeated_ ? inverse_logit(at[kEta]) : 0);
     }
 
     double integrate(Person& p, Thresholds const& at, LevelCurve const& c, Thresholds& gradient) const
@@ -184,7 +184,7 @@ private:
         gradient[kLapse] += average.by_lapse / sum * c.lapse * (1 - c.lapse);
         if (s_.fits_guess) gradient[kGuess] += average.by_guess / sum * c.guess * (1 - c.guess);
         if (is_repeated_) {
-            gradient[kEta] += average.by_nu / sum * nu_by_logit(from_logit(at[kEta]));
+            gradient[kEta] += average.by_nu / sum * nu_by_logit(inverse_logit(at[kEta]));
         }
         return most + std::log(sum) + std::log(width / sd);
     }
@@ -293,9 +293,9 @@ GroupThreshold described(ThresholdFit const& fit, GroupThresholdSettings const& 
     g.deviation = g.observers > 1 ? m.range() * spread_of(best[kSpread]) : 0;
     double guess = 0;
     for (Person const& p : m.people()) guess += p.guess / g.observers;
-    g.shared = {g.mean, m.range() * std::exp(best[kScale]), settings.fits_guess ? from_logit(best[kGuess]) : guess,
-                m.lapse_of(best)};
-    g.eta = m.is_repeated() ? from_logit(best[kEta]) : 0;
+    g.shared = {g.mean, m.range() * std::exp(best[kScale]),
+                settings.fits_guess ? inverse_logit(best[kGuess]) : guess, m.lapse_of(best)};
+    g.eta = m.is_repeated() ? inverse_logit(best[kEta]) : 0;
     g.note = note_of(fit);
     return g;
 }

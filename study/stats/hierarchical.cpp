@@ -2,6 +2,7 @@
 
 #include "study/stats/curve_likelihood.h"
 #include "study/stats/error.h"
+#include "study/stats/special.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +62,6 @@ Hierarchical summed_up(Draws const& draws, RandomEffect const& e, std::size_t ob
     h.note = complaint(h.report, draws.chains);
     return h;
 }
-
-double inverse_logit(double x) { return 1 / (1 + std::exp(-x)); }
 
 } // namespace
 

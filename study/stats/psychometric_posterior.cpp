@@ -22,8 +22,7 @@ struct CountedLevel {
     double u, correct, trials; ///< u in ranges from the centre
 };
 
-double logistic(double x) { return 1 / (1 + std::exp(-x)); }
-/// log of the density of x if logistic(x) follows Beta(a, b), up to a constant.
+/// log of the density of x if inverse_logit(x) follows Beta(a, b), up to a constant.
 double log_beta_prior(double x, double a, double b)
 {
     return -a * std::log1p(std::exp(-x)) - b * std::log1p(std::exp(x));
@@ -42,9 +41,9 @@ struct PosteriorModel {
         PossibleFunction f;
         f.parameters.threshold = centre + range * x[0];
         f.parameters.scale = range * std::exp(x[1]);
-        f.parameters.lapse = s.lapse.value_or(logistic(x[2]));
-        f.parameters.guess = s.fits_guess ? logistic(x[3]) : s.guess;
-        if (s.is_overdispersed) f.eta = logistic(x[count() - 1]);
+        f.parameters.lapse = s.lapse.value_or(inverse_logit(x[2]));
+        f.parameters.guess = s.fits_guess ? inverse_logit(x[3]) : s.guess;
+        if (s.is_overdispersed) f.eta = inverse_logit(x[count() - 1]);
         return f;
     }
 
@@ -52,10 +51,10 @@ struct PosteriorModel {
     {
         double const outside = std::max(0.0, std::abs(x[0]) - 0.5) / 0.25, spread = x[1] - std::log(0.125);
         double sum = -0.5 * outside * outside - 0.5 * spread * spread + log_beta_prior(x[2], 1, 10);
-        double const lapse = s.lapse.value_or(logistic(x[2])); // if it is fixed, x[2] has only its prior
+        double const lapse = s.lapse.value_or(inverse_logit(x[2])); // if it is fixed, x[2] has only its prior
         double guess = s.guess;
         if (s.fits_guess) {
-            guess = logistic(x[3]);
+            guess = inverse_logit(x[3]);
             sum += log_beta_prior(x[3], 1 + s.false_alarms, 1 + s.noises - s.false_alarms);
         }
         double const span = 1 - guess - lapse, scale = std::exp(x[1]);
@@ -63,7 +62,7 @@ struct PosteriorModel {
         double nu = kInfinity;
         if (s.is_overdispersed) {
             sum += log_beta_prior(x[count() - 1], 1, 10);
-            double const eta = std::max(1e-4, logistic(x[count() - 1]));
+            double const eta = std::max(1e-4, inverse_logit(x[count() - 1]));
             nu = 1 / (eta * eta) - 1;
         }
         for (CountedLevel const& l : levels) {

@@ -42,6 +42,8 @@ double normal_quantile(double p)
 
 double owens_t(double h, double a) { return boost::math::owens_t(h, a, Quiet()); }
 
+double inverse_logit(double x) { return 1 / (1 + std::exp(-x)); }
+
 double log_choose(double n, double k) { return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1); }
 
 double chi_square_tail(double x, double degrees_of_freedom)

@@ -19,6 +19,8 @@ double normal_quantile(double p);
 /// times it.
 double owens_t(double h, double a);
 
+double inverse_logit(double x); ///< 1 / (1 + exp(-x))
+
 /// log of the binomial coefficient n over k, also for non-integers.
 double log_choose(double n, double k);
 

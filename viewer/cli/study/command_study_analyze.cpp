@@ -120,9 +120,7 @@ void add_options(CLI::App& command, AnalyzeOptions& o)
     command.add_option("--replicates", o.settings.replicates, "number of bootstrap samples over observers")
         ->check(CLI::Range(100, 100000))
         ->capture_default_str();
-    command
-        .add_option("--draws", o.settings.draws,
-                    "draws of each of 4 chains of the hierarchical models of d' and thresholds; 0 = none")
+    command.add_option("--draws", o.settings.draws, "draws of each of 4 chains of hierarchical models; 0 = none")
         ->check(CLI::Range(0, 20000))
         ->capture_default_str();
     command.add_flag("--hierarchical", o.settings.has_hierarchy,
