@@ -2,6 +2,7 @@
 
 #include "gi/core/text.h"
 #include "study/script/condition.h"
+#include "study/stats/root.h"
 
 #include <algorithm>
 #include <cmath>
@@ -132,11 +133,8 @@ double level_of_proportion(PsychometricChoice const& function, Scale scale, bool
     if (scale == Scale::linear && function.takes_levels()) a = std::max(a, 1e-6 * std::abs(middle));
     double const at_a = above(a);
     if (!(at_a * above(b) < 0)) return std::nan("");
-    for (int i = 0; i < 200; ++i) {
-        double const half = (a + b) / 2;
-        (above(half) * at_a > 0 ? a : b) = half;
-    }
-    return from_scale(scale, (a + b) / 2);
+    double const sign = at_a < 0 ? 1 : -1;
+    return from_scale(scale, bisect([&](double u) { return sign * above(u); }, a, b));
 }
 
 } // namespace study

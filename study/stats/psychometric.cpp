@@ -1,6 +1,7 @@
 #include "study/stats/psychometric.h"
 
 #include "study/stats/error.h"
+#include "study/stats/root.h"
 #include "study/stats/sigmoid.h"
 #include "study/stats/special.h"
 
@@ -30,14 +31,11 @@ double crossing(PsychometricShape const& shape, PsychometricParameters const& p,
     double const farthest = shape.axis == Axis::log10 ? 12 : 1e6 * std::max(1.0, std::abs(p.threshold));
     for (double step = 1e-3; step < farthest; step *= 2)
         for (double const sign : {-1.0, 1.0}) {
-            double a = p.threshold + sign * (step == 1e-3 ? 0 : step / 2), b = p.threshold + sign * step;
+            double const a = p.threshold + sign * (step == 1e-3 ? 0 : step / 2), b = p.threshold + sign * step;
             double const at_a = above(a), at_b = above(b);
             if (!(at_a * at_b <= 0)) continue;
-            for (int i = 0; i < 100; ++i) {
-                double const middle = (a + b) / 2;
-                (above(middle) * at_a > 0 ? a : b) = middle;
-            }
-            return (a + b) / 2;
+            double const way = at_a <= 0 ? 1 : -1;
+            return bisect([&](double u) { return way * above(u); }, a, b);
         }
     return std::nan("");
 }
