@@ -87,11 +87,11 @@ TEST(StudyTables, OfOthersAreAnalysedAndReportedLikeRecords)
                                        "3,x,y,x,young\n3,z,y,z,young\n3,z,x,x,young\n";
     std::string const table =
         "--table 1.csv 2.csv --columns participant=who,first=a,second=b,chosen=best --factors age";
-    Outcome const json = run_well("study analyze " + table + " --json --replicates 100", folder.path());
-    auto const j = nlohmann::json::parse(json.out);
+    Outcome const printed = run_well("study analyze " + table + " --json --replicates 100", folder.path());
+    auto const j = nlohmann::json::parse(printed.out);
     EXPECT_EQ(j["participants"], 3);
     EXPECT_EQ(j["tables"]["scores"].size(), 9u) << "three items, all and two groups";
-    EXPECT_NE(json.err.find("1 of 10 rows left out: no 'best'"), std::string::npos) << json.err;
+    EXPECT_NE(printed.err.find("1 of 10 rows left out: no 'best'"), std::string::npos) << printed.err;
     run_well("study report " + table + " --out report.html --replicates 100", folder.path());
     EXPECT_NE(file_text(folder / "report.html").find("<svg"), std::string::npos);
     expect_refused("study analyze", folder, "no records");
