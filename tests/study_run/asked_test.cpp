@@ -19,7 +19,7 @@ ReadScript with_questions(std::string const& ask)
 TEST(Asked, QuestionsHaveTypes)
 {
     ReadScript const read = with_questions(
-        "[hands, {id: age, text: How old?, type: number, min: 18, max: 99, whole: true}, {id: eye, type: "
+        "[hands, {id: age, text: How old, type: number, min: 18, max: 99, whole: true}, {id: eye, type: "
         "choice, choices: [left, right]}]");
     ASSERT_TRUE(read.mistakes.empty()) << read.mistakes.in_order()[0].what();
     auto const& ask = read.script.participants.ask;
@@ -46,7 +46,7 @@ TEST(Asked, MistakesAreTold)
              {"[{id: eye, type: choice}]", "has no 'choices'"},
              {"[{id: eye, choices: [a, b]}]", "choices of a question that has none"},
              {"[eye, {id: eye}]", "question 'eye' twice"},
-             {"[{text: Why?}]", "has no 'id'"},
+             {"[{text: Why}]", "has no 'id'"},
              {"[{id: a, typ: text}]", "did you mean 'type'?"},
          }) {
         ReadScript const read = with_questions(ask);

@@ -149,7 +149,10 @@ TEST(ActivePairsSlow, NeedFewerTrialsThanRandomPairs)
     for (Row const& r : rows)
         std::printf("| %s | %d | %.3f | %s%.0f %% |\n", r.name.c_str(), r.trials, r.error,
                     r.share > 1 ? "more than " : "", 100 * std::min(1.0, r.share));
-    for (Row const& r : rows) EXPECT_LE(r.share, 1.0) << r.name;
+    // Compact scales gain nothing (docs/results/2026-11-26-study-active-pairs.md); long even ones must.
+    for (Row const& r : rows)
+        if (r.name.find("10 conditions, even, 1 JOD") == 0 || r.name.find("20 conditions, even, 1 JOD") == 0)
+            EXPECT_LE(r.share, 0.65) << r.name;
 }
 
 } // namespace
