@@ -138,7 +138,7 @@ varied: {contrast: {threshold: 4, slope: 2, between_sd: 0.2, shift: {light: {dus
     bool has_threshold = false;
     for (EffectResult const& e : a.effects) {
         EXPECT_FALSE(e.block == "which" && e.effect == "light") << "JODs of each observer have the mean 0";
-        if (e.measure != "threshold, constant: maximum likelihood" || e.effect != "light") continue;
+        if (e.measure != "threshold, constant: likelihood" || e.effect != "light") continue;
         has_threshold = true;
         EXPECT_LT(e.test.p, 0.05);
     }

@@ -81,6 +81,7 @@ TEST(PublishedTables, OfCountsAreFittedByMaximumLikelihood)
     AnalysisSettings fixed;
     fixed.guess = 0;
     fixed.lapse = 0;
+    fixed.draws = 0;
     Analysis const a = analysed(
         study_data() / "psychometric_qpdat.csv",
         {{{"participant", "participant"}, {"level", "phase"}, {"yes_count", "k"}, {"trials", "n"}}, {"cond"}},
@@ -107,6 +108,7 @@ TEST(PublishedTables, OfFlashesSeenHaveTheirThresholds)
     AnalysisSettings fixed;
     fixed.guess = 0;
     fixed.lapse = 0;
+    fixed.draws = 0;
     Analysis const a =
         analysed(perceptual() / "psychometric_hsp1942.csv",
                  {{{"participant", "Obs"}, {"run", "Run"}, {"level", "Q"}, {"percent", "p"}, {"trials", "N"}},

@@ -95,7 +95,7 @@ def two_alternatives():
     t = analysed("--table", file, "--columns", "level=level,correct_count=n_correct,trials=n_total")
     data = pd.read_csv(file)[["level", "n_correct", "n_total"]].to_numpy()
     fit = psignifit.psignifit(data, experiment_type="2AFC", sigmoid="norm")
-    compare("psignifit: threshold of its 2AFC example (prior and posterior mode; ours: maximum likelihood)",
+    compare("psignifit: threshold of its 2AFC example (posterior mode; ours: mode with weak priors)",
             t["curves"][0]["threshold"], fit.parameter_estimate_MAP["threshold"], 0.03, relative=True)
 
 
