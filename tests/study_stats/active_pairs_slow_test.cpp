@@ -150,9 +150,13 @@ TEST(ActivePairsSlow, NeedFewerTrialsThanRandomPairs)
         std::printf("| %s | %d | %.3f | %s%.0f %% |\n", r.name.c_str(), r.trials, r.error,
                     r.share > 1 ? "more than " : "", 100 * std::min(1.0, r.share));
     // Compact scales gain nothing (docs/results/2026-11-26-study-active-pairs.md); long even ones must.
-    for (Row const& r : rows)
-        if (r.name.find("10 conditions, even, 1 JOD") == 0 || r.name.find("20 conditions, even, 1 JOD") == 0)
+    for (Row const& r : rows) {
+        bool const is_long =
+            r.name.starts_with("10 conditions, even, 1 JOD") || r.name.starts_with("20 conditions, even, 1 JOD");
+        if (is_long) {
             EXPECT_LE(r.share, 0.65) << r.name;
+        }
+    }
 }
 
 } // namespace
