@@ -24,7 +24,7 @@ int answer(RunningSession& run, int most)
     int shown = 0;
     for (; shown < most; ++shown) {
         if (!run.markers.wait_for("stimulus", std::chrono::seconds(shown < 2 ? 60 : 4)).is_object()) break;
-        sleep_ms(60);
+        sleep_ms(160); // later than an anticipation
         run.window().tap("5");
     }
     return shown;
