@@ -140,7 +140,7 @@ def helmert(k):
 
 def groups():
     (WORK / "groups.yaml").write_text(SCRIPT)
-    lightwell("simulate", "groups.yaml", "--out", "groups")
+    lightwell("simulate", "--any-settings", "groups.yaml", "--out", "groups")
     lightwell("export", "groups", "--script", "groups.yaml", "--out", "exported")
     file = WORK / "exported/data/study-groups_description-trials_data.csv"
     t = analysed("--table", file, "--columns", "participant=participant,item=method,value=value", "--factors",
@@ -207,7 +207,7 @@ blocks:
 
 def quest():
     (WORK / "quest.yaml").write_text(QUEST)
-    lightwell("simulate", "quest.yaml", "--out", "quest")
+    lightwell("simulate", "--any-settings", "quest.yaml", "--out", "quest")
     lightwell("export", "quest", "--script", "quest.yaml", "--out", "quest_tables")
     t = analysed("quest", "--script", "quest.yaml")
     data = pd.read_csv(WORK / "quest_tables/data/study-quest_description-trials_data.csv", low_memory=False)
