@@ -1,5 +1,5 @@
-// See viewer/devices/gl/display_pass.h. Pixels count from the top left of the target. MODE, COMPARISON, CURVE, STRETCHED and
-// ENCODED are defines, so that only what is asked for is computed.
+// See viewer/devices/gl/display_pass.h. Pixels count from the top left of the target. MODE, COMPARISON, CURVE, STRETCHED,
+// ENCODED and CALIBRATED are defines, so that only what is asked for is computed.
 
 layout(binding = 0) uniform sampler2D left_picture;
 layout(binding = 1) uniform sampler2D right_picture;
@@ -9,6 +9,9 @@ layout(binding = 3) uniform sampler2D right_other;
 uniform ivec2 corner, target_size, eye_size, on_screen;
 uniform bool top_last;
 uniform float scale, split, difference_gain;
+
+layout(binding = 4) uniform sampler2D light_table; // viewer/displays/display_light.h
+uniform float light_gain, light_black;
 
 out vec4 color;
 
@@ -28,7 +31,26 @@ vec3 texels(sampler2D picture, ivec2 place)
     return size == eye_size ? texelFetch(picture, place, 0).rgb : mix(top, bottom, f.y);
 }
 
-vec3 display_value(vec3 v) { return ENCODED == 1 ? to_bytes(clamp(v, 0.0, 1.0)) : tone_map(v, scale); }
+/// encode() of display_light.h, for three channels at once.
+vec3 of_light(vec3 radiance)
+{
+    vec3 share = clamp(light_gain * tone_curve(radiance, scale) - light_black, 0.0, 1.0);
+    int last = textureSize(light_table, 0).x - 1;
+    vec3 at = pow(share, vec3(1.0 / TABLE_EXPONENT)) * float(last);
+    ivec3 below = min(ivec3(at), ivec3(last - 1));
+    vec3 low, high;
+    for (int c = 0; c < 3; ++c) {
+        low[c] = texelFetch(light_table, ivec2(below[c], 0), 0)[c];
+        high[c] = texelFetch(light_table, ivec2(below[c] + 1, 0), 0)[c];
+    }
+    return to_bytes(mix(low, high, at - vec3(below)));
+}
+
+vec3 display_value(vec3 v)
+{
+    if (ENCODED == 1) return to_bytes(clamp(v, 0.0, 1.0));
+    return CALIBRATED == 1 ? of_light(v) : tone_map(v, scale);
+}
 
 /// Of the eye: 0 or 1. Both are read before one is chosen, the curve is applied to the chosen one.
 vec3 of_eye(int eye, sampler2D left, sampler2D right, ivec2 place)

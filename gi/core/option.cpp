@@ -1,5 +1,6 @@
 #include "gi/core/option.h"
 
+#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/core/text.h"
 
@@ -53,8 +54,11 @@ OptionValue parse_value(OptionFacts const& o, std::string const& text, std::stri
 {
     auto const known = std::ranges::find(o.words, text);
     if (known != o.words.end()) return {0, std::uint64_t(known - o.words.begin())};
-    if (!o.words.empty())
-        throw InputError(given, "it is none of the known words", "choose from: " + o.values_text());
+    if (!o.words.empty()) {
+        std::string const near = suggest(text, o.words);
+        throw InputError(given, "it is none of the known words",
+                         (near.starts_with("did") ? near + " " : "") + "choose from: " + o.values_text());
+    }
     OptionValue v{parse_finite(text).value_or(std::nan("")), 0};
     bool is_valid = v.number >= o.low && v.number <= o.high;
     if (is_valid && o.type == OptionType::whole_number) {

@@ -136,7 +136,7 @@ Yaml Yaml::needed(std::string const& key, std::string const& example) const
     return at(key);
 }
 
-std::vector<std::pair<Yaml, Yaml>> Yaml::entries() const
+std::vector<std::pair<Yaml, Yaml>> Yaml::entries(std::vector<InputError>& mistakes) const
 {
     if (!node_.IsMap())
         throw error(path_ + " is not a map", "keys and values are needed here", "write key: value lines");
@@ -144,16 +144,29 @@ std::vector<std::pair<Yaml, Yaml>> Yaml::entries() const
     std::vector<std::pair<Yaml, Yaml>> out;
     for (auto const& entry : node_) {
         Yaml const key(entry.first, file_, path_);
-        if (!entry.first.IsScalar()) throw key.error("a key is not text", "it is a list or a map", "name it");
+        if (!entry.first.IsScalar()) {
+            mistakes.push_back(key.error("a key is not text", "it is a list or a map", "name it"));
+            continue;
+        }
         std::string const name = entry.first.Scalar();
         if (!seen.insert(name).second)
-            throw key.error(fmt::format("key '{}' twice in {}", shortened(name), path_),
-                            "only one of them can count", "remove one");
-        if (entry.second.IsNull())
-            throw key.error(fmt::format("key '{}' in {} has no value", shortened(name), path_),
-                            "it would be ignored", "give it one or remove it");
-        out.emplace_back(key, Yaml(entry.second, file_, path_ == "file" ? name : path_ + "." + shortened(name)));
+            mistakes.push_back(key.error(fmt::format("key '{}' twice in {}", shortened(name), path_),
+                                         "only one of them can count", "remove one"));
+        else if (entry.second.IsNull())
+            mistakes.push_back(key.error(fmt::format("key '{}' in {} has no value", shortened(name), path_),
+                                         "it would be ignored", "give it one or remove it"));
+        else
+            out.emplace_back(key,
+                             Yaml(entry.second, file_, path_ == "file" ? name : path_ + "." + shortened(name)));
     }
+    return out;
+}
+
+std::vector<std::pair<Yaml, Yaml>> Yaml::entries() const
+{
+    std::vector<InputError> mistakes;
+    auto out = entries(mistakes);
+    if (!mistakes.empty()) throw mistakes.front();
     return out;
 }
 
@@ -164,15 +177,22 @@ std::vector<std::string> Yaml::keys() const
     return out;
 }
 
-void Yaml::check_keys(std::vector<std::string> known) const
+void Yaml::find_other_keys(std::vector<std::string> known, std::vector<InputError>& mistakes) const
 {
     std::ranges::sort(known);
-    for (auto const& [key, unused] : entries()) {
+    for (auto const& [key, unused] : entries(mistakes)) {
         std::string const name = key.node_.Scalar();
         if (!std::ranges::binary_search(known, name))
-            throw key.error(fmt::format("unknown key '{}' in {}", shortened(name), path_), "it would be ignored",
-                            suggest(shortened(name), known));
+            mistakes.push_back(key.error(fmt::format("unknown key '{}' in {}", shortened(name), path_),
+                                         "it would be ignored", suggest(shortened(name), known)));
     }
+}
+
+void Yaml::check_keys(std::vector<std::string> known) const
+{
+    std::vector<InputError> mistakes;
+    find_other_keys(std::move(known), mistakes);
+    if (!mistakes.empty()) throw mistakes.front();
 }
 
 std::vector<Yaml> Yaml::items(std::size_t fewest, std::size_t most) const

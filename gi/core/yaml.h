@@ -31,6 +31,8 @@ public:
     bool is_map() const { return node_.IsMap(); }
     bool is_list() const { return node_.IsSequence(); }
     bool is_text() const { return node_.IsScalar(); }
+    /// True if the text stands in quotes; place() is that of the quote then.
+    bool is_quoted() const { return node_.IsScalar() && node_.Tag() == "!"; }
     /// True if this is a map in which the key has a value.
     bool has(std::string const& key) const;
     /// The value of a key; where it is missing, all reading functions throw.
@@ -40,6 +42,9 @@ public:
     /// Keys (as values with their places) and their values, in the order of the file. @throws InputError this is
     /// no map, or a key is no text, is there twice or has no value
     std::vector<std::pair<Yaml, Yaml>> entries() const;
+    /// As entries(), but what is wrong with an entry is added to `mistakes`, and the entry left out.
+    /// @throws InputError this is no map
+    std::vector<std::pair<Yaml, Yaml>> entries(std::vector<InputError>& mistakes) const;
     std::vector<std::string> keys() const;
     /// @throws InputError as entries(), or there is another key than these
     template <class Words>
@@ -48,6 +53,8 @@ public:
         check_keys({known.begin(), known.end()});
     }
     void only_keys(std::initializer_list<char const*> known) const { check_keys({known.begin(), known.end()}); }
+    /// As only_keys(), but adds everything that is wrong to `mistakes`. @throws InputError this is no map
+    void find_other_keys(std::vector<std::string> known, std::vector<InputError>& mistakes) const;
     /// @throws InputError this is no list of `fewest` to `most` items
     std::vector<Yaml> items(std::size_t fewest = 0, std::size_t most = SIZE_MAX) const;
     /// The items of a list, or this value alone.

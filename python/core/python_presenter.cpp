@@ -52,11 +52,37 @@ bool PythonPresenter::ask_consent(std::string const& markdown)
     return call<bool>([&] { return py::cast<bool>(steps_.attr("ask_consent")(markdown)); });
 }
 
-study::ParticipantAsked PythonPresenter::ask_participant(std::vector<std::string> const& questions)
+namespace {
+
+py::dict question_dict(study::AskedQuestion const& q)
+{
+    constexpr char const* kTypes[] = {"text", "number", "choice"};
+    py::dict d;
+    d["id"] = q.id;
+    d["text"] = q.text;
+    d["type"] = kTypes[std::size_t(q.type)];
+    if (q.type == study::AskedType::number) {
+        d["min"] = q.low;
+        d["max"] = q.high;
+        d["whole"] = q.is_whole;
+    }
+    if (q.type == study::AskedType::choice) d["choices"] = q.choices;
+    return d;
+}
+
+} // namespace
+
+study::ParticipantAsked PythonPresenter::ask_participant(std::vector<study::AskedQuestion> const& questions)
 {
     return call<study::ParticipantAsked>([&] {
         study::ParticipantAsked asked;
-        asked.answers = py::cast<decltype(asked.answers)>(steps_.attr("ask_participant")(questions));
+        py::list given; // a plain question is its id, as a typed one is a dict
+        for (study::AskedQuestion const& q : questions)
+            if (q.type == study::AskedType::text && q.text == q.id)
+                given.append(q.id);
+            else
+                given.append(question_dict(q));
+        asked.answers = py::cast<decltype(asked.answers)>(steps_.attr("ask_participant")(given));
         return asked;
     });
 }

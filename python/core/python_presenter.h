@@ -20,7 +20,7 @@ public:
     std::vector<std::pair<std::string, std::string>> about() const override;
     study::CalibrationDone calibrate(study::Timing const& timing) override;
     bool ask_consent(std::string const& markdown) override;
-    study::ParticipantAsked ask_participant(std::vector<std::string> const& questions) override;
+    study::ParticipantAsked ask_participant(std::vector<study::AskedQuestion> const& questions) override;
     study::StepDone instruct(std::string const& markdown, int step) override;
     study::StepDone rest(std::string const& prompt, double least_s, int step) override;
     study::StepDone walk(study::TrialRequest const& where, std::string const& prompt, double seconds) override;

@@ -4,21 +4,31 @@
 
 #include "study/stats/agreement.h"
 #include "study/stats/binomial.h"
+#include "study/stats/effect_size.h"
+#include "study/stats/hierarchical_pairs.h"
+#include "study/stats/mixed_anova.h"
 #include "study/stats/psychometric.h"
+#include "study/stats/sampler.h"
 #include "study/tables/recorded_session.h"
 
 #include <limits>
 #include <map>
+#include <span>
 
 namespace study {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct AnalysisSettings {
-    std::vector<std::string> exclude; ///< ids of excluded participants
-    int replicates = 1000;            ///< of bootstraps over observers
+    std::vector<std::string> exclude{}; ///< ids of excluded participants
+    int replicates = 1000;              ///< of bootstraps over observers
+    int permutations = 1999;            ///< of tests of effects; 0 = none
+    int draws = 700;                    ///< of each of 4 chains of hierarchical models; 0 = no such models
     double confidence = 0.95;
     std::uint64_t seed = 1;
+    bool has_outliers = true;               ///< outlier scores of observers of pairs: a scale without each of them
+    bool has_hierarchy = false;             ///< hierarchical models of pairs, too: a second or so for each
+    std::optional<double> guess{}, lapse{}; ///< fixed rates of psychometric functions; none = as the task requires
 };
 
 /// A number with its interval; NaN = unknown.
@@ -79,6 +89,7 @@ struct ScaleResult {
     std::vector<std::vector<int>> spread;    ///< for ratings: how often each value was given, by item
     std::vector<NamedValue> facts;           ///< goodness of fit, agreement, order effect
     std::optional<Cheapest> cheapest;
+    std::optional<HierarchicalScale> hierarchy; ///< of pairs, if the settings ask for it
     std::vector<std::string> notes;
     std::string refused; ///< why there is no scale
 };
@@ -93,10 +104,15 @@ struct AgreementResult {
 
 /// Estimate of one threshold by one method, at one proportion correct.
 struct ThresholdEstimate {
-    std::string method; ///< mean of reversals, maximum likelihood, QUEST+ posterior
+    std::string method; ///< mean of reversals, likelihood, QUEST+ posterior
     double proportion = kUnknown;
     Uncertain level;
     std::string note;
+};
+/// Posterior of one parameter of QUEST+ with several settings or further parameters.
+struct ParameterEstimate {
+    std::string name;
+    double mean = kUnknown, sd = kUnknown;
 };
 struct ThresholdRun {
     std::string participant, procedure, cell;
@@ -105,21 +121,31 @@ struct ThresholdRun {
     std::vector<int> correct;
     std::vector<int> reversals; ///< trials, from 0
     std::vector<ThresholdEstimate> estimates;
+    std::vector<ParameterEstimate> parameters{};
+    std::string note{}; ///< why there are no parameters although the procedure has them
 };
-/// Mean threshold of one procedure and method over observers: geometric on logarithmic scales.
+/// Mean threshold of the population by one procedure and method, on the scale of levels.
 struct ThresholdSummary {
     std::string procedure, cell, method;
     double proportion = kUnknown;
     Uncertain level;
+    double deviation = kUnknown; ///< of thresholds between observers, in units of the scale
+    std::string note;
 };
+/// The psychometric function of the average observer in one condition, from all procedures.
 struct CurveResult {
     std::string cell;
+    std::string function; ///< its name, or the formula
     int observers = 0;
-    std::vector<LevelCount> counts;
-    PsychometricFit fit; ///< of all trials pooled
-    Uncertain threshold; ///< the level at `proportion`
+    std::vector<LevelCount> counts; ///< of all observers
+    PsychometricShape shape;
+    PsychometricParameters parameters; ///< scale and lapse rate are common to the observers
+    double eta = 0;                    ///< overdispersion
+    Uncertain threshold;               ///< mean over the population of the level at `proportion`
+    double deviation = kUnknown;       ///< of these levels between observers, in units of the scale
     double proportion = kUnknown;
-    std::string refused;
+    PsychometricFit pooled; ///< one function through all trials, for its deviance
+    std::string note, refused;
 };
 
 /// Correct answers of one condition, for tasks that have them.
@@ -127,10 +153,25 @@ struct DetectionResult {
     std::string condition;
     int observers = 0;
     double correct = 0, trials = 0;
-    Interval interval;        ///< Wilson, all trials pooled
-    double dprime = kUnknown; ///< all trials pooled, log-linear correction
-    Uncertain observer_dprime;
-    std::string model;
+    Interval interval;           ///< Wilson, all trials pooled
+    double dprime = kUnknown;    ///< all trials pooled, log-linear correction; negative below chance
+    Uncertain observer_dprime;   ///< mean of the population
+    double deviation = kUnknown; ///< of d' between observers
+    double p = kUnknown;         ///< of "the mean is 0"
+    double criterion = kUnknown; ///< mean; unknown for oddity
+    std::string model, note;
+};
+
+/// A hierarchical Bayesian model of one parameter of the observers in one condition.
+struct HierarchicalResult {
+    std::string condition, parameter; ///< parameter: "d'", "threshold at 75 %"
+    int observers = 0;
+    Uncertain mean, deviation; ///< of the population; deviation of thresholds in units of the scale
+    std::vector<std::string> participants;
+    std::vector<Uncertain> each;               ///< of the participants: shrunken towards the mean
+    double scale = kUnknown, lapse = kUnknown; ///< of psychometric functions, the population's
+    SamplerReport report;
+    std::string note, refused;
 };
 
 struct BlockResult {
@@ -142,6 +183,7 @@ struct BlockResult {
     std::vector<ThresholdSummary> thresholds;
     std::vector<CurveResult> curves;
     std::vector<DetectionResult> detections;
+    std::vector<HierarchicalResult> hierarchical;
 };
 
 struct QuestionnaireResult {
@@ -182,6 +224,25 @@ struct TransitionResult {
     double switched = 0, by_chance = 0;
 };
 
+/// One effect of an analysis of variance of observers' means, with groups of participants and conditions.
+struct EffectResult {
+    std::string block, measure, effect; ///< "display x scene"
+    int observers = 0;                  ///< with all cells
+    AnovaEffect test;
+    double p_holm = kUnknown; ///< of p_gg, over the effects of one measure
+};
+/// Difference of two groups of participants (Welch 1947).
+struct GroupDifference {
+    std::string block, measure, cell; ///< cell: "mean" over all conditions, or one of them
+    std::string a, b;                 ///< "display=hmd"
+    WelchTest test;
+    double p_holm = kUnknown; ///< over the comparisons of one measure
+};
+/// Why a measure was not tested, or with fewer observers.
+struct EffectNote {
+    std::string block, measure, text;
+};
+
 struct Analysis {
     std::string experiment, title;
     AnalysisSettings settings;
@@ -191,6 +252,9 @@ struct Analysis {
     std::vector<BlockResult> blocks;
     std::vector<QuestionnaireResult> questionnaires;
     std::vector<QuestionnaireChange> changes;
+    std::vector<EffectResult> effects;
+    std::vector<GroupDifference> group_differences;
+    std::vector<EffectNote> effect_notes;
     TimingResult timing;
     std::vector<TransitionResult> transitions;
     std::vector<std::string> cautions; ///< warnings about the validity of the results
@@ -199,5 +263,8 @@ struct Analysis {
 /// @throws ScriptError as trial_rows and answered_questionnaires, and if a participant to exclude does not exist
 Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessions,
                  AnalysisSettings const& settings = {});
+/// Scales, thresholds and effects of one block, without timing, order and questionnaires: for simulations.
+Analysis analyze_one_block(Script const& script, std::span<RecordedSession const> sessions, int block,
+                           AnalysisSettings const& settings);
 
 } // namespace study

@@ -86,6 +86,7 @@ std::string to_json(Analysis const& a)
            {"settings",
             {{"excluded", a.settings.exclude},
              {"replicates", a.settings.replicates},
+             {"draws", a.settings.draws},
              {"confidence", a.settings.confidence},
              {"seed", a.settings.seed}}},
            {"cautions", a.cautions}};

@@ -1,6 +1,7 @@
 #include "study/analysis/analysis.h"
 
 #include "study/analysis/blocks.h"
+#include "study/analysis/effects.h"
 #include "study/analysis/whole.h"
 
 #include <algorithm>
@@ -121,9 +122,38 @@ Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessi
             if (s.participant == o.participant) o = s;
 
     analyze_questionnaires(script, used, settings, a);
+    auto const groups = participant_factors(script, used);
+    for (BlockResult const& result : a.blocks)
+        for (std::size_t b = 0; b < script.blocks.size(); ++b)
+            if (script.blocks[b].name == result.name)
+                for (Measure const& m : measures_of(script, kept, int(b), result))
+                    test_effects(m, groups, settings, a);
+    for (Measure const& m : questionnaire_measures(script, used)) test_effects(m, groups, settings, a);
     analyze_timing(script, kept, used, a);
     analyze_transitions(script, used, a);
     add_cautions(script, a);
+    return a;
+}
+
+Analysis analyze_one_block(Script const& script, std::span<RecordedSession const> sessions, int block,
+                           AnalysisSettings const& settings)
+{
+    Analysis a;
+    a.experiment = script.id;
+    a.settings = settings;
+    std::vector<ObserverTrials> observers;
+    std::vector<RecordedSession const*> used;
+    std::vector<ObserverSummary> summaries;
+    for (RecordedSession const& session : sessions) {
+        observers.push_back({session.plan.participant_id, trial_rows(script, session)});
+        summaries.emplace_back().participant = session.plan.participant_id;
+        used.push_back(&session);
+    }
+    a.participants = a.sessions = a.complete = int(sessions.size());
+    a.blocks.push_back(analyze_block(script, observers, block, settings, summaries));
+    auto const groups = participant_factors(script, used);
+    for (Measure const& m : measures_of(script, observers, block, a.blocks[0]))
+        test_effects(m, groups, settings, a);
     return a;
 }
 

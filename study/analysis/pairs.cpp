@@ -1,5 +1,6 @@
 #include "study/analysis/blocks.h"
 #include "study/stats/bootstrap.h"
+#include "study/stats/observer_scale.h"
 #include "study/stats/outliers.h"
 #include "study/stats/special.h"
 #include "study/stats/triads.h"
@@ -76,12 +77,14 @@ void add_fit(ScaleResult& r, std::string const& name, PairScale const& fit)
 }
 
 /// The preference for the first stimulus, tested by the likelihood ratio against a fit without it.
-void add_order_effect(ScaleResult& r, std::vector<PairCount> const& pairs, int items, PairScale const& without)
+void add_order_effect(ScaleResult& r, std::vector<PairCount> const& pairs, int items, PairScale const& without,
+                      TieModel ties)
 {
     PairSettings s;
+    s.ties = ties;
+    PairScale const plain = fit_pairs(pairs, items, s); // on ordered pairs, so that the deviances can be compared
     s.order = OrderEffect::fitted;
     PairScale const with = fit_pairs(pairs, items, s);
-    PairScale const plain = fit_pairs(pairs, items); // on ordered pairs, so that the deviances can be compared
     double const drop = std::max(0.0, plain.deviance - with.deviance);
     double moved = 0;
     for (std::size_t i = 0; i < with.score.size(); ++i)
@@ -92,36 +95,36 @@ void add_order_effect(ScaleResult& r, std::vector<PairCount> const& pairs, int i
     add_fact(r, "largest change of a score by it JOD", moved);
 }
 
-/// Errors of differences from the scores of the bootstrap's replicates (observers, not trials, were resampled).
-void add_differences(ScaleResult& r, PairScale const& fit, std::optional<Bootstrap> const& boot, double confidence)
+Uncertain in_jod(Contrast const& c, double jod, int observers)
 {
-    double const jod = jod_per_unit(fit.model);
-    for (int a = 0; a < int(r.items.size()); ++a)
+    return {c.value * jod, {c.interval.low * jod, c.interval.high * jod}, observers};
+}
+
+/// Scores and differences with errors over observers, or those of the fit if there is only one.
+void add_scores(ScaleResult& r, PairScale const& fit, std::optional<ObserverScale> const& over, double confidence)
+{
+    double const jod = jod_per_unit(fit.model), z = normal_quantile((1 + confidence) / 2);
+    auto const of_fit = [&](double value, double error) {
+        return Uncertain{value * jod, {(value - z * error) * jod, (value + z * error) * jod}, r.observers};
+    };
+    for (int a = 0; a < int(r.items.size()); ++a) {
+        auto const i = std::size_t(a);
+        r.items[i].score = over ? in_jod(score_of(*over, a, confidence), jod, r.observers)
+                                : of_fit(fit.score[i], fit.standard_error[i]);
         for (int b = a + 1; b < int(r.items.size()); ++b) {
-            Difference const wald = difference(fit, a, b);
-            ItemDifference d{a, b, {wald.value * jod, {kUnknown, kUnknown}, r.observers}};
-            double error = wald.standard_error * jod;
-            if (boot) {
-                double sum = 0, squares = 0;
-                for (auto const& replicate : boot->replicates) {
-                    double const v = replicate[std::size_t(a)] - replicate[std::size_t(b)];
-                    sum += v;
-                    squares += v * v;
-                }
-                double const n = double(boot->replicates.size()), m = sum / n;
-                // Widened like the percentiles in stats: a bootstrap of n observers is too narrow by (n-1)/n.
-                error = std::sqrt(std::max(0.0, squares / n - m * m) * r.observers / std::max(1, r.observers - 1));
+            if (over) {
+                Contrast const c = difference_of(*over, a, b, confidence);
+                r.differences.push_back({a, b, in_jod(c, jod, r.observers), c.p});
+            } else {
+                Difference const d = difference(fit, a, b);
+                r.differences.push_back({a, b, of_fit(d.value, d.standard_error), d.p});
             }
-            double const df = boot ? double(r.observers - 1) : 1e6;
-            double const half = error * student_quantile((1 + confidence) / 2, df);
-            d.value.interval = {d.value.value - half, d.value.value + half};
-            d.p = error > 0 ? 2 * student_cdf(-std::abs(d.value.value) / error, df) : kUnknown;
-            r.differences.push_back(d);
         }
+    }
 }
 
 ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> const& trials, Items const& items,
-                           int factor, Group const& group, AnalysisSettings const& settings)
+                           int factor, Group const& group, TieModel ties, AnalysisSettings const& settings)
 {
     ScaleResult r;
     r.group = group.name;
@@ -146,41 +149,42 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
     r.observations /= 2;
     try {
         if (pooled.empty()) throw std::invalid_argument("no pair was judged");
-        std::vector<PairCount> const unordered = pairs_of(wins);
-        PairScale const fit = fit_pairs(unordered, items.count());
-        PairSettings logistic;
+        PairSettings scaling, logistic;
+        scaling.ties = logistic.ties = ties;
         logistic.model = PairModel::bradley_terry;
+        std::vector<PairCount> const unordered = without_order(pooled);
+        PairScale const fit = fit_pairs(unordered, items.count(), scaling);
         PairScale const other = fit_pairs(unordered, items.count(), logistic);
-        std::optional<Bootstrap> boot;
-        try {
-            BootstrapSettings b;
-            b.replicates = settings.replicates;
-            b.confidence = settings.confidence;
-            b.seed = settings.seed;
-            std::vector<std::vector<PairCount>> sums;
-            for (auto const& o : observers) sums.push_back(pairs_of(wins_of(o, items.count())));
-            boot = bootstrap_pairs(sums, items.count(), {}, b);
-            if (boot->failed > 0)
-                add_note(r, fmt::format("{} of {} replicates of the bootstrap had no scale", boot->failed,
-                                        settings.replicates));
-        } catch (std::invalid_argument const& e) {
-            add_note(r, std::string("intervals are of the fit, as if all trials were of different people: ") +
-                            e.what());
+        std::optional<ObserverScale> over;
+        if (observers.size() > 1) {
+            std::vector<std::vector<PairCount>> each;
+            for (auto const& o : observers) each.push_back(without_order(o));
+            over = scale_observers(each, items.count(), scaling);
+        } else
+            add_note(r, "one observer: intervals are of the fit, as if all trials were of different people");
+        add_scores(r, fit, over, settings.confidence);
+        for (std::size_t i = 0; i < r.items.size(); ++i)
+            add_fact(r, "Bradley-Terry JOD " + r.items[i].name, other.score[i] * jod_per_unit(other.model));
+        if (over) {
+            for (std::size_t i = 0; i < r.items.size(); ++i)
+                add_fact(r, "bias-reduced JOD " + r.items[i].name,
+                         over->reduced.score[i] * jod_per_unit(fit.model));
+            add_fact(r, "dispersion over observers", over->dispersion);
+            if (settings.has_hierarchy && settings.draws > 0) {
+                SamplerSettings draws;
+                draws.draws = settings.draws;
+                draws.seed = settings.seed;
+                r.hierarchy = hierarchical_scale(observers, items.count(), settings.confidence, draws);
+                if (!r.hierarchy->note.empty()) add_note(r, "hierarchical scale: " + r.hierarchy->note);
+            }
         }
-        for (std::size_t i = 0; i < r.items.size(); ++i) {
-            double const half = normal_quantile((1 + settings.confidence) / 2) * fit.standard_error[i];
-            double const jod = jod_per_unit(fit.model);
-            r.items[i].score = {fit.score[i] * jod,
-                                boot ? boot->interval[i]
-                                     : Interval{(fit.score[i] - half) * jod, (fit.score[i] + half) * jod},
-                                r.observers};
-            r.facts.push_back(
-                {"Bradley-Terry JOD " + r.items[i].name, other.score[i] * jod_per_unit(other.model)});
+        if (fit.tie_threshold) {
+            add_fact(r, "threshold of ties JOD", fit.tie_threshold->value * jod_per_unit(fit.model));
+            add_fact(r, "threshold of ties SE JOD", fit.tie_threshold->standard_error * jod_per_unit(fit.model));
         }
         add_fit(r, "Thurstone V", fit);
         add_fit(r, "Bradley-Terry", other);
-        add_order_effect(r, pooled, items.count(), fit);
-        add_differences(r, fit, boot, settings.confidence);
+        add_order_effect(r, pooled, items.count(), fit, ties);
     } catch (std::invalid_argument const& e) {
         r.refused = e.what();
         return r;
@@ -286,12 +290,12 @@ void analyze_pairs(Script const& script, std::vector<ObserverTrials> const& obse
     Items const items(b);
     auto const groups = groups_of(script, observers, block, {b.pairs->factor});
     for (Group const& g : groups)
-        result.scales.push_back(
-            scale_of_group(script, counted(observers, block, g), items, b.pairs->factor, g, settings));
+        result.scales.push_back(scale_of_group(script, counted(observers, block, g), items, b.pairs->factor, g,
+                                               b.may_tie ? TieModel::threshold : TieModel::half_wins, settings));
     auto const cells = cells_of_observers(script, counted(observers, block), groups);
     add_consistency(items, cells, result, summaries);
     // An observer without trials in the last cells has rows of length 0 there.
-    if (!cells.empty()) add_outliers(items, cells, b.name, observers.size(), summaries);
+    if (settings.has_outliers && !cells.empty()) add_outliers(items, cells, b.name, observers.size(), summaries);
 }
 
 } // namespace study

@@ -67,23 +67,26 @@ ResultTable thresholds(Analysis const& a)
     ResultTable t{
         "thresholds",
         "Thresholds",
-        "Means over observers on the scale of the levels, Student's interval. Methods estimate different "
-        "proportions correct: compare only equal ones. Estimates outside the range shown are left "
-        "out.",
+        "Population means on the scale of the levels. likelihood: of all answers, integrated over observers' "
+        "thresholds, interval by the profile; mean of reversals: mean over observers, corrected for the bias of "
+        "such runs, Student's interval. Methods estimate different proportions correct: compare only equal ones.",
         false,
         {}};
-    t.table.columns = with_interval({{"block", "Block"},
-                                     {"cell", "Condition"},
-                                     {"procedure", "Procedure"},
-                                     {"method", "Method of estimation"},
-                                     {"share", "Proportion correct at the threshold"},
-                                     {"level", "Threshold"}},
-                                    {{"observers", "Observers with an estimate"}});
+    t.table.columns =
+        with_interval({{"block", "Block"},
+                       {"cell", "Condition"},
+                       {"procedure", "Procedure"},
+                       {"method", "Method of estimation"},
+                       {"share", "Proportion correct at the threshold"},
+                       {"level", "Threshold"}},
+                      {{"sd", "Standard deviation of thresholds between observers, in units of the scale"},
+                       {"observers", "Observers with an estimate"}});
     for (BlockResult const& b : a.blocks)
         for (ThresholdSummary const& s : b.thresholds) {
             std::vector<std::string> row{cell(b.name), cell(s.cell), cell(s.procedure), cell(s.method),
                                          cell(s.proportion)};
             add_estimate(row, s.level);
+            row.push_back(cell(s.deviation));
             row.push_back(cell(s.level.n));
             t.table.rows.push_back(std::move(row));
         }
@@ -92,7 +95,13 @@ ResultTable thresholds(Analysis const& a)
 
 ResultTable runs(Analysis const& a)
 {
-    ResultTable t{"runs", "Thresholds of single runs", "Intervals of single runs, from their trials.", true, {}};
+    ResultTable t{"runs",
+                  "Thresholds of single runs",
+                  "From the trials of the run. likelihood: with the scale and lapse rate of all observers, or "
+                  "weak priors if "
+                  "there are fewer than three.",
+                  true,
+                  {}};
     t.table.columns = with_interval({{"block", "Block"},
                                      {"participant", "Participant"},
                                      {"cell", "Condition"},
@@ -123,27 +132,67 @@ ResultTable runs(Analysis const& a)
     return t;
 }
 
+ResultTable parameters(Analysis const& a)
+{
+    ResultTable t{
+        "parameters",
+        "Parameters of QUEST+ with several settings",
+        "Posterior mean and standard deviation of each run. Compare their spread over observers with the "
+        "standard deviations.",
+        true,
+        {}};
+    t.table.columns = {{"block", "Block"},
+                       {"cell", "Condition"},
+                       {"participant", "Participant"},
+                       {"procedure", "Procedure"},
+                       {"run", "Run, from 1"},
+                       {"trials", "Trials"},
+                       {"parameter", "Parameter of the formula"},
+                       {"mean", "Posterior mean"},
+                       {"sd", "Posterior standard deviation"},
+                       {"note", "Remark"}};
+    for (BlockResult const& b : a.blocks)
+        for (ThresholdRun const& r : b.runs) {
+            std::vector<std::string> const start{cell(b.name),      cell(r.cell), cell(r.participant),
+                                                 cell(r.procedure), cell(r.run),  cell(double(r.levels.size()))};
+            auto const add = [&](std::vector<std::string> const& rest) {
+                t.table.rows.push_back(start);
+                t.table.rows.back().insert(t.table.rows.back().end(), rest.begin(), rest.end());
+            };
+            for (ParameterEstimate const& e : r.parameters)
+                add({cell(e.name), cell(e.mean), cell(e.sd), cell("")});
+            if (!r.note.empty()) add({cell(""), cell(""), cell(""), cell(r.note)});
+        }
+    return t;
+}
+
 ResultTable curves(Analysis const& a)
 {
     ResultTable t{
         "curves",
-        "Psychometric functions of all observers pooled",
-        "Maximum likelihood with a lapse rate of at most 6 %; interval of the threshold by a bootstrap over "
-        "observers. Scale: in decades if levels are logarithmic.",
+        "Psychometric functions of the average observer",
+        "From all procedures: thresholds differ between observers, scale and lapse rate are common. "
+        "Interval of the mean threshold by the profile likelihood; of a formula, which is fitted to all "
+        "trials pooled, by a bootstrap over observers. Scale and sd: in decades if levels are logarithmic.",
         false,
         {}};
-    t.table.columns =
-        with_interval({{"block", "Block"},
-                       {"cell", "Condition"},
-                       {"observers", "Observers"},
-                       {"trials", "Trials"},
-                       {"share", "Proportion correct at the threshold"},
-                       {"threshold", "Level"}},
-                      {{"scale", "Spread of the function"},
-                       {"lapse", "Lapse rate"},
-                       {"deviance", "Deviance"},
-                       {"df", "Degrees of freedom"},
-                       {"p_fit", "Probability of that deviance or more; inaccurate with few trials per level"}});
+    t.table.columns = with_interval(
+        {{"block", "Block"},
+         {"cell", "Condition"},
+         {"observers", "Observers"},
+         {"trials", "Trials"},
+         {"share", "Proportion correct at the threshold"},
+         {"threshold", "Level"}},
+        {{"function", "Psychometric function, or its formula"},
+         {"sd", "Standard deviation of thresholds between observers"},
+         {"scale", "Spread of the function; of a formula its slope"},
+         {"lapse", "Lapse rate"},
+         {"eta", "Overdispersion: n answers at a level have the variance of n p q (1 + (n - 1) eta^2)"},
+         {"deviance", "Deviance of one function through all trials pooled"},
+         {"df", "Its degrees of freedom"},
+         {"p_fit",
+          "Probability of that deviance or more; inaccurate with few trials per level, too small if observers "
+          "differ"}});
     for (BlockResult const& b : a.blocks)
         for (CurveResult const& c : b.curves) {
             double trials = 0;
@@ -153,21 +202,90 @@ ResultTable curves(Analysis const& a)
             add_estimate(row, c.threshold);
             bool const is_fitted = !c.counts.empty();
             auto const fitted = [&](double v) { return is_fitted ? cell(v) : cell(""); };
-            row.insert(row.end(), {fitted(c.fit.parameters.scale), fitted(c.fit.parameters.lapse),
-                                   fitted(c.fit.deviance), fitted(c.fit.degrees_of_freedom), fitted(c.fit.fit_p)});
+            row.insert(row.end(), {cell(c.function), fitted(c.deviation), fitted(c.parameters.scale),
+                                   fitted(c.parameters.lapse), fitted(c.eta), fitted(c.pooled.deviance),
+                                   fitted(c.pooled.degrees_of_freedom), fitted(c.pooled.fit_p)});
             t.table.rows.push_back(std::move(row));
         }
     return t;
 }
 
+/// Columns of an estimate with another name.
+void add_columns(std::vector<Column>& columns, std::string const& name, std::string const& what)
+{
+    columns.push_back({name, what});
+    columns.push_back({name + "_low", "Lower end of its interval"});
+    columns.push_back({name + "_high", "Upper end"});
+}
+
+ResultTable population(Analysis const& a)
+{
+    ResultTable t{
+        "population",
+        "Hierarchical models of the population",
+        "Bayesian: every observer has d', criterion or threshold, scale and lapse rate of his or her own. "
+        "Posterior means and intervals; sd: between observers, of thresholds in units of the scale. R-hat up to "
+        "1.01, effective draws from 400 and no divergences are wanted.",
+        false,
+        {}};
+    auto& columns = t.table.columns;
+    columns = {{"block", "Block"}, {"condition", "Condition"}, {"of", "Parameter"}, {"observers", "Observers"}};
+    add_columns(columns, "mean", "Mean of the population");
+    add_columns(columns, "sd", "Standard deviation between observers");
+    columns.insert(columns.end(), {{"scale", "Spread of the psychometric function, in units of the scale"},
+                                   {"lapse", "Lapse rate"},
+                                   {"r_hat", "Rank-normalised split R-hat, the worst of all parameters shown"},
+                                   {"ess_bulk", "Effective draws for centres, the fewest"},
+                                   {"ess_tail", "Effective draws for 5 % and 95 % quantiles, the fewest"},
+                                   {"divergences", "Draws that diverged"},
+                                   {"draws", "Draws of all chains"}});
+    for (BlockResult const& b : a.blocks)
+        for (HierarchicalResult const& h : b.hierarchical) {
+            if (!h.refused.empty()) continue;
+            std::vector<std::string> row{cell(b.name), cell(h.condition), cell(h.parameter), cell(h.observers)};
+            add_estimate(row, h.mean);
+            add_estimate(row, h.deviation);
+            row.insert(row.end(),
+                       {cell(h.scale), cell(h.lapse), cell(h.report.worst_r_hat), cell(h.report.least_bulk),
+                        cell(h.report.least_tail), cell(h.report.divergences), cell(h.report.draws)});
+            t.table.rows.push_back(std::move(row));
+        }
+    return t;
+}
+
+ResultTable population_observers(Analysis const& a)
+{
+    ResultTable t{"population_observers",
+                  "Observers by the hierarchical models",
+                  "Shrunken towards the mean of the population, the more the less an observer's own answers say.",
+                  true,
+                  {}};
+    t.table.columns = with_interval({{"block", "Block"},
+                                     {"condition", "Condition"},
+                                     {"of", "Parameter"},
+                                     {"participant", "Participant"},
+                                     {"value", "Posterior mean"}});
+    for (BlockResult const& b : a.blocks)
+        for (HierarchicalResult const& h : b.hierarchical)
+            for (std::size_t i = 0; i < h.each.size(); ++i) {
+                std::vector<std::string> row{cell(b.name), cell(h.condition), cell(h.parameter),
+                                             cell(h.participants[i])};
+                add_estimate(row, h.each[i]);
+                t.table.rows.push_back(std::move(row));
+            }
+    return t;
+}
+
 ResultTable detection(Analysis const& a)
 {
-    ResultTable t{"detection",
-                  "Correct answers and d'",
-                  "Proportions with Wilson's interval of all trials; d' with log-linear correction: of all trials "
-                  "pooled, and the mean over observers with Student's interval.",
-                  false,
-                  {}};
+    ResultTable t{
+        "detection",
+        "Correct answers and d'",
+        "Proportions with Wilson's interval of all trials. d', negative below chance: of all trials pooled, with "
+        "log-linear correction, and the mean of the population, by the likelihood integrated over "
+        "observers, interval by its profile.",
+        false,
+        {}};
     t.table.columns = {{"block", "Block"},
                        {"condition", "Condition"},
                        {"observers", "Observers"},
@@ -177,9 +295,12 @@ ResultTable detection(Analysis const& a)
                        {"share_low", "Lower end"},
                        {"share_high", "Upper end"},
                        {"dprime_all", "d' of all trials pooled"},
-                       {"dprime", "d', mean over observers"},
+                       {"dprime", "d', mean of the population"},
                        {"low", "Lower end"},
                        {"high", "Upper end"},
+                       {"p", "p-value of that mean being 0"},
+                       {"sd", "Standard deviation of d' between observers"},
+                       {"criterion", "Mean criterion; positive: no, same or second is preferred"},
                        {"model", "Model of d'"}};
     for (BlockResult const& b : a.blocks)
         for (DetectionResult const& d : b.detections) {
@@ -187,7 +308,7 @@ ResultTable detection(Analysis const& a)
                                          cell(d.correct),      cell(d.trials),        cell(d.correct / d.trials),
                                          cell(d.interval.low), cell(d.interval.high), cell(d.dprime)};
             add_estimate(row, d.observer_dprime);
-            row.push_back(cell(d.model));
+            row.insert(row.end(), {cell(d.p), cell(d.deviation), cell(d.criterion), cell(d.model)});
             t.table.rows.push_back(std::move(row));
         }
     return t;
@@ -320,8 +441,9 @@ ResultTable transitions(Analysis const& a)
 
 std::vector<ResultTable> detail_tables(Analysis const& a)
 {
-    return {agreement(a), thresholds(a), runs(a),         curves(a),    detection(a),  questionnaires(a),
-            changes(a),   timing(a),     calibrations(a), reactions(a), transitions(a)};
+    return {agreement(a),  thresholds(a),           runs(a),           parameters(a), curves(a), detection(a),
+            population(a), population_observers(a), questionnaires(a), changes(a),    timing(a), calibrations(a),
+            reactions(a),  transitions(a)};
 }
 
 } // namespace study

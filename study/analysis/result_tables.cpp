@@ -1,5 +1,6 @@
 #include "study/analysis/result_tables.h"
 
+#include "study/analysis/effect_tables.h"
 #include "study/analysis/result_details.h"
 
 #include "study/stats/summary.h"
@@ -92,8 +93,11 @@ ResultTable scores(Analysis const& a)
     ResultTable t{
         "scores",
         "Scores",
-        "JOD: 1 means that 75 % choose the better one (Thurstone, case V), mean 0, intervals by a bootstrap "
-        "over observers. Ratings: means of observers' means, Student's interval. Render times: of the frames "
+        "JOD: 1 means that 75 % choose the better one (Thurstone, case V), mean 0, maximum likelihood; "
+        "intervals by errors over observers, around scores without the bias of maximum likelihood; ties by "
+        "their threshold. Ratings: means of observers' means, Student's interval (for ratings "
+        "corrected for skewness). Render "
+        "times: of the frames "
         "shown, interval over observers.",
         false,
         {}};
@@ -218,9 +222,16 @@ ResultTable refusals(Analysis const& a)
         for (AgreementResult const& g : b.agreement) say(b.name, g.cell, g.refused);
         for (CurveResult const& c : b.curves) {
             say(b.name, c.cell, c.refused);
-            say(b.name, c.cell, c.fit.note);
+            say(b.name, c.cell, c.note);
+        }
+        for (ThresholdSummary const& h : b.thresholds) say(b.name, h.cell + ", " + h.procedure, h.note);
+        for (DetectionResult const& d : b.detections) say(b.name, d.condition, d.note);
+        for (HierarchicalResult const& h : b.hierarchical) {
+            say(b.name, h.condition, h.refused);
+            if (!h.note.empty()) say(b.name, h.condition, "hierarchical " + h.parameter + ": " + h.note);
         }
     }
+    for (EffectNote const& n : a.effect_notes) say(n.block, n.measure, n.text);
     return t;
 }
 
@@ -228,7 +239,9 @@ ResultTable refusals(Analysis const& a)
 
 std::vector<ResultTable> result_tables(Analysis const& a)
 {
-    std::vector<ResultTable> all{exclusions(a), observers(a), scores(a), cheapest(a), differences(a), fits(a)};
+    std::vector<ResultTable> all{exclusions(a),      observers(a),     scores(a),
+                                 cheapest(a),        differences(a),   fits(a),
+                                 hierarchy_table(a), effects_table(a), group_differences_table(a)};
     for (ResultTable& t : detail_tables(a)) all.push_back(std::move(t));
     all.push_back(refusals(a));
     std::erase_if(all, [](ResultTable const& t) { return t.table.rows.empty(); });

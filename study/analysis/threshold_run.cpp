@@ -1,6 +1,8 @@
 #include "study/analysis/threshold_run.h"
 
 #include "study/script/procedure_settings.h"
+#include "study/stats/psychometric_posterior.h"
+#include "study/stats/random.h"
 #include "study/stats/root.h"
 #include "study/stats/special.h"
 #include "study/stats/summary.h"
@@ -11,9 +13,6 @@
 
 namespace study {
 namespace {
-
-/// Proportion in the middle between guessing and 1.
-double middle(Task task) { return (1 + guess_rate(task)) / 2; }
 
 /// Replays the staircase; empty if the recorded levels differ from those that it would have shown.
 std::optional<Staircase> replayed(Procedure const& p, Compare const& c, ThresholdRun const& run)
@@ -29,22 +28,81 @@ std::optional<Staircase> replayed(Procedure const& p, Compare const& c, Threshol
     return staircase;
 }
 
-void add_staircase(ThresholdRun& run, Block const& b, Procedure const& p)
+/// The first two reversals still come from the start.
+int counted_reversals(ThresholdRun const& run)
+{
+    int const all = int(run.reversals.size());
+    return all > 4 ? all - 2 : all;
+}
+
+/// Means of reversals of simulated runs, in units of the staircase, by an observer with this threshold.
+std::vector<double> simulated_means(StaircaseSettings settings, Compare const& c, GroupCurve const& group,
+                                    double threshold, double guess, ThresholdRun const& run, std::uint64_t seed)
+{
+    constexpr int kRuns = 200;
+    settings.stop.max_trials = std::max(settings.stop.max_trials, int(run.levels.size()));
+    PsychometricShape const shape = group.settings.shape;
+    PsychometricParameters p = group.threshold.shared;
+    p.guess = guess;
+    p.threshold = 0;
+    double const offset = transformed(shape, level_at(shape, p, group.settings.proportion));
+    p.threshold = threshold - offset;
+    std::vector<double> means;
+    for (int i = 0; i < kRuns; ++i) {
+        Random random = Random::part(seed, std::uint64_t(i));
+        Staircase staircase(settings);
+        while (!staircase.finished()) {
+            double const level = back_to_level(c, harder_sign(c) * staircase.level());
+            staircase.respond(random.uniform() < proportion_at(shape, p, level));
+        }
+        int const all = int(staircase.reversals().size());
+        if (auto const m = mean_of_reversals(staircase, all > 4 ? all - 2 : all); m && all >= 2)
+            means.push_back(*m);
+    }
+    return means;
+}
+
+} // namespace
+
+ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& b, Procedure const& p,
+                                    std::optional<GroupCurve> const& group, AnalysisSettings const& settings)
 {
     ThresholdEstimate e{"mean of reversals", settles_at(p), {}, {}};
-    auto const staircase = replayed(p, *b.compare, run);
+    Compare const& c = *b.compare;
+    auto const staircase = replayed(p, c, run);
     if (!staircase) {
         e.note = "the recorded levels differ from those that this staircase would have shown";
-    } else {
-        for (Reversal const& r : staircase->reversals()) run.reversals.push_back(r.trial);
-        // The first two still come from the start.
-        int const all = int(run.reversals.size()), last = all > 4 ? all - 2 : all;
-        if (auto const m = mean_of_reversals(*staircase, last); m && all >= 2)
-            e.level = {back_to_level(*b.compare, harder_sign(*b.compare) * *m), {kUnknown, kUnknown}, 1};
-        else
-            e.note = fmt::format("{} reversals", all);
+        return e;
     }
-    run.estimates.push_back(std::move(e));
+    auto const m = mean_of_reversals(*staircase, counted_reversals(run));
+    if (!m || run.reversals.size() < 2) {
+        e.note = fmt::format("{} reversals", run.reversals.size());
+        return e;
+    }
+    auto const at = [&](double on_staircase) { return back_to_level(c, harder_sign(c) * on_staircase); };
+    e.level = {at(*m), {kUnknown, kUnknown}, 1};
+    if (!group) {
+        e.note = "not corrected for the bias of means of reversals: no function was fitted";
+        return e;
+    }
+    // The staircase's own error at a threshold where it would, on average, find what it found; twice, since the
+    // error depends on where that is.
+    StaircaseSettings const rule = staircase_settings(p, c);
+    double threshold = *m;
+    std::vector<double> means;
+    for (int i = 0; i < 2; ++i) {
+        means = simulated_means(rule, c, *group, transformed(group->settings.shape, at(threshold)),
+                                group->threshold.shared.guess, run, settings.seed);
+        if (means.size() < 20) {
+            e.note = "not corrected for the bias of means of reversals: simulated runs have too few of them";
+            return e;
+        }
+        threshold = *m - (mean(means) - threshold);
+    }
+    double const half = normal_quantile((1 + settings.confidence) / 2) * standard_deviation(means);
+    double const a = at(threshold - half), z = at(threshold + half);
+    e.level = {at(threshold), {std::min(a, z), std::max(a, z)}, 1};
+    return e;
 }
 
 /// Lowest proportion correct: the guess rate, or the false alarm rate in the run (log-linear); none if the run
@@ -62,49 +120,58 @@ std::optional<double> lowest_share(Task task, std::vector<TrialRow> const& trial
     return (false_alarms + 0.5) / (noises + 1);
 }
 
-void add_maximum_likelihood(ThresholdRun& run, Block const& b, std::optional<double> guess, double proportion,
-                            AnalysisSettings const& settings)
+ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, PsychometricChoice const& function,
+                                      std::optional<double> guess, double proportion,
+                                      std::optional<GroupCurve> const& group, AnalysisSettings const& settings)
 {
-    ThresholdEstimate e{"maximum likelihood", proportion, {}, {}};
+    ThresholdEstimate e{"likelihood", proportion, {}, {}};
     try {
-        PsychometricSettings s;
-        s.shape = shape_of(*b.compare);
-        s.guess.value = guess.value_or(0);
-        s.lapse.value = 0.02; // one run cannot determine lapses
-        auto const fit = fit_psychometric(count_levels(run.levels, run.correct), s);
-        auto const on_u = [&](double level) { return transformed(fit.shape, level); };
-        double const level = level_at(fit.shape, fit.parameters, proportion);
-        e.note = fit.note;
-        if (e.note.empty() && !guess) e.note = "no trials without a signal: a false alarm rate of 0 is assumed";
-        double const error = fit.standard_error.threshold;
-        if (std::isfinite(level)) {
-            e.level = {level, {kUnknown, kUnknown}, 1};
-            // The error of the threshold, applied to a level at a fixed distance from it on the scale.
-            if (error > 0 && std::isfinite(error)) {
-                double const half = normal_quantile((1 + settings.confidence) / 2) * error, u = on_u(level);
-                auto const back = [&](double v) {
-                    double const x = fit.shape.direction == Direction::falling ? -v : v;
-                    return fit.shape.axis == Axis::log10 ? std::pow(10.0, x) : x;
-                };
-                e.level.interval = {std::min(back(u - half), back(u + half)),
-                                    std::max(back(u - half), back(u + half))};
-            }
-        } else if (fit.note.empty())
-            e.note = "the fitted function never reaches this proportion";
+        auto const counts = count_levels(run.levels, run.correct);
+        PosteriorLevel level;
+        PsychometricShape shape = shape_of(b.compare->scale, b.compare->harder_up, function);
+        if (group && group->threshold.observers >= 3) {
+            shape = group->settings.shape;
+            level = own_threshold({counts, guess.value_or(group->threshold.shared.guess)}, group->threshold,
+                                  group->settings);
+        } else {
+            PosteriorSettings s;
+            s.shape = shape;
+            s.guess = guess.value_or(0);
+            s.lapse = settings.lapse;
+            s.fits_guess = !guess;
+            s.low = b.compare->low;
+            s.high = b.compare->high;
+            level = posterior_level(psychometric_posterior(counts, s), proportion, settings.confidence);
+        }
+        auto const back = [&](double u) {
+            double const x = shape.direction == Direction::falling ? -u : u;
+            return shape.axis == Axis::log10 ? std::pow(10.0, x) : x;
+        };
+        if (std::isnan(level.centre)) {
+            e.note = "the function never reaches this proportion";
+            return e;
+        }
+        double const low = back(level.low), high = back(level.high);
+        e.level = {back(level.centre), {std::min(low, high), std::max(low, high)}, 1};
+        if (!guess) e.note = "no trials without a signal: the false alarm rate is that of the fit";
+        int const right = int(std::count(run.correct.begin(), run.correct.end(), 1));
+        if (right == int(run.correct.size()))
+            e.note = "nothing but correct responses: there is no threshold among these levels";
+        if (right == 0) e.note = "no correct response at all: there is no threshold among these levels";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();
     }
-    run.estimates.push_back(std::move(e));
+    return e;
 }
 
-void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double proportion,
-                   AnalysisSettings const& settings)
+ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& b, Procedure const& p,
+                                     double proportion, AnalysisSettings const& settings)
 {
     Compare const& c = *b.compare;
     ThresholdEstimate e{"QUEST+ posterior", proportion, {}, {}};
-    bool const is_weibull = p.psychometric == Psychometric::weibull;
     QuestSettings const s = quest_settings(p, c);
-    auto const on_axis = [&](double level) { return is_weibull ? level : to_scale(c.scale, level); };
+    bool const takes_levels = assumed_function(p).takes_levels();
+    auto const on_axis = [&](double level) { return takes_levels ? level : to_scale(c.scale, level); };
     try {
         QuestPlus quest(s);
         for (std::size_t i = 0; i < run.levels.size(); ++i) {
@@ -129,7 +196,7 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
         double const width = to_scale(c.scale, c.high) - to_scale(c.scale, c.low);
         double const low = to_scale(c.scale, c.low) - width, high = to_scale(c.scale, c.high) + width;
         auto const above = [&](double at) { // the wanted proportion
-            return proportion_at(s.function, s.direction, mean, on_axis(from_scale(c.scale, at))) - proportion;
+            return proportion_by(s, mean, on_axis(from_scale(c.scale, at))) - proportion;
         };
         double const at_low = above(low), at_high = above(high);
         if (at_low * at_high < 0) {
@@ -142,21 +209,36 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
     } catch (std::invalid_argument const& error) {
         e.note = error.what();
     }
-    run.estimates.push_back(std::move(e));
+    return e;
+}
+
+namespace {
+
+/// Replays QUEST+ of several settings on the recorded trials.
+void add_parameters(ThresholdRun& run, Block const& b, Procedure const& p, std::vector<TrialRow> const& trials)
+{
+    try {
+        QuestPlusMany quest(quest_many_settings(p));
+        for (TrialRow const& row : trials) {
+            if (!row.done->level || !row.done->is_correct || row.step->trial.is_noise) continue;
+            std::vector<double> stimulus{*row.done->level};
+            for (double const level : further_of_text(*b.compare, row.done->chosen)) stimulus.push_back(level);
+            auto const index = stimulus.size() == 1 + p.also.size() ? quest.index_of(stimulus) : std::nullopt;
+            if (!index) {
+                run.note = "a recorded level is not on the grid";
+                return;
+            }
+            quest.respond(*index, *row.done->is_correct);
+        }
+        auto const mean = quest.mean(), sd = quest.standard_deviation();
+        auto const names = names_of({}, quest_many_settings(p).parameters);
+        for (std::size_t i = 0; i < names.size(); ++i) run.parameters.push_back({names[i], mean[i], sd[i]});
+    } catch (std::invalid_argument const& e) {
+        run.note = e.what();
+    }
 }
 
 } // namespace
-
-PsychometricShape shape_of(Compare const& c, Psychometric function)
-{
-    PsychometricShape s;
-    s.sigmoid = function == Psychometric::weibull  ? Sigmoid::weibull
-                : function == Psychometric::normal ? Sigmoid::gaussian
-                                                   : Sigmoid::logistic;
-    s.axis = c.scale == Scale::linear ? Axis::linear : Axis::log10;
-    s.direction = c.harder_up ? Direction::falling : Direction::rising;
-    return s;
-}
 
 double guess_rate(Task task)
 {
@@ -167,8 +249,7 @@ double guess_rate(Task task)
 
 double back_to_level(Compare const& compare, double on_scale) { return from_scale(compare.scale, on_scale); }
 
-ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<TrialRow> const& trials,
-                           AnalysisSettings const& settings)
+ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<TrialRow> const& trials)
 {
     ThresholdRun run;
     run.procedure = p.name;
@@ -177,14 +258,13 @@ ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<Trial
             run.levels.push_back(*row.done->level);
             run.correct.push_back(*row.done->is_correct ? 1 : 0);
         }
-    auto const guess = lowest_share(b.task, trials);
-    // Every method at the middle of the rise; staircases also at the proportion to which they converge.
-    if (p.method == Method::staircase) {
-        add_staircase(run, b, p);
-        if (settles_at(p) > guess_rate(b.task)) add_maximum_likelihood(run, b, guess, settles_at(p), settings);
+    if (p.is_many()) {
+        add_parameters(run, b, p, trials);
+        return run;
     }
-    add_maximum_likelihood(run, b, guess, middle(b.task), settings);
-    if (p.method == Method::questplus) add_questplus(run, b, p, middle(b.task), settings);
+    if (p.method == Method::staircase && b.compare)
+        if (auto const staircase = replayed(p, *b.compare, run))
+            for (Reversal const& r : staircase->reversals()) run.reversals.push_back(r.trial);
     return run;
 }
 

@@ -1,19 +1,39 @@
 #pragma once
 #include "study/analysis/groups.h"
+#include "study/stats/group_threshold.h"
 
 namespace study {
 
-/// Shape and axis of a psychometric function for the scale of a comparison: harder levels are lower on the axis.
-PsychometricShape shape_of(Compare const& compare, Psychometric function = Psychometric::normal);
 /// Proportion correct by guessing.
 double guess_rate(Task task);
 /// Converts a value in units of the scale, such as a mean of reversals, to a level.
 double back_to_level(Compare const& compare, double on_scale);
 
-/// Analyses one run of one procedure by one observer, in the order of its trials: its reversals, and all estimates
-/// of its threshold for which there are data.
+/// One run of one procedure by one observer, in the order of its trials, with its reversals; without estimates.
 /// @param trials of this run, valid ones with an answer
-ThresholdRun threshold_run(Block const& block, Procedure const& procedure, std::vector<TrialRow> const& trials,
-                           AnalysisSettings const& settings);
+ThresholdRun threshold_run(Block const& block, Procedure const& procedure, std::vector<TrialRow> const& trials);
+
+/// What the trials of an observer without a signal say of guessing: the task's guess rate, or the false alarm rate
+/// (log-linear); none if there are no trials to estimate it.
+std::optional<double> lowest_share(Task task, std::vector<TrialRow> const& trials);
+
+/// A group's threshold and its functions, in the units of group_threshold.h.
+struct GroupCurve {
+    GroupThresholdSettings settings;
+    GroupThreshold threshold;
+};
+
+/// The mean of the last reversals, corrected for what simulated runs of this staircase find too high or low with
+/// the group's function; the interval is that of such runs.
+ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
+                                    std::optional<GroupCurve> const& group, AnalysisSettings const& settings);
+/// The threshold by the run's own trials: with the group's scale and lapse rate if there are three observers or
+/// more, otherwise with weak priors of both (psychometric_posterior.h).
+ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& block,
+                                      PsychometricChoice const& function, std::optional<double> guess,
+                                      double proportion, std::optional<GroupCurve> const& group,
+                                      AnalysisSettings const& settings);
+ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
+                                     double proportion, AnalysisSettings const& settings);
 
 } // namespace study

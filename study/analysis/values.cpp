@@ -99,7 +99,9 @@ void add_friedman(ScaleResult& r, Matrix const& table)
         add_fact(r, "Friedman df", double(f.degrees_of_freedom));
         add_fact(r, "Friedman p", f.p);
         add_fact(r, "Kendall W", f.kendall_w);
-        if (f.left_out > 0) add_note(r, fmt::format("Friedman's test: {} observers have gaps", f.left_out));
+        if (f.left_out > 0)
+            add_note(r, fmt::format("Friedman's test: {} observers who did not judge every item are left out",
+                                    f.left_out));
     } catch (std::invalid_argument const& e) {
         add_note(r, std::string("no Friedman test: ") + e.what());
     }
@@ -131,11 +133,13 @@ void add_spread(ScaleResult& r, Block const& b, std::vector<ObserverTrials> cons
         }
 }
 
-ScaleResult values_of_group(Script const& script, Block const& b, std::vector<ObserverTrials> const& trials,
+ScaleResult values_of_group(Script const& script, Block const& b, std::vector<ObserverTrials> trials,
                             Group const& group, AnalysisSettings const& settings)
 {
     ScaleResult r;
     r.group = group.name;
+    // Participants who never judged in this group, because they belong to another one, are not missing values.
+    std::erase_if(trials, [](ObserverTrials const& o) { return o.rows.empty(); });
     bool const is_log = is_log_axis(b);
     r.unit = b.task == Task::rating ? "rating" : is_log ? "ln(" + std::string(facts(b.task).name) + ")" : "level";
     RatedItems items(script, b);
@@ -154,8 +158,9 @@ ScaleResult values_of_group(Script const& script, Block const& b, std::vector<Ob
     auto const opinions = mean_opinions(table, settings.confidence);
     for (int i = 0; i < count; ++i) {
         MeanOpinion const& m = opinions[std::size_t(i)];
-        r.items.push_back(
-            {items.names()[std::size_t(i)], {m.mean, m.interval, m.observers}, render[std::size_t(i)]});
+        r.items.push_back({items.names()[std::size_t(i)],
+                           {m.mean, b.task == Task::rating ? m.skewed : m.interval, m.observers},
+                           render[std::size_t(i)]});
     }
     add_paired_differences(r, table, settings);
     add_friedman(r, table);

@@ -47,7 +47,15 @@ struct StimulusShown {
     int frames_planned = 0, frames_shown = 0, frames_dropped = 0;
     double render_ms_mean = 0, render_ms_p99 = 0; ///< of the frames rendered for it
     std::string settings_sha256;
+    // With a display model only:
+    std::optional<double> mean_cd_m2{}, peak_cd_m2{}; ///< of its first frame, as shown
+    std::optional<int>
+        clipped_pixels{}; ///< of its first frame: brighter than the display or darker than its black
+    std::optional<double> width_deg{}, height_deg{};
 };
+
+/// Reasons of trials with an answer that never counts: before min_response_ms, after max_response_ms.
+inline constexpr char const *kAnticipation = "anticipation", *kTooSlow = "too_slow";
 
 /// A trial that ran to its end, valid or not. A trial without this entry was not done.
 struct TrialDone {
@@ -63,8 +71,15 @@ struct TrialDone {
     double response_uncertainty_ms = 0; ///< of reaction_ms, including that of the onset
     std::string device;                 ///< input that gave the answer: "key:left"
     bool is_valid = true;
-    std::string reason;        ///< why not: dropped_frames, timeout, skipped, lost_focus, ...
+    std::string reason; ///< why not: dropped_frames, timeout, anticipation, too_slow, skipped, lost_focus, ...
+    std::string chosen; ///< what was chosen when it came: a pair, "best/fair", or levels of further
+                        ///< varied settings, "camera.fov=40"; else empty
     double bookkeeping_ms = 0; ///< time after the previous trial for journal and choice of the next step
+    // Of gaze, while stimuli were visible; none if gaze was not recorded:
+    std::optional<int> gaze_samples{}, gaze_valid{};
+    std::optional<int> gaze_dropped{}; ///< missing between samples
+    std::optional<int>
+        gaze_fixating{}; ///< samples near the place of fixation; none without gaze.hold or gaze.start
 };
 
 /// Instructions, a rest or a walk has ended.

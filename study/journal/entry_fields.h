@@ -5,6 +5,13 @@
 
 namespace study {
 
+/// A field that was added later, and is written only if it has a value or is not empty: journals of earlier
+/// versions do not have it.
+struct LaterField {
+    char const* name;
+    operator char const*() const { return name; }
+};
+
 /// visit(entry, f) calls f(name, field) for each field in the order of the line.
 template <class Entry>
 struct Fields;
@@ -63,6 +70,11 @@ struct Fields<StimulusShown> {
         f("render_ms_mean", e.render_ms_mean);
         f("render_ms_p99", e.render_ms_p99);
         f("settings_sha256", e.settings_sha256);
+        f(LaterField{"mean_cd_m2"}, e.mean_cd_m2);
+        f(LaterField{"peak_cd_m2"}, e.peak_cd_m2);
+        f(LaterField{"clipped_pixels"}, e.clipped_pixels);
+        f(LaterField{"width_deg"}, e.width_deg);
+        f(LaterField{"height_deg"}, e.height_deg);
     }
 };
 
@@ -85,6 +97,11 @@ struct Fields<TrialDone> {
         f("is_valid", e.is_valid);
         f("reason", e.reason);
         f("bookkeeping_ms", e.bookkeeping_ms);
+        f(LaterField{"gaze_samples"}, e.gaze_samples);
+        f(LaterField{"gaze_valid"}, e.gaze_valid);
+        f(LaterField{"gaze_dropped"}, e.gaze_dropped);
+        f(LaterField{"gaze_fixating"}, e.gaze_fixating);
+        f(LaterField{"chosen"}, e.chosen);
     }
 };
 

@@ -26,6 +26,15 @@ struct Put {
     {
         out[name] = json(value);
     }
+    template <class T>
+    void operator()(LaterField field, std::optional<T> const& value) const
+    {
+        if (value) out[field.name] = json(*value);
+    }
+    void operator()(LaterField field, std::string const& value) const
+    {
+        if (!value.empty()) out[field.name] = json(value);
+    }
 
     static Json json(double v)
     {
@@ -69,6 +78,16 @@ struct Take {
         auto const found = in.find(name);
         if (found == in.end()) throw BadLine(fmt::format("it has no '{}'", name), false);
         if (!read(*found, value)) throw BadLine(fmt::format("its '{}' has another type", name), false);
+    }
+
+    template <class T>
+    void operator()(LaterField field, T& value) const
+    {
+        known.insert(field.name);
+        value = T{};
+        auto const found = in.find(field.name);
+        if (found != in.end() && !read(*found, value))
+            throw BadLine(fmt::format("its '{}' has another type", field.name), false);
     }
 
     static bool read(Json const& j, double& v)

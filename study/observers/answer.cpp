@@ -1,6 +1,6 @@
 #include "study/observers/answer.h"
 
-#include "study/stats/questplus.h"
+#include "study/script/procedure_settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,13 +67,30 @@ private:
         double const guess = may_miss ? o_.model.false_alarms : block_.task == Task::oddity ? 1.0 / 3 : 0.5;
         double right = 1 - guess;
         if (!t_.is_noise) {
-            bool const is_linear = v.scale == Scale::linear;
             double const lapse = std::min(o_.model.lapse, 1 - guess);
-            right = proportion_at(is_linear ? QuestFunction::gaussian : QuestFunction::weibull,
-                                  c.harder_up ? Direction::falling : Direction::rising,
-                                  {v.threshold, v.slope, guess, lapse}, r_.level.value_or(v.low));
+            double const threshold = o_.threshold(v, stimulus('a').levels);
+            right = is_many() ? of_many(v, threshold, guess, lapse)
+                              : proportion_correct(v.function, v.scale, c.harder_up,
+                                                   {threshold, v.slope, guess, lapse}, r_.level.value_or(v.low));
         }
         return random_.uniform() < right ? t_.answer : blindly(t_.answer);
+    }
+
+    bool is_many() const
+    {
+        return std::any_of(block_.procedures.begin(), block_.procedures.end(),
+                           [](Procedure const& p) { return p.is_many(); });
+    }
+    /// By the formula, of all varied settings.
+    double of_many(VariedModel const& v, double threshold, double guess, double lapse) const
+    {
+        std::vector<double> values{r_.level.value_or(v.low)};
+        auto const& also = block_.compare->also;
+        for (std::size_t i = 0; i < also.size(); ++i)
+            values.push_back(r_.stimuli[0].also.empty() ? also[i].usual : r_.stimuli[0].also[i]);
+        values.insert(values.end(), {threshold, v.slope, guess, lapse});
+        for (auto const& [name, value] : v.parameters) values.push_back(value);
+        return std::clamp((*v.function.formula)(values), 0.0, 1.0);
     }
 
     std::string of_percepts()
@@ -144,7 +161,8 @@ private:
     {
         VariedModel const& v = o_.varied(block_.compare->vary);
         double const low = to_scale(v.scale, block_.compare->low), high = to_scale(v.scale, block_.compare->high);
-        double const set = to_scale(v.scale, v.threshold) + (high - low) / 24 * o_.model.noise * random_.normal();
+        double const set = to_scale(v.scale, o_.threshold(v, stimulus('a').levels)) +
+                           (high - low) / 24 * o_.model.noise * random_.normal();
         return from_scale(v.scale, std::clamp(set, low, high));
     }
 

@@ -46,10 +46,15 @@ bool ModelPresenter::ask_consent(std::string const& markdown)
     return true;
 }
 
-ParticipantAsked ModelPresenter::ask_participant(std::vector<std::string> const& questions)
+ParticipantAsked ModelPresenter::ask_participant(std::vector<AskedQuestion> const& questions)
 {
     ParticipantAsked asked;
-    for (std::string const& question : questions) asked.answers.emplace_back(question, "simulated");
+    for (AskedQuestion const& q : questions) {
+        std::string answer = "simulated";
+        if (q.type == AskedType::number) answer = fmt::format("{:g}", q.is_whole ? std::ceil(q.low) : q.low);
+        if (q.type == AskedType::choice) answer = q.choices.front();
+        asked.answers.emplace_back(q.id, answer);
+    }
     now_s_ += 5.0 * double(questions.size());
     return asked;
 }

@@ -15,7 +15,7 @@ public:
     std::vector<std::pair<std::string, std::string>> about() const override;
     CalibrationDone calibrate(Timing const& timing) override;
     bool ask_consent(std::string const& markdown) override;
-    ParticipantAsked ask_participant(std::vector<std::string> const& questions) override;
+    ParticipantAsked ask_participant(std::vector<AskedQuestion> const& questions) override;
     StepDone instruct(std::string const& markdown, int step) override;
     StepDone rest(std::string const& prompt, double least_s, int step) override;
     StepDone walk(TrialRequest const& where, std::string const& prompt, double seconds) override;

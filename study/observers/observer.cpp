@@ -24,11 +24,25 @@ std::set<int> judged_factors(Script const& s)
     return judged.empty() ? crossed : judged;
 }
 
-VariedModel usual_varied(Compare const& c)
+VariedModel usual_varied(Block const& b)
 {
+    Compare const& c = *b.compare;
     double const low = to_scale(c.scale, c.low), high = to_scale(c.scale, c.high);
     VariedModel v{c.vary, c.scale, c.low, c.high, from_scale(c.scale, (low + high) / 2), 2, (high - low) / 16};
-    if (c.scale == Scale::linear) v.slope = (high - low) / 8;
+    v.function = fitted_function(b.procedures, c.scale);
+    for (Procedure const& p : b.procedures)
+        if (p.is_many()) {
+            v.function = *p.psychometric;
+            v.threshold = p.threshold[p.threshold.size() / 2];
+            v.slope = p.slope[p.slope.size() / 2];
+            for (QuestGrid const& g : p.parameters)
+                v.parameters.emplace_back(g.name, g.values[g.values.size() / 2]);
+            return v;
+        }
+    if (v.function.function == Psychometric::logistic)
+        v.slope = 14 / (high - low); // about as steep as the normal one
+    else if (!v.function.takes_levels())
+        v.slope = (high - low) / 8;
     return v;
 }
 
@@ -61,7 +75,7 @@ ObserverModel usual_observers(Script const& s)
         if (!b.compare || b.compare->vary.empty()) continue;
         bool const is_known = std::any_of(m.varied.begin(), m.varied.end(),
                                           [&](VariedModel const& v) { return v.setting == b.compare->vary; });
-        if (!is_known) m.varied.push_back(usual_varied(*b.compare));
+        if (!is_known) m.varied.push_back(usual_varied(b));
     }
     return m;
 }
@@ -83,7 +97,20 @@ Observer draw_observer(ObserverModel const& model, std::uint64_t seed, int parti
 
 Random Observer::random(std::uint64_t purpose) const { return Random::part(seed, purpose); }
 
-double Observer::quality(std::vector<int> const& levels) const { return sum_of(model.quality, levels); }
+double Observer::quality(std::vector<int> const& levels) const
+{
+    double q = sum_of(model.quality, levels);
+    for (QualityInteraction const& i : model.interactions)
+        if (std::all_of(i.levels.begin(), i.levels.end(),
+                        [&](LevelChoice const& c) { return levels[std::size_t(c.factor)] == c.level; }))
+            q += i.jod;
+    return q;
+}
+double Observer::threshold(VariedModel const& v, std::vector<int> const& levels) const
+{
+    double const shift = sum_of(v.shift, levels);
+    return shift == 0 ? v.threshold : from_scale(v.scale, to_scale(v.scale, v.threshold) + shift);
+}
 double Observer::render_ms(std::vector<int> const& levels) const { return sum_of(model.render_ms, levels); }
 
 VariedModel const& Observer::varied(std::string const& setting) const

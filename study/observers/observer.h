@@ -9,21 +9,31 @@
 
 namespace study {
 
-/// How well an observer sees the level of a setting: P(correct) = guess + (1 - guess - lapse) F, where F is the
-/// Weibull function 1 - exp(-(level / threshold)^slope) on logarithmic scales, and Phi((level - threshold) /
-/// slope) on the linear one; signs are reversed if higher levels are harder. guess is that of the task.
+/// How well an observer sees the level of a setting: P(correct) = guess + (1 - guess - lapse) F; signs are
+/// reversed if higher levels are harder. guess is that of the task. F is the function that the procedures name; if
+/// they name none, the Weibull function on logarithmic scales, and the normal one on the linear one.
 struct VariedModel {
     std::string setting;
     Scale scale = Scale::linear;
     double low = 0, high = 0; ///< of the setting
     double threshold = 0, slope = 1;
     double between_sd = 0; ///< standard deviation of participants' thresholds, in units of the scale
+    PsychometricChoice function{};
+    std::vector<std::pair<std::string, double>> parameters{}; ///< of a formula, besides the usual ones
+    std::vector<std::vector<double>> shift{}; ///< by factor and level, of the threshold, in units of the scale
+};
+
+/// Quality that a stimulus has only if it has all these levels.
+struct QualityInteraction {
+    Choice levels;
+    double jod = 0;
 };
 
 /// The population of participants.
 struct ObserverModel {
-    std::vector<std::vector<double>> quality;   ///< by factor and level, JOD; factors add up; empty = no effect
-    std::vector<std::vector<double>> render_ms; ///< by factor and level; factors add up; empty = none
+    std::vector<std::vector<double>> quality;     ///< by factor and level, JOD; factors add up; empty = no effect
+    std::vector<QualityInteraction> interactions; ///< added to that
+    std::vector<std::vector<double>> render_ms;   ///< by factor and level; factors add up; empty = none
     std::vector<VariedModel> varied;
     double between_sd = 0.2; ///< standard deviation of participants' qualities of a level, JOD
     double noise = 1;        ///< factor on the noise of a percept
@@ -51,6 +61,8 @@ struct Observer {
     /// Random generator for one purpose, independent of earlier calls.
     Random random(std::uint64_t purpose) const;
     double quality(std::vector<int> const& levels) const;
+    /// Threshold of the varied setting for a stimulus with these levels of factors.
+    double threshold(VariedModel const& varied, std::vector<int> const& levels) const;
     double render_ms(std::vector<int> const& levels) const;
     VariedModel const& varied(std::string const& setting) const;
 };

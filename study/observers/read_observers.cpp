@@ -41,15 +41,37 @@ void read_by_level(gi::Yaml const& y, Script const& s, double low, double high,
     }
 }
 
-void read_varied(gi::Yaml const& y, ObserverModel& m)
+void read_varied(gi::Yaml const& y, Script const& s, ObserverModel& m)
 {
     std::vector<std::string> known;
     for (VariedModel const& v : m.varied) known.push_back(v.setting);
     for (auto const& [name, values] : y.entries()) {
         VariedModel& v = m.varied[std::size_t(name.one_of(known, "setting that a block varies"))];
-        read_all_numbers(values, {{"threshold", &v.threshold, v.low, v.high},
-                                  {"slope", &v.slope, 1e-6, kAny},
-                                  {"between_sd", &v.between_sd, 0, kAny}});
+        std::vector<Number> numbers{{"threshold", &v.threshold, v.low, v.high},
+                                    {"slope", &v.slope, 1e-6, kAny},
+                                    {"between_sd", &v.between_sd, 0, kAny}};
+        for (auto& [parameter, value] : v.parameters) numbers.push_back({parameter.c_str(), &value, -kAny, kAny});
+        std::set<std::string> keys{"shift"};
+        for (Number const& n : numbers) keys.insert(n.key);
+        values.only_keys(keys);
+        read_numbers(values, numbers);
+        if (!values.has("shift")) continue;
+        v.shift.resize(s.factors.size());
+        read_by_level(values.at("shift"), s, -kAny, kAny, v.shift);
+    }
+}
+
+void read_interactions(gi::Yaml const& y, Script const& s, ObserverModel& m)
+{
+    for (gi::Yaml const& entry : y.items()) {
+        entry.only_keys({"levels", "jod"});
+        QualityInteraction i;
+        for (auto const& [name, level] : entry.at("levels").entries()) {
+            int const factor = read_factor(name, s);
+            i.levels.push_back({factor, read_level(level, s, factor)});
+        }
+        i.jod = entry.at("jod").number(-100, 100);
+        m.interactions.push_back(std::move(i));
     }
 }
 
@@ -63,13 +85,15 @@ ObserverModel read(std::string const& text, std::string const& name, Script cons
                                      {"side_bias", &m.side_bias, -100, 100},
                                      {"tie_width", &m.tie_width, 0, 100},
                                      {"false_alarms", &m.false_alarms, 0, 1}};
-    std::set<std::string> keys{"quality", "render_ms", "varied", "rating", "reaction", "items", "bad", "display"};
+    std::set<std::string> keys{"quality",  "interactions", "render_ms", "varied", "rating",
+                               "reaction", "items",        "bad",       "display"};
     for (Number const& n : shares) keys.insert(n.key);
     y.only_keys(keys);
     read_numbers(y, shares);
     if (y.has("quality")) read_by_level(y.at("quality"), s, -100, 100, m.quality);
     if (y.has("render_ms")) read_by_level(y.at("render_ms"), s, 0, 1e6, m.render_ms);
-    if (y.has("varied")) read_varied(y.at("varied"), m);
+    if (y.has("varied")) read_varied(y.at("varied"), s, m);
+    if (y.has("interactions")) read_interactions(y.at("interactions"), s, m);
     if (y.has("rating"))
         read_all_numbers(y.at("rating"), {{"best", &m.rating_best, 0, 1},
                                           {"span_jod", &m.rating_span, 1e-3, 1e3},

@@ -95,6 +95,13 @@ std::vector<Trial> practice_of(Script const& s, Block const& b, std::vector<int>
     trials.resize(std::size_t(b.practice.trials));
     for (Trial& t : trials) {
         t.phase = Phase::practice;
+        if (t.is_open_pair) { // practice is planned
+            auto const& pairs = b.pairs->pairs;
+            auto const [first, second] = pairs[random.below(std::uint32_t(pairs.size()))];
+            t.stimuli[0].levels[std::size_t(b.pairs->factor)] = first;
+            t.stimuli[1].levels[std::size_t(b.pairs->factor)] = second;
+            t.is_open_pair = false;
+        }
         if (b.procedures.empty()) continue;
         t.procedure = -1;
         t.level = b.practice.level.value_or(easiest(*b.compare));

@@ -69,10 +69,33 @@ std::vector<bool> first_comes_first(Pairs const& p)
     return out;
 }
 
+/// Trials whose pairs are chosen when they come; either item comes first equally often (within one) in each cell.
+void add_open_pairs(Script const& s, Block const& b, std::vector<std::vector<int>> const& cells, Random& random,
+                    std::vector<Trial>& trials)
+{
+    Pairs const& p = *b.pairs;
+    for (std::vector<int> const& levels : cells) {
+        Stimulus const cell{levels, false, {}};
+        std::vector<std::string> orders;
+        for (int i = 0; i < p.active_trials; ++i) orders.emplace_back(i % 2 == 0 ? "ab" : "ba");
+        random.shuffle(orders);
+        for (std::string const& order : orders) {
+            Trial t;
+            t.stimuli = {with_level(cell, p.factor, p.pairs[0].first),
+                         with_level(cell, p.factor, p.pairs[0].second)};
+            if (b.task == Task::pair_with_reference) t.reference = with_choice(cell, s.reference);
+            t.order = order;
+            t.is_open_pair = true;
+            trials.push_back(t);
+        }
+    }
+}
+
 void add_pairs(Script const& s, Block const& b, std::vector<std::vector<int>> const& cells, int participant,
                Random& random, std::vector<Trial>& trials)
 {
     Pairs const& p = *b.pairs;
+    if (p.is_active()) return add_open_pairs(s, b, cells, random, trials);
     std::vector<bool> const balanced = first_comes_first(p);
     // Thue-Morse sequence: 0 1 1 0 1 0 0 1 ..., one of each in every two participants, not confounded with orders
     // that alternate.
@@ -229,6 +252,7 @@ std::vector<Trial> main_trials(Script const& s, Block const& b, std::vector<int>
     auto const cells = cells_of(s, b, levels);
     std::int64_t conditions = 1;
     if (b.pairs) conditions = std::int64_t(b.pairs->pairs.size()) * (b.pairs->order == PairOrder::both ? 2 : 1);
+    if (b.pairs && b.pairs->is_active()) conditions = b.pairs->active_trials;
     if (b.compare && b.compare->factor >= 0) conditions = std::int64_t(b.compare->levels.size());
     if (!b.procedures.empty()) conditions = 0;
     for (Procedure const& p : b.procedures) conditions += planned_trials(p);

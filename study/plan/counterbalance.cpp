@@ -15,6 +15,7 @@ int item_count(Script const& script, Counterbalance const& balance)
 
 int cycle_length(Balance method, int items)
 {
+    if (items == 0) return 1; // of a script with mistakes
     switch (method) {
     case Balance::alternate:
         return items > 1 ? 2 : 1;
@@ -53,6 +54,7 @@ std::vector<int> balanced_order(Balance method, int items, int digit, Random& ra
 {
     std::vector<int> order(static_cast<std::size_t>(items));
     std::iota(order.begin(), order.end(), 0);
+    if (items == 0) return order;
     switch (method) {
     case Balance::fixed:
         break;

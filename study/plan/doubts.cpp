@@ -40,6 +40,12 @@ std::vector<std::string> find_doubts(Script const& s)
                                              "use for example guess: [0, 0.1, 0.2]",
                                              b.name, p.name, facts(b.task).name,
                                              b.task == Task::yes_no ? "yes" : "different"));
+    for (Block const& b : s.blocks)
+        if (b.gaze.any() && s.record.gaze.empty())
+            doubts.push_back(
+                fmt::format("block '{}' has rules of gaze, but record.gaze names no source: study run "
+                            "needs --gaze",
+                            b.name));
     for (Block const& b : s.blocks) {
         std::size_t const orders = presented_orders(b.task, false).size();
         if (orders == 0 || !b.procedures.empty() || std::size_t(b.repeats) % orders == 0) continue;

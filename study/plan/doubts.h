@@ -8,7 +8,7 @@ namespace study {
 
 /// Warnings about valid but unusual designs, one line each: orders that do not occur equally often with the
 /// planned number of participants, presentation orders that cannot be balanced within a condition, long sessions,
-/// long stretches without a break.
+/// long stretches without a break, rules of gaze without a source of it.
 std::vector<std::string> find_doubts(Script const& script);
 /// The same for one participant's plan.
 std::vector<std::string> find_doubts(Script const& script, Plan const& plan);

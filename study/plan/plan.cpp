@@ -20,7 +20,9 @@ std::string id_of(std::string const& pattern, int participant)
 
 class Planner {
 public:
-    Planner(Script const& s, int participant) : s_(s), digits_(digits(s, participant)), passes_(s.blocks.size())
+    /// @param broken  blocks left out; those that cannot be planned are added, and why to `m`. Null: throw.
+    Planner(Script const& s, int participant, std::vector<bool>* broken, Mistakes* m)
+        : s_(s), broken_(broken), mistakes_(m), digits_(digits(s, participant)), passes_(s.blocks.size())
     {
         plan_.participant = participant;
         plan_.participant_id = id_of(s.participants.id, participant);
@@ -67,6 +69,7 @@ private:
 
     void walk_per(SequenceItem const& item, std::vector<int> levels)
     {
+        if (item.index < 0) return walk(item.items, levels); // only in broken scripts
         Random unused(0);
         std::vector<int> order =
             balanced_order(Balance::fixed, int(s_.factors[std::size_t(item.index)].levels.size()), 0, unused);
@@ -104,6 +107,13 @@ private:
     }
 
     void add_block(int index, std::vector<int> const& levels)
+    {
+        if (broken_ == nullptr) return add_sound_block(index, levels);
+        if ((*broken_)[std::size_t(index)]) return;
+        if (!mistakes_->attempt([&] { add_sound_block(index, levels); })) (*broken_)[std::size_t(index)] = true;
+    }
+
+    void add_sound_block(int index, std::vector<int> const& levels)
     {
         Block const& b = s_.blocks[std::size_t(index)];
         int const pass = passes_[std::size_t(index)]++;
@@ -154,6 +164,8 @@ private:
 
     static constexpr std::uint64_t kBalancePurpose = std::uint64_t(1) << 62;
     Script const& s_;
+    std::vector<bool>* broken_;
+    Mistakes* mistakes_;
     std::vector<int> digits_, passes_;
     std::size_t trial_count_ = 0;
     Plan plan_;
@@ -172,6 +184,32 @@ std::string_view name_of(PlanStepKind kind)
     return kNames[std::size_t(kind)];
 }
 
-Plan make_plan(Script const& script, int participant) { return Planner(script, participant).make(); }
+std::vector<Stimulus> possible_stimuli(Block const& b, Trial const& t)
+{
+    std::vector<Stimulus> all = t.stimuli;
+    if (t.is_open_pair) {
+        all.clear();
+        for (auto const& [first, second] : b.pairs->pairs)
+            for (int const level : {first, second}) {
+                all.push_back(t.stimuli[0]);
+                all.back().levels[std::size_t(b.pairs->factor)] = level;
+            }
+    }
+    if (t.reference) all.push_back(*t.reference);
+    return all;
+}
+
+Plan make_plan(Script const& script, int participant)
+{
+    return Planner(script, participant, nullptr, nullptr).make();
+}
+
+void find_plan_mistakes(Script const& script, int participants, Mistakes& m,
+                        std::function<void(Plan const&)> const& made)
+{
+    std::vector<bool> broken;
+    for (Block const& b : script.blocks) broken.push_back(b.is_broken);
+    for (int p = 1; p <= participants; ++p) made(Planner(script, p, &broken, &m).make());
+}
 
 } // namespace study

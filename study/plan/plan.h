@@ -5,8 +5,10 @@
 // compiler. Each block has its own random stream, so changing one block does not affect the others.
 
 #include "study/script/condition.h"
+#include "study/script/mistakes.h"
 #include "study/script/script.h"
 
+#include <functional>
 #include <string_view>
 
 namespace study {
@@ -24,6 +26,7 @@ struct Trial {
     int procedure = -1;                ///< of the block
     std::optional<double> level;       ///< of the varied setting; none = nothing varied, or chosen at the trial
     bool is_noise = false;             ///< there is nothing to find
+    bool is_open_pair = false; ///< which pair is shown is chosen at the trial; until then it is the first one
 };
 
 enum class PlanStepKind { instructions, questionnaire, trial, rest, free_walk };
@@ -50,12 +53,22 @@ struct Plan {
     std::int64_t duration_us = 0;
 };
 
+/// Stimuli that a trial may show, the reference included: its own, or all that its pair may be chosen from. Levels
+/// that a procedure chooses are left open.
+std::vector<Stimulus> possible_stimuli(Block const& block, Trial const& trial);
+
 inline constexpr int kMostTrialsOfBlock = 5000, kMostTrials = 50000;
 
 /// @param participant from 1
 /// Throws ScriptError with the place in the script if the design is impossible: no order satisfies a block's
 /// constraints, more practice or catch trials than fit into the block, too many trials.
 Plan make_plan(Script const& script, int participant);
+
+/// Makes the plans of participants 1 to `participants`; what is wrong with a block is added, and the other blocks
+/// are planned nevertheless. Broken blocks are left out.
+/// @param made  called with each plan
+void find_plan_mistakes(Script const& script, int participants, Mistakes& m,
+                        std::function<void(Plan const&)> const& made);
 
 /// The table plan.tsv: a line of column names, then one per step; UTF-8, tab-separated, n/a = missing.
 std::string plan_table(Script const& script, Plan const& plan);

@@ -43,8 +43,8 @@ void add_trial(std::vector<std::string>& row, Script const& s, PlanStep const& s
     std::string more;
     for (std::size_t i = 2; i < t.stimuli.size(); ++i)
         more += (more.empty() ? "" : ",") + stimulus_label(s, b, t.stimuli[i]);
-    row.push_back(stimulus_label(s, b, t.stimuli[0]));
-    row.push_back(t.stimuli.size() > 1 ? stimulus_label(s, b, t.stimuli[1]) : "n/a");
+    row.push_back(t.is_open_pair ? "n/a" : stimulus_label(s, b, t.stimuli[0]));
+    row.push_back(t.stimuli.size() > 1 && !t.is_open_pair ? stimulus_label(s, b, t.stimuli[1]) : "n/a");
     row.push_back(or_none(more));
     row.push_back(t.reference ? stimulus_label(s, b, *t.reference) : "n/a");
     row.push_back(t.order);

@@ -42,6 +42,7 @@ std::string trial_text(Script const& s, PlanStep const& step)
     std::string text = fmt::format("{:>6} {:<8} {}", step.number, name_of(t.phase), cell_text(s, b, t));
     if (t.stimuli.size() > 1 || b.compare) {
         if (text.back() != ' ') text += ": ";
+        if (t.is_open_pair) return text + "pair chosen then, " + t.order;
         for (char const letter : t.order) text += stimulus_label(s, b, t.stimuli[std::size_t(letter - 'a')]) + " ";
         text.pop_back();
     }
@@ -65,6 +66,7 @@ std::string condition_counts(Script const& s, Plan const& plan, int block, int p
         if (!t.answer.empty()) ++answers[t.answer];
         for (std::size_t f = 0; f < s.factors.size(); ++f) {
             bool const is_paired = b.pairs && b.pairs->factor == int(f);
+            if (is_paired && t.is_open_pair) continue;
             for (std::size_t i = 0; i < (is_paired ? t.stimuli.size() : 1); ++i)
                 ++levels[f][t.stimuli[i].levels[f]].first;
             ++levels[f][t.stimuli[std::size_t(t.order[0] - 'a')].levels[f]].second;

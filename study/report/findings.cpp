@@ -87,7 +87,7 @@ std::string findings(Analysis const& a)
             if (c.refused.empty())
                 html += fmt::format("<li><b>{}</b>, {}: {:.0f} % correct at {}.{}</li>\n", gi::escaped(b.name),
                                     gi::escaped(c.cell), 100 * c.proportion, interval_text(c.threshold),
-                                    c.fit.note.empty() ? "" : " Doubtful: " + gi::escaped(c.fit.note) + ".");
+                                    c.note.empty() ? "" : " Doubtful: " + gi::escaped(c.note) + ".");
     }
     if (html.empty()) return {};
     return "<h2>In short</h2>\n<ul class=\"findings\">\n" + html + "</ul>\n" +

@@ -126,7 +126,7 @@ std::string scales_html(Script const& s, Block const& b, BlockResult const& r, A
     }
     std::string note;
     if (r.task == "pair" || r.task == "pair_with_reference")
-        note = "1 JOD: 75 % choose the better one (Thurstone, case V; mean 0). Intervals by a bootstrap over "
+        note = "1 JOD: 75 % choose the better one (Thurstone, case V; mean 0). Intervals by errors over "
                "observers. ";
     note += "Grey bars at the right join items that do not differ significantly.";
     if (has_truth) note += " Diamonds: true values of the simulated observers.";
@@ -227,6 +227,46 @@ std::string timing_html(Analysis const& a, ReportFacts const& facts)
     return figures(html);
 }
 
+/// Gaze by participant, if it was recorded: of all trials, while stimuli were visible.
+std::string gaze_html(std::span<RecordedSession const> sessions)
+{
+    struct Counts {
+        int trials = 0, samples = 0, valid = 0, dropped = 0, fixating = 0, left = 0, never = 0;
+        bool has_rule = false;
+    };
+    std::map<std::string, Counts> people;
+    for (RecordedSession const& session : sessions)
+        for (JournalEntry const& entry : session.record.entries) {
+            auto const* const t = std::get_if<TrialDone>(&entry);
+            if (t == nullptr || !t->gaze_samples) continue;
+            Counts& c = people[session.plan.participant_id];
+            ++c.trials;
+            c.samples += *t->gaze_samples;
+            c.valid += t->gaze_valid.value_or(0);
+            c.dropped += t->gaze_dropped.value_or(0);
+            c.fixating += t->gaze_fixating.value_or(0);
+            c.has_rule = c.has_rule || t->gaze_fixating;
+            c.left += t->reason == "gaze_left";
+            c.never += t->reason == "no_fixation";
+        }
+    if (people.empty()) return {};
+    ResultTable t{"gaze", "Gaze", "While stimuli were visible.", false, {}};
+    t.table.columns = {{"participant", "Participant"},
+                       {"trials", "Trials with gaze"},
+                       {"samples", "Samples"},
+                       {"valid", "Share in which the eyes were found"},
+                       {"missing", "Samples missing between others"},
+                       {"fixating", "Share of the valid samples near the place of fixation"},
+                       {"left", "Trials that ended because gaze left"},
+                       {"no_fixation", "Trials that did not begin without a fixation"}};
+    for (auto const& [id, c] : people)
+        t.table.rows.push_back({cell(id), cell(c.trials), cell(c.samples),
+                                c.samples > 0 ? cell(double(c.valid) / c.samples) : cell(""), cell(c.dropped),
+                                c.has_rule && c.valid > 0 ? cell(double(c.fixating) / c.valid) : cell(""),
+                                cell(c.left), cell(c.never)});
+    return html_of(t);
+}
+
 std::string provenance(std::span<RecordedSession const> sessions, ReportFacts const& facts)
 {
     std::map<std::string, std::map<std::string, int>> values;
@@ -271,14 +311,16 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
     html += gi::html_section("Observers",
                              (a.exclusions.empty() ? "<p>Nothing except practice was excluded.</p>\n" : "") +
                                  exclusions_html(a) + shown({"observers", "agreement"}));
-    html += gi::html_section("Timing", timing_html(a, facts) + shown({"timing", "reactions", "calibrations"}));
+    html += gi::html_section("Timing", timing_html(a, facts) + shown({"timing", "reactions", "calibrations"}) +
+                                           gaze_html(sessions));
     std::string orders;
     for (TransitionResult const& t : a.transitions) orders += transitions_table(t);
     html += gi::html_section("Order", gi::html_note("How trials followed each other, summed over participants: "
                                                     "from the row to the column.") +
                                           figures(orders));
-    html += gi::html_section(
-        "Numbers", shown({"scores", "thresholds", "curves", "detection", "questionnaires", "changes", "remarks"}));
+    html += gi::html_section("Numbers", shown({"scores", "hierarchical_scores", "effects", "group_differences",
+                                               "thresholds", "parameters", "curves", "detection", "population",
+                                               "questionnaires", "changes", "remarks"}));
     std::string const about = fmt::format("<p class=\"about\">Experiment {}: {} of {} participants, {} sessions, "
                                           "{} complete. Intervals of {:.0f} %, "
                                           "{} replicates of bootstraps.</p>\n",

@@ -12,7 +12,8 @@ struct SimulatedTruth {
     std::map<std::string, std::map<std::string, double>> quality_jod; ///< by factor and level
     struct Varied {
         double threshold = 0, slope = 1;
-        bool is_weibull = true;
+        PsychometricChoice function{Psychometric::weibull, {}};
+        Scale scale = Scale::log10;
     };
     std::map<std::string, Varied> varied; ///< by setting
     double lapse = 0;

@@ -34,7 +34,7 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
         double const share = i / 100.0;
         double const level = block.is_log ? axis.low * std::pow(axis.high / axis.low, share)
                                           : axis.low + share * (axis.high - axis.low);
-        line.emplace_back(level, proportion_at(c.fit.shape, c.fit.parameters, level));
+        line.emplace_back(level, proportion_at(c.shape, c.parameters, level));
     }
     p.curve(line, "fit");
     for (LevelCount const& l : c.counts) {
@@ -47,9 +47,10 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
                                                 gi::short_number(c.threshold.interval.high))
                                   : "";
     return p.figure("psychometric function, " + c.cell,
-                    fmt::format("<b>{}</b> {:.0f} % correct at {}{}; {} observers{}", gi::escaped(c.cell),
-                                100 * c.proportion, gi::short_number(c.threshold.value), range, c.observers,
-                                c.fit.note.empty() ? "" : ". Doubtful: " + gi::escaped(c.fit.note)));
+                    fmt::format("<b>{}</b> {:.0f} % correct at {}{}; {}; {} observers{}", gi::escaped(c.cell),
+                                100 * c.proportion, gi::short_number(c.threshold.value), range,
+                                gi::escaped(c.function), c.observers,
+                                c.note.empty() ? "" : ". Doubtful: " + gi::escaped(c.note)));
 }
 
 std::string tracks_figure(std::vector<ThresholdRun> const& runs, BlockResult const& block,

@@ -1,10 +1,22 @@
 #include "study/report/page.h"
-#include "study/stats/special.h"
+#include "study/script/procedure_settings.h"
 
-#include <cmath>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace study {
+
+namespace {
+
+PsychometricChoice function_of(std::string const& name)
+{
+    auto const names = psychometric_names();
+    auto const known = std::find(names.begin(), names.end(), name);
+    if (known != names.end()) return {Psychometric(known - names.begin()), {}};
+    return {Psychometric::formula, std::make_shared<Formula const>(Formula::psychometric(name))};
+}
+
+} // namespace
 
 SimulatedTruth read_truth(std::string const& json, std::string const& name)
 {
@@ -13,10 +25,17 @@ SimulatedTruth read_truth(std::string const& json, std::string const& name)
         auto const j = nlohmann::json::parse(json);
         for (auto const& [factor, levels] : j.at("quality_jod").items())
             for (auto const& [level, jod] : levels.items()) t.quality_jod[factor][level] = jod.get<double>();
-        for (auto const& [setting, v] : j.at("varied").items())
-            t.varied[setting] = {v.at("threshold").get<double>(), v.at("slope").get<double>(),
-                                 v.at("function").get<std::string>() == "weibull"};
+        for (auto const& [setting, v] : j.at("varied").items()) {
+            if (v.contains("parameters")) continue; // no threshold of one setting
+            SimulatedTruth::Varied varied{v.at("threshold").get<double>(), v.at("slope").get<double>()};
+            varied.function = function_of(v.at("function").get<std::string>());
+            bool const is_linear = varied.function.function == Psychometric::normal; // before scales were recorded
+            varied.scale = scale_of(v.value("scale", is_linear ? "linear" : "log10")).value_or(Scale::log10);
+            t.varied[setting] = varied;
+        }
         t.lapse = j.at("lapse").get<double>();
+    } catch (FormulaError const& e) {
+        throw ScriptError(name, {}, "it has no true parameters of simulated observers", e.what(), "move it away");
     } catch (nlohmann::json::exception const& e) {
         throw ScriptError(name, {}, "it has no true parameters of simulated observers", e.what(), "move it away");
     }
@@ -28,12 +47,9 @@ double true_level(SimulatedTruth const& truth, std::string const& setting, bool 
 {
     auto const it = truth.varied.find(setting);
     if (it == truth.varied.end()) return kUnknown;
-    double const f = (proportion - guess) / (1 - guess - truth.lapse);
-    if (!(f > 0 && f < 1)) return kUnknown;
     SimulatedTruth::Varied const& v = it->second;
-    double const sign = harder_up ? -1 : 1;
-    if (v.is_weibull) return v.threshold * std::pow(-std::log1p(-f), sign / v.slope);
-    return v.threshold + sign * v.slope * normal_quantile(f);
+    return level_of_proportion(v.function, v.scale, harder_up, {v.threshold, v.slope, guess, truth.lapse},
+                               proportion);
 }
 
 } // namespace study

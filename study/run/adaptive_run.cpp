@@ -21,11 +21,15 @@ double as_shown(double level)
 
 } // namespace
 
+AdaptiveRun::Chooser AdaptiveRun::method_for(Procedure const& p, Compare const& c)
+{
+    if (p.method == study::Method::staircase) return Staircase(staircase_settings(p, c));
+    if (p.is_many()) return QuestMany{QuestPlusMany(quest_many_settings(p)), 0, p.stop.trials};
+    return Quest{QuestPlus(quest_settings(p, c)), p.stimuli, 0, p.stop.trials};
+}
+
 AdaptiveRun::AdaptiveRun(Procedure const& p, Compare const& c, std::string const& file)
-try : scale_(c.scale), sign_(harder_sign(c)),
-    method_(p.method == Method::staircase
-                ? decltype(method_)(Staircase(staircase_settings(p, c)))
-                : decltype(method_)(Quest{QuestPlus(quest_settings(p, c)), p.stimuli, 0, p.stop.trials})) {
+try : scale_(c.scale), sign_(harder_sign(c)), method_(method_for(p, c)) {
     choose();
 } catch (std::invalid_argument const& e) {
     throw ScriptError(file, p.place, "procedure '" + p.name + "' cannot be run", e.what(), "");
@@ -35,6 +39,9 @@ void AdaptiveRun::respond(bool is_correct)
 {
     if (auto* const staircase = std::get_if<Staircase>(&method_)) {
         staircase->respond(is_correct);
+    } else if (auto* const many = std::get_if<QuestMany>(&method_)) {
+        many->quest.respond(many->next, is_correct);
+        --many->left;
     } else {
         Quest& q = std::get<Quest>(method_);
         q.quest.respond(q.next, is_correct);
@@ -50,6 +57,16 @@ void AdaptiveRun::choose()
         level_ = as_shown(from_scale(scale_, sign_ * staircase->level()));
         return;
     }
+    if (auto* const many = std::get_if<QuestMany>(&method_)) {
+        is_finished_ = many->left == 0;
+        if (is_finished_) return;
+        many->next = many->quest.next();
+        auto const stimulus = many->quest.stimulus(many->next);
+        level_ = as_shown(stimulus[0]);
+        also_.clear();
+        for (std::size_t i = 1; i < stimulus.size(); ++i) also_.push_back(as_shown(stimulus[i]));
+        return;
+    }
     Quest& q = std::get<Quest>(method_);
     is_finished_ = q.left == 0;
     if (is_finished_) return;
@@ -61,9 +78,9 @@ std::vector<double> reachable_levels(Procedure const& p, Compare const& c)
 {
     constexpr std::size_t kMost = 10000;
     std::set<double> levels;
-    if (p.method == Method::questplus)
+    if (p.method == study::Method::questplus)
         for (double const level : p.stimuli) levels.insert(as_shown(level));
-    if (p.method != Method::staircase) return {levels.begin(), levels.end()};
+    if (p.method != study::Method::staircase) return {levels.begin(), levels.end()};
     StaircaseSettings const s = staircase_settings(p, c);
     double const sign = harder_sign(c);
     std::vector<double> open{s.start};

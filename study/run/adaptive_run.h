@@ -19,6 +19,8 @@ public:
     bool finished() const { return is_finished_; }
     /// Level of the next trial.
     double level() const { return level_; }
+    /// Levels of the further settings of `compare`; empty = there are none.
+    std::vector<double> const& also() const { return also_; }
     /// Call after a valid trial at level().
     void respond(bool is_correct);
 
@@ -29,12 +31,20 @@ private:
         std::size_t next = 0;
         int left = 0;
     };
+    struct QuestMany {
+        QuestPlusMany quest;
+        std::size_t next = 0;
+        int left = 0;
+    };
+    using Chooser = std::variant<Staircase, Quest, QuestMany>;
+    static Chooser method_for(Procedure const& procedure, Compare const& compare);
     void choose();
 
     Scale scale_;
     double sign_; ///< of the staircase's axis: -1 if a higher level is harder
-    std::variant<Staircase, Quest> method_;
+    Chooser method_;
     double level_ = 0;
+    std::vector<double> also_;
     bool is_finished_ = false;
 };
 

@@ -43,7 +43,8 @@ public:
     virtual CalibrationDone calibrate(Timing const& timing) = 0;
     /// @return false if the participant does not consent
     virtual bool ask_consent(std::string const& markdown) = 0;
-    virtual ParticipantAsked ask_participant(std::vector<std::string> const& questions) = 0;
+    /// Answers that flaw_of_answer() refuses are to be asked again.
+    virtual ParticipantAsked ask_participant(std::vector<AskedQuestion> const& questions) = 0;
     virtual StepDone instruct(std::string const& markdown, int step) = 0;
     virtual StepDone rest(std::string const& prompt, double least_s, int step) = 0;
     virtual StepDone walk(TrialRequest const& where, std::string const& prompt, double seconds) = 0;

@@ -1,5 +1,7 @@
 #include "study/run/progress.h"
 
+#include "study/script/procedure_settings.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -28,6 +30,7 @@ Progress::Progress(Script const& script, Plan const& plan)
     : script_(script),
       plan_(plan),
       run_of_step_(plan.steps.size()),
+      pair_run_of_step_(plan.steps.size()),
       attempts_(plan.steps.size()),
       is_done_(plan.steps.size())
 {
@@ -35,6 +38,7 @@ Progress::Progress(Script const& script, Plan const& plan)
         PlanStep const& s = plan.steps[i];
         if (s.kind != PlanStepKind::trial) continue;
         ++trials_planned_;
+        if (s.trial.is_open_pair) add_pair_run(i);
         Block const& b = script.blocks[std::size_t(s.block)];
         if (s.trial.procedure < 0 || !is_adaptive(b.procedures[std::size_t(s.trial.procedure)])) continue;
         RunKey const key{s.block, s.pass, s.trial.procedure, s.trial.repeat, s.trial.stimuli[0].levels};
@@ -46,6 +50,21 @@ Progress::Progress(Script const& script, Plan const& plan)
                         .first;
         run_of_step_[i] = &found->second;
     }
+}
+
+void Progress::add_pair_run(std::size_t i)
+{
+    PlanStep const& s = plan_.steps[i];
+    Block const& b = script_.blocks[std::size_t(s.block)];
+    RunKey const key{s.block, s.pass, -1, 0,
+                     s.trial.stimuli[0].levels}; // those of the first pair in all of its cell
+    auto found = pair_runs_.find(key);
+    if (found == pair_runs_.end()) {
+        constexpr std::uint64_t kPairPurpose = std::uint64_t(1) << 61;
+        std::uint64_t const purpose = kPairPurpose + pair_runs_.size();
+        found = pair_runs_.emplace(key, PairRun(script_, b, plan_.participant, purpose)).first;
+    }
+    pair_run_of_step_[i] = &found->second;
 }
 
 bool Progress::is_same_pass(int a, int b) const
@@ -76,7 +95,14 @@ NextStep Progress::due_of(int step) const
     NextStep due{step, attempts_[std::size_t(step)] + 1, false, {}};
     if (at(step).kind != PlanStepKind::trial) return due;
     due.level = at(step).trial.level;
-    if (AdaptiveRun const* const run = run_of_step_[std::size_t(step)]) due.level = run->level();
+    if (AdaptiveRun const* const run = run_of_step_[std::size_t(step)]) {
+        due.level = run->level();
+        due.also = run->also();
+    }
+    if (PairRun const* const run = pair_run_of_step_[std::size_t(step)]) {
+        auto const shown = pair_of_step_.find(step);
+        due.pair = shown != pair_of_step_.end() ? shown->second : run->next();
+    }
     return due;
 }
 
@@ -130,8 +156,13 @@ void Progress::apply_trial(TrialDone const& t)
         throw std::invalid_argument(fmt::format("a trial of step {} at level {} although {} is due", t.step + 1,
                                                 t.level ? level_text(*t.level) : "none",
                                                 due->level ? level_text(*due->level) : "none"));
+    if (t.reason != "skipped" && !due->also.empty() &&
+        t.chosen != further_text(*script_.blocks[std::size_t(at(t.step).block)].compare, due->also))
+        throw std::invalid_argument(
+            fmt::format("a trial of step {} with '{}', which is not due", t.step + 1, t.chosen));
     pass(t.step);
     attempts_[std::size_t(t.step)] = t.attempt;
+    if (pair_run_of_step_[std::size_t(t.step)] != nullptr) apply_pair(t, !pair_of_step_.contains(t.step));
     if (is_refresh) return;
     PlanStep const& s = at(t.step);
     if (t.is_valid) {
@@ -142,6 +173,18 @@ void Progress::apply_trial(TrialDone const& t)
     bool const comes_again = script_.timing.on_bad_trial == BadTrial::repeat_at_end && t.attempt < kMostAttempts &&
                              s.trial.phase != Phase::practice && t.reason != "skipped";
     if (comes_again) again_.push_back(t.step);
+}
+
+void Progress::apply_pair(TrialDone const& t, bool is_first)
+{
+    if (t.reason == "skipped" && t.chosen.empty()) return;
+    PlanStep const& s = at(t.step);
+    auto const pair = pair_of_text(script_, script_.blocks[std::size_t(s.block)], t.chosen);
+    if (!pair || (!is_first && pair_of_step_[t.step] != *pair))
+        throw std::invalid_argument(
+            fmt::format("a trial of step {} with the pair '{}', which is not due", t.step + 1, t.chosen));
+    pair_of_step_[t.step] = *pair;
+    pair_run_of_step_[std::size_t(t.step)]->shown(*pair, s.trial.order, t.is_valid ? t.response : "");
 }
 
 void Progress::apply_step(StepDone const& done)

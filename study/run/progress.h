@@ -5,6 +5,7 @@
 #include "study/journal/entries.h"
 #include "study/plan/plan.h"
 #include "study/run/adaptive_run.h"
+#include "study/run/pair_run.h"
 
 #include <deque>
 #include <map>
@@ -13,8 +14,10 @@ namespace study {
 
 struct NextStep {
     int step = 0, attempt = 1;
-    bool is_questionnaire_of_trial = false; ///< the trial of the step is done, its questionnaire is not
-    std::optional<double> level;            ///< of the varied setting
+    bool is_questionnaire_of_trial = false;    ///< the trial of the step is done, its questionnaire is not
+    std::optional<double> level;               ///< of the varied setting
+    std::vector<double> also{};                ///< levels of further varied settings
+    std::optional<std::pair<int, int>> pair{}; ///< levels of the paired factor, if the pair is chosen at the trial
 };
 
 /// Maximum number of attempts at a trial that is not valid, including the first.
@@ -27,6 +30,8 @@ inline constexpr int kMostAttempts = 3;
 ///   experimenter skipped are not repeated.
 /// - Procedures receive only valid trials. When a run has finished, its remaining trials are dropped; if no main
 ///   trial of the pass remains, its catch trials and breaks are dropped too.
+/// - Pairs that are chosen at the trial stay those of the trial when it is repeated. Only valid answers count for
+///   the choice of later ones. The recorded pair counts, so that another machine resumes the same session.
 /// - After a gap longer than resume.max_gap_min, or of unknown length (the wall clock went back), the parts listed
 ///   in resume.repeat are repeated for the current block: its instructions, or the last ones before it, and its
 ///   practice.
@@ -47,6 +52,8 @@ public:
 private:
     using RunKey = std::tuple<int, int, int, int, std::vector<int>>; ///< block, pass, procedure, repeat, cell
 
+    void add_pair_run(std::size_t step);
+    void apply_pair(TrialDone const& trial, bool is_first);
     void apply_started(SessionStarted const& started);
     void apply_trial(TrialDone const& trial);
     void apply_step(StepDone const& done);
@@ -61,7 +68,10 @@ private:
     Script const& script_;
     Plan const& plan_;
     std::map<RunKey, AdaptiveRun> runs_;
-    std::vector<AdaptiveRun*> run_of_step_; ///< null = none
+    std::vector<AdaptiveRun*> run_of_step_;           ///< null = none
+    std::map<RunKey, PairRun> pair_runs_;             ///< by cell
+    std::vector<PairRun*> pair_run_of_step_;          ///< null = none
+    std::map<int, std::pair<int, int>> pair_of_step_; ///< of trials that were shown
     std::vector<int> attempts_;
     std::vector<bool> is_done_; ///< by step of the plan, without repeats
     std::deque<int> again_;     ///< invalid trials, in the order in which they will be repeated

@@ -174,8 +174,7 @@ private:
         std::string reason;
         is_under_way_ = true;
         try {
-            if (!s_.participants.ask.empty() && !progress_.was_asked())
-                keep(call([&] { return p_.ask_participant(s_.participants.ask); }));
+            if (!s_.participants.ask.empty() && !progress_.was_asked()) ask_participant();
             for (auto due = progress_.next(); due; due = progress_.next())
                 if (between_steps())
                     skip(*due);
@@ -190,6 +189,16 @@ private:
             note("abort", "");
         }
         end(reason);
+    }
+
+    void ask_participant()
+    {
+        ParticipantAsked const asked = call([&] { return p_.ask_participant(s_.participants.ask); });
+        keep(asked);
+        for (AskedQuestion const& q : s_.participants.ask)
+            for (auto const& [id, answer] : asked.answers)
+                if (std::string const flaw = flaw_of_answer(q, answer); id == q.id && !flaw.empty())
+                    note("warning", fmt::format("the answer to '{}' is '{}': {}", id, answer, flaw));
     }
 
     /// Handles notes, experimenter commands and clocks. @return true if the next step is to be skipped
@@ -299,12 +308,9 @@ private:
         watch_.restart();
         synced_before_ = files_.journal.synced_ms();
         if (!done.is_valid && done.reason == "aborted") throw Aborted();
-        done.step = due.step;
-        done.attempt = due.attempt;
-        done.level = due.level;
         done.bookkeeping_ms = has_shown_ ? total : 0;
         has_shown_ = true;
-        judge(s_, step(due).trial, done);
+        complete(s_, plan_, due, done);
         ++(done.is_valid ? outcome_.trials : outcome_.bad_trials);
         keep(done);
     }

@@ -30,7 +30,11 @@ Patch settings_of(Script const& script, Block const& block, Stimulus const& stim
     for (std::size_t f = 0; f < script.factors.size(); ++f)
         for (auto const& [key, value] : script.factors[f].levels[std::size_t(stimulus.levels[f])].settings)
             set_setting(patch, key, value);
-    if (!stimulus.is_varied || !block.compare) return patch;
+    if (!block.compare) return patch;
+    auto const& also = block.compare->also;
+    for (std::size_t i = 0; i < also.size(); ++i)
+        set_setting(patch, also[i].setting, level_text(stimulus.also.empty() ? also[i].usual : stimulus.also[i]));
+    if (!stimulus.is_varied) return patch;
     for (auto const& [key, value] : block.compare->with) set_setting(patch, key, value);
     if (stimulus.level && !block.compare->vary.empty())
         set_setting(patch, block.compare->vary, level_text(*stimulus.level));

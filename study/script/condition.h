@@ -7,9 +7,10 @@ namespace study {
 
 /// One picture or sequence to show.
 struct Stimulus {
-    std::vector<int> levels;     ///< by factor
-    bool is_varied = false;      ///< it has the setting that `compare` varies
-    std::optional<double> level; ///< of that setting; none = the procedure chooses it at the trial
+    std::vector<int> levels;       ///< by factor
+    bool is_varied = false;        ///< it has the setting that `compare` varies
+    std::optional<double> level;   ///< of that setting; none = the procedure chooses it at the trial
+    std::vector<double> also = {}; ///< levels of the further settings of `compare`; empty = their usual ones
     bool operator==(Stimulus const&) const = default;
 };
 

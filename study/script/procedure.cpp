@@ -2,6 +2,7 @@
 
 #include "study/stats/staircase.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace study {
@@ -34,6 +35,19 @@ double from_scale(Scale scale, double value)
     }
 }
 
+std::string_view name_of(Scale scale)
+{
+    constexpr std::string_view kNames[] = {"linear", "log2", "log10", "db"};
+    return kNames[std::size_t(scale)];
+}
+
+std::optional<Scale> scale_of(std::string_view name)
+{
+    for (Scale const s : {Scale::linear, Scale::log2, Scale::log10, Scale::db})
+        if (name_of(s) == name) return s;
+    return {};
+}
+
 std::optional<Method> method_of(std::string_view name)
 {
     for (Method const m : {Method::constant, Method::staircase, Method::questplus, Method::adjustment})
@@ -45,6 +59,31 @@ std::string_view name_of(Method method)
 {
     constexpr std::string_view kNames[] = {"constant", "staircase", "questplus", "adjustment"};
     return kNames[std::size_t(method)];
+}
+
+std::vector<std::string> psychometric_names()
+{
+    return {"weibull", "normal", "logistic", "gumbel", "gumbel_right", "hyperbolic_secant", "cauchy"};
+}
+
+std::string PsychometricChoice::name() const
+{
+    return function == Psychometric::formula ? formula->text() : psychometric_names()[std::size_t(function)];
+}
+
+PsychometricChoice assumed_function(Procedure const& p)
+{
+    return p.psychometric.value_or(PsychometricChoice{Psychometric::weibull, {}});
+}
+
+PsychometricChoice fitted_function(std::vector<Procedure> const& procedures, Scale scale)
+{
+    PsychometricChoice const usual{scale == Scale::linear ? Psychometric::normal : Psychometric::weibull, {}};
+    if (procedures.empty() || !procedures[0].psychometric) return usual;
+    bool const agree = std::all_of(procedures.begin(), procedures.end(), [&](Procedure const& p) {
+        return p.psychometric && *p.psychometric == *procedures[0].psychometric;
+    });
+    return agree ? *procedures[0].psychometric : usual;
 }
 
 bool is_adaptive(Procedure const& procedure)

@@ -2,7 +2,10 @@
 // How the level of the varied setting is chosen from trial to trial.
 
 #include "study/script/script_error.h"
+#include "study/stats/formula.h"
+#include "study/stats/questplus_many.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +18,8 @@ namespace study {
 enum class Scale { linear, log2, log10, db };
 double to_scale(Scale scale, double level);
 double from_scale(Scale scale, double value);
+std::optional<Scale> scale_of(std::string_view name);
+std::string_view name_of(Scale scale);
 
 enum class Method { constant, staircase, questplus, adjustment };
 std::optional<Method> method_of(std::string_view name);
@@ -26,8 +31,31 @@ struct Stop {
     int reversals = 0; ///< of a staircase
 };
 
-/// The psychometric function that QUEST+ fits.
-enum class Psychometric { weibull, normal, logistic };
+/// The psychometric functions of scripts. weibull and formula are of levels, the others of their scale; the slope
+/// is the exponent of weibull, the steepness of logistic, the spread of the others in units of the scale, and
+/// whatever it is in a formula.
+enum class Psychometric {
+    weibull,           ///< 1 - exp(-(x / threshold)^slope)
+    normal,            ///< Phi(z), z = (x - threshold) / slope
+    logistic,          ///< 1 / (1 + exp(-slope (x - threshold)))
+    gumbel,            ///< 1 - exp(-exp(z))
+    gumbel_right,      ///< exp(-exp(-z))
+    hyperbolic_secant, ///< 2/pi atan(exp(pi z / 2))
+    cauchy,            ///< 1/2 + atan(z) / pi
+    formula            ///< P(correct) itself, of x, threshold, slope, guess, lapse
+};
+/// Names of all but formula, in their order.
+std::vector<std::string> psychometric_names();
+
+/// A function by name or by formula.
+struct PsychometricChoice {
+    Psychometric function = Psychometric::normal;
+    std::shared_ptr<Formula const> formula{}; ///< of Psychometric::formula
+
+    bool takes_levels() const { return function == Psychometric::weibull || function == Psychometric::formula; }
+    std::string name() const; ///< or the text of the formula
+    bool operator==(PsychometricChoice const& other) const { return name() == other.name(); }
+};
 
 struct Procedure {
     std::string name;
@@ -46,12 +74,22 @@ struct Procedure {
     std::vector<double> steps; ///< in units of the scale; each reversal moves to the next one, the last one stays
 
     // questplus (Watson 2017): grids of the prior. threshold in levels, slope of the function on the scale.
-    Psychometric psychometric = Psychometric::weibull;
     std::vector<double> threshold, slope, guess, lapse;
-    std::vector<double> stimuli; ///< levels that it may present
+    std::vector<double> stimuli;       ///< levels that it may present
+    std::vector<QuestGrid> also;       ///< levels of further settings that it may present, by name
+    std::vector<QuestGrid> parameters; ///< of the formula, besides threshold, slope, guess and lapse
+    bool is_many() const { return !also.empty() || !parameters.empty(); }
+
+    /// The function that QUEST+ assumes and that fits use; none = usual: assumed_function(), fitted_function().
+    std::optional<PsychometricChoice> psychometric;
 
     Stop stop;
 };
+/// The function that QUEST+ assumes.
+PsychometricChoice assumed_function(Procedure const& questplus);
+/// The function that is fitted to trials of these procedures, and by which model observers answer: the one that
+/// they name, if they agree, else Weibull's on logarithmic scales and the normal one on the linear scale.
+PsychometricChoice fitted_function(std::vector<Procedure> const& procedures, Scale scale);
 
 /// Number of trials of one run; the maximum for an adaptive procedure.
 int planned_trials(Procedure const& procedure);

@@ -1,6 +1,12 @@
 #include "study/script/procedure_settings.h"
 
+#include "gi/core/text.h"
+#include "study/script/condition.h"
+#include "study/stats/root.h"
+
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 namespace study {
 
@@ -29,13 +35,12 @@ StaircaseSettings staircase_settings(Procedure const& p, Compare const& c)
 QuestSettings quest_settings(Procedure const& p, Compare const& c)
 {
     QuestSettings s;
-    bool const is_weibull = p.psychometric == Psychometric::weibull;
-    s.function = is_weibull                               ? QuestFunction::weibull
-                 : p.psychometric == Psychometric::normal ? QuestFunction::gaussian
-                                                          : QuestFunction::logistic;
+    PsychometricChoice const function = assumed_function(p);
+    s.function = quest_function(function.function);
+    s.formula = function.formula;
     s.direction = c.harder_up ? Direction::falling : Direction::rising;
     auto const on_axis = [&](std::vector<double> levels) {
-        if (!is_weibull)
+        if (!function.takes_levels())
             for (double& v : levels) v = to_scale(c.scale, v);
         return levels;
     };
@@ -45,6 +50,91 @@ QuestSettings quest_settings(Procedure const& p, Compare const& c)
     s.guess = p.guess;
     s.lapse = p.lapse;
     return s;
+}
+
+QuestManySettings quest_many_settings(Procedure const& p)
+{
+    QuestManySettings s;
+    s.stimulus = {{"x", p.stimuli}};
+    s.stimulus.insert(s.stimulus.end(), p.also.begin(), p.also.end());
+    s.parameters = {{"threshold", p.threshold}, {"slope", p.slope}, {"guess", p.guess}, {"lapse", p.lapse}};
+    s.parameters.insert(s.parameters.end(), p.parameters.begin(), p.parameters.end());
+    s.formula = p.psychometric ? p.psychometric->formula : nullptr;
+    return s;
+}
+
+std::string further_text(Compare const& c, std::vector<double> const& levels)
+{
+    std::string text;
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        text += (i > 0 ? " " : "") + c.also[i].setting + "=" + level_text(levels[i]);
+    return text;
+}
+
+std::vector<double> further_of_text(Compare const& c, std::string const& text)
+{
+    std::vector<double> levels;
+    std::istringstream in(text);
+    std::string word;
+    for (FurtherSetting const& f : c.also) {
+        if (!(in >> word) || !word.starts_with(f.setting + "=")) return {};
+        auto const level = gi::parse_finite(std::string_view(word).substr(f.setting.size() + 1));
+        if (!level) return {};
+        levels.push_back(*level);
+    }
+    return levels;
+}
+
+QuestFunction quest_function(Psychometric function)
+{
+    constexpr QuestFunction kFunctions[]{QuestFunction::weibull,      QuestFunction::gaussian,
+                                         QuestFunction::logistic,     QuestFunction::gumbel,
+                                         QuestFunction::gumbel_right, QuestFunction::hyperbolic_secant,
+                                         QuestFunction::cauchy,       QuestFunction::formula};
+    return kFunctions[std::size_t(function)];
+}
+
+PsychometricShape shape_of(Scale scale, bool harder_up, PsychometricChoice const& function)
+{
+    // On a linear axis the curve of weibull is that of gumbel: fits take it of the axis, not of levels.
+    constexpr Sigmoid kSigmoids[]{Sigmoid::weibull, Sigmoid::gaussian,     Sigmoid::logistic,
+                                  Sigmoid::weibull, Sigmoid::gumbel_right, Sigmoid::hyperbolic_secant,
+                                  Sigmoid::cauchy,  Sigmoid::gaussian};
+    PsychometricShape s;
+    s.sigmoid = kSigmoids[std::size_t(function.function)];
+    s.axis = scale == Scale::linear ? Axis::linear : Axis::log10;
+    s.direction = harder_up ? Direction::falling : Direction::rising;
+    s.formula = function.formula;
+    return s;
+}
+
+double proportion_correct(PsychometricChoice const& function, Scale scale, bool harder_up, QuestParameters p,
+                          double level)
+{
+    QuestSettings s;
+    s.function = quest_function(function.function);
+    s.formula = function.formula;
+    s.direction = harder_up ? Direction::falling : Direction::rising;
+    if (function.takes_levels()) return proportion_by(s, p, level);
+    p.threshold = to_scale(scale, p.threshold);
+    return proportion_by(s, p, to_scale(scale, level));
+}
+
+double level_of_proportion(PsychometricChoice const& function, Scale scale, bool harder_up,
+                           QuestParameters const& p, double proportion)
+{
+    double const middle = to_scale(scale, p.threshold);
+    double const far = scale == Scale::linear ? 1000 * p.slope + 1000 * std::abs(middle) : to_scale(scale, 1000);
+    auto const above = [&](double u) {
+        return proportion_correct(function, scale, harder_up, p, from_scale(scale, u)) - proportion;
+    };
+    double a = middle - far, b = middle + far;
+    // Functions of levels have none below 0 on a linear scale.
+    if (scale == Scale::linear && function.takes_levels()) a = std::max(a, 1e-6 * std::abs(middle));
+    double const at_a = above(a);
+    if (!(at_a * above(b) < 0)) return std::nan("");
+    double const sign = at_a < 0 ? 1 : -1;
+    return from_scale(scale, bisect([&](double u) { return sign * above(u); }, a, b));
 }
 
 } // namespace study

@@ -8,94 +8,187 @@ namespace study {
 namespace {
 
 /// Distinguishes keys that other tasks use from unknown keys.
-void check_block_keys(gi::Yaml const& y, Task task)
+void check_block_keys(gi::Yaml const& y, Task task, Mistakes& m)
 {
-    check_keys(y, "block");
-    std::set<std::string> const known = block_keys(task);
-    for (auto const& [key, unused] : y.entries())
-        if (!known.contains(key.text()))
-            throw key.error(fmt::format("'{}' does nothing in a block with task {}", key.text(), facts(task).name),
-                            "it would be ignored", "remove it or choose another task");
+    m.check_keys(y, "block");
+    std::set<std::string> const known = block_keys(task), all = script_keys().at("block");
+    std::vector<gi::InputError> told; // by check_keys
+    for (auto const& [key, unused] : y.entries(told))
+        if (!known.contains(key.text()) && all.contains(key.text()))
+            m.add(key.error(fmt::format("'{}' does nothing in a block with task {}", key.text(), facts(task).name),
+                            "it would be ignored", "remove it or choose another task"));
 }
 
-Pairs read_pairs(gi::Yaml const& y, Script const& s)
+void read_sampling(gi::Yaml const& y, Pairs& p, Mistakes& m)
 {
-    check_keys(y, "pairs");
+    bool is_active = false;
+    m.take(y, "sampling", [&](gi::Yaml const& v) {
+        is_active = v.one_of({"all", "active"}, "way to sample pairs") == 1;
+    });
+    for (char const* const key : {"trials", "batch"})
+        if (y.has(key) && !is_active)
+            m.add(y.at(key).error(fmt::format("'{}' of pairs that are all shown", key), "it would be ignored",
+                                  "write sampling: active, or remove it"));
+    if (!is_active) return;
+    p.active_trials = 1;
+    m.need(y, "trials", "40", [&](gi::Yaml const& v) { p.active_trials = int(v.integer(1, 5000)); });
+    m.take(y, "batch", [&](gi::Yaml const& v) {
+        p.is_batch = v.one_of({"spanning_tree", "none"}, "batch of pairs") == 0;
+    });
+    if (y.has("order") && p.order != PairOrder::random)
+        m.add(y.at("order").error("an order of pairs that are chosen during the session",
+                                  "either comes first equally often, at random", "remove it"));
+    p.order = PairOrder::random;
+}
+
+Pairs read_pairs(gi::Yaml const& y, Script const& s, Mistakes& m)
+{
+    m.check_keys(y, "pairs");
     Pairs p;
-    p.factor = read_factor(y.needed("factor", "visibility"), s);
-    if (y.has("order"))
-        p.order = PairOrder(y.at("order").one_of({"balanced", "both", "random", "fixed"}, "order of pairs"));
+    m.take(y, "order", [&](gi::Yaml const& v) {
+        p.order = PairOrder(v.one_of({"balanced", "both", "random", "fixed"}, "order of pairs"));
+    });
+    read_sampling(y, p, m);
+    if (!m.need(y, "factor", "visibility", [&](gi::Yaml const& v) { p.factor = read_factor(v, s); })) return p;
     if (!y.has("list")) {
-        auto const levels = read_levels_of(y, s, p.factor, 2);
+        auto const levels = read_levels_of(y, s, p.factor, 2, m);
         for (std::size_t i = 0; i < levels.size(); ++i)
             for (std::size_t j = i + 1; j < levels.size(); ++j) p.pairs.emplace_back(levels[i], levels[j]);
         return p;
     }
-    if (y.has("omit")) throw y.at("omit").error("both list and omit", "the list selects pairs", "keep one");
-    for (gi::Yaml const& item : y.at("list").items()) {
-        auto const two = item.items();
-        if (two.size() != 2)
-            throw item.error(fmt::format("a pair of {}", two.size()), "two are compared", "[a, b]");
-        p.pairs.emplace_back(read_level(two[0], s, p.factor), read_level(two[1], s, p.factor));
-        if (p.pairs.back().first == p.pairs.back().second)
-            throw item.error("a level paired with itself", "there is nothing to choose", "name two");
-    }
-    if (p.pairs.empty()) throw y.at("list").error("no pairs", "the block would be empty", "[[a, b], [a, c]]");
+    if (y.has("omit")) m.add(y.at("omit").error("both list and omit", "the list selects pairs", "keep one"));
+    auto const items = y.at("list").items();
+    for (gi::Yaml const& item : items)
+        m.attempt([&] {
+            auto const two = item.items();
+            if (two.size() != 2)
+                throw item.error(fmt::format("a pair of {}", two.size()), "two are compared", "[a, b]");
+            p.pairs.emplace_back(read_level(two[0], s, p.factor), read_level(two[1], s, p.factor));
+            if (p.pairs.back().first == p.pairs.back().second)
+                throw item.error("a level paired with itself", "there is nothing to choose", "name two");
+        });
+    if (items.empty()) throw y.at("list").error("no pairs", "the block would be empty", "[[a, b], [a, c]]");
     return p;
 }
 
-Compare read_compare(gi::Yaml const& y, Script const& s)
+/// Reads what the varied stimulus is compared with.
+Choice read_against(gi::Yaml const& y, Script const& s, Mistakes& m)
 {
-    check_keys(y, "compare");
+    gi::Yaml const against = y.has("against") ? y.at("against") : y;
+    if (y.has("against") && !against.is_text()) return read_choice(against, s, m);
+    if (y.has("against") && against.text() != "reference")
+        throw against.unknown("thing to compare with", {"reference"});
+    if (s.reference.empty())
+        throw against.error("compared with the reference, which is missing", "the other stimulus is unknown",
+                            "add reference: {FACTOR: LEVEL} to the script");
+    return s.reference;
+}
+
+std::string formula_name(std::string setting)
+{
+    std::replace_if(
+        setting.begin(), setting.end(), [](char c) { return c == '.' || c == '-' || c == '+'; }, '_');
+    return setting;
+}
+
+FurtherSetting read_further(gi::Yaml const& key, gi::Yaml const& y, Mistakes& m)
+{
+    m.check_keys(y, "also");
+    FurtherSetting f;
+    f.setting = key.name();
+    f.name = formula_name(f.setting);
+    m.take(y, "name", [&](gi::Yaml const& v) {
+        f.name = v.name();
+        if (f.name != formula_name(f.name))
+            throw v.error("'" + f.name + "' in a formula", "its names have letters, digits and _",
+                          "write another");
+    });
+    m.take(y, "scale", [&](gi::Yaml const& v) {
+        f.scale = Scale(v.one_of({"linear", "log2", "log10", "db"}, "scale"));
+    });
+    gi::Yaml const range = y.needed("range", "[1, 10]");
+    auto const ends = range.numbers(2, -1e12, 1e12);
+    f.low = ends[0];
+    f.high = ends[1];
+    if (!(f.low < f.high)) throw range.error("a range that does not rise", "low comes first", "swap them");
+    if (f.scale != Scale::linear && f.low <= 0)
+        throw range.error(fmt::format("a range from {:g}", f.low), "a logarithmic scale begins above 0",
+                          "start above 0 or write scale: linear");
+    f.usual = from_scale(f.scale, (to_scale(f.scale, f.low) + to_scale(f.scale, f.high)) / 2);
+    m.take(y, "usual", [&](gi::Yaml const& v) { f.usual = v.number(f.low, f.high); });
+    return f;
+}
+
+void read_compared_factor(gi::Yaml const& y, Script const& s, Compare& c, bool knows_against, Mistakes& m)
+{
+    for (char const* key : {"scale", "range", "harder", "also"})
+        if (y.has(key))
+            m.add(y.at(key).error(fmt::format("'{}' with a factor", key), "levels of a factor have no scale",
+                                  "vary a setting or remove it"));
+    c.factor = read_factor(y.at("factor"), s);
+    if (!knows_against) return;
+    auto const other = std::find_if(c.against.begin(), c.against.end(),
+                                    [&](LevelChoice const& l) { return l.factor == c.factor; });
+    if (other == c.against.end())
+        throw y.error(fmt::format("the stimulus that factor '{}' is compared with has no level of it",
+                                  s.factors[std::size_t(c.factor)].name),
+                      "the two would be the same", "add it to reference or against");
+    c.levels = read_levels_of(y, s, c.factor, 1, m);
+    std::erase(c.levels, other->level);
+    if (c.levels.empty())
+        throw y.error("no level except the reference", "there is nothing to compare", "omit fewer");
+}
+
+/// If the range is wrong, it is left wide, so that nothing else seems to be outside of it.
+void read_varied_range(gi::Yaml const& y, Compare& c, Mistakes& m)
+{
+    if (y.has("omit")) m.add(y.at("omit").error("'omit' without a factor", "it omits levels", "remove it"));
+    m.take(y, "vary", [&](gi::Yaml const& v) { c.vary = v.name(); });
+    m.take(y, "scale", [&](gi::Yaml const& v) {
+        std::vector<std::string> const known{"linear", "log2", "log10", "db"};
+        c.scale = Scale(v.one_of(known, "scale"));
+    });
+    c.low = -1e12;
+    c.high = 1e12;
+    m.need(y, "range", "[64, 16384]", [&](gi::Yaml const& v) {
+        auto const range = v.items();
+        if (range.size() != 2) throw v.error("not two numbers", "a range has two ends", "write [64, 16384]");
+        double const low = range[0].number(-1e12, 1e12), high = range[1].number(-1e12, 1e12);
+        if (!(low < high)) throw v.error("a range that does not rise", "low comes first", "swap them");
+        if (c.scale != Scale::linear && low <= 0)
+            throw range[0].error(fmt::format("a range from {:g}", low), "a logarithmic scale begins above 0",
+                                 "start above 0 or write scale: linear");
+        c.low = low;
+        c.high = high;
+    });
+    m.take(y, "also", [&](gi::Yaml const& v) {
+        for (auto const& [key, value] : m.entries(v))
+            m.attempt([&, k = key, further = value] {
+                c.also.push_back(read_further(k, further, m));
+                for (std::size_t i = 0; i + 1 < c.also.size(); ++i)
+                    if (c.also[i].name == c.also.back().name)
+                        throw k.error("two settings named '" + c.also[i].name + "'",
+                                      "the formula could not tell them", "give one a name");
+            });
+    });
+    m.need(y, "harder", "up", [&](gi::Yaml const& v) {
+        c.harder_up = v.one_of({"up", "down"}, "direction") == 0;
+    });
+}
+
+Compare read_compare(gi::Yaml const& y, Script const& s, Mistakes& m)
+{
+    m.check_keys(y, "compare");
     Compare c;
     if (y.has("vary") == y.has("factor"))
         throw y.error("compare needs either vary or factor", "it defines the stimuli",
                       "write vary: SETTING or factor: FACTOR");
-    gi::Yaml const against = y.has("against") ? y.at("against") : y;
-    if (y.has("against") && !against.is_text())
-        c.against = read_choice(against, s);
-    else if (y.has("against") && against.text() != "reference")
-        throw against.unknown("thing to compare with", {"reference"});
-    else if (s.reference.empty())
-        throw against.error("compared with the reference, which is missing", "the other stimulus is unknown",
-                            "add reference: {FACTOR: LEVEL} to the script");
+    bool const knows_against = m.attempt([&] { c.against = read_against(y, s, m); });
+    m.take(y, "with", [&](gi::Yaml const& v) { c.with = read_patch(v, m); });
+    if (y.has("factor"))
+        read_compared_factor(y, s, c, knows_against, m);
     else
-        c.against = s.reference;
-    if (y.has("with")) c.with = read_patch(y.at("with"));
-    if (y.has("factor")) {
-        for (char const* key : {"scale", "range", "harder"})
-            if (y.has(key))
-                throw y.at(key).error(fmt::format("'{}' with a factor", key), "levels of a factor have no scale",
-                                      "vary a setting or remove it");
-        c.factor = read_factor(y.at("factor"), s);
-        auto const other = std::find_if(c.against.begin(), c.against.end(),
-                                        [&](LevelChoice const& l) { return l.factor == c.factor; });
-        if (other == c.against.end())
-            throw y.error(fmt::format("the stimulus that factor '{}' is compared with has no level of it",
-                                      s.factors[std::size_t(c.factor)].name),
-                          "the two would be the same", "add it to reference or against");
-        c.levels = read_levels_of(y, s, c.factor, 1);
-        std::erase(c.levels, other->level);
-        if (c.levels.empty())
-            throw y.error("no level except the reference", "there is nothing to compare", "omit fewer");
-        return c;
-    }
-    if (y.has("omit")) throw y.at("omit").error("'omit' without a factor", "it omits levels", "remove it");
-    c.vary = y.at("vary").name();
-    if (y.has("scale")) {
-        std::vector<std::string> const known{"linear", "log2", "log10", "db"};
-        c.scale = Scale(y.at("scale").one_of(known, "scale"));
-    }
-    auto const range = y.needed("range", "[64, 16384]").items();
-    if (range.size() != 2)
-        throw y.at("range").error("not two numbers", "a range has two ends", "write [64, 16384]");
-    c.low = range[0].number(-1e12, 1e12);
-    c.high = range[1].number(-1e12, 1e12);
-    if (!(c.low < c.high)) throw y.at("range").error("a range that does not rise", "low comes first", "swap them");
-    if (c.scale != Scale::linear && c.low <= 0)
-        throw range[0].error(fmt::format("a range from {:g}", c.low), "a logarithmic scale begins above 0",
-                             "start above 0 or write scale: linear");
-    c.harder_up = y.needed("harder", "up").one_of({"up", "down"}, "direction") == 0;
+        read_varied_range(y, c, m);
     return c;
 }
 
@@ -109,9 +202,9 @@ double read_vary_level(gi::Yaml const& y, Compare const& c)
     return y.number(c.low, c.high);
 }
 
-Catch read_catch(gi::Yaml const& y, Block const& b, Script const& s)
+Catch read_catch(gi::Yaml const& y, Block const& b, Script const& s, Mistakes& m)
 {
-    check_keys(y, "catch");
+    m.check_keys(y, "catch");
     Catch k;
     k.place = y.place();
     k.every = y.needed("every", "12").integer(2, 100000);
@@ -139,69 +232,86 @@ Catch read_catch(gi::Yaml const& y, Block const& b, Script const& s)
     return k;
 }
 
-void read_practice(gi::Yaml const& y, Block& b)
+void read_practice(gi::Yaml const& y, Block& b, Mistakes& m)
 {
-    check_keys(y, "practice");
-    b.practice.trials = y.needed("trials", "4").integer(1, 10000);
+    m.check_keys(y, "practice");
+    m.need(y, "trials", "4", [&](gi::Yaml const& v) { b.practice.trials = int(v.integer(1, 10000)); });
     bool const has_answer = !presented_orders(b.task, false).empty();
     b.practice.has_feedback = has_answer;
-    if (y.has("feedback")) {
-        b.practice.has_feedback = y.at("feedback").boolean();
+    m.take(y, "feedback", [&](gi::Yaml const& v) {
+        b.practice.has_feedback = v.boolean();
         if (b.practice.has_feedback && !has_answer)
-            throw y.at("feedback")
-                .error(fmt::format("feedback on {}", facts(b.task).name), "no answer is right", "write false");
-    }
-    if (!y.has("level")) return;
-    if (!b.compare || b.compare->factor >= 0)
-        throw y.at("level").error("a level although nothing is varied", "it would be ignored", "remove it");
-    b.practice.level = read_vary_level(y.at("level"), *b.compare);
+            throw v.error(fmt::format("feedback on {}", facts(b.task).name), "no answer is right", "write false");
+    });
+    m.take(y, "level", [&](gi::Yaml const& v) {
+        if (!b.compare || b.compare->factor >= 0)
+            throw v.error("a level although nothing is varied", "it would be ignored", "remove it");
+        b.practice.level = read_vary_level(v, *b.compare);
+    });
+}
+
+void read_nest(gi::Yaml const& key, gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
+{
+    auto const is_crossed = [&](int f) { return std::find(b.cross.begin(), b.cross.end(), f) != b.cross.end(); };
+    m.check_keys(y, "nest");
+    Nest n;
+    n.factor = read_factor(key, s);
+    gi::Yaml const in = y.needed("in", "scene");
+    n.within = read_factor(in, s);
+    if (!is_crossed(n.within) || is_crossed(n.factor) || !b.only[std::size_t(n.factor)].empty())
+        throw key.error(fmt::format("'{}' cannot be nested in '{}'", key.text(), in.text()),
+                        "the outer factor must be crossed and the inner one neither crossed nor under 'only'",
+                        fmt::format("write cross: [{}]", in.text()));
+    n.levels.resize(s.factors[std::size_t(n.within)].levels.size());
+    bool is_told = false;
+    for (auto const& [outer, inner] : m.entries(y.needed("levels", "{arches: [left, right]}")))
+        is_told |= !m.attempt([&, o = outer, i = inner] {
+            int const within = read_level(o, s, n.within);
+            for (gi::Yaml const& level : i.one_or_more())
+                n.levels[std::size_t(within)].push_back(read_level(level, s, n.factor));
+        });
+    for (int const outer : crossed_levels(s, b, n.within))
+        if (n.levels[std::size_t(outer)].empty() && !is_told)
+            m.add(y.error(fmt::format("'{}' has no levels within {}", key.text(),
+                                      s.factors[std::size_t(n.within)].levels[std::size_t(outer)].name),
+                          "that part of the block would be empty", "name some"));
+    b.nest.push_back(n);
 }
 
 /// Reads cross, nest, only.
-void read_conditions(gi::Yaml const& y, Script const& s, Block& b)
+void read_conditions(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
 {
-    auto const is_crossed = [&](int f) { return std::find(b.cross.begin(), b.cross.end(), f) != b.cross.end(); };
     b.only.resize(s.factors.size());
     if (y.has("only"))
-        for (auto const& [key, value] : y.at("only").entries()) {
-            int const f = read_factor(key, s);
-            for (gi::Yaml const& level : value.one_or_more())
-                b.only[std::size_t(f)].push_back(read_level(level, s, f));
-            if (b.only[std::size_t(f)].empty())
-                throw value.error("no levels", "the block would be empty", "name one");
-        }
-    if (y.has("cross"))
-        for (gi::Yaml const& name : y.at("cross").one_or_more()) {
-            int const f = read_factor(name, s);
-            if (is_crossed(f))
-                throw name.error("'" + name.text() + "' is crossed twice", "once is enough", "remove one");
-            b.cross.push_back(f);
-        }
+        for (auto const& [key, value] : m.entries(y.at("only")))
+            m.attempt([&, k = key, v = value] {
+                int const f = read_factor(k, s);
+                auto const levels = v.one_or_more();
+                for (gi::Yaml const& level : levels)
+                    m.attempt([&] { b.only[std::size_t(f)].push_back(read_level(level, s, f)); });
+                if (levels.empty()) throw v.error("no levels", "the block would be empty", "name one");
+            });
+    m.take(y, "cross", [&](gi::Yaml const& v) {
+        for (gi::Yaml const& name : v.one_or_more())
+            m.attempt([&] {
+                int const f = read_factor(name, s);
+                if (std::find(b.cross.begin(), b.cross.end(), f) != b.cross.end())
+                    throw name.error("'" + name.text() + "' is crossed twice", "once is enough", "remove one");
+                b.cross.push_back(f);
+            });
+    });
     if (!y.has("nest")) return;
-    for (auto const& [key, value] : y.at("nest").entries()) {
-        check_keys(value, "nest");
-        Nest n;
-        n.factor = read_factor(key, s);
-        gi::Yaml const in = value.needed("in", "scene");
-        n.within = read_factor(in, s);
-        if (!is_crossed(n.within) || is_crossed(n.factor) || !b.only[std::size_t(n.factor)].empty())
-            throw key.error(fmt::format("'{}' cannot be nested in '{}'", key.text(), in.text()),
-                            "the outer factor must be crossed and the inner one neither crossed nor under 'only'",
-                            fmt::format("write cross: [{}]", in.text()));
-        n.levels.resize(s.factors[std::size_t(n.within)].levels.size());
-        for (auto const& [outer, inner] : value.needed("levels", "{arches: [left, right]}").entries())
-            for (gi::Yaml const& level : inner.one_or_more())
-                n.levels[std::size_t(read_level(outer, s, n.within))].push_back(read_level(level, s, n.factor));
-        for (int const outer : crossed_levels(s, b, n.within))
-            if (n.levels[std::size_t(outer)].empty())
-                throw value.error(fmt::format("'{}' has no levels within {}", key.text(),
-                                              s.factors[std::size_t(n.within)].levels[std::size_t(outer)].name),
-                                  "that part of the block would be empty", "name some");
-        b.nest.push_back(n);
-    }
+    for (auto const& [key, value] : m.entries(y.at("nest")))
+        m.attempt([&, k = key, v = value] { read_nest(k, v, s, b, m); });
 }
 
-void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
+bool has_reference(Script const& s, int factor)
+{
+    return std::any_of(s.reference.begin(), s.reference.end(), [&](LevelChoice c) { return c.factor == factor; });
+}
+
+/// Reads what the task shows, without procedures.
+void read_shown(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
 {
     TaskFacts const& f = facts(b.task);
     bool const needs_one = f.takes_pairs || f.takes_compare;
@@ -212,35 +322,37 @@ void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
         throw y.error(fmt::format("block '{}' needs {}", b.name, what), "it defines the stimuli",
                       f.takes_pairs ? "write pairs: {factor: FACTOR}" : "write compare: {factor: FACTOR}");
     }
-    if (y.has("pairs")) b.pairs = read_pairs(y.at("pairs"), s);
-    if (y.has("compare")) b.compare = read_compare(y.at("compare"), s);
-    if (b.task == Task::ranking) {
-        gi::Yaml const rank = y.needed("rank", "{factor: FACTOR}");
-        check_keys(rank, "rank");
-        b.rank = read_factor(rank.needed("factor", "visibility"), s);
-        b.rank_levels = read_levels_of(rank, s, b.rank, 2);
-        if (b.rank_levels.size() > 9)
-            throw rank.error(fmt::format("{} to rank", b.rank_levels.size()),
-                             "the order is typed as digits 1 to 9", "omit some");
-    }
-    auto const has_reference = [&](int factor) {
-        return std::any_of(s.reference.begin(), s.reference.end(),
-                           [&](LevelChoice c) { return c.factor == factor; });
-    };
-    if (b.task == Task::pair_with_reference && !has_reference(b.pairs->factor))
-        throw y.at("pairs").error(
+    if (f.takes_pairs) m.take(y, "pairs", [&](gi::Yaml const& v) { b.pairs = read_pairs(v, s, m); });
+    if (f.takes_compare) m.take(y, "compare", [&](gi::Yaml const& v) { b.compare = read_compare(v, s, m); });
+    if (b.task == Task::ranking)
+        m.need(y, "rank", "{factor: FACTOR}", [&](gi::Yaml const& rank) {
+            m.check_keys(rank, "rank");
+            b.rank = read_factor(rank.needed("factor", "visibility"), s);
+            b.rank_levels = read_levels_of(rank, s, b.rank, 2, m);
+            if (b.rank_levels.size() > 9)
+                throw rank.error(fmt::format("{} to rank", b.rank_levels.size()),
+                                 "the order is typed as digits 1 to 9", "omit some");
+        });
+    if (b.task == Task::pair_with_reference && b.pairs && b.pairs->factor >= 0 &&
+        !has_reference(s, b.pairs->factor))
+        m.add(y.at("pairs").error(
             fmt::format("factor '{}' has no reference", s.factors[std::size_t(b.pairs->factor)].name),
-            "the task shows it with the pair", "add it to reference");
-    if (b.task == Task::rating) b.scale = read_scale(y.needed("scale", "{min: 1, max: 7}"));
-    if (y.has("modulus")) b.magnitude.modulus = y.at("modulus").number(1e-6, 1e9);
-    if (y.has("standard")) b.magnitude.standard = read_choice(y.at("standard"), s);
-    if (y.has("modulus") != y.has("standard"))
-        throw y.error("'modulus' and 'standard' belong together", "the modulus is the number of the standard",
-                      "give both or none");
+            "the task shows it with the pair", "add it to reference"));
+    bool const is_preference = f.takes_pairs && !f.takes_compare;
+    if (b.pairs && b.pairs->is_active() && !is_preference)
+        m.add(y.at("pairs").error(fmt::format("active sampling of pairs in task {}", f.name),
+                                  "it is for preferences, whose answers make a scale",
+                                  "use it in pair or pair_with_reference"));
+    if (b.pairs && b.pairs->is_active() && y.has("repeats"))
+        m.add(y.at("repeats").error("'repeats' of pairs that are chosen during the session",
+                                    "their number is 'trials' of pairs", "remove it"));
     if (b.task == Task::questionnaire)
-        b.questionnaire = read_questionnaire_name(y.needed("questionnaire", "ssq"), s);
-    if (y.has("duration_s")) b.duration_s = y.at("duration_s").number(1, 36000);
+        m.need(y, "questionnaire", "ssq",
+               [&](gi::Yaml const& v) { b.questionnaire = read_questionnaire_name(v, s); });
+}
 
+void read_procedures(gi::Yaml const& y, Block& b, Mistakes& m)
+{
     bool const varies = b.compare && b.compare->factor < 0;
     if (y.has("procedure") && y.has("interleave"))
         throw y.at("procedure").error("both procedure and interleave", "interleave has them all", "keep one");
@@ -250,63 +362,133 @@ void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
                       "a procedure chooses levels of the setting in compare",
                       varies ? "add procedure: {method: constant, levels: [...]}"
                              : "write compare: {vary: SETTING}");
-    if (y.has("procedure")) b.procedures.push_back(read_procedure(y.at("procedure"), *b.compare, b.task));
-    if (y.has("interleave"))
-        for (gi::Yaml const& item : y.at("interleave").items()) {
-            b.procedures.push_back(read_procedure(item, *b.compare, b.task));
+    m.take(y, "procedure",
+           [&](gi::Yaml const& v) { b.procedures.push_back(read_procedure(v, *b.compare, b.task, m)); });
+    if (!y.has("interleave")) return;
+    auto const items = y.at("interleave").items();
+    for (gi::Yaml const& item : items)
+        m.attempt([&] {
+            b.procedures.push_back(read_procedure(item, *b.compare, b.task, m));
             for (std::size_t i = 0; i + 1 < b.procedures.size(); ++i)
                 if (b.procedures[i].name == b.procedures.back().name)
                     throw item.error("two procedures named '" + b.procedures[i].name + "'",
                                      "records could not distinguish them", "give each a name");
-        }
-    if (varies && b.procedures.empty())
+        });
+    if (items.empty())
         throw y.at("interleave").error("nothing to interleave", "the block would be empty", "name procedures");
+}
+
+void read_scales(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
+{
+    if (b.task == Task::rating)
+        m.need(y, "scale", "{min: 1, max: 7}", [&](gi::Yaml const& v) { b.scale = read_scale(v); });
+    if (b.task == Task::free_walk)
+        m.take(y, "duration_s", [&](gi::Yaml const& v) { b.duration_s = v.number(1, 36000); });
+    if (b.task != Task::magnitude) return;
+    m.take(y, "modulus", [&](gi::Yaml const& v) { b.magnitude.modulus = v.number(1e-6, 1e9); });
+    m.take(y, "standard", [&](gi::Yaml const& v) { b.magnitude.standard = read_choice(v, s, m); });
+    if (y.has("modulus") != y.has("standard"))
+        m.add(y.error("'modulus' and 'standard' belong together", "the modulus is the number of the standard",
+                      "give both or none"));
+}
+
+void read_presentation(gi::Yaml const& y, Block& b, Mistakes& m)
+{
+    m.take(y, "presentation", [&](gi::Yaml const& v) {
+        b.is_sequential = v.one_of({"simultaneous", "sequential"}, "presentation") == 1;
+    });
+    bool const shows_several = facts(b.task).takes_pairs || b.task == Task::two_interval ||
+                               b.task == Task::ranking || b.magnitude.modulus > 0;
+    if (b.is_sequential && shows_several && !b.timing.stimulus_ms)
+        m.add(y.error(fmt::format("block '{}' shows stimuli one after another, each until the answer", b.name),
+                      "there is only one answer, after all of them", "add stimulus_ms: 2000"));
+}
+
+void read_rest_of_block(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
+{
+    m.take(y, "prompt", [&](gi::Yaml const& v) { b.prompt = v.text(); });
+    m.take(y, "instructions", [&](gi::Yaml const& v) { b.instructions = v.text(); });
+    m.take(y, "repeats", [&](gi::Yaml const& v) { b.repeats = int(v.integer(1, 10000)); });
+    m.take(y, "shuffle", [&](gi::Yaml const& v) {
+        b.shuffle = Shuffle(v.one_of({"all", "within_repeats", "none"}, "way to shuffle"));
+    });
+    m.take(y, "feedback", [&](gi::Yaml const& v) { b.has_feedback = v.boolean(); });
+    m.take(y, "ties", [&](gi::Yaml const& v) { b.may_tie = v.boolean(); });
+    m.take(y, "break_every", [&](gi::Yaml const& v) { b.break_every = int(v.integer(1, 100000)); });
+    m.take(y, "break_s", [&](gi::Yaml const& v) { b.break_s = v.number(0, 3600); });
+    m.take(y, "camera", [&](gi::Yaml const& v) { b.camera = v.text(); });
+    m.take(y, "stimuli", [&](gi::Yaml const& v) {
+        b.stimuli = Stimuli(v.one_of({"live", "prepared"}, "way to make stimuli"));
+    });
+    m.take(y, "settings", [&](gi::Yaml const& v) {
+        for (auto const& [key, value] : read_patch(v, m)) set_setting(b.settings, key, value);
+    });
+    m.take(y, "gaze", [&](gi::Yaml const& v) { read_gaze(v, b.gaze, m); });
+    m.take(y, "constraints", [&](gi::Yaml const& v) {
+        for (gi::Yaml const& item : v.items())
+            m.attempt([&] { b.constraints.push_back(read_constraint(item, s)); });
+    });
+}
+
+/// The index in kTasks. A misspelt task is told, and the nearest one taken.
+std::size_t read_task(gi::Yaml const& y, Mistakes& m)
+{
+    std::vector<std::string> names;
+    for (Task const t : kTasks) names.emplace_back(facts(t).name);
+    auto const found = std::find(names.begin(), names.end(), y.text());
+    if (found != names.end()) return std::size_t(found - names.begin());
+    gi::InputError const unknown = y.unknown("task", names);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (unknown.suggestion() == "did you mean '" + names[i] + "'?") {
+            m.add(unknown);
+            return i;
+        }
+    throw unknown;
 }
 
 } // namespace
 
-Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s)
+Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s, Mistakes& m)
 {
     Block b;
-    b.name = name.name();
+    b.name = name.text();
     b.place = name.place();
-    gi::Yaml const task = y.needed("task", "rating");
-    std::vector<std::string> names;
-    for (Task const t : kTasks) names.emplace_back(facts(t).name);
-    b.task = kTasks[std::size_t(task.one_of(names, "task"))];
-    check_block_keys(y, b.task);
-    b.is_sequential = facts(b.task).is_sequential;
+    b.only.resize(s.factors.size());
     b.timing = s.defaults.timing;
     b.camera = s.defaults.camera;
     b.stimuli = s.defaults.stimuli;
     b.settings = s.defaults.settings;
-    read_trial_timing(y, b.timing);
-    read_conditions(y, s, b);
-    read_stimuli(y, s, b);
-    if (y.has("prompt")) b.prompt = y.at("prompt").text();
-    if (y.has("instructions")) b.instructions = y.at("instructions").text();
-    if (y.has("repeats")) b.repeats = y.at("repeats").integer(1, 10000);
-    if (y.has("shuffle"))
-        b.shuffle = Shuffle(y.at("shuffle").one_of({"all", "within_repeats", "none"}, "way to shuffle"));
-    if (y.has("feedback")) b.has_feedback = y.at("feedback").boolean();
-    if (y.has("ties")) b.may_tie = y.at("ties").boolean();
-    if (y.has("presentation"))
-        b.is_sequential = y.at("presentation").one_of({"simultaneous", "sequential"}, "presentation") == 1;
-    bool const shows_several = facts(b.task).takes_pairs || b.task == Task::two_interval ||
-                               b.task == Task::ranking || b.magnitude.modulus > 0;
-    if (b.is_sequential && shows_several && !b.timing.stimulus_ms)
-        throw y.error(fmt::format("block '{}' shows stimuli one after another, each until the answer", b.name),
-                      "there is only one answer, after all of them", "add stimulus_ms: 2000");
-    if (y.has("break_every")) b.break_every = y.at("break_every").integer(1, 100000);
-    if (y.has("break_s")) b.break_s = y.at("break_s").number(0, 3600);
-    if (y.has("camera")) b.camera = y.at("camera").text();
-    if (y.has("stimuli")) b.stimuli = Stimuli(y.at("stimuli").one_of({"live", "prepared"}, "way to make stimuli"));
-    if (y.has("settings"))
-        for (auto const& [key, value] : read_patch(y.at("settings"))) set_setting(b.settings, key, value);
-    if (y.has("catch")) b.catches = read_catch(y.at("catch"), b, s);
-    if (y.has("practice")) read_practice(y.at("practice"), b);
-    if (y.has("constraints"))
-        for (gi::Yaml const& item : y.at("constraints").items()) b.constraints.push_back(read_constraint(item, s));
+    b.gaze = s.defaults.gaze;
+    m.attempt([&] { name.name(); });
+    b.knows_task = m.need(y, "task", "rating", [&](gi::Yaml const& v) { b.task = kTasks[read_task(v, m)]; });
+    if (!b.knows_task) {
+        b.is_broken = true;
+        m.check_keys(y, "block");
+        return b;
+    }
+    check_block_keys(y, b.task, m);
+    b.is_sequential = facts(b.task).is_sequential;
+    read_trial_timing(y, b.timing, m);
+    std::size_t const before = m.grave();
+    read_conditions(y, s, b, m);
+    bool const shows = m.attempt([&] { read_shown(y, s, b, m); });
+    if (shows) m.attempt([&] { read_procedures(y, b, m); });
+    b.is_broken = m.grave() > before;
+    read_scales(y, s, b, m);
+    read_rest_of_block(y, s, b, m);
+    read_presentation(y, b, m);
+    bool const knows_stimuli = !b.is_broken;
+    if (knows_stimuli) m.take(y, "catch", [&](gi::Yaml const& v) { b.catches = read_catch(v, b, s, m); });
+    m.take(y, "practice", [&](gi::Yaml const& v) { read_practice(v, b, m); });
+    bool const is_many = b.compare && !b.compare->also.empty();
+    if (is_many && b.stimuli == Stimuli::prepared)
+        m.add(y.error("prepared stimuli of several varied settings", "there would be too many",
+                      "write stimuli: live"));
+    for (Procedure const& p : b.procedures)
+        if (is_many && p.method != Method::questplus && !b.is_broken)
+            m.add(ScriptError(s.file, p.place,
+                              fmt::format("procedure '{}' varies one setting, and compare.also has more", p.name),
+                              "they would keep their usual levels", "use questplus, or remove also"));
     return b;
 }
 

@@ -25,47 +25,65 @@ std::vector<std::string> names_of(std::vector<FactorLevel> const& levels)
 
 } // namespace
 
-Patch read_patch(gi::Yaml const& y)
+Patch read_patch(gi::Yaml const& y, Mistakes& m)
 {
     Patch patch;
-    for (auto const& [key, value] : y.entries()) {
-        check_setting_key(key);
-        std::string const text = value.text();
-        if (text.find_first_of("\t\n\r") != std::string::npos)
-            throw value.error(value.path() + " is more than a line", "a setting is one word or number",
-                              "shorten it");
-        patch.emplace_back(key.text(), text);
-    }
+    for (auto const& [key, value] : m.entries(y))
+        m.attempt([&, k = key, v = value] {
+            check_setting_key(k);
+            std::string const text = v.text();
+            if (text.find_first_of("\t\n\r") != std::string::npos)
+                throw v.error(v.path() + " is more than a line", "a setting is one word or number", "shorten it");
+            patch.emplace_back(k.text(), text);
+        });
     return patch;
 }
 
-std::vector<Factor> read_factors(gi::Yaml const& y)
+namespace {
+
+/// Adds a level even if its settings are wrong, so that it is known where its name occurs.
+void read_level_list(gi::Yaml const& key, gi::Yaml const& list, Factor& factor, Mistakes& m)
+{
+    m.attempt([&] { check_setting_key(key); });
+    for (gi::Yaml const& level : list.items())
+        m.attempt([&] { factor.levels.push_back({level.name(), {{factor.name, level.name()}}}); });
+}
+
+Factor read_factor_levels(gi::Yaml const& key, gi::Yaml const& value, Mistakes& m)
+{
+    Factor factor{key.name(), {}, key.place()};
+    for (char const* reserved : {"pair", "answer", "procedure", "do"})
+        if (factor.name == reserved)
+            m.add(key.error("a factor named '" + factor.name + "'", "the word has another meaning in scripts",
+                            "choose another name"));
+    std::size_t const before = m.count();
+    if (value.is_list())
+        read_level_list(key, value, factor, m);
+    else
+        for (auto const& [name, patch] : m.entries(value))
+            m.attempt([&, n = name, p = patch] {
+                factor.levels.push_back({n.name(), {}});
+                factor.levels.back().settings = read_patch(p, m);
+            });
+    auto names = names_of(factor.levels);
+    std::sort(names.begin(), names.end());
+    if (auto const twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
+        m.add(value.error(fmt::format("level '{}' twice in {}", *twice, factor.name),
+                          "they could not be distinguished", "remove one"));
+    bool const is_told = names.empty() && m.count() > before;
+    if ((names.empty() || names.size() > 1000) && !is_told)
+        m.add(value.error(fmt::format("factor '{}' has {} levels", factor.name, names.size()),
+                          "1 to 1000 are allowed", names.empty() ? "add some" : "split it"));
+    return factor;
+}
+
+} // namespace
+
+std::vector<Factor> read_factors(gi::Yaml const& y, Mistakes& m)
 {
     std::vector<Factor> factors;
-    for (auto const& [key, value] : y.entries()) {
-        Factor factor{key.name(), {}, key.place()};
-        for (char const* reserved : {"pair", "answer", "procedure", "do"})
-            if (factor.name == reserved)
-                throw key.error("a factor named '" + factor.name + "'", "the word has another meaning in scripts",
-                                "choose another name");
-        if (value.is_list()) {
-            check_setting_key(key);
-            for (gi::Yaml const& level : value.items())
-                factor.levels.push_back({level.name(), {{factor.name, level.name()}}});
-        } else {
-            for (auto const& [name, patch] : value.entries())
-                factor.levels.push_back({name.name(), read_patch(patch)});
-        }
-        auto names = names_of(factor.levels);
-        std::sort(names.begin(), names.end());
-        if (auto const twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
-            throw value.error(fmt::format("level '{}' twice in {}", *twice, factor.name),
-                              "they could not be distinguished", "remove one");
-        if (names.empty() || names.size() > 1000)
-            throw value.error(fmt::format("factor '{}' has {} levels", factor.name, names.size()),
-                              "1 to 1000 are allowed", names.empty() ? "add some" : "split it");
-        factors.push_back(std::move(factor));
-    }
+    for (auto const& [key, value] : m.entries(y))
+        m.attempt([&, k = key, v = value] { factors.push_back(read_factor_levels(k, v, m)); });
     return factors;
 }
 
@@ -89,23 +107,25 @@ int read_questionnaire_name(gi::Yaml const& name, Script const& s)
     return name.one_of(known, "questionnaire");
 }
 
-Choice read_choice(gi::Yaml const& y, Script const& s)
+Choice read_choice(gi::Yaml const& y, Script const& s, Mistakes& m)
 {
     Choice choice;
-    for (auto const& [key, value] : y.entries()) {
-        int const factor = read_factor(key, s);
-        choice.push_back({factor, read_level(value, s, factor)});
-    }
+    for (auto const& [key, value] : m.entries(y))
+        m.attempt([&, k = key, v = value] {
+            int const factor = read_factor(k, s);
+            choice.push_back({factor, 0}); // in place of an unknown level
+            choice.back().level = read_level(v, s, factor);
+        });
     return choice;
 }
 
-std::vector<int> read_levels_of(gi::Yaml const& y, Script const& s, int factor, std::size_t least)
+std::vector<int> read_levels_of(gi::Yaml const& y, Script const& s, int factor, std::size_t least, Mistakes& m)
 {
     Factor const& f = s.factors[std::size_t(factor)];
     std::vector<bool> omitted(f.levels.size());
     if (y.has("omit"))
         for (gi::Yaml const& name : y.at("omit").one_or_more())
-            omitted[std::size_t(read_level(name, s, factor))] = true;
+            m.attempt_aside([&] { omitted[std::size_t(read_level(name, s, factor))] = true; });
     std::vector<int> levels;
     for (std::size_t i = 0; i < f.levels.size(); ++i)
         if (!omitted[i]) levels.push_back(int(i));
@@ -116,22 +136,33 @@ std::vector<int> read_levels_of(gi::Yaml const& y, Script const& s, int factor, 
     return levels;
 }
 
-void read_trial_timing(gi::Yaml const& y, TrialTiming& timing)
+void read_trial_timing(gi::Yaml const& y, TrialTiming& timing, Mistakes& m)
 {
     constexpr double kHour_ms = 3600000;
-    if (y.has("warmup_frames")) timing.warmup_frames = y.at("warmup_frames").integer(0, 100000);
+    m.take(y, "warmup_frames", [&](gi::Yaml const& v) { timing.warmup_frames = int(v.integer(0, 100000)); });
     for (auto const& [key, value] :
          {std::pair{"isi_ms", &timing.isi_ms}, {"iti_ms", &timing.iti_ms}, {"feedback_ms", &timing.feedback_ms}})
-        if (y.has(key)) *value = y.at(key).number(0, kHour_ms);
+        m.take(y, key, [into = value](gi::Yaml const& v) { *into = v.number(0, kHour_ms); });
     auto const optional = [&](char const* key, char const* word, std::optional<double>& value) {
-        if (!y.has(key)) return;
-        if (y.at(key).is_text() && y.at(key).text() == word)
-            value.reset();
-        else
-            value = y.at(key).number(1, kHour_ms);
+        m.take(y, key, [&](gi::Yaml const& v) {
+            if (v.is_text() && v.text() == word) return value.reset();
+            value = kHour_ms; // if it is none: there is a value, so that nothing else seems to lack it
+            value = v.number(1, kHour_ms);
+        });
     };
     optional("stimulus_ms", "until_response", timing.stimulus_ms);
     optional("timeout_ms", "none", timing.timeout_ms);
+    m.take(y, "min_response_ms", [&](gi::Yaml const& v) { timing.min_response_ms = v.number(0, kHour_ms); });
+    optional("max_response_ms", "none", timing.max_response_ms);
+    double const latest =
+        std::min(timing.max_response_ms.value_or(kHour_ms), timing.timeout_ms.value_or(kHour_ms));
+    for (char const* const key : {"min_response_ms", "max_response_ms", "timeout_ms"})
+        if (y.has(key) && timing.min_response_ms >= latest) {
+            m.add(y.at(key).error(
+                fmt::format("answers later than {:g} ms and before {:g} ms", timing.min_response_ms, latest),
+                "no answer could count", "lower min_response_ms, or raise the other limit"));
+            break;
+        }
     optional("expected_response_ms", "usual", timing.expected_response_ms);
 }
 

@@ -1,4 +1,5 @@
 #include "gi/core/text.h"
+#include "study/script/procedure_settings.h"
 #include "study/script/read.h"
 
 #include <algorithm>
@@ -58,47 +59,166 @@ Stop read_stop(gi::Yaml const& y, bool may_reverse)
     return stop;
 }
 
-void read_staircase(gi::Yaml const& y, Compare const& c, Procedure& p)
+/// The values that formulas of a procedure may use; the first ones, of the stimulus, must be used.
+std::vector<std::string> formula_names(Procedure const& p)
 {
-    check_keys(y, "staircase");
-    if (y.has("target")) {
+    if (!p.is_many()) return {kPsychometricValues.begin(), kPsychometricValues.end()};
+    std::vector<std::string> names{"x"};
+    for (QuestGrid const& g : p.also) names.push_back(g.name);
+    names.insert(names.end(), kPsychometricValues.begin() + 1, kPsychometricValues.end());
+    for (QuestGrid const& g : p.parameters) names.push_back(g.name);
+    return names;
+}
+
+/// A name, or a formula, which has more than letters.
+void read_psychometric(gi::Yaml const& y, Procedure& p, Mistakes& m)
+{
+    m.take(y, "psychometric", [&](gi::Yaml const& v) {
+        std::string const text = v.text();
+        bool const is_word = std::all_of(text.begin(), text.end(), [](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+        });
+        if (is_word) {
+            if (p.is_many())
+                throw v.error("'" + text + "' of several settings or further parameters", "it is of one setting",
+                              "write a formula of x, their names and the parameters");
+            p.psychometric = {Psychometric(v.one_of(psychometric_names(), "psychometric function")), {}};
+            return;
+        }
+        try {
+            std::size_t const needed = p.is_many() ? 1 + p.also.size() : 2;
+            p.psychometric = {Psychometric::formula,
+                              std::make_shared<Formula const>(text, formula_names(p), needed)};
+        } catch (FormulaError const& e) {
+            gi::TextLocation where = v.place();
+            where.column += e.column - 1 + (v.is_quoted() ? 1 : 0);
+            throw gi::InputError(where, e.problem, e.why, e.suggestion);
+        }
+    });
+}
+
+void read_staircase(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes& m)
+{
+    m.check_keys(y, "staircase");
+    m.take(y, "target", [&](gi::Yaml const& v) {
         if (y.has("up") || y.has("down"))
             throw y.error("both target and up or down", "a weighted staircase is 1 up, 1 down, with unequal steps",
                           "keep one");
-        p.target = y.at("target").number(0.5, 0.99);
-    }
-    if (y.has("up")) p.up = y.at("up").integer(1, 20);
-    if (y.has("down")) p.down = y.at("down").integer(1, 20);
-    p.start = y.needed("start", "256").number(-kAny, kAny);
-    if (p.start < c.low || p.start > c.high)
-        throw y.at("start").error(fmt::format("the staircase starts at {:g}", p.start),
-                                  fmt::format("its range is {:g} to {:g}", c.low, c.high), "start within");
-    for (gi::Yaml const& step : y.needed("steps", "[2, 1, 0.5]").one_or_more())
-        p.steps.push_back(step.number(1e-9, kAny));
-    if (p.steps.empty()) throw y.at("steps").error("no steps", "it could not move", "write [2, 1, 0.5]");
-    p.stop = read_stop(y.needed("stop", "{reversals: 8, max_trials: 40}"), true);
+        p.target = v.number(0.5, 0.99);
+    });
+    m.take(y, "up", [&](gi::Yaml const& v) { p.up = int(v.integer(1, 20)); });
+    m.take(y, "down", [&](gi::Yaml const& v) { p.down = int(v.integer(1, 20)); });
+    m.need(y, "start", "256", [&](gi::Yaml const& v) {
+        p.start = v.number(-kAny, kAny);
+        if (p.start < c.low || p.start > c.high)
+            throw v.error(fmt::format("the staircase starts at {:g}", p.start),
+                          fmt::format("its range is {:g} to {:g}", c.low, c.high), "start within");
+    });
+    m.need(y, "steps", "[2, 1, 0.5]", [&](gi::Yaml const& v) {
+        for (gi::Yaml const& step : v.one_or_more()) p.steps.push_back(step.number(1e-9, kAny));
+        if (p.steps.empty()) throw v.error("no steps", "it could not move", "write [2, 1, 0.5]");
+    });
+    read_psychometric(y, p, m);
+    m.need(y, "stop", "{reversals: 8, max_trials: 40}", [&](gi::Yaml const& v) { p.stop = read_stop(v, true); });
 }
 
-void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p)
+/// The proportions that QUEST+ would use.
+void check_function(gi::Yaml const& y, Compare const& c, Procedure const& p, Mistakes& m)
 {
-    check_keys(y, "questplus");
-    p.threshold = read_grid(y.needed("threshold", "64..16384/33"), c.scale, c.low, c.high);
-    p.slope = read_grid(y.needed("slope", "[1, 2, 3.5, 5]"), Scale::linear, 1e-6, kAny);
-    p.guess = read_grid(y.needed("guess", "0.5"), Scale::linear, 0, 0.99);
-    p.lapse = read_grid(y.needed("lapse", "[0, 0.02, 0.04]"), Scale::linear, 0, 0.5);
-    p.stimuli = y.has("levels") ? read_grid(y.at("levels"), c.scale, c.low, c.high) : p.threshold;
+    PsychometricChoice const function = assumed_function(p);
+    double const lowest = std::min(p.stimuli.front(), p.threshold.front());
+    if (function.function == Psychometric::weibull && lowest <= 0)
+        m.add(y.error(fmt::format("Weibull's function of the level {:g}", lowest),
+                      "it takes ratios of levels above 0", "write psychometric: gumbel or normal"));
+    if (function.function != Psychometric::formula) return;
+    for (double const level : p.stimuli)
+        for (double const threshold : p.threshold)
+            for (double const slope : p.slope)
+                for (double const guess : {p.guess.front(), p.guess.back()}) {
+                    double const share = proportion_correct(function, c.scale, c.harder_up,
+                                                            {threshold, slope, guess, p.lapse.front()}, level);
+                    if (share >= 0 && share <= 1) continue;
+                    m.add(y.at("psychometric")
+                              .error(
+                                  fmt::format("the formula gives {:g} at x = {:g}, threshold = {:g}, slope = {:g}",
+                                              share, level, threshold, slope),
+                                  "a proportion lies between 0 and 1", "correct the formula or the grids"));
+                    return;
+                }
+}
+
+void check_grids(gi::Yaml const& y, Compare const& c, Procedure const& p, Mistakes& m)
+{
+    if (p.is_many()) {
+        m.attempt([&] {
+            try {
+                QuestPlusMany const unused(quest_many_settings(p));
+            } catch (std::invalid_argument const& e) {
+                throw y.error(e.what(), "", "");
+            }
+        });
+        return;
+    }
     if (p.stimuli.size() < 2)
-        throw y.error("questplus has only one level to present", "it could not choose",
-                      "give 'levels' as 64..16384/33");
+        m.add(y.error("questplus has only one level to present", "it could not choose",
+                      "give 'levels' as 64..16384/33"));
     double const size = double(p.threshold.size() * p.slope.size()) * double(p.guess.size() * p.lapse.size());
     if (size * double(p.stimuli.size()) > 2e7)
-        throw y.error(fmt::format("{:g} points of the prior times {} levels", size, p.stimuli.size()),
-                      "computing them would delay trials", "make the grids coarser");
-    if (y.has("psychometric")) {
-        std::vector<std::string> const known{"weibull", "normal", "logistic"};
-        p.psychometric = Psychometric(y.at("psychometric").one_of(known, "psychometric function"));
-    }
-    p.stop = read_stop(y.needed("stop", "{trials: 32}"), false);
+        m.add(y.error(fmt::format("{:g} points of the prior times {} levels", size, p.stimuli.size()),
+                      "computing them would delay trials", "make the grids coarser"));
+    else
+        check_function(y, c, p, m);
+}
+
+/// Levels of further settings and values of further parameters.
+void read_further_grids(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes& m)
+{
+    std::vector<std::string> further;
+    for (FurtherSetting const& f : c.also) further.push_back(f.name);
+    if (y.has("also"))
+        for (auto const& [key, unused] : m.entries(y.at("also")))
+            m.attempt([&, k = key] { k.one_of(further, "setting of compare.also"); });
+    for (FurtherSetting const& f : c.also) // in the order of compare
+        if (y.has("also") && y.at("also").has(f.name))
+            m.attempt([&] {
+                p.also.push_back({f.name, read_grid(y.at("also").at(f.name), f.scale, f.low, f.high)});
+            });
+        else
+            m.add(y.error(fmt::format("no levels of '{}', which compare.also varies", f.name),
+                          "it could not choose", fmt::format("write also: {{{}: [...]}}", f.name)));
+    std::vector<std::string> taken{"x", "threshold", "slope", "guess", "lapse"};
+    taken.insert(taken.end(), further.begin(), further.end());
+    if (!y.has("parameters")) return;
+    for (auto const& [key, value] : m.entries(y.at("parameters")))
+        m.attempt([&, k = key, v = value] {
+            std::string const name = k.name();
+            if (std::find(taken.begin(), taken.end(), name) != taken.end())
+                throw k.error("a parameter named '" + name + "'", "the formula has that name already",
+                              "rename it");
+            p.parameters.push_back({name, read_grid(v, Scale::linear, -kAny, kAny)});
+        });
+}
+
+void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes& m)
+{
+    m.check_keys(y, "questplus");
+    std::size_t const before = m.count();
+    m.need(y, "threshold", "64..16384/33",
+           [&](gi::Yaml const& v) { p.threshold = read_grid(v, c.scale, c.low, c.high); });
+    m.need(y, "slope", "[1, 2, 3.5, 5]",
+           [&](gi::Yaml const& v) { p.slope = read_grid(v, Scale::linear, 1e-6, kAny); });
+    m.need(y, "guess", "0.5", [&](gi::Yaml const& v) { p.guess = read_grid(v, Scale::linear, 0, 0.99); });
+    m.need(y, "lapse", "[0, 0.02, 0.04]",
+           [&](gi::Yaml const& v) { p.lapse = read_grid(v, Scale::linear, 0, 0.5); });
+    p.stimuli = p.threshold;
+    m.take(y, "levels", [&](gi::Yaml const& v) { p.stimuli = read_grid(v, c.scale, c.low, c.high); });
+    read_further_grids(y, c, p, m);
+    read_psychometric(y, p, m);
+    if (p.is_many() && !p.psychometric && m.count() == before)
+        m.add(y.error("several settings or further parameters without a formula", "the function is unknown",
+                      "write psychometric: FORMULA"));
+    if (m.count() == before) check_grids(y, c, p, m);
+    m.need(y, "stop", "{trials: 32}", [&](gi::Yaml const& v) { p.stop = read_stop(v, false); });
 }
 
 } // namespace
@@ -125,7 +245,7 @@ std::vector<double> read_grid(gi::Yaml const& y, Scale scale, double low, double
     return grid;
 }
 
-Procedure read_procedure(gi::Yaml const& y, Compare const& c, Task task)
+Procedure read_procedure(gi::Yaml const& y, Compare const& c, Task task, Mistakes& m)
 {
     Procedure p;
     p.place = y.place();
@@ -133,19 +253,21 @@ Procedure read_procedure(gi::Yaml const& y, Compare const& c, Task task)
                                                  ? std::vector<std::string>{"adjustment"}
                                                  : std::vector<std::string>{"constant", "staircase", "questplus"};
     std::string const method =
-        methods[std::size_t(y.needed("method", methods[0]).one_of(methods, "method of this task"))];
+        methods[std::size_t(y.needed("method", methods[0].c_str()).one_of(methods, "method of this task"))];
     p.method = *method_of(method);
-    p.name = y.has("name") ? y.at("name").name() : method;
+    p.name = method;
+    m.take(y, "name", [&](gi::Yaml const& v) { p.name = v.name(); });
     if (p.method == Method::staircase) {
-        read_staircase(y, c, p);
+        read_staircase(y, c, p, m);
     } else if (p.method == Method::questplus) {
-        read_questplus(y, c, p);
+        read_questplus(y, c, p, m);
     } else {
         bool const is_constant = p.method == Method::constant;
-        check_keys(y, is_constant ? "constant" : "adjustment");
-        char const* const key = is_constant ? "levels" : "starts";
-        p.levels = read_grid(y.needed(key, "[64, 256, 1024]"), c.scale, c.low, c.high);
-        if (y.has("trials_per_level")) p.trials_per_level = y.at("trials_per_level").integer(1, 1000);
+        if (is_constant) read_psychometric(y, p, m);
+        m.check_keys(y, is_constant ? "constant" : "adjustment");
+        m.need(y, is_constant ? "levels" : "starts", "[64, 256, 1024]",
+               [&](gi::Yaml const& v) { p.levels = read_grid(v, c.scale, c.low, c.high); });
+        m.take(y, "trials_per_level", [&](gi::Yaml const& v) { p.trials_per_level = int(v.integer(1, 1000)); });
     }
     return p;
 }

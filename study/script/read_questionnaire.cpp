@@ -62,37 +62,52 @@ Subscale read_subscale(gi::Yaml const& name, gi::Yaml const& y, Questionnaire co
 
 } // namespace
 
-std::vector<Questionnaire> read_questionnaires(gi::Yaml const& y)
+namespace {
+
+void read_items(gi::Yaml const& y, Questionnaire& q, Mistakes& m)
+{
+    std::optional<RatingScale> usual;
+    m.take(y, "scale", [&](gi::Yaml const& v) { usual = read_scale(v); });
+    std::set<std::string> ids;
+    std::size_t const before = m.count();
+    m.need(y, "items", "[{id: q1, text: \"...\"}]", [&](gi::Yaml const& list) {
+        for (gi::Yaml const& item : list.items())
+            m.attempt([&] {
+                q.items.push_back(read_item(item, usual ? &*usual : nullptr));
+                if (!ids.insert(q.items.back().id).second)
+                    throw item.error("item '" + q.items.back().id + "' twice", "tables could not distinguish them",
+                                     "rename one");
+            });
+    });
+    bool const is_told = q.items.empty() && m.count() > before;
+    if ((q.items.empty() || q.items.size() > 1000) && !is_told)
+        m.add(y.error(fmt::format("questionnaire '{}' has {} items", q.name, q.items.size()),
+                      "1 to 1000 are allowed", "change it"));
+    if (m.count() == before && y.has("scales")) // scores refer to items
+        for (auto const& [name, scale] : m.entries(y.at("scales")))
+            m.attempt([&, n = name, v = scale] { q.subscales.push_back(read_subscale(n, v, q)); });
+}
+
+} // namespace
+
+std::vector<Questionnaire> read_questionnaires(gi::Yaml const& y, Mistakes& m)
 {
     std::vector<Questionnaire> all;
-    for (auto const& [key, value] : y.entries()) {
-        check_keys(value, "questionnaire");
-        Questionnaire q;
-        q.name = key.name();
-        q.place = key.place();
-        for (Questionnaire const& known : known_questionnaires())
-            if (known.name == q.name)
-                throw key.error("questionnaire '" + q.name + "' is known already", "the name is taken",
-                                "choose another name");
-        if (value.has("title")) q.title = value.at("title").text();
-        if (value.has("instructions")) q.instructions = value.at("instructions").text();
-        std::optional<RatingScale> usual;
-        if (value.has("scale")) usual = read_scale(value.at("scale"));
-        std::set<std::string> ids;
-        for (gi::Yaml const& item : value.needed("items", "[{id: q1, text: \"...\"}]").items()) {
-            q.items.push_back(read_item(item, usual ? &*usual : nullptr));
-            if (!ids.insert(q.items.back().id).second)
-                throw item.error("item '" + q.items.back().id + "' twice", "tables could not distinguish them",
-                                 "rename one");
-        }
-        if (q.items.empty() || q.items.size() > 1000)
-            throw value.error(fmt::format("questionnaire '{}' has {} items", q.name, q.items.size()),
-                              "1 to 1000 are allowed", "change it");
-        if (value.has("scales"))
-            for (auto const& [name, scale] : value.at("scales").entries())
-                q.subscales.push_back(read_subscale(name, scale, q));
-        all.push_back(std::move(q));
-    }
+    for (auto const& [key, value] : m.entries(y))
+        m.attempt([&, k = key, v = value] {
+            Questionnaire q;
+            q.name = k.name();
+            q.place = k.place();
+            for (Questionnaire const& known : known_questionnaires())
+                if (known.name == q.name)
+                    throw k.error("questionnaire '" + q.name + "' is known already", "the name is taken",
+                                  "choose another name");
+            m.check_keys(v, "questionnaire");
+            m.take(v, "title", [&](gi::Yaml const& x) { q.title = x.text(); });
+            m.take(v, "instructions", [&](gi::Yaml const& x) { q.instructions = x.text(); });
+            read_items(v, q, m);
+            all.push_back(std::move(q));
+        });
     return all;
 }
 

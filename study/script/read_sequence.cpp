@@ -23,13 +23,13 @@ SequenceItem read_name(gi::Yaml const& y, Script const& s)
     return item;
 }
 
-void read_free_walk(gi::Yaml const& y, Script const& s, SequenceItem& item)
+void read_free_walk(gi::Yaml const& y, Script const& s, SequenceItem& item, Mistakes& m)
 {
     check_keys(y, "free_walk");
     item.kind = SequenceKind::free_walk;
     item.seconds = y.needed("duration_s", "60").number(1, 36000);
     if (y.has("prompt")) item.text = y.at("prompt").text();
-    if (y.has("condition")) item.choice = read_choice(y.at("condition"), s);
+    if (y.has("condition")) item.choice = read_choice(y.at("condition"), s, m);
 }
 
 void read_rest(gi::Yaml const& y, SequenceItem& item)
@@ -44,7 +44,7 @@ void read_rest(gi::Yaml const& y, SequenceItem& item)
     if (y.has("prompt")) item.text = y.at("prompt").text();
 }
 
-SequenceItem read_item(gi::Yaml const& y, Script const& s, int depth)
+SequenceItem read_item(gi::Yaml const& y, Script const& s, Mistakes& m, int depth)
 {
     if (y.is_text()) return read_name(y, s);
     check_keys(y, "sequence_item");
@@ -64,26 +64,27 @@ SequenceItem read_item(gi::Yaml const& y, Script const& s, int depth)
         item.kind = SequenceKind::questionnaire;
         item.index = read_questionnaire_name(y.at("questionnaire"), s);
     } else if (y.has("free_walk")) {
-        read_free_walk(y.at("free_walk"), s, item);
+        read_free_walk(y.at("free_walk"), s, item, m);
     } else if (y.has("break")) {
         read_rest(y.at("break"), item);
     } else {
         item.kind = SequenceKind::per;
-        item.index = read_factor(y.at("per"), s);
-        item.items = read_sequence(y.at("do"), s, depth + 1);
+        m.take(y, "do", [&](gi::Yaml const& v) { item.items = read_sequence(v, s, m, depth + 1); });
+        m.take(y, "per", [&](gi::Yaml const& v) { item.index = read_factor(v, s); });
     }
     return item;
 }
 
 } // namespace
 
-std::vector<SequenceItem> read_sequence(gi::Yaml const& y, Script const& s, int depth)
+std::vector<SequenceItem> read_sequence(gi::Yaml const& y, Script const& s, Mistakes& m, int depth)
 {
     if (depth > 8) throw y.error("'per' within 'per' more than 8 deep", "that is too complex", "nest less");
     std::vector<SequenceItem> items;
-    for (gi::Yaml const& item : y.items()) items.push_back(read_item(item, s, depth));
-    if (items.empty()) throw y.error("an empty sequence", "there is nothing to do", "name blocks");
-    if (items.size() > 1000) throw y.error("more than 1000 steps", "a session has fewer", "use per and blocks");
+    auto const written = y.items();
+    for (gi::Yaml const& item : written) m.attempt([&] { items.push_back(read_item(item, s, m, depth)); });
+    if (written.empty()) throw y.error("an empty sequence", "there is nothing to do", "name blocks");
+    if (written.size() > 1000) throw y.error("more than 1000 steps", "a session has fewer", "use per and blocks");
     return items;
 }
 

@@ -3,9 +3,11 @@
 // blocks and questionnaires are indices into the lists of the Script; -1 = none. Times are in milliseconds unless
 // their names end in another unit.
 
+#include "study/script/asked_question.h"
 #include "study/script/procedure.h"
 #include "study/script/questionnaire.h"
 #include "study/script/task.h"
+#include "study/signals/gaze.h"
 
 #include <cstdint>
 #include <optional>
@@ -37,7 +39,7 @@ using Choice = std::vector<LevelChoice>;
 struct Participants {
     int count = 0;
     std::string id = "P{n:03}"; ///< {n} or {n:03}: the participant's number
-    std::vector<std::string> ask;
+    std::vector<AskedQuestion> ask;
     std::string consent; ///< a Markdown file, or the text; empty = none
     Place place;
 };
@@ -63,17 +65,20 @@ struct Timing {
     BadTrial on_bad_trial = BadTrial::repeat_at_end;
     std::optional<SyncPatch> sync_patch;
     Calibrate calibrate;
-    double display_lag_ms = 0; ///< as measured by a photodiode: recorded, never subtracted
-    double expected_hz = 60;   ///< for planning only
+    double display_lag_ms = 0;             ///< as measured by a photodiode: recorded, never subtracted
+    double display_lag_uncertainty_ms = 0; ///< half the width of its 95 % interval
+    double expected_hz = 60;               ///< for planning only
 };
 
 /// Timing of a trial, from the end of the previous one to its own end.
 struct TrialTiming {
-    int warmup_frames = 0;                      ///< rendered before a trial's first stimulus is shown
-    double isi_ms = 500;                        ///< between the stimuli of a trial
-    double iti_ms = 500;                        ///< between trials
-    std::optional<double> stimulus_ms;          ///< of each stimulus; none = until the answer
-    std::optional<double> timeout_ms;           ///< for the answer, from the last onset; none = no timeout
+    int warmup_frames = 0;                 ///< rendered before a trial's first stimulus is shown
+    double isi_ms = 500;                   ///< between the stimuli of a trial
+    double iti_ms = 500;                   ///< between trials
+    std::optional<double> stimulus_ms;     ///< of each stimulus; none = until the answer
+    std::optional<double> timeout_ms;      ///< for the answer, from the last onset; none = no timeout
+    double min_response_ms = 100;          ///< faster answers are anticipations: the trial is invalid; 0 = none
+    std::optional<double> max_response_ms; ///< slower answers make it invalid; none = no limit
     std::optional<double> expected_response_ms; ///< for planning; none = the task's default
     double feedback_ms = 500;
 };
@@ -83,6 +88,7 @@ struct Defaults {
     std::string camera; ///< a camera of the scene, or path:NAME
     Stimuli stimuli = Stimuli::live;
     Patch settings;
+    GazeRules gaze;
 };
 
 /// The inputs that give an answer: "key:left", "pad:x", "xr:left/trigger", "mouse:left".
@@ -124,6 +130,17 @@ struct Pairs {
     int factor = -1;
     std::vector<std::pair<int, int>> pairs; ///< levels
     PairOrder order = PairOrder::balanced;
+    int active_trials = 0; ///< of each cell, whose pairs are chosen during the session; 0 = the plan has all pairs
+    bool is_batch = true;  ///< active: chosen for a spanning tree at a time; false: after each answer
+    bool is_active() const { return active_trials > 0; }
+};
+
+/// A setting that QUEST+ varies besides the one of `vary`, in all stimuli of a trial alike.
+struct FurtherSetting {
+    std::string setting, name; ///< name: in formulas
+    Scale scale = Scale::linear;
+    double low = 0, high = 0;
+    double usual = 0; ///< level in practice and catch trials
 };
 
 /// What is compared in tasks that have a correct answer, and what is adjusted in adjustment.
@@ -135,6 +152,7 @@ struct Compare {
     Patch with;              ///< settings of the varied stimulus, overridden by the level
     Scale scale = Scale::linear;
     double low = 0, high = 0;
+    std::vector<FurtherSetting> also;
     bool harder_up = true; ///< a higher level is harder to distinguish from the other stimulus
 };
 
@@ -212,6 +230,9 @@ struct Block {
     std::string camera;
     Stimuli stimuli = Stimuli::live;
     Patch settings;
+    GazeRules gaze;
+    bool knows_task = true; ///< false: its task is none
+    bool is_broken = false; ///< read with mistakes: it cannot be planned
 };
 
 struct Record {
@@ -220,6 +241,7 @@ struct Record {
     double head_pose_hz = 0; ///< used if poses are not recorded per frame; 0 = none
     std::vector<std::string> markers;
     bool compress_frames = false;
+    std::string gaze; ///< where it comes from: lsl, lsl:NAME; empty = none
 };
 struct Resume {
     double max_gap_min = 60; ///< after a longer gap, the steps listed in `repeat` are shown again

@@ -1,4 +1,5 @@
 #pragma once
+#include "study/script/mistakes.h"
 #include "study/script/script.h"
 
 #include <filesystem>
@@ -11,7 +12,18 @@ namespace study {
 /// @param name name of the text in messages
 Script parse_script(std::string const& text, std::string const& name);
 
+/// A script as far as it can be read, and all that is wrong with it.
+struct ReadScript {
+    Script script;
+    Mistakes mistakes;
+    bool is_whole = false; ///< its parts were read; false: it is not YAML, or no map
+};
+/// As parse_script(), but goes on after mistakes. Blocks that cannot be planned are broken.
+ReadScript read_script(std::string const& text, std::string const& name);
+
 /// Throws ScriptError for the first Markdown file that the script names and `folder` lacks.
 void check_text_files(Script const& script, std::filesystem::path const& folder);
+/// As check_text_files(), and adds each.
+void find_missing_texts(Script const& script, std::filesystem::path const& folder, Mistakes& m);
 
 } // namespace study

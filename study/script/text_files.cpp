@@ -17,21 +17,30 @@ void check_text_file(Script const& s, std::filesystem::path const& folder, std::
                           "create it, or write the text itself here");
 }
 
-void check_texts(Script const& s, std::filesystem::path const& folder, std::vector<SequenceItem> const& items)
+void check_texts(Script const& s, std::filesystem::path const& folder, std::vector<SequenceItem> const& items,
+                 Mistakes& m)
 {
     for (SequenceItem const& item : items) {
-        if (item.kind == SequenceKind::instructions) check_text_file(s, folder, item.text, item.place);
-        check_texts(s, folder, item.items);
+        if (item.kind == SequenceKind::instructions)
+            m.attempt([&] { check_text_file(s, folder, item.text, item.place); });
+        check_texts(s, folder, item.items, m);
     }
 }
 
 } // namespace
 
+void find_missing_texts(Script const& s, std::filesystem::path const& folder, Mistakes& m)
+{
+    m.attempt([&] { check_text_file(s, folder, s.participants.consent, s.participants.place); });
+    check_texts(s, folder, s.sequence, m);
+    for (Block const& b : s.blocks) m.attempt([&] { check_text_file(s, folder, b.instructions, b.place); });
+}
+
 void check_text_files(Script const& script, std::filesystem::path const& folder)
 {
-    check_text_file(script, folder, script.participants.consent, script.participants.place);
-    check_texts(script, folder, script.sequence);
-    for (Block const& b : script.blocks) check_text_file(script, folder, b.instructions, b.place);
+    Mistakes m;
+    find_missing_texts(script, folder, m);
+    if (!m.empty()) throw m.in_order().front();
 }
 
 } // namespace study

@@ -1,6 +1,6 @@
 #pragma once
-// Minimum of a smooth function without given derivatives: BFGS (Nocedal & Wright 2006, "Numerical
-// Optimization", ch. 6) with central differences and step halving. Neither Eigen nor Boost has it.
+// Minimum of a smooth function: BFGS (Nocedal & Wright 2006, "Numerical Optimization", ch. 6) with step halving,
+// and with central differences where no derivatives are given. Neither Eigen nor Boost has it.
 
 #include <functional>
 #include <span>
@@ -16,5 +16,13 @@ struct Minimum {
 
 Minimum minimise(std::function<double(std::span<double const>)> const& f, std::vector<double> const& start,
                  int max_iterations = 500);
+
+/// Computes the gradient at the first argument into the second one.
+using GradientAt = std::function<void(std::span<double const>, std::span<double>)>;
+
+/// @param tolerance on the gain of a step, relative to 1 + |value|: the accuracy of the function and its gradient
+/// @param first_step about the inverse of the function's second derivatives
+Minimum minimise(std::function<double(std::span<double const>)> const& f, GradientAt const& gradient,
+                 std::vector<double> const& start, int max_iterations, double tolerance, double first_step = 1);
 
 } // namespace study

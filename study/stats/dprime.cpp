@@ -102,21 +102,13 @@ double abx_dprime(double hit_rate, double false_alarm_rate, Strategy strategy)
         0, kLargest);
 }
 
-double oddity_proportion(double dprime)
+double oddity_miss(double dprime)
 {
-    if (std::isinf(dprime)) return 1;
-    // Simpson's rule: the integrand does not vanish at 0.
-    constexpr int kSteps = 900;
-    constexpr double kStep = 9.0 / kSteps;
-    double const shift = dprime * std::sqrt(2.0 / 3);
-    double sum = 0;
-    for (int i = 0; i <= kSteps; ++i) {
-        double const u = i * kStep, root = u * std::sqrt(3.0);
-        double const weight = i == 0 || i == kSteps ? 1 : i % 2 ? 4 : 2;
-        sum += weight * normal_pdf(u) * (normal_cdf(shift - root) + normal_cdf(-shift - root));
-    }
-    return 2 * sum * kStep / 3;
+    if (std::isinf(dprime)) return 0;
+    return 4 * owens_t(dprime / std::sqrt(6.0), std::sqrt(3.0));
 }
+
+double oddity_proportion(double dprime) { return 1 - oddity_miss(dprime); }
 
 double oddity_dprime(double p)
 {

@@ -9,6 +9,10 @@ namespace study {
 namespace {
 
 constexpr double kConverged = 1e-13; ///< threshold on the predicted gain in log-likelihood of a step
+/// The same where the iterations end: estimates are then within 0.015 standard errors of the maximum. Scoring by
+/// the expected information gains little per step where it differs from the curvature, as with lapse rates near
+/// their bounds.
+constexpr double kNearEnough = 1e-4;
 
 /// Free parameters: all except those that the gradient pushes against a bound.
 std::vector<std::size_t> free_parameters(std::vector<double> const& x, std::vector<Bound> const& bounds,
@@ -90,7 +94,7 @@ MaximumLikelihood maximise(LikelihoodAt const& model, std::vector<double> start,
     std::vector<double>& x = result.estimate;
     Likelihood here, there;
     model(x, here);
-    double damping = 0;
+    double damping = 0, last_gain = std::numeric_limits<double>::infinity();
     for (int iteration = 0; iteration < max_iterations && !result.converged; ++iteration) {
         auto const free = free_parameters(x, bounds, here.gradient);
         Eigen::VectorXd gradient(Eigen::Index(free.size()));
@@ -99,13 +103,21 @@ MaximumLikelihood maximise(LikelihoodAt const& model, std::vector<double> start,
 
         std::vector<double> next = x;
         double gain = 0;
-        for (std::size_t k = 0; k < free.size(); ++k) {
-            double& v = next[free[k]];
-            v += step[Eigen::Index(k)];
-            if (!bounds.empty()) v = std::clamp(v, bounds[free[k]].low, bounds[free[k]].high);
-            gain += gradient[Eigen::Index(k)] * (v - x[free[k]]);
-        }
-        model(next, there);
+        auto const go = [&](double share) {
+            gain = 0;
+            for (std::size_t k = 0; k < free.size(); ++k) {
+                double& v = next[free[k]];
+                v = x[free[k]] + share * step[Eigen::Index(k)];
+                if (!bounds.empty()) v = std::clamp(v, bounds[free[k]].low, bounds[free[k]].high);
+                gain += gradient[Eigen::Index(k)] * (v - x[free[k]]);
+            }
+            model(next, there);
+            return there.log_likelihood >= here.log_likelihood;
+        };
+        // Where the curvature is above the expected information, whole steps go too far.
+        bool const is_better = go(1);
+        last_gain = gain * (1 + damping);
+        if (!is_better && !go(0.5)) go(0.25);
         if (there.log_likelihood >= here.log_likelihood) {
             x = next;
             std::swap(here, there);
@@ -118,6 +130,7 @@ MaximumLikelihood maximise(LikelihoodAt const& model, std::vector<double> start,
             if (damping > 1e14) break;
         }
     }
+    result.converged = result.converged || last_gain < kNearEnough;
     result.log_likelihood = here.log_likelihood;
     set_covariance(result, here.information, bounds);
     return result;

@@ -3,6 +3,8 @@
 #include "study/stats/error.h"
 
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace study {
 namespace {
@@ -62,6 +64,23 @@ std::vector<PairCount> pairs_of(Matrix const& wins)
             if (wins(i, j) != 0 || wins(j, i) != 0) pairs.push_back({int(i), int(j), wins(i, j), wins(j, i), 0});
     check_pairs(pairs, int(wins.rows));
     return pairs;
+}
+
+std::vector<PairCount> without_order(std::span<PairCount const> pairs)
+{
+    std::map<std::pair<int, int>, PairCount> sums;
+    for (PairCount p : pairs) {
+        if (p.first > p.second) {
+            std::swap(p.first, p.second);
+            std::swap(p.first_wins, p.second_wins);
+        }
+        PairCount& sum = sums[{p.first, p.second}];
+        sum = {p.first, p.second, sum.first_wins + p.first_wins, sum.second_wins + p.second_wins,
+               sum.ties + p.ties};
+    }
+    std::vector<PairCount> out;
+    for (auto const& [unused, sum] : sums) out.push_back(sum);
+    return out;
 }
 
 Matrix wins_of(std::span<PairCount const> pairs, int items)

@@ -17,6 +17,8 @@ struct PairCount {
 /// One count per compared pair i < j, with i as first: for data without presentation order.
 /// @param wins  n x n; wins(i, j) = how often i was chosen over j. @throws std::invalid_argument as check_pairs
 std::vector<PairCount> pairs_of(Matrix const& wins);
+/// The same choices with the smaller item as first, one count per pair: for models without an order effect.
+std::vector<PairCount> without_order(std::span<PairCount const> pairs);
 /// n x n, ties as half a win for each.
 Matrix wins_of(std::span<PairCount const> pairs, int items);
 

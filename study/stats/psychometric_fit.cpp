@@ -1,4 +1,5 @@
 #include "study/stats/error.h"
+#include "study/stats/formula_fit.h"
 #include "study/stats/likelihood.h"
 #include "study/stats/psychometric.h"
 #include "study/stats/sigmoid.h"
@@ -122,7 +123,7 @@ MaximumLikelihood best_fit(Model const& m)
     MaximumLikelihood best;
     int tried = 0;
     for (auto const& [unused, x] : starts) {
-        MaximumLikelihood const fit = maximise(at, x, m.bounds());
+        MaximumLikelihood const fit = maximise(at, x, m.bounds(), 800);
         if (tried == 0 || fit.log_likelihood > best.log_likelihood) best = fit;
         if (++tried == 3) break;
     }
@@ -186,6 +187,7 @@ PsychometricFit describe(Model const& m, PsychometricShape const& shape, Maximum
 
 PsychometricFit fit_psychometric(std::span<LevelCount const> counts, PsychometricSettings const& settings)
 {
+    if (settings.shape.formula) return fit_formula(counts, settings);
     Model const m = make_model(counts, settings);
     return describe(m, settings.shape, best_fit(m));
 }

@@ -1,9 +1,11 @@
 #include "study/stats/questplus.h"
 
 #include "study/stats/error.h"
+#include "study/stats/sigmoid.h"
 #include "study/stats/special.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace study {
@@ -30,6 +32,8 @@ void check_values(std::vector<double> const& values, std::vector<double> const& 
 
 void check(QuestSettings const& s)
 {
+    if (s.function == QuestFunction::formula && !s.formula)
+        refuse("QUEST+ by a formula without one", "its function is unknown", "give settings.formula");
     check_values(s.stimuli, {}, "stimuli");
     check_values(s.threshold, s.threshold_prior, "threshold");
     check_values(s.slope, s.slope_prior, "slope");
@@ -80,8 +84,28 @@ double proportion_at(QuestFunction function, Direction direction, QuestParameter
     case QuestFunction::logistic:
         f = 1 / (1 + std::exp(-p.slope * away));
         break;
+    case QuestFunction::gumbel:
+        f = sigmoid(Sigmoid::weibull, away / p.slope).below;
+        break;
+    case QuestFunction::gumbel_right:
+        f = sigmoid(Sigmoid::gumbel_right, away / p.slope).below;
+        break;
+    case QuestFunction::hyperbolic_secant:
+        f = sigmoid(Sigmoid::hyperbolic_secant, away / p.slope).below;
+        break;
+    case QuestFunction::cauchy:
+        f = sigmoid(Sigmoid::cauchy, away / p.slope).below;
+        break;
+    case QuestFunction::formula:
+        return std::nan("");
     }
     return p.guess + (1 - p.guess - p.lapse) * f;
+}
+
+double proportion_by(QuestSettings const& s, QuestParameters const& p, double x)
+{
+    if (s.function != QuestFunction::formula) return proportion_at(s.function, s.direction, p, x);
+    return (*s.formula)(std::array{x, p.threshold, p.slope, p.guess, p.lapse});
 }
 
 QuestPlus::QuestPlus(QuestSettings settings) : settings_(std::move(settings))
@@ -99,7 +123,10 @@ QuestPlus::QuestPlus(QuestSettings settings) : settings_(std::move(settings))
     correct_ = noise_ = Matrix(s.stimuli.size(), cells);
     for (std::size_t i = 0; i < s.stimuli.size(); ++i)
         for (std::size_t c = 0; c < cells; ++c) {
-            double const p = proportion_at(s.function, s.direction, parameters(c), s.stimuli[i]);
+            double const p = proportion_by(s, parameters(c), s.stimuli[i]);
+            if (!(p >= 0 && p <= 1))
+                refuse("the function gives " + std::to_string(p) + " at " + std::to_string(s.stimuli[i]),
+                       "a proportion lies between 0 and 1", "correct the formula or the grids");
             correct_(i, c) = p;
             noise_(i, c) = -p_log2_p(p) - p_log2_p(1 - p);
         }

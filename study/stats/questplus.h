@@ -10,10 +10,15 @@
 namespace study {
 
 enum class QuestFunction {
-    weibull_db, ///< 1 - exp(-10^(slope (x - threshold) / 20)): x and threshold in dB, as in Watson's paper
-    weibull,    ///< 1 - exp(-(x / threshold)^slope): x and threshold > 0
-    gaussian,   ///< Phi((x - threshold) / slope): the slope is a standard deviation
-    logistic    ///< 1 / (1 + exp(-slope (x - threshold)))
+    weibull_db,        ///< 1 - exp(-10^(slope (x - threshold) / 20)): x and threshold in dB, as in Watson's paper
+    weibull,           ///< 1 - exp(-(x / threshold)^slope): x and threshold > 0
+    gaussian,          ///< Phi((x - threshold) / slope): the slope is a standard deviation
+    logistic,          ///< 1 / (1 + exp(-slope (x - threshold)))
+    gumbel,            ///< 1 - exp(-exp((x - threshold) / slope))
+    gumbel_right,      ///< exp(-exp(-(x - threshold) / slope))
+    hyperbolic_secant, ///< 2/pi atan(exp(pi/2 (x - threshold) / slope))
+    cauchy,            ///< 1/2 + atan((x - threshold) / slope) / pi
+    formula            ///< P itself by QuestSettings::formula; the direction is not used
 };
 
 struct QuestParameters {
@@ -31,13 +36,14 @@ struct QuestSettings {
     /// Stimuli whose expected entropies differ by less (bits) are tied, and the first one is shown. Without it the
     /// choice would depend on rounding, which differs between machines.
     double tie_tolerance = 1e-10;
+    std::shared_ptr<Formula const> formula{}; ///< P of x, threshold, slope, guess, lapse
 };
 
 class QuestPlus {
 public:
     /// @throws std::invalid_argument an empty vector, NaN, slopes <= 0, stimuli or thresholds <= 0 for
     /// QuestFunction::weibull, rates outside [0, 1) or whose sums reach 1, priors of other lengths, negative or
-    /// all zero
+    /// all zero, a formula whose value is no proportion
     explicit QuestPlus(QuestSettings settings);
 
     /// Index into settings().stimuli of the next stimulus.
@@ -71,7 +77,9 @@ private:
     int trials_ = 0;
 };
 
-/// P(correct) of one stimulus.
+/// P(correct) of one stimulus, with the function or formula of the settings.
+double proportion_by(QuestSettings const& settings, QuestParameters const& p, double stimulus);
+/// P(correct) of one stimulus; not for QuestFunction::formula.
 double proportion_at(QuestFunction function, Direction direction, QuestParameters const& p, double stimulus);
 
 } // namespace study

@@ -24,6 +24,20 @@ std::vector<double> given(Matrix const& ratings, std::size_t item)
     return values;
 }
 
+Interval skewed_interval(MeanOpinion const& m, std::vector<double> const& values, double t)
+{
+    double const n = double(values.size());
+    if (!(m.deviation > 0) || n < 3) return m.interval;
+    double cubes = 0;
+    for (double const v : values) cubes += std::pow((v - m.mean) / m.deviation, 3);
+    double const skewness = 0.5 * cubes * n / ((n - 1) * (n - 2)), a = skewness / (3 * std::sqrt(n));
+    if (std::abs(a) < 1e-9) return m.interval;
+    auto const back = [&](double z) { return (std::cbrt(1 + 3 * a * (z - a / 2)) - 1) / a; };
+    // The skewness of very few ratings may be extreme.
+    auto const moderate = [&](double z) { return std::clamp(z, t / 2, 2 * t); };
+    return {m.mean - moderate(back(t)) * m.standard_error, m.mean + moderate(-back(-t)) * m.standard_error};
+}
+
 /// Calls use(item, observer, rating) for all ratings.
 template <class Use>
 void for_each(Matrix const& ratings, Use const& use)
@@ -50,6 +64,7 @@ std::vector<MeanOpinion> mean_opinions(Matrix const& ratings, double confidence)
         m.standard_error = m.deviation / std::sqrt(double(values.size()));
         double const half = student_quantile(0.5 + confidence / 2, double(values.size()) - 1) * m.standard_error;
         m.interval = {m.mean - half, m.mean + half};
+        m.skewed = skewed_interval(m, values, student_quantile(0.5 + confidence / 2, double(values.size()) - 1));
         result.push_back(m);
     }
     return result;

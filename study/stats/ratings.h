@@ -15,6 +15,9 @@ struct MeanOpinion {
     double deviation = 0;      ///< standard deviation with n - 1; NaN for fewer than two observers
     double standard_error = 0; ///< as deviation
     Interval interval;         ///< as deviation
+    /// The interval allowing for skewness, as near the ends of a scale: Hall's transformation of Student's t
+    /// (1992, J. R. Stat. Soc. B 54:221) with half of the sample's skewness, which few ratings overstate.
+    Interval skewed;
 };
 /// @throws std::invalid_argument an infinite rating, a confidence outside (0, 1)
 std::vector<MeanOpinion> mean_opinions(Matrix const& ratings, double confidence = 0.95);

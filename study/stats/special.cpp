@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
+#include <boost/math/special_functions/owens_t.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -39,6 +40,10 @@ double normal_quantile(double p)
     return std::isnan(p) ? p : -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p, Quiet());
 }
 
+double owens_t(double h, double a) { return boost::math::owens_t(h, a, Quiet()); }
+
+double inverse_logit(double x) { return 1 / (1 + std::exp(-x)); }
+
 double log_choose(double n, double k) { return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1); }
 
 double chi_square_tail(double x, double degrees_of_freedom)
@@ -47,6 +52,11 @@ double chi_square_tail(double x, double degrees_of_freedom)
     if (x <= 0) return 1;
     if (degrees_of_freedom == 0 || std::isinf(x)) return 0;
     return boost::math::gamma_q(degrees_of_freedom / 2, x / 2, Quiet());
+}
+
+double chi_square_quantile(double p, double degrees_of_freedom)
+{
+    return 2 * boost::math::gamma_p_inv(degrees_of_freedom / 2, p, Quiet());
 }
 
 double student_cdf(double t, double degrees_of_freedom)

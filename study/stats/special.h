@@ -15,11 +15,18 @@ double log_normal_cdf(double z);
 /// z with Phi(z) = p: -infinity at 0, infinity at 1, NaN outside [0, 1].
 double normal_quantile(double p);
 
+/// Owen's T (1956): the probability that a standard normal number exceeds h and another one lies between 0 and a
+/// times it.
+double owens_t(double h, double a);
+
+double inverse_logit(double x); ///< 1 / (1 + exp(-x))
+
 /// log of the binomial coefficient n over k, also for non-integers.
 double log_choose(double n, double k);
 
 /// P(X >= x) of a chi-square distribution; 1 if x <= 0. With no degrees of freedom X is 0.
 double chi_square_tail(double x, double degrees_of_freedom);
+double chi_square_quantile(double p, double degrees_of_freedom);
 /// P(T <= t) of Student's distribution.
 double student_cdf(double t, double degrees_of_freedom);
 double student_quantile(double p, double degrees_of_freedom);

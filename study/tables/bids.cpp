@@ -1,5 +1,6 @@
 #include "study/tables/bids.h"
 
+#include "gi/core/text.h"
 #include "study/journal/session_summary.h"
 #include "study/tables/events.h"
 
@@ -17,18 +18,55 @@ using Json = nlohmann::ordered_json;
 std::string text_of(Json const& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 void add_table(std::vector<TextFile>& files, std::string const& stem, Table const& table,
-               std::vector<std::pair<std::string, std::string>> const& facts)
+               std::vector<SidecarFact> const& facts)
 {
     if (table.rows.empty()) return;
     files.push_back({stem + ".tsv", tsv_text(table)});
     files.push_back({stem + ".json", sidecar_json(table, facts)});
 }
 
-std::vector<std::pair<std::string, std::string>> about_task(std::string const& name, SessionStarted const& start)
+/// What a session recorded of itself under this name; empty = nothing.
+std::string about_value(SessionStarted const& start, std::string_view key)
 {
-    return {{"TaskName", name},
-            {"StimulusPresentation.SoftwareName", "Lightwell"},
-            {"StimulusPresentation.SoftwareVersion", start.version}};
+    for (auto const& [name, value] : start.about)
+        if (name == key) return value;
+    return {};
+}
+
+/// "1920 x 1080" as a list, each number times a factor.
+std::optional<Json> pair_of(std::string const& text, double factor, bool is_whole)
+{
+    auto const x = text.find(" x ");
+    if (x == std::string::npos) return {};
+    auto const a = gi::parse_finite(text.substr(0, x)), b = gi::parse_finite(text.substr(x + 3));
+    if (!a || !b) return {};
+    return is_whole ? Json{int(*a), int(*b)} : Json{*a * factor, *b * factor};
+}
+
+std::vector<SidecarFact> about_task(std::string const& name, SessionStarted const& start)
+{
+    std::vector<SidecarFact> facts{{"TaskName", name},
+                                   {"StimulusPresentation.SoftwareName", "Lightwell"},
+                                   {"StimulusPresentation.SoftwareVersion", start.version}};
+    if (std::string const os = about_value(start, "os"); !os.empty())
+        facts.push_back({"StimulusPresentation.OperatingSystem", os});
+    auto const distance_cm = gi::parse_finite(about_value(start, "viewing_distance_cm"));
+    auto const px = pair_of(about_value(start, "screen_px"), 1, true);
+    auto const size_m = pair_of(about_value(start, "screen_cm"), 0.01, false);
+    if (!distance_cm || !px || !size_m) return facts;
+    auto const hz = gi::parse_finite(about_value(start, "refresh_hz"));
+    facts.push_back({"StimulusPresentation.ScreenDistance", Json(*distance_cm * 0.01).dump(), true});
+    facts.push_back({"StimulusPresentation.ScreenOrigin", R"(["top", "left"])", true});
+    facts.push_back({"StimulusPresentation.ScreenResolution", px->dump(), true});
+    facts.push_back({"StimulusPresentation.ScreenSize", size_m->dump(), true});
+    if (hz) facts.push_back({"StimulusPresentation.ScreenRefreshRate", Json(*hz).dump(), true});
+    for (auto const& [key, field] : {std::pair{"DisplayModel", "display_model"},
+                                     {"DisplayModelSha256", "display_model_sha256"},
+                                     {"PixelsPerDegree", "pixels_per_degree"},
+                                     {"ScreenWhiteLuminance", "white_cd_m2"},
+                                     {"ScreenBlackLuminance", "black_cd_m2"}})
+        if (std::string const value = about_value(start, field); !value.empty()) facts.push_back({key, value});
+    return facts;
 }
 
 /// Column names of participants.tsv to which BIDS gives a meaning.
@@ -46,7 +84,8 @@ std::string asked_column(std::string const& question)
 std::string description_json(Script const& script, std::string const& program_version)
 {
     return text_of({{"Name", script.title.empty() ? script.id : script.title},
-                    {"BIDSVersion", "1.10.0"},
+                    {"BIDSVersion", "1.11.1"},
+                    {"HEDVersion", "8.3.0"},
                     {"DatasetType", "raw"},
                     {"GeneratedBy", {{{"Name", "Lightwell"}, {"Version", program_version}}}}});
 }
@@ -63,6 +102,7 @@ std::string readme(Script const& script, std::size_t sessions)
         "  its columns.\n"
         "* `*_task-BLOCK_acq-stimuli_events.tsv`: a row per shown stimulus.\n"
         "* `*_task-questionnaires_beh.tsv`: answers and scores.\n"
+        "* `*_recording-eye1_physio.tsv.gz`: samples of gaze, if it was recorded.\n"
         "* `*_task-session_events.tsv`: session events: instructions, rests, notes.\n"
         "* `session.json`: provenance. `plan.tsv`: the order of the session, written before its first trial.\n\n"
         "Participants are numbers; the only personal data are the answers to the script's questions.\n",
@@ -74,6 +114,35 @@ std::string readme(Script const& script, std::size_t sessions)
 std::string session_folder(SessionStarted const& start)
 {
     return fmt::format("sub-{}/ses-{:02}/beh", start.participant_id, start.session);
+}
+
+TextFile gaze_sidecar(Script const& script, RecordedSession const& session, double rate_hz, double start_s)
+{
+    SessionStarted const& start = start_of(script, session);
+    bool const on_screen = !about_value(start, "viewing_distance_cm").empty();
+    Json j{
+        {"TaskName", "session"},
+        {"SamplingFrequency", rate_hz},
+        {"StartTime", start_s},
+        {"Columns", {"timestamp", "x_coordinate", "y_coordinate", "pupil_size", "step"}},
+        {"PhysioType", "eyetrack"},
+        {"RecordedEye", "cyclopean"},
+        {"SampleCoordinateSystem", on_screen ? "gaze-on-screen" : "custom"},
+        {"timestamp", {{"Description", "Since the beginning of the session"}, {"Units", "s"}}},
+        {"x_coordinate", {{"Description", "From the left edge of the window, to the right"}, {"Units", "pixel"}}},
+        {"y_coordinate", {{"Description", "From the upper edge of the window, down"}, {"Units", "pixel"}}},
+        {"pupil_size", {{"Description", "diameter of the pupil, as the eye tracker reports it"}, {"Units", "mm"}}},
+        {"step", {{"Description", "Step of the plan, from 1; n/a between them"}}}};
+    if (std::string const source = about_value(start, "gaze_source"); !source.empty())
+        j["RawDataFilters"] = source;
+    return {gaze_stem(script, session) + ".json", text_of(j)};
+}
+
+std::string gaze_stem(Script const& script, RecordedSession const& session)
+{
+    SessionStarted const& start = start_of(script, session);
+    return fmt::format("{}/sub-{}_ses-{:02}_task-session_recording-eye1_physio", session_folder(start),
+                       start.participant_id, start.session);
 }
 
 std::vector<TextFile> session_files(Script const& script, RecordedSession const& session)
@@ -88,8 +157,9 @@ std::vector<TextFile> session_files(Script const& script, RecordedSession const&
         Block const& block = script.blocks[b];
         labels.push_back(label_of(block.name, labels));
         auto facts = about_task(block.name, start);
-        facts.insert(facts.begin() + 1, {"TaskDescription", std::string(study::facts(block.task).name)});
-        if (!block.prompt.empty()) facts.emplace_back("Instructions", block.prompt);
+        facts.insert(facts.begin() + 1,
+                     SidecarFact{"TaskDescription", std::string(study::facts(block.task).name)});
+        if (!block.prompt.empty()) facts.push_back({"Instructions", block.prompt});
         add_table(files, stem + labels.back() + "_events", events_table(script, rows, int(b)), facts);
         add_table(files, stem + labels.back() + "_acq-stimuli_events", stimuli_table(script, rows, int(b)), facts);
     }
@@ -107,8 +177,11 @@ Table participants_table(Script const& script, std::vector<RecordedSession> cons
                  {"sessions", "Number of sessions started"},
                  {"complete", "Whether all of them were finished"},
                  {"simulated", "Whether the participant is a model observer"}}};
-    for (std::string const& question : script.participants.ask)
-        table.columns.push_back({asked_column(question), "Answer to the question: " + question});
+    for (AskedQuestion const& q : script.participants.ask) {
+        Column column{asked_column(q.id), "Answer to the question: " + q.text};
+        for (std::string const& choice : q.choices) column.meanings.emplace_back(choice, choice);
+        table.columns.push_back(std::move(column));
+    }
     std::map<std::string, std::vector<RecordedSession const*>> people;
     for (RecordedSession const& s : sessions) people[s.plan.participant_id].push_back(&s);
     for (auto const& [id, theirs] : people) {
@@ -123,7 +196,7 @@ Table participants_table(Script const& script, std::vector<RecordedSession> cons
         }
         std::vector<std::string> row{"sub-" + id, cell(theirs.front()->plan.participant), cell(int(theirs.size())),
                                      cell(complete), cell(simulated)};
-        for (std::string const& question : script.participants.ask) row.push_back(cell(answers[question]));
+        for (AskedQuestion const& q : script.participants.ask) row.push_back(cell(answers[q.id]));
         table.rows.push_back(std::move(row));
     }
     return table;

@@ -1,5 +1,5 @@
 #pragma once
-// Records in the layout of BIDS 1.10 (Gorgolewski et al. 2016, Sci. Data 3:160044;
+// Records in the layout of BIDS 1.11 (Gorgolewski et al. 2016, Sci. Data 3:160044;
 // https://bids-specification.readthedocs.io), modality `beh`. All files are derived from script, plan and journal
 // and can be rewritten at any time.
 
@@ -19,6 +19,12 @@ std::string session_folder(SessionStarted const& start);
 ///   <folder>/session.json                                     provenance
 /// Blocks without trials have no file.
 std::vector<TextFile> session_files(Script const& script, RecordedSession const& session);
+
+/// "sub-P001/ses-01/beh/sub-P001_ses-01_task-session_recording-eye1_physio": of its samples of gaze (.tsv.gz,
+/// .json).
+std::string gaze_stem(Script const& script, RecordedSession const& session);
+/// Its sidecar (BIDS eye tracking). @param start_s  of the first sample, since the beginning of the session
+TextFile gaze_sidecar(Script const& script, RecordedSession const& session, double rate_hz, double start_s);
 
 /// dataset_description.json, participants.tsv and .json, README, .bidsignore of all sessions together.
 std::vector<TextFile> dataset_files(Script const& script, std::vector<RecordedSession> const& sessions,

@@ -97,6 +97,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
                               fmt::format("version {} made another plan of this script", start.version),
                               "use that version of the program");
         d.sessions.push_back({std::move(plan), std::move(journal.record)});
+        fill_chosen(d.script, d.sessions.back());
     }
     if (d.sessions.empty())
         throw ScriptError(dir.string(), {}, "no session has started", "all journals are empty", "run one first");

@@ -44,6 +44,43 @@ ShownTogether together(TrialDone const& done)
     return t;
 }
 
+/// HED 8.3.0 refers to other columns as {name}; names with other characters have no tags.
+bool is_hed_column(std::string const& name) { return hed_name(name) == name; }
+
+std::string hed_references(std::vector<std::string> const& columns)
+{
+    std::string list;
+    for (std::string const& name : columns)
+        if (is_hed_column(name)) list += ", {" + name + "}";
+    return list;
+}
+
+/// A trial shows something, then somebody answers. Each row is one group that holds the numbers of its trial,
+/// because validators take rows of one onset (or of none) together, where no tag may be there twice.
+std::vector<std::pair<std::string, std::string>> hed_of_phases(Script const& script)
+{
+    std::string const more = hed_references({"trial", "pass", "attempt"}) +
+                             hed_references(factor_columns(script)) + hed_references({"correct"}) + ")";
+    std::vector<std::pair<std::string, std::string>> tags;
+    for (char const* phase : {"practice", "main", "catch", "repeat"})
+        tags.emplace_back(phase, "(Sensory-event, Visual-presentation, Experimental-stimulus, Label/" +
+                                     std::string(phase) + more);
+    return tags;
+}
+
+/// HED of a column of numbers.
+std::string hed_number(std::string const& name) { return "(Parameter-label/" + name + ", Parameter-value/#)"; }
+
+std::vector<std::pair<std::string, std::string>> hed_of_levels(Factor const& factor, std::string const& column)
+{
+    std::vector<std::pair<std::string, std::string>> tags;
+    if (!is_hed_column(column)) return tags;
+    for (FactorLevel const& level : factor.levels)
+        tags.emplace_back(level.name, fmt::format("(Condition-variable/{}, Label/{})", hed_name(factor.name),
+                                                  hed_name(level.name)));
+    return tags;
+}
+
 std::vector<std::pair<std::string, std::string>> const kPhases{
     {"practice", "before the main trials, not analysed"},
     {"main", "a trial of the experiment"},
@@ -62,17 +99,21 @@ std::vector<Column> event_columns(Script const& s)
         {"onset", "Onset of the trial's first stimulus, since the beginning of the session", "s"},
         {"duration", "From the first onset to the end of the last stimulus", "s"},
         {"response_time", "From the onset of the last stimulus to the answer", "s"},
-        {"trial", "Number of the trial in its pass of the block, from 1"},
+        {"trial", "Number of the trial in its pass of the block, from 1", "", {}, "Experimental-trial/#"},
         {"block", "Block of the script"},
-        {"pass", "Number of the pass of the block, from 1"},
+        {"pass", "Number of the pass of the block, from 1", "", {}, hed_number("pass")},
         {"part", "Part of the session, from 1; each resumption adds one"},
-        {"phase", "Kind of trial", "", kPhases},
-        {"attempt", "Number of the attempt at the trial, from 1"},
+        {"phase", "Kind of trial", "", kPhases, "", hed_of_phases(s)},
+        {"attempt", "Number of the attempt at the trial, from 1", "", {}, hed_number("attempt")},
         {"repeat", "Repeat of the condition, from 1; number of the run for adaptive procedures"}};
     auto const names = factor_columns(s);
     for (std::size_t f = 0; f < s.factors.size(); ++f)
-        columns.push_back(
-            {names[f], fmt::format("Level of the factor {}; n/a if stimuli differ in it", s.factors[f].name)});
+        columns.push_back({names[f],
+                           fmt::format("Level of the factor {}; n/a if stimuli differ in it", s.factors[f].name),
+                           "",
+                           {},
+                           "",
+                           hed_of_levels(s.factors[f], names[f])});
     std::vector<Column> const more{
         {"cond_a", "Stimulus a"},
         {"cond_b", "Stimulus b"},
@@ -81,10 +122,17 @@ std::vector<Column> event_columns(Script const& s)
         {"order", "Letters of the stimuli in order of presentation"},
         {"level", "Level of the varied setting"},
         {"procedure", "Procedure that chose the level"},
+        {"selected", "What else was selected when the trial came: the pair, or levels of further settings"},
         {"response", "Answer; for rankings the letters of the stimuli, best first"},
         {"value", "Numeric answer: rating, magnitude, adjusted level"},
         {"answer", "The correct answer"},
-        {"correct", "Whether the answer was correct"},
+        {"correct",
+         "Whether the answer was correct",
+         "",
+         {},
+         "",
+         {{"true", "(Agent-action, Participant-response, Correct-action)"},
+          {"false", "(Agent-action, Participant-response, Incorrect-action)"}}},
         {"device", "Input that gave the answer"},
         {"response_uncertainty_ms", "Uncertainty (plus or minus) of response_time, onset included", "ms"},
         {"onset_method", "How onsets were timed", "", kOnsetMethods},
@@ -148,6 +196,7 @@ std::vector<std::string> event_cells(Script const& s, TrialRow const& row)
         cell(trial.order),
         cell(done.level),
         cell(procedure),
+        cell(done.chosen),
         cell(done.response),
         cell(done.value),
         cell(trial.answer),
@@ -168,6 +217,23 @@ std::vector<std::string> event_cells(Script const& s, TrialRow const& row)
         row.is_kept_though_invalid ? "counted though invalid" : std::string(name_of(row.status))};
     cells.insert(cells.end(), rest.begin(), rest.end());
     return cells;
+}
+
+std::vector<Column> gaze_columns()
+{
+    return {{"gaze_samples", "Samples of gaze while stimuli were visible"},
+            {"gaze_valid", "Those in which the eyes were found"},
+            {"gaze_dropped", "Samples missing between others, by the median step"},
+            {"gaze_fixating", "Valid samples near the place of fixation, as the block demands"}};
+}
+
+std::vector<Column> physical_columns()
+{
+    return {{"width_deg", "Width of the picture, as seen around its centre", "deg"},
+            {"height_deg", "Height of the picture", "deg"},
+            {"mean_cd_m2", "Mean luminance of its first picture on the display", "cd/m2"},
+            {"peak_cd_m2", "Luminance of its brightest pixel", "cd/m2"},
+            {"clipped_pixels", "Pixels with a channel beyond the display's peak, or below its black but not 0"}};
 }
 
 } // namespace
@@ -191,6 +257,7 @@ std::vector<std::string> factor_columns(Script const& script)
                                              "order",
                                              "level",
                                              "procedure",
+                                             "selected",
                                              "response",
                                              "value",
                                              "answer",
@@ -231,7 +298,16 @@ std::vector<std::string> factor_columns(Script const& script)
                                              "time_taken",
                                              "sample",
                                              "channel",
-                                             "stim_file"};
+                                             "stim_file",
+                                             "gaze_samples",
+                                             "gaze_valid",
+                                             "gaze_dropped",
+                                             "gaze_fixating",
+                                             "width_deg",
+                                             "height_deg",
+                                             "mean_cd_m2",
+                                             "peak_cd_m2",
+                                             "clipped_pixels"};
     std::vector<std::string> names;
     for (Factor const& f : script.factors) names.push_back(taken.count(f.name) ? "factor_" + f.name : f.name);
     return names;
@@ -240,21 +316,45 @@ std::vector<std::string> factor_columns(Script const& script)
 Table events_table(Script const& script, std::vector<TrialRow> const& rows, int block)
 {
     Table table{event_columns(script)};
-    for (TrialRow const& row : rows)
-        if (row.step->block == block) table.rows.push_back(event_cells(script, row));
+    bool const has_gaze = std::any_of(rows.begin(), rows.end(), [&](TrialRow const& row) {
+        return row.step->block == block && row.done->gaze_samples;
+    });
+    if (has_gaze)
+        for (Column const& column : gaze_columns()) table.columns.push_back(column);
+    for (TrialRow const& row : rows) {
+        if (row.step->block != block) continue;
+        table.rows.push_back(event_cells(script, row));
+        if (!has_gaze) continue;
+        TrialDone const& t = *row.done;
+        for (auto const& count : {t.gaze_samples, t.gaze_valid, t.gaze_dropped, t.gaze_fixating})
+            table.rows.back().push_back(count ? cell(*count) : cell(""));
+    }
     return table;
 }
 
 Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int block)
 {
+    auto const names = factor_columns(script);
     Table table{{{"onset", "Onset of the stimulus, since the beginning of the session", "s"},
                  {"duration", "How long it was shown", "s"},
-                 {"trial", "Number of the trial in its pass of the block, from 1"},
+                 {"trial", "Number of the trial in its pass of the block, from 1", "", {}, "Experimental-trial/#"},
                  {"pass", "Number of the pass of the block, from 1"},
                  {"attempt", "Number of the attempt at the trial, from 1"},
-                 {"place", "Place in the order of presentation, from 1"},
-                 {"stimulus", "Letter of the stimulus; r is the reference"}}};
-    for (std::string const& name : factor_columns(script)) table.columns.push_back({name, "Level of the factor"});
+                 {"place", "Place in the order of presentation, from 1", "", {}, hed_number("place")},
+                 {"stimulus",
+                  "Letter of the stimulus; r is the reference",
+                  "",
+                  {},
+                  "(Sensory-event, Visual-presentation, Experimental-stimulus, Label/#" +
+                      hed_references({"trial", "place"}) + hed_references(names) + ")"}}};
+    for (std::size_t f = 0; f < names.size(); ++f)
+        table.columns.push_back(
+            {names[f], "Level of the factor", "", {}, "", hed_of_levels(script.factors[f], names[f])});
+    bool const is_physical = std::any_of(rows.begin(), rows.end(), [&](TrialRow const& row) {
+        return row.step->block == block &&
+               std::any_of(row.done->shown.begin(), row.done->shown.end(),
+                           [](StimulusShown const& s) { return s.clipped_pixels || s.width_deg; });
+    });
     std::vector<Column> const more{{"level", "Level of the varied setting, for the varied stimulus"},
                                    {"onset_method", "How the onset was timed", "", kOnsetMethods},
                                    {"onset_uncertainty_ms", "Uncertainty (plus or minus) of the onset", "ms"},
@@ -265,6 +365,8 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
                                    {"render_ms_p99", "99th percentile of the rendering time", "ms"},
                                    {"settings_sha256", "Hash of the renderer's settings"}};
     table.columns.insert(table.columns.end(), more.begin(), more.end());
+    if (is_physical)
+        for (Column const& column : physical_columns()) table.columns.push_back(column);
     for (TrialRow const& row : rows) {
         if (row.step->block != block) continue;
         int place = 0;
@@ -291,6 +393,11 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
                                                 cell(s.render_ms_p99),
                                                 cell(s.settings_sha256)};
             cells.insert(cells.end(), rest.begin(), rest.end());
+            if (is_physical) {
+                for (auto const& v : {s.width_deg, s.height_deg, s.mean_cd_m2, s.peak_cd_m2})
+                    cells.push_back(cell(v));
+                cells.push_back(s.clipped_pixels ? cell(*s.clipped_pixels) : cell(""));
+            }
             table.rows.push_back(std::move(cells));
         }
     }

@@ -100,6 +100,7 @@ std::vector<TextFile> export_files(Script const& script, std::vector<NamedTable>
     files.push_back({"dataset_description.json",
                      description.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"});
     files.push_back({"analysis.R", lme4_script(script, stem + "trials_data.csv")});
+    files.push_back({"analysis.py", statsmodels_script(script, stem + "trials_data.csv")});
     return files;
 }
 

@@ -18,12 +18,14 @@ struct NamedTable {
 std::vector<NamedTable> export_tables(Script const& script, std::vector<RecordedSession> const& sessions);
 
 /// Files in the layout of Psych-DS (https://psych-ds.github.io): data/study-ID_description-NAME_data.csv,
-/// dataset_description.json with every column, and analysis.R, which fits mixed models to them with lme4. Missing
-/// values are NA in these files.
+/// dataset_description.json with every column, and analysis.R and analysis.py, which fit mixed models to them.
+/// Missing values are NA in these files.
 std::vector<TextFile> export_files(Script const& script, std::vector<NamedTable> const& tables);
 /// The text of analysis.R: a model for each block, by its task.
 /// @param trials_file relative to the script's folder
 std::string lme4_script(Script const& script, std::string const& trials_file);
+/// The text of analysis.py: the same models with statsmodels, as far as it has them.
+std::string statsmodels_script(Script const& script, std::string const& trials_file);
 
 /// @throws ScriptError if the file exists and is not an SQLite database, so that a wrong file name destroys
 /// nothing

@@ -1,6 +1,7 @@
 #include "study/tables/recorded_session.h"
 
 #include "study/journal/moments.h"
+#include "study/run/pair_run.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -24,11 +25,30 @@ TrialStatus standing_of(Script const& script, TrialRow const& row, int attempts)
     if (row.done->attempt < attempts) return TrialStatus::superseded;
     bool const is_answered = !row.done->response.empty() || row.done->value;
     if (!is_answered) return row.done->is_valid ? TrialStatus::unanswered : TrialStatus::invalid;
-    if (!row.done->is_valid && script.timing.on_bad_trial != BadTrial::keep) return TrialStatus::invalid;
+    bool const is_mistimed = row.done->reason == kAnticipation || row.done->reason == kTooSlow;
+    if (!row.done->is_valid && (is_mistimed || script.timing.on_bad_trial != BadTrial::keep))
+        return TrialStatus::invalid;
     return row.step->trial.phase == Phase::catches ? TrialStatus::catch_trial : TrialStatus::counted;
 }
 
 } // namespace
+
+void fill_chosen(Script const& script, RecordedSession& session)
+{
+    for (JournalEntry const& entry : session.record.entries) {
+        auto const* const done = std::get_if<TrialDone>(&entry);
+        if (done == nullptr || done->chosen.empty()) continue;
+        if (done->step < 0 || done->step >= int(session.plan.steps.size())) continue; // told by trial_rows
+        PlanStep& step = session.plan.steps[std::size_t(done->step)];
+        if (!step.trial.is_open_pair) continue;
+        Block const& block = script.blocks[std::size_t(step.block)];
+        auto const pair = pair_of_text(script, block, done->chosen);
+        if (!pair) throw broken(script, session, fmt::format("'{}' is no pair", done->chosen));
+        step.trial.stimuli[0].levels[std::size_t(block.pairs->factor)] = pair->first;
+        step.trial.stimuli[1].levels[std::size_t(block.pairs->factor)] = pair->second;
+        step.trial.is_open_pair = false;
+    }
+}
 
 SessionStarted const& start_of(Script const& script, RecordedSession const& session)
 {

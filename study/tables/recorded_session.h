@@ -13,6 +13,10 @@ struct RecordedSession {
     SessionRecord record;
 };
 
+/// Sets the pairs that were chosen during the session in the plan's trials. Call after the plan was checked
+/// against the journal's hash.
+void fill_chosen(Script const& script, RecordedSession& session);
+
 /// The first entry of the journal. @throws ScriptError if there is none, or it belongs to another experiment or
 /// participant than plan and script
 SessionStarted const& start_of(Script const& script, RecordedSession const& session);

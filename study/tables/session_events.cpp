@@ -15,6 +15,26 @@ std::string calibration_text(CalibrationDone const& c)
            (c.reason.empty() ? "" : ": " + c.reason);
 }
 
+/// HED 8.3.0. Calibrations have none: without an onset, those of all parts would be one event.
+std::vector<std::pair<std::string, std::string>> hed_of_session_events()
+{
+    return {{"start", "Experiment-structure, Label/session-start"},
+            {"instructions", "Experiment-structure, Instructional"},
+            {"rest", "Experiment-structure, Label/rest"},
+            {"free_walk", "Experiment-structure, Label/free-walk"},
+            {"questionnaire", "Experiment-structure, Questionnaire"},
+            {"end", "Experiment-structure, Label/session-end"},
+            {"note", "Experiment-control, Label/note"},
+            {"pause", "Experiment-control, Pause"},
+            {"resume", "Experiment-control, Label/resume"},
+            {"skip", "Experiment-control, Label/skip"},
+            {"abort", "Experiment-control, Label/abort"},
+            {"warning", "Experiment-control, Warning"},
+            {"display", "Experiment-control, Label/display"},
+            {"display_lost", "Experiment-control, Label/display-lost"},
+            {"clock_changed", "Experiment-control, Label/clock-changed"}};
+}
+
 void add(Table& table, double onset_s, double end_s, std::string const& type, std::string const& step,
          std::string const& text)
 {
@@ -95,8 +115,13 @@ Table session_events_table(RecordedSession const& session)
 {
     Table table{{{"onset", "Start, since the beginning of the session", "s"},
                  {"duration", "Duration", "s"},
-                 {"trial_type", "Kind of event: start, calibration, instructions, rest, free_walk, questionnaire, "
-                                "end, or the kind of a note (note, pause, skip, abort, warning, ...)"},
+                 {"trial_type",
+                  "Kind of event: start, calibration, instructions, rest, free_walk, questionnaire, "
+                  "end, or the kind of a note (note, pause, skip, abort, warning, ...)",
+                  "",
+                  {},
+                  "",
+                  hed_of_session_events()},
                  {"step", "Step of the plan, from 1"},
                  {"text", "Details"}}};
     for (TimedEntry const& timed : timed_entries(session)) {

@@ -76,17 +76,30 @@ std::string csv_text(Table const& table, std::string_view nothing)
     return text;
 }
 
-std::string sidecar_json(Table const& table, std::vector<std::pair<std::string, std::string>> const& facts)
+std::string hed_name(std::string_view text)
+{
+    std::string name;
+    for (char const c : text) name += is_alphanumeric(c) || c == '-' || c == '_' ? c : '_';
+    return name;
+}
+
+std::string sidecar_json(Table const& table, std::vector<SidecarFact> const& facts)
 {
     nlohmann::ordered_json j = nlohmann::ordered_json::object();
-    for (auto const& [key, value] : facts) {
-        std::size_t const dot = key.find('.');
-        (dot == std::string::npos ? j[key] : j[key.substr(0, dot)][key.substr(dot + 1)]) = value;
+    for (SidecarFact const& fact : facts) {
+        std::size_t const dot = fact.key.find('.');
+        auto& to = dot == std::string::npos ? j[fact.key] : j[fact.key.substr(0, dot)][fact.key.substr(dot + 1)];
+        if (fact.is_json)
+            to = nlohmann::ordered_json::parse(fact.value);
+        else
+            to = fact.value;
     }
     for (Column const& c : table.columns) {
         nlohmann::ordered_json about{{"Description", c.description}};
         if (!c.units.empty()) about["Units"] = c.units;
         for (auto const& [value, meaning] : c.meanings) about["Levels"][value] = meaning;
+        if (!c.hed.empty()) about["HED"] = c.hed;
+        for (auto const& [value, tags] : c.hed_of) about["HED"][value] = tags;
         j[c.name] = std::move(about);
     }
     return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

@@ -19,6 +19,8 @@ struct Column {
     std::string name, description;
     std::string units{};                                         ///< "s", "ms"; empty = none
     std::vector<std::pair<std::string, std::string>> meanings{}; ///< of its values, if they are few
+    std::string hed{}; ///< HED string for every value, which it has as '#'; empty = none
+    std::vector<std::pair<std::string, std::string>> hed_of{}; ///< HED strings by value; others have none
 };
 
 struct Table {
@@ -46,9 +48,16 @@ std::string seconds_cell(double seconds);
 std::string tsv_text(Table const& table);
 /// Comma-separated text (RFC 4180, lines end in "\n"); `nothing` replaces n/a, such as "NA" for R.
 std::string csv_text(Table const& table, std::string_view nothing = kNothing);
-/// The JSON sidecar that describes the columns (BIDS: Description, Units, Levels), plus `facts`; "a.b" is the key
-/// b within a.
-std::string sidecar_json(Table const& table, std::vector<std::pair<std::string, std::string>> const& facts = {});
+/// A fact of a sidecar.
+struct SidecarFact {
+    std::string key; ///< "a.b" is the key b within a
+    std::string value;
+    bool is_json = false; ///< the value is JSON, else a text
+};
+/// The JSON sidecar that describes the columns (BIDS: Description, Units, Levels, HED), plus `facts`.
+std::string sidecar_json(Table const& table, std::vector<SidecarFact> const& facts = {});
+/// A name as HED takes it as a value: letters, digits, - and _; others become _.
+std::string hed_name(std::string_view text);
 
 /// A label for file names: the letters and digits of `text`, with a number appended if it is in `taken`.
 std::string label_of(std::string_view text, std::vector<std::string> const& taken = {});

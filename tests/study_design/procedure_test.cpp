@@ -64,7 +64,7 @@ TEST(QuestPlus, HasTheGridsOfItsPrior)
     EXPECT_EQ(p.slope, (std::vector<double>{1, 2, 3.5, 5}));
     EXPECT_EQ(p.guess, (std::vector<double>{0.5}));
     EXPECT_EQ(planned_trials(p), 25);
-    EXPECT_EQ(p.psychometric, Psychometric::weibull);
+    EXPECT_EQ(assumed_function(p).function, Psychometric::weibull);
 }
 
 } // namespace

@@ -90,11 +90,11 @@ public:
         said.push_back(markdown);
         return agrees;
     }
-    ParticipantAsked ask_participant(std::vector<std::string> const& questions) override
+    ParticipantAsked ask_participant(std::vector<AskedQuestion> const& questions) override
     {
         ++asked;
         ParticipantAsked out;
-        for (std::string const& q : questions) out.answers.emplace_back(q, "x");
+        for (AskedQuestion const& q : questions) out.answers.emplace_back(q.id, "x");
         return out;
     }
     StepDone instruct(std::string const& markdown, int step) override { return said_for(markdown, step, 10); }

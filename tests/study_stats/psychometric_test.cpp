@@ -1,6 +1,7 @@
 // Psychometric functions against R's glm, and against observers that are simulated.
 
 #include "study/stats/psychometric.h"
+#include "study/stats/psychometric_posterior.h"
 
 #include "study/stats/random.h"
 #include "tests/study_stats/support/study_data.h"
@@ -143,6 +144,73 @@ TEST(Psychometric, RefusesWhatIsNoCurve)
     EXPECT_THROW(count_levels(std::vector<double>{1, 2}, std::vector<int>{1}), std::invalid_argument);
     EXPECT_THROW(count_levels(std::vector<double>{NAN}, std::vector<int>{1}), std::invalid_argument);
     EXPECT_TRUE(std::isnan(level_at({}, {0, 1, 0.5, 0}, 0.4)));
+}
+
+/// 13 levels of 90 trials in 2-AFC, the example of psignifit (Wichmann & Hill).
+std::vector<LevelCount> psignifit_example()
+{
+    double const right[] = {45, 50, 44, 44, 52, 53, 62, 64, 76, 79, 88, 90, 90},
+                 level[] = {10, 15, 20, 25, 30, 35, 40, 45, 50, 60, 70, 80, 100};
+    std::vector<LevelCount> counts;
+    for (std::size_t i = 0; i < 13; ++i) counts.push_back({level[i] * 1e-4, right[i], 90});
+    return counts;
+}
+
+TEST(PsychometricPosterior, IsThatOfPsignifit)
+{
+    PosteriorSettings settings;
+    settings.low = 0.001;
+    settings.high = 0.01;
+    // psignifit 4.3 (PyPI), experiment_type 2AFC, sigmoid norm: means of its posterior, and its interval of the
+    // threshold.
+    PsychometricPosterior const all = psychometric_posterior(psignifit_example(), settings);
+    EXPECT_NEAR(all.mean.threshold, 0.0046245, 5e-6);
+    EXPECT_NEAR(all.mean.scale, 0.0046977 / (2 * 1.6448536), 8e-5); // its width is that from 5 % to 95 %
+    EXPECT_NEAR(all.mean.lapse, 0.0053, 0.002);
+    EXPECT_NEAR(all.eta, 0.0380, 0.003);
+    EXPECT_GT(all.effective, 500);
+    std::vector<LevelCount> third = psignifit_example();
+    for (LevelCount& c : third) c = {c.level, std::floor(c.correct / 3), 30};
+    PsychometricPosterior const few = psychometric_posterior(third, settings);
+    EXPECT_NEAR(few.mean.threshold, 0.0047330, 1e-5);
+    EXPECT_NEAR(few.eta, 0.0448, 0.004);
+    PosteriorLevel const level = posterior_level(few, 0.75);
+    EXPECT_LT(level.low, level.centre);
+    EXPECT_GT(level.high, level.centre);
+    EXPECT_NEAR(level.deviation, 0.0003, 1e-4);
+}
+
+TEST(PsychometricPosterior, RefusesWhatIsNoData)
+{
+    PosteriorSettings settings;
+    EXPECT_THROW(psychometric_posterior({}, settings), std::invalid_argument);
+    EXPECT_THROW(psychometric_posterior(std::vector<LevelCount>{{1, 3, 2}}, settings), std::invalid_argument);
+    settings.high = settings.low;
+    EXPECT_THROW(psychometric_posterior(std::vector<LevelCount>{{1, 1, 2}}, settings), std::invalid_argument);
+    settings = {};
+    PosteriorLevel const unknown =
+        posterior_level(psychometric_posterior(std::vector<LevelCount>{{0.5, 1, 2}}, settings), 0.75);
+    EXPECT_GT(unknown.high - unknown.low, 0.5); // two trials say little
+}
+
+TEST(Psychometric, ConvergesWhereLapsesAndGuessesAreFitted)
+{
+    int failed = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Random random = Random::part(3, seed);
+        std::vector<LevelCount> counts;
+        int const levels = 5 + int(seed % 20);
+        for (int i = 0; i < levels; ++i) {
+            double const x = i / double(levels - 1);
+            double const p = proportion_at({}, {0.5, 0.05 + 0.3 * random.uniform(), 0.5, 0.03}, x);
+            LevelCount l{x, 0, double(4 + random.below(40))};
+            for (int k = 0; k < l.trials; ++k) l.correct += random.uniform() < p;
+            counts.push_back(l);
+        }
+        for (Sigmoid const kind : {Sigmoid::gaussian, Sigmoid::logistic, Sigmoid::weibull})
+            failed += !fit_psychometric(counts, {{kind}, {0.5, 0}, {0.01, 0.1}}).converged;
+    }
+    EXPECT_EQ(failed, 0);
 }
 
 } // namespace

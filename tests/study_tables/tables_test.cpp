@@ -67,18 +67,21 @@ TEST(Events, HaveARowPerTrialWithEveryFactor)
     EXPECT_EQ(
         tsv_text(events_table(s, trial_rows(s, r), 0)),
         "onset\tduration\tresponse_time\ttrial\tblock\tpass\tpart\tphase\tattempt\trepeat\tscene\tfactor_trial\t"
-        "cond_a\tcond_b\tcond_more\treference\torder\tlevel\tprocedure\tresponse\tvalue\tanswer\tcorrect\tdevice\t"
+        "cond_a\tcond_b\tcond_"
+        "more\treference\torder\tlevel\tprocedure\tselected\tresponse\tvalue\tanswer\tcorrect\tdevice\t"
         "response_uncertainty_ms\tonset_method\tonset_uncertainty_ms\tframes_planned\tframes_shown\tframes_"
         "dropped\t"
         "render_ms_mean\trender_ms_p99\tsettings_sha256\tbookkeeping_ms\tvalid\treason\tanalysis\n"
         "23.500000\t4.500000\t0.500000\t1\tlook-here\t1\t1\tmain\t1\t1\thall\tn/a\tx\ty\tn/a\tn/a\tab\tn/a\tn/a\t"
-        "first\tn/a\tn/a\tn/a\tkey:left\t0\tswap_finish\t8.4\t240\t240\t0\t4\t8\tabc\t0\ttrue\tn/a\tcounted\n"
+        "n/a\tfirst\tn/a\tn/a\tn/a\tkey:left\t0\tswap_finish\t8.4\t240\t240\t0\t4\t8\tabc\t0\ttrue\tn/a\tcounted\n"
         "33.500000\t4.500000\t0.500000\t2\tlook-here\t1\t1\tmain\t1\t2\thall\tn/a\tx\ty\tn/a\tn/a\tab\tn/a\tn/a\t"
-        "first\tn/a\tn/a\tn/a\tkey:left\t0\tswap_finish\t8.4\t240\t240\t3\t4\t8\tabc\t0\tfalse\tdropped frames\t"
+        "n/a\tfirst\tn/a\tn/a\tn/a\tkey:left\t0\tswap_finish\t8.4\t240\t240\t3\t4\t8\tabc\t0\tfalse\tdropped "
+        "frames\t"
         "repeated later\n"
         "43.500000\t4.500000\t0.500000\t2\tlook-here\t1\t1\trepeat\t2\t2\thall\tn/a\tx\ty\tn/a\tn/a\tab\tn/a\tn/"
         "a\t"
-        "first\tn/a\tn/a\tn/a\tkey:left\t0\tswap_finish\t8.4\t240\t240\t0\t4\t8\tabc\t0\ttrue\tn/a\tcounted\n");
+        "n/a\tfirst\tn/a\tn/a\tn/a\tkey:left\t0\tswap_finish\t8.4\t240\t240\t0\t4\t8\tabc\t0\ttrue\tn/"
+        "a\tcounted\n");
 }
 
 TEST(Events, HaveARowPerStimulusBesideThem)
@@ -206,7 +209,11 @@ TEST(Exports, SayWhatWasChosen)
     EXPECT_EQ(end, (std::vector<std::string>{"x", "y", "x", "pair"}));
     auto const files = export_files(s, tables);
     EXPECT_EQ(files.front().path, "data/study-t_description-trials_data.csv");
-    EXPECT_NE(files.back().text.find("levels <- c(\"x\", \"y\")"), std::string::npos);
+    ASSERT_EQ(files.back().path, "analysis.py");
+    EXPECT_NE(files.back().text.find("fit_pairs(d, [\"x\", \"y\"]"), std::string::npos);
+    TextFile const& r = files.at(files.size() - 2);
+    ASSERT_EQ(r.path, "analysis.R");
+    EXPECT_NE(r.text.find("levels <- c(\"x\", \"y\")"), std::string::npos);
 }
 
 TEST(Exports, AreADatabaseToo)

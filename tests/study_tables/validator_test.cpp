@@ -1,5 +1,5 @@
-// Our records against the validator of the standard (bids-validator-deno from PyPI, installed by scripts/setup
-// --tests).
+// Our records against the validators of the standards: of BIDS (bids-validator-deno) and of HED (hedtools), both
+// from PyPI, installed by scripts/setup --tests.
 
 #include "study/script/examples.h"
 #include "study/script/script_file.h"
@@ -11,6 +11,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <zlib.h>
 
 namespace study::test {
 namespace {
@@ -21,6 +22,14 @@ void write(fs::path const& file, std::string const& text)
 {
     fs::create_directories(file.parent_path());
     std::ofstream(file) << text;
+}
+
+void write_gzip(fs::path const& file, std::string const& text)
+{
+    fs::create_directories(file.parent_path());
+    gzFile const out = gzopen(file.c_str(), "wb");
+    ASSERT_EQ(gzwrite(out, text.data(), unsigned(text.size())), int(text.size()));
+    gzclose(out);
 }
 
 /// Two participants of each shipped experiment, with all other files that a session leaves.
@@ -35,7 +44,38 @@ void write_dataset(fs::path const& folder, StudyExample const& example)
             if (b.task == Task::rating) done.value = b.scale.low;
             done.response = step.trial.answer.empty() && b.pairs ? "first" : step.trial.answer;
             if (b.compare && !done.level) done.level = b.compare->low;
+            for (StimulusShown& shown : done.shown) {
+                shown.mean_cd_m2 = 20;
+                shown.peak_cd_m2 = 80;
+                shown.clipped_pixels = 3;
+                shown.width_deg = shown.height_deg = 4;
+            }
+            if (!b.is_sequential) // they appear together
+                for (StimulusShown& shown : done.shown) shown.onset_s = done.shown[0].onset_s;
+            done.gaze_samples = 250;
+            done.gaze_valid = 240;
+            done.gaze_dropped = 1;
         }));
+        auto& all = sessions.back().record.entries;
+        all.insert(all.begin() + 2, CalibrationDone{600, 60, 16.7, 0.1, "swap_finish", true, ""}); // as resumed
+        for (JournalEntry& entry : all) // two trials that never began: rows without an onset
+            if (auto* const t = std::get_if<TrialDone>(&entry); t != nullptr && t->step % 9 == 4) {
+                t->shown.clear();
+                t->is_valid = false;
+                t->reason = "no_fixation";
+            }
+        auto& started = std::get<SessionStarted>(sessions.back().record.entries.front());
+        for (auto const& [key, value] : {std::pair{"os", "Linux"},
+                                         {"screen_px", "1920 x 1080"},
+                                         {"screen_cm", "53.10 x 29.87"},
+                                         {"viewing_distance_cm", "57"},
+                                         {"refresh_hz", "60"},
+                                         {"pixels_per_degree", "36.2"}})
+            started.about.emplace_back(key, value);
+        std::string const gaze = gaze_stem(s, sessions.back());
+        TextFile const sidecar = gaze_sidecar(s, sessions.back(), 250, 1.5);
+        write(folder / sidecar.path, sidecar.text);
+        write_gzip(folder / (gaze + ".tsv.gz"), "1.5\t640\t360\t3.1\t2\n1.504\tn/a\tn/a\tn/a\tn/a\n");
         auto& entries = sessions.back().record.entries;
         entries.insert(entries.begin() + 2, ParticipantAsked{{{"age_band", "30-39"}, {"vision", "6/6"}}});
         entries.insert(entries.end() - 1, NoteTaken{90, "note", "tab\tand \"quotes\" and é"});
@@ -69,6 +109,29 @@ TEST(Validator, OfBidsFindsNoErrorInTheRecordsOfAnyShippedExperiment)
         EXPECT_EQ(found.at("summary").at("subjects").size(), 2u);
         EXPECT_EQ(status, 0);
     }
+}
+
+TEST(Validator, OfHedFindsNoErrorInTheTagsOfAnyShippedExperiment)
+{
+    fs::path const python = fs::path(LIGHTWELL_SOURCE_DIR) / "build/python/bin/python";
+    if (std::system(("'" + python.string() + "' -c 'import hed' 2> /dev/null").c_str()) != 0)
+        GTEST_SKIP() << "SKIPPED: hedtools is not installed (scripts/setup --tests installs it from PyPI)";
+    std::string folders;
+    for (StudyExample const& example : study_examples()) {
+        fs::path const folder = fs::path(testing::TempDir()) / ("lightwell_hed_" + std::string(example.name));
+        write_dataset(folder, example);
+        folders += " '" + folder.string() + "'";
+    }
+    fs::path const out = fs::path(testing::TempDir()) / "lightwell_hed.txt";
+    int const status =
+        std::system(("'" + python.string() + "' '" LIGHTWELL_SOURCE_DIR "/tests/study_tables/validate_hed.py'" +
+                     folders + " > '" + out.string() + "' 2>&1")
+                        .c_str());
+    std::ifstream in(out);
+    std::string const said{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_EQ(status, 0) << said;
+    EXPECT_NE(said.find("0 errors"), std::string::npos) << said;
+    std::cout << said;
 }
 
 } // namespace

@@ -39,12 +39,12 @@ TEST_P(HelpExamples, Run)
 INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                          testing::Values("", "render", "compare", "info", "generate", "display", "study",
                                          "study simulate", "study rebuild", "study export", "study analyze",
-                                         "study report", "bench", "bench sweep", "bench pictures", "bench report",
-                                         "bench views", "bench schedules", "bench raster", "bench rays",
-                                         "bench accuracy", "bench thesis", "track", "track listen", "track send",
-                                         "track walk", "ar", "ar synthesize", "ar run", "ar track", "ar bench",
-                                         "ar cameras", "ar record", "ar replay", "ar board", "ar calibrate",
-                                         "ar map", "ar albedo", "ar light"),
+                                         "study report", "study power", "bench", "bench sweep", "bench pictures",
+                                         "bench report", "bench views", "bench schedules", "bench raster",
+                                         "bench rays", "bench accuracy", "bench thesis", "track", "track listen",
+                                         "track send", "track walk", "ar", "ar synthesize", "ar run", "ar track",
+                                         "ar bench", "ar cameras", "ar record", "ar replay", "ar board",
+                                         "ar calibrate", "ar map", "ar albedo", "ar light"),
                          [](auto const& example) {
                              std::string name = *example.param == '\0' ? "program" : example.param;
                              std::replace(name.begin(), name.end(), ' ', '_');

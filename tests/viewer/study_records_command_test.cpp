@@ -79,5 +79,47 @@ TEST(StudyRecords, ThatAreNotThereOrOfAnotherScriptAreRefused)
     EXPECT_FALSE(std::filesystem::exists(folder / "records/code")) << "reading changes nothing";
 }
 
+TEST(StudyTables, OfOthersAreAnalysedAndReportedLikeRecords)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "1.csv") << "who,a,b,best,age\n1,x,y,x,old\n1,x,z,z,old\n1,y,z,z,old\n1,x,y,,old\n";
+    std::ofstream(folder / "2.csv") << "who,a,b,best,age\n2,x,y,y,young\n2,x,z,x,young\n2,y,z,z,young\n"
+                                       "3,x,y,x,young\n3,z,y,z,young\n3,z,x,x,young\n";
+    std::string const table =
+        "--table 1.csv 2.csv --columns participant=who,first=a,second=b,chosen=best --factors age";
+    Outcome const printed = run_well("study analyze " + table + " --json --replicates 100", folder.path());
+    auto const j = nlohmann::json::parse(printed.out);
+    EXPECT_EQ(j["participants"], 3);
+    EXPECT_EQ(j["tables"]["scores"].size(), 9u) << "three items, all and two groups";
+    EXPECT_NE(printed.err.find("1 of 10 rows left out: no 'best'"), std::string::npos) << printed.err;
+    run_well("study report " + table + " --out report.html --replicates 100", folder.path());
+    EXPECT_NE(file_text(folder / "report.html").find("<svg"), std::string::npos);
+    expect_refused("study analyze", folder, "no records");
+    expect_refused("study analyze --table 1.csv", folder, "--table without --columns");
+    expect_refused("study analyze --table 1.csv --columns participant=who,first=a,second=b,chosen=c", folder,
+                   "1.csv:1:1: there is no column 'c'");
+    expect_refused("study analyze --table 1.csv --columns who=who", folder, "there is no such role");
+    expect_refused("study analyze --table no.csv --columns item=a,value=b", folder, "no.csv");
+    expect_refused("study analyze " + table + " --only age", folder, "--only 'age'");
+}
+
+TEST(StudyPower, PrintsPowerAndWritesACurve)
+{
+    TemporaryFolder const folder;
+    run_well("study example pairs --out pairs.yaml", folder.path());
+    Outcome const o =
+        run_well("study power pairs.yaml --block better --test none-wide --participants 6,12 --effects "
+                 "0,1 --simulations 10 --out power",
+                 folder.path());
+    EXPECT_NE(o.out.find("10 of 10 simulations"), std::string::npos) << o.out;
+    EXPECT_EQ(nlohmann::json::parse(file_text(folder / "power/power.json"))["points"].size(), 4u);
+    EXPECT_TRUE(file_text(folder / "power/power.csv").starts_with("repeats,participants,effect,power"));
+    EXPECT_NE(file_text(folder / "power/power.html").find("<svg"), std::string::npos);
+    expect_refused("study power pairs.yaml --block better --test none-best", folder, "it has: ");
+    expect_refused("study power pairs.yaml --block worse --test none-wide", folder, "it has: better");
+    expect_refused("study power pairs.yaml --block better --test none-wide --effect-of sound", folder,
+                   "the script has no such factor");
+}
+
 } // namespace
 } // namespace viewer::test

@@ -47,6 +47,58 @@ TEST_F(Display, ToneCurvesAreThoseOfTheCpu)
         }
 }
 
+/// A display whose channels have curves of their own; the luminance of what is drawn is that of the radiance.
+TEST_F(Display, CalibratedPicturesAreThoseOfTheCpuAndLinearInLuminance)
+{
+    glm::ivec2 const size{640, 200};
+    gi::Layer layer = ramp(size);
+    PictureTexture texture;
+    texture.upload(size, layer.data);
+    study::DisplayLuminance display;
+    display.black = 0.4;
+    display.channels = {study::ChannelCurve{20, 1.9, 1.05, {}, 0, 0, 0},
+                        study::ChannelCurve{70, 2.2, 1, {}, 0, 0, 0},
+                        study::ChannelCurve{9, 2.5, 0.98, {}, 0, 0, 0}};
+    DisplaySettings settings;
+    settings.light = display_light(display, make_inverse_table(display), 80);
+    DisplayPass pass;
+    TextureTarget const target(TextureTarget::Format::bytes, size);
+    pass.draw(target.target(), {texture.shown(), {}}, {}, settings);
+    Bytes const seen = read_bytes(target.target());
+    std::size_t differing = 0;
+    int largest = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        int const expected =
+            int(std::lround(255 * encode(settings.light, int(i % 3), layer.data[i], settings.tone)));
+        largest = std::max(largest, std::abs(int(seen[i]) - expected));
+        differing += seen[i] != expected;
+    }
+    std::cout << differing << " of " << seen.size() << " bytes differ, by at most " << largest << "\n";
+    EXPECT_LE(largest, 1);
+    EXPECT_LT(double(differing), 0.01 * double(seen.size()));
+
+    // Greys of known luminance: within half a step of 8 bits.
+    double worst = 0;
+    for (int i = 1; i <= 100; ++i) {
+        double const wanted = 0.8 * i; // cd/m2
+        std::array<double, 3> values{};
+        for (int c = 0; c < 3; ++c)
+            values[std::size_t(c)] = encode(settings.light, c, float(i) / 100, settings.tone);
+        worst = std::max(worst, std::abs(luminance_of(display, values) - wanted));
+    }
+    std::cout << "greys of 0.8 to 80 cd/m2: off by at most " << worst << " cd/m2\n";
+    EXPECT_LT(worst, 0.5);
+
+    gi::Layer const few{"color", 3, {0.5f, 0.5f, 0.5f, 2, 2, 2, 1e-4f, 1e-4f, 1e-4f, 0, 0, 0}};
+    ShownLight const shown = shown_light(few, settings.tone, settings.light, display);
+    EXPECT_EQ(shown.pixels, 4u);
+    EXPECT_EQ(shown.bright, 1u) << "160 cd/m2";
+    EXPECT_EQ(shown.dark, 1u) << "0.008 cd/m2 beside a black of 0.4";
+    EXPECT_NEAR(shown.peak_cd_m2, 99.4, 1e-3);
+    EXPECT_NEAR(shown.mean_cd_m2, (40 + 99.4 + 0.4 + 0.4) / 4, 1e-3);
+    EXPECT_NEAR(mean_and_peak(few, settings.tone, display).second, 2, 1e-6);
+}
+
 TEST_F(Display, StereoModesAreThoseOfTheCpu)
 {
     for (glm::ivec2 const size : {glm::ivec2{320, 240}, {161, 91}}) {

@@ -179,6 +179,7 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
             if (left.picture.texture == 0 || right.picture.texture == 0) continue;
             if (s.swap_eyes) std::swap(left, right);
             if (pane.right_alone) left = right;
+            settings.light = s.light;
             pass_.draw(part, left, right, settings);
             continue;
         }

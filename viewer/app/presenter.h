@@ -42,6 +42,7 @@ struct WallOverlay {
 struct PresentSettings {
     std::shared_ptr<WallOverlay const> overlay; ///< null = none
     gi::ToneMapSettings tone;
+    DisplayLight light; ///< of panes that show no wall with a pass of its own (whose blend and gain count instead)
     Comparison comparison = Comparison::off;
     float split = 0.5f;
     bool swap_eyes = false;

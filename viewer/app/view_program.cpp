@@ -62,6 +62,14 @@ public:
             link, [this] { return pixels_of_a_frame(); }, [] { glfwPostEmptyEvent(); }, own);
     }
 
+    /// Radiance 1 becomes the display's white; without a model values are sRGB.
+    static DisplayLight light_of(ViewOptions const& options)
+    {
+        if (!options.display_model || !options.display_model->luminance) return {};
+        study::DisplayLuminance const& display = *options.display_model->luminance;
+        return display_light(display, make_inverse_table(display), {});
+    }
+
     ViewRunSummary run(gi::StopRequest const& stop)
     {
         double last = state_.clock.now_s();
@@ -491,6 +499,7 @@ private:
         Settings const& s = state_.settings;
         PresentSettings p;
         p.tone = tone_settings(s);
+        p.light = light_;
         p.split = float(s.split);
         p.swap_eyes = s.swap_eyes;
         if (s.compare.empty()) return p;
@@ -503,6 +512,7 @@ private:
     }
 
     ViewCore core_;
+    DisplayLight const light_ = light_of(core_.options);
     ViewState& state_;
     FrameLink* link_;
     UserBodies bodies_;

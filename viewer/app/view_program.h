@@ -28,6 +28,7 @@ struct ViewOptions {
     double eye_height_m = 1.6; ///< of the first user above the floor; a headset measures it
     std::string screenshots;   ///< file-name prefix of screenshots taken by key
     std::optional<Display> display;
+    std::optional<study::DisplayModel> display_model; ///< of the desktop's windows: pictures are linear in light
     std::filesystem::path record, frame_log;
     RecordingHeader header;      ///< of the recording, without the settings
     nlohmann::json load_options; ///< options of `load` besides the scene's name, for replays

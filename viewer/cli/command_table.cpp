@@ -28,6 +28,7 @@ constexpr CommandRow kCommands[]{
     {"study control", kTrials, "Open the experimenter's window: progress, pause, skip, abort, notes."},
     {"study prepare", kTrials,
      "Render the stimuli of blocks with `stimuli: prepared` in advance; existing ones are kept."},
+    {"study calibrate", kTrials, "Measure a display: luminance, gamma, size, distance; write its display model."},
     {"ar", kAr, "Augmented reality: add virtual objects to camera frames."},
     {"bench", kRender, "Compare methods by time and error, and report the results."},
 };

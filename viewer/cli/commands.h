@@ -26,7 +26,10 @@ void add_study_check(CLI::App& study, int& exit_code);
 void add_study_run(CLI::App& study, int& exit_code);
 void add_study_control(CLI::App& study, int& exit_code);
 void add_study_prepare(CLI::App& study, int& exit_code);
+void add_study_calibrate(CLI::App& study, int& exit_code);
+void add_study_photodiode(CLI::App& study, int& exit_code);
 void add_study_simulate(CLI::App& study, int& exit_code);
+void add_study_power(CLI::App& study, int& exit_code);
 void add_study_tables(CLI::App& study, int& exit_code);  ///< rebuild, export
 void add_study_analyze(CLI::App& study, int& exit_code); ///< analyze, report
 // Within ar

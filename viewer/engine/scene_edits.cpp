@@ -1,5 +1,6 @@
 #include "viewer/engine/scene_edits.h"
 
+#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/core/text.h"
 
@@ -13,46 +14,71 @@ namespace {
 
 constexpr double kFarthest_m = 1e7, kBrightest = 1e12;
 
+constexpr SceneEditKey kKeys[]{
+    {"object", "position", "NODE", 3, false, -kFarthest_m, kFarthest_m, "place of an object, m, world"},
+    {"object", "rotation", "NODE", 4, false, -1, 1, "rotation of an object, quaternion x, y, z, w"},
+    {"object", "scale", "NODE", 1, false, 1e-6, 1e6, "size of an object over that of its model"},
+    {"light", "intensity", "N", 3, true, 0, kBrightest,
+     "intensity of a light: W/sr per channel of a point or spot light, W/m2 of a directional one"},
+    {"light", "scale", "N", 1, false, 0, 1e9, "factor on the intensity that the scene gives a light"},
+    {"light", "position", "N", 3, false, -kFarthest_m, kFarthest_m, "place of a light, m, world"},
+    {"material", "base_color", "NAME", 3, true, 0, 1, "albedo of a material, per channel"},
+    {"material", "roughness", "NAME", 1, false, 0, 1, "roughness of a material"},
+    {"material", "metallic", "NAME", 1, false, 0, 1, "share of metal of a material"},
+    {"material", "emission", "NAME", 3, true, 0, kBrightest, "radiance that a material emits, per channel"},
+    {"material", "emission_scale", "NAME", 1, false, 0, 1e9,
+     "factor on the radiance that the scene lets a material emit"},
+    {"environment", "rotation", "", 1, false, -1e6, 1e6, "rotation of the environment map, rad"},
+    {"environment", "scale", "", 1, false, 0, 1e9, "factor on the radiance of the environment map"},
+};
+
 [[noreturn]] void refuse(Change const& c, std::string const& why, std::string const& suggestion)
 {
     throw gi::InputError(fmt::format("'{}' = {}", c.key, c.value.dump()), why, suggestion);
 }
 
-double number(Change const& c, nlohmann::json const& v, double low, double high)
+double number(Change const& c, nlohmann::json const& v, SceneEditKey const& k)
 {
     double const x = v.is_number() ? v.get<double>() : std::nan("");
-    if (!(x >= low && x <= high))
-        refuse(c, fmt::format("it takes numbers from {:g} to {:g}", low, high), "set one in this range");
+    if (!(x >= k.low && x <= k.high))
+        refuse(c, fmt::format("it takes numbers from {:g} to {:g}", k.low, k.high), "set one in this range");
     return x;
 }
 
-template <std::size_t N>
-std::array<double, N> numbers(Change const& c, double low, double high)
+/// The numbers of the value, of which the first `count` count.
+std::array<double, 4> numbers(Change const& c, SceneEditKey const& k)
 {
-    if (!c.value.is_array() || c.value.size() != N)
-        refuse(c, fmt::format("it takes {} numbers", N), "set a list of numbers");
-    std::array<double, N> out{};
-    for (std::size_t i = 0; i < N; ++i) out[i] = number(c, c.value[i], low, high);
+    std::array<double, 4> out{};
+    if (k.count == 1 || (k.or_one && !c.value.is_array())) {
+        out.fill(number(c, c.value, k));
+        return out;
+    }
+    if (!c.value.is_array() || c.value.size() != std::size_t(k.count))
+        refuse(c, fmt::format("it takes {} numbers{}", k.count, k.or_one ? ", or one for all" : ""),
+               "set a list of numbers");
+    for (std::size_t i = 0; i < std::size_t(k.count); ++i) out[i] = number(c, c.value[i], k);
     return out;
 }
 
-gi::dvec3 vector(Change const& c, double low, double high)
+gi::dvec3 vector(Change const& c, SceneEditKey const& k)
 {
-    auto const v = numbers<3>(c, low, high);
+    auto const v = numbers(c, k);
     return {v[0], v[1], v[2]};
 }
+
+double number(Change const& c, SceneEditKey const& k) { return numbers(c, k)[0]; }
 
 /// Splits "object.left.hand.position" into object, left.hand, position.
 struct Key {
     std::string kind, name, what;
 };
 
-Key parse(Change const& c)
+Key parse(std::string const& key)
 {
-    std::size_t const first = c.key.find('.'), last = c.key.rfind('.');
-    if (first == std::string::npos) refuse(c, "the key names nothing in the scene", "see docs/viewer.md");
-    if (first == last) return {c.key.substr(0, first), "", c.key.substr(last + 1)};
-    return {c.key.substr(0, first), c.key.substr(first + 1, last - first - 1), c.key.substr(last + 1)};
+    std::size_t const first = key.find('.'), last = key.rfind('.');
+    if (first == std::string::npos) return {key, "", ""};
+    if (first == last) return {key.substr(0, first), "", key.substr(last + 1)};
+    return {key.substr(0, first), key.substr(first + 1, last - first - 1), key.substr(last + 1)};
 }
 
 /// Index of an item given by its name or number. @param name_of  returns the name at an index
@@ -66,51 +92,90 @@ std::size_t find(Change const& c, std::string const& name, std::size_t count, Na
            "give a name, or a number from 0");
 }
 
-gi::Changes edit_light(gi::MovingWorld& world, Change const& c, Key const& key)
+gi::Changes edit_light(gi::MovingWorld& world, Change const& c, Key const& key, std::size_t k)
 {
-    auto const& lights = world.world().lights;
-    std::size_t const k = find(c, key.name, lights.size(), [](std::size_t) { return std::string(); });
-    gi::Light light = lights[k];
+    SceneEditKey const& facts = find_scene_edit(c.key);
+    gi::Light light = world.world().lights[k];
     if (key.what == "intensity")
-        light.intensity = gi::vec3(vector(c, 0, kBrightest));
-    else if (key.what == "position")
-        light.position = gi::vec3(vector(c, -kFarthest_m, kFarthest_m) - world.world().origin);
+        light.intensity = gi::vec3(vector(c, facts));
+    else if (key.what == "scale")
+        light.intensity = float(number(c, facts)) * world.authored_intensity(k);
     else
-        refuse(c, "a light has no such property", "set intensity or position");
+        light.position = gi::vec3(vector(c, facts) - world.world().origin);
     return world.set_light(k, light);
+}
+
+gi::Changes edit_lights(gi::MovingWorld& world, Change const& c, Key const& key)
+{
+    std::size_t const count = world.world().lights.size();
+    if (key.name != "all")
+        return edit_light(world, c, key, find(c, key.name, count, [](std::size_t) { return std::string(); }));
+    if (count == 0) refuse(c, "the scene has no light", "change the emission of a material, or the environment");
+    gi::Changes changes;
+    for (std::size_t k = 0; k < count; ++k) changes.add(edit_light(world, c, key, k));
+    return changes;
 }
 
 gi::Changes edit_material(gi::MovingWorld& world, Change const& c, Key const& key)
 {
-    auto const& names = world.world().scene->material_names;
-    std::size_t const k = find(c, key.name, world.world().materials.size(),
-                               [&](std::size_t i) { return i < names.size() ? names[i] : "default"; });
+    SceneEditKey const& facts = find_scene_edit(c.key);
+    gi::Scene const& scene = *world.world().scene;
+    std::size_t const k = find(c, key.name, world.world().materials.size(), [&](std::size_t i) {
+        return i < scene.material_names.size() ? scene.material_names[i] : "default";
+    });
     gi::Material m = world.world().materials[k];
     if (key.what == "base_color")
-        m.base_color = gi::vec3(vector(c, 0, 1));
+        m.base_color = gi::vec3(vector(c, facts));
     else if (key.what == "emission")
-        m.emission = gi::vec3(vector(c, 0, kBrightest));
+        m.emission = gi::vec3(vector(c, facts));
+    else if (key.what == "emission_scale")
+        m.emission =
+            k < scene.materials.size() ? float(number(c, facts)) * scene.materials[k].emission : gi::vec3(0);
     else if (key.what == "roughness")
-        m.roughness = float(number(c, c.value, 0, 1));
-    else if (key.what == "metallic")
-        m.metallic = float(number(c, c.value, 0, 1));
+        m.roughness = float(number(c, facts));
     else
-        refuse(c, "a material has no such property", "set base_color, emission, roughness or metallic");
+        m.metallic = float(number(c, facts));
     return world.set_material(k, m);
 }
 
 gi::Changes edit_environment(gi::MovingWorld& world, Change const& c, Key const& key)
 {
+    SceneEditKey const& facts = find_scene_edit(c.key);
     gi::World const& w = world.world();
     if (!w.environment) refuse(c, "the scene has no environment map", "load a scene that has one");
-    if (key.what == "rotation")
-        return world.turn_environment(float(number(c, c.value, -1e6, 1e6)), w.environment_scale);
-    if (key.what == "scale")
-        return world.turn_environment(w.environment_rotation_rad, gi::vec3(float(number(c, c.value, 0, 1e9))));
-    refuse(c, "an environment map has no such property", "set rotation or scale");
+    if (key.what == "rotation") return world.turn_environment(float(number(c, facts)), w.environment_scale);
+    return world.turn_environment(w.environment_rotation_rad, gi::vec3(float(number(c, facts))));
 }
 
 } // namespace
+
+std::span<SceneEditKey const> scene_edit_keys() { return kKeys; }
+
+std::string pattern_of(SceneEditKey const& k)
+{
+    return fmt::format("{}.{}{}{}", k.kind, k.name, k.name.empty() ? "" : ".", k.what);
+}
+
+SceneEditKey const& find_scene_edit(std::string const& text)
+{
+    Key const key = parse(text);
+    std::vector<std::string> known;
+    bool needs_name = false;
+    for (SceneEditKey const& k : kKeys) {
+        if (k.kind != key.kind) continue;
+        if (k.what == key.what && k.name.empty() == key.name.empty()) return k;
+        known.emplace_back(k.what);
+        needs_name = !k.name.empty();
+    }
+    if (needs_name && key.name.empty())
+        throw gi::InputError(
+            "'" + text + "'", "it does not say which one",
+            fmt::format("write {}.{}.{}", key.kind, key.kind == "light" ? "0" : "NAME", known[0]));
+    throw gi::InputError(fmt::format("'{}' has no property '{}'", key.kind, key.what),
+                         "there is none of that name", gi::suggest(key.what, known));
+}
+
+void check_scene_edit(Change const& c) { numbers(c, find_scene_edit(c.key)); }
 
 bool is_object_edit(std::string const& key) { return key.starts_with("object."); }
 
@@ -122,8 +187,8 @@ bool is_scene_edit(std::string const& key)
 
 gi::Changes edit(gi::MovingWorld& world, Change const& c)
 {
-    Key const key = parse(c);
-    if (key.kind == "light") return edit_light(world, c, key);
+    Key const key = parse(c.key);
+    if (key.kind == "light") return edit_lights(world, c, key);
     if (key.kind == "material") return edit_material(world, c, key);
     return edit_environment(world, c, key);
 }
@@ -131,7 +196,8 @@ gi::Changes edit(gi::MovingWorld& world, Change const& c)
 PlacedObject placed_object(gi::Scene const& scene, gi::Pose const& now, std::vector<PlacedObject> const& placed,
                            Change const& c)
 {
-    Key const key = parse(c);
+    SceneEditKey const& facts = find_scene_edit(c.key);
+    Key const key = parse(c.key);
     std::size_t const node =
         find(c, key.name, scene.nodes.size(), [&](std::size_t i) { return scene.nodes[i].name; });
     PlacedObject object{node};
@@ -149,9 +215,9 @@ PlacedObject placed_object(gi::Scene const& scene, gi::Pose const& now, std::vec
             object.scale = 1;
     }
     if (key.what == "position") {
-        object.position = vector(c, -kFarthest_m, kFarthest_m);
+        object.position = vector(c, facts);
     } else if (key.what == "rotation") {
-        auto const q = numbers<4>(c, -1, 1);
+        auto const q = numbers(c, facts);
         gi::dquat rotation;
         rotation.x = q[0];
         rotation.y = q[1];
@@ -159,10 +225,8 @@ PlacedObject placed_object(gi::Scene const& scene, gi::Pose const& now, std::vec
         rotation.w = q[3];
         if (!(glm::length(rotation) > 1e-3)) refuse(c, "it is no rotation", "give a unit quaternion x, y, z, w");
         object.rotation = glm::normalize(rotation);
-    } else if (key.what == "scale") {
-        object.scale = number(c, c.value, 1e-6, 1e6);
     } else {
-        refuse(c, "an object has no such property", "set position, rotation or scale");
+        object.scale = number(c, facts);
     }
     return object;
 }

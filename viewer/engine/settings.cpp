@@ -1,5 +1,6 @@
 #include "viewer/engine/settings.h"
 
+#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/core/text.h"
 #include "gi/filter/filter_names.h"
@@ -111,7 +112,11 @@ SettingKey const* find(std::string_view key)
 SettingKey const& known(std::string const& key)
 {
     if (SettingKey const* const k = find(key)) return *k;
-    throw gi::InputError("there is no setting '" + key + "'", "its key is unknown", "docs/viewer.md has the list");
+    std::vector<std::string> all;
+    for (SettingKey const& k : setting_keys()) all.push_back(k.key);
+    std::string const near = gi::suggest(key, all);
+    throw gi::InputError("there is no setting '" + key + "'", "its key is unknown",
+                         near.starts_with("did") ? near : "lightwell info --settings has the list");
 }
 
 std::string dumped(Json const& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }

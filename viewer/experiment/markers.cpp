@@ -1,61 +1,54 @@
 #include "viewer/experiment/markers.h"
 
 #include "gi/core/error.h"
+#include "viewer/experiment/lsl_library.h"
 
 #include <arpa/inet.h>
 #include <cerrno>
 #include <cstring>
-#include <dlfcn.h>
+#include <fmt/format.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 namespace viewer {
 
-/// The required functions of liblsl (lsl_c.h of version 1.16), loaded at run time because few systems package
-/// it.
-struct Markers::Lsl {
-    using Info = void* (*)(char const*, char const*, int, double, int, char const*);
-    using Outlet = void* (*)(void*, int, int);
-    using Push = int (*)(void*, char const**, double);
-    using Destroy = void (*)(void*);
-    static constexpr int kStringFormat = 3;
+struct Markers::Stream {
+    std::shared_ptr<LslLibrary const> lsl;
+    LslLibrary::Info info = nullptr;
+    void* outlet = nullptr;
+    double clock_offset_s = 0;
 
-    void* library = nullptr;
-    void *info = nullptr, *outlet = nullptr;
-    Push push = nullptr;
-    Destroy destroy_outlet = nullptr, destroy_info = nullptr;
-
-    template <class Function>
-    Function find(char const* name) const
+    bool open(MarkerSession const& session)
     {
-        return reinterpret_cast<Function>(dlsym(library, name));
-    }
-    bool open(std::string const& experiment)
-    {
-        for (char const* const name : {"liblsl.so.2", "liblsl.so", "liblsl64.so"})
-            if ((library = dlopen(name, RTLD_NOW | RTLD_LOCAL)) != nullptr) break;
-        if (library == nullptr) return false;
-        auto const make_info = find<Info>("lsl_create_streaminfo");
-        auto const make_outlet = find<Outlet>("lsl_create_outlet");
-        push = find<Push>("lsl_push_sample_strt");
-        destroy_outlet = find<Destroy>("lsl_destroy_outlet");
-        destroy_info = find<Destroy>("lsl_destroy_streaminfo");
-        if (!make_info || !make_outlet || !push || !destroy_outlet || !destroy_info) return false;
-        std::string const source = "lightwell-" + experiment;
-        info = make_info("Lightwell", "Markers", 1, 0, kStringFormat, source.c_str());
-        outlet = info != nullptr ? make_outlet(info, 0, 360) : nullptr;
+        lsl = LslLibrary::open();
+        if (!lsl) return false;
+        constexpr int kBuffered_s = 360;
+        // The source's name stays the same when a session is resumed, so that recorders go on with its stream.
+        std::string const source =
+            fmt::format("lightwell-{}-{}-{:02}", session.experiment, session.participant, session.session);
+        info = lsl->create_streaminfo("Lightwell", "Markers", 1, 0, LslLibrary::kStringFormat, source.c_str());
+        if (info == nullptr) return false;
+        LslLibrary::Xml const desc = lsl->get_desc(info);
+        lsl->append_child_value(desc, "manufacturer", "Lightwell");
+        lsl->append_child_value(desc, "experiment", session.experiment.c_str());
+        lsl->append_child_value(desc, "participant", session.participant.c_str());
+        lsl->append_child_value(desc, "session", std::to_string(session.session).c_str());
+        LslLibrary::Xml const channel = lsl->append_child(lsl->append_child(desc, "channels"), "channel");
+        lsl->append_child_value(channel, "label", "event");
+        lsl->append_child_value(channel, "type", "JSON");
+        outlet = lsl->create_outlet(info, 0, kBuffered_s);
+        clock_offset_s = lsl->clock_offset_s();
         return outlet != nullptr;
     }
-    ~Lsl()
+    ~Stream()
     {
-        if (outlet != nullptr) destroy_outlet(outlet);
-        if (info != nullptr) destroy_info(info);
-        if (library != nullptr) dlclose(library);
+        if (outlet != nullptr) lsl->destroy_outlet(outlet);
+        if (info != nullptr) lsl->destroy_streaminfo(info);
     }
 };
 
-Markers::Markers(std::vector<std::string> const& wanted, int port, std::string const& experiment,
+Markers::Markers(std::vector<std::string> const& wanted, int port, MarkerSession const& session,
                  gi::Report& report)
     : port_(port), report_(report)
 {
@@ -65,14 +58,21 @@ Markers::Markers(std::vector<std::string> const& wanted, int port, std::string c
             if (socket_ < 0)
                 throw gi::InputError("no socket for markers", std::strerror(errno), "leave out record.markers");
         } else if (w == "lsl") {
-            lsl_ = std::make_unique<Lsl>();
-            if (lsl_->open(experiment)) continue;
-            lsl_.reset();
+            stream_ = std::make_unique<Stream>();
+            if (stream_->open(session)) continue;
+            stream_.reset();
             report.lose("marker streams that could not be opened: liblsl is not installed");
         } else {
             throw gi::InputError("record.markers: " + w, "there is no such kind of marker", "choose udp or lsl");
         }
     }
+}
+
+std::vector<std::pair<std::string, std::string>> Markers::about() const
+{
+    if (!stream_) return {};
+    return {{"lsl", stream_->lsl->version()},
+            {"lsl_clock_offset_s", fmt::format("{:.9f}", stream_->clock_offset_s)}};
 }
 
 Markers::~Markers()
@@ -82,7 +82,7 @@ Markers::~Markers()
 
 void Markers::send(double time_s, std::string const& what, nlohmann::ordered_json about)
 {
-    if (socket_ < 0 && !lsl_) return;
+    if (socket_ < 0 && !stream_) return;
     nlohmann::ordered_json line{{"marker", what}, {"time_s", time_s}};
     line.update(about);
     std::string const text = line.dump();
@@ -97,10 +97,9 @@ void Markers::send(double time_s, std::string const& what, nlohmann::ordered_jso
         if (sent < 0 && errno != ECONNREFUSED)
             report_.lose("markers that could not be sent", 1, std::strerror(errno));
     }
-    if (lsl_) {
+    if (stream_) {
         char const* sample = text.c_str();
-        // LSL's clock is the steady clock on Linux.
-        if (lsl_->push(lsl_->outlet, &sample, time_s) != 0)
+        if (stream_->lsl->push_sample_strt(stream_->outlet, &sample, time_s + stream_->clock_offset_s) != 0)
             report_.lose("markers that could not be sent", 1, "liblsl");
     }
 }

@@ -25,7 +25,8 @@ std::vector<double> levels_of(study::Script const& script, study::Block const& b
 } // namespace
 
 std::map<std::string, PreparedStimulus> prepared_list(study::Script const& script, glm::ivec2 screen_px,
-                                                      float font_px, std::string const& version)
+                                                      float font_px, std::string const& version,
+                                                      study::DisplayModel const* model)
 {
     std::map<std::string, PreparedStimulus> list;
     bool const is_any = std::any_of(script.blocks.begin(), script.blocks.end(),
@@ -36,7 +37,7 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
         p.stimulus = stimulus_settings(script, block, stimulus);
         std::size_t const together =
             block.is_sequential ? 1 : trial.order.size() + (trial.reference.has_value() ? 1 : 0);
-        p.view = view_of(block, p.stimulus, together, screen_px, font_px);
+        p.view = view_of(block, p.stimulus, together, screen_px, font_px, model);
         p.where = script.file + ": block " + block.name + ", " + stimulus_label(script, block, stimulus);
         list.emplace(prepared_key(p, version), p);
     };
@@ -48,7 +49,7 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
             if (block.task == study::Task::adjustment)
                 throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
                                      "adjusted stimuli are rendered while they are shown", "write stimuli: live");
-            for (study::Stimulus s : step.trial.stimuli) {
+            for (study::Stimulus s : possible_stimuli(block, step.trial)) {
                 bool const has_levels = block.compare && !block.compare->vary.empty();
                 if (!s.is_varied || s.level || !has_levels) {
                     add(block, step.trial, s);
@@ -59,7 +60,6 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
                     add(block, step.trial, s);
                 }
             }
-            if (step.trial.reference) add(block, step.trial, *step.trial.reference);
         }
     return list;
 }

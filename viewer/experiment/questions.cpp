@@ -55,28 +55,67 @@ bool TrialPresenter::ask_consent(std::string const& markdown)
     return agreed;
 }
 
-study::ParticipantAsked TrialPresenter::ask_participant(std::vector<std::string> const& questions)
+study::ParticipantAsked TrialPresenter::ask_participant(std::vector<study::AskedQuestion> const& questions)
 {
     study::ParticipantAsked asked;
-    constexpr std::size_t kMost = 200;
-    for (std::string const& question : questions) {
-        std::string typed;
-        std::vector<PageLine> const lines{{PageLine::Kind::text, question}};
-        bool const answered = page(
-            [&](glm::vec2 px) {
-                draw_page(px, lines, "type, then enter", [&] { ImGui::TextWrapped("%s_", typed.c_str()); });
-            },
-            [&](InputEvent const& e) {
-                if (e.kind == InputKind::character && typed.size() < kMost && e.code >= 32)
-                    append_utf8(typed, unsigned(e.code));
-                if (e.kind != InputKind::key || e.action == InputAction::release) return false;
-                if (e.code == GLFW_KEY_BACKSPACE) remove_last(typed);
-                return e.action == InputAction::press && (e.code == GLFW_KEY_ENTER || e.code == GLFW_KEY_KP_ENTER);
-            });
-        if (!answered) break; // skipped
-        asked.answers.emplace_back(question, typed);
+    for (study::AskedQuestion const& question : questions) {
+        auto const answer =
+            question.type == study::AskedType::choice ? choose_answer(question) : type_answer(question);
+        if (!answer) break; // skipped
+        asked.answers.emplace_back(question.id, *answer);
     }
     return asked;
+}
+
+/// Typed text, asked until it is an answer.
+std::optional<std::string> TrialPresenter::type_answer(study::AskedQuestion const& question)
+{
+    constexpr std::size_t kMost = 2000;
+    std::string typed, flaw;
+    std::vector<PageLine> const lines{{PageLine::Kind::text, question.text}};
+    bool const answered = page(
+        [&](glm::vec2 px) {
+            draw_page(px, lines, "type, then enter", [&] {
+                ImGui::TextWrapped("%s_", typed.c_str());
+                if (!flaw.empty()) ImGui::TextWrapped("%s", flaw.c_str());
+            });
+        },
+        [&](InputEvent const& e) {
+            if (e.kind == InputKind::character && typed.size() < kMost && e.code >= 32)
+                append_utf8(typed, unsigned(e.code));
+            if (e.kind != InputKind::key || e.action == InputAction::release) return false;
+            if (e.code == GLFW_KEY_BACKSPACE) remove_last(typed);
+            bool const is_enter =
+                e.action == InputAction::press && (e.code == GLFW_KEY_ENTER || e.code == GLFW_KEY_KP_ENTER);
+            if (is_enter && question.type == study::AskedType::number)
+                std::replace(typed.begin(), typed.end(), ',', '.'); // a decimal point
+            if (is_enter) flaw = flaw_of_answer(question, typed);
+            return is_enter && flaw.empty();
+        });
+    return answered ? std::optional(typed) : std::nullopt;
+}
+
+/// One of at most nine choices, by its digit; enter without one = no answer.
+std::optional<std::string> TrialPresenter::choose_answer(study::AskedQuestion const& question)
+{
+    int chosen = -1;
+    std::vector<PageLine> lines{{PageLine::Kind::text, question.text}, {PageLine::Kind::gap, ""}};
+    for (std::size_t i = 0; i < question.choices.size(); ++i)
+        lines.push_back({PageLine::Kind::text, fmt::format("{}   {}", i + 1, question.choices[i])});
+    bool const answered = page(
+        [&](glm::vec2 px) {
+            draw_page(px, lines, "digit, then enter", [&] {
+                if (chosen >= 0) ImGui::TextWrapped("%s", question.choices[std::size_t(chosen)].c_str());
+            });
+        },
+        [&](InputEvent const& e) {
+            int const digit = digit_of(e);
+            if (digit >= 1 && digit <= int(question.choices.size())) chosen = digit - 1;
+            return e.kind == InputKind::key && e.action == InputAction::press &&
+                   (e.code == GLFW_KEY_ENTER || e.code == GLFW_KEY_KP_ENTER);
+        });
+    if (!answered) return {};
+    return chosen >= 0 ? question.choices[std::size_t(chosen)] : std::string();
 }
 
 study::QuestionnaireDone TrialPresenter::ask(study::Questionnaire const& q, int step)

@@ -4,6 +4,7 @@
 #include "study/run/trial.h"
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/screens/refresh.h"
+#include "viewer/experiment/stimuli/physical.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,10 +45,11 @@ std::vector<ScreenPane> panes_for(std::size_t count, glm::ivec2 screen_px, float
 }
 
 StimulusView view_of(study::Block const& block, StimulusSettings const& stimulus, std::size_t together,
-                     glm::ivec2 screen_px, float font_px)
+                     glm::ivec2 screen_px, float font_px, study::DisplayModel const* model)
 {
     StimulusView view;
-    view.size_px = panes_for(together, screen_px, kTextLines * font_px).front().size_px;
+    ScreenPane const pane = panes_for(together, screen_px, kTextLines * font_px).front();
+    view.size_px = placed_within(stimulus.physical, model, pane.corner_px, pane.size_px).size_px;
     view.stereo = *stereo_mode(stimulus.settings.stereo);
     view.duration_s = 1e-3 * block.timing.stimulus_ms.value_or(kRound_ms);
     view.warmup_frames = block.timing.warmup_frames;
@@ -82,10 +84,17 @@ ScreenContent TrialPresenter::Trial::content(std::string const& letters)
     for (std::size_t i = 0; i < letters.size(); ++i)
         for (LoadedStimulus const& k : known_)
             if (k.letter == letters[i]) {
-                c.panes[i].frame = k.source->newest();
-                c.panes[i].stereo = k.stereo;
+                ScreenPane& pane = c.panes[i];
+                pane.frame = k.source->newest();
+                pane.stereo = k.stereo;
+                pane.light = k.light;
+                PlacedPixels const placed =
+                    placed_within(k.settings.physical, p_.model(), pane.corner_px, pane.size_px);
+                pane.corner_px = placed.corner_px;
+                pane.size_px = placed.size_px;
             }
     p_.add_patch(c, !letters.empty());
+    if (!letters.empty() && block_.gaze.moving) c.gaze = p_.gaze_circle(*block_.gaze.moving);
     return c;
 }
 
@@ -104,14 +113,16 @@ bool TrialPresenter::Trial::wait(double until_s, bool cross)
     return true;
 }
 
-bool TrialPresenter::Trial::get_ready(LoadedStimulus const& k)
+bool TrialPresenter::Trial::get_ready(LoadedStimulus& k)
 {
     std::size_t const together = block_.is_sequential ? 1 : order_.size();
-    StimulusView view = view_of(block_, k.settings, together, p_.screen_->size_px(), p_.options_.screen.font_px);
+    StimulusView view =
+        view_of(block_, k.settings, together, p_.screen_->size_px(), p_.options_.screen.font_px, p_.model());
     view.on_walls = p_.on_walls();
     k.source->prepare(k.settings, view);
     while (!k.source->is_ready())
         if (!wait(0, block_.is_sequential)) return false;
+    calibrate_light(k, true);
     k.source->rest();
     return true;
 }
@@ -119,7 +130,7 @@ bool TrialPresenter::Trial::get_ready(LoadedStimulus const& k)
 /// Prepares one stimulus after the other, so that each can use the whole machine.
 bool TrialPresenter::Trial::get_all_ready()
 {
-    for (LoadedStimulus const& k : known_)
+    for (LoadedStimulus& k : known_)
         if (!get_ready(k)) return false;
     return wait(p_.trial_end_s_ + 1e-3 * block_.timing.iti_ms, block_.is_sequential);
 }
@@ -128,7 +139,7 @@ bool TrialPresenter::Trial::get_all_ready()
 bool TrialPresenter::Trial::wait_between(std::size_t next)
 {
     double const until_s = p_.now() + 1e-3 * block_.timing.isi_ms;
-    for (LoadedStimulus const& k : known_)
+    for (LoadedStimulus& k : known_)
         if (k.letter == order_[next] && order_.find(k.letter) < next && k.source->moves() && !get_ready(k))
             return false;
     return wait(until_s, true);
@@ -136,7 +147,7 @@ bool TrialPresenter::Trial::wait_between(std::size_t next)
 
 bool TrialPresenter::Trial::has_ended()
 {
-    if (p_.should_end()) return true;
+    if (p_.should_end() || !gaze_failure_.empty()) return true;
     return is_answered_ || (block_.timing.timeout_ms && p_.now() > onset_s_ + 1e-3 * *block_.timing.timeout_ms);
 }
 
@@ -173,6 +184,7 @@ void TrialPresenter::Trial::adjust()
         if (!k.stimulus.is_varied) continue;
         k.stimulus.level = level_;
         k.settings = stimulus_settings(*request_.script, block_, k.stimulus);
+        calibrate_light(k, false);
         k.source->change(k.settings);
     }
 }
@@ -214,6 +226,13 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
                 if (frames.size() > 8) frames.erase(frames.begin());
             }
     };
+    std::optional<study::GazeWatch> hold;
+    if (block_.gaze.hold) {
+        hold.emplace(p_.gaze_screen(), std::pair{0.0, 0.0}, block_.gaze.hold->within_deg);
+        p_.gaze_.watch(&*hold);
+    }
+    p_.gaze_.at(request_.step_index, letters);
+    p_.gaze_.begin_capture();
     ScreenContent c = content(letters);
     if (stays) c.text = [this](glm::vec2 px) { response_.draw(px); };
     ScreenSwap swap = p_.present(c);
@@ -221,14 +240,22 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
     onset_s_ = p_.seconds(onset.time);
     onset_uncertainty_ms_ = onset.uncertainty_ms;
     p_.screen_->take_longest_look_ms();
-    p_.markers_.send(onset_s_, "stimulus",
-                     {{"step", request_.step_index}, {"attempt", request_.attempt}, {"shown", letters}});
+    mark(onset_s_, "stimulus",
+         {{"shown", letters},
+          {"stimuli", labels(letters)},
+          {"onset_method", onset.method},
+          {"onset_uncertainty_ms", onset.uncertainty_ms}});
     add_rows(letters, swap, 0, c);
     note_frames(c);
+    std::vector<ScreenPane> const c_shown = c.panes;
     int shown = 1, dropped = 0;
     double const first_s = p_.seconds(onset.seen);
     double last_s = first_s;
     while (!p_.should_end()) {
+        if (hold && hold->away_ms() > block_.gaze.hold->grace_ms) {
+            gaze_failure_ = "gaze_left";
+            break;
+        }
         if (!stays && last_s + p_.period_s_ > first_s + length_s - 0.5 * p_.period_s_) break;
         if (takes_answer) {
             take_answers();
@@ -251,6 +278,12 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
     c = content("");
     swap = p_.present(c);
     double const end_s = p_.seconds(swap.time);
+    p_.gaze_.poll(p_.screen_->gaze_place(), p_.now());
+    for (study::GazeSample const& s : p_.gaze_.end_capture())
+        if (s.time_s >= onset_s_ && s.time_s <= end_s) gaze_seen_.push_back(s);
+    p_.gaze_.watch(nullptr);
+    p_.gaze_.at(request_.step_index, "");
+    mark(end_s, "stimulus_end", {{"shown", letters}});
     dropped += dropped_between(p_.seconds(swap.seen) - last_s, p_.period_s_);
     add_rows("", swap, 0, c);
     for (LoadedStimulus* const k : seen) k->source->rest();
@@ -270,8 +303,23 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
         s.render_ms_mean =
             std::accumulate(render.begin(), render.end(), 0.0) / std::max<double>(1, double(render.size()));
         s.render_ms_p99 = p99_ms;
-        for (LoadedStimulus const& k : known_)
-            if (k.letter == letter) s.settings_sha256 = k.settings.sha256;
+        for (LoadedStimulus const& k : known_) {
+            if (k.letter != letter) continue;
+            s.settings_sha256 = k.settings.sha256;
+            if (k.shown_light) {
+                s.clipped_pixels = int(k.shown_light->bright + k.shown_light->dark);
+                if (p_.model()->luminance->is_absolute) {
+                    s.mean_cd_m2 = k.shown_light->mean_cd_m2;
+                    s.peak_cd_m2 = k.shown_light->peak_cd_m2;
+                }
+            }
+            std::size_t const at = letters.find(letter);
+            if (p_.has_degrees() && at < c_shown.size()) {
+                study::ScreenGeometry const& screen = *p_.model()->screen;
+                s.width_deg = 2 * study::deg_of_place(screen, 0.5 * c_shown[at].size_px.x, false);
+                s.height_deg = 2 * study::deg_of_place(screen, 0.5 * c_shown[at].size_px.y, true);
+            }
+        }
         done_.shown.push_back(std::move(s));
     }
 }
@@ -292,11 +340,13 @@ void TrialPresenter::Trial::give_feedback()
 study::TrialDone TrialPresenter::Trial::run()
 {
     p_.see_in(known_.front().settings.view.value_or(p_.options_.view));
-    bool const ready = get_all_ready();
+    p_.gaze_.at(request_.step_index, "");
+    mark(p_.now(), "trial", {{"phase", study::name_of(request_.step->trial.phase)}, {"order", order_}});
+    bool const ready = get_all_ready() && await_fixation();
     if (ready && !block_.is_sequential) {
         appear(order_, true);
     } else if (ready) {
-        for (std::size_t i = 0; i < order_.size() && !p_.should_end(); ++i) {
+        for (std::size_t i = 0; i < order_.size() && !p_.should_end() && gaze_failure_.empty(); ++i) {
             if (i > 0 && !wait_between(i)) break;
             appear(order_.substr(i, 1), i + 1 == order_.size());
         }
@@ -314,6 +364,7 @@ study::TrialDone TrialPresenter::Trial::run()
     done_.step = request_.step_index;
     done_.attempt = request_.attempt;
     done_.level = level_;
+    keep_gaze();
     if (p_.should_end()) {
         p_.end_early();
         done_.is_valid = false;
@@ -328,8 +379,11 @@ study::TrialDone TrialPresenter::Trial::run()
         done_.reaction_ms = 1e3 * (*done_.response_s - onset_s_);
         done_.response_uncertainty_ms = onset_uncertainty_ms_ + longest_look_ms_;
         done_.device = by.input;
-        p_.markers_.send(*done_.response_s, "answer",
-                         {{"step", request_.step_index}, {"answer", done_.response}, {"input", by.input}});
+        mark(*done_.response_s, "answer", {{"answer", done_.response}, {"input", by.input}});
+    }
+    if (!gaze_failure_.empty()) {
+        done_.is_valid = false;
+        done_.reason = gaze_failure_;
     }
     if (is_lost_) {
         done_.is_valid = false;
@@ -348,11 +402,17 @@ study::TrialDone TrialPresenter::show(study::TrialRequest const& request)
         fmt::format("trial {} of {}, {}", request.trials_done + 1, request.trials_planned, request.block->name);
     study::TrialDone done = Trial(*this, request).run();
     study::TrialDone judged = done;
-    judge(script_, request.step->trial, judged);
+    judge(script_, *request.step, judged);
     status.bad_trials += !judged.is_valid;
     status.trials_done += request.attempt == 1 ? 1 : 0; // count each planned trial once
     status.last =
         done.reaction_ms ? fmt::format("{} after {:.0f} ms", done.response, *done.reaction_ms) : done.reason;
+    markers_.send(now(), "trial_end",
+                  {{"step", request.step_index},
+                   {"attempt", request.attempt},
+                   {"valid", judged.is_valid},
+                   {"reason", judged.reason}});
+    keep_gaze_table();
     trial_end_s_ = now();
     return done;
 }

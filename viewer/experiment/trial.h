@@ -7,9 +7,10 @@ namespace viewer {
 /// Places for `count` pictures side by side, with room for text below.
 std::vector<ScreenPane> panes_for(std::size_t count, glm::ivec2 screen_px, float text_px);
 
-/// View of a stimulus in a block that shows `together` stimuli at a time.
+/// View of a stimulus in a block that shows `together` stimuli at a time. @param model  for sizes in degrees; null
+/// = none
 StimulusView view_of(study::Block const& block, StimulusSettings const& stimulus, std::size_t together,
-                     glm::ivec2 screen_px, float font_px);
+                     glm::ivec2 screen_px, float font_px, study::DisplayModel const* model = nullptr);
 
 /// A running trial: prepares and shows its stimuli and records the answer.
 class TrialPresenter::Trial {
@@ -24,10 +25,17 @@ private:
         StimulusSettings settings;
         StimulusSource* source;
         StereoMode stereo;
+        DisplayLight light{};
+        std::optional<ShownLight> shown_light{}; ///< of its first picture, on a calibrated display
     };
 
-    bool get_ready(LoadedStimulus const& k);
+    bool get_ready(LoadedStimulus& k);
     bool get_all_ready();
+    void calibrate_light(LoadedStimulus& k, bool counts);
+    bool await_fixation();
+    void keep_gaze();
+    nlohmann::ordered_json labels(std::string const& letters) const;
+    void mark(double time_s, std::string const& what, nlohmann::ordered_json about);
     bool wait_between(std::size_t next);
     bool heed(std::vector<InputEvent> const& events);
     bool wait(double until_s, bool cross);
@@ -49,6 +57,8 @@ private:
     study::TrialDone done_;
     std::vector<LoadedStimulus> known_; ///< each letter once
     bool is_answered_ = false, is_lost_ = false;
+    std::string gaze_failure_;                      ///< no_fixation, gaze_left; empty = none
+    std::vector<study::GazeSample> gaze_seen_;      ///< while stimuli were visible
     double onset_s_ = 0, onset_uncertainty_ms_ = 0; ///< of the last stimulus
     double longest_look_ms_ = 0;
     std::optional<double> level_; ///< current level of an adjustment

@@ -1,6 +1,7 @@
 #include "viewer/experiment/trial_presenter.h"
 
 #include "gi/core/error.h"
+#include "study/display/model_file.h"
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/screens/hmd_screen.h"
 #include "viewer/experiment/screens/refresh.h"
@@ -18,6 +19,12 @@ namespace {
 
 constexpr double kPage_Hz = 30;
 
+std::unique_ptr<GazeSource> open_gaze_of(study::Script const& script, TrialOptions const& options, double now_s)
+{
+    std::string const& what = options.gaze.empty() ? script.record.gaze : options.gaze;
+    return what.empty() || what == "none" ? nullptr : open_gaze(what, now_s);
+}
+
 std::unique_ptr<Screen> open_screen(StimulusViewer viewer, TrialOptions const& options, gi::Report& report)
 {
     if (viewer == StimulusViewer::headset)
@@ -34,19 +41,24 @@ TrialPresenter::TrialPresenter(study::Script const& script, TrialOptions const& 
       viewer_(options.view),
       screen_(open_screen(options.view, options, report)),
       keys_(script),
-      markers_(script.record.markers, options.marker_port, script.id, report),
+      markers_(script.record.markers, options.marker_port, {script.id, options.participant, options.session},
+               report),
       experimenter_(options.remote, report),
       table_(options.folder, options.stem),
+      gaze_(open_gaze_of(script, options, now()), options.folder, options.stem),
       period_s_(1 / script.timing.expected_hz)
 {
     experimenter_.status.experiment = script.id;
     experimenter_.status.participant = options.participant;
     experimenter_.status.started_s = now();
     if (double const hz = screen_->refresh_hz(); hz > 0) period_s_ = 1.0 / hz;
+    if (model() && model()->luminance && options.view == StimulusViewer::window)
+        table_light_ = make_inverse_table(*model()->luminance);
 }
 
 TrialPresenter::~TrialPresenter()
 {
+    keep_gaze_table();
     try {
         if (script_.record.compress_frames)
             table_.compress();
@@ -71,6 +83,13 @@ std::vector<std::pair<std::string, std::string>> TrialPresenter::about() const
     double const hz = screen_->refresh_hz();
     all.emplace_back("refresh_hz", hz > 0 ? fmt::format("{:g}", hz) : "unknown");
     all.emplace_back("display_lag_ms", fmt::format("{:g}", script_.timing.display_lag_ms));
+    if (script_.timing.display_lag_uncertainty_ms > 0)
+        all.emplace_back("display_lag_uncertainty_ms",
+                         fmt::format("{:g}", script_.timing.display_lag_uncertainty_ms));
+    if (model())
+        for (auto& fact : study::display_model_facts(*model())) all.push_back(std::move(fact));
+    for (auto& fact : gaze_.about()) all.push_back(std::move(fact));
+    for (auto& fact : markers_.about()) all.push_back(std::move(fact));
     return all;
 }
 
@@ -119,6 +138,7 @@ void TrialPresenter::see_in(StimulusViewer viewer)
 void TrialPresenter::between_frames()
 {
     experimenter_.poll(now());
+    if (gaze_.is_open()) gaze_.poll(screen_->gaze_place(), now());
     if (options_.stop != nullptr && options_.stop->requested() && !should_end()) {
         experimenter_.note(now(), "abort", "the program was interrupted");
         experimenter_.abort("interrupted (SIGINT or SIGTERM)");
@@ -136,6 +156,31 @@ void TrialPresenter::add_patch(ScreenContent& content, bool white) const
     content.patch_size_px = {patch.px, patch.px};
     content.patch_corner_px = {left ? 0 : px.x - patch.px, top ? 0 : px.y - patch.px};
     content.patch_is_white = white;
+}
+
+/// None = nothing is known of the gaze: a mask hides nothing then, a window everything.
+std::optional<GazeCircle> TrialPresenter::gaze_circle(study::GazeCircleRule const& rule)
+{
+    gaze_.poll(screen_->gaze_place(), now()); // what has come until this frame
+    auto const gaze = gaze_.latest(now());
+    bool const is_window = rule.kind == study::GazeFollow::window;
+    if (!gaze && !is_window) return {};
+    study::ScreenGeometry const& screen = gaze_screen();
+    glm::vec2 const middle = 0.5f * glm::vec2(screen_->size_px());
+    GazeCircle c{is_window, middle + (gaze ? glm::vec2(gaze->x_px, gaze->y_px) : glm::vec2(-1e5f)),
+                 float(0.5 * study::px_of_size(screen, 2 * rule.radius_deg, false)),
+                 float(study::px_of_place(screen, rule.edge_deg, false))};
+    return c;
+}
+
+/// Between trials; the journal alone decides whether a session can continue.
+void TrialPresenter::keep_gaze_table()
+{
+    try {
+        gaze_.flush();
+    } catch (gi::InputError const& e) {
+        report_.lose("times that rows of gaze could not be written", 1, e.what());
+    }
 }
 
 study::CalibrationDone TrialPresenter::calibrate(study::Timing const& timing)

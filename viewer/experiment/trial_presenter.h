@@ -6,6 +6,7 @@
 #include "viewer/experiment/answer_keys.h"
 #include "viewer/experiment/experimenter.h"
 #include "viewer/experiment/frame_table.h"
+#include "viewer/experiment/gaze/gaze_recorder.h"
 #include "viewer/experiment/markers.h"
 #include "viewer/experiment/screens/screen_settings.h"
 #include "viewer/experiment/stimuli/stimulus_source.h"
@@ -24,6 +25,8 @@ struct TrialOptions {
     RemoteOptions remote;
     gi::StopRequest const* stop = nullptr; ///< set by Ctrl-C; null = none
     int marker_port = kMarkerPort;
+    int session = 1;  ///< its number
+    std::string gaze; ///< as of open_gaze, instead of record.gaze of the script; empty = that of the script
     std::filesystem::path prepared; ///< folder of pictures made ahead (study prepare)
     std::string version;            ///< of the program
     std::vector<std::pair<std::string, std::string>> about;
@@ -41,7 +44,7 @@ public:
     std::vector<std::pair<std::string, std::string>> about() const override;
     study::CalibrationDone calibrate(study::Timing const& timing) override;
     bool ask_consent(std::string const& markdown) override;
-    study::ParticipantAsked ask_participant(std::vector<std::string> const& questions) override;
+    study::ParticipantAsked ask_participant(std::vector<study::AskedQuestion> const& questions) override;
     study::StepDone instruct(std::string const& markdown, int step) override;
     study::StepDone rest(std::string const& prompt, double least_s, int step) override;
     study::StepDone walk(study::TrialRequest const& where, std::string const& prompt, double seconds) override;
@@ -51,6 +54,9 @@ public:
     std::vector<study::NoteTaken> notes() override;
 
 private:
+    /// None = the experimenter skipped it.
+    std::optional<std::string> type_answer(study::AskedQuestion const& question);
+    std::optional<std::string> choose_answer(study::AskedQuestion const& question);
     using Clock = InputEvent::Clock;
     class Trial; ///< the running trial
 
@@ -75,6 +81,14 @@ private:
     std::string confirm_hint(std::string const& what) const;
     double seconds(Clock::time_point t) const;
     void add_patch(ScreenContent& content, bool white) const;
+    study::DisplayModel const* model() const { return options_.screen.model ? &*options_.screen.model : nullptr; }
+    bool has_degrees() const { return model() && model()->screen && model()->screen->distance_cm > 0; }
+    study::ScreenGeometry const& gaze_screen() const
+    {
+        return *model()->screen;
+    } ///< for blocks with rules of gaze
+    std::optional<GazeCircle> gaze_circle(study::GazeCircleRule const& rule);
+    void keep_gaze_table();
 
     study::Script const& script_;
     TrialOptions const& options_;
@@ -86,6 +100,8 @@ private:
     Markers markers_;
     Experimenter experimenter_;
     FrameTable table_;
+    GazeRecorder gaze_;
+    std::shared_ptr<InverseTable const> table_light_; ///< of a display model with luminance; null = none
     std::vector<std::unique_ptr<StimulusSource>> live_, prepared_, ar_,
         ar_prepared_;            ///< indexed by the stimulus's number in the trial
     double period_s_ = 1.0 / 60; ///< of the display's refresh

@@ -18,6 +18,8 @@ study::StepDone TrialPresenter::walk(study::TrialRequest const& where, std::stri
         present({});
         for (InputEvent const& e : screen_->take_input()) heed_window(e);
     }
+    DisplayLight const light =
+        table_light_ ? display_light(*model()->luminance, table_light_, {}) : DisplayLight{};
     Controls controls;
     double last_s = now();
     double const end_s = last_s + length_s;
@@ -28,7 +30,7 @@ study::StepDone TrialPresenter::walk(study::TrialRequest const& where, std::stri
         from.walk(controls.motion(t - last_s), t - last_s);
         last_s = t;
         ScreenContent c;
-        c.panes = {{{0, 0}, screen_->size_px(), from.newest(), stereo}};
+        c.panes = {{{0, 0}, screen_->size_px(), from.newest(), stereo, light}};
         ScreenSwap const swap = present(c);
         if (c.panes[0].frame) keep_pose(seconds(swap.time), c.panes[0].frame->command.views);
     }

@@ -8,6 +8,7 @@
 #include <fmt/chrono.h>
 #include <fstream>
 #include <sched.h>
+#include <sys/utsname.h>
 
 namespace viewer {
 namespace {
@@ -42,6 +43,19 @@ Machine this_machine()
 std::string to_text(Machine const& m)
 {
     return fmt::format("{} core{} of {}, {:.0f} GiB", m.cores, m.cores == 1 ? "" : "s", m.cpu, m.memory_gib);
+}
+
+std::string operating_system()
+{
+    std::string name = "unknown";
+    std::ifstream in("/etc/os-release");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("PRETTY_NAME=")) {
+            name = line.substr(12);
+            std::erase(name, '"');
+        }
+    utsname kernel{};
+    return uname(&kernel) == 0 ? fmt::format("{}, {} {}", name, kernel.sysname, kernel.release) : name;
 }
 
 std::string this_command()

@@ -15,6 +15,8 @@ struct Machine {
 Machine this_machine();
 /// "12 cores of AMD EPYC 9554, 24 GiB"
 std::string to_text(Machine const& machine);
+/// "Debian GNU/Linux 12 (bookworm), Linux 6.1.0"
+std::string operating_system();
 /// Command line of this process, quoted for a shell, from /proc; the program's name without its folder.
 std::string this_command();
 /// Current time: "2026-11-21 12:34 UTC".

@@ -3,6 +3,7 @@
 #include "gi/core/durable_file.h"
 #include "study/tables/bids.h"
 #include "viewer/base/version.h"
+#include "viewer/study/gaze_records.h"
 
 #include <fmt/format.h>
 
@@ -27,8 +28,10 @@ void write_files(std::filesystem::path const& folder, std::vector<study::TextFil
 int rebuild_tables(std::filesystem::path const& dir, study::Dataset const& records)
 {
     std::vector<study::TextFile> files = study::dataset_files(records.script, records.sessions, version_number());
-    for (study::RecordedSession const& session : records.sessions)
+    for (study::RecordedSession const& session : records.sessions) {
         for (study::TextFile& f : study::session_files(records.script, session)) files.push_back(std::move(f));
+        for (study::TextFile& f : gaze_files(dir, records.script, session)) files.push_back(std::move(f));
+    }
     auto const script = study::kept_script(dir, records.script).lexically_relative(dir);
     files.push_back({script.generic_string(), records.script_text});
     write_files(dir, files);

@@ -13,11 +13,23 @@ namespace viewer {
 
 LoadedScript load_script(std::string const& file)
 {
+    ScriptToCheck read = load_script_to_check(file);
+    if (!read.mistakes.empty()) throw read.mistakes.in_order().front();
+    return std::move(read.loaded);
+}
+
+ScriptToCheck load_script_to_check(std::string const& file)
+{
     auto const bytes = gi::read_bytes(file, std::size_t(1) << 20);
-    LoadedScript loaded{{}, {bytes.begin(), bytes.end()}, std::filesystem::path(file).parent_path()};
-    loaded.script = study::parse_script(loaded.text, file);
-    check_text_files(loaded.script, loaded.folder);
-    return loaded;
+    ScriptToCheck out;
+    out.loaded.text = {bytes.begin(), bytes.end()};
+    out.loaded.folder = std::filesystem::path(file).parent_path();
+    study::ReadScript read = study::read_script(out.loaded.text, file);
+    out.loaded.script = std::move(read.script);
+    out.mistakes = std::move(read.mistakes);
+    out.is_whole = read.is_whole;
+    if (out.is_whole) find_missing_texts(out.loaded.script, out.loaded.folder, out.mistakes);
+    return out;
 }
 
 std::vector<int> parse_participants(std::string const& text, int count)

@@ -71,7 +71,10 @@ MovingWorld::MovingWorld(std::shared_ptr<Scene const> scene, double time_s, Repo
     : parts_(build_world_parts(std::move(scene), time_s, report, origin)), next_(parts_.moving.size())
 {
     Motion const motion = find_motion(*parts_.world.scene);
-    for (LightPlace const& place : parts_.light_places) light_moves_.push_back(!motion.node[place.node].empty());
+    for (LightPlace const& place : parts_.light_places) {
+        light_moves_.push_back(!motion.node[place.node].empty());
+        authored_.push_back(place.light.intensity);
+    }
 }
 
 Changes MovingWorld::advance(double time_s) { return advance(evaluate_pose(*parts_.world.scene, time_s)); }

@@ -58,6 +58,8 @@ public:
     /// otherwise the next advance() resets them to the node's. Throws InputError if there is no such light, or if
     /// it is not finite.
     Changes set_light(std::size_t k, Light const& light);
+    /// The intensity that the scene gives light k, whatever set_light() did.
+    vec3 authored_intensity(std::size_t k) const { return authored_[parts_.light_place[k]]; }
     /// @param k  index into World::materials. Throws InputError if there is no such material, or if it refers to
     /// textures that the scene does not have.
     Changes set_material(std::size_t k, Material const& material);
@@ -76,6 +78,7 @@ private:
     WorldParts parts_;
     std::vector<InstancePlacement> next_; ///< per moving instance
     std::vector<bool> light_moves_;       ///< per light place: its node can move
+    std::vector<vec3> authored_;          ///< per light place: its intensity in the scene
 };
 
 } // namespace gi

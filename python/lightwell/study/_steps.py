@@ -64,7 +64,7 @@ class Steps:
     def ask_consent(self, markdown: str) -> bool:
         return bool(self._presenter.ask_consent(markdown))
 
-    def ask_participant(self, questions: list[str]) -> list[tuple[str, str]]:
+    def ask_participant(self, questions: list[Any]) -> list[tuple[str, str]]:
         return [(str(k), str(v)) for k, v in self._presenter.ask_participant(questions).items()]
 
     def instruct(self, markdown: str, step: int) -> dict[str, Any]:

@@ -46,8 +46,13 @@ class Presenter:
         """Asks for consent; returns True if the participant agrees. Otherwise nothing is recorded."""
         raise NotImplementedError("the script asks for consent: override ask_consent()")
 
-    def ask_participant(self, questions: Sequence[str]) -> Mapping[str, str]:
-        """Asks questions about the participant; returns question -> answer."""
+    def ask_participant(self, questions: Sequence[str | Mapping[str, Any]]) -> Mapping[str, str]:
+        """Asks questions about the participant; returns id -> answer.
+
+        Args:
+            questions: ids of plain ones; for typed ones mappings with id, text, type (text, number, choice) and min,
+                max, whole or choices. Answers of another type are recorded with a warning.
+        """
         raise NotImplementedError("the script asks about the participant: override ask_participant()")
 
     def calibrate(self, timing: Mapping[str, Any]) -> Calibration | Mapping[str, Any]:

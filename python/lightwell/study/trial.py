@@ -101,6 +101,9 @@ class StimulusShown:
             the script allows.
         render_ms_mean, render_ms_p99: mean and 99th percentile of the rendering time per frame.
         settings_sha256: copy of `Stimulus.settings_sha256`.
+        mean_cd_m2, peak_cd_m2: luminance of the first picture on a calibrated display.
+        clipped_pixels: of the first picture, pixels beyond the display's peak or below its black.
+        width_deg, height_deg: its size as seen.
     """
 
     letter: str
@@ -114,6 +117,11 @@ class StimulusShown:
     render_ms_mean: float = 0.0
     render_ms_p99: float = 0.0
     settings_sha256: str = ""
+    mean_cd_m2: float | None = None
+    peak_cd_m2: float | None = None
+    clipped_pixels: int | None = None
+    width_deg: float | None = None
+    height_deg: float | None = None
 
 
 @dataclass
@@ -130,6 +138,8 @@ class TrialDone:
         shown: presentations in order.
         is_valid, reason: set False with a reason if you know that the trial is invalid, for example "lost_focus".
             The reasons "skipped" and "aborted" are for `Presenter.wish` returning "skip" or "abort".
+        gaze_samples, gaze_valid, gaze_dropped, gaze_fixating: samples of gaze while stimuli were visible; valid ones;
+            missing ones; valid ones near the place of fixation.
     """
 
     response: str = ""
@@ -141,6 +151,10 @@ class TrialDone:
     shown: list[StimulusShown] = field(default_factory=list)
     is_valid: bool = True
     reason: str = ""
+    gaze_samples: int | None = None
+    gaze_valid: int | None = None
+    gaze_dropped: int | None = None
+    gaze_fixating: int | None = None
 
 
 @dataclass

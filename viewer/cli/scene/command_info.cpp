@@ -12,6 +12,7 @@
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
 #include "viewer/offline/choose_camera.h"
+#include "viewer/study/setting_lookup.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ struct InfoOptions {
     std::string scene, directions, png;
     std::vector<std::string> methods;
     std::optional<double> time_s;
-    bool json = false;
+    bool settings = false, json = false;
 };
 
 struct MethodPlan {
@@ -104,10 +105,43 @@ int run_directions(InfoOptions const& o)
     return 0;
 }
 
+/// Prints every setting of scripts, panels and remote control.
+int run_settings(bool as_json)
+{
+    auto const all = study_settings();
+    if (as_json) {
+        nlohmann::ordered_json j;
+        for (StudySetting const& s : all)
+            j["settings"].push_back({{"key", s.key},
+                                     {"kind", s.kind},
+                                     {"range", s.range},
+                                     {"default", s.usual},
+                                     {"can_vary", s.can_vary},
+                                     {"meaning", s.meaning}});
+        std::fputs(to_text(j).c_str(), stdout);
+        return 0;
+    }
+    std::string text =
+        "Settings of stimuli (`settings`, levels of factors) and, marked with *, those that `vary` takes\n";
+    for (StudySetting const& s : all) {
+        text += fmt::format("{} {}\n    {}: {}{}\n    {}\n", s.can_vary ? '*' : ' ', s.key, s.kind, s.range,
+                            s.usual.empty() ? "" : "; default " + s.usual, s.meaning);
+    }
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+    return 0;
+}
+
 int run(InfoOptions const& o)
 {
+    if (o.settings) {
+        if (!o.scene.empty() || !o.directions.empty() || !o.methods.empty() || !o.png.empty() || o.time_s)
+            throw gi::InputError("--settings with another option", "settings are the same in all scenes",
+                                 "give --settings alone, or with --json");
+        return run_settings(o.json);
+    }
     if (o.scene.empty() == o.directions.empty())
-        throw gi::InputError("info needs a SCENE or --directions", "it was given both or none",
+        throw gi::InputError("info needs a SCENE, --directions or --settings", "it was given several or none",
                              "give one of them");
     if (!o.directions.empty() && !o.methods.empty())
         throw gi::InputError("--method with --directions", "a set of directions is not rendered", "leave one out");
@@ -170,11 +204,16 @@ void add_info(CLI::App& app, int& exit_code)
         ->delimiter(',')
         ->allow_extra_args(false);
     c->add_option("--time", o->time_s, "animation time, s")->check(in_range(-1e9, 1e9));
+    c->add_flag(
+        "--settings", o->settings,
+        "instead of a scene: all settings that scripts of experiments may have: key, kind, range, default,\n"
+        "meaning, and which a procedure can vary");
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
   lightwell info atrium
   lightwell info cornell --json
   lightwell info mirror --method ispm,lpv
+  lightwell info --settings
   lightwell info --directions icosahedron:320 --png icosahedron.png
 
 The lines below "environment map" give the irradiance (red, green, blue) of unshadowed surfaces that face up, down

@@ -1,5 +1,6 @@
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "study/display/model_file.h"
 #include "study/plan/counterbalance.h"
 #include "study/plan/doubts.h"
 #include "study/plan/plan_text.h"
@@ -10,7 +11,7 @@
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
 #include "viewer/cli/program.h"
-#include "viewer/study/study_script.h"
+#include "viewer/study/setting_lookup.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -20,9 +21,9 @@ namespace viewer {
 namespace {
 
 struct StudyOptions {
-    std::string script, out, example;
+    std::string script, out, example, display_model;
     int participant = 1;
-    bool json = false;
+    bool json = false, any_settings = false;
 };
 
 nlohmann::ordered_json to_json(study::Script const& s, study::Plan const& plan)
@@ -57,14 +58,19 @@ nlohmann::ordered_json to_json(study::Script const& s, study::Plan const& plan)
 int run_plan(StudyOptions const& o)
 {
     check_outputs({o.out}, {o.script});
-    study::Script const s = load_script(o.script).script;
+    study::Script const s = load_looked_up(o.script, o.any_settings).script;
     if (o.participant > s.participants.count)
         throw gi::InputError(fmt::format("participant {} of {}", o.participant, s.participants.count),
                              "the script has no more", "name a smaller number, or raise participants.count");
     study::Plan const plan = study::make_plan(s, o.participant);
+    std::optional<study::DisplayModel> model;
+    if (!o.display_model.empty()) model = study::load_display_model(o.display_model);
     if (!o.out.empty()) gi::write_text(o.out, study::plan_table(s, plan));
     if (o.json) {
-        std::fputs(to_text(to_json(s, plan)).c_str(), stdout);
+        nlohmann::ordered_json j = to_json(s, plan);
+        if (model)
+            for (auto const& [key, value] : study::display_model_facts(*model)) j["display_model"][key] = value;
+        std::fputs(to_text(j).c_str(), stdout);
         return 0;
     }
     fmt::print("{}: participant {} of {} ({}), seed {}\n", s.id, plan.participant, s.participants.count,
@@ -72,6 +78,7 @@ int run_plan(StudyOptions const& o)
     std::fputs(study::order_text(s, plan).c_str(), stdout);
     std::fputs(study::statistics_text(s, plan).c_str(), stdout);
     fmt::print("expected duration {}\n", study::clock_text(plan.duration_us));
+    if (model) fmt::print("{}", study::display_model_summary(*model));
     print_doubts(study::find_doubts(s, plan));
     return 0;
 }
@@ -106,19 +113,27 @@ void add_study(CLI::App& app, int& exit_code)
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     plan->add_option("--out", o->out, "file for the plan as a table (TSV)");
+    plan->add_option("--display-model", o->display_model,
+                     "display model (study calibrate): prints pixels per degree and luminances");
     plan->add_flag("--json", o->json, "print JSON, without the steps");
+    plan->add_flag("--any-settings", o->any_settings, "do not look settings up (as for study check)");
     plan->callback([o, &exit_code] { exit_code = run_plan(*o); });
 
     CLI::App* const example = study->add_subcommand("example", "Write one of the built-in example experiments.");
-    example->add_option("NAME", o->example, "visibility2026, pairs, staircase, rating or ar_paths")->required();
+    example
+        ->add_option("NAME", o->example,
+                     "visibility2026, pairs, active, staircase, sensitivity, rating or ar_paths")
+        ->required();
     example->add_option("--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
     for (CommandRow const& c : commands()) // commands of the other program, for --help
         if (c.name.starts_with("study ")) add_elsewhere(*study, c);
     add_study_simulate(*study, exit_code);
+    add_study_power(*study, exit_code);
     add_study_tables(*study, exit_code);
     add_study_analyze(*study, exit_code);
+    add_study_photodiode(*study, exit_code);
 
     study->footer(R"(Examples:
   lightwell study example visibility2026 --out visibility2026.yaml

@@ -7,6 +7,7 @@
 #include "viewer/base/version.h"
 #include "viewer/cli/commands.h"
 #include "viewer/study/study_records.h"
+#include "viewer/study/study_table.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -19,7 +20,23 @@ struct AnalyzeOptions {
     std::string dir, script, out;
     study::AnalysisSettings settings;
     bool json = false;
+    TableOptions table;
+    double guess = -1, lapse = -1; ///< below 0: as the task
 };
+
+/// The records of DIR, or those made from --table.
+study::Dataset load(AnalyzeOptions& o)
+{
+    if (o.dir.empty() == o.table.files.empty())
+        throw gi::InputError(o.dir.empty() ? "no records" : "DIR and --table",
+                             "what is analysed is either a folder of records or a table",
+                             "give DIR, or --table FILE --columns ROLES");
+    if (o.guess >= 0) o.settings.guess = o.guess;
+    if (o.lapse >= 0) o.settings.lapse = o.lapse;
+    if (!o.dir.empty()) return load_records(o.dir, o.script);
+    study::ImportedTable table = load_table(o.table);
+    return {std::move(table.script), {}, std::move(table.sessions), std::move(table.notes)};
+}
 
 /// Each table as CSV.
 std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
@@ -31,9 +48,9 @@ std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
     return files;
 }
 
-int run_analyze(AnalyzeOptions const& o)
+int run_analyze(AnalyzeOptions& o)
 {
-    study::Dataset const records = load_records(o.dir, o.script);
+    study::Dataset const records = load(o);
     study::Analysis const analysis = study::analyze(records.script, records.sessions, o.settings);
     if (!o.out.empty()) write_files(o.out, csv_files(analysis));
     std::fputs((o.json ? study::to_json(analysis) : study::to_text(analysis)).c_str(), stdout);
@@ -48,15 +65,19 @@ std::optional<study::SimulatedTruth> truth_beside(std::filesystem::path const& d
     return study::read_truth({bytes.begin(), bytes.end()}, file.string());
 }
 
-int run_report(AnalyzeOptions const& o)
+int run_report(AnalyzeOptions& o)
 {
-    check_outputs({o.out}, {o.script});
-    study::Dataset const records = load_records(o.dir, o.script);
+    std::vector<std::string> inputs = o.table.files;
+    inputs.push_back(o.script);
+    check_outputs({o.out}, inputs);
+    study::Dataset const records = load(o);
     study::Analysis const analysis = study::analyze(records.script, records.sessions, o.settings);
     study::ReportFacts facts;
     facts.program = version_text();
-    facts.truth = truth_beside(o.dir);
-    facts.frame_interval_ms = frame_intervals_ms(o.dir);
+    if (!o.dir.empty()) {
+        facts.truth = truth_beside(o.dir);
+        facts.frame_interval_ms = frame_intervals_ms(o.dir);
+    }
     gi::write_text(o.out, study::report_page(records.script, records.sessions, analysis, facts));
     fmt::print("{}\n", o.out);
     return 0;
@@ -64,16 +85,51 @@ int run_report(AnalyzeOptions const& o)
 
 void add_options(CLI::App& command, AnalyzeOptions& o)
 {
-    command.add_option("DIR", o.dir, "folder of the records")->required();
+    command.add_option("DIR", o.dir, "folder of the records");
     command.add_option("--script", o.script, "script of the experiment (default: the one in DIR/code)");
+    command.add_option("--table", o.table.files,
+                       "instead of DIR: trials of another program (CSV, TSV; several files)");
+    command.add_option(
+        "--columns", o.table.columns,
+        "what its columns are: ROLE=COLUMN,... with the roles participant, run; pairs: first, second and "
+        "chosen, first_chosen, or first_wins, second_wins, ties; ratings: item, value; answers: level, "
+        "signal and correct or yes, or correct_count, wrong_count, yes_count, no_count, percent, trials; "
+        "reaction_s, reaction_ms");
+    command
+        .add_option("--factors", o.table.factors,
+                    "its columns with conditions or groups of participants: scene,age")
+        ->delimiter(',');
+    command.add_option("--only", o.table.only, "use only rows with COLUMN=VALUE (repeatable)");
+    command.add_option(
+        "--long", o.table.names_and_values,
+        "the table has a row per value: NAME=VALUE, its columns with the names and values of variables");
+    command.add_option("--task", o.table.task,
+                       "task of its trials, if the roles do not tell: magnitude, abx, oddity, ...");
+    command.add_option("--scale", o.table.scale, "scale of its levels")
+        ->check(CLI::IsMember({"linear", "log2", "log10", "db"}))
+        ->capture_default_str();
+    command.add_option("--harder", o.table.harder, "whether lower or higher levels are harder")
+        ->check(CLI::IsMember({"down", "up"}))
+        ->capture_default_str();
+    command.add_flag("--matrix", o.table.is_matrix,
+                     "the table has an item per row and column: row chosen over column");
+    command.add_option("--guess", o.guess, "fixes the guess rate of psychometric functions")
+        ->check(CLI::Range(0.0, 0.99));
+    command.add_option("--lapse", o.lapse, "fixes their lapse rate")->check(CLI::Range(0.0, 0.5));
     command.add_option("--exclude", o.settings.exclude, "participants to exclude: P003,P007")->delimiter(',');
     command.add_option("--replicates", o.settings.replicates, "number of bootstrap samples over observers")
         ->check(CLI::Range(100, 100000))
         ->capture_default_str();
+    command.add_option("--draws", o.settings.draws, "draws of each of 4 chains of hierarchical models; 0 = none")
+        ->check(CLI::Range(0, 20000))
+        ->capture_default_str();
+    command.add_flag("--hierarchical", o.settings.has_hierarchy,
+                     "also scales of pairs with observers as random effects (Bayesian; seconds each)");
     command.add_option("--confidence", o.settings.confidence, "confidence level of intervals")
         ->check(CLI::Range(0.5, 0.999))
         ->capture_default_str();
-    command.add_option("--seed", o.settings.seed, "seed of the bootstraps")->capture_default_str();
+    command.add_option("--seed", o.settings.seed, "seed of bootstraps, chains and simulated runs")
+        ->capture_default_str();
 }
 
 } // namespace
@@ -90,7 +146,9 @@ void add_study_analyze(CLI::App& study, int& exit_code)
     analyze->footer(R"(Examples:
   lightwell study example pairs --out pairs.yaml
   lightwell study simulate pairs.yaml --participants 1..6 --out compared
-  lightwell study analyze compared --script pairs.yaml --exclude P002)");
+  lightwell study analyze compared --script pairs.yaml --exclude P002
+  lightwell study export compared --script pairs.yaml --out tables
+  lightwell study analyze --table tables/data/study-pairs_description-trials_data.csv --only analysis=counted --columns participant=participant,first=first,second=second,chosen=chosen)");
 
     CLI::App* const report =
         study.add_subcommand("report", "Write the same analysis as one HTML page with figures, also for print.");

@@ -1,8 +1,11 @@
+#include "study/display/model_file.h"
 #include "study/plan/counterbalance.h"
 #include "study/plan/doubts.h"
 #include "study/plan/plan_text.h"
+#include "viewer/base/interrupt.h"
 #include "viewer/base/report_json.h"
 #include "viewer/cli/command_table.h"
+#include "viewer/experiment/stimuli/script_check.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 
 #include <CLI/CLI.hpp>
@@ -13,42 +16,79 @@ namespace viewer {
 namespace {
 
 struct CheckOptions {
-    std::string script;
-    bool json = false;
+    std::string script, display_model;
+    int threads = 0;
+    bool no_render = false, any_settings = false, json = false;
 };
+
+CheckedScript check(CheckOptions const& o, ScriptToCheck& read, std::optional<study::DisplayModel> const& model)
+{
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    gi::ProgressBar bar("check " + read.loaded.script.id);
+    ScriptCheckOptions options;
+    options.any_settings = o.any_settings;
+    options.stimuli.renders = !o.no_render;
+    options.stimuli.threads = o.threads;
+    options.stimuli.stop = &stop;
+    if (model) options.stimuli.shown_on = ShownOn{&*model};
+    options.stimuli.progress = [&](double share, std::string const& what) { bar.update(share, what); };
+    return check_script(read, study_scenes(), options);
+}
+
+int tell(CheckOptions const& o, study::Mistakes const& mistakes)
+{
+    auto const all = mistakes.in_order();
+    if (o.json) {
+        nlohmann::ordered_json j{{"mistakes", nlohmann::ordered_json::array()}};
+        for (study::ScriptError const& e : all)
+            j["mistakes"].push_back({{"file", e.where().file},
+                                     {"line", e.where().line},
+                                     {"column", e.where().column},
+                                     {"problem", e.problem()},
+                                     {"why", e.why()},
+                                     {"suggestion", e.suggestion()}});
+        std::fputs(to_text(j).c_str(), stdout);
+    }
+    for (study::ScriptError const& e : all) std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
+    if (all.size() > 1) std::fputs(fmt::format("{} mistakes\n", all.size()).c_str(), stderr);
+    return 2;
+}
 
 int run_check(CheckOptions const& o)
 {
-    constexpr int kMostPlans = 2000;
-    LoadedScript const loaded = load_script(o.script);
-    study::Script const& s = loaded.script;
-    int const plans = std::min(s.participants.count, kMostPlans);
-    ArStimulusCheck ar(loaded);
-    study::Plan longest = study::make_plan(s, 1);
-    ar.add(longest);
-    for (int p = 2; p <= plans; ++p) {
-        study::Plan plan = study::make_plan(s, p);
-        ar.add(plan);
-        if (plan.duration_us > longest.duration_us) longest = std::move(plan);
-    }
-    ar.check();
+    ScriptToCheck read = load_script_to_check(o.script);
+    study::Script const& s = read.loaded.script;
+    std::optional<study::DisplayModel> model;
+    if (!o.display_model.empty()) model = study::load_display_model(o.display_model);
+    CheckedScript const checked = check(o, read, model);
+    if (!read.mistakes.empty()) return tell(o, read.mistakes);
     auto doubts = study::find_doubts(s);
-    for (std::string& doubt : study::find_doubts(s, longest)) doubts.push_back(std::move(doubt));
+    for (std::string& doubt : study::find_doubts(s, checked.longest)) doubts.push_back(std::move(doubt));
     if (o.json) {
-        nlohmann::ordered_json const j{{"id", s.id},
-                                       {"participants", s.participants.count},
-                                       {"plans_made", plans},
-                                       {"full_cycle", study::full_cycle(s)},
-                                       {"ar_stimuli", ar.count()},
-                                       {"longest_s", double(longest.duration_us) * 1e-6},
-                                       {"doubts", doubts}};
+        nlohmann::ordered_json j{{"id", s.id},
+                                 {"participants", s.participants.count},
+                                 {"plans_made", checked.plans},
+                                 {"full_cycle", study::full_cycle(s)},
+                                 {"scenes", checked.stimuli.scenes},
+                                 {"stimuli", checked.stimuli.stimuli},
+                                 {"stimuli_rendered", checked.stimuli.rendered},
+                                 {"ar_stimuli", checked.ar_stimuli},
+                                 {"longest_s", double(checked.longest.duration_us) * 1e-6},
+                                 {"doubts", doubts}};
+        if (model)
+            for (auto const& [key, value] : study::display_model_facts(*model)) j["display_model"][key] = value;
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
     }
-    std::fputs(study::script_text(s, longest).c_str(), stdout);
-    if (ar.count() > 0) fmt::print("{} stimuli from AR sessions\n", ar.count());
-    fmt::print("{} plans made, the longest is expected to take {}\n", plans,
-               study::clock_text(longest.duration_us));
+    std::fputs(study::script_text(s, checked.longest).c_str(), stdout);
+    if (checked.ar_stimuli > 0) fmt::print("{} stimuli from AR sessions\n", checked.ar_stimuli);
+    if (!o.any_settings)
+        fmt::print("{} stimuli in {} scenes set up, {} rendered\n", checked.stimuli.stimuli,
+                   checked.stimuli.scenes, checked.stimuli.rendered);
+    fmt::print("{} plans made, the longest is expected to take {}\n", checked.plans,
+               study::clock_text(checked.longest.duration_us));
+    if (model) fmt::print("{}", study::display_model_summary(*model));
     print_doubts(doubts);
     return 0;
 }
@@ -60,8 +100,29 @@ void add_study_check(CLI::App& study, int& exit_code)
     auto const o = std::make_shared<CheckOptions>();
     CLI::App* const c = study.add_subcommand("check", about("study check"));
     c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    c->add_option("--display-model", o->display_model,
+                  "display model (study calibrate): checks sizes and luminances, prints pixels per degree");
+    c->add_flag("--no-render", o->no_render, "load and set up the stimuli, but render no tiny picture of each");
+    c->add_flag("--any-settings", o->any_settings,
+                "do not look settings up: the script is for a presenter of its own (Python)");
+    c->add_option("--threads", o->threads, "render threads, 0 = all")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
     c->add_flag("--json", o->json, "print JSON");
-    c->callback([o, &exit_code] { exit_code = run_check(*o); });
+    c->callback([o, &exit_code] {
+        try {
+            exit_code = run_check(*o);
+        } catch (gi::Interrupted const&) {
+            std::fputs("lightwell: interrupted before everything was checked\n", stderr);
+            exit_code = kInterrupted;
+        }
+    });
+    c->footer(R"(Example:
+  lightwell study check visibility2026.yaml
+
+All mistakes are told at once, one line each: file:line:column: problem (why) suggestion. Settings are looked up
+(lightwell info --settings lists them), each scene is loaded, and a picture of 16 x 16 pixels of each stimulus is
+rendered, without a window. Exit codes: 0 no mistake, 2 mistakes.)");
 }
 
 } // namespace viewer

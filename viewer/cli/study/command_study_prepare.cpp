@@ -1,5 +1,6 @@
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
+#include "study/display/model_file.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
@@ -19,7 +20,7 @@ namespace viewer {
 namespace {
 
 struct PrepareOptions {
-    std::string script, size = "1280x720", out;
+    std::string script, size = "1280x720", out, display_model;
     double font_px = 22;
     int threads = 0;
     RankOptions ranks;
@@ -29,7 +30,10 @@ int run(PrepareOptions const& o)
 {
     LoadedScript const loaded = load_script(o.script);
     auto const [width, height] = parse_size(o.size);
-    auto const list = prepared_list(loaded.script, {width, height}, float(o.font_px), version_text());
+    std::optional<study::DisplayModel> model;
+    if (!o.display_model.empty()) model = study::load_display_model(o.display_model);
+    auto const list =
+        prepared_list(loaded.script, {width, height}, float(o.font_px), version_text(), model ? &*model : nullptr);
     if (list.empty())
         throw gi::InputError("nothing to prepare in " + o.script, "no block has stimuli: prepared",
                              "add it to a block, or run with live stimuli");
@@ -96,6 +100,7 @@ void add_study_prepare(CLI::App& study, int& exit_code)
         ->check(CLI::Range(8, 200))
         ->capture_default_str();
     c->add_option("--out", o->out, "folder for the pictures")->required();
+    c->add_option("--display-model", o->display_model, "display model of the monitor, for sizes in degrees");
     c->add_option("--threads", o->threads, "render threads, 0 = all")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();

@@ -1,7 +1,9 @@
 #include "gi/core/error.h"
 #include "gi/core/host_name.h"
+#include "study/display/model_file.h"
 #include "study/plan/plan.h"
 #include "study/run/session.h"
+#include "study/script/setting_place.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/port_options.h"
@@ -12,8 +14,11 @@
 #include "viewer/displays/display_file.h"
 #include "viewer/experiment/prepared_list.h"
 #include "viewer/experiment/stimuli/prepared_files.h"
+#include "viewer/experiment/stimuli/script_check.h"
+#include "viewer/experiment/stimuli/stimulus_check.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 #include "viewer/experiment/trial_presenter.h"
+#include "viewer/report/machine.h"
 #include "viewer/study/study_outcome.h"
 
 #include <CLI/CLI.hpp>
@@ -26,7 +31,7 @@ namespace viewer {
 namespace {
 
 struct RunOptions {
-    std::string script, dir, size = "1280x720", fullscreen, remote, prepared, display;
+    std::string script, dir, size = "1280x720", fullscreen, remote, prepared, display, display_model, gaze;
     std::optional<int> remote_port;
     std::string remote_token;
     bool remote_open = false;
@@ -35,32 +40,28 @@ struct RunOptions {
     bool hmd = false, seated = false, resume = false, no_vsync = false, json = false;
 };
 
-/// Checks before the session that all stimuli can be loaded, set up and seen from their cameras.
-void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
+/// Checks before the session that all settings are known, and that stimuli can be loaded, set up and seen from
+/// their cameras. Pictures are not rendered: `study check` does.
+void check_stimuli(LoadedScript const& loaded, study::Plan const& plan, SceneAccess const& scenes,
+                   ShownOn const& shown_on)
 {
-    gi::Report report; // losses are reported when the scenes are shown
-    RenderSession session(scenes.load, 0, report);
-    std::stable_sort(stimuli.begin(), stimuli.end(),
-                     [](auto const& a, auto const& b) { return a.settings.scene < b.settings.scene; });
-    bool is_edited = false;
-    for (auto const& [s, where] : stimuli) {
-        if (s.ar) continue; // checked by ArStimulusCheck
-        try {
-            if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
-            scenes.camera(session.world(), s.camera);
-            for (Change const& c : s.edits) session.apply(c);
-        } catch (gi::InputError const& e) {
-            throw gi::InputError(
-                where, e.what(),
-                "correct its settings; scenes are searched beside the script, then in the current folder");
-        }
-        is_edited = !s.edits.empty();
-    }
+    study::Mistakes m;
+    StimulusCollection stimuli(loaded.script, find_wrong_settings(loaded.script, loaded.text, loaded.folder, m));
+    stimuli.add(plan, m);
+    StimulusCheckOptions options;
+    options.renders = false;
+    options.shown_on = shown_on;
+    options.place_of = [&](std::string const& key, std::string const& value) {
+        return study::place_of_setting(loaded.text, key, value);
+    };
+    if (m.empty()) find_wrong_stimuli(stimuli.list(), scenes, options, m);
+    throw_first(m);
 }
 
-void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o)
+void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o,
+                    study::DisplayModel const* model)
 {
-    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text())) {
+    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text(), model)) {
         std::filesystem::path const folder = std::filesystem::path(o.prepared) / key;
         if (!std::filesystem::exists(folder))
             throw gi::InputError(
@@ -107,6 +108,15 @@ void check_one_at_a_time(study::Script const& script, study::Plan const& plan, b
     }
 }
 
+/// Throws unless rules of gaze can be met.
+void check_gaze(study::Script const& script, RunOptions const& o, study::DisplayModel const* model)
+{
+    std::string const& gaze = o.gaze.empty() ? script.record.gaze : o.gaze;
+    study::Mistakes m;
+    find_wrong_gaze(script, gaze != "none" && !gaze.empty(), model, m);
+    throw_first(m);
+}
+
 int run(RunOptions const& o)
 {
     LoadedScript const loaded = load_script(o.script);
@@ -133,12 +143,18 @@ int run(RunOptions const& o)
     InterruptGuard const guard(stop);
     if (o.hmd && !o.display.empty())
         throw gi::InputError("--hmd with --display", "a session is shown in only one of them", "give one");
-    ArStimulusCheck ar(loaded);
+    if (!o.display_model.empty() && (o.hmd || !o.display.empty()))
+        throw gi::InputError("--display-model with --hmd or --display", "it describes the monitor of a window",
+                             "leave one out");
+    if (!o.display_model.empty()) trials.screen.model = study::load_display_model(o.display_model);
+    study::DisplayModel const* const model = trials.screen.model ? &*trials.screen.model : nullptr;
+    ShownOn const shown_on{model, o.hmd || !o.display.empty()};
+    ArStimulusCheck ar(loaded, shown_on);
     ar.add(plan);
     ar.check();
-    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // throws on invalid settings
+    check_stimuli(loaded, plan, trials.scenes, shown_on);
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
-    check_stimuli(stimuli, trials.scenes);
+    check_gaze(script, o, model);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
     trials.view = o.hmd ? StimulusViewer::headset : StimulusViewer::window;
     trials.headset.space = o.seated ? HmdSpace::local : HmdSpace::stage;
@@ -156,15 +172,20 @@ int run(RunOptions const& o)
     trials.remote.token = o.remote_token;
     trials.remote.open = o.remote_open;
     trials.marker_port = o.marker_port;
+    trials.session = o.session;
+    trials.gaze = o.gaze;
     trials.prepared = o.prepared;
     trials.version = version_text();
     trials.stop = &stop;
-    trials.about = {{"host", gi::host_name()}, {"program", version_text()}};
+    trials.about = {{"host", gi::host_name()},
+                    {"program", version_text()},
+                    {"processor", to_text(this_machine())},
+                    {"os", operating_system()}};
 
     study::SessionOutcome outcome;
     {
         TrialPresenter presenter(script, trials, report);
-        check_prepared(script, presenter.screen_px(), o);
+        check_prepared(script, presenter.screen_px(), o, model);
         outcome = study::run_session(script, o.participant, presenter, settings);
     }
     if (!outcome.folder.empty()) keep_tables(settings.dir, o.script);
@@ -192,6 +213,10 @@ void add_study_run(CLI::App& study, int& exit_code)
     c->add_option("--size", o->size, "window size, px")->capture_default_str();
     c->add_option("--fullscreen", o->fullscreen, "full screen on the monitor with this number or name");
     c->add_option("--display", o->display, "display file: walls instead of a window (docs/displays.md)");
+    c->add_option("--display-model", o->display_model,
+                  "display model of the monitor (study calibrate): degrees, cd/m2, linear light");
+    c->add_option("--gaze", o->gaze,
+                  "gaze instead of record.gaze: lsl, lsl:NAME, none, or a table to replay (t_s,x_px,y_px,valid)");
     c->add_flag("--hmd", o->hmd,
                 "show stimuli in a headset (OpenXR, docs/hmd.md) unless their `view` is set otherwise");
     c->add_flag("--seated", o->seated, "with --hmd: space without a floor, as in lightwell view");

@@ -5,8 +5,8 @@
 #include "viewer/base/report_json.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/commands.h"
+#include "viewer/study/setting_lookup.h"
 #include "viewer/study/study_outcome.h"
-#include "viewer/study/study_script.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -22,7 +22,7 @@ struct SimulateOptions {
     std::optional<std::uint64_t> seed;
     int session = 1;
     double gap_min = 0;
-    bool resume = false, each = false, json = false;
+    bool resume = false, each = false, json = false, any_settings = false;
 };
 
 study::ObserverModel observers(SimulateOptions const& o, study::Script const& s)
@@ -47,7 +47,7 @@ void print_kept(std::string const& id, study::JournalEntry const& entry)
 
 int run_simulate(SimulateOptions const& o)
 {
-    LoadedScript const loaded = load_script(o.script);
+    LoadedScript const loaded = load_looked_up(o.script, o.any_settings);
     study::Script const& s = loaded.script;
     std::vector<int> const participants = parse_participants(o.participants, s.participants.count);
     study::ObserverModel const model = observers(o, s);
@@ -111,6 +111,7 @@ void add_study_simulate(CLI::App& study, int& exit_code)
         ->needs(resume)
         ->capture_default_str();
     simulate->add_flag("--each", o->each, "print a line for each step once it is on disk");
+    simulate->add_flag("--any-settings", o->any_settings, "do not look settings up (as for study check)");
     simulate->add_flag("--json", o->json, "print JSON");
     simulate->callback([o, &exit_code] { exit_code = run_simulate(*o); });
     simulate->footer(R"(Examples:

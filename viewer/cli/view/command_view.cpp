@@ -1,5 +1,6 @@
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "study/display/model_file.h"
 #include "viewer/app/cluster_link.h"
 #include "viewer/app/hmd_program.h"
 #include "viewer/app/layout.h"
@@ -36,8 +37,8 @@ namespace {
 struct ViewArguments {
     RenderOptions scene; ///< scene, camera, sky
     std::vector<std::string> settings, fullscreen;
-    std::string size, navigate = "fly", record, frame_log, remote, stats, screenshots, display, replay, out, video,
-                      avatar, avatar_joints;
+    std::string size, navigate = "fly", record, frame_log, remote, stats, screenshots, display, display_model,
+                      replay, out, video, avatar, avatar_joints;
     RankOptions ranks;
     double fps = 30, eye_height_m = 1.6;
     int paths = 0;
@@ -78,6 +79,12 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     ViewOptions o;
     RenderOptions const& scene = a.scene;
     if (!a.display.empty()) o.display = load_display(a.display, report);
+    if (!a.display_model.empty()) {
+        o.display_model = study::load_display_model(a.display_model);
+        if (!o.display_model->luminance)
+            throw gi::InputError("--display-model " + a.display_model, "it has no luminance",
+                                 "measure it: lightwell study calibrate --luminance readings.csv");
+    }
     std::vector<AvatarChoice> const avatars = choices_of(a, o.display);
     RecordedScenes scenes = scenes_with(scene, avatars, report);
     o.load = std::move(scenes.load);
@@ -310,9 +317,10 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
                 throw gi::InputError(std::string(name) + " " + when, "it would have no effect", "leave it out");
     };
     if (replays)
-        refuse({"scene", "--record", "--frame-log", "--remote", "--remote-port", "--remote-token", "--remote-open",
-                "--display", "--hmd", "--fullscreen", "--time-limit", "--navigate", "--screenshots", "--stats",
-                "--camera", "--envmap", "--avatar", "--avatar-joints", "--eye-height"},
+        refuse({"scene",          "--record",      "--frame-log", "--remote",        "--remote-port",
+                "--remote-token", "--remote-open", "--display",   "--display-model", "--hmd",
+                "--fullscreen",   "--time-limit",  "--navigate",  "--screenshots",   "--stats",
+                "--camera",       "--envmap",      "--avatar",    "--avatar-joints", "--eye-height"},
                "with --replay");
     else
         refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
@@ -328,6 +336,9 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
     }
     if (!replays && a.scene.scene.empty())
         throw gi::InputError("nothing to view", "neither a scene nor --replay is given", "lightwell view atrium");
+    if (!a.display_model.empty() && (a.hmd || !a.display.empty()))
+        throw gi::InputError("--display-model with --hmd or --display", "it is of the monitor of a desktop window",
+                             "leave one out");
     if (a.hmd && !a.display.empty())
         throw gi::InputError("--hmd with --display", "a headset has its own displays", "leave out one of them");
 }
@@ -349,6 +360,9 @@ void add_view(CLI::App& app, int& exit_code)
         ->delimiter(',');
     c->add_flag("--no-vsync", a->no_vsync, "do not wait for the display's refresh");
     c->add_option("--display", a->display, "display file with walls, users and trackers, YAML (docs/displays.md)");
+    c->add_option(
+        "--display-model", a->display_model,
+        "display model of the monitor (study calibrate): pictures are linear in light, by its measured curves");
     c->add_flag("--hmd", a->hmd, "show in the headset of the OpenXR runtime (docs/hmd.md)");
     c->add_option("--avatar", a->avatar,
                   "skinned model, or avatar (built in): follows the first user's head and hands, seen in mirrors");

@@ -25,7 +25,8 @@ std::string enums()
     return text + define("COMPARE_OFF", int(Comparison::off)) + define("COMPARE_SPLIT", int(Comparison::split)) +
            define("COMPARE_OTHER", int(Comparison::other)) +
            define("COMPARE_DIFFERENCE", int(Comparison::difference)) +
-           define("CURVE_FILMIC", int(gi::ToneCurve::filmic));
+           define("CURVE_FILMIC", int(gi::ToneCurve::filmic)) + "#define TABLE_EXPONENT " +
+           std::to_string(study::kInverseTableExponent) + "\n";
 }
 
 glm::mat3 matrix_of(float const (&rows)[3][3])
@@ -85,9 +86,12 @@ void DisplayPass::fill(DrawTarget const& target, EyeView const& left, EyeView co
         glBindTextureUnit(unit, shown[unit].texture);
         stretched = stretched || shown[unit].size_px != eye;
     }
+    bool const is_calibrated = settings.light.table != nullptr && settings.values == PictureValues::radiance;
+    if (is_calibrated) bind_table(settings.light.table);
     GlProgram const& p = program(define("MODE", int(mode)) + define("COMPARISON", int(settings.comparison)) +
                                  define("STRETCHED", int(stretched)) + define("CURVE", int(settings.tone.curve)) +
-                                 define("ENCODED", int(settings.values == PictureValues::encoded)));
+                                 define("ENCODED", int(settings.values == PictureValues::encoded)) +
+                                 define("CALIBRATED", int(is_calibrated)));
     p.set("corner", target.corner_px);
     p.set("target_size", target.size_px);
     p.set("top_last", int(target.rows == RowOrder::top_last));
@@ -96,9 +100,24 @@ void DisplayPass::fill(DrawTarget const& target, EyeView const& left, EyeView co
     p.set("scale", std::exp2(settings.tone.exposure_ev));
     p.set("split", settings.split);
     p.set("difference_gain", settings.difference_gain);
+    p.set("light_gain", settings.light.gain);
+    p.set("light_black", settings.light.black);
     p.use();
     glBindVertexArray(vertices_.id());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+/// As the fifth texture.
+void DisplayPass::bind_table(std::shared_ptr<InverseTable const> const& table)
+{
+    if (uploaded_ != table) {
+        int const steps = int(table->size());
+        table_ = texture_2d(GL_RGB32F, {steps, 1}, GL_NEAREST);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        glTextureSubImage2D(table_.id(), 0, 0, 0, steps, 1, GL_RGB, GL_FLOAT, table->data());
+        uploaded_ = table;
+    }
+    glBindTextureUnit(4, table_.id());
 }
 
 GlProgram const& DisplayPass::program(std::string const& kind)

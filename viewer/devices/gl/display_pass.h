@@ -5,6 +5,7 @@
 #include "gi/filter/tone_map.h"
 #include "viewer/devices/gl/draw_target.h"
 #include "viewer/devices/gl/gl_program.h"
+#include "viewer/displays/display_light.h"
 #include "viewer/displays/stereo_mode.h"
 
 #include <map>
@@ -32,6 +33,7 @@ enum class PictureValues {
 
 struct DisplaySettings {
     gi::ToneMapSettings tone;
+    DisplayLight light; ///< with a table: radiance is shown as luminance, instead of sRGB
     PictureValues values = PictureValues::radiance;
     StereoMode stereo = StereoMode::off;
     Comparison comparison = Comparison::off;
@@ -55,7 +57,10 @@ private:
     void fill(DrawTarget const& target, EyeView const& left, EyeView const& right, StereoMode mode,
               DisplaySettings const& settings);
     GlProgram const& program(std::string const& kind);
+    void bind_table(std::shared_ptr<InverseTable const> const& table);
     std::map<std::string, GlProgram> programs_; ///< keyed by their defines
+    std::shared_ptr<InverseTable const> uploaded_;
+    GlObject table_;
     GlObject vertices_{GlObject::Kind::vertex_array};
 };
 

@@ -23,6 +23,7 @@ public:
     void wait_until(InputEvent::Clock::time_point time) override;
     std::vector<InputEvent> take_input() override;
     double take_longest_look_ms() override { return std::exchange(longest_look_ms_, 0); }
+    GazePlace gaze_place() const override { return {size_px(), {}, {}, {}}; }
     bool has_own_views() const override { return true; }
     std::vector<ViewCommand> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
 

@@ -2,8 +2,10 @@
 // The participant's screen: a window, the walls of a display, or a headset. The time of each swap is measured.
 
 #include "viewer/devices/gl/input_event.h"
+#include "viewer/displays/display_light.h"
 #include "viewer/displays/stereo_mode.h"
 #include "viewer/engine/live/live_renderer.h"
+#include "viewer/experiment/gaze/gaze_source.h"
 
 #include <functional>
 
@@ -14,12 +16,22 @@ struct ScreenPane {
     glm::ivec2 corner_px{}, size_px{}; ///< from the window's top left corner
     std::shared_ptr<LiveFrame const> frame;
     StereoMode stereo = StereoMode::off;
+    DisplayLight light{}; ///< of a calibrated display
+};
+
+/// A circle that follows the participant's gaze: pictures are visible only within it, or everywhere else; the rest
+/// is the background.
+struct GazeCircle {
+    bool is_window = true;            ///< else a mask
+    glm::vec2 centre_px{};            ///< from the window's top left corner
+    float radius_px = 0, edge_px = 1; ///< the edge is soft, half of it within the radius
 };
 
 /// Content shown by one swap.
 struct ScreenContent {
     static constexpr float kGrey = 0.5f; ///< background, display-encoded
     std::vector<ScreenPane> panes;
+    std::optional<GazeCircle> gaze;
     std::function<void(glm::vec2 size_px)> text;   ///< ImGui's calls; empty = none
     glm::ivec2 patch_corner_px{}, patch_size_px{}; ///< of the square for a photodiode; size 0 = none
     bool patch_is_white = false;
@@ -50,6 +62,9 @@ public:
     virtual std::vector<InputEvent> take_input() = 0;
     /// Longest time between two reads of input since the last call, ms: bounds the delay of event times.
     virtual double take_longest_look_ms() = 0;
+
+    /// The window on its monitor, for gaze.
+    virtual GazePlace gaze_place() const = 0;
 
     /// True if the screen defines its own views (walls or headset eyes, from tracked heads). Then it shows one
     /// stimulus at a time.

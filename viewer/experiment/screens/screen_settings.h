@@ -10,6 +10,7 @@ namespace viewer {
 struct ScreenSettings {
     WindowSettings window;
     float font_px = 22;
+    std::optional<study::DisplayModel> model; ///< of the window's monitor
     std::optional<Display> display; ///< used instead of the window; text and patch are in its first window
 };
 

@@ -2,8 +2,10 @@
 
 #include "viewer/app/layout.h"
 #include "viewer/devices/gl/draw_target.h"
+#include "viewer/displays/edid.h"
 #include "viewer/displays/views.h"
 #include "viewer/engine/live/navigation.h"
+#include "viewer/experiment/screens/monitor_check.h"
 
 #include <GLFW/glfw3.h>
 #include <algorithm>
@@ -47,6 +49,8 @@ WindowScreen::WindowScreen(ScreenSettings const& settings, gi::Report& report)
         w->window.gl().make_current();
         w->pictures();
     }
+    monitor_ = monitor_of(first().window);
+    if (settings.model && !display_) check_monitor(*settings.model, monitor_, report);
     first().window.gl().make_current();
     panel_ = std::make_unique<Panel>(first().window, settings.font_px);
     first().window.gl().release(); // to the drawing thread
@@ -58,6 +62,7 @@ WindowScreen::~WindowScreen()
     first().window.gl().make_current();
     panel_.reset();
     presenters_.clear();
+    gaze_.reset();
 }
 
 glm::ivec2 WindowScreen::size_px() const { return first().window.framebuffer_px(); }
@@ -66,8 +71,21 @@ double WindowScreen::refresh_hz() const { return first().window.refresh_hz(); }
 std::vector<std::pair<std::string, std::string>> WindowScreen::about() const
 {
     glm::ivec2 const px = size_px();
-    return {{"display", display_ ? "walls: " + display_->name : fmt::format("window of {} x {} px", px.x, px.y)},
-            {"opengl", first().window.gl().description()}};
+    std::vector<std::pair<std::string, std::string>> facts{
+        {"display", display_ ? "walls: " + display_->name : fmt::format("window of {} x {} px", px.x, px.y)},
+        {"window_px", fmt::format("{} x {}", px.x, px.y)},
+        {"opengl", first().window.gl().description()}};
+    if (auto const monitor = monitor_of(first().window)) {
+        facts.emplace_back("monitor", to_text(*monitor));
+        if (auto const edid = monitor_at(monitor->name)) facts.emplace_back("monitor_edid", to_text(*edid));
+    }
+    return facts;
+}
+
+GazePlace WindowScreen::gaze_place() const
+{
+    return {size_px(), first().window.position_px(), monitor_ ? monitor_->size_px : glm::ivec2(0),
+            monitor_ ? monitor_->position_px : glm::ivec2(0)};
 }
 
 std::vector<ViewCommand> WindowScreen::own_views(gi::dmat4 const& world_from_camera, double steady_s)
@@ -151,8 +169,14 @@ void WindowScreen::draw_panes(DrawTarget const& whole, ScreenContent const& cont
         std::vector<Pane> const panes{{p.corner_px, p.size_px, p.stereo, 0, right}};
         if (taken_[k] != p.frame) presenters_[k].take(p.frame, panes);
         taken_[k] = p.frame;
-        presenters_[k].draw(whole, first().on_screen_px, panes, settings_of(*p.frame), {});
+        PresentSettings settings = settings_of(*p.frame);
+        settings.light = p.light;
+        presenters_[k].draw(whole, first().on_screen_px, panes, settings, {});
     }
+    if (!content.gaze) return;
+    if (!gaze_) gaze_.emplace();
+    gaze_->draw(whole, content.gaze->is_window ? GazePass::Hidden::outside : GazePass::Hidden::inside,
+                content.gaze->centre_px, content.gaze->radius_px, content.gaze->edge_px, ScreenContent::kGrey);
 }
 
 void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, ScreenContent const& content)

@@ -6,6 +6,7 @@
 #include "viewer/app/present_thread.h"
 #include "viewer/app/user_tracking.h"
 #include "viewer/devices/gl/gamepads.h"
+#include "viewer/devices/gl/gaze_pass.h"
 #include "viewer/devices/gl/panel.h"
 #include "viewer/experiment/screens/screen_settings.h"
 
@@ -26,8 +27,10 @@ public:
     void wait_until(InputEvent::Clock::time_point time) override;
     std::vector<InputEvent> take_input() override;
     double take_longest_look_ms() override;
+    GazePlace gaze_place() const override;
     bool has_own_views() const override { return display_.has_value(); }
     std::vector<ViewCommand> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
+    Window const& window() const { return first().window; } ///< the first one
 
 private:
     void look();
@@ -38,12 +41,14 @@ private:
     ShownWindow& first() const { return *shown_.windows.front(); }
 
     std::optional<Display> display_;
+    std::optional<MonitorInfo> monitor_; ///< under the first window when it opened
     std::mutex room_mutex_;
     gi::dmat4 world_from_room_{1};         ///< at the last views; the drawing thread reads it
     std::optional<UserTracking> tracking_; ///< for a display
     DisplayWindows shown_;                 ///< one window without a display
     std::unique_ptr<Panel> panel_;
     std::deque<Presenter> presenters_; ///< one per pane
+    std::optional<GazePass> gaze_;
     std::vector<std::shared_ptr<LiveFrame const>> taken_;
     std::vector<InputEvent> input_;
     InputEvent::Clock::time_point last_look_;

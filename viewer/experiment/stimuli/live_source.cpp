@@ -125,6 +125,10 @@ void LiveSource::change(StimulusSettings const& stimulus)
     for (Change const& c : stimulus.edits) post(c);
     edited_ |= !stimulus.edits.empty();
     stimulus_.settings = stimulus.settings;
+    if (stimulus.raise_m == stimulus_.raise_m && stimulus.fov_deg == stimulus_.fov_deg) return;
+    stimulus_.raise_m = stimulus.raise_m;
+    stimulus_.fov_deg = stimulus.fov_deg;
+    look(std::max(0.0, last_s_));
 }
 
 void LiveSource::walk(NavigationInput const& input, double seconds)

@@ -29,6 +29,8 @@ std::vector<ViewCommand> stimulus_views(StimulusPlace const& place, StimulusSett
                                         StimulusView const& view, double seconds)
 {
     gi::Camera camera = place.camera;
+    camera.world_from_camera[3].y += stimulus.raise_m;
+    if (stimulus.fov_deg) camera.yfov_rad = glm::radians(*stimulus.fov_deg);
     if (stimulus.path == StimulusPath::orbit) {
         double const angle = 2 * gi::kPi * std::max(0.0, seconds) / view.duration_s;
         // The path starts at the camera's own position.

@@ -1,22 +1,16 @@
 #pragma once
 // Converts a script's settings of a stimulus to settings of the renderer.
 //
-// Keys are those of viewer/engine/settings.h, with or without the prefix "gi.", edits of the scene
-// (viewer/engine/scene_edits.h), and: scene (a file or a built-in name), camera (of the scene), view (window,
-// openxr), and gi.visibility, which selects a method that approximates the visibility of indirect light
-// (gi/methods/vpl). Alternatively, only those of an AR session (viewer/experiment/stimuli/ar_stimulus.h).
+// Keys are those of viewer/study/setting_lookup.h, or alternatively only those of an AR session
+// (viewer/experiment/stimuli/ar_stimulus.h).
 
+#include "gi/core/error.h"
 #include "study/plan/plan.h"
-#include "viewer/engine/settings.h"
 #include "viewer/experiment/stimuli/ar_stimulus.h"
+#include "viewer/study/physical_setting.h"
+#include "viewer/study/setting_lookup.h"
 
 namespace viewer {
-
-/// Motion of the camera while a stimulus is shown.
-enum class StimulusPath {
-    none,
-    orbit ///< once around a small horizontal circle with fixed view direction: gives parallax at one place
-};
 
 /// Device that shows the stimulus.
 enum class StimulusViewer {
@@ -27,10 +21,13 @@ enum class StimulusViewer {
 struct StimulusSettings {
     std::string scene, camera; ///< scene: file or name; camera: of the scene, empty = its first
     StimulusPath path = StimulusPath::none;
+    double raise_m = 0;                 ///< of the camera above its own place, along the world's up (+Y)
+    std::optional<double> fov_deg;      ///< vertical field of view; none = the camera's
     std::optional<StimulusViewer> view; ///< none = as on the command line
     Settings settings;                  ///< complete, with defaults
     std::vector<Change> edits;          ///< edits of the scene
     std::optional<ArStimulus> ar;       ///< if set, replaces all of the above
+    PhysicalStimulus physical;          ///< degrees, cd/m2
     std::string sha256; ///< of all of the above as written in the script: equal hashes mean equal pictures
 };
 
@@ -51,11 +48,10 @@ study::Block plain_block(study::Script const& script);
 
 struct PlannedStimulus {
     StimulusSettings settings;
-    std::string where; ///< first occurrence, for messages: "faces.yaml: block better, arches"
+    std::string what;       ///< "block better, arches"
+    std::string where;      ///< first occurrence, for messages: "faces.yaml: block better, arches"
+    gi::TextLocation place; ///< of its block
+    study::Patch patch;     ///< all settings as written, `camera` of the block included
 };
-
-/// Every stimulus of a plan once, by its sha256; stimuli whose level is chosen during the session are included at
-/// both ends of the range. Throws InputError, naming the block, if a stimulus is invalid.
-std::vector<PlannedStimulus> stimuli_of(study::Script const& script, study::Plan const& plan);
 
 } // namespace viewer

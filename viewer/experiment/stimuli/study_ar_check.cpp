@@ -34,6 +34,7 @@ bool has_place(std::string const& message)
 
 void ArStimulusCheck::add(study::Block const& block, study::Stimulus const& stimulus)
 {
+    if (std::any_of(stimulus.levels.begin(), stimulus.levels.end(), [](int l) { return l < 0; })) return; // told
     study::Patch patch = settings_of(loaded_.script, block, stimulus);
     if (is_ar(patch)) patches_.emplace(std::move(patch), block.camera);
 }
@@ -45,8 +46,10 @@ void ArStimulusCheck::add(study::Plan const& plan)
         bool const walks = step.kind == study::PlanStepKind::free_walk;
         if (step.kind != study::PlanStepKind::trial && !walks) continue;
         study::Block const block = step.block >= 0 ? s.blocks[std::size_t(step.block)] : plain_block(s);
-        std::vector<study::Stimulus> stimuli = step.trial.stimuli;
+        std::vector<study::Stimulus> stimuli;
+        if (!walks) stimuli = possible_stimuli(block, step.trial);
         if (walks) {
+            if (std::ranges::any_of(step.levels, [](int l) { return l < 0; })) continue; // told
             stimuli = {study::Stimulus{step.levels, false, {}}};
             study::Patch const patch = settings_of(s, block, stimuli[0]);
             for (auto const& [key, value] : patch)
@@ -55,7 +58,6 @@ void ArStimulusCheck::add(study::Plan const& plan)
                              "a free walk through an AR session (its frames have the camera's viewpoint) give "
                              "it a scene");
         }
-        if (step.trial.reference) stimuli.push_back(*step.trial.reference);
         for (study::Stimulus& stimulus : stimuli) {
             bool const is_open = stimulus.is_varied && !stimulus.level && block.compare;
             if (!is_open) {
@@ -70,23 +72,38 @@ void ArStimulusCheck::add(study::Plan const& plan)
     }
 }
 
+void ArStimulusCheck::find_wrong(study::Mistakes& m) const
+{
+    for (auto const& [patch, camera] : patches_) m.attempt([&, p = patch, c = camera] { check_one(p, c); });
+}
+
 void ArStimulusCheck::check() const
 {
-    for (auto const& [patch, camera] : patches_) {
-        auto const at_setting = [&](std::string const& key, auto const& e) {
-            for (auto const& [k, value] : patch)
-                if (k == key) throw_at(loaded_, key, value, e.what());
-            throw_at(loaded_, key, "", e.what());
-        };
-        try {
-            StimulusSettings const s = stimulus_settings(patch, camera, loaded_.folder);
-            check_ar_pictures(*s.ar);
-        } catch (ArSettingError const& e) {
-            at_setting(e.key, e);
-        } catch (gi::InputError const& e) {
-            if (has_place(e.what())) throw;
-            at_setting("ar", e);
-        }
+    for (auto const& [patch, camera] : patches_) check_one(patch, camera);
+}
+
+void ArStimulusCheck::check_one(study::Patch const& patch, std::string const& camera) const
+{
+    auto const at_setting = [&](std::string const& key, auto const& e) {
+        for (auto const& [k, value] : patch)
+            if (k == key) throw_at(loaded_, key, value, e.what());
+        throw_at(loaded_, key, "", e.what());
+    };
+    if (shown_on_)
+        for (auto const& [key, value] : patch)
+            if (is_physical_setting(key)) try {
+                    check_physical(key, value, *shown_on_);
+                } catch (gi::InputError const& e) {
+                    at_setting(key, e);
+                }
+    try {
+        StimulusSettings const s = stimulus_settings(patch, camera, loaded_.folder);
+        check_ar_pictures(*s.ar);
+    } catch (ArSettingError const& e) {
+        at_setting(e.key, e);
+    } catch (gi::InputError const& e) {
+        if (has_place(e.what())) throw;
+        at_setting("ar", e);
     }
 }
 

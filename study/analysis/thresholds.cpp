@@ -1,0 +1,355 @@
+#include "study/analysis/blocks.h"
+#include "study/analysis/hierarchical_result.h"
+#include "study/analysis/own_fit.h"
+#include "study/analysis/threshold_run.h"
+#include "study/script/procedure_settings.h"
+#include "study/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+/// Proportion in the middle between guessing and 1.
+double middle(Task task) { return (1 + guess_rate(task)) / 2; }
+
+/// u of shape_of in units of the comparison's scale: a decade is log2(10) octaves.
+double scale_units(Compare const& c) { return c.scale == Scale::linear ? 1 : to_scale(c.scale, 10); }
+
+double level_of(PsychometricShape const& shape, double u)
+{
+    double const x = shape.direction == Direction::falling ? -u : u;
+    return shape.axis == Axis::log10 ? std::pow(10.0, x) : x;
+}
+
+Uncertain level_of(PsychometricShape const& shape, double u, Interval const& interval, int observers)
+{
+    auto const end = [&](double v) { return std::isfinite(v) ? level_of(shape, v) : kUnknown; };
+    double const a = end(interval.low), b = end(interval.high);
+    bool const falls = shape.direction == Direction::falling;
+    return {level_of(shape, u), {falls ? b : a, falls ? a : b}, observers};
+}
+
+/// One observer's run with the rows it is made of.
+struct RunOf {
+    ThresholdRun run;
+    std::optional<double> guess;
+};
+using Place = std::pair<std::string, int>; ///< cell, procedure
+
+std::map<Place, std::vector<RunOf>> runs_of(Script const& script, Block const& b,
+                                            std::vector<ObserverTrials> const& trials,
+                                            std::vector<Group> const& groups, AnalysisSettings const& settings)
+{
+    using RunKey = std::tuple<std::string, int, int, int, int>; // cell, procedure, session, pass, run
+    std::map<Place, std::vector<RunOf>> all;
+    for (ObserverTrials const& o : trials) {
+        std::map<RunKey, std::vector<TrialRow>> runs;
+        std::map<std::string, std::vector<TrialRow>> cells;
+        for (TrialRow const& row : o.rows) {
+            std::string const cell = cell_name(script, groups, row);
+            cells[cell].push_back(row);
+            if (row.step->trial.procedure >= 0)
+                runs[{cell, row.step->trial.procedure, row.session, row.step->pass, row.step->trial.repeat}]
+                    .push_back(row);
+        }
+        for (auto const& [key, rows] : runs) {
+            int const procedure = std::get<1>(key);
+            RunOf r{threshold_run(b, b.procedures[std::size_t(procedure)], rows), lowest_share(b.task, rows)};
+            if (r.run.levels.empty()) continue;
+            if (!r.guess) r.guess = lowest_share(b.task, cells.at(std::get<0>(key)));
+            if (settings.guess) r.guess = settings.guess;
+            r.run.participant = o.participant;
+            r.run.cell = std::get<0>(key);
+            auto& list = all[{r.run.cell, procedure}];
+            r.run.run = 1 + int(std::count_if(list.begin(), list.end(), [&](RunOf const& other) {
+                            return other.run.participant == o.participant;
+                        }));
+            list.push_back(std::move(r));
+        }
+    }
+    return all;
+}
+
+GroupThresholdSettings group_settings(Compare const& c, PsychometricChoice const& function, double proportion,
+                                      AnalysisSettings const& settings)
+{
+    GroupThresholdSettings s;
+    s.shape = shape_of(c.scale, c.harder_up, function);
+    s.lapse = settings.lapse;
+    s.proportion = proportion;
+    s.low = c.low;
+    s.high = c.high;
+    s.confidence = settings.confidence;
+    return s;
+}
+
+/// Observers whose false alarms leave room for the proportion; the number of others.
+int leave_out_guessers(std::vector<ObserverLevels>& observers, std::vector<std::string>& who, double proportion)
+{
+    constexpr double kRoom = 0.03;
+    int left_out = 0;
+    for (std::size_t i = observers.size(); i-- > 0;)
+        if (observers[i].guess > proportion - kRoom) {
+            observers.erase(observers.begin() + std::ptrdiff_t(i));
+            who.erase(who.begin() + std::ptrdiff_t(i));
+            ++left_out;
+        }
+    return left_out;
+}
+
+std::string left_out_note(int left_out)
+{
+    return left_out == 0
+               ? ""
+               : fmt::format("{} observers whose false alarms alone reach the proportion are left out", left_out);
+}
+
+void append(std::string& note, std::string const& more)
+{
+    if (!more.empty()) note += (note.empty() ? "" : "; ") + more;
+}
+
+struct GroupData {
+    std::vector<ObserverLevels> observers;
+    std::vector<std::string> who;
+    bool fits_guess = false;
+    std::string note;
+};
+
+/// Levels of each observer. @param runs of one procedure, or of all procedures in a cell
+GroupData data_of(std::vector<RunOf const*> const& runs, double proportion)
+{
+    GroupData d;
+    std::map<std::string, std::pair<std::vector<double>, std::vector<int>>> people;
+    std::map<std::string, std::optional<double>> guess;
+    for (RunOf const* r : runs) {
+        auto& [levels, correct] = people[r->run.participant];
+        levels.insert(levels.end(), r->run.levels.begin(), r->run.levels.end());
+        correct.insert(correct.end(), r->run.correct.begin(), r->run.correct.end());
+        guess[r->run.participant] = r->guess;
+        d.fits_guess = d.fits_guess || !r->guess;
+    }
+    for (auto const& [who, data] : people) {
+        d.observers.push_back({count_levels(data.first, data.second), d.fits_guess ? 0 : guess[who].value_or(0)});
+        d.who.push_back(who);
+    }
+    if (!d.fits_guess) d.note = left_out_note(leave_out_guessers(d.observers, d.who, proportion));
+    return d;
+}
+
+std::optional<GroupCurve> group_curve(Compare const& c, PsychometricChoice const& function, GroupData const& data,
+                                      double proportion, AnalysisSettings const& settings, std::string& note)
+{
+    GroupCurve g{group_settings(c, function, proportion, settings), {}};
+    g.settings.fits_guess = data.fits_guess;
+    try {
+        g.threshold = group_threshold(data.observers, g.settings);
+        append(note, g.threshold.note);
+        append(note, data.note);
+        return g;
+    } catch (std::invalid_argument const& e) {
+        append(note, e.what());
+        return {};
+    }
+}
+
+/// Mean over observers of levels on the scale; those of one observer are averaged first.
+void average(ThresholdSummary& s, Compare const& c, std::map<std::string, std::vector<double>> const& by_observer,
+             AnalysisSettings const& settings)
+{
+    std::vector<double> means;
+    for (auto const& [who, values] : by_observer) means.push_back(mean(values));
+    Uncertain u = mean_of(means, settings.confidence);
+    s.deviation = standard_deviation(means);
+    if (u.n > 0) u.value = from_scale(c.scale, u.value);
+    u.interval = {from_scale(c.scale, u.interval.low), from_scale(c.scale, u.interval.high)};
+    s.level = u;
+}
+
+/// As add_proportion, by a formula: a mean over observers, without those far from all levels shown.
+void add_proportion_by_formula(Block const& b, PsychometricChoice const& function, std::vector<RunOf>& runs,
+                               double proportion, AnalysisSettings const& settings, BlockResult& result)
+{
+    Compare const& c = *b.compare;
+    ThresholdSummary s{
+        runs.front().run.procedure, runs.front().run.cell, "maximum likelihood", proportion, {}, kUnknown, {}};
+    std::map<std::string, std::vector<double>> by_observer;
+    for (RunOf& r : runs) {
+        ThresholdEstimate e = maximum_likelihood_estimate(r.run, b, function, r.guess, proportion, settings);
+        if (e.level.value >= c.low && e.level.value <= c.high)
+            by_observer[r.run.participant].push_back(to_scale(c.scale, e.level.value));
+        r.run.estimates.push_back(std::move(e));
+    }
+    average(s, c, by_observer, settings);
+    result.thresholds.push_back(std::move(s));
+}
+
+/// The population's threshold at one proportion by one procedure, and those of its runs.
+void add_proportion(Block const& b, Procedure const& p, std::vector<RunOf>& runs, double proportion,
+                    bool with_reversals, AnalysisSettings const& settings, BlockResult& result)
+{
+    Compare const& c = *b.compare;
+    PsychometricChoice const function = fitted_function({p}, c.scale);
+    std::vector<RunOf const*> all;
+    for (RunOf const& r : runs) all.push_back(&r);
+    ThresholdSummary likelihood{p.name, runs.front().run.cell, "likelihood", proportion, {}, kUnknown, {}};
+    std::optional<GroupCurve> group;
+    if (!function.formula)
+        group = group_curve(c, function, data_of(all, proportion), proportion, settings, likelihood.note);
+    if (group) {
+        GroupThreshold const& g = group->threshold;
+        likelihood.level = level_of(group->settings.shape, g.mean, g.interval, g.observers);
+        if (g.observers > 1) likelihood.deviation = g.deviation * scale_units(c);
+    }
+    ThresholdSummary reversals{p.name, runs.front().run.cell, "mean of reversals", proportion, {}, kUnknown, {}};
+    std::map<std::string, std::vector<double>> by_observer;
+    for (RunOf& r : runs) {
+        if (with_reversals) {
+            r.run.estimates.push_back(reversal_estimate(r.run, b, p, group, settings));
+            double const level = r.run.estimates.back().level.value;
+            if (std::isfinite(level)) by_observer[r.run.participant].push_back(to_scale(c.scale, level));
+        }
+        if (function.formula) continue;
+        if (settings.guess && settings.lapse)
+            r.run.estimates.push_back(
+                maximum_likelihood_estimate(r.run, b, function, r.guess, proportion, settings));
+        r.run.estimates.push_back(likelihood_estimate(r.run, b, function, r.guess, proportion, group, settings));
+    }
+    if (with_reversals) {
+        average(reversals, c, by_observer, settings);
+        result.thresholds.push_back(std::move(reversals));
+    }
+    if (function.formula)
+        add_proportion_by_formula(b, function, runs, proportion, settings, result);
+    else
+        result.thresholds.push_back(std::move(likelihood));
+}
+
+HierarchicalResult hierarchical_of(Block const& b, PsychometricChoice const& function, std::string const& cell,
+                                   GroupData const& data, double proportion, AnalysisSettings const& settings)
+{
+    Compare const& c = *b.compare;
+    HierarchicalResult r;
+    r.condition = cell;
+    r.parameter = fmt::format("threshold at {:.0f} %", 100 * proportion);
+    r.observers = int(data.who.size());
+    r.participants = data.who;
+    try {
+        SamplerSettings sampler;
+        sampler.draws = settings.draws;
+        sampler.seed = settings.seed;
+        auto const s = group_settings(c, function, proportion, settings);
+        Hierarchical const h = hierarchical_psychometric(data.observers, s, sampler);
+        fill(r, h, [&](double u) { return level_of(s.shape, u); });
+        double const unit = scale_units(c);
+        r.deviation = {h.deviation.mean * unit, {h.deviation.low * unit, h.deviation.high * unit}, r.observers};
+        r.scale = h.scale.mean * unit;
+        r.lapse = h.lapse.mean;
+    } catch (std::invalid_argument const& e) {
+        r.refused = e.what();
+    }
+    return r;
+}
+
+/// The function of the average observer in a cell, from all procedures.
+void add_curve(Block const& b, std::string const& cell, std::vector<RunOf const*> const& runs,
+               AnalysisSettings const& settings, BlockResult& result)
+{
+    Compare const& c = *b.compare;
+    CurveResult r;
+    r.cell = cell;
+    r.proportion = middle(b.task);
+    PsychometricChoice const function = fitted_function(b.procedures, c.scale);
+    r.function = function.name();
+    GroupData const data = data_of(runs, r.proportion);
+    r.observers = int(data.who.size());
+    std::map<double, LevelCount> sums;
+    for (ObserverLevels const& o : data.observers)
+        for (LevelCount const& l : o.counts) {
+            LevelCount& sum = sums[l.level];
+            sum = {l.level, sum.correct + l.correct, sum.trials + l.trials};
+        }
+    std::vector<LevelCount> counts;
+    for (auto const& [unused, sum] : sums) counts.push_back(sum);
+    if (function.formula) {
+        r.counts = counts;
+        r.shape = shape_of(c.scale, c.harder_up, function);
+        std::vector<std::vector<LevelCount>> people;
+        double guess = 0;
+        for (ObserverLevels const& o : data.observers) {
+            people.push_back(o.counts);
+            guess += o.guess / double(data.observers.size());
+        }
+        fit_pooled(r, b, people, guess, settings);
+        result.curves.push_back(std::move(r));
+        return;
+    }
+    std::string note;
+    auto const group = group_curve(c, function, data, r.proportion, settings, note);
+    if (!group) {
+        r.refused = note;
+    } else {
+        GroupThreshold const& g = group->threshold;
+        r.counts = counts;
+        r.note = note;
+        r.shape = group->settings.shape;
+        r.parameters = g.shared;
+        r.parameters.threshold = 0;
+        double const offset = transformed(r.shape, level_at(r.shape, r.parameters, r.proportion));
+        r.parameters.threshold = g.mean - offset;
+        r.eta = g.eta;
+        r.threshold = level_of(r.shape, g.mean, g.interval, g.observers);
+        if (g.observers > 1) r.deviation = g.deviation * scale_units(c);
+        try {
+            PsychometricSettings s{r.shape, {r.parameters.guess, data.fits_guess ? 0.5 : 0}, {0.01, 0.06}};
+            if (settings.lapse) s.lapse = {*settings.lapse, 0};
+            r.pooled = fit_psychometric(counts, s);
+        } catch (std::invalid_argument const&) { // one level: no deviance
+            r.pooled.deviance = r.pooled.fit_p = kUnknown;
+        }
+        if (settings.draws > 0 && data.who.size() > 1 && !data.fits_guess)
+            result.hierarchical.push_back(hierarchical_of(b, function, cell, data, r.proportion, settings));
+    }
+    result.curves.push_back(std::move(r));
+}
+
+} // namespace
+
+void analyze_thresholds(Script const& script, Block const& b, std::vector<ObserverTrials> const& trials,
+                        std::vector<Group> const& groups, AnalysisSettings const& settings, BlockResult& result)
+{
+    result.is_log = b.compare->scale != Scale::linear;
+    auto all = runs_of(script, b, trials, groups, settings);
+    bool const has_many =
+        std::any_of(b.procedures.begin(), b.procedures.end(), [](Procedure const& p) { return p.is_many(); });
+    std::map<std::string, std::vector<RunOf const*>> cells;
+    for (auto& [place, runs] : all) {
+        Procedure const& p = b.procedures[std::size_t(place.second)];
+        if (p.is_many()) { // no curve of one setting: it has parameters
+            for (RunOf const& r : runs) result.runs.push_back(r.run);
+            continue;
+        }
+        // Every method at the middle of the rise; staircases also at the proportion to which they converge.
+        if (p.method == Method::staircase) add_proportion(b, p, runs, settles_at(p), true, settings, result);
+        add_proportion(b, p, runs, middle(b.task), false, settings, result);
+        for (RunOf& r : runs) {
+            if (p.method == Method::questplus)
+                r.run.estimates.push_back(questplus_estimate(r.run, b, p, middle(b.task), settings));
+            cells[place.first].push_back(&r);
+            result.runs.push_back(r.run);
+        }
+    }
+    auto const place = [&](ThresholdRun const& run) {
+        return std::find_if(trials.begin(), trials.end(),
+                            [&](ObserverTrials const& o) { return o.participant == run.participant; });
+    };
+    std::stable_sort(result.runs.begin(), result.runs.end(),
+                     [&](ThresholdRun const& x, ThresholdRun const& y) { return place(x) < place(y); });
+    if (has_many) return;
+    for (auto const& [cell, runs] : cells) add_curve(b, cell, runs, settings, result);
+}
+
+} // namespace study

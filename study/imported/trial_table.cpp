@@ -1,0 +1,394 @@
+#include "study/imported/trial_table.h"
+
+#include "gi/core/text.h"
+#include "study/imported/made_trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <set>
+
+namespace study {
+namespace {
+
+constexpr std::string_view kRoles[] = {
+    "participant",   "run",         "item",      "first",    "second",  "chosen",     "first_chosen", "first_wins",
+    "second_wins",   "ties",        "value",     "level",    "signal",  "correct",    "yes",          "trials",
+    "correct_count", "wrong_count", "yes_count", "no_count", "percent", "reaction_s", "reaction_ms"};
+
+constexpr int kMostImportedTrials = 2'000'000;
+
+std::string lower_case(std::string text)
+{
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    return text;
+}
+
+std::string known_roles()
+{
+    std::string out;
+    for (std::string_view const r : kRoles) out += (out.empty() ? "" : ", ") + std::string(r);
+    return out;
+}
+
+class Importer {
+public:
+    Importer(DelimitedText const& table, ColumnRoles const& roles) : t_(table), roles_(roles)
+    {
+        for (auto const& [role, column] : roles.column) at_[role] = column_of(column, "--columns names it");
+        for (std::string const& f : roles.factors) factors_.push_back(column_of(f, "--factors names it"));
+        for (auto const& [column, unused] : roles.only) column_of(column, "--only names it");
+    }
+
+    ImportedTable import()
+    {
+        if (roles_.is_matrix) {
+            read_matrix();
+        } else {
+            made_.task = task();
+            check_roles();
+            for (auto const& row : t_.rows) read(row);
+        }
+        if (made_.trials.empty())
+            throw ScriptError(t_.file, {}, "no trials are left", notes_of_rows(), "check --columns and --only");
+        made_.id = roles_.id.empty() ? std::filesystem::path(t_.file).stem().string() : roles_.id;
+        made_.file = t_.file;
+        made_.scale = roles_.scale;
+        made_.harder_up = roles_.harder_up;
+        made_.level_name = has("level") ? roles_.column.at("level") : "level";
+        for (std::string const& f : roles_.factors) made_.factors.push_back(f);
+        if (rounded_ > 0)
+            made_.notes.push_back(fmt::format(
+                "{} percentages are no whole numbers of trials: they are rounded to the nearest", rounded_));
+        ImportedTable out = sessions_of(made_);
+        for (auto const& [why, n] : left_out_)
+            out.notes.insert(out.notes.begin(), fmt::format("{} of {} rows left out: {}", n, t_.rows.size(), why));
+        return out;
+    }
+
+private:
+    using Row = std::vector<TextCell>;
+
+    [[noreturn]] void refuse_cell(TextCell const& c, std::string const& column, std::string const& why,
+                                  std::string const& suggestion) const
+    {
+        throw ScriptError(t_.files[std::size_t(c.file)], c.place,
+                          fmt::format("'{}' in column '{}'", c.text, column), why, suggestion);
+    }
+    [[noreturn]] void refuse_roles(std::string const& problem, std::string const& suggestion) const
+    {
+        throw ScriptError(t_.file, {}, problem, "--columns does not name enough to analyse these trials",
+                          suggestion);
+    }
+    int column_of(std::string const& name, std::string const& who) const
+    {
+        int const at = t_.column(name);
+        if (at >= 0) return at;
+        std::string known;
+        for (std::string const& c : t_.columns) known += (known.empty() ? "" : ", ") + c;
+        throw ScriptError(t_.file, {1, 1}, fmt::format("there is no column '{}'", name), who,
+                          "the table has: " + known);
+    }
+    bool has(std::string const& role) const { return at_.count(role) > 0; }
+    TextCell const& cell(Row const& row, std::string const& role) const { return row[std::size_t(at_.at(role))]; }
+    double number(Row const& row, std::string const& role) const
+    {
+        TextCell const& c = cell(row, role);
+        auto const v = gi::parse_finite(c.text);
+        if (!v)
+            refuse_cell(c, roles_.column.at(role), fmt::format("'{}' is a number", role),
+                        "use digits with a decimal point");
+        return *v;
+    }
+    bool flag(Row const& row, std::string const& role) const
+    {
+        std::string const text = lower_case(cell(row, role).text);
+        for (char const* yes : {"1", "1.0", "true", "yes"})
+            if (text == yes) return true;
+        for (char const* no : {"0", "0.0", "false", "no"})
+            if (text == no) return false;
+        refuse_cell(cell(row, role), roles_.column.at(role), fmt::format("'{}' is 1 or 0", role),
+                    "use 1 and 0, true and false, or yes and no");
+    }
+    int count(Row const& row, std::string const& role) const
+    {
+        double const v = number(row, role);
+        if (v < 0 || v != std::floor(v) || v > kMostImportedTrials)
+            refuse_cell(cell(row, role), roles_.column.at(role), fmt::format("'{}' is a number of trials", role),
+                        "use a whole number from 0 up");
+        return int(v);
+    }
+
+    Task task() const
+    {
+        if (roles_.task) return *roles_.task;
+        if (has("first") || has("second")) return Task::pair;
+        if (has("yes") || has("yes_count")) return Task::yes_no;
+        if (has("level")) return Task::two_interval;
+        if (has("value")) return Task::rating;
+        if (has("correct") || has("correct_count")) return Task::two_interval;
+        refuse_roles("it is unknown what these trials are",
+                     "name first and second with chosen, value, or level with correct: roles are " +
+                         known_roles());
+    }
+    /// Which columns must not be empty.
+    void check_roles()
+    {
+        auto const need = [&](std::string const& role) {
+            if (!has(role))
+                refuse_roles(fmt::format("a column for '{}' is missing", role),
+                             fmt::format("add {}=COLUMN to --columns", role));
+            needed_.push_back(role);
+        };
+        if (has("participant")) needed_.emplace_back("participant");
+        if (made_.task == Task::pair || made_.task == Task::pair_with_reference) {
+            need("first");
+            need("second");
+            if (has("first_wins")) {
+                need("first_wins");
+                need("second_wins");
+            } else
+                need(has("first_chosen") ? "first_chosen" : "chosen");
+            return;
+        }
+        if (made_.task == Task::rating || made_.task == Task::magnitude || made_.task == Task::adjustment) {
+            need("value");
+            if (has("item")) need("item");
+            if (!has("item") && factors_.empty()) refuse_roles("nothing says what was judged", "name item=COLUMN");
+            return;
+        }
+        bool const is_yes = made_.task == Task::yes_no;
+        if (made_.task == Task::ranking || made_.task == Task::questionnaire || made_.task == Task::free_walk)
+            throw ScriptError(
+                t_.file, {}, fmt::format("task '{}'", study::facts(made_.task).name),
+                "tables of such trials are not read",
+                "use pair, rating, magnitude, adjustment, 2ifc, abx, oddity, same_different or yes_no");
+        std::string const hits = is_yes ? "yes_count" : "correct_count",
+                          rest = is_yes ? "no_count" : "wrong_count";
+        if (has("level")) need("level");
+        if (has("percent")) {
+            need("percent");
+            need("trials");
+        } else if (has(hits)) {
+            need(hits);
+            need(has(rest) ? rest : "trials");
+        } else
+            need(is_yes ? "yes" : "correct");
+        bool const has_two_kinds =
+            made_.task == Task::same_different || made_.task == Task::abx || (is_yes && !has("level"));
+        if (has_two_kinds) need("signal");
+    }
+
+    bool is_used(Row const& row)
+    {
+        for (auto const& [column, value] : roles_.only)
+            if (row[std::size_t(t_.column(column))].text != value) {
+                ++left_out_[fmt::format("'{}' is not {}", column, value)];
+                return false;
+            }
+        auto const is_there = [&](std::size_t column) {
+            if (!DelimitedText::is_missing(row[column].text)) return true;
+            ++left_out_[fmt::format("no '{}'", t_.columns[column])];
+            return false;
+        };
+        for (std::string const& role : needed_)
+            if (!is_there(std::size_t(at_.at(role)))) return false;
+        for (int const f : factors_)
+            if (!is_there(std::size_t(f))) return false;
+        return true;
+    }
+
+    void read(Row const& row)
+    {
+        if (!is_used(row)) return;
+        MadeTrial m;
+        m.participant = has("participant") ? cell(row, "participant").text : "all";
+        if (has("run")) m.run = cell(row, "run").text;
+        for (int const f : factors_) m.factors.push_back(row[std::size_t(f)].text);
+        if (has("reaction_ms") && !DelimitedText::is_missing(cell(row, "reaction_ms").text))
+            m.reaction_ms = number(row, "reaction_ms");
+        else if (has("reaction_s") && !DelimitedText::is_missing(cell(row, "reaction_s").text))
+            m.reaction_ms = 1000 * number(row, "reaction_s");
+        if (has("first"))
+            read_pair(row, m);
+        else if (has("value"))
+            read_value(row, m);
+        else
+            read_answer(row, m);
+    }
+
+    void add(MadeTrial const& m, int times)
+    {
+        if (int(made_.trials.size()) + times > kMostImportedTrials)
+            throw ScriptError(t_.file, {}, fmt::format("more than {} trials", kMostImportedTrials),
+                              "counts are read as single trials", "analyse parts of the table");
+        made_.trials.insert(made_.trials.end(), std::size_t(times), m);
+    }
+
+    void read_pair(Row const& row, MadeTrial& m)
+    {
+        m.items = {cell(row, "first").text, cell(row, "second").text};
+        if (m.items[0] == m.items[1])
+            refuse_cell(cell(row, "second"), roles_.column.at("second"), "the same item is first and second",
+                        "leave such rows out: they say nothing of scores");
+        auto const answered = [&](char const* answer, int times) {
+            m.response = answer;
+            add(m, times);
+        };
+        if (has("first_wins")) {
+            answered("first", count(row, "first_wins"));
+            answered("second", count(row, "second_wins"));
+            if (has("ties")) answered("neither", count(row, "ties"));
+            return;
+        }
+        if (has("first_chosen")) {
+            std::string const& text = cell(row, "first_chosen").text;
+            if (text == "0.5") return answered("neither", 1);
+            return answered(flag(row, "first_chosen") ? "first" : "second", 1);
+        }
+        TextCell const& c = cell(row, "chosen");
+        std::string const text = lower_case(c.text);
+        auto const is = [&](std::initializer_list<char const*> words) {
+            return std::any_of(words.begin(), words.end(), [&](char const* w) { return text == w; });
+        };
+        if (c.text == m.items[0] || (c.text != m.items[1] && is({"first", "left", "1"})))
+            return answered("first", 1);
+        if (c.text == m.items[1] || is({"second", "right", "2"})) return answered("second", 1);
+        if (is({"neither", "tie", "equal", "same", "none"})) return answered("neither", 1);
+        refuse_cell(
+            c, roles_.column.at("chosen"),
+            fmt::format("it is neither '{}' nor '{}', nor first, second or neither", m.items[0], m.items[1]),
+            "name the chosen item, or use first_chosen for 1 and 0");
+    }
+
+    void read_value(Row const& row, MadeTrial& m)
+    {
+        if (has("item")) m.items = {cell(row, "item").text};
+        m.value = number(row, "value");
+        if (made_.task == Task::magnitude && !(*m.value > 0))
+            refuse_cell(cell(row, "value"), roles_.column.at("value"), "magnitudes are above 0",
+                        "leave such rows out, or use --task rating");
+        m.response = "confirm";
+        add(m, 1);
+    }
+
+    void read_answer(Row const& row, MadeTrial& m)
+    {
+        bool const is_yes = made_.task == Task::yes_no;
+        if (has("level")) {
+            m.level = number(row, "level");
+            if (roles_.scale != Scale::linear && !(*m.level > 0)) {
+                if (!has("signal") || flag(row, "signal"))
+                    refuse_cell(cell(row, "level"), roles_.column.at("level"), "it has no logarithm",
+                                "use --scale linear, or leave such rows out");
+                m.level.reset();
+            }
+        }
+        m.is_signal = !has("signal") || flag(row, "signal");
+        int hits = 0, rest = 0; // yes or correct; the others
+        std::string const role = is_yes ? "yes" : "correct", other = is_yes ? "no" : "wrong";
+        if (has("percent")) {
+            double const share = number(row, "percent") / 100;
+            int const n = count(row, "trials");
+            hits = int(std::lround(share * n));
+            if (share < 0 || share > 1)
+                refuse_cell(cell(row, "percent"), roles_.column.at("percent"), "it is from 0 to 100",
+                            "use correct_count or yes_count for numbers of trials");
+            // Published percentages are often rounded, or means of sessions of other lengths.
+            rounded_ += std::abs(share * n - hits) > 0.0051 * n;
+            rest = n - hits;
+        } else if (has(role + "_count")) {
+            hits = count(row, role + "_count");
+            rest = has(other + "_count") ? count(row, other + "_count") : count(row, "trials") - hits;
+            if (rest < 0)
+                refuse_cell(cell(row, role + "_count"), roles_.column.at(role + "_count"),
+                            fmt::format("it is more than the {} trials", count(row, "trials")), "check the table");
+        } else
+            (flag(row, role) ? hits : rest) = 1;
+        for (bool const hit : {true, false}) {
+            m.is_correct = is_yes ? hit == m.is_signal : hit;
+            m.response = is_yes ? (hit ? "yes" : "no") : hit ? "correct" : "wrong";
+            add(m, hit ? hits : rest);
+        }
+    }
+
+    void read_matrix()
+    {
+        made_.task = Task::pair;
+        std::vector<std::string> const items(t_.columns.begin() + 1, t_.columns.end());
+        for (auto const& row : t_.rows) {
+            auto const own = std::find(items.begin(), items.end(), row[0].text);
+            if (own == items.end())
+                refuse_cell(row[0], t_.columns[0], "no column has this name",
+                            "a matrix names its items in the first row and the first column");
+            for (std::size_t j = 0; j < items.size(); ++j) {
+                TextCell const& c = row[j + 1];
+                auto const wins = gi::parse_number<int>(c.text);
+                bool const is_self = items[j] == row[0].text;
+                if (is_self && (c.text.empty() || c.text == "0" || DelimitedText::is_missing(c.text))) continue;
+                if (!wins || *wins < 0 || is_self)
+                    refuse_cell(c, items[j],
+                                is_self ? "an item is compared with itself" : "it is a number of choices",
+                                "use whole numbers from 0 up, and 0 on the diagonal");
+                MadeTrial m;
+                m.participant = "all";
+                m.items = {row[0].text, items[j]};
+                m.response = "first";
+                add(m, *wins);
+            }
+        }
+        made_.notes.emplace_back("a matrix does not say who chose: errors are those of independent choices");
+    }
+
+    std::string notes_of_rows() const
+    {
+        std::string out = fmt::format("the table has {} rows", t_.rows.size());
+        for (auto const& [why, n] : left_out_) out += fmt::format("; {} left out: {}", n, why);
+        return out;
+    }
+
+    DelimitedText const& t_;
+    ColumnRoles const& roles_;
+    std::map<std::string, int> at_; ///< column by role
+    std::vector<int> factors_;
+    std::vector<std::string> needed_;
+    std::map<std::string, int> left_out_;
+    int rounded_ = 0;
+    MadeExperiment made_;
+};
+
+} // namespace
+
+std::map<std::string, std::string> parse_roles(std::string const& text)
+{
+    std::map<std::string, std::string> roles;
+    std::size_t at = 0;
+    while (at < text.size()) {
+        std::size_t const end = std::min(text.find(',', at), text.size());
+        std::string const part = text.substr(at, end - at);
+        at = end + 1;
+        auto const blank = part.find_first_not_of(' ');
+        if (blank == std::string::npos) continue;
+        auto const equals = part.find('=');
+        std::string const role = part.substr(blank, equals == std::string::npos ? equals : equals - blank);
+        if (equals == std::string::npos || equals + 1 >= part.size())
+            throw ScriptError("--columns", {}, fmt::format("'{}'", part), "each is ROLE=COLUMN",
+                              "use for example participant=observer,first=condition_a");
+        if (std::find(std::begin(kRoles), std::end(kRoles), role) == std::end(kRoles))
+            throw ScriptError("--columns", {}, fmt::format("role '{}'", role), "there is no such role",
+                              "roles are " + known_roles() + "; conditions are named by --factors");
+        if (!roles.emplace(role, part.substr(equals + 1)).second)
+            throw ScriptError("--columns", {}, fmt::format("'{}' is given twice", role), "a role has one column",
+                              "remove one");
+    }
+    return roles;
+}
+
+ImportedTable import_trials(DelimitedText const& table, ColumnRoles const& roles)
+{
+    return Importer(table, roles).import();
+}
+
+} // namespace study

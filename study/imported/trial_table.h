@@ -1,0 +1,43 @@
+#pragma once
+// Trials that other programs recorded, as sessions of an experiment, so that they are analysed like own records.
+
+#include "study/imported/delimited_text.h"
+#include "study/tables/recorded_session.h"
+
+#include <map>
+#include <optional>
+
+namespace study {
+
+/// What a column of a table means.
+struct ColumnRoles {
+    /// Role -> column. Roles: participant, run, item, first, second, chosen, first_chosen, first_wins,
+    /// second_wins, ties, value, level, signal, correct, yes, trials, correct_count, wrong_count, yes_count,
+    /// no_count, percent, reaction_s, reaction_ms.
+    std::map<std::string, std::string> column{};
+    std::vector<std::string> factors{}; ///< columns with the conditions of a trial, or the groups of participants
+    /// Column -> value: only rows with this text count (such as without practice).
+    std::vector<std::pair<std::string, std::string>> only{};
+    std::optional<Task> task{};  ///< none = by the roles: pair, rating, 2ifc with levels, yes_no with signals
+    Scale scale = Scale::linear; ///< of levels
+    bool harder_up = false;      ///< higher levels are harder
+    bool is_matrix = false;      ///< rows over columns: how often an item was chosen, items named by both
+    std::string id{};            ///< of the experiment; empty = by the file's name
+};
+
+/// "role=column, role=column". @throws ScriptError an unknown role, one that is given twice, no "="
+std::map<std::string, std::string> parse_roles(std::string const& text);
+
+struct ImportedTable {
+    Script script;
+    std::vector<RecordedSession> sessions; ///< one per participant, in the order of the table
+    std::vector<std::string> notes;        ///< rows left out and why, what was concluded about factors
+};
+
+/// Participants without such a column are one person. Rows without a cell that the task needs are left out and
+/// counted (other programs write rows for instructions too). Counts become single trials.
+/// @throws ScriptError unknown columns, roles that do not fit together, cells that are no number or not 0 or 1,
+/// counts that are not integers, an item compared with itself, with file:line:column
+ImportedTable import_trials(DelimitedText const& table, ColumnRoles const& roles);
+
+} // namespace study

@@ -1,0 +1,281 @@
+#include "study/stats/group_dprime.h"
+
+#include "study/stats/descent.h"
+#include "study/stats/error.h"
+#include "study/stats/gauss_hermite.h"
+#include "study/stats/profile.h"
+#include "study/stats/special.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace study {
+namespace {
+
+constexpr double kLargestMean = 8; ///< means beyond it are called infinite
+constexpr double kLeastSd = 0.01;  ///< of d' and criteria between observers
+
+/// Means and standard deviations of d' and criterion; a standard deviation is kLeastSd + exp(parameter).
+using Population = std::array<double, 4>; ///< mean d', log sd, mean criterion, log sd
+double deviation(double parameter) { return kLeastSd + std::exp(parameter); }
+
+struct Observer {
+    DetectionCounts counts;
+    DetectionPoint mode; ///< of the last population: where the next search starts
+    double dprime = 0;   ///< mean under the last population
+    double information = 0;
+};
+
+class Marginal {
+public:
+    Marginal(DetectionTask task, std::span<DetectionCounts const> counts) : task_(task)
+    {
+        for (DetectionCounts const& c : counts)
+            if (c.signals + c.noises > 0) observers_.push_back({c, detection_point(task, c), 0, 0});
+    }
+
+    std::vector<Observer> const& observers() const { return observers_; }
+
+    /// Log-likelihood and its gradient.
+    double operator()(Population const& at, Population& gradient)
+    {
+        gradient.fill(0);
+        double sum = 0;
+        for (Observer& o : observers_) sum += integrate(o, at, gradient);
+        return sum;
+    }
+
+private:
+    struct Prior {
+        double mean, sd;
+        double precision() const { return 1 / (sd * sd); }
+        double log_density(double x) const
+        {
+            double const z = (x - mean) / sd;
+            return -0.5 * z * z - std::log(sd) - 0.9189385332046727418;
+        }
+    };
+
+    double log_joint(Observer const& o, Prior const& d, Prior const& c, double x, double y) const
+    {
+        double const own = has_criterion(task_) ? c.log_density(y) : 0;
+        return detection_likelihood(task_, o.counts, x, y).value + d.log_density(x) + own;
+    }
+
+    /// Moves o.mode to the maximum of the joint density; returns minus its second derivatives there (expected).
+    std::array<double, 3> find_mode(Observer& o, Prior const& d, Prior const& c) const
+    {
+        double& x = o.mode.dprime;
+        double& y = o.mode.criterion;
+        bool const two = has_criterion(task_);
+        double here = log_joint(o, d, c, x, y);
+        std::array<double, 3> h{};
+        for (int i = 0; i < 30; ++i) {
+            DetectionLikelihood const l = detection_likelihood(task_, o.counts, x, y);
+            double const gx = l.by_dprime - (x - d.mean) * d.precision();
+            double const gy = two ? l.by_criterion - (y - c.mean) * c.precision() : 0;
+            h = {l.information[0] + d.precision(), two ? l.information[1] : 0,
+                 two ? l.information[2] + c.precision() : 1};
+            double const determinant = h[0] * h[2] - h[1] * h[1];
+            double const dx = (h[2] * gx - h[1] * gy) / determinant, dy = (h[0] * gy - h[1] * gx) / determinant;
+            o.information = l.information[0] - h[1] * h[1] / h[2];
+            if (gx * dx + gy * dy < 1e-8) break;
+            double step = 1;
+            for (; step > 1e-6; step /= 2) {
+                double const there = log_joint(o, d, c, x + step * dx, y + step * dy);
+                if (there > here) {
+                    here = there;
+                    break;
+                }
+            }
+            if (!(step > 1e-6)) break;
+            x += step * dx;
+            y += step * dy;
+        }
+        return h;
+    }
+
+    double integrate(Observer& o, Population const& at, Population& gradient)
+    {
+        static auto const wide = gauss_hermite(9), narrow = gauss_hermite(5), none = gauss_hermite(1);
+        Prior const d{at[0], deviation(at[1])}, c{at[2], deviation(at[3])};
+        auto const h = find_mode(o, d, c);
+        // h = R^T R; points are mode + sqrt 2 R^-1 z.
+        double const r00 = std::sqrt(h[0]), r01 = h[1] / r00, r11 = std::sqrt(h[2] - r01 * r01);
+        bool const two = has_criterion(task_);
+        double most = -kInfinity;
+        terms_.clear();
+        for (QuadratureNode const& i : two ? narrow : none) {
+            double const y = std::sqrt(2.0) * i.x / r11;
+            for (QuadratureNode const& k : wide) {
+                double const x = (std::sqrt(2.0) * k.x - r01 * y) / r00;
+                Term t{o.mode.dprime + x, o.mode.criterion + y, 0};
+                t.log_value = log_joint(o, d, c, t.dprime, t.criterion) + k.log_weight + (two ? i.log_weight : 0);
+                most = std::max(most, t.log_value);
+                terms_.push_back(t);
+            }
+        }
+        double sum = 0, dprime = 0, d1 = 0, d2 = 0, c1 = 0, c2 = 0;
+        for (Term const& t : terms_) {
+            double const w = std::exp(t.log_value - most), zd = (t.dprime - d.mean) / d.sd,
+                         zc = (t.criterion - c.mean) / c.sd;
+            sum += w;
+            dprime += w * t.dprime;
+            d1 += w * zd;
+            d2 += w * (zd * zd - 1);
+            c1 += w * zc;
+            c2 += w * (zc * zc - 1);
+        }
+        o.dprime = dprime / sum;
+        // Fisher's identity: the score is the mean, given the answers, of that of the complete data.
+        gradient[0] += d1 / sum / d.sd;
+        gradient[1] += d2 / sum * (1 - kLeastSd / d.sd);
+        if (two) {
+            gradient[2] += c1 / sum / c.sd;
+            gradient[3] += c2 / sum * (1 - kLeastSd / c.sd);
+        }
+        return most + std::log(sum) - std::log(r00) - (two ? std::log(r11) - 0.5 * std::log(2.0) : 0) +
+               0.5 * std::log(2.0);
+    }
+
+    struct Term {
+        double dprime, criterion, log_value;
+    };
+    DetectionTask task_;
+    std::vector<Observer> observers_;
+    std::vector<Term> terms_;
+};
+
+class Fit {
+public:
+    Fit(DetectionTask task, std::span<DetectionCounts const> counts) : marginal_(task, counts)
+    {
+        auto const& all = marginal_.observers();
+        if (all.empty()) return;
+        double d = 0, c = 0;
+        for (Observer const& o : all) {
+            d += o.mode.dprime / double(all.size());
+            c += o.mode.criterion / double(all.size());
+        }
+        best_ = {d, std::log(0.3), c, std::log(0.3)};
+        if (has_criterion(task)) free_ = {2};
+        if (all.size() > 1) { // one observer has no differences to others
+            free_.push_back(1);
+            if (has_criterion(task)) free_.push_back(3);
+        } else {
+            best_[1] = best_[3] = -20;
+        }
+        std::vector<int> every = free_;
+        every.push_back(0);
+        most_ = maximise(best_, every);
+    }
+
+    Population const& best() const { return best_; }
+    Marginal& marginal() { return marginal_; }
+
+    /// Twice the loss of log-likelihood if the mean d' is this. Not negative.
+    double loss(double mean)
+    {
+        last_[0] = mean;
+        return std::max(0.0, 2 * (most_ - maximise(last_, free_)));
+    }
+    void start_over() { last_ = best_; }
+
+private:
+    double maximise(Population& at, std::vector<int> const& free)
+    {
+        Population gradient{};
+        if (free.empty()) return marginal_(at, gradient);
+        std::vector<double> x, known;
+        for (int const i : free) x.push_back(at[std::size_t(i)]);
+        auto const evaluate = [&](std::span<double const> v) {
+            known.assign(v.begin(), v.end());
+            Population p = at;
+            double outside = 0; // keeps the search where the functions are accurate
+            for (std::size_t i = 0; i < free.size(); ++i) {
+                auto const k = std::size_t(free[i]);
+                double const limit = k % 2 == 1 ? 2.5 : kLargestMean + 1, low = k % 2 == 1 ? -12 : -limit;
+                p[k] = std::clamp(v[i], low, limit);
+                outside += (v[i] - p[k]) * (v[i] - p[k]);
+            }
+            double const value = -marginal_(p, gradient) + outside;
+            for (std::size_t i = 0; i < free.size(); ++i)
+                gradient[std::size_t(free[i])] -= 2 * (v[i] - p[std::size_t(free[i])]);
+            return value;
+        };
+        auto const slope = [&](std::span<double const> v, std::span<double> g) {
+            if (!std::equal(v.begin(), v.end(), known.begin(), known.end())) evaluate(v);
+            for (std::size_t i = 0; i < free.size(); ++i) g[i] = -gradient[std::size_t(free[i])];
+        };
+        Minimum const m = minimise(evaluate, slope, x, 60, 1e-6, 1 / double(marginal_.observers().size()));
+        for (std::size_t i = 0; i < free.size(); ++i) at[std::size_t(free[i])] = m.at[i];
+        return -m.value;
+    }
+
+    Marginal marginal_;
+    std::vector<int> free_;
+    Population best_{}, last_{};
+    double most_ = 0;
+};
+
+void check(std::span<DetectionCounts const> observers)
+{
+    double trials = 0;
+    for (DetectionCounts const& c : observers) {
+        bool const good = c.hits >= 0 && c.hits <= c.signals && c.false_alarms >= 0 &&
+                          c.false_alarms <= c.noises && std::isfinite(c.signals + c.noises);
+        if (!good)
+            refuse("more hits than signals or more false alarms than noise trials",
+                   "they are counts of these trials", "count them again");
+        trials += c.signals + c.noises;
+    }
+    if (!(trials > 0)) refuse("d' of observers without trials", "nothing was answered", "leave the condition out");
+}
+
+} // namespace
+
+GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> observers, double confidence)
+{
+    check(observers);
+    double signals = 0, noises = 0;
+    for (DetectionCounts const& c : observers) {
+        signals += c.signals;
+        noises += c.noises;
+    }
+    if (has_criterion(task) && !(signals > 0 && noises > 0))
+        refuse("d' without signal trials or without noise trials", "both rates are needed",
+               "run both kinds of trial");
+    Fit fit(task, observers);
+    GroupDPrime g;
+    Population const& best = fit.best();
+    g.mean = best[0];
+    g.deviation = deviation(best[1]);
+    g.criterion = best[2];
+    g.criterion_deviation = deviation(best[3]);
+    double information = 0;
+    for (Observer const& o : fit.marginal().observers()) {
+        g.observer.push_back(o.dprime);
+        information += o.information;
+    }
+    auto const n = double(g.observer.size());
+    information /= n;
+    double const between = g.deviation * g.deviation * information;
+    double const limit = profile_limit(confidence, n, between / (1 + between));
+    if (std::abs(g.mean) > kLargestMean) {
+        g.mean = std::copysign(kInfinity, g.mean);
+        g.note = "all answers are right (or all wrong): d' has no upper limit";
+    }
+    fit.start_over();
+    double const at_0 = fit.loss(0);
+    g.p = chi_square_tail(at_0 * profile_limit(confidence, 1, 0) / limit, 1);
+    auto const end = [&](double direction) {
+        fit.start_over();
+        return profile_end({best[0], limit, direction, direction * kLargestMean},
+                           [&](double mean) { return fit.loss(mean); });
+    };
+    g.interval = {end(-1), end(1)};
+    return g;
+}
+
+} // namespace study

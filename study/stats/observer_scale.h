@@ -1,0 +1,58 @@
+#pragma once
+// Scores from pairs with errors over observers, whose trials are not independent.
+//
+// Variances are those of the sandwich estimator by observers (Huber 1967; Liang & Zeger 1986, Biometrika 73:13)
+// with the correction of Kauermann & Carroll (2001, JASA 96:1387) for few observers, whose own choices pull the
+// fit towards themselves. With d degrees of freedom (Fay & Graubard 2001, Biometrics 57:1198; here with the
+// kurtosis of choices, which matters if nearly all agree) they are moderated by the model's own variance times its
+// dispersion, with d0 degrees (Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3:3): V = (d V_observers + d0 V_model) /
+// (d + d0). d0 is twice the number of free scores. Intervals have Student's distribution with d + d0 degrees
+// around scores with Jeffreys' prior, because those of maximum likelihood are too far apart on average.
+
+#include "study/stats/binomial.h"
+#include "study/stats/pair_scale.h"
+
+#include <span>
+
+namespace study {
+
+/// One possible answer to a pair: its probability, and the change of each score by one such answer, unit of F.
+struct PairOutcome {
+    double trials = 0, probability = 0;
+    std::vector<double> influence;
+};
+
+struct ObserverScale {
+    PairScale fit;     ///< maximum likelihood of all trials
+    PairScale reduced; ///< with Jeffreys' prior
+    int observers = 0;
+    double dispersion =
+        1; ///< variance over observers by that of independent trials, mean over scores; at least 1/2
+    std::vector<std::vector<double>>
+        influence;                ///< by observer: change of each score by his or her choices, unit of F
+    std::vector<Matrix> expected; ///< by observer: covariance of that for independent trials
+    std::vector<std::vector<PairOutcome>> outcomes; ///< by pair
+};
+
+/// Fits the pooled choices. @param observers  the pairs of each
+/// @throws std::invalid_argument as fit_pairs; fewer than two observers
+ObserverScale scale_observers(std::vector<std::vector<PairCount>> const& observers, int items,
+                              PairSettings const& settings = {});
+
+/// A weighted sum of scores, in the unit of F.
+struct Contrast {
+    double value = 0;              ///< by maximum likelihood
+    double reduced = 0;            ///< with Jeffreys' prior: centre of the interval
+    double standard_error = 0;     ///< over observers
+    double degrees_of_freedom = 1; ///< of Student's distribution
+    Interval interval;
+    double p = 1; ///< of "the sum is 0"
+};
+/// @param weights  one per item
+/// @throws std::invalid_argument another number of weights
+Contrast contrast(ObserverScale const& scale, std::span<double const> weights, double confidence = 0.95);
+/// One score, relative to the mean of all.
+Contrast score_of(ObserverScale const& scale, int item, double confidence = 0.95);
+Contrast difference_of(ObserverScale const& scale, int a, int b, double confidence = 0.95);
+
+} // namespace study

@@ -1,0 +1,56 @@
+#pragma once
+// Ends of an interval by profile likelihood: where the loss reaches a limit.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace study {
+
+struct ProfileSearch {
+    double best = 0;      ///< where the loss is 0
+    double limit = 3.84;  ///< of the loss
+    double direction = 1; ///< 1: the upper end, -1: the lower one
+    double farthest = 8;  ///< ends beyond it, in this direction, are infinite
+    double first_step = 0.1, tolerance = 2e-3;
+};
+
+/// @param loss twice the loss of log-likelihood at a value, which grows with the distance from `best`
+template <class Loss>
+double profile_end(ProfileSearch const& s, Loss const& loss)
+{
+    double inside = s.best, outside = inside, lost_inside = 0, lost = 0, step = s.first_step;
+    while (lost < s.limit) {
+        inside = outside;
+        lost_inside = lost;
+        outside += s.direction * step;
+        if (s.direction * outside > s.direction * s.farthest)
+            return s.direction * std::numeric_limits<double>::infinity();
+        lost = loss(outside);
+        // The loss grows about as the square of the distance.
+        double const distance = std::abs(outside - s.best);
+        step = lost > 0.05 ? std::clamp(distance * (std::sqrt(s.limit / lost) - 0.97), 0.2 * s.first_step,
+                                        10 * s.first_step)
+                           : 2 * step;
+    }
+    for (int i = 0; i < 20 && std::abs(outside - inside) > s.tolerance; ++i) {
+        // Between the two by square roots, and never near the ends.
+        double const a = std::sqrt(lost_inside), b = std::sqrt(lost);
+        double const share = std::clamp((std::sqrt(s.limit) - a) / (b - a), 0.05, 0.95);
+        double const middle = inside + share * (outside - inside), here = loss(middle);
+        if (std::abs(here - s.limit) < 2e-3) return middle;
+        (here < s.limit ? inside : outside) = middle;
+        (here < s.limit ? lost_inside : lost) = here;
+    }
+    return inside + 0.5 * (outside - inside);
+}
+
+/// The limit of the likelihood ratio of a mean over n observers. Chi-square's, if observers do not differ. If they
+/// are found to differ, their variance is estimated, whatever its share: n log(1 + t^2 / (n - 1)), which is
+/// Student's interval. Where they do not differ, half of all samples suggest that they do, and intervals would
+/// hold the mean in 97 instead of 95 %: by simulation, the limit is lowered by up to a fifth if many observers
+/// seem equal.
+/// @param share of the variance of observers' estimates that is due to their differences
+double profile_limit(double confidence, double n, double share);
+
+} // namespace study

@@ -1,0 +1,71 @@
+// As coverage_test.cpp, with enough experiments to tell 95 % from 90 %.
+
+#include "tests/study_analysis/coverage.h"
+
+#include <gtest/gtest.h>
+
+namespace study::test {
+namespace {
+
+AnalysisSettings without_hierarchical()
+{
+    AnalysisSettings settings;
+    settings.draws = 0;
+    return settings;
+}
+
+TEST(Coverage, OfDPrimeOfAllTasksIs92To98PerCent)
+{
+    for (double const mean : {0.0, 1.0})
+        for (int k = 0; k < 5; ++k) {
+            DetectionExperiment e;
+            e.task = DetectionTask(k);
+            e.mean = mean;
+            e.sd = mean > 0 ? 0.3 : 0;
+            Tally tally;
+            for (std::uint64_t i = 0; i < 200; ++i) {
+                Analysis const a = analyse_detection(e, 1000 + i, without_hierarchical());
+                Uncertain const& d = a.blocks.at(0).detections.at(0).observer_dprime;
+                tally.add(d.value, d.interval, mean);
+            }
+            RecordProperty(std::string(name_of(e.task)) + (mean > 0 ? "_1" : "_0"),
+                           std::to_string(tally.coverage()));
+            EXPECT_GE(tally.coverage(), 91) << name_of(e.task) << " " << mean;
+            EXPECT_LE(tally.coverage(), 99) << name_of(e.task) << " " << mean;
+            EXPECT_NEAR(tally.bias(), 0, 0.12) << name_of(e.task) << " " << mean;
+        }
+}
+
+TEST(Coverage, OfThresholdsOfEveryMethodIs90To99PerCent)
+{
+    for (char const* const method : {"constant", "staircase", "questplus"})
+        for (double const lapse : {0.02, 0.05}) {
+            ThresholdExperiment e;
+            e.method = method;
+            e.lapse = lapse;
+            Tally group, own;
+            for (std::uint64_t i = 0; i < 80; ++i) {
+                SimulatedThresholds const s = analyse_thresholds(e, 1000 + i, without_hierarchical());
+                BlockResult const& b = s.analysis.blocks.at(0);
+                auto const add = [&](Tally& tally, Uncertain const& level, double truth) {
+                    tally.add(std::log10(level.value),
+                              {std::log10(level.interval.low), std::log10(level.interval.high)}, truth);
+                };
+                for (ThresholdSummary const& t : b.thresholds)
+                    if (t.method == "likelihood" && std::abs(t.proportion - s.share) < 1e-9)
+                        add(group, t.level, kMeanThreshold);
+                for (std::size_t k = 0; k < b.runs.size(); ++k)
+                    for (ThresholdEstimate const& t : b.runs[k].estimates)
+                        if (t.method == "likelihood" && std::abs(t.proportion - s.share) < 1e-9)
+                            add(own, t.level, s.own[k]);
+            }
+            RecordProperty(std::string(method) + (lapse > 0.03 ? "_5" : "_2"), std::to_string(group.coverage()));
+            EXPECT_GE(group.coverage(), 88) << method << " " << lapse;
+            EXPECT_NEAR(group.bias(), 0, 0.025) << method << " " << lapse;
+            EXPECT_GE(own.coverage(), 91) << method << " " << lapse;
+            EXPECT_LE(own.coverage(), 98) << method << " " << lapse;
+        }
+}
+
+} // namespace
+} // namespace study::test

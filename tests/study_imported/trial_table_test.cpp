@@ -1,0 +1,197 @@
+// Tables of other programs: what they mean, and what is refused with its place.
+
+#include "study/analysis/analysis.h"
+#include "study/imported/trial_table.h"
+
+#include <gtest/gtest.h>
+
+namespace study::test {
+namespace {
+
+ImportedTable imported(std::string const& text, ColumnRoles const& roles)
+{
+    return import_trials(read_delimited(text, "t.csv"), roles);
+}
+ColumnRoles with(std::string const& columns, std::vector<std::string> factors = {})
+{
+    ColumnRoles r;
+    r.column = parse_roles(columns);
+    r.factors = std::move(factors);
+    return r;
+}
+void expect_refused(std::string const& text, ColumnRoles const& roles, std::string const& place,
+                    std::string const& problem)
+{
+    try {
+        imported(text, roles);
+        ADD_FAILURE() << "accepted: " << text;
+    } catch (ScriptError const& e) {
+        std::string const what = e.what();
+        EXPECT_EQ(what.find(place), 0u) << what;
+        EXPECT_NE(what.find(problem), std::string::npos) << what;
+    }
+}
+
+TEST(DelimitedText, ReadsQuotesOtherSeparatorsAndEmptyLines)
+{
+    DelimitedText const t = read_delimited("\xef\xbb\xbf"
+                                           "a;b;c\r\n1;\"x; \"\"y\"\"\nz\"; 3 \n\n4;;6\n",
+                                           "t.csv");
+    ASSERT_EQ(t.rows.size(), 2u);
+    EXPECT_EQ(t.rows[0][1].text, "x; \"y\"\nz");
+    EXPECT_EQ(t.rows[0][2].text, "3");
+    EXPECT_EQ(t.rows[1][0].place.line, 5);
+    EXPECT_EQ(t.rows[1][2].place.column, 4);
+    EXPECT_EQ(t.column("c"), 2);
+    EXPECT_EQ(t.column("d"), -1);
+}
+
+TEST(DelimitedText, OfSeveralFilesIsJoinedByNames)
+{
+    DelimitedText const t = joined({read_delimited("a,b\n1,2\n", "1.csv"), read_delimited("b,c\n3,x\n", "2.csv")});
+    ASSERT_EQ(t.rows.size(), 2u);
+    EXPECT_EQ(t.rows[0][2].text, "");
+    EXPECT_EQ(t.rows[1][0].text, "");
+    EXPECT_EQ(t.rows[1][1].text, "3");
+    EXPECT_EQ(t.files[std::size_t(t.rows[1][2].file)], "2.csv");
+    ColumnRoles const roles = with("item=b,value=c");
+    try {
+        import_trials(t, roles);
+        ADD_FAILURE();
+    } catch (ScriptError const& e) {
+        EXPECT_EQ(std::string(e.what()).find("2.csv:2:3: 'x'"), 0u) << e.what();
+    }
+}
+
+TEST(DelimitedText, OfOneRowPerValueBecomesWide)
+{
+    DelimitedText const t = to_wide(
+        read_delimited("who,trial,name,value\n1,0,level,0.5\n1,0,right,1\n1,1,right,0\n1,1,level,0.2\n", "l.csv"),
+        "name", "value");
+    ASSERT_EQ(t.rows.size(), 2u);
+    ASSERT_EQ(t.columns.size(), 4u);
+    EXPECT_EQ(t.rows[1][std::size_t(t.column("level"))].text, "0.2");
+    EXPECT_EQ(t.rows[1][std::size_t(t.column("right"))].place.line, 4);
+    EXPECT_THROW(to_wide(read_delimited("who,name,value\n1,a,1\n1,a,2\n", "l.csv"), "name", "value"), ScriptError);
+    EXPECT_THROW(to_wide(t, "name", "value"), ScriptError);
+}
+
+TEST(DelimitedText, RefusesWhatIsNoTable)
+{
+    auto const refused = [](std::string const& text, std::string const& place) {
+        try {
+            read_delimited(text, "t.csv");
+            ADD_FAILURE() << text;
+        } catch (ScriptError const& e) {
+            EXPECT_EQ(std::string(e.what()).find(place), 0u) << e.what();
+        }
+    };
+    refused("", "t.csv:1:1");
+    refused("only\n1\n", "t.csv:1:1");
+    refused("a,a\n1,2\n", "t.csv:1:3");
+    refused("a,b\n1\n", "t.csv:2:1");
+    refused("a,b\n1,\"2\n", "t.csv:2:3");
+}
+
+TEST(TrialTable, OfPsychoPyLeavesOutOtherRowsAndFindsGroups)
+{
+    // A wide table as PsychoPy writes it: rows of instructions and practice, a blank last column.
+    std::string text = "trials.thisN,contrast,key_resp.keys,key_resp.corr,key_resp.rt,block,participant,group,\n"
+                       ",,space,,1.2,,1,old,\n"
+                       "0,0.5,left,1,0.61,practice,1,old,\n";
+    for (int p = 1; p <= 4; ++p)
+        for (int i = 0; i < 30; ++i)
+            text += std::to_string(i) +
+                    (i % 3 == 0   ? ",0.1"
+                     : i % 3 == 1 ? ",0.2"
+                                  : ",0.4") +
+                    ",left," + (i % 3 == 2 || (i * p) % 4 != 1 ? "1" : "0") + ",0.5,main," + std::to_string(p) +
+                    (p < 3 ? ",old,\n" : ",young,\n");
+    ColumnRoles roles =
+        with("participant=participant,level=contrast,correct=key_resp.corr,reaction_s=key_resp.rt", {"group"});
+    roles.only = {{"block", "main"}};
+    roles.scale = Scale::log10;
+    ImportedTable const t = imported(text, roles);
+    EXPECT_EQ(t.sessions.size(), 4u);
+    ASSERT_EQ(t.notes.size(), 2u);
+    EXPECT_EQ(t.notes[0], "2 of 122 rows left out: 'block' is not main");
+    EXPECT_EQ(t.notes[1], "'group' differs between participants");
+    Analysis const a = analyze(t.script, t.sessions, {.replicates = 50, .permutations = 19});
+    EXPECT_EQ(a.observers.at(0).counted, 30);
+    EXPECT_EQ(a.observers[0].reaction_median_ms, 500);
+    ASSERT_EQ(a.blocks.at(0).detections.size(), 6u) << "three levels in two groups";
+    EXPECT_EQ(a.blocks[0].detections[0].trials, 20);
+    bool has_group = false;
+    for (EffectResult const& e : a.effects) has_group = has_group || e.effect == "group";
+    EXPECT_TRUE(has_group);
+}
+
+TEST(TrialTable, OfChoicesTakesNamesSidesAndTies)
+{
+    ImportedTable const t = imported("who,a,b,choice\n1,x,y,x\n1,x,y,right\n1,y,x,neither\n2,y,x,2\n2,y,z,z\n",
+                                     with("participant=who,first=a,second=b,chosen=choice"));
+    ASSERT_EQ(t.sessions.size(), 2u);
+    EXPECT_TRUE(t.script.blocks.at(0).may_tie);
+    auto const response = [&](int s, int i) {
+        return std::get<TrialDone>(t.sessions[std::size_t(s)].record.entries[std::size_t(i) + 1]).response;
+    };
+    EXPECT_EQ(response(0, 0), "first");
+    EXPECT_EQ(response(0, 1), "second");
+    EXPECT_EQ(response(0, 2), "neither");
+    EXPECT_EQ(response(1, 0), "second");
+    EXPECT_EQ(response(1, 1), "second");
+}
+
+TEST(TrialTable, OfYesAndNoKnowsSignalsAndHasDprime)
+{
+    std::string text = "s,signal,said\n";
+    for (int i = 0; i < 50; ++i) text += std::string("1,1,") + (i < 40 ? "yes\n" : "no\n");
+    for (int i = 0; i < 50; ++i) text += std::string("1,0,") + (i < 10 ? "yes\n" : "no\n");
+    ImportedTable const t = imported(text, with("participant=s,signal=signal,yes=said"));
+    Analysis const a = analyze(t.script, t.sessions, {.replicates = 50});
+    ASSERT_EQ(a.blocks.at(0).detections.size(), 1u);
+    EXPECT_NEAR(a.blocks[0].detections[0].dprime, 1.64, 0.05) << "2 z(0.8), log-linear";
+}
+
+TEST(TrialTable, RefusesCellsWithTheirPlace)
+{
+    auto const pairs = with("participant=p,first=a,second=b,chosen=c");
+    expect_refused("p,a,b,c\n1,x,y,z\n", pairs, "t.csv:2:7", "neither 'x' nor 'y'");
+    expect_refused("p,a,b,c\n1,x,x,x\n", pairs, "t.csv:2:5", "the same item");
+    expect_refused("p,a,b\n1,x,y\n", pairs, "t.csv:1:1", "no column 'c'");
+    auto const answers = with("participant=p,level=l,correct=c");
+    expect_refused("p,l,c\n1,2,1\n1,much,0\n", answers, "t.csv:3:3", "'level' is a number");
+    expect_refused("p,l,c\n1,2,3\n", answers, "t.csv:2:5", "1 or 0");
+    expect_refused("p,l,c\n,,\n", answers, "t.csv: ", "no trials are left");
+    auto logarithmic = answers;
+    logarithmic.scale = Scale::log2;
+    expect_refused("p,l,c\n1,0,1\n", logarithmic, "t.csv:2:3", "no logarithm");
+    expect_refused("l,k,n\n1,5,4\n", with("level=l,correct_count=k,trials=n"), "t.csv:2:3",
+                   "more than the 4 trials");
+    expect_refused("l,k,n\n1,1.5,4\n", with("level=l,correct_count=k,trials=n"), "t.csv:2:3", "whole number");
+    expect_refused("p,v\n1,2\n", with("participant=p,value=v"), "t.csv: ", "what was judged");
+    expect_refused("p,v\n1,2\n", with("participant=p"), "t.csv: ", "unknown what these trials are");
+    expect_refused(
+        "p,c\n1,1\n",
+        [] {
+            auto r = with("participant=p,correct=c");
+            r.task = Task::abx;
+            return r;
+        }(),
+        "t.csv: ", "'signal' is missing");
+    ColumnRoles matrix;
+    matrix.is_matrix = true;
+    expect_refused(",a,b\na,0,1\nc,2,0\n", matrix, "t.csv:3:1", "no column has this name");
+    expect_refused(",a,b\na,0,x\nb,2,0\n", matrix, "t.csv:2:5", "number of choices");
+}
+
+TEST(TrialTable, RefusesRolesThatDoNotExist)
+{
+    EXPECT_THROW(parse_roles("who=x"), ScriptError);
+    EXPECT_THROW(parse_roles("level"), ScriptError);
+    EXPECT_THROW(parse_roles("level=a,level=b"), ScriptError);
+    EXPECT_EQ(parse_roles("level=a, value=b").at("value"), "b");
+}
+
+} // namespace
+} // namespace study::test

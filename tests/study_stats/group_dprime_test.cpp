@@ -1,0 +1,131 @@
+// Mean d' of populations: models against their equations, estimates against simulated observers.
+
+#include "study/stats/group_dprime.h"
+
+#include "study/stats/dprime.h"
+#include "study/stats/random.h"
+#include "study/stats/special.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace study::test {
+namespace {
+
+constexpr DetectionTask kTasks[] = {DetectionTask::yes_no, DetectionTask::two_interval,
+                                    DetectionTask::same_different, DetectionTask::abx, DetectionTask::oddity};
+
+TEST(DetectionModel, IsTheInverseOfDPrime)
+{
+    for (double d : {0.3, 1.0, 2.5}) {
+        auto const rates = [&](DetectionTask task, double c) { return detection_rates(task, d, c); };
+        for (double c : {0.25, 0.8}) {
+            auto const yes = rates(DetectionTask::yes_no, c);
+            EXPECT_NEAR(normal_quantile(yes.hit.yes) - normal_quantile(yes.false_alarm.yes), d, 1e-12);
+            auto const same = rates(DetectionTask::same_different, c);
+            EXPECT_NEAR(same_different_dprime(same.hit.yes, same.false_alarm.yes, Strategy::differencing), d,
+                        1e-9);
+            auto const abx = rates(DetectionTask::abx, c);
+            EXPECT_NEAR(abx_dprime(abx.hit.yes, abx.false_alarm.yes, Strategy::differencing), d, 1e-9);
+        }
+        EXPECT_NEAR(rates(DetectionTask::two_interval, 0).hit.yes, mafc_proportion(d, 2), 1e-12);
+        EXPECT_NEAR(oddity_dprime(rates(DetectionTask::oddity, 0).hit.yes), d, 1e-9);
+    }
+}
+
+TEST(DetectionModel, HasTheDerivativesOfItsLikelihoodOnBothSidesOfZero)
+{
+    DetectionCounts const counts{13, 20, 8, 22};
+    for (DetectionTask const task : kTasks)
+        for (double d : {-2.1, -0.4, 0.2, 1.7})
+            for (double c : {-0.5, 0.6}) {
+                auto const at = [&](double x, double y) { return detection_likelihood(task, counts, x, y).value; };
+                auto const l = detection_likelihood(task, counts, d, c);
+                double const h = 1e-6;
+                EXPECT_NEAR(l.by_dprime, (at(d + h, c) - at(d - h, c)) / (2 * h), 1e-5) << int(task) << " " << d;
+                EXPECT_NEAR(l.by_criterion, (at(d, c + h) - at(d, c - h)) / (2 * h), 1e-5)
+                    << int(task) << " " << d;
+                DetectionRates const r = detection_rates(task, d, c);
+                EXPECT_NEAR(r.hit.yes + r.hit.no, 1, 1e-12);
+            }
+}
+
+TEST(DetectionModel, PutsAnswersBelowChanceBelowZero)
+{
+    EXPECT_LT(detection_point(DetectionTask::oddity, {8, 30, 0, 0}).dprime, -0.3);
+    EXPECT_GT(detection_point(DetectionTask::oddity, {12, 30, 0, 0}).dprime, 0.3);
+    for (DetectionTask const task : {DetectionTask::abx, DetectionTask::same_different}) {
+        double const above = detection_point(task, {10, 15, 5, 15}).dprime;
+        double const below = detection_point(task, {5, 15, 10, 15}).dprime;
+        EXPECT_GT(above, 0.5);
+        EXPECT_LT(below, -0.5);
+    }
+}
+
+std::vector<DetectionCounts> simulated(DetectionTask task, double mean, double sd, int observers, int trials,
+                                       std::uint64_t seed)
+{
+    Random random(seed);
+    std::vector<DetectionCounts> out;
+    for (int o = 0; o < observers; ++o) {
+        double const d = mean + sd * random.normal(), c = 0.2 + 0.2 * random.normal();
+        DetectionRates const r = detection_rates(task, d, c);
+        DetectionCounts n;
+        n.signals = has_criterion(task) ? trials / 2 : trials;
+        n.noises = trials - n.signals;
+        for (int i = 0; i < n.signals; ++i) n.hits += random.uniform() < r.hit.yes;
+        for (int i = 0; i < n.noises; ++i) n.false_alarms += random.uniform() < r.false_alarm.yes;
+        out.push_back(n);
+    }
+    return out;
+}
+
+TEST(GroupDPrime, FindsMeanAndSpreadOfManyObservers)
+{
+    for (DetectionTask const task : kTasks) {
+        GroupDPrime const g = group_dprime(task, simulated(task, 1.5, 0.5, 120, 80, 5));
+        EXPECT_NEAR(g.mean, 1.5, 0.2) << int(task);
+        EXPECT_NEAR(g.deviation, 0.5, 0.2) << int(task);
+        EXPECT_LT(g.interval.low, 1.55) << int(task); // the sample has a mean of its own
+        EXPECT_GT(g.interval.high, 1.45) << int(task);
+        EXPECT_LT(g.p, 1e-6);
+        EXPECT_EQ(g.observer.size(), 120u);
+    }
+}
+
+TEST(GroupDPrime, OfObserversBelowChanceIsNotAboveZero)
+{
+    // 20 observers with 31.5 % right of three: every one cut off at 0 would give 0.355 [0.127, 0.584].
+    std::vector<DetectionCounts> people;
+    for (int i = 0; i < 20; ++i) people.push_back({double(5 + (7 * i) % 10), 30, 0, 0});
+    GroupDPrime const g = group_dprime(DetectionTask::oddity, people);
+    EXPECT_LT(g.mean, 0);
+    EXPECT_LT(g.interval.low, 0);
+    EXPECT_GT(g.interval.high, 0);
+}
+
+TEST(GroupDPrime, OfOneObserverIsThatOfTheRates)
+{
+    std::vector<DetectionCounts> const one{{20, 25, 10, 25}};
+    GroupDPrime const g = group_dprime(DetectionTask::yes_no, one);
+    EXPECT_NEAR(g.mean, 1.094968, 1e-3);
+    EXPECT_NEAR(g.criterion, -0.294137, 1e-3);
+    double const error = yes_no(20, 25, 10, 25).standard_error;
+    EXPECT_NEAR((g.interval.high - g.interval.low) / (2 * 1.96 * error), 1, 0.05);
+}
+
+TEST(GroupDPrime, OfPerfectObserversHasNoUpperLimit)
+{
+    std::vector<DetectionCounts> const people(6, {10, 10, 0, 0});
+    GroupDPrime const g = group_dprime(DetectionTask::oddity, people);
+    EXPECT_TRUE(std::isinf(g.mean));
+    EXPECT_GT(g.interval.low, 2);
+    EXPECT_TRUE(std::isinf(g.interval.high));
+    EXPECT_NE(g.note, "");
+    EXPECT_THROW(group_dprime(DetectionTask::oddity, {}), std::invalid_argument);
+    EXPECT_THROW(group_dprime(DetectionTask::yes_no, std::vector<DetectionCounts>{{3, 4, 0, 0}}),
+                 std::invalid_argument);
+}
+
+} // namespace
+} // namespace study::test

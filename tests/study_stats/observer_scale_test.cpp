@@ -1,0 +1,103 @@
+// Scales with errors over observers.
+
+#include "study/stats/bootstrap.h"
+#include "study/stats/observer_scale.h"
+#include "study/stats/random.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace study::test {
+namespace {
+
+std::vector<std::vector<PairCount>> simulated(int people, int repeats, std::vector<double> const& truth,
+                                              double between, double tie, std::uint64_t seed)
+{
+    Random random(seed);
+    std::vector<std::vector<PairCount>> data;
+    int const items = int(truth.size());
+    for (int o = 0; o < people; ++o) {
+        std::vector<double> own;
+        for (double const t : truth) own.push_back(t + between * random.normal());
+        data.emplace_back();
+        for (int i = 0; i < items; ++i)
+            for (int j = i + 1; j < items; ++j) {
+                PairCount p{i, j};
+                for (int r = 0; r < repeats; ++r) {
+                    double const d = own[std::size_t(i)] - own[std::size_t(j)] + random.normal();
+                    (std::abs(d) < tie ? p.ties : d > 0 ? p.first_wins : p.second_wins) += 1;
+                }
+                data.back().push_back(p);
+            }
+    }
+    return data;
+}
+
+TEST(ObserverScale, OfIndependentTrialsHasTheErrorsOfTheFit)
+{
+    auto const data = simulated(400, 2, {-0.6, 0, 0.6}, 0, 0, 5);
+    ObserverScale const s = scale_observers(data, 3);
+    EXPECT_NEAR(s.dispersion, 1, 0.1);
+    for (int i = 0; i < 3; ++i) {
+        Contrast const c = score_of(s, i);
+        EXPECT_NEAR(c.standard_error / s.fit.standard_error[std::size_t(i)], 1, 0.1);
+        EXPECT_DOUBLE_EQ(c.value, s.fit.score[std::size_t(i)]);
+        EXPECT_LT(c.interval.low, c.value);
+        EXPECT_GT(c.interval.high, c.value);
+    }
+    Contrast const d = difference_of(s, 2, 0);
+    EXPECT_NEAR(d.value, s.fit.score[2] - s.fit.score[0], 1e-12);
+    EXPECT_LT(d.p, 1e-10);
+}
+
+TEST(ObserverScale, OfObserversWhoDifferHasLargerErrors)
+{
+    auto const data = simulated(60, 8, {-0.3, 0.3}, 0.8, 0, 6);
+    ObserverScale const s = scale_observers(data, 2);
+    EXPECT_GT(s.dispersion, 3);
+    Bootstrap const b = bootstrap_pairs(data, 2, {}, {.replicates = 800});
+    double const jod = jod_per_unit(PairModel::thurstone_v);
+    EXPECT_NEAR(score_of(s, 0).standard_error * jod / b.standard_error[0], 1, 0.12);
+}
+
+TEST(ObserverScale, WithAThresholdOfTiesDoesNotShrink)
+{
+    std::vector<double> const truth{-0.8, 0, 0.8};
+    auto const data = simulated(500, 3, truth, 0, 0.5, 7);
+    ObserverScale const s = scale_observers(data, 3, {.ties = TieModel::threshold});
+    ASSERT_TRUE(s.fit.tie_threshold);
+    EXPECT_NEAR(s.fit.tie_threshold->value, 0.5, 0.03);
+    EXPECT_NEAR(s.fit.score[2] - s.fit.score[0], 1.6, 0.06);
+    PairScale const halves = fit_pairs(pool(data), 3);
+    EXPECT_LT(halves.score[2] - halves.score[0], 1.5) << "half wins shrink";
+}
+
+TEST(ObserverScale, OfUnanimousChoicesIsFiniteAndCautious)
+{
+    std::vector<std::vector<PairCount>> const data(6, {{0, 1, 2, 0}, {1, 2, 1, 1}, {0, 2, 2, 0}});
+    ObserverScale const s = scale_observers(data, 3);
+    Contrast const c = difference_of(s, 0, 2);
+    EXPECT_TRUE(std::isfinite(c.interval.low));
+    EXPECT_GT(c.interval.high - c.interval.low, 1);
+    EXPECT_GT(c.interval.low, 0);
+}
+
+TEST(ObserverScale, OfAScoreThatOneObserverDeterminesHasFewDegreesOfFreedom)
+{
+    std::vector<std::vector<PairCount>> data(30, {{0, 1, 3, 2}, {1, 2, 2, 3}});
+    data[0].push_back({2, 3, 12, 13});
+    ObserverScale const s = scale_observers(data, 4);
+    EXPECT_LT(difference_of(s, 2, 3).degrees_of_freedom, 8);
+    EXPECT_GT(difference_of(s, 0, 1).degrees_of_freedom, 25);
+}
+
+TEST(ObserverScale, RefusesOneObserverAndWrongWeights)
+{
+    EXPECT_THROW(scale_observers({{{0, 1, 1, 1}}}, 2), std::invalid_argument);
+    ObserverScale const s = scale_observers({{{0, 1, 1, 1}}, {{0, 1, 1, 2}}}, 2);
+    EXPECT_THROW(contrast(s, std::vector<double>{1}), std::invalid_argument);
+    EXPECT_EQ(scale_observers({{}, {}}, 1).fit.score.size(), 1u);
+}
+
+} // namespace
+} // namespace study::test

@@ -1,0 +1,28 @@
+#pragma once
+// Everything that can be wrong with an experiment before a participant comes: the script, its plans, its settings,
+// its stimuli. All is told at once.
+
+#include "viewer/experiment/stimuli/stimulus_check.h"
+#include "viewer/study/study_script.h"
+
+namespace viewer {
+
+struct ScriptCheckOptions {
+    StimulusCheckOptions stimuli;
+    bool any_settings = false; ///< settings are those of another presenter: they are not looked up
+};
+struct CheckedScript {
+    study::Plan longest; ///< the plan that is expected to take longest
+    int plans = 0;       ///< made: of the first 2,000 participants
+    std::size_t ar_stimuli = 0;
+    StimulusCheckResult stimuli;
+};
+
+/// Adds blocks whose rules of gaze cannot be met. @param is_measured  gaze is   @param model  null = none
+void find_wrong_gaze(study::Script const& script, bool is_measured, study::DisplayModel const* model,
+                     study::Mistakes& m);
+
+/// Adds what is wrong to read.mistakes. Throws gi::Interrupted.
+CheckedScript check_script(ScriptToCheck& read, SceneAccess const& scenes, ScriptCheckOptions const& options);
+
+} // namespace viewer

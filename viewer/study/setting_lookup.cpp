@@ -1,0 +1,309 @@
+#include "viewer/study/setting_lookup.h"
+
+#include "gi/core/edit_distance.h"
+#include "gi/core/error.h"
+#include "gi/core/text.h"
+#include "gi/scene/load/load.h"
+#include "study/script/condition.h"
+#include "study/script/written_settings.h"
+#include "viewer/engine/scene_edits.h"
+#include "viewer/study/physical_setting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+
+namespace viewer {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Settings of stimuli that the viewer does not have.
+struct OwnSetting {
+    std::string_view key, kind, range, usual, meaning;
+    double low = 0, high = -1; ///< of a number; empty: it is none
+};
+constexpr OwnSetting kOwn[]{
+    {"scene", "word", "a scene file or a generated scene", "", "what is shown"},
+    {"camera", "word", "a camera of the scene, path:orbit", "", "where it is seen from, and how the camera moves"},
+    {"camera.raise", "number", "-1000 to 1000", "0", "height above the camera's own place, m", -kHighestRaise_m,
+     kHighestRaise_m},
+    {"camera.fov", "number", "1 to 170", "", "vertical field of view, degrees", kNarrowest_deg, kWidest_deg},
+    {"visibility", "word", "exact, slhb, imperfect, ao, directional_ao, none", "",
+     "method that approximates the visibility of indirect light"},
+    {"size", "length", "0.001 to 170 deg, or cm, px; one or width x height", "",
+     "of the picture; a number alone is in degrees", 1e-3, 170},
+    {"place", "2 lengths", "-80 to 80 deg, or cm, px", "0 0", "of the picture's centre: right, up"},
+    {"luminance", "number", "above 0", "", "with which a rendered 1 is shown, cd/m2", 0, kBrightest_cd_m2},
+    {"mean_luminance", "number", "above 0", "", "mean of the first picture, cd/m2", 0, kBrightest_cd_m2},
+    {"peak_luminance", "number", "above 0", "", "of the first picture, cd/m2", 0, kBrightest_cd_m2},
+    {"view", "word", "window, openxr", "window", "display that shows the stimulus"},
+    {"ar", "word", "a session file", "", "AR session instead of a scene; ar.KEY are its settings"},
+};
+constexpr bool takes_numbers(OwnSetting const& s) { return s.high >= s.low; }
+/// Settings of viewers that make no sense for stimuli: those of the device, and those of people at a panel.
+constexpr std::string_view kNotOfStimuli[]{"device", "panel", "font_scale", "refine"};
+
+std::string without_prefix(std::string const& key) { return key.starts_with("gi.") ? key.substr(3) : key; }
+
+OwnSetting const* find_own(std::string const& key)
+{
+    auto const found =
+        std::find_if(std::begin(kOwn), std::end(kOwn), [&](OwnSetting const& s) { return s.key == key; });
+    return found == std::end(kOwn) ? nullptr : found;
+}
+
+SettingKey const* find_of_viewer(std::string const& key)
+{
+    for (SettingKey const& k : setting_keys())
+        if (k.key == current_key(key)) return &k;
+    return nullptr;
+}
+
+std::vector<std::string> known_keys()
+{
+    std::vector<std::string> known;
+    for (StudySetting const& s : study_settings()) known.push_back(s.key);
+    for (char const* const kind : {"light", "material", "object", "environment"}) known.emplace_back(kind);
+    return known;
+}
+
+void check_known(std::string const& key)
+{
+    if (find_own(key) != nullptr || find_of_viewer(key) != nullptr || is_ar_key(key)) return;
+    if (is_scene_edit(key)) {
+        find_scene_edit(key);
+        return;
+    }
+    std::string const near = gi::suggest(key, known_keys());
+    throw gi::InputError("there is no setting '" + key + "'", "the renderer does not know it",
+                         near.starts_with("did") ? near : "lightwell info --settings has the list");
+}
+
+void check_number(std::string const& key, double value, double low, double high)
+{
+    if (!(value >= low && value <= high))
+        throw gi::InputError(fmt::format("'{}' = {:g}", key, value),
+                             fmt::format("it takes numbers from {:g} to {:g}", low, high),
+                             "set one in this range");
+}
+
+void check_scene(std::string const& scene, std::filesystem::path const& folder)
+{
+    std::error_code none;
+    auto const known = gi::built_in_scenes();
+    if (std::filesystem::exists(scene_file(folder, scene), none)) return;
+    if (std::find(known.begin(), known.end(), scene) != known.end()) return;
+    std::string const near = gi::suggest(scene, known);
+    throw gi::InputError("there is no scene '" + scene + "'",
+                         "no file of that name is beside the script or in the current folder, nor is it generated",
+                         near.starts_with("did") ? near
+                                                 : "name a file, or one of " + near.substr(near.find(':') + 2));
+}
+
+void check_own(std::string const& key, std::string const& value, std::filesystem::path const& folder)
+{
+    OwnSetting const& own = *find_own(key);
+    if (key == "scene") check_scene(value, folder);
+    if (key == "camera" && value.starts_with("path:")) path_of(value.substr(5));
+    if (key == "visibility") visibility_method(value);
+    if (key == "view" && value != "window" && value != "openxr")
+        throw gi::InputError("view: " + value, "there is no such display", "choose window or openxr");
+    if (is_physical_setting(key)) {
+        PhysicalStimulus stimulus;
+        return set_physical(stimulus, key, value);
+    }
+    if (!takes_numbers(own)) return;
+    auto const number = gi::parse_finite(value);
+    if (!number) throw gi::InputError(key + ": " + value, "a number is needed here", "write 1 or 0.5");
+    check_number(key, *number, own.low, own.high);
+}
+
+void check_of_viewer(std::string const& key, Json const& value)
+{
+    if (current_key(key) == "device")
+        throw gi::InputError("device: " + value.dump(),
+                             "stimuli are rendered on the CPU, so that they are equal at all sites",
+                             "leave it out");
+    Settings settings;
+    set(settings, {key, value});
+}
+
+/// Words may be numbers too: "16384" or "30%".
+bool takes_numbers(SettingKey const& k)
+{
+    if (k.type == gi::OptionType::yes_or_no) return false;
+    return k.type != gi::OptionType::word || k.takes_other_words;
+}
+
+/// What a setting of the viewer allows, for people.
+StudySetting of_viewer(SettingKey const& k)
+{
+    StudySetting s;
+    s.key = k.key;
+    s.kind = k.type == gi::OptionType::word           ? "word"
+             : k.type == gi::OptionType::number       ? "number"
+             : k.type == gi::OptionType::whole_number ? "whole number"
+                                                      : "yes or no";
+    bool const is_number = k.type == gi::OptionType::number || k.type == gi::OptionType::whole_number;
+    if (is_number) s.range = fmt::format("{:g} to {:g}", k.low, k.high);
+    if (k.type == gi::OptionType::yes_or_no) s.range = "true, false";
+    for (std::string const& word : k.words)
+        s.range += (s.range.empty() ? "" : ", ") + (word.empty() ? std::string("\"\"") : word);
+    s.usual = k.get(Settings{});
+    s.meaning = k.meaning;
+    s.can_vary = takes_numbers(k);
+    return s;
+}
+
+StudySetting of_edit(SceneEditKey const& k)
+{
+    StudySetting s;
+    s.key = pattern_of(k);
+    s.kind = k.count == 1 ? "number" : fmt::format("{} numbers{}", k.count, k.or_one ? " or one" : "");
+    s.range = fmt::format("{:g} to {:g}", k.low, k.high);
+    s.meaning = k.meaning;
+    s.can_vary = k.count == 1 || k.or_one;
+    return s;
+}
+
+} // namespace
+
+std::vector<StudySetting> study_settings()
+{
+    std::vector<StudySetting> all;
+    for (OwnSetting const& s : kOwn)
+        all.push_back({std::string(s.key), std::string(s.kind), std::string(s.range), std::string(s.usual),
+                       std::string(s.meaning), takes_numbers(s)});
+    for (SceneEditKey const& k : scene_edit_keys()) all.push_back(of_edit(k));
+    for (SettingKey const& k : setting_keys())
+        if (std::find(std::begin(kNotOfStimuli), std::end(kNotOfStimuli), k.key) == std::end(kNotOfStimuli))
+            all.push_back(of_viewer(k));
+    return all;
+}
+
+std::string visibility_method(std::string const& word)
+{
+    static std::map<std::string, std::string> const kMethods{{"exact", "vpl_exact"},         {"slhb", "vpl_slhb"},
+                                                             {"imperfect", "vpl_imperfect"}, {"ao", "vpl_ao"},
+                                                             {"directional_ao", "vpl_dao"},  {"none", "vpl_none"}};
+    auto const found = kMethods.find(word);
+    if (found != kMethods.end()) return found->second;
+    std::vector<std::string> known;
+    for (auto const& [name, method] : kMethods) known.push_back(name);
+    throw gi::InputError("visibility: " + word, "there is no such approximation", gi::suggest(word, known));
+}
+
+StimulusPath path_of(std::string const& name)
+{
+    if (name == "orbit") return StimulusPath::orbit;
+    throw gi::InputError("camera: path:" + name, "there is no such path", "write path:orbit");
+}
+
+Json setting_value(std::string const& key, std::string const& text)
+{
+    Json value = Json::parse(text, nullptr, false);
+    if (value.is_discarded()) value = text;
+    SettingKey const* const k = find_of_viewer(key);
+    bool const is_whole = k != nullptr && k->type == gi::OptionType::whole_number;
+    return is_whole && value.is_number_float() ? Json(std::llround(value.get<double>())) : value;
+}
+
+std::string scene_file(std::filesystem::path const& folder, std::string const& scene)
+{
+    std::error_code none;
+    std::filesystem::path const beside = folder / scene;
+    return std::filesystem::exists(beside, none) ? beside.string() : scene;
+}
+
+bool is_ar_key(std::string const& key) { return key == "ar" || key.starts_with("ar."); }
+
+void look_up_setting(std::string const& written, std::string const& value, std::filesystem::path const& folder)
+{
+    std::string const key = without_prefix(written);
+    check_known(key);
+    if (is_ar_key(key)) return;
+    if (find_own(key) != nullptr) return check_own(key, value, folder);
+    Json const json = setting_value(key, value);
+    if (is_scene_edit(key)) return check_scene_edit({key, json});
+    check_of_viewer(key, json);
+}
+
+std::string look_up_varied(std::string const& written)
+{
+    std::string const key = without_prefix(written);
+    check_known(key);
+    std::string takes;
+    if (OwnSetting const* const own = find_own(key))
+        takes = takes_numbers(*own) ? "" : own->kind == "word" ? "a word" : std::string(own->kind);
+    else if (is_scene_edit(key)) {
+        SceneEditKey const& edit = find_scene_edit(key);
+        if (edit.count > 1 && !edit.or_one) takes = fmt::format("{} numbers", edit.count);
+    } else if (SettingKey const* const k = find_of_viewer(key); k != nullptr && !takes_numbers(*k))
+        takes = k->type == gi::OptionType::word ? "a word" : "yes or no";
+    if (takes.empty()) return key;
+    throw gi::InputError("'" + key + "' cannot be varied by a procedure", "it takes " + takes + ", no number",
+                         "compare levels of a factor, or vary a number: lightwell info --settings has them");
+}
+
+void look_up_varied(std::string const& written, double low, double high)
+{
+    std::string const key = look_up_varied(written);
+    if (is_ar_key(key)) return;
+    for (double const end : {low, high})
+        if (find_own(key) != nullptr)
+            check_own(key, study::level_text(end), {});
+        else if (is_scene_edit(key))
+            check_scene_edit({key, Json(end)});
+        else
+            check_of_viewer(key, setting_value(key, study::level_text(end)));
+}
+
+std::set<std::pair<std::string, std::string>> find_wrong_settings(study::Script const& script,
+                                                                  std::string const& text,
+                                                                  std::filesystem::path const& folder,
+                                                                  study::Mistakes& m)
+{
+    std::set<std::pair<std::string, std::string>> wrong;
+    for (study::WrittenSetting const& s : study::written_settings(script, text)) {
+        study::Place where = s.value_place;
+        try {
+            where = s.key_place;
+            check_known(without_prefix(s.key));
+            where = s.value_place;
+            if (s.varied)
+                look_up_varied(s.key, s.varied->first, s.varied->second);
+            else if (!s.block.empty())
+                look_up_varied(s.key);
+            else
+                look_up_setting(s.key, s.value, folder);
+        } catch (gi::InputError const& e) {
+            wrong.emplace(s.key, s.value);
+            m.add(study::ScriptError(script.file, where, e.problem(), e.why(), e.suggestion()));
+        }
+    }
+    return wrong;
+}
+
+LoadedScript load_looked_up(std::string const& file, bool any_settings)
+{
+    ScriptToCheck read = load_script_to_check(file);
+    if (read.is_whole && !any_settings)
+        find_wrong_settings(read.loaded.script, read.loaded.text, read.loaded.folder, read.mistakes);
+    throw_first(read.mistakes);
+    return std::move(read.loaded);
+}
+
+void throw_first(study::Mistakes const& mistakes)
+{
+    if (mistakes.empty()) return;
+    auto const all = mistakes.in_order();
+    study::ScriptError const& first = all.front();
+    if (all.size() == 1) throw first;
+    throw gi::InputError(
+        first.where(), first.problem(), first.why(),
+        fmt::format("{} (and {} more: lightwell study check tells all)", first.suggestion(), all.size() - 1));
+}
+
+} // namespace viewer

@@ -1,0 +1,59 @@
+#pragma once
+// The settings of stimuli that scripts of experiments may have (docs/study.md): those of the viewer
+// (viewer/engine/settings.h), with or without the prefix "gi.", edits of the scene (viewer/engine/scene_edits.h),
+// and the scene, the camera, and the display of a stimulus. Looks them up without loading or rendering anything.
+
+#include "viewer/engine/settings.h"
+#include "viewer/study/study_script.h"
+
+#include <set>
+
+namespace viewer {
+
+/// Motion of the camera while a stimulus is shown.
+enum class StimulusPath {
+    none,
+    orbit ///< once around a small horizontal circle with fixed view direction: gives parallax at one place
+};
+inline constexpr double kHighestRaise_m = 1000, kNarrowest_deg = 1, kWidest_deg = 170;
+
+/// A setting of stimuli, for people.
+struct StudySetting {
+    std::string key, kind;    ///< kind: "number", "whole number", "word", "yes or no", "3 numbers or one"
+    std::string range, usual; ///< allowed values; the default, empty = that of the scene
+    std::string meaning;      ///< with the unit
+    bool can_vary = false;    ///< a procedure can choose its level: it takes a number
+};
+/// All settings, those of stimuli that viewers do not have first.
+std::vector<StudySetting> study_settings();
+
+/// The method that `gi.visibility: word` stands for. Throws InputError.
+std::string visibility_method(std::string const& word);
+/// "orbit" of "path:orbit". Throws InputError.
+StimulusPath path_of(std::string const& name);
+/// The value as JSON if it is JSON, else the word; a fractional level of a whole-number setting is rounded.
+nlohmann::json setting_value(std::string const& key, std::string const& text);
+/// The file beside the script, or else the name as it is. @param folder  of the script
+std::string scene_file(std::filesystem::path const& folder, std::string const& scene);
+bool is_ar_key(std::string const& key); ///< `ar` or `ar.KEY`: the settings of an AR session
+
+/// Throws InputError unless there is such a setting (with the nearest one, if there is) and it takes the value.
+/// Settings of AR sessions are not looked up. @param folder  of the script, for scenes
+void look_up_setting(std::string const& key, std::string const& value, std::filesystem::path const& folder);
+/// Throws InputError unless a procedure can vary the setting: it takes numbers. @returns key without prefix
+std::string look_up_varied(std::string const& key);
+/// As look_up_varied(), and it takes all numbers from `low` to `high`.
+void look_up_varied(std::string const& key, double low, double high);
+
+/// Looks all settings of a script up and adds what is wrong, each with its place.
+/// @returns keys and values that are wrong, which stimuli cannot have; of varied settings with an empty value
+std::set<std::pair<std::string, std::string>> find_wrong_settings(study::Script const& script,
+                                                                  std::string const& text,
+                                                                  std::filesystem::path const& folder,
+                                                                  study::Mistakes& m);
+/// Loads a script and, unless it has settings of another presenter, looks them up. Throws as throw_first().
+LoadedScript load_looked_up(std::string const& file, bool any_settings);
+/// Throws the first mistake and says how many more there are, if there are any.
+void throw_first(study::Mistakes const& mistakes);
+
+} // namespace viewer
