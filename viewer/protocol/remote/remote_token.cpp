@@ -92,13 +92,15 @@ std::optional<std::string> read_token(fs::path const& file)
     std::error_code failure;
     if (!fs::exists(file, failure)) return {};
     std::ifstream in(file);
-    std::string token;
-    if (!std::getline(in, token) || token.size() != 2 * kBytes ||
+    std::string token(2 * kBytes, ' ');
+    in.read(token.data(), std::streamsize(token.size()));
+    int const end = in.get(); // nothing, or the end of the line
+    if (in.bad() || (end != '\n' && end != std::ifstream::traits_type::eof()) ||
         token.find_first_not_of("0123456789abcdef") != std::string::npos)
         throw gi::InputError("'" + file.string() + "' holds no token of a remote port",
                              in.bad() || !in.is_open() ? "it cannot be read" : "a token is 64 hexadecimal digits",
                              "name the file that the viewer printed");
-    return {std::move(token)};
+    return token;
 }
 
 bool is_token(std::string_view given, std::string_view right)
