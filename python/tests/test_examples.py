@@ -122,7 +122,7 @@ def test_in_the_psychopy_example_no_answer_is_a_timeout_and_escape_can_be_resume
     stand = Stand(keys)
     with pytest.raises(KeyboardInterrupt):
         script.run(2, presenter(example, stand), dir=tmp_path / "data")
-    stand = Stand(lambda flips: "right" if flips == 2 else None)
+    stand = Stand(lambda flips: "right" if flips == 8 else None)
     assert script.run(2, presenter(example, stand), dir=tmp_path / "data", resume=True).is_complete
     entries = study.read_journal(tmp_path / "data/sub-P002/ses-01/beh/journal.jsonl")
     trials = [e for e in entries if e["kind"] == "trial_done"]

@@ -203,13 +203,14 @@ void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes&
 {
     m.check_keys(y, "questplus");
     std::size_t const before = m.count();
-    m.need(y, "threshold", "64..16384/33",
-           [&](gi::Yaml const& v) { p.threshold = read_grid(v, c.scale, c.low, c.high); });
-    m.need(y, "slope", "[1, 2, 3.5, 5]",
-           [&](gi::Yaml const& v) { p.slope = read_grid(v, Scale::linear, 1e-6, kAny); });
-    m.need(y, "guess", "0.5", [&](gi::Yaml const& v) { p.guess = read_grid(v, Scale::linear, 0, 0.99); });
-    m.need(y, "lapse", "[0, 0.02, 0.04]",
-           [&](gi::Yaml const& v) { p.lapse = read_grid(v, Scale::linear, 0, 0.5); });
+    bool has_all = m.need(y, "threshold", "64..16384/33",
+                          [&](gi::Yaml const& v) { p.threshold = read_grid(v, c.scale, c.low, c.high); });
+    has_all &= m.need(y, "slope", "[1, 2, 3.5, 5]",
+                      [&](gi::Yaml const& v) { p.slope = read_grid(v, Scale::linear, 1e-6, kAny); });
+    has_all &=
+        m.need(y, "guess", "0.5", [&](gi::Yaml const& v) { p.guess = read_grid(v, Scale::linear, 0, 0.99); });
+    has_all &= m.need(y, "lapse", "[0, 0.02, 0.04]",
+                      [&](gi::Yaml const& v) { p.lapse = read_grid(v, Scale::linear, 0, 0.5); });
     p.stimuli = p.threshold;
     m.take(y, "levels", [&](gi::Yaml const& v) { p.stimuli = read_grid(v, c.scale, c.low, c.high); });
     read_further_grids(y, c, p, m);
@@ -217,7 +218,7 @@ void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes&
     if (p.is_many() && !p.psychometric && m.count() == before)
         m.add(y.error("several settings or further parameters without a formula", "the function is unknown",
                       "write psychometric: FORMULA"));
-    if (m.count() == before) check_grids(y, c, p, m);
+    if (has_all && m.count() == before) check_grids(y, c, p, m);
     m.need(y, "stop", "{trials: 32}", [&](gi::Yaml const& v) { p.stop = read_stop(v, false); });
 }
 
