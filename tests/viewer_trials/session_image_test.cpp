@@ -346,14 +346,14 @@ TEST_F(Sessions, PreparedStimuliThatAreDamagedAreRefusedToo)
     EXPECT_NE(o.err.find("is not whole (its 00000_0.exr is missing or damaged)"), std::string::npos) << o.err;
 }
 
-TEST_F(Sessions, ScenesThatAreNotThereAreRefusedWithTheirBlock)
+TEST_F(Sessions, ScenesThatAreNotThereAreRefusedWithTheirPlace)
 {
     RunningSession run(folder, script("vsync: record", "[seen]",
                                       "  seen: {task: rating, prompt: how, scale: {min: 1, max: 7}, "
                                       "cross: [bounces], settings: {scene: none.glb}}\n"));
     Outcome const o = run.wait();
     EXPECT_EQ(o.code, 2);
-    EXPECT_NE(o.err.find("x.yaml: block seen"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("x.yaml:11:"), std::string::npos) << o.err;
     EXPECT_NE(o.err.find("there is no scene 'none.glb'"), std::string::npos) << o.err;
 }
 
@@ -364,7 +364,7 @@ TEST_F(Sessions, SettingsThatTheRendererDoesNotKnowAreRefusedAtOnce)
                                       "cross: [bounces], settings: {no_such_thing: 1}}\n"));
     Outcome const o = run.wait();
     EXPECT_EQ(o.code, 2);
-    EXPECT_NE(o.err.find("x.yaml: block seen"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("x.yaml:11:"), std::string::npos) << o.err;
     EXPECT_NE(o.err.find("no_such_thing"), std::string::npos) << o.err;
 }
 
