@@ -97,9 +97,9 @@ TEST_F(Measured, MarkersAreReadByOthersWithTheirTimes)
     calibrated(folder);
     write_gaze(folder, 30);
     std::string const here = LIGHTWELL_SOURCE_DIR "/tests/viewer_trials";
-    std::string const reader =
-        fmt::format("'{}' '{}/read_markers.py' '{}/read' '{}/stop' 2> '{}/read.err' &", peer_python().string(),
-                    here, folder.path().string(), folder.path().string(), folder.path().string());
+    std::string const reader = fmt::format(
+        "timeout 120 '{}' '{}/read_markers.py' '{}/read' '{}/stop' > /dev/null 2> '{}/read.err' &",
+        peer_python().string(), here, folder.path().string(), folder.path().string(), folder.path().string());
     ASSERT_EQ(std::system(reader.c_str()), 0);
     RunningSession run(folder, measured_script("repeats: 6", "[udp, lsl]", "[{instructions: ready}, seen]"),
                        "--display-model model.yaml --gaze gaze.csv");

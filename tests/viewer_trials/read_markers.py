@@ -22,7 +22,7 @@ with open(out, "w") as lines:
         "correction_s": inlet.time_correction(timeout=20),
     }
     print(json.dumps(about), file=lines, flush=True)
-    while not os.path.exists(stop):
+    while os.path.exists(os.path.dirname(stop)) and not os.path.exists(stop):
         sample, time = inlet.pull_sample(timeout=0.2)
         if sample is not None:
             print(json.dumps({"time": time, "now": pylsl.local_clock(), "event": json.loads(sample[0])}), file=lines, flush=True)
