@@ -1,6 +1,7 @@
 #include "study/stats/active_pairs.h"
 
 #include "study/stats/error.h"
+#include "study/stats/grid_posterior.h"
 #include "study/stats/special.h"
 
 #include <Eigen/Cholesky>
@@ -16,12 +17,6 @@ namespace {
 
 constexpr double kTie = 1e-9;
 
-double entropy_bits(double p)
-{
-    if (!(p > 0 && p < 1)) return 0;
-    return -p * std::log2(p) - (1 - p) * std::log2(1 - p);
-}
-
 /// Mean of H(Phi(d)) over d ~ N(m, v) by the trapezoidal rule, which converges fast for smooth functions.
 double mean_entropy(double m, double v)
 {
@@ -30,7 +25,7 @@ double mean_entropy(double m, double v)
     double sum = 0, weights = 0;
     for (int i = -kSteps; i <= kSteps; ++i) {
         double const z = kWidest * i / kSteps, weight = std::exp(-z * z / 2);
-        sum += weight * entropy_bits(normal_cdf(m + std::sqrt(v) * z));
+        sum += weight * entropy_of_event(normal_cdf(m + std::sqrt(v) * z));
         weights += weight;
     }
     return sum / weights;
@@ -104,7 +99,7 @@ double ActivePairs::gain(Pair pair) const
     auto const [a, b] = std::pair{std::size_t(pair.first), std::size_t(pair.second)};
     double const m = scores()[a] - scores()[b];
     double const v = std::max(0.0, covariance()(a, a) + covariance()(b, b) - 2 * covariance()(a, b));
-    return entropy_bits(normal_cdf(m / std::sqrt(1 + v))) - mean_entropy(m, v);
+    return entropy_of_event(normal_cdf(m / std::sqrt(1 + v))) - mean_entropy(m, v);
 }
 
 void ActivePairs::choose()

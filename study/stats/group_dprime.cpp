@@ -1,8 +1,8 @@
 #include "study/stats/group_dprime.h"
 
-#include "study/stats/descent.h"
 #include "study/stats/error.h"
 #include "study/stats/gauss_hermite.h"
+#include "study/stats/maximum_within.h"
 #include "study/stats/profile.h"
 #include "study/stats/special.h"
 
@@ -185,32 +185,11 @@ public:
 private:
     double maximise(Population& at, std::vector<int> const& free)
     {
-        Population gradient{};
-        if (free.empty()) return marginal_(at, gradient);
-        std::vector<double> x, known;
-        for (int const i : free) x.push_back(at[std::size_t(i)]);
-        auto const evaluate = [&](std::span<double const> v) {
-            known.assign(v.begin(), v.end());
-            Population p = at;
-            double outside = 0; // keeps the search where the functions are accurate
-            for (std::size_t i = 0; i < free.size(); ++i) {
-                auto const k = std::size_t(free[i]);
-                double const limit = k % 2 == 1 ? 2.5 : kLargestMean + 1, low = k % 2 == 1 ? -12 : -limit;
-                p[k] = std::clamp(v[i], low, limit);
-                outside += (v[i] - p[k]) * (v[i] - p[k]);
-            }
-            double const value = -marginal_(p, gradient) + outside;
-            for (std::size_t i = 0; i < free.size(); ++i)
-                gradient[std::size_t(free[i])] -= 2 * (v[i] - p[std::size_t(free[i])]);
-            return value;
-        };
-        auto const slope = [&](std::span<double const> v, std::span<double> g) {
-            if (!std::equal(v.begin(), v.end(), known.begin(), known.end())) evaluate(v);
-            for (std::size_t i = 0; i < free.size(); ++i) g[i] = -gradient[std::size_t(free[i])];
-        };
-        Minimum const m = minimise(evaluate, slope, x, 60, 1e-6, 1 / double(marginal_.observers().size()));
-        for (std::size_t i = 0; i < free.size(); ++i) at[std::size_t(free[i])] = m.at[i];
-        return -m.value;
+        // Means and logarithms of deviations within which the functions are accurate.
+        static constexpr Bounds<4> kBounds{{-kLargestMean - 1, -12, -kLargestMean - 1, -12},
+                                           {kLargestMean + 1, 2.5, kLargestMean + 1, 2.5}};
+        return maximise_within(kBounds, at, free, 60, 1 / double(marginal_.observers().size()),
+                               [&](Population const& p, Population& gradient) { return marginal_(p, gradient); });
     }
 
     Marginal marginal_;

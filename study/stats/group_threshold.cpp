@@ -1,9 +1,9 @@
 #include "study/stats/group_threshold.h"
 
 #include "study/stats/curve_likelihood.h"
-#include "study/stats/descent.h"
 #include "study/stats/error.h"
 #include "study/stats/gauss_hermite.h"
+#include "study/stats/maximum_within.h"
 #include "study/stats/profile.h"
 #include "study/stats/special.h"
 
@@ -238,33 +238,10 @@ public:
 private:
     double maximise(Thresholds& at, std::vector<int> const& free)
     {
-        static constexpr Thresholds kLow{-kFarThreshold - 0.5, -9, -6, -9, -7, -7},
-            kHigh{kFarThreshold + 0.5, 1, 2, -0.5, 0, 1};
-        Thresholds gradient{};
-        std::vector<double> x, known;
-        for (int const i : free) x.push_back(at[std::size_t(i)]);
-        auto const evaluate = [&](std::span<double const> v) {
-            known.assign(v.begin(), v.end());
-            Thresholds p = at;
-            double outside = 0; // keeps the search where the functions are accurate
-            for (std::size_t i = 0; i < free.size(); ++i) {
-                auto const k = std::size_t(free[i]);
-                p[k] = std::clamp(v[i], kLow[k], kHigh[k]);
-                outside += (v[i] - p[k]) * (v[i] - p[k]);
-            }
-            double const value = marginal_(p, gradient);
-            for (std::size_t i = 0; i < free.size(); ++i)
-                gradient[std::size_t(free[i])] -= 2 * (v[i] - p[std::size_t(free[i])]);
-            return std::isfinite(value) ? outside - value : 1e300;
-        };
-        auto const slope = [&](std::span<double const> v, std::span<double> g) {
-            if (!std::equal(v.begin(), v.end(), known.begin(), known.end())) evaluate(v);
-            for (std::size_t i = 0; i < free.size(); ++i) g[i] = -gradient[std::size_t(free[i])];
-        };
-        double const step = 0.05 / double(marginal_.people().size());
-        Minimum const m = minimise(evaluate, slope, x, 80, 1e-6, step);
-        for (std::size_t i = 0; i < free.size(); ++i) at[std::size_t(free[i])] = m.at[i];
-        return m.value < 1e299 ? -m.value : -kInfinity;
+        static constexpr Bounds<kParts> kBounds{{-kFarThreshold - 0.5, -9, -6, -9, -7, -7},
+                                                {kFarThreshold + 0.5, 1, 2, -0.5, 0, 1}};
+        return maximise_within(kBounds, at, free, 80, 0.05 / double(marginal_.people().size()),
+                               [&](Thresholds const& p, Thresholds& gradient) { return marginal_(p, gradient); });
     }
 
     ThresholdMarginal marginal_;

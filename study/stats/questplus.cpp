@@ -1,6 +1,6 @@
 #include "study/stats/questplus.h"
 
-#include "study/stats/error.h"
+#include "study/stats/grid_posterior.h"
 #include "study/stats/sigmoid.h"
 #include "study/stats/special.h"
 
@@ -10,8 +10,6 @@
 
 namespace study {
 namespace {
-
-double p_log2_p(double p) { return p > 0 ? p * std::log2(p) : 0; }
 
 void check_values(std::vector<double> const& values, std::vector<double> const& prior, char const* name)
 {
@@ -52,16 +50,6 @@ void check(QuestSettings const& s)
 }
 
 double weight(std::vector<double> const& prior, std::size_t i) { return prior.empty() ? 1 : prior[i]; }
-
-void normalise(std::vector<double>& p)
-{
-    double sum = 0;
-    for (double const v : p) sum += v;
-    if (!(sum > 0))
-        refuse("a response that no parameters of the grid allow", "the posterior would be empty",
-               "include guess and lapse rates above 0");
-    for (double& v : p) v /= sum;
-}
 
 } // namespace
 
@@ -128,7 +116,7 @@ QuestPlus::QuestPlus(QuestSettings settings) : settings_(std::move(settings))
                 refuse("the function gives " + std::to_string(p) + " at " + std::to_string(s.stimuli[i]),
                        "a proportion lies between 0 and 1", "correct the formula or the grids");
             correct_(i, c) = p;
-            noise_(i, c) = -p_log2_p(p) - p_log2_p(1 - p);
+            noise_(i, c) = entropy_of_event(p);
         }
 }
 
@@ -168,7 +156,7 @@ double QuestPlus::expected_information(std::size_t stimulus) const
         right += posterior_[c] * correct_(stimulus, c);
         noise += posterior_[c] * noise_(stimulus, c);
     }
-    return -p_log2_p(right) - p_log2_p(1 - right) - noise;
+    return entropy_of_event(right) - noise;
 }
 
 std::size_t QuestPlus::next() const

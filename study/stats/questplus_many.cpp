@@ -1,14 +1,12 @@
 #include "study/stats/questplus_many.h"
 
-#include "study/stats/error.h"
+#include "study/stats/grid_posterior.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace study {
 namespace {
-
-double plogp(double p) { return p > 0 ? p * std::log2(p) : 0; }
 
 /// Product of the grids' sizes.
 std::size_t size_of(std::vector<QuestGrid> const& grids)
@@ -40,16 +38,6 @@ double prior_of(std::vector<QuestGrid> const& grids, std::size_t index)
     return weight;
 }
 
-void scale_to_one(std::vector<double>& p)
-{
-    double sum = 0;
-    for (double const v : p) sum += v;
-    if (!(sum > 0))
-        refuse("a response that no parameters of the grid allow", "the posterior would be empty",
-               "include guess and lapse rates above 0");
-    for (double& v : p) v /= sum;
-}
-
 } // namespace
 
 std::vector<std::string> names_of(std::vector<QuestGrid> const& stimulus, std::vector<QuestGrid> const& parameters)
@@ -71,7 +59,7 @@ QuestPlusMany::QuestPlusMany(QuestManySettings settings) : settings_(std::move(s
         refuse("QUEST+ with a formula of other values", "it must take the stimulus and the parameters",
                "make it of names_of()");
     for (std::size_t c = 0; c < cells_; ++c) posterior_.push_back(prior_of(settings_.parameters, c));
-    scale_to_one(posterior_);
+    normalise(posterior_);
     correct_ = noise_ = Matrix(stimuli_, cells_);
     for (std::size_t s = 0; s < stimuli_; ++s) {
         std::vector<double> values = stimulus(s);
@@ -85,7 +73,7 @@ QuestPlusMany::QuestPlusMany(QuestManySettings settings) : settings_(std::move(s
                 refuse("the formula gives " + std::to_string(p) + " at the stimulus " + std::to_string(values[0]),
                        "a proportion lies between 0 and 1", "correct the formula or the grids");
             correct_(s, c) = p;
-            noise_(s, c) = -plogp(p) - plogp(1 - p);
+            noise_(s, c) = entropy_of_event(p);
         }
     }
 }
@@ -123,7 +111,7 @@ double QuestPlusMany::information(std::size_t stimulus) const
         right += posterior_[c] * correct_(stimulus, c);
         noise += posterior_[c] * noise_(stimulus, c);
     }
-    return -plogp(right) - plogp(1 - right) - noise;
+    return entropy_of_event(right) - noise;
 }
 
 std::size_t QuestPlusMany::next() const
@@ -144,14 +132,14 @@ void QuestPlusMany::respond(std::size_t stimulus, bool correct)
     std::vector<double> updated = posterior_;
     for (std::size_t c = 0; c < cells_; ++c)
         updated[c] *= correct ? correct_(stimulus, c) : 1 - correct_(stimulus, c);
-    scale_to_one(updated);
+    normalise(updated);
     posterior_ = std::move(updated);
 }
 
 double QuestPlusMany::entropy() const
 {
     double sum = 0;
-    for (double const p : posterior_) sum -= plogp(p);
+    for (double const p : posterior_) sum -= p_log2_p(p);
     return sum;
 }
 

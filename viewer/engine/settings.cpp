@@ -64,7 +64,10 @@ std::vector<SettingKey> make_keys()
              "slhb: stored axes per bounce updated each frame for dynamic geometry, 0 = all; set by the schedule "
              "auto",
              &S::updated_axes),
-         own("reuse", {1, 256}, "frames that temporal reuse averages over, 1 = none", &S::reuse),
+         own("reuse", {1, 256},
+             "frames that temporal reuse averages over, 1 = none; up to 8 times as many where light does not "
+             "change",
+             &S::reuse),
          own("denoise", gi::filter_names(), "filter that removes noise", &S::denoise),
          own("first-surfaces", {},
              "while things move, draw surfaces, textures and what mirrors show at full size, and only light at a "
