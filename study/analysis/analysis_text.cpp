@@ -86,7 +86,11 @@ std::string to_json(Analysis const& a)
            {"settings",
             {{"excluded", a.settings.exclude},
              {"replicates", a.settings.replicates},
+             {"permutations", a.settings.permutations},
              {"draws", a.settings.draws},
+             {"hierarchical", a.settings.has_hierarchy},
+             {"guess", a.settings.guess ? Json(*a.settings.guess) : Json()},
+             {"lapse", a.settings.lapse ? Json(*a.settings.lapse) : Json()},
              {"confidence", a.settings.confidence},
              {"seed", a.settings.seed}}},
            {"cautions", a.cautions}};

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 
 namespace study {
@@ -227,7 +228,8 @@ std::vector<Measure> detections(Script const& script, Block const& b, std::vecto
     return {correct, dprime};
 }
 
-/// One measure for each procedure and method of estimation; runs of one observer count as repetitions.
+/// One measure for each procedure, method of estimation and proportion correct; runs of one observer count as
+/// repetitions.
 std::vector<Measure> thresholds(Script const& script, Block const& b, std::vector<ObserverTrials> const& trials,
                                 int block, Conditions const& conditions, BlockResult const& result)
 {
@@ -235,11 +237,17 @@ std::vector<Measure> thresholds(Script const& script, Block const& b, std::vecto
     auto const groups = groups_of(script, trials, block, {compared_factor(b)});
     for (ObserverTrials const& o : trials)
         for (TrialRow const& row : o.rows) cells[cell_name(script, groups, row)] = conditions.of(row);
+    std::map<std::pair<std::string, std::string>, std::set<double>> proportions; // by procedure and method
+    for (ThresholdRun const& run : result.runs)
+        for (ThresholdEstimate const& e : run.estimates)
+            proportions[{run.procedure, e.method}].insert(e.proportion);
     std::map<std::string, Measure> all;
     Compare const& c = *b.compare;
     for (ThresholdRun const& run : result.runs)
         for (ThresholdEstimate const& e : run.estimates) {
-            std::string const name = fmt::format("threshold, {}: {}", run.procedure, e.method);
+            std::string name = fmt::format("threshold, {}: {}", run.procedure, e.method);
+            if (proportions[{run.procedure, e.method}].size() > 1)
+                name += fmt::format(", {:.1f} % correct", 100 * e.proportion);
             Measure& m = all.try_emplace(name, Measure{b.name, name, conditions.axes(), {}}).first->second;
             double const level = e.level.value;
             if (!(level >= std::min(c.low, c.high) && level <= std::max(c.low, c.high))) continue;

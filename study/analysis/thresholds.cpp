@@ -188,8 +188,10 @@ void add_proportion_by_formula(Block const& b, PsychometricChoice const& functio
 }
 
 /// The population's threshold at one proportion by one procedure, and those of its runs.
-void add_proportion(Block const& b, Procedure const& p, std::vector<RunOf>& runs, double proportion,
-                    bool with_reversals, AnalysisSettings const& settings, BlockResult& result)
+/// @return the group's curve; none = it was not fitted
+std::optional<GroupCurve> add_proportion(Block const& b, Procedure const& p, std::vector<RunOf>& runs,
+                                         double proportion, bool with_reversals, AnalysisSettings const& settings,
+                                         BlockResult& result)
 {
     Compare const& c = *b.compare;
     PsychometricChoice const function = fitted_function({p}, c.scale);
@@ -226,6 +228,7 @@ void add_proportion(Block const& b, Procedure const& p, std::vector<RunOf>& runs
         add_proportion_by_formula(b, function, runs, proportion, settings, result);
     else
         result.thresholds.push_back(std::move(likelihood));
+    return group;
 }
 
 HierarchicalResult hierarchical_of(Block const& b, PsychometricChoice const& function, std::string const& cell,
@@ -256,7 +259,7 @@ HierarchicalResult hierarchical_of(Block const& b, PsychometricChoice const& fun
 
 /// The function of the average observer in a cell, from all procedures.
 void add_curve(Block const& b, std::string const& cell, std::vector<RunOf const*> const& runs,
-               AnalysisSettings const& settings, BlockResult& result)
+               std::optional<GroupCurve> const& known, AnalysisSettings const& settings, BlockResult& result)
 {
     Compare const& c = *b.compare;
     CurveResult r;
@@ -288,7 +291,11 @@ void add_curve(Block const& b, std::string const& cell, std::vector<RunOf const*
         return;
     }
     std::string note;
-    auto const group = group_curve(c, function, data, r.proportion, settings, note);
+    auto const group = known ? known : group_curve(c, function, data, r.proportion, settings, note);
+    if (known) {
+        append(note, known->threshold.note);
+        append(note, data.note);
+    }
     if (!group) {
         r.refused = note;
     } else {
@@ -326,6 +333,7 @@ void analyze_thresholds(Script const& script, Block const& b, std::vector<Observ
     bool const has_many =
         std::any_of(b.procedures.begin(), b.procedures.end(), [](Procedure const& p) { return p.is_many(); });
     std::map<std::string, std::vector<RunOf const*>> cells;
+    std::map<std::string, std::optional<GroupCurve>> curves; // of cells with one procedure
     for (auto& [place, runs] : all) {
         Procedure const& p = b.procedures[std::size_t(place.second)];
         if (p.is_many()) { // no curve of one setting: it has parameters
@@ -334,7 +342,9 @@ void analyze_thresholds(Script const& script, Block const& b, std::vector<Observ
         }
         // Every method at the middle of the rise; staircases also at the proportion to which they converge.
         if (p.method == Method::staircase) add_proportion(b, p, runs, settles_at(p), true, settings, result);
-        add_proportion(b, p, runs, middle(b.task), false, settings, result);
+        bool const is_first = !curves.contains(place.first);
+        auto group = add_proportion(b, p, runs, middle(b.task), false, settings, result);
+        curves[place.first] = is_first && b.procedures.size() == 1 ? std::move(group) : std::nullopt;
         for (RunOf& r : runs) {
             if (p.method == Method::questplus)
                 r.run.estimates.push_back(questplus_estimate(r.run, b, p, middle(b.task), settings));
@@ -349,7 +359,7 @@ void analyze_thresholds(Script const& script, Block const& b, std::vector<Observ
     std::stable_sort(result.runs.begin(), result.runs.end(),
                      [&](ThresholdRun const& x, ThresholdRun const& y) { return place(x) < place(y); });
     if (has_many) return;
-    for (auto const& [cell, runs] : cells) add_curve(b, cell, runs, settings, result);
+    for (auto const& [cell, runs] : cells) add_curve(b, cell, runs, curves[cell], settings, result);
 }
 
 } // namespace study

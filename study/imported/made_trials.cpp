@@ -3,6 +3,7 @@
 #include "gi/core/text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <set>
 
@@ -65,7 +66,7 @@ void add_values(MadeExperiment const& made, Block& b)
     for (MadeTrial const& t : made.trials) {
         low = std::min(low, *t.value);
         high = std::max(high, *t.value);
-        whole = whole && *t.value == double(long(*t.value));
+        whole = whole && *t.value == std::floor(*t.value);
     }
     b.scale.low = low;
     b.scale.high = high > low ? high : low + 1;

@@ -211,12 +211,17 @@ private:
             m.reaction_ms = number(row, "reaction_ms");
         else if (has("reaction_s") && !DelimitedText::is_missing(cell(row, "reaction_s").text))
             m.reaction_ms = 1000 * number(row, "reaction_s");
-        if (has("first"))
-            read_pair(row, m);
-        else if (has("value"))
-            read_value(row, m);
-        else
+        switch (made_.task) {
+        case Task::pair:
+        case Task::pair_with_reference:
+            return read_pair(row, m);
+        case Task::rating:
+        case Task::magnitude:
+        case Task::adjustment:
+            return read_value(row, m);
+        default:
             read_answer(row, m);
+        }
     }
 
     void add(MadeTrial const& m, int times)
@@ -316,6 +321,9 @@ private:
 
     void read_matrix()
     {
+        if (!roles_.factors.empty() || !roles_.column.empty() || !roles_.only.empty())
+            throw ScriptError(t_.file, {}, "--matrix with --columns, --factors or --only",
+                              "a matrix has no columns but its items", "leave them out");
         made_.task = Task::pair;
         std::vector<std::string> const items(t_.columns.begin() + 1, t_.columns.end());
         for (auto const& row : t_.rows) {

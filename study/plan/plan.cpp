@@ -184,16 +184,24 @@ std::string_view name_of(PlanStepKind kind)
     return kNames[std::size_t(kind)];
 }
 
+std::vector<int> levels_of_pairs(Pairs const& pairs)
+{
+    std::vector<int> levels;
+    for (auto const& [a, b] : pairs.pairs) levels.insert(levels.end(), {a, b});
+    std::sort(levels.begin(), levels.end());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    return levels;
+}
+
 std::vector<Stimulus> possible_stimuli(Block const& b, Trial const& t)
 {
     std::vector<Stimulus> all = t.stimuli;
     if (t.is_open_pair) {
         all.clear();
-        for (auto const& [first, second] : b.pairs->pairs)
-            for (int const level : {first, second}) {
-                all.push_back(t.stimuli[0]);
-                all.back().levels[std::size_t(b.pairs->factor)] = level;
-            }
+        for (int const level : levels_of_pairs(*b.pairs)) {
+            all.push_back(t.stimuli[0]);
+            all.back().levels[std::size_t(b.pairs->factor)] = level;
+        }
     }
     if (t.reference) all.push_back(*t.reference);
     return all;

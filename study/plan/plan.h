@@ -53,6 +53,9 @@ struct Plan {
     std::int64_t duration_us = 0;
 };
 
+/// The levels that occur in pairs, each once, rising.
+std::vector<int> levels_of_pairs(Pairs const& pairs);
+
 /// Stimuli that a trial may show, the reference included: its own, or all that its pair may be chosen from. Levels
 /// that a procedure chooses are left open.
 std::vector<Stimulus> possible_stimuli(Block const& block, Trial const& trial);

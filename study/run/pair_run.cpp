@@ -7,15 +7,6 @@
 namespace study {
 namespace {
 
-std::vector<int> levels_of_pairs(Pairs const& pairs)
-{
-    std::vector<int> levels;
-    for (auto const& [a, b] : pairs.pairs) levels.insert(levels.end(), {a, b});
-    std::sort(levels.begin(), levels.end());
-    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-    return levels;
-}
-
 std::vector<ActivePairs::Pair> items_of_pairs(Pairs const& pairs, std::vector<int> const& levels)
 {
     auto const item = [&](int level) {

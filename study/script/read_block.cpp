@@ -243,6 +243,7 @@ void read_practice(gi::Yaml const& y, Block& b, Mistakes& m)
         if (b.practice.has_feedback && !has_answer)
             throw v.error(fmt::format("feedback on {}", facts(b.task).name), "no answer is right", "write false");
     });
+    if (b.is_broken && !b.compare) return; // what is varied is not known
     m.take(y, "level", [&](gi::Yaml const& v) {
         if (!b.compare || b.compare->factor >= 0)
             throw v.error("a level although nothing is varied", "it would be ignored", "remove it");
@@ -310,8 +311,8 @@ bool has_reference(Script const& s, int factor)
     return std::any_of(s.reference.begin(), s.reference.end(), [&](LevelChoice c) { return c.factor == factor; });
 }
 
-/// Reads what the task shows, without procedures.
-void read_shown(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
+/// Reads what the task shows, without procedures. Returns whether it is known.
+bool read_shown(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
 {
     TaskFacts const& f = facts(b.task);
     bool const needs_one = f.takes_pairs || f.takes_compare;
@@ -322,8 +323,10 @@ void read_shown(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
         throw y.error(fmt::format("block '{}' needs {}", b.name, what), "it defines the stimuli",
                       f.takes_pairs ? "write pairs: {factor: FACTOR}" : "write compare: {factor: FACTOR}");
     }
-    if (f.takes_pairs) m.take(y, "pairs", [&](gi::Yaml const& v) { b.pairs = read_pairs(v, s, m); });
-    if (f.takes_compare) m.take(y, "compare", [&](gi::Yaml const& v) { b.compare = read_compare(v, s, m); });
+    bool is_known = true;
+    if (f.takes_pairs) is_known &= m.take(y, "pairs", [&](gi::Yaml const& v) { b.pairs = read_pairs(v, s, m); });
+    if (f.takes_compare)
+        is_known &= m.take(y, "compare", [&](gi::Yaml const& v) { b.compare = read_compare(v, s, m); });
     if (b.task == Task::ranking)
         m.need(y, "rank", "{factor: FACTOR}", [&](gi::Yaml const& rank) {
             m.check_keys(rank, "rank");
@@ -349,6 +352,7 @@ void read_shown(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
     if (b.task == Task::questionnaire)
         m.need(y, "questionnaire", "ssq",
                [&](gi::Yaml const& v) { b.questionnaire = read_questionnaire_name(v, s); });
+    return is_known;
 }
 
 void read_procedures(gi::Yaml const& y, Block& b, Mistakes& m)
@@ -471,8 +475,9 @@ Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s, Mista
     read_trial_timing(y, b.timing, m);
     std::size_t const before = m.grave();
     read_conditions(y, s, b, m);
-    bool const shows = m.attempt([&] { read_shown(y, s, b, m); });
-    if (shows) m.attempt([&] { read_procedures(y, b, m); });
+    bool is_known = false;
+    m.attempt([&] { is_known = read_shown(y, s, b, m); });
+    if (is_known) m.attempt([&] { read_procedures(y, b, m); });
     b.is_broken = m.grave() > before;
     read_scales(y, s, b, m);
     read_rest_of_block(y, s, b, m);

@@ -74,6 +74,7 @@ Factor read_factor_levels(gi::Yaml const& key, gi::Yaml const& value, Mistakes& 
     if ((names.empty() || names.size() > 1000) && !is_told)
         m.add(value.error(fmt::format("factor '{}' has {} levels", factor.name, names.size()),
                           "1 to 1000 are allowed", names.empty() ? "add some" : "split it"));
+    if (factor.levels.empty()) factor.levels.push_back({}); // told; reading goes on
     return factor;
 }
 

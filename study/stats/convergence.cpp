@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <numeric>
 
 namespace study {
@@ -152,10 +153,13 @@ Posterior posterior(Draws const& draws, std::function<double(std::span<double co
 
 void look_at(SamplerReport& report, Convergence const& c)
 {
-    bool const first = report.worst_r_hat == 0;
-    report.worst_r_hat = std::fmax(report.worst_r_hat, c.r_hat);
-    report.least_bulk = first ? c.bulk : std::fmin(report.least_bulk, c.bulk);
-    report.least_tail = first ? c.tail : std::fmin(report.least_tail, c.tail);
+    // Chains that never moved have no R-hat: nothing is known of what they should have found.
+    bool const first = report.worst_r_hat == 0, is_known = std::isfinite(c.r_hat);
+    double const bulk = is_known ? c.bulk : 0, tail = is_known ? c.tail : 0;
+    report.worst_r_hat =
+        std::max(report.worst_r_hat, is_known ? c.r_hat : std::numeric_limits<double>::infinity());
+    report.least_bulk = first ? bulk : std::min(report.least_bulk, bulk);
+    report.least_tail = first ? tail : std::min(report.least_tail, tail);
 }
 
 SamplerReport report_of(Draws const& draws)

@@ -37,8 +37,8 @@ bool has_whole_counts(std::span<ObserverLevels const> observers)
 
 struct Person {
     std::vector<LevelAnswers> levels;
-    double guess = 0.5, mode = 0;  ///< where the last search for the mode ended
-    double mean = 0, variance = 0; ///< of the threshold under the last population
+    double guess = 0.5, mode = 0; ///< where the last search for the mode ended
+    double mean = 0;              ///< of the threshold under the last population
     double information = 0;
 };
 
@@ -177,7 +177,6 @@ private:
         m1 /= sum;
         m2 /= sum;
         p.mean = mean + m1;
-        p.variance = m2 - m1 * m1;
         gradient[kMean] += m1 * precision;
         gradient[kSpread] += (m2 * precision - 1) * (1 - kLeastThresholdSd / sd);
         gradient[kScale] += average.by_log_scale / sum;

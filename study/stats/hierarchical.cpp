@@ -103,9 +103,6 @@ Hierarchical hierarchical_dprime(DetectionTask task, std::span<DetectionCounts c
     Draws const draws = sample(density, start, sampler);
     Hierarchical h = summed_up(
         draws, d, n, confidence, [](double v) { return v; }, 1);
-    if (two)
-        h.criterion = posterior(
-            draws, [&](std::span<double const> x) { return x[c.population]; }, confidence);
     return h;
 }
 
@@ -172,7 +169,9 @@ Hierarchical hierarchical_psychometric(std::span<ObserverLevels const> observers
     auto const at = [&](auto const& f) { return posterior(draws, f, s.confidence); };
     h.scale = at([&](std::span<double const> x) { return range * std::exp(x[2]); });
     h.lapse = at([&](std::span<double const> x) { return s.lapse.value_or(most_lapses * inverse_logit(x[4])); });
-    if (is_repeated) h.eta = at([](std::span<double const> x) { return inverse_logit(x[6]); });
+    look_at(h.report, h.scale.convergence);
+    if (!s.lapse) look_at(h.report, h.lapse.convergence);
+    h.note = complaint(h.report, draws.chains);
     return h;
 }
 

@@ -7,8 +7,8 @@
 // d': d' and criterion of each observer; priors: means N(0, 2^2), standard deviations half-normal (1).
 // Psychometric function: threshold (at a proportion correct), log scale and logit of the lapse rate of each
 // observer, a common overdispersion; in units of the range of levels: mean threshold N(0, 1) from the middle, its
-// standard deviation half-normal (0.5); log scale N(log 1/8, 1), half-normal (0.5); lapse rate 0.2 logistic(y), y
-// N(-1.7, 1), half-normal (0.5); eta Beta(1, 10).
+// standard deviation half-normal (0.5); log scale N(log 1/8, 1), half-normal (0.5); lapse rate L logistic(y), L =
+// 0.2, but at most 0.9 (1 - proportion), y N(-1.7, 1), half-normal (0.5); eta Beta(1, 10).
 
 #include "study/stats/detection_model.h"
 #include "study/stats/group_threshold.h"
@@ -23,8 +23,7 @@ namespace study {
 struct Hierarchical {
     Posterior mean, deviation;       ///< of the parameter of interest in the population
     std::vector<Posterior> observer; ///< of each observer with trials, in their order: shrunken towards the mean
-    Posterior scale, lapse, eta; ///< of psychometric functions: the population's; eta: 0 without repeated levels
-    Posterior criterion;         ///< of d'
+    Posterior scale, lapse;          ///< of psychometric functions: the population's
     SamplerReport report;
     std::string note; ///< what the diagnostics find wrong; empty = nothing
 };

@@ -21,23 +21,24 @@ struct Tally {
     std::string name;
     int experiments = 0, covered = 0, below = 0, above = 0; ///< below: the interval ends below the truth
     int unknown = 0;                                        ///< without an estimate or a whole interval
-    double error = 0, squares = 0;                          ///< sums over experiments
+    int estimates = 0;                                      ///< that are finite
+    double error = 0;                                       ///< their sum
 
     void add(double value, Interval const& i, double truth)
     {
         ++experiments;
+        if (!std::isfinite(value) || !std::isfinite(i.low) || !std::isfinite(i.high)) ++unknown;
+        if (!std::isfinite(value)) return; // covers nothing
         // An end that is not known is taken as infinite.
         bool const is_below = i.high<truth, is_above = i.low> truth;
         below += is_below;
         above += is_above;
         covered += !is_below && !is_above;
-        if (!std::isfinite(value) || !std::isfinite(i.low) || !std::isfinite(i.high)) ++unknown;
-        if (!std::isfinite(value)) return;
+        ++estimates;
         error += value - truth;
-        squares += (value - truth) * (value - truth);
     }
     double coverage() const { return 100.0 * covered / std::max(1, experiments); }
-    double bias() const { return error / std::max(1, experiments - unknown); }
+    double bias() const { return error / std::max(1, estimates); }
 };
 
 class SimulatedSession {

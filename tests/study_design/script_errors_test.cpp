@@ -52,6 +52,33 @@ struct Case {
     char const *what, *by, *place, *mentions;
 };
 
+/// Reading goes on behind a mistake: what it leaves unknown must not be used.
+TEST(ScriptErrors, WhatAMistakeLeavesUnknownIsNotUsed)
+{
+    // A factor without levels, which the reference names.
+    std::string const empty =
+        message_of(spoiled("  light: {day: {exposure: 0}, night: {exposure: -3}}\nreference: "
+                           "{quality: best}",
+                           "  light: {}\nreference: {quality: best, light: day}"));
+    EXPECT_NE(empty.find("factor 'light' has 0 levels"), std::string::npos) << empty;
+    // A key of QUEST+ that is misspelt: its grid is not there.
+    std::string const grid =
+        message_of(spoiled("  rate:\n    task: rating\n    scale: {min: 1, max: 7}\n    cross: "
+                           "[scene, quality]",
+                           "  rate:\n    task: 2ifc\n    compare: {vary: exposure, range: [1, 64], harder: up}\n"
+                           "    procedure: {method: questplus, threshold: 1..64/9, slope: 3, "
+                           "gess: 0.5, lapse: 0.02, stop: {trials: 9}}"));
+    EXPECT_NE(grid.find("did you mean 'guess'?"), std::string::npos) << "\n" << grid;
+    // What is compared is wrong: that is told first, not that nothing is varied.
+    std::string const compare =
+        message_of(spoiled("  rate:\n    task: rating\n    scale: {min: 1, max: 7}\n    cross: "
+                           "[scene, quality]",
+                           "  rate:\n    task: 2ifc\n    compare: {vary: exposure, range: 5, harder: up}\n"
+                           "    practice: {trials: 4, level: 2}\n"
+                           "    procedure: {method: constant, levels: [1, 2]}"));
+    EXPECT_NE(compare.find("range"), std::string::npos) << "\n" << compare;
+}
+
 TEST(ScriptErrors, NameTheirPlaceAndWhatToDo)
 {
     ASSERT_EQ(message_of(kSound), "");

@@ -185,6 +185,16 @@ TEST(TrialTable, RefusesCellsWithTheirPlace)
     expect_refused(",a,b\na,0,x\nb,2,0\n", matrix, "t.csv:2:5", "number of choices");
 }
 
+TEST(TrialTable, RolesOfAnotherTaskAndOfAMatrixAreRefused)
+{
+    ColumnRoles rating = with("value=v, item=i, first=a"); // `first` means nothing to a rating
+    rating.task = Task::rating;
+    EXPECT_EQ(imported("v,i,a\n1,x,p\n2,y,q\n", rating).sessions.size(), 1u);
+    ColumnRoles matrix = with("", {"a"});
+    matrix.is_matrix = true;
+    expect_refused("-,a,b\na,0,3\nb,1,0\n", matrix, "t.csv", "--matrix with");
+}
+
 TEST(TrialTable, RefusesRolesThatDoNotExist)
 {
     EXPECT_THROW(parse_roles("who=x"), ScriptError);

@@ -34,8 +34,6 @@ bool LslLibrary::load()
     find(empty, "lsl_empty");
     find(child_value_n, "lsl_child_value_n");
     find(get_name, "lsl_get_name");
-    find(get_type, "lsl_get_type");
-    find(get_source_id, "lsl_get_source_id");
     find(get_channel_count, "lsl_get_channel_count");
     find(get_nominal_srate, "lsl_get_nominal_srate");
     find(create_outlet, "lsl_create_outlet");

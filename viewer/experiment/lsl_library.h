@@ -9,7 +9,7 @@
 namespace viewer {
 
 struct LslLibrary {
-    static constexpr int kFloatFormat = 1, kDoubleFormat = 2, kStringFormat = 3;
+    static constexpr int kStringFormat = 3;
 
     using Info = void*;
     using Xml = void*;
@@ -24,8 +24,6 @@ struct LslLibrary {
     int (*empty)(Xml) = nullptr;
     char const* (*child_value_n)(Xml, char const* name) = nullptr;
     char const* (*get_name)(Info) = nullptr;
-    char const* (*get_type)(Info) = nullptr;
-    char const* (*get_source_id)(Info) = nullptr;
     int (*get_channel_count)(Info) = nullptr;
     double (*get_nominal_srate)(Info) = nullptr;
     void* (*create_outlet)(Info, int chunk_size, int max_buffered) = nullptr;

@@ -183,8 +183,9 @@ void TrialPresenter::Trial::adjust()
     for (LoadedStimulus& k : known_) {
         if (!k.stimulus.is_varied) continue;
         k.stimulus.level = level_;
+        PhysicalStimulus const before = k.settings.physical;
         k.settings = stimulus_settings(*request_.script, block_, k.stimulus);
-        calibrate_light(k, false);
+        if (k.settings.physical != before) calibrate_light(k, false); // otherwise as of the first picture
         k.source->change(k.settings);
     }
 }

@@ -34,6 +34,7 @@ struct PhysicalStimulus {
     /// True if they are only known with the screen's size and distance, or its luminance.
     bool needs_screen() const;
     bool needs_luminance() const { return luminance.has_value(); }
+    bool operator==(PhysicalStimulus const&) const = default;
 };
 
 /// size, place, luminance, mean_luminance, peak_luminance

@@ -87,6 +87,16 @@ void take_monitor(study::DisplayModel& model, MonitorInfo const& monitor,
     model.screen = screen;
 }
 
+/// Refuses sizes that will not do, before anything is measured.
+void check_size(CalibrateOptions const& o, study::DisplayModel const& model)
+{
+    if (!o.screen.empty()) parse_size(o.screen);
+    bool const has_size = o.card || o.width_cm || o.height_cm || (model.screen && model.screen->width_cm > 0);
+    if (o.distance_cm && !has_size)
+        throw gi::InputError("--distance-cm without the size of the screen", "degrees need both",
+                             "add --width-cm, or --card to measure it");
+}
+
 /// Sizes that were typed or matched. @param px_per_cm  by the card
 void take_size(study::DisplayModel& model, CalibrateOptions const& o, std::optional<double> px_per_cm)
 {
@@ -144,6 +154,11 @@ int run_calibrate(CalibrateOptions const& o)
         if (!given->empty()) *to = *given;
     if (o.ipd_mm) model.ipd_mm = o.ipd_mm;
 
+    check_size(o, model);
+    auto const keep_readings = [&] {
+        if (!o.readings_out.empty() && !readings.empty()) gi::write_text(o.readings_out, readings_csv(readings));
+    };
+
     gi::Report report;
     std::vector<study::GammaMatch> matches;
     std::optional<double> px_per_cm;
@@ -156,13 +171,19 @@ int run_calibrate(CalibrateOptions const& o)
         if (auto const monitor = monitor_of(screen.window()))
             take_monitor(model, *monitor, monitor_at(monitor->name));
         if (o.card) px_per_cm = match_card(screen);
-        for (study::LuminanceReading const& r : measure_patches(screen, measured_colours, series_values(o.levels)))
-            readings.push_back(r);
+        // Kept one by one: typing them takes long, and what follows may be refused or ended.
+        std::vector<study::LuminanceReading> const before = readings;
+        measure_patches(screen, measured_colours, series_values(o.levels),
+                        [&](std::vector<study::LuminanceReading> const& so_far) {
+                            readings = before;
+                            readings.insert(readings.end(), so_far.begin(), so_far.end());
+                            keep_readings();
+                        });
         matches = match_patterns(screen, matched_colours, {0.25, 0.5, 0.75});
     }
     if (!o.monitor.empty()) model.monitor = o.monitor;
     take_size(model, o, px_per_cm);
-    if (!o.readings_out.empty() && !readings.empty()) gi::write_text(o.readings_out, readings_csv(readings));
+    keep_readings();
     std::vector<std::string> warnings;
     if (!readings.empty() || !matches.empty()) {
         study::LuminanceFit fit = readings.empty() ? study::fit_matches(matches, o.white, o.black, model.colour)

@@ -61,9 +61,11 @@ StepEnd run_step(Screen& screen, Draw const& draw, Take const& take)
         for (InputEvent const& e : screen.take_input()) {
             bool const is_key = e.kind == InputKind::key && e.action != InputAction::release;
             if (e.kind == InputKind::close || (is_key && e.code == GLFW_KEY_ESCAPE))
-                throw gi::InputError("the calibration was ended",
-                                     "its steps were not all done; nothing was written", "start it again");
-            if (is_key && (e.code == GLFW_KEY_ENTER || e.code == GLFW_KEY_KP_ENTER)) {
+                throw gi::InputError("the calibration was ended", "its steps were not all done",
+                                     "start it again; readings so far are in the file of --readings-out");
+            bool const is_enter = is_key && (e.code == GLFW_KEY_ENTER || e.code == GLFW_KEY_KP_ENTER);
+            if (is_enter && e.action == InputAction::repeat) continue; // held from the step before
+            if (is_enter) {
                 if (take(e)) return StepEnd::taken;
             } else if (is_key && e.code == GLFW_KEY_BACKSPACE && e.action == InputAction::press) {
                 if (take(e)) return StepEnd::back;
@@ -106,8 +108,9 @@ std::vector<double> series_values(int count)
     return values;
 }
 
-std::vector<study::LuminanceReading>
-measure_patches(Screen& screen, std::vector<study::PatchColour> const& colours, std::vector<double> const& values)
+void measure_patches(Screen& screen, std::vector<study::PatchColour> const& colours,
+                     std::vector<double> const& values,
+                     std::function<void(std::vector<study::LuminanceReading> const&)> const& keep)
 {
     std::vector<study::LuminanceReading> readings;
     std::size_t const count = colours.size() * values.size();
@@ -145,9 +148,9 @@ measure_patches(Screen& screen, std::vector<study::PatchColour> const& colours, 
             continue;
         }
         readings.push_back({colour, value, *luminance});
+        keep(readings);
         ++i;
     }
-    return readings;
 }
 
 std::vector<study::GammaMatch> match_patterns(Screen& screen, std::vector<study::PatchColour> const& colours,

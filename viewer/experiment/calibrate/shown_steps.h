@@ -12,9 +12,11 @@ namespace viewer {
 std::vector<double> series_values(int count);
 
 /// Shows each patch; its luminance is typed (a comma is a decimal point) and entered.
+/// @param keep  called with all readings after each, so that they outlive what follows
 /// @throws gi::InputError the window was closed, or escape was pressed
-std::vector<study::LuminanceReading>
-measure_patches(Screen& screen, std::vector<study::PatchColour> const& colours, std::vector<double> const& values);
+void measure_patches(Screen& screen, std::vector<study::PatchColour> const& colours,
+                     std::vector<double> const& values,
+                     std::function<void(std::vector<study::LuminanceReading> const&)> const& keep);
 
 /// Shows lines of which `share` are bright beside an area whose value is adjusted until both look alike (from far
 /// enough that lines are not seen). Lines are horizontal, because few displays are too slow for those.
