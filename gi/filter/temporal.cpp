@@ -71,33 +71,31 @@ public:
         cv::boxFilter(direct, mean_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
         cv::sqrBoxFilter(direct, squares_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
     }
-    vec3 clamped(vec3 v, int x, int y) const
+    struct Range {
+        vec3 low, high;
+    };
+    /// Mean +- deviations of the window around a pixel.
+    Range around(int x, int y) const
     {
-        if (few_) return clamped_here(v, x, y);
-        auto const m = mean_.at<cv::Vec3f>(y, x), s = squares_.at<cv::Vec3f>(y, x);
-        for (int c = 0; c < 3; ++c) v[c] = clamped(v[c], m[c], s[c]);
-        return v;
+        vec3 mean{0}, squares{0};
+        if (few_) {
+            for (int j = -window_ / 2; j <= window_ / 2; ++j)
+                for (int i = -window_ / 2; i <= window_ / 2; ++i) {
+                    vec3 const d = direct_at(std::clamp(x + i, 0, width_ - 1), std::clamp(y + j, 0, height_ - 1));
+                    mean += d;
+                    squares += d * d;
+                }
+            mean /= float(window_ * window_);
+            squares /= float(window_ * window_);
+        } else {
+            mean = mean_.ptr<vec3>(y)[x];
+            squares = squares_.ptr<vec3>(y)[x];
+        }
+        vec3 const deviation = spread_ * glm::sqrt(glm::max(vec3{0}, squares - mean * mean));
+        return {mean - deviation, mean + deviation};
     }
 
 private:
-    float clamped(float v, float mean, float squares) const
-    {
-        float const spread = spread_ * std::sqrt(std::max(0.0f, squares - mean * mean));
-        return glm::clamp(v, mean - spread, mean + spread);
-    }
-    vec3 clamped_here(vec3 v, int x, int y) const
-    {
-        vec3 mean{0}, squares{0};
-        for (int j = -window_ / 2; j <= window_ / 2; ++j)
-            for (int i = -window_ / 2; i <= window_ / 2; ++i) {
-                vec3 const d = direct_at(std::clamp(x + i, 0, width_ - 1), std::clamp(y + j, 0, height_ - 1));
-                mean += d;
-                squares += d * d;
-            }
-        float const pixels = float(window_ * window_);
-        for (int c = 0; c < 3; ++c) v[c] = clamped(v[c], mean[c] / pixels, squares[c] / pixels);
-        return v;
-    }
     vec3 direct_at(int x, int y) const
     {
         std::size_t const i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
@@ -306,10 +304,11 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             }
             if (taken) continue;
             before.direct /= weight;
-            vec3 const held = neighbourhoods.clamped(before.direct, x, y);
+            auto const [low, high] = neighbourhoods.around(x, y);
+            vec3 const held = glm::clamp(before.direct, low, high);
             local.held += held != before.direct;
             before.direct = held;
-            before.recent_direct = neighbourhoods.clamped(before.recent_direct / weight, x, y);
+            before.recent_direct = glm::clamp(before.recent_direct / weight, low, high);
             before.indirect /= weight;
             before.recent_indirect /= weight;
             before.frames /= weight;

@@ -31,7 +31,7 @@ constexpr Function2 kOfTwo[]{
     {"min", [](double a, double b) { return std::fmin(a, b); }},
     {"max", [](double a, double b) { return std::fmax(a, b); }},
 };
-constexpr std::size_t kDeepest = 50, kLongest = 1000;
+constexpr std::size_t kDeepest = 50, kLongest = 1000; // two levels for each parenthesis
 
 template <class Table>
 int index_of(Table const& table, std::string_view name)
@@ -97,7 +97,7 @@ private:
 
     void sum()
     {
-        if (++depth_ > kDeepest) fail("a formula nested deeper than 50", "it is too complex", "simplify it");
+        if (++depth_ > kDeepest) fail("a formula nested deeper than 25", "it is too complex", "simplify it");
         product();
         for (;;) {
             Op const op = take('+') ? Op::add : take('-') ? Op::subtract : Op::number;
@@ -119,7 +119,7 @@ private:
     }
     void signed_power()
     {
-        if (++depth_ > kDeepest) fail("a formula nested deeper than 50", "it is too complex", "simplify it");
+        if (++depth_ > kDeepest) fail("a formula nested deeper than 25", "it is too complex", "simplify it");
         if (take('-')) {
             signed_power();
             put(Op::negate);

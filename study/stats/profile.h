@@ -48,7 +48,7 @@ double profile_end(ProfileSearch const& s, Loss const& loss)
 /// The limit of the likelihood ratio of a mean over n observers. Chi-square's, if observers do not differ. If they
 /// are found to differ, their variance is estimated, whatever its share: n log(1 + t^2 / (n - 1)), which is
 /// Student's interval. Where they do not differ, half of all samples suggest that they do, and intervals would
-/// hold the mean in 97 instead of 95 %: by simulation, the limit is lowered by up to a fifth if many observers
+/// hold the mean in 97 instead of 95 %: by simulation, the limit is lowered by up to a tenth if many observers
 /// seem equal.
 /// @param share of the variance of observers' estimates that is due to their differences
 double profile_limit(double confidence, double n, double share);
