@@ -98,6 +98,24 @@ TEST(RenderSession, TheSameOrdersGiveTheSamePixels)
     EXPECT_GT(relmse(runs[0][5], runs[0][4]), 1e-3);
 }
 
+/// A recording has the paths that were traced, not those that were asked for before a stop.
+TEST(RenderSession, AFrameThatWasStoppedCanBeRenderedAgain)
+{
+    gi::Report report;
+    RenderSession stopped = started(report), again = started(report);
+    for (std::uint64_t frame = 0; frame < 4; ++frame) {
+        FrameCommand wanted = command(frame);
+        wanted.paths = 40;
+        gi::StopRequest stop;
+        if (frame % 2 == 1) stop.request();
+        SessionFrame const seen = stopped.render(wanted, stop);
+        EXPECT_EQ(seen.paths, frame % 2 == 1 ? 1 : 40);
+        FrameCommand recorded = wanted;
+        recorded.paths = seen.paths;
+        EXPECT_EQ(color(again.render(recorded, {})), color(seen)) << frame;
+    }
+}
+
 TEST(RenderSession, WhatStandsStillConvergesToTheReference)
 {
     gi::Report report;

@@ -128,7 +128,6 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     }
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
-    still_paths_ = (anything_moved ? 0 : still_paths_) + command.paths;
     std::vector<gi::FrameView> views;
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& v = command.views[k];
@@ -143,6 +142,8 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     auto const sharing = cached ? gi::VertexSharing::cached : gi::VertexSharing::exact;
     renderer_->update_axes(settings.has_automatic_schedule() ? settings.updated_axes : 0);
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
+    // Of the paths that were traced: where the frame was stopped, a replay is told only these.
+    still_paths_ = (anything_moved ? 0 : still_paths_) + results[0].paths;
     std::vector<gi::MirrorLayers> mirrors;
     for (std::size_t k = 0; k < results.size(); ++k)
         mirrors.push_back(reuse(k, results, views[k].partner, scene_change(changes, moved[k]), settings, seen));

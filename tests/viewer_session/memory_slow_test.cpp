@@ -1,0 +1,63 @@
+// A session that runs for hours: what methods, sizes and scenes that are left behind took is given back.
+
+#include "gi/scene/generate/generate.h"
+#include "viewer/engine/render_session.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <unistd.h>
+
+namespace viewer::test {
+namespace {
+
+struct Memory {
+    double resident_mib, in_use_mib, free_mib;
+};
+
+Memory memory_now()
+{
+    long pages = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> pages >> resident;
+    constexpr double kMib = 1 << 20;
+    struct mallinfo2 const m = mallinfo2();
+    return {double(resident) * double(sysconf(_SC_PAGESIZE)) / kMib, double(m.uordblks + m.hblkhd) / kMib,
+            double(m.fordblks) / kMib};
+}
+
+TEST(SessionMemory, IsTheSameAfterManyChangesOfMethod)
+{
+    gi::Report report;
+    RenderSession session(
+        [](std::string const&, gi::Report&) {
+            return std::make_shared<gi::Scene const>(gi::generate_atrium({}));
+        },
+        0, report);
+    session.apply({"scene", "atrium"});
+    gi::Camera const eye = gi::generate_atrium({}).cameras.at(0);
+    std::uint64_t frame = 0;
+    double time_s = 0;
+    std::vector<Memory> rounds;
+    for (int round = 0; round < 8; ++round) {
+        for (char const* const method : {"slhb", "sh_grid", "lpv", "reference", "whitted", "ispm"}) {
+            session.apply({"method", method});
+            for (int k = 0; k < 6; ++k) {
+                FrameCommand command;
+                command.frame = frame++;
+                command.scene_s = time_s += 0.1;
+                command.light_scale = k % 2 == 0 ? 0.25 : 0.4;
+                command.views.push_back({"window", eye, 640, 480, -1});
+                session.render(command, {});
+            }
+            Memory const now = memory_now();
+            std::printf("%d %-10s resident %.0f, in use %.0f, free %.0f MiB\n", round, method, now.resident_mib,
+                        now.in_use_mib, now.free_mib);
+        }
+        rounds.push_back(memory_now());
+    }
+    EXPECT_LT(rounds.back().in_use_mib, 1.02 * rounds[2].in_use_mib);
+    EXPECT_LT(rounds.back().resident_mib, 1.05 * rounds[2].resident_mib);
+}
+
+} // namespace
+} // namespace viewer::test
