@@ -260,6 +260,41 @@ TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
     }
 }
 
+/// Frames fail while a setting cannot be used with the scene. The first frame after them says all that was
+/// changed.
+TEST(LiveRenderer, ChangesOfFramesThatFailAreInTheNextOne)
+{
+    LoadScene const walk = [](std::string const&, gi::Report&) {
+        gi::Scene scene = gi::generate_cornell();
+        gi::add_figure(scene, glm::scale(gi::dmat4(1), gi::dvec3(0.2)), 0.3);
+        return std::make_shared<gi::Scene const>(std::move(scene));
+    };
+    Live live;
+    live.renderer->stop();
+    gi::Report report;
+    RenderSession session(walk, 0, report);
+    session.apply({"scene", "walk"});
+    session.apply({"schedule", "stored"});
+    std::vector<std::string> changed;
+    LiveRenderer::Hooks hooks;
+    hooks.finished = [&](LiveFrame const& f) {
+        for (Change const& c : f.command.changes) changed.push_back(c.key);
+    };
+    std::atomic<bool> failed{false};
+    hooks.failed = [&](std::string const&) { failed = true; };
+    LiveRenderer renderer(session, live.clock, nullptr, hooks);
+    Viewpoint at;
+    at.views = {{"window", session.world().cameras.at(0), 32, 32, -1}};
+    renderer.post({"packed", true}); // not with dynamic geometry
+    renderer.look(at);
+    for (int i = 0; i < 200 && !failed; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ASSERT_TRUE(failed);
+    renderer.post({"packed", false});
+    ASSERT_NE(renderer.next_frame(20), nullptr);
+    renderer.stop();
+    EXPECT_EQ(changed, (std::vector<std::string>{"packed", "packed"}));
+}
+
 /// A figure walks, and the rate cannot be held with all directions following it (160 times 1,000 triangles and
 /// more in a fifth of a millisecond): fewer do, the orders say so, and a session that is given them renders the
 /// same bits. Where the user has named the schedule, nothing is changed.

@@ -73,6 +73,7 @@ void RenderSession::restart()
 {
     main_.reset();
     compared_.reset();
+    malloc_trim(0); // else what one method leaves stays between the pieces that the next one takes: memory grows
 }
 
 PreparedScene RenderSession::prepare(std::string const& name, Settings const& settings,
@@ -114,7 +115,8 @@ void RenderSession::adopt(PreparedScene p)
         p.method.reset();
         if (p.change.start) start_method(p);
     }
-    restart(); // method runners refer to the old world
+    main_.reset(); // method runners refer to the old world
+    compared_.reset();
     seen_.reset();
     placed_.clear();
     edits_.clear();

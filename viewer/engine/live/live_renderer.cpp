@@ -4,6 +4,7 @@
 #include "viewer/engine/live/background_priority.h"
 
 #include <algorithm>
+#include <malloc.h>
 #include <utility>
 
 namespace viewer {
@@ -22,6 +23,10 @@ bool same_sizes(std::vector<ViewCommand> const& a, std::vector<ViewCommand> cons
         return x.width == y.width && x.height == y.height;
     });
 }
+
+/// Looks (0.1 s each) that find nothing to render before memory is given back that the next frame would need
+/// again.
+constexpr int kRestsBeforeTrim = 10;
 
 } // namespace
 
@@ -286,6 +291,7 @@ void LiveRenderer::run_leading()
                            (still && (!s.refine || still_paths_ >= kConvergedPaths));
         if (rests && !looked) {
             if (link_ != nullptr) link_->check();
+            if (++rests_for_ == kRestsBeforeTrim) malloc_trim(0);
             std::unique_lock lock(mutex_);
             resting_ = true;
             wake_.wait_for(lock, std::chrono::milliseconds(100),
@@ -296,6 +302,7 @@ void LiveRenderer::run_leading()
             wait_until(begun + 0.01);
             continue;
         }
+        rests_for_ = 0;
         choose_updated_axes(scene_may_move(now));
         FrameBudget budget;
         FrameCommand command = make_command(still ? now : ahead, still, budget);
@@ -394,7 +401,11 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
         frame->schedule = schedule_sentence(get(s, "schedule").get<std::string>(), s.updated_axes, stored_,
                                             update_governor_.share_of_all());
     if (done && hooks_.finished) hooks_.finished(*frame);
-    if (!done) return false;
+    if (!done) { // what it was to change belongs to the next frame, else no recording would have it
+        std::vector<Change> const& lost = frame->command.changes;
+        if (link_ == nullptr) changes_.insert(changes_.begin(), lost.begin(), lost.end());
+        return false;
+    }
     FrameCommand const shown = frame->command;
     {
         std::lock_guard const lock(mutex_);
