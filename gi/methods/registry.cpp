@@ -1,5 +1,6 @@
 #include "gi/methods/registry.h"
 
+#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/light_paths/options.h"
 #include "gi/methods/photons/explain.h"
@@ -83,15 +84,19 @@ void check_used(RenderOption const& option, std::vector<ChosenMethod> const& met
 
 std::span<Method const> methods() { return kMethods; }
 
+std::vector<std::string> method_names()
+{
+    std::vector<std::string> names;
+    for (Method const& m : kMethods) names.emplace_back(m.name);
+    return names;
+}
+
 Method const& find_method(std::string_view name)
 {
-    std::string known;
-    for (Method const& m : kMethods) {
+    for (Method const& m : kMethods)
         if (m.name == name) return m;
-        known += (known.empty() ? "" : ", ") + std::string(m.name);
-    }
     throw InputError("there is no method '" + std::string(name) + "'", "it is not in the registry",
-                     "choose one of: " + known);
+                     suggest(std::string(name), method_names()));
 }
 
 RenderOptionTable const& render_options()

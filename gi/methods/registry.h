@@ -27,6 +27,7 @@ struct Method {
 };
 
 std::span<Method const> methods();
+std::vector<std::string> method_names();
 /// Throws InputError, listing the known methods.
 Method const& find_method(std::string_view name);
 

@@ -1,5 +1,6 @@
 #include "gi/metrics/compare.h"
 
+#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/filter/tone_map.h"
 #include "gi/metrics/flip.h"
@@ -95,9 +96,9 @@ Comparison compare(Picture const& image, Picture const& reference, std::vector<s
             if (m.by_default) chosen.emplace_back(m.name);
     for (std::string const& name : chosen)
         if (std::none_of(kMetrics.begin(), kMetrics.end(), [&](MetricInfo const& m) { return m.name == name; })) {
-            std::string known;
-            for (MetricInfo const& m : kMetrics) known += fmt::format("{} ", m.name);
-            throw InputError("there is no metric '" + name + "'", "it is not known here", "choose from: " + known);
+            std::vector<std::string> known;
+            for (MetricInfo const& m : kMetrics) known.emplace_back(m.name);
+            throw InputError("there is no metric '" + name + "'", "it is not known here", suggest(name, known));
         }
     PicturePair const p = pair_up(image, reference, layer);
     Comparison out;

@@ -1,4 +1,5 @@
-// Every example that the program, the README and docs/commands.md give is run as it stands.
+// Every example that the program, the README and docs/*.md give is run as it stands, all in one folder, as
+// newcomers do.
 
 #include "tests/viewer/run_program.h"
 
@@ -13,30 +14,43 @@ std::vector<std::string> lines(std::string const& text)
     return out;
 }
 
-/// Runs all lines that start with `prefix` in one new folder, in order.
+/// The folder of all examples.
+TemporaryFolder const& folder()
+{
+    static TemporaryFolder const one;
+    return one;
+}
+
+/// Runs all lines that start with `prefix`, in order.
 /// @return how many there were
 int run_examples(std::vector<std::string> const& text, std::string const& prefix)
 {
-    TemporaryFolder const folder;
     int count = 0;
     for (std::string const& line : text) {
         if (!line.starts_with(prefix)) continue;
-        run_well(line.substr(prefix.size(), line.find('#') - prefix.size()), folder.path());
+        run_well(line.substr(prefix.size(), line.find('#') - prefix.size()), folder().path());
         ++count;
     }
     return count;
 }
 
-class HelpExamples : public testing::TestWithParam<char const*> {};
+class Examples : public testing::TestWithParam<char const*> {};
 
-TEST_P(HelpExamples, Run)
+TEST_P(Examples, OfHelpRun)
 {
-    TemporaryFolder const folder;
-    std::string const help = run_well(std::string(GetParam()) + " --help", folder.path()).out;
+    std::string const help = run_well(std::string(GetParam()) + " --help", folder().path()).out;
     EXPECT_GT(run_examples(lines(help), "  lightwell "), 0) << help;
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
+std::string test_name(testing::TestParamInfo<char const*> const& of)
+{
+    std::string name = *of.param == '\0' ? "program" : of.param;
+    std::ranges::replace_if(
+        name, [](char c) { return c == ' ' || c == '.' || c == '/'; }, '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Examples,
                          testing::Values("", "render", "compare", "info", "generate", "display", "study",
                                          "study simulate", "study rebuild", "study export", "study analyze",
                                          "study report", "study power", "bench", "bench sweep", "bench pictures",
@@ -45,31 +59,24 @@ INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                                          "track send", "track walk", "ar", "ar synthesize", "ar run", "ar track",
                                          "ar bench", "ar cameras", "ar record", "ar replay", "ar board",
                                          "ar calibrate", "ar map", "ar albedo", "ar light"),
-                         [](auto const& example) {
-                             std::string name = *example.param == '\0' ? "program" : example.param;
-                             std::replace(name.begin(), name.end(), ' ', '_');
-                             return name;
-                         });
+                         test_name);
 
-class DocumentExamples : public testing::TestWithParam<char const*> {};
-
-TEST_P(DocumentExamples, Run)
+/// A newcomer's hour: what the README and the documents say, in this order, in one folder.
+TEST(DocumentExamples, Run)
 {
-    std::vector<std::string> shell;
-    bool inside = false;
-    for (std::string const& line : lines(file_text(std::string(LIGHTWELL_SOURCE_DIR "/") + GetParam()))) {
-        if (line.starts_with("```"))
-            inside = line == "```sh";
-        else if (inside)
-            shell.push_back(line);
+    for (char const* const document : {"README.md", "docs/commands.md", "docs/displays.md", "docs/study.md"}) {
+        SCOPED_TRACE(document);
+        std::vector<std::string> shell;
+        bool inside = false;
+        for (std::string const& line : lines(file_text(std::string(LIGHTWELL_SOURCE_DIR "/") + document))) {
+            if (line.starts_with("```"))
+                inside = line == "```sh";
+            else if (inside)
+                shell.push_back(line);
+        }
+        EXPECT_GT(run_examples(shell, "build/release/lightwell "), 0);
     }
-    EXPECT_GT(run_examples(shell, "build/release/lightwell "), 0);
 }
-
-INSTANTIATE_TEST_SUITE_P(Of, DocumentExamples, testing::Values("README.md", "docs/commands.md"),
-                         [](auto const& example) {
-                             return std::string(example.param).starts_with("README") ? "Readme" : "Commands";
-                         });
 
 } // namespace
 } // namespace viewer::test

@@ -1,5 +1,6 @@
 #include "viewer/app/requests.h"
 
+#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
 
@@ -121,9 +122,13 @@ Json Requests::camera(RemoteRequest const& r)
         std::string const name = r.arguments.at("name").get<std::string>();
         auto const found = std::find_if(state_.facts.cameras.begin(), state_.facts.cameras.end(),
                                         [&](gi::Camera const& c) { return c.name == name; });
-        if (found == state_.facts.cameras.end())
+        if (found == state_.facts.cameras.end()) {
+            std::vector<std::string> known;
+            for (gi::Camera const& c : state_.facts.cameras) known.push_back(c.name);
             throw gi::InputError("there is no camera '" + name + "'", "the scene has none of that name",
-                                 "leave out the name, or give a position");
+                                 known.empty() ? "leave out the name, or give a position"
+                                               : gi::suggest(name, known));
+        }
         state_.camera = *found;
         state_.navigation.go_to(found->world_from_camera);
     }

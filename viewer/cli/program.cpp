@@ -2,10 +2,15 @@
 
 #include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "gi/core/progress.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
+#include "viewer/cli/command_tree.h"
+#include "viewer/cli/completion.h"
+#include "viewer/cli/config_file.h"
+#include "viewer/cli/man_page.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,6 +20,7 @@
 #include <malloc.h>
 #include <new>
 #include <stdexcept>
+#include <unistd.h>
 
 namespace viewer {
 namespace {
@@ -41,26 +47,17 @@ std::string suggest(std::string const& word, std::vector<std::string> const& kno
     return nearest.empty() ? "" : "did you mean '" + nearest + "'? ";
 }
 
-std::vector<std::string> subcommands_of(CLI::App const& app)
+std::vector<std::string> names_of(std::vector<CLI::App*> const& commands)
 {
     std::vector<std::string> names;
-    for (CLI::App const* const s : app.get_subcommands([](CLI::App const*) { return true; }))
-        names.push_back(s->get_name());
+    for (CLI::App const* const c : commands) names.push_back(c->get_name());
     return names;
 }
 
-std::vector<std::string> options_of(CLI::App const& app)
+/// What is wrong with an invalid call. Unknown words are reported before missing arguments.
+gi::InputError describe(CLI::ParseError const& e, CLI::App const& app)
 {
-    std::vector<std::string> names;
-    for (CLI::Option const* const o : app.get_options())
-        for (std::string const& name : o->get_lnames()) names.push_back("--" + name);
-    return names;
-}
-
-/// Error message for an invalid call. Unknown words are reported before missing arguments.
-std::string describe(CLI::ParseError const& e, CLI::App const& app)
-{
-    std::string const misfit = " (the call is not valid) ";
+    std::string const help = "see lightwell " + path_of_given(app) + "--help", misfit = "the call is not valid";
     bool const may_be_unknown = dynamic_cast<CLI::ExtrasError const*>(&e) != nullptr ||
                                 dynamic_cast<CLI::RequiredError const*>(&e) != nullptr;
     for (CLI::App const* a = &app; may_be_unknown && a != nullptr;) {
@@ -69,12 +66,26 @@ std::string describe(CLI::ParseError const& e, CLI::App const& app)
             std::string const word =
                 unknown.front().substr(0, std::min<std::size_t>(64, unknown.front().find('=')));
             if (!word.starts_with('-') && given.empty() && a->get_require_subcommand_min() > 0)
-                return "there is no subcommand '" + word + "'" + misfit + suggest(word, subcommands_of(*a));
-            return "'" + word + "' was not expected" + misfit + suggest(word, options_of(*a));
+                return {"there is no subcommand '" + word + "'", misfit,
+                        suggest(word, names_of(subcommands(*a))) + help};
+            return {"'" + word + "' was not expected", misfit, suggest(word, option_names(*a)) + help};
         }
         a = given.empty() ? nullptr : given.back();
     }
-    return e.what() + misfit;
+    return {e.what(), misfit, help};
+}
+
+/// One line, or, on a terminal, one for what is wrong, why, and what to do.
+void print_error(gi::InputError const& e)
+{
+    std::string text = fmt::format("lightwell: {}\n", e.what());
+    if (isatty(STDERR_FILENO) != 0) {
+        std::string const all = e.what(), place = all.substr(0, all.find(e.problem()));
+        text = fmt::format("lightwell: {}{}\n", place, e.problem());
+        for (std::string const& part : {e.why(), e.suggestion()})
+            if (!part.empty()) text += fmt::format("           {}\n", part);
+    }
+    std::fputs(text.c_str(), stderr);
 }
 
 } // namespace
@@ -107,6 +118,39 @@ void add_commands(CLI::App& app, std::span<AddedCommand const> own, int& exit_co
     }
 }
 
+/// Inserts the options of the user's configuration after the command's name, and says so.
+void add_configured(CLI::App const& app, std::vector<std::string>& words)
+{
+    std::string const file = config_file();
+    if (file.empty()) return;
+    std::vector<std::string> const added = configured_options(app, words, file);
+    if (added.empty()) return;
+    std::fputs(fmt::format("lightwell: with {} of {}\n", fmt::join(added, " "), file).c_str(), stderr);
+    auto at = words.begin();
+    for (CLI::App const* c = &app; at != words.end() && (c = find_subcommand(*c, *at)) != nullptr;) ++at;
+    words.insert(at, added.begin(), added.end());
+}
+
+/// One page for each command of this program; the launcher writes that of all.
+int write_man_pages(CLI::App const& app, std::span<AddedCommand const> own, std::filesystem::path const& folder)
+{
+    auto const write = [&](CLI::App const& command, std::string name) {
+        std::string const page = man_page(command, name, version_text());
+        std::ranges::replace(name, ' ', '-');
+        gi::write_text(folder / (name + ".1"), page);
+    };
+    bool overview = true;
+    for (AddedCommand const& c : own) {
+        std::size_t const space = c.name.find(' ');
+        CLI::App const* command = find_subcommand(app, std::string(c.name.substr(0, space)));
+        if (space != c.name.npos) command = find_subcommand(*command, std::string(c.name.substr(space + 1)));
+        write(*command, "lightwell " + std::string(c.name));
+        overview &= c.name == "completion";
+    }
+    if (overview) write(app, "lightwell");
+    return 0;
+}
+
 } // namespace
 
 int run_program(int argc, char const* const* argv, std::span<AddedCommand const> own)
@@ -117,7 +161,7 @@ int run_program(int argc, char const* const* argv, std::span<AddedCommand const>
     mallopt(M_TOP_PAD, 64 << 20);
     mallopt(M_ARENA_MAX, 2); // as each arena keeps its peak memory
     CLI::App app{"Lightwell: renders global illumination and measures its error."};
-    app.set_version_flag("--version", version_text());
+    app.set_version_flag("-V,--version", version_text());
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
     app.footer(R"(Examples:
@@ -131,19 +175,25 @@ Exit codes: 0 done, 1 a comparison failed or not all outputs could be written, 2
     int exit_code = 0;
     add_commands(app, own, exit_code);
     try {
-        app.parse(argc, argv);
+        std::vector<std::string> words(argv + 1, argv + argc);
+        if (std::getenv(kCompleteVariable) != nullptr) {
+            for (std::string const& c : complete(app, words)) fmt::print("{}\n", c);
+            return 0;
+        }
+        if (char const* const folder = std::getenv(kManVariable)) return write_man_pages(app, own, folder);
+        add_configured(app, words);
+        std::ranges::reverse(words); // as CLI11 wants them
+        app.parse(std::move(words));
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
             throw std::runtime_error("standard output could not be written");
         return exit_code;
     } catch (CLI::Success const& e) { // --help and --version
         return app.exit(e);
     } catch (CLI::ParseError const& e) {
-        std::fputs(
-            fmt::format("lightwell: {}see lightwell {}--help\n", describe(e, app), path_of_given(app)).c_str(),
-            stderr);
+        print_error(describe(e, app));
         return 2;
     } catch (gi::InputError const& e) {
-        std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
+        print_error(e);
         return 2;
     } catch (gi::Interrupted const&) {
         std::fputs("lightwell: interrupted before a picture was rendered\n", stderr);

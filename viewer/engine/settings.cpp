@@ -16,11 +16,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::vector<std::string> method_names(bool or_none)
+std::vector<std::string> method_names_or_none()
 {
-    std::vector<std::string> names;
-    if (or_none) names.emplace_back();
-    for (gi::Method const& m : gi::methods()) names.emplace_back(m.name);
+    std::vector<std::string> names = gi::method_names();
+    names.insert(names.begin(), "");
     return names;
 }
 
@@ -51,8 +50,8 @@ SettingKey of_renders(gi::RenderOption const& o)
 std::vector<SettingKey> make_keys()
 {
     using S = Settings;
-    std::vector<SettingKey> keys{own("method", method_names(false), "light transport", &S::method),
-                                 own("compare", method_names(true),
+    std::vector<SettingKey> keys{own("method", gi::method_names(), "light transport", &S::method),
+                                 own("compare", method_names_or_none(),
                                      "second method, shown beside the first for comparison; empty = none",
                                      &S::compare)};
     keys[0].restarts = true;

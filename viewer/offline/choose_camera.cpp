@@ -1,5 +1,6 @@
 #include "viewer/offline/choose_camera.h"
 
+#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "viewer/offline/first_view.h"
 
@@ -24,14 +25,13 @@ gi::Camera with_fov(gi::Camera camera, std::optional<double> fov_deg)
 
 gi::Camera const& named_camera(gi::World const& world, std::string const& name)
 {
-    std::string known;
+    std::vector<std::string> known;
     for (gi::Camera const& c : world.cameras) {
         if (c.name == name) return c;
-        known += (known.empty() ? "" : ", ") + c.name;
+        known.push_back(c.name);
     }
     throw gi::InputError("there is no camera '" + name + "'", "the scene does not have it",
-                         known.empty() ? "it has none: give --look-from and --look-at"
-                                       : "choose one of: " + known);
+                         known.empty() ? "it has none: give --look-from and --look-at" : gi::suggest(name, known));
 }
 
 } // namespace

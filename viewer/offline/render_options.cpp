@@ -4,8 +4,10 @@
 #include "gi/filter/filter_names.h"
 #include "gi/kernel/device.h"
 #include "gi/methods/registry.h"
+#include "gi/scene/load/load.h"
 #include "gi/scene/model/camera.h"
 #include "viewer/base/arguments.h"
+#include "viewer/base/choices.h"
 #include "viewer/base/validators.h"
 #include "viewer/offline/frame_options.h"
 
@@ -100,9 +102,10 @@ void declare_lens_options(CLI::App& c, RenderOptions& o)
     c.add_option("--aperture-radius", o.aperture_radius_m,
                  "radius of a thin lens, m, for depth of field (default: the camera's, else 0, a pinhole)")
         ->check(in_range(0, gi::kWidestLens_m));
-    c.add_option("--focus-distance", o.focus_distance_m,
-                 "distance of the plane in focus along the view, m; needs an aperture radius above 0 (default: the\n"
-                 "camera's, else the distance of the point of --look-at, else of the middle of the scene)")
+    c.add_option(
+         "--focus-distance", o.focus_distance_m,
+         "distance of the plane in focus along the view, m; needs an aperture radius above 0 (default: the\n"
+         "camera's, else the distance of the point of --look-at, else of the middle of the scene)")
         ->check(in_range(gi::kNearestFocus_m, gi::kFarthestFocus_m));
 }
 
@@ -189,13 +192,15 @@ void check_method_options(CLI::App const& command, gi::RenderSettings const& set
 
 void declare_options(CLI::App& c, RenderOptions& o)
 {
-    c.add_option(
-         "SCENE", o.scene,
-         "glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or atrium, cornell, mirror, ring, avatar")
+    offer(c.add_option("SCENE", o.scene,
+                       "glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or atrium, cornell, "
+                       "mirror, ring, avatar"),
+          gi::built_in_scenes())
         ->required();
     std::string known;
     for (gi::Method const& m : gi::methods()) known += fmt::format("\n  {}: {}", m.name, m.summary);
-    c.add_option("--method", o.method, "light transport method:" + known)->capture_default_str();
+    offer(c.add_option("--method", o.method, "light transport method:" + known), gi::method_names())
+        ->capture_default_str();
     c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
     declare_view_options(c, o);
     declare_lens_options(c, o);
@@ -218,7 +223,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     declare_denoise(c, o);
     declare_option(c, o.settings, "seed");
     declare_option(c, o.settings, "threads");
-    c.add_option("--out", o.out, "EXR file for all layers, .exr (default: the scene's name)");
+    c.add_option("-o,--out", o.out, "EXR file for all layers, .exr (default: the scene's name)");
     c.add_flag("--half", o.half, "16-bit floats for layers for which they suffice");
     c.add_option("--png", o.png, "PNG file for the tone-mapped picture, .png");
     c.add_option("--exposure", o.exposure_ev, "in stops, for --png and --video")->check(in_range(-100, 100));

@@ -1,5 +1,6 @@
 #include "gi/scene/load/load.h"
 
+#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/load/assimp_import.h"
@@ -44,10 +45,14 @@ Scene load_scene(std::string const& file_or_name, Report& report)
     if (!std::filesystem::exists(file, error)) {
         for (BuiltIn const& b : kBuiltIn)
             if (file_or_name == b.name) return b.make();
+        bool const is_word = file_or_name.find_first_of("./") == file_or_name.npos;
+        std::string const near = suggest(is_word ? file_or_name : "", built_in_scenes());
         throw InputError("there is no scene '" + file_or_name + "'",
                          "no such file, and no built-in scene of that name",
-                         "give a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of frames, or one of: atrium, "
-                         "cornell, mirror, ring, avatar");
+                         near.starts_with("there are: ")
+                             ? "give a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of frames, or one of: " +
+                                   near.substr(near.find(':') + 2)
+                             : near);
     }
     if (std::filesystem::is_directory(file, error)) return load_mesh_sequence(file, report);
     if (file.filename() == "sequence.json")

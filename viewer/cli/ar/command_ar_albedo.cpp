@@ -123,7 +123,7 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
     c->add_option("session", a->session,
                   "with 'albedo: estimate' or 'texture: estimate' on the objects to estimate")
         ->required();
-    c->add_option("--out", a->out, "File for the albedos (default: the one that the session reads)");
+    c->add_option("-o,--out", a->out, "File for the albedos (default: the one that the session reads)");
     declare_poses(*c, a->read.poses);
     c->add_flag("--scene", a->scene, "Also estimate the scene's materials, if the session does not request it");
     c->add_option("--views", a->read.views, "Number of frames to compare, spread over the session")

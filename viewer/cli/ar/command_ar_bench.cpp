@@ -366,7 +366,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_flag("--light-albedo-unknown", a->light_check.unknown_albedo,
                 "Only the albedo of the paper is known, not that of table and things")
         ->needs(maps);
-    c->add_option("--out", a->out, "Folder for the tables, as JSON and CSV");
+    c->add_option("-o,--out", a->out, "Folder for the tables, as JSON and CSV");
     c->add_flag("--json", a->json, "Print the tables as JSON");
     c->footer(R"(Examples:
   lightwell ar bench --size 640x480 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table

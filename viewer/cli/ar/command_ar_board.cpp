@@ -64,7 +64,7 @@ void add_ar_board(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand("board", "Draw a marker board for printing, and write its map.");
     declare_board_arguments(*c, o->board);
     c->get_option("--squares")->required();
-    c->add_option("--out", o->out, "drawing to write: .svg (in mm) or .png")->required();
+    c->add_option("-o,--out", o->out, "drawing to write: .svg (in mm) or .png")->required();
     c->add_option("--markers", o->markers, "marker map to write (YAML), for ar run, track, calibrate and probe");
     c->add_option("--dpi", o->dpi, "dots per inch of a PNG")->check(in_range(20, 4800))->capture_default_str();
     c->add_option("--margin", o->margin_m, "white margin, m (default: one cell of a marker)")

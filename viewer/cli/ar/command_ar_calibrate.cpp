@@ -215,7 +215,7 @@ void add_ar_calibrate(CLI::App& ar, int& exit_code)
     c->add_option("--lens", o->lens, "lens model; automatic: the one that predicts unseen views best")
         ->check(CLI::IsMember({"automatic", "pinhole", "radial_tangential", "rational", "fisheye"}))
         ->capture_default_str();
-    c->add_option("--out", o->out, "calibration to write (YAML, readable by OpenCV)")->required();
+    c->add_option("-o,--out", o->out, "calibration to write (YAML, readable by OpenCV)")->required();
     c->add_option("--report", o->report, "HTML page: residuals, coverage, parameters");
     c->add_option("--every", o->every, "use only every Nth frame")
         ->check(CLI::Range(1, 100000))
@@ -225,9 +225,9 @@ void add_ar_calibrate(CLI::App& ar, int& exit_code)
         ->capture_default_str();
     c->add_flag("--stills", o->stills, "the frames are stills, as in a folder of pictures");
     c->footer(R"(Examples:
-  lightwell ar board --squares 7x5 --out board.svg --markers markers.yaml --views views
-  lightwell ar calibrate views --markers markers.yaml --lens radial_tangential --out camera.yaml --report report.html
-  lightwell ar calibrate views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
+  lightwell ar board --squares 7x5 --out board.svg --markers markers.yaml --views board_views
+  lightwell ar calibrate board_views --markers markers.yaml --lens radial_tangential --out camera.yaml --report report.html
+  lightwell ar calibrate board_views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
 
 From cameras, videos and sessions only frames in which the board is held still are used. A calibration that is
 replaced keeps its response, vignetting, colour and noise. Exit code 1: too few usable views, or most

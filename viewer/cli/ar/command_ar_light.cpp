@@ -131,7 +131,7 @@ void add_ar_light(CLI::App& ar, int& exit_code)
         "light", "Estimate the light of the place without a probe, from the shading of a session's real surfaces");
     c->add_option("session", a->session, "with real surfaces (real:) and, of some of them, their albedos")
         ->required();
-    c->add_option("--out", a->out, "Map to write, .exr; set it as the session's light: {map: FILE}")->required();
+    c->add_option("-o,--out", a->out, "Map to write, .exr; set it as the session's light: {map: FILE}")->required();
     declare_poses(*c, a->read.poses);
     CLI::Option* const views =
         c->add_option("--views", a->read.views, "Number of frames to compare, spread over the session")

@@ -118,14 +118,14 @@ void add_ar_map(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand(
         "map", "Make a map of features from a session whose camera poses are known, to track without markers");
     c->add_option("session", a->session, "Session whose frames follow each other, as in a video")->required();
-    c->add_option("--out", a->out, "File for the map, for pose.features of sessions")->required();
+    c->add_option("-o,--out", a->out, "File for the map, for pose.features of sessions")->required();
     declare_poses(*c, a->poses);
     c->add_option("--frames", a->frames, "Read at most this many frames; 0 = all (files only)")
         ->check(CLI::NonNegativeNumber);
     declare_require_found(*c, a->require_found);
     c->footer(R"(Example:
-  lightwell ar synthesize walk --quick --frames 12
-  lightwell ar map walk/session.yaml --out map.txt
+  lightwell ar synthesize mapped --quick --frames 12
+  lightwell ar map mapped/session.yaml --out map.txt
 
 Then, in the session: pose: {features: map.txt}. Exit code 1: nothing became a point, or as of lightwell ar run.)");
     c->callback([a, &exit_code] { exit_code = run_map(*a); });

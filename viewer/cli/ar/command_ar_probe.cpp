@@ -294,7 +294,7 @@ void add_ar_probe(CLI::App& ar, int& exit_code)
                   "brightness")
         ->check(in_range(0.05, 1));
     c->add_option("--stats", o->stats, "file for the result as JSON, with what is clipped and not to be trusted");
-    c->add_option("--out", o->out, "map to write: .exr, .hdr or .png (clipped at 1)")->required();
+    c->add_option("-o,--out", o->out, "map to write: .exr, .hdr or .png (clipped at 1)")->required();
     c->footer(R"(Example:
   lightwell ar probe a1.png a2.png b1.png b2.png --exposures 1/30,1/500 --calibration camera.yaml --markers markers.yaml
       --ball-radius 0.05 --out probe.exr

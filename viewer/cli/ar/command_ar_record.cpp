@@ -150,14 +150,14 @@ void add_ar_record(CLI::App& ar, int& exit_code)
     auto const o = std::make_shared<RecordOptions>();
     CLI::App* const c = ar.add_subcommand("record", "Record unchanged camera frames with their times.");
     declare_source_arguments(*c, o->source);
-    c->add_option("--out", o->out, "folder to create; must not exist")->required();
+    c->add_option("-o,--out", o->out, "folder to create; must not exist")->required();
     c->add_option("--frames", o->frames, "end after this many frames")->check(in_range(1, 1e9));
     c->add_option("--seconds", o->seconds, "end after this many seconds")->check(in_range(1e-3, 1e6));
     c->add_option("--calibration", o->calibration, "of the camera: it is checked and its name is stored");
     c->add_option("--note", o->note, "text stored with the session");
     c->add_flag("--json", o->json, "print the counts as JSON");
     c->footer(R"(Examples:
-  lightwell ar record counter --out walk --seconds 0.5
+  lightwell ar record counter --out recorded --seconds 0.5
   lightwell ar record counter --out short --frames 5 --size 320x240 --rate 60 --json
 
 Without --frames or --seconds it records until Ctrl-C. However it ends, all frames written so far can be played.

@@ -142,9 +142,9 @@ void add_ar_replay(CLI::App& ar, int& exit_code)
     c->add_flag("--check", o->check, "exit code 1 if a frame was lost or damaged");
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
-  lightwell ar record counter --out walk --frames 10
-  lightwell ar replay walk
-  lightwell ar replay walk --fast --json
+  lightwell ar record counter --out replayed --frames 10
+  lightwell ar replay replayed
+  lightwell ar replay replayed --fast --json
   lightwell ar replay counter --frames 100 --fast --check)");
     c->callback([o, &exit_code] { exit_code = run_replay(*o); });
 }

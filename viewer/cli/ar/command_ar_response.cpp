@@ -58,7 +58,7 @@ void add_ar_response(CLI::App& ar, int& exit_code)
     c->add_option("PICTURES", o->pictures, "pictures of a static scene from one place, 8 bits")->required();
     c->add_option("--exposures", o->exposures, "exposure time of each picture, s: 1/30,1/60,1/120")->required();
     c->add_option("--calibration", o->calibration, "calibration file to add it to")->required();
-    c->add_option("--out", o->out, "write to this file and leave --calibration unchanged");
+    c->add_option("-o,--out", o->out, "write to this file and leave --calibration unchanged");
     c->footer(R"(Example:
   lightwell ar response a.png b.png c.png --exposures 1/30,1/60,1/120 --calibration camera.yaml
 

@@ -242,7 +242,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     auto const run = std::make_shared<RunArguments>();
     CLI::App* const run_command = ar.add_subcommand("run", "Add virtual objects to frames, live or from files");
     add_session_options(*run_command, *run);
-    run_command->add_option("--out", run->out, "Folder for the composites, as PNG");
+    run_command->add_option("-o,--out", run->out, "Folder for the composites, as PNG");
     CLI::Option* const passes = run_command->add_option(
         "--passes", run->passes, "Folder for the parts of each composite, as multi-layer EXR (docs/ar.md)");
     run_command->add_option("--pass-bits", run->pass_bits, "Bits of the passes' radiance, 16 (default) or 32")
@@ -293,8 +293,8 @@ void add_ar_track(CLI::App& ar, int& exit_code)
         ar.add_subcommand("track", "Find the camera pose in each frame, with its confidence");
     add_session_options(*track_command, *track);
     track_command->footer(R"(Examples:
-  lightwell ar synthesize desk --frames 2 --size 640x480 --paths 2 --no-truth
-  lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv --require-found 90%
+  lightwell ar synthesize tracked --frames 2 --size 640x480 --paths 2 --no-truth
+  lightwell ar track tracked/session.yaml --fast --true-poses tracked/poses.csv --require-found 90%
 
 Exit code 1: no frame has a trusted pose, most frames were refused, or fewer have one than --require-found.)");
     track_command->callback([track, &exit_code] { exit_code = run_session(*track, true); });

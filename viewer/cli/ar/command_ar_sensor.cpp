@@ -26,7 +26,7 @@ struct SensorOptions {
 void declare_sensor_options(CLI::App& c, SensorOptions& o)
 {
     c.add_option("--calibration", o.calibration, "calibration file to add it to")->required();
-    c.add_option("--out", o.out, "write to this file and leave --calibration unchanged");
+    c.add_option("-o,--out", o.out, "write to this file and leave --calibration unchanged");
     c.add_option("--report", o.report, "HTML page with the fit and the measured values");
 }
 

@@ -65,8 +65,8 @@ void add_ar_synthesize(CLI::App& ar, int& exit_code)
     synthesize->add_flag("--apart", made->options.apart, "The camera goes another way around the table");
     synthesize->add_flag("--no-denoise", made->no_denoise, "Do not denoise the frames");
     synthesize->footer(R"(Examples:
-  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth
-  lightwell ar synthesize walk --quick --frames 4 --markers one
+  lightwell ar synthesize small_desk --frames 2 --size 160x120 --paths 4 --no-truth
+  lightwell ar synthesize one_marker --quick --frames 4 --markers one
 
 After the first frame it says how long the rest will take. The default, 30 frames with references at 640x480 and 4 paths,
 takes a minute or two on two cores; its noise is that of a cheap camera. For measurements take --paths 48.)");

@@ -299,7 +299,7 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
     declare_method_options(
         *c, o->render.settings, {"slhb"},
         {"device", "schedule", "look-ups", "shadows", "radiance-cache", "directions", "hit-buffer"});
-    c->add_option("--out", o->out, "folder for accuracy.json and accuracy.csv")->required();
+    c->add_option("-o,--out", o->out, "folder for accuracy.json and accuracy.csv")->required();
     c->add_flag("--json", o->render.json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench accuracy --scene cornell --directions icosahedron:80 --hit-buffers 32 --size 16x16 --seeds 2 --paths 8 --direction-paths 8 --reference-paths 32 --out accuracy

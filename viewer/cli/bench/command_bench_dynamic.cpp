@@ -58,7 +58,7 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
     declare_denoise(*c, o->render);
     declare_method_options(*c, o->render.settings, {"slhb"}, {"schedule"}); // which --structures sets
     declare_option(*c, o->render.settings, "threads");
-    c->add_option("--out", o->out, "folder for the tables")->required();
+    c->add_option("-o,--out", o->out, "folder for the tables")->required();
     c->add_flag("--json", o->render.json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench dynamic --triangles 2000 --frames 3 --size 16x16 --reference-paths 2 --out dynamic

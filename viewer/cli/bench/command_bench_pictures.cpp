@@ -1,5 +1,7 @@
 #include "gi/core/error.h"
+#include "gi/methods/registry.h"
 #include "viewer/base/arguments.h"
+#include "viewer/base/choices.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/validators.h"
 #include "viewer/bench/bench_record.h"
@@ -72,8 +74,9 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
          "names in the list, files or built-in scenes, comma-separated (default: all of the list)");
     list("--budgets", o->budgets, "per render, comma-separated: times, or paths per pixel (1path, 16paths)");
     list("--denoise", o->filters, "filters, comma-separated, as for lightwell render --denoise");
-    list("--methods", o->methods,
-         "comma-separated, as for lightwell bench sweep; all are compared with 'reference'");
+    offer(list("--methods", o->methods,
+               "comma-separated, as for lightwell bench sweep; all are compared with 'reference'"),
+          gi::method_names());
     c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
@@ -108,7 +111,7 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
         ->allow_extra_args(false);
     declare_method_options(*c, r.settings);
     declare_option(*c, r.settings, "threads");
-    c->add_option("--out", o->out, "folder for tables, pictures and pictures.html")->required();
+    c->add_option("-o,--out", o->out, "folder for tables, pictures and pictures.html")->required();
     c->add_flag("--resume", o->resume, "keep existing rows in the folder from the same program and settings");
     c->add_flag("--json", r.json, "print both tables as JSON");
     c->add_flag("--quiet", r.quiet, "no progress bar");

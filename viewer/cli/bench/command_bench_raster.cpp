@@ -284,7 +284,7 @@ void add_bench_raster(CLI::App& bench, int& exit_code)
     c->add_option("--repeats", o->repeats, "measurements of each time; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--out", o->out, "folder for raster.json and raster.csv")->required();
+    c->add_option("-o,--out", o->out, "folder for raster.json and raster.csv")->required();
     c->add_flag("--json", o->json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench raster --meshes 200 --samples 20000 --triangles 20000 --repeats 1 --out raster)");

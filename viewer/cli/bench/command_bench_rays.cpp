@@ -254,7 +254,7 @@ void add_bench_rays(CLI::App& bench, int& exit_code)
     c->add_option("--repeats", o->repeats, "rounds in which all are measured in turn; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--out", o->out, "folder for rays.json and rays.csv")->required();
+    c->add_option("-o,--out", o->out, "folder for rays.json and rays.csv")->required();
     c->add_flag("--json", o->render.json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench rays --scene cornell --directions icosahedron:80 --hit-buffer 64 --repeats 2 --out rays

@@ -75,7 +75,7 @@ void add_bench_report(CLI::App& bench, int& exit_code)
     c->add_option("DIR", o->folders,
                   "folder with tables of bench commands, and F.json, pictures and videos of render --stats F.json")
         ->required();
-    c->add_option("--out", o->out, "page to write, .html (default: DIR/report.html)");
+    c->add_option("-o,--out", o->out, "page to write, .html (default: DIR/report.html)");
     c->add_option("--title", o->page.title)->capture_default_str();
     c->add_option("--lead", o->page.lead, "text of a paragraph below the title");
     c->add_option("--next", o->page.next, "command to show at the end; repeatable")

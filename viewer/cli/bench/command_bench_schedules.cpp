@@ -197,7 +197,7 @@ void add_bench_schedules(CLI::App& bench, int& exit_code)
     c->add_option("--reference-paths", o->reference_paths, "paths per pixel of the reference")
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
-    c->add_option("--out", o->out, "folder for schedules.json and schedules.csv")->required();
+    c->add_option("-o,--out", o->out, "folder for schedules.json and schedules.csv")->required();
     c->add_flag("--json", o->json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench schedules --schedules stored,stored/16 --paths 1 --size 32x24 --frames 8 --reference-paths 4 --out schedules

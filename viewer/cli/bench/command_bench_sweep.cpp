@@ -1,4 +1,6 @@
 #include "gi/methods/registry.h"
+#include "gi/scene/load/load.h"
+#include "viewer/base/choices.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/bench/sweep.h"
@@ -39,12 +41,13 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     auto const list = [&](char const* name, std::vector<std::string>& values, std::string const& help) {
         return c->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
     };
-    list("--scene", o->scenes, "files or names, comma-separated")->required();
-    list("--methods", o->methods,
-         "comma-separated; methods:" + known +
-             "\n  slhb:auto, slhb:stored, slhb:streamed, slhb:temporal: slhb with this schedule"
-             "\n  vpl_imperfect:30%, vpl_slhb:icosahedron:80, vpl_ao:0.5, vpl_dao:0.5: with these points, "
-             "directions, radius (m)")
+    offer(list("--scene", o->scenes, "files or names, comma-separated"), gi::built_in_scenes())->required();
+    offer(list("--methods", o->methods,
+               "comma-separated; methods:" + known +
+                   "\n  slhb:auto, slhb:stored, slhb:streamed, slhb:temporal: slhb with this schedule"
+                   "\n  vpl_imperfect:30%, vpl_slhb:icosahedron:80, vpl_ao:0.5, vpl_dao:0.5: with these points, "
+                   "directions, radius (m)"),
+          gi::method_names())
         ->capture_default_str();
     list("--budgets", o->budgets, "times for a frame, comma-separated")->capture_default_str();
     RenderOptions& r = o->render;
@@ -63,7 +66,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     declare_denoise(*c, r);
     declare_method_options(*c, r.settings);
     declare_option(*c, r.settings, "threads");
-    c->add_option("--out", o->out, "folder for sweep.json, sweep.csv and the pictures")->required();
+    c->add_option("-o,--out", o->out, "folder for sweep.json, sweep.csv and the pictures")->required();
     c->add_flag("--json", r.json, "print the table as JSON");
     c->add_flag("--quiet", r.quiet, "no progress bar");
     c->footer(R"(Examples:

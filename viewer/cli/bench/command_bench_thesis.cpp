@@ -151,7 +151,7 @@ void add_bench_thesis(CLI::App& bench, int& exit_code)
     c->add_option("--repeats", o->repeats, "measurements of each time; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--out", o->out, "folder for thesis.json and thesis.csv")->required();
+    c->add_option("-o,--out", o->out, "folder for thesis.json and thesis.csv")->required();
     c->add_flag("--json", o->json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench thesis --size 16 --paths 2 --most-triangles 2000 --reference-paths 8 --out thesis

@@ -196,7 +196,7 @@ void add_bench_views(CLI::App& bench, int& exit_code)
         ->capture_default_str();
     c->add_option("--eye-distance", o->eye_distance_m, "distance of the eyes, m")->capture_default_str();
     c->add_option("--reference-paths", o->reference_paths, "paths per pixel")->capture_default_str();
-    c->add_option("--out", o->out, "folder for views.json, views.csv and pictures")->required();
+    c->add_option("-o,--out", o->out, "folder for views.json, views.csv and pictures")->required();
     c->add_flag("--json", o->json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench views --scene cornell --size 48x36 --frames 8 --reference-paths 16 --out views

@@ -2,6 +2,7 @@
 #include "gi/image_io/picture_file.h"
 #include "gi/metrics/compare.h"
 #include "viewer/base/arguments.h"
+#include "viewer/base/choices.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
 #include "viewer/cli/command_table.h"
@@ -86,8 +87,12 @@ void add_compare(CLI::App& app, int& exit_code)
     c->add_option("IMAGE", o->image, "EXR, HDR, PNG, JPEG, ...")->required();
     c->add_option("REFERENCE", o->reference, "reference; may be an integer factor larger or smaller")->required();
     std::string known;
-    for (gi::MetricInfo const& m : gi::metrics()) known += fmt::format("\n  {}: {}", m.name, m.meaning);
-    c->add_option("--metrics", o->metrics, "comma-separated; known metrics:" + known)
+    std::vector<std::string> names;
+    for (gi::MetricInfo const& m : gi::metrics()) {
+        known += fmt::format("\n  {}: {}", m.name, m.meaning);
+        names.emplace_back(m.name);
+    }
+    offer(c->add_option("--metrics", o->metrics, "comma-separated; known metrics:" + known), names)
         ->delimiter(',')
         ->allow_extra_args(false);
     c->add_option("--layer", o->layer, "layer to compare")->capture_default_str();

@@ -87,7 +87,7 @@ void declare_sky(CLI::App& generate, std::shared_ptr<GenerateOptions> const& o, 
     c->add_flag("--no-sun", o->no_sun, "omit the sun's disc; the ground is still lit by it");
     c->add_option("--ground-albedo", o->ground, "albedo below the horizon: one number or R,G,B (default: 0.2)");
     c->add_option("--size", o->sky_size, "width x height, texels")->capture_default_str();
-    c->add_option("--out", o->out, "EXR file to write (.exr)")->required();
+    c->add_option("-o,--out", o->out, "EXR file to write (.exr)")->required();
     c->callback([o, &exit_code] {
         check_ending(o->out, ".exr", "an OpenEXR picture", "end it with .exr");
         check_outputs({o->out}, {});
@@ -116,7 +116,7 @@ A scene with a sky is saved as three files: F.glb, F_sky.exr and F.yaml, which r
     using Make = std::function<gi::Scene()>;
     auto const add = [&](char const* name, char const* help, Make const& make) {
         CLI::App* const kind = c->add_subcommand(name, help);
-        kind->add_option("--out", o->out, "GLB file to write (.glb)")->required();
+        kind->add_option("-o,--out", o->out, "GLB file to write (.glb)")->required();
         kind->callback([o, make, &exit_code] {
             check_ending(o->out, ".glb", "a binary glTF scene", "end it with .glb");
             check_outputs({o->out}, {});

@@ -6,6 +6,7 @@
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/model/summary.h"
+#include "viewer/base/choices.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/validators.h"
@@ -193,14 +194,17 @@ void add_info(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<InfoOptions>();
     CLI::App* const c = app.add_subcommand("info", about("info"));
-    c->add_option("SCENE", o->scene,
-                  "scene file, folder of OBJ or PLY frames, or atrium, cornell, mirror, ring, avatar");
+    offer(c->add_option("SCENE", o->scene,
+                        "scene file, folder of OBJ or PLY frames, or atrium, cornell, mirror, ring, avatar"),
+          gi::built_in_scenes());
     c->add_option("--directions", o->directions,
                   "instead of a scene: a direction set FAMILY:COUNT; families are\n"
                   "icosahedron, octahedron, tetrahedron, uv_grid, halton, fibonacci");
     c->add_option("--png", o->png, "with --directions: PNG file for a drawing of them");
-    c->add_option("--method", o->methods,
-                  "say what these methods build, NAME[,NAME...]; without it: all whose plan depends on the scene")
+    offer(c->add_option(
+              "--method", o->methods,
+              "say what these methods build, NAME[,NAME...]; without it: all whose plan depends on the scene"),
+          gi::method_names())
         ->delimiter(',')
         ->allow_extra_args(false);
     c->add_option("--time", o->time_s, "animation time, s")->check(in_range(-1e9, 1e9));

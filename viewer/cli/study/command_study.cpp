@@ -112,7 +112,7 @@ void add_study(CLI::App& app, int& exit_code)
     plan->add_option("--participant", o->participant, "number, from 1")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    plan->add_option("--out", o->out, "file for the plan as a table (TSV)");
+    plan->add_option("-o,--out", o->out, "file for the plan as a table (TSV)");
     plan->add_option("--display-model", o->display_model,
                      "display model (study calibrate): prints pixels per degree and luminances");
     plan->add_flag("--json", o->json, "print JSON, without the steps");
@@ -124,7 +124,7 @@ void add_study(CLI::App& app, int& exit_code)
         ->add_option("NAME", o->example,
                      "visibility2026, pairs, active, staircase, sensitivity, rating or ar_paths")
         ->required();
-    example->add_option("--out", o->out, "file to write")->required();
+    example->add_option("-o,--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
     for (CommandRow const& c : commands()) // commands of the other program, for --help
@@ -139,8 +139,8 @@ void add_study(CLI::App& app, int& exit_code)
   lightwell study example visibility2026 --out visibility2026.yaml
   lightwell study check visibility2026.yaml
   lightwell study plan visibility2026.yaml --participant 3 --out plan.tsv
-  lightwell study simulate visibility2026.yaml --participants 1..2 --out simulated
-  lightwell study report simulated --out report.html
+  lightwell study simulate visibility2026.yaml --participants 1..2 --out sessions
+  lightwell study report sessions --out report.html
 
 A script and a participant always give the same plan, byte for byte. Doubtful choices, such as sessions of
 more than 60 minutes, are reported on stderr. docs/study.md describes every key of a script.)");

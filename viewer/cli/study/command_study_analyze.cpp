@@ -141,7 +141,7 @@ void add_study_analyze(CLI::App& study, int& exit_code)
         "analyze", "Analyse the records: exclusions, scales, thresholds, tests, timing, with uncertainties.");
     add_options(*analyze, *o);
     analyze->add_flag("--json", o->json, "print JSON");
-    analyze->add_option("--out", o->out, "folder for each table as CSV and the whole analysis as JSON");
+    analyze->add_option("-o,--out", o->out, "folder for each table as CSV and the whole analysis as JSON");
     analyze->callback([o, &exit_code] { exit_code = run_analyze(*o); });
     analyze->footer(R"(Examples:
   lightwell study example pairs --out pairs.yaml
@@ -153,7 +153,7 @@ void add_study_analyze(CLI::App& study, int& exit_code)
     CLI::App* const report =
         study.add_subcommand("report", "Write the same analysis as one HTML page with figures, also for print.");
     add_options(*report, *o);
-    report->add_option("--out", o->out, "file to write (HTML)")->required();
+    report->add_option("-o,--out", o->out, "file to write (HTML)")->required();
     report->callback([o, &exit_code] { exit_code = run_report(*o); });
     report->footer(R"(Examples:
   lightwell study example staircase --out staircase.yaml

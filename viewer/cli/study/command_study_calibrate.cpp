@@ -210,7 +210,7 @@ void add_study_calibrate(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<CalibrateOptions>();
     CLI::App* const c = study.add_subcommand("calibrate", about("study calibrate"));
-    c->add_option("--out", o->out, "display model to write (YAML, docs/displays.md)")->required();
+    c->add_option("-o,--out", o->out, "display model to write (YAML, docs/displays.md)")->required();
     c->add_option("--from", o->from, "display model to begin with; what is not measured now is kept");
     c->add_option("--luminance", o->luminance,
                   "photometer's readings (CSV: channel,value,cd_m2; values 0..1 or 0..255)");

@@ -161,7 +161,7 @@ void add_study_photodiode(CLI::App& study, int& exit_code)
     c->add_option("--most-lag-ms", o->settings.most_lag_ms, "a later flash belongs to no onset")
         ->check(CLI::Range(1.0, 10000.0))
         ->capture_default_str();
-    c->add_option("--out", o->out, "file for a row per onset (CSV)");
+    c->add_option("-o,--out", o->out, "file for a row per onset (CSV)");
     c->add_flag("--json", o->json, "print JSON");
     c->callback([o, &exit_code] { exit_code = run_photodiode(*o); });
     c->footer(R"(Example:

@@ -121,7 +121,7 @@ void add_study_power(CLI::App& study, int& exit_code)
     power->add_option("--seed", o->settings.seed, "seed of observers and answers")->capture_default_str();
     power->add_flag("--recovery", o->settings.has_recovery,
                     "compare the estimates with those of an experiment 20 times as large");
-    power->add_option("--out", o->out, "folder for power.csv, power.json and power.html (with a figure)");
+    power->add_option("-o,--out", o->out, "folder for power.csv, power.json and power.html (with a figure)");
     power->add_flag("--json", o->json, "print JSON");
     power->callback([o, &exit_code] { exit_code = run_power(*o); });
     power->footer(R"(Examples:

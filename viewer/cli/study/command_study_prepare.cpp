@@ -99,7 +99,7 @@ void add_study_prepare(CLI::App& study, int& exit_code)
     c->add_option("--font", o->font_px, "height of text in the window, px")
         ->check(CLI::Range(8, 200))
         ->capture_default_str();
-    c->add_option("--out", o->out, "folder for the pictures")->required();
+    c->add_option("-o,--out", o->out, "folder for the pictures")->required();
     c->add_option("--display-model", o->display_model, "display model of the monitor, for sizes in degrees");
     c->add_option("--threads", o->threads, "render threads, 0 = all")
         ->check(CLI::Range(0, 1024))

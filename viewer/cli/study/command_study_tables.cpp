@@ -65,7 +65,7 @@ The script is copied to records/code, where later commands find it.)");
     CLI::App* const exported =
         study.add_subcommand("export", "Export all trials as one table with a script for mixed models; SQLite.");
     add_records(*exported, *o);
-    exported->add_option("--out", o->out, "folder for CSV tables (Psych-DS) and analysis.R (lme4)");
+    exported->add_option("-o,--out", o->out, "folder for CSV tables (Psych-DS) and analysis.R (lme4)");
     exported->add_option("--sqlite", o->sqlite, "SQLite database to write, with the same tables");
     exported->callback([o, &exit_code] { exit_code = run_export(*o); });
     exported->footer(R"(Examples:

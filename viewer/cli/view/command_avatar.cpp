@@ -48,7 +48,7 @@ void add_avatar(CLI::App& app, int& exit_code)
     CLI::App* const map = avatar->add_subcommand(
         "map", "Propose which joints of a model are head, arms and legs, for view --avatar-joints.");
     map->add_option("FILE", *file, "skinned model, or avatar (built in)")->required();
-    map->add_option("--out", *out, "joint map to write (YAML); default: print it");
+    map->add_option("-o,--out", *out, "joint map to write (YAML); default: print it");
     map->callback([file, out, &exit_code] { exit_code = run_map(*file, *out); });
     char const* const examples = R"(Examples:
   lightwell avatar map avatar

@@ -222,7 +222,7 @@ void add_display(CLI::App& app, int& exit_code)
                      ".json or .xml (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui or\n"
                      "nDisplay's text) or .ndisplay")
         ->required();
-    import->add_option("--out", o->out, "display file to write")->required();
+    import->add_option("-o,--out", o->out, "display file to write")->required();
     import->add_option("--section", o->section, "Vrui only: name of the environment, usually that of a machine");
     import->add_option("--base", o->base, "Vrui only: configuration that FILE changes, usually its Vrui.cfg");
     import->callback([o, &exit_code] { exit_code = run_import(*o);
@@ -243,7 +243,7 @@ example
                  "planetarium.yaml,\n"
                  "cave.json, cave.pvx, cave.eqc, cave.cfg or cave.ndisplay")
     ->required();
-example->add_option("--out", o->out, "file to write")->required();
+example->add_option("-o,--out", o->out, "file to write")->required();
 example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
 display->footer(R"(Examples:

@@ -333,7 +333,7 @@ void add_walk(CLI::App& track, int& exit_code)
         track.add_subcommand("walk", "Write the poses of a generated walk on a circle with head turns.");
     c->add_option("--seconds", o->seconds, "duration")->check(in_range(0, 86400))->capture_default_str();
     c->add_option("--rate", o->rate_hz, "poses per second")->check(in_range(1, 1000))->capture_default_str();
-    c->add_option("--out", o->out, "file to write")->required();
+    c->add_option("-o,--out", o->out, "file to write")->required();
     c->footer(R"(Examples:
   lightwell track walk --seconds 1 --out walk.csv)");
     c->callback([o, &exit_code] { exit_code = run_walk(*o); });

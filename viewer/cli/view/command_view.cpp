@@ -1,11 +1,13 @@
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/scene/load/load.h"
 #include "study/display/model_file.h"
 #include "viewer/app/cluster_link.h"
 #include "viewer/app/hmd_program.h"
 #include "viewer/app/layout.h"
 #include "viewer/app/view_program.h"
 #include "viewer/base/arguments.h"
+#include "viewer/base/choices.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/port_options.h"
@@ -349,7 +351,8 @@ void add_view(CLI::App& app, int& exit_code)
 {
     auto const a = std::make_shared<ViewArguments>();
     CLI::App* const c = app.add_subcommand("view", about("view"));
-    c->add_option("scene", a->scene.scene, "scene file or name of a generated scene, as for render");
+    offer(c->add_option("scene", a->scene.scene, "scene file or name of a generated scene, as for render"),
+          gi::built_in_scenes());
     declare_view_options(*c, a->scene);
     c->add_option("--set", a->settings,
                   "KEY=VALUE, set before the first frame, e.g. stereo=anaglyph-dubois or device=cuda; repeatable")
@@ -385,7 +388,7 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_option("--replay", a->replay, "render a recording again, off-screen; --set changes settings");
     c->add_option("--paths", a->paths, "with --replay: paths per pixel and frame; 0 = as recorded")
         ->check(in_range(0, 1 << 20));
-    c->add_option("--out", a->out, "with --replay: frames of the first view, e.g. walk_%05d.png or .exr");
+    c->add_option("-o,--out", a->out, "with --replay: frames of the first view, e.g. walk_%05d.png or .exr");
     c->add_option("--video", a->video, "with --replay: video of the first view, .mkv (FFV1) or .mp4 (H.264)");
     c->add_option("--fps", a->fps, "frame rate of --video")->check(in_range(0.01, 1000))->capture_default_str();
     c->add_option("--screenshots", a->screenshots, "prefix of the files of screenshots (F2)");

@@ -1,0 +1,29 @@
+#pragma once
+// A user's own default values of options:
+//
+//   render: {size: 640x480, threads: 2}
+//   study run: {screen: 57}
+//
+// in $XDG_CONFIG_HOME/lightwell/config.yaml or ~/.config/lightwell/config.yaml; LIGHTWELL_CONFIG names another
+// file, or "none". What the command line says comes first.
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace viewer {
+
+/// The file that there is; empty = none. @throws InputError LIGHTWELL_CONFIG names a file that is not there
+std::string config_file();
+
+/// Options that the file adds to a call, as words after the command's name.
+/// @param app  with all commands; those of other programs may lack their options  @param words  the call, without
+/// the program  @throws InputError with its place: not YAML, no such command, no such option of this command
+std::vector<std::string> configured_options(CLI::App const& app, std::span<std::string const> words,
+                                            std::string const& file);
+
+} // namespace viewer
