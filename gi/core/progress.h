@@ -8,7 +8,7 @@
 
 namespace gi {
 
-/// Flag that stops a long computation at its next safe point. Set by the command line's SIGINT/SIGTERM handler.
+/// Flag that stops a long computation at its next safe point. Set by the command line's signal handler.
 class StopRequest {
 public:
     void request() { flag_.store(true, std::memory_order_relaxed); }

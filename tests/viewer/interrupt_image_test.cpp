@@ -8,14 +8,14 @@ namespace {
 // Some seconds of work: passes take half a second, and the signal has to come before the last one.
 constexpr char const* kLongRender = "render cornell --size 96x96 --paths 160 --quiet --threads 2 --out a.exr";
 
-void interrupt_and_resume(int signal)
+void interrupt_and_resume(int signal, int code)
 {
     TemporaryFolder const folder, undisturbed;
     Program program(words(kLongRender), folder.path());
     ASSERT_TRUE(program.wait_until_catches(signal, true));
     program.send(signal);
     Outcome const o = program.wait();
-    EXPECT_EQ(o.code, 130) << o.err;
+    EXPECT_EQ(o.code, code) << o.err;
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
     EXPECT_NE(o.err.find("--resume"), std::string::npos) << o.err;
     Outcome const again = run(kLongRender, folder.path());
@@ -32,9 +32,35 @@ void interrupt_and_resume(int signal)
     EXPECT_TRUE(file_text(folder / "a.exr") == whole) << "resumed and undisturbed pictures differ";
 }
 
-TEST(Interrupt, ControlC) { interrupt_and_resume(SIGINT); }
+TEST(Interrupt, ControlC) { interrupt_and_resume(SIGINT, 130); }
 
-TEST(Interrupt, Terminate) { interrupt_and_resume(SIGTERM); }
+TEST(Interrupt, Terminate) { interrupt_and_resume(SIGTERM, 143); }
+
+TEST(Interrupt, ClosedTerminal) { interrupt_and_resume(SIGHUP, 129); }
+
+/// The kernel and the shell both tell of a closed terminal.
+TEST(Interrupt, AClosedTerminalMayBeToldTwice)
+{
+    TemporaryFolder const folder;
+    Program program(words(kLongRender), folder.path());
+    ASSERT_TRUE(program.wait_until_catches(SIGHUP, true));
+    program.send(SIGHUP);
+    program.send(SIGHUP);
+    EXPECT_EQ(program.wait().code, 129);
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
+}
+
+TEST(Interrupt, NohupGoesOn)
+{
+    TemporaryFolder const folder;
+    auto const before = std::signal(SIGHUP, SIG_IGN); // as nohup does
+    Program program(words("render cornell --size 64x64 --paths 96 --quiet --out a.exr"), folder.path());
+    std::signal(SIGHUP, before);
+    ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
+    program.send(SIGHUP);
+    EXPECT_EQ(program.wait().code, 0);
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"a.exr"});
+}
 
 TEST(Interrupt, ASecondControlCEndsAtOnce)
 {

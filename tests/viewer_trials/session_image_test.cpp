@@ -188,7 +188,7 @@ TEST_F(Sessions, AnInterruptIsTheReason)
     ASSERT_TRUE(run.markers.wait_for("stimulus").is_object()) << run.program().errors();
     run.program().send(SIGINT);
     EXPECT_EQ(run.wait().code, 1);
-    EXPECT_EQ(run.reason(), "interrupted (SIGINT or SIGTERM)");
+    EXPECT_EQ(run.reason(), "interrupted (SIGINT, SIGTERM or SIGHUP)");
 }
 
 TEST_F(Sessions, TrialsThatAreDoneCountInABreakToo)

@@ -5,6 +5,7 @@
 #include "gi/core/file.h"
 #include "gi/core/progress.h"
 #include "viewer/base/interrupt.h"
+#include "viewer/base/standard_streams.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/command_tree.h"
@@ -151,10 +152,24 @@ int write_man_pages(CLI::App const& app, std::span<AddedCommand const> own, std:
     return 0;
 }
 
+/// Says so if results that were printed are lost.
+bool output_failed()
+{
+    std::string const why = finish_standard_output();
+    if (why.empty()) return false;
+    std::fputs(
+        ("lightwell: standard output cannot be written (" + why +
+         ") files that the command names are complete; read the rest with a pipe or a file that stays open\n")
+            .c_str(),
+        stderr);
+    return true;
+}
+
 } // namespace
 
 int run_program(int argc, char const* const* argv, std::span<AddedCommand const> own)
 {
+    guard_standard_streams();
     // Keep freed memory: each frame needs the same amount, and mapping it anew takes a quarter of a short frame.
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
@@ -170,7 +185,7 @@ int run_program(int argc, char const* const* argv, std::span<AddedCommand const>
   lightwell generate boxes --triangles 20000 --out boxes.glb
 
 Exit codes: 0 done, 1 a comparison failed or not all outputs could be written, 2 the input or the call is wrong,
-130 interrupted. Ctrl-C in `view` exits cleanly with code 0.)");
+128 + the signal interrupted: 130 Ctrl-C, 143 SIGTERM, 129 a closed terminal. Ctrl-C in `view` exits cleanly with code 0.)");
     setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); // silent: this program reports errors itself
     int exit_code = 0;
     add_commands(app, own, exit_code);
@@ -184,9 +199,7 @@ Exit codes: 0 done, 1 a comparison failed or not all outputs could be written, 2
         add_configured(app, words);
         std::ranges::reverse(words); // as CLI11 wants them
         app.parse(std::move(words));
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-            throw std::runtime_error("standard output could not be written");
-        return exit_code;
+        return output_failed() ? std::max(exit_code, 2) : exit_code;
     } catch (CLI::Success const& e) { // --help and --version
         return app.exit(e);
     } catch (CLI::ParseError const& e) {
@@ -197,13 +210,15 @@ Exit codes: 0 done, 1 a comparison failed or not all outputs could be written, 2
         return 2;
     } catch (gi::Interrupted const&) {
         std::fputs("lightwell: interrupted before a picture was rendered\n", stderr);
-        return kInterrupted;
+        return interrupted_code();
     } catch (std::bad_alloc const&) {
         std::fputs("lightwell: out of memory (the scene or the picture is too large for this machine) choose a "
                    "smaller one\n",
                    stderr);
         return 2;
     } catch (std::exception const& e) {
+        if (std::ferror(stdout) != 0 && output_failed()) // fmt::print throws then
+            return was_interrupted() ? interrupted_code() : 2;
         std::fputs(fmt::format("lightwell: internal error: {}\n", e.what()).c_str(), stderr);
         return 1;
     }

@@ -141,7 +141,7 @@ void TrialPresenter::between_frames()
     if (gaze_.is_open()) gaze_.poll(screen_->gaze_place(), now());
     if (options_.stop != nullptr && options_.stop->requested() && !should_end()) {
         experimenter_.note(now(), "abort", "the program was interrupted");
-        experimenter_.abort("interrupted (SIGINT or SIGTERM)");
+        experimenter_.abort("interrupted (SIGINT, SIGTERM or SIGHUP)");
     }
 }
 

@@ -374,7 +374,7 @@ private:
                         f_.range.count() - missing_ + rendered_, f_.range.count());
         say(done + (f_.exr ? "; the same command with --resume continues" : "; with --out they could be resumed"));
         if (has_video) say(fmt::format("'{}' contains the frames so far", f_.video));
-        return stop_.requested() ? kInterrupted : 1;
+        return stop_.requested() ? interrupted_code() : 1;
     }
 
     void print() const

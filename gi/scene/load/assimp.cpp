@@ -97,7 +97,7 @@ std::string try_import(Assimp::Importer& importer, std::filesystem::path const& 
     static_cast<void>(most_memory);
 #endif
     if (int const null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
-    for (int const s : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM}) signal(s, SIG_DFL);
+    for (int const s : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM, SIGHUP}) signal(s, SIG_DFL);
     Assimp::Importer importer;
     std::string const reason = try_import(importer, file, faces).substr(0, 4096);
     bool const told = write(reason_pipe, reason.data(), reason.size()) == ssize_t(reason.size());

@@ -97,10 +97,10 @@ int run_albedo(AlbedoArguments const& a)
     RealScene real = model_of(session.real, report);
     check_albedo_outputs(a, session, out, real);
     PosedFrames const seen = read_posed_frames(a.read, session, camera, stop, report);
-    if (stop.requested()) return kInterrupted;
+    if (stop.requested()) return interrupted_code();
     AlbedoEstimate estimate = estimate_albedos(std::move(real), PlaceLight(session).begin(), camera, seen.kept,
                                                a.settings, stop, report);
-    if (stop.requested()) return kInterrupted; // too few paths to keep
+    if (stop.requested()) return interrupted_code(); // too few paths to keep
     for (std::size_t k = 0; k < estimate.entries.size(); ++k) {
         if (estimate.textures[k].empty()) continue;
         estimate.entries[k].texture = texture_beside(out, k);

@@ -265,7 +265,7 @@ int run_bench(BenchArguments const& a)
     }
     keep({&stages, &curve, &table}, a);
     print_losses(report);
-    return stop.requested() ? kInterrupted : exit_code_of(shortfall(tally, required));
+    return stop.requested() ? interrupted_code() : exit_code_of(shortfall(tally, required));
 }
 
 int run_counter(BenchArguments const& a)
@@ -276,7 +276,7 @@ int run_counter(BenchArguments const& a)
     ChainChecked checked = check_chain({a.sizes, a.frames, a.window}, stop, report);
     keep({&checked.table}, a);
     print_losses(report);
-    if (stop.requested()) return kInterrupted;
+    if (stop.requested()) return interrupted_code();
     if (!checked.good) std::fputs("lightwell: what was shown does not match the records\n", stderr);
     return checked.good ? 0 : 1;
 }
@@ -289,7 +289,7 @@ int run_light_check(BenchArguments const& a)
     BenchTable table = measure_light_estimates(a.light_check, stop, report);
     keep({&table}, a);
     print_losses(report);
-    return stop.requested() ? kInterrupted : 0;
+    return stop.requested() ? interrupted_code() : 0;
 }
 
 int run(BenchArguments const& a)

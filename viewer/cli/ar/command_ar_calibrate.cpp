@@ -154,7 +154,7 @@ int run_calibrate(CalibrateOptions const& o)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     Search const s = search(*source, collector, find, o, stop);
-    if (stop.requested()) return kInterrupted;
+    if (stop.requested()) return interrupted_code();
     auto const& counts = collector.counts();
     fmt::print("{}; of {} frames examined, {} are new views, {} like others, {} show too little of the board, {} "
                "show it moving, {} cannot be decoded\n",

@@ -90,14 +90,14 @@ int run_light(LightArguments& a)
     ArCamera const camera = load_ar_camera(session.camera);
     RealScene real = model_of(session.real, report);
     PosedFrames const seen = read_posed_frames(a.read, session, camera, stop, report);
-    if (stop.requested()) return kInterrupted;
+    if (stop.requested()) return interrupted_code();
     if (seen.kept.empty() && a.read.only >= 0)
         throw gi::InputError(fmt::format("--frame {}", a.read.only),
                              "it does not exist or has no trusted camera pose",
                              "check with lightwell ar track --table");
     FrameLight const light =
         estimate_light(std::move(real), camera.model, camera.photometry, seen.kept, a.settings, stop, report);
-    if (stop.requested()) return kInterrupted;
+    if (stop.requested()) return interrupted_code();
     write_light(a.out, light, report);
     ordered_json j = json_of_light(light);
     j["frames"] = {{"compared", seen.kept.size()},

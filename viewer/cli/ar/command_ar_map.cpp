@@ -96,7 +96,7 @@ int run_map(MapArguments const& a)
     ArCamera const camera = load_ar_camera(session.camera);
     ar::MapBuilder builder(camera.model);
     FrameTally const tally = look(a, session, camera, builder, stop, report);
-    if (stop.requested()) return kInterrupted;
+    if (stop.requested()) return interrupted_code();
     ar::FeatureMap const& map = builder.finish();
     fmt::print("{}", describe(map, builder.counts(), tally));
     print_losses(report);

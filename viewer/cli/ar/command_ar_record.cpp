@@ -129,7 +129,7 @@ int run_record(RecordOptions const& o)
                    end.reason);
     if (broke_off || !writer.failure().empty()) return 1;
     // Without a limit, Ctrl-C is the normal end of a recording.
-    return stop.requested() && !r.limit_reached && (o.frames > 0 || o.seconds > 0) ? kInterrupted : 0;
+    return stop.requested() && !r.limit_reached && (o.frames > 0 || o.seconds > 0) ? interrupted_code() : 0;
 }
 
 } // namespace

@@ -124,7 +124,7 @@ int run_replay(ReplayOptions const& o)
         fmt::print("{}", to_text(played_json(p, source->description())));
     else
         print(p, source->description());
-    if (stop.requested()) return kInterrupted;
+    if (stop.requested()) return interrupted_code();
     return o.check && !p.losses().empty() ? 1 : 0;
 }
 

@@ -118,7 +118,7 @@ int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions con
     if (summary.frames.frames == 0 && !stop.requested())
         throw gi::InputError("no frame could be used", describe(summary.frames.left),
                              "check the session's frames");
-    if (stop.requested()) return kInterrupted;
+    if (stop.requested()) return interrupted_code();
     PassThroughCounts const& f = summary.frames;
     return exit_code_of(shortfall({f.frames, f.poses.found(), f.refused + f.left.refused},
                                   parse_share("--require-found", a.require_found)));
@@ -213,7 +213,7 @@ int run_session(RunArguments const& a, bool poses_only)
     if (summary.frames.empty() && !stop.requested())
         throw gi::InputError("no frame could be used", describe(summary.source), "check the session's frames");
     bool const was_closed = window && window->wants_close();
-    if (stop.requested()) return was_closed ? 0 : kInterrupted;
+    if (stop.requested()) return was_closed ? 0 : interrupted_code();
     return exit_code_of(shortfall(
         {summary.frames.size(), count_found(summary.frames), summary.refused + summary.source.refused}, required));
 }

@@ -34,7 +34,7 @@ int run_synthesize(SynthesizeArguments const& a)
     int const done = synthesize(o, stop, report);
     fmt::print("{}: {} of {} frames\n", (o.folder / "session.yaml").string(), done, o.frames);
     print_losses(report);
-    return stop.requested() ? kInterrupted : 0;
+    return stop.requested() ? interrupted_code() : 0;
 }
 
 } // namespace

@@ -38,7 +38,7 @@ int run(PicturesOptions const& o)
     if (!result.interrupted) return 0;
     fmt::print(stderr, "note: interrupted: the rows so far are saved; {}\n",
                o.interactive ? "the same command keeps only the references" : "add --resume to continue");
-    return kInterrupted;
+    return interrupted_code();
 }
 
 /// Defaults differ as each frame needs its own reference.

@@ -23,7 +23,7 @@ int run(SweepOptions const& o)
     std::fputs("note: interrupted: the rows so far are saved; the same command starts again, but keeps the "
                "reference pictures\n",
                stderr);
-    return kInterrupted;
+    return interrupted_code();
 }
 
 } // namespace

@@ -187,7 +187,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
          : settings.checkpoint.empty() ? "; with --out it could be resumed"
          : !result.resumable           ? "; its state could not be written, so it cannot be resumed"
                                        : "; the same command with --resume continues"));
-    return kInterrupted;
+    return interrupted_code();
 }
 
 int run(RenderOptions o)
@@ -212,7 +212,7 @@ int run(RenderOptions o)
                                 : render_frames(o, settings, denoise_settings, choice, work);
     } catch (RankInterrupted const&) {
         say("interrupted: " + what_stays);
-        return kInterrupted;
+        return interrupted_code();
     } catch (RankLoss const& e) {
         std::fputs(fmt::format("lightwell: {} stops: {}; {}\n", cluster.name(), e.what(), what_stays).c_str(),
                    stderr);

@@ -114,7 +114,7 @@ void add_study_check(CLI::App& study, int& exit_code)
             exit_code = run_check(*o);
         } catch (gi::Interrupted const&) {
             std::fputs("lightwell: interrupted before everything was checked\n", stderr);
-            exit_code = kInterrupted;
+            exit_code = interrupted_code();
         }
     });
     c->footer(R"(Example:

@@ -82,7 +82,7 @@ int run_power(PowerOptions& o)
                             {"power.json", study::power_json(study, p)},
                             {"power.html", study::power_page(s, study, p, version_text())}});
     std::fputs((o.json ? power_json(study, p) : power_text(study, p)).c_str(), stdout);
-    return study.is_complete ? 0 : kInterrupted;
+    return study.is_complete ? 0 : interrupted_code();
 }
 
 } // namespace

@@ -75,7 +75,7 @@ int run(PrepareOptions const& o)
         if (!leads) return 0;
     } catch (RankInterrupted const&) {
         fmt::print(stderr, "interrupted: complete stimuli are kept\n");
-        return kInterrupted;
+        return interrupted_code();
     } catch (RankLoss const& e) {
         fmt::print(stderr, "lightwell: {} stops: {}; complete stimuli are kept\n", cluster.name(), e.what());
         return 1;

@@ -143,7 +143,7 @@ int run_send(TrackOptions const& o)
         refused += !sender.send(p.bytes); // a missing receiver is reported only with the next packet
     }
     fmt::print("sent {} packets, left out {}, refused {}\n", sent, lost, refused);
-    return stop.requested() ? kInterrupted : 0;
+    return stop.requested() ? interrupted_code() : 0;
 }
 
 char const* name_of(TrackState s)

@@ -306,7 +306,7 @@ int run_replay(ViewArguments const& a)
     if (!loss.empty()) say(loss);
     std::fflush(stdout);
     print_losses(report);
-    return done.interrupted ? kInterrupted : done.other > 0 ? 1 : 0;
+    return done.interrupted ? interrupted_code() : done.other > 0 ? 1 : 0;
 }
 
 /// Throws if an option is given that has no effect in the chosen mode.

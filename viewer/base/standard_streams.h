@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+
+namespace viewer {
+
+/// Makes it safe to open files and to print: where standard input, output or error are closed, the next file that
+/// is opened would get what is printed, so a device that cannot be written takes their place; and when the reader
+/// of a pipe goes away, the write fails instead of ending the program (SIGPIPE).
+void guard_standard_streams();
+
+/// Writes out what is buffered. @returns why standard output could not be written, now or earlier; empty = it was
+std::string finish_standard_output();
+
+} // namespace viewer
