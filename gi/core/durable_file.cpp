@@ -27,23 +27,43 @@ struct Descriptor {
     }
 };
 
+/// Returns errno, 0 = all is written.
+int write_all(int fd, std::string_view text)
+{
+    for (std::size_t at = 0; at < text.size();) {
+        ssize_t const n = ::write(fd, text.data() + at, text.size() - at);
+        if (n > 0) at += std::size_t(n);
+        if (n < 0 && errno != EINTR) return errno;
+        if (n == 0) return ENOSPC;
+    }
+    return 0;
+}
+
+/// Gives a file that was opened without a name the name of a temporary file. Returns errno.
+int name_file(int fd, fs::path const& temporary)
+{
+    ::unlink(temporary.c_str());
+    std::string const opened = "/proc/self/fd/" + std::to_string(fd);
+    return ::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, temporary.c_str(), AT_SYMLINK_FOLLOW) == 0 ? 0 : errno;
+}
+
 } // namespace
 
-void write_durably(fs::path const& file, std::string_view text)
+void write_durably(fs::path const& file, std::string_view text) { write_durably(file, {&text, 1}); }
+
+void write_durably(fs::path const& file, std::span<std::string_view const> parts)
 {
     fs::path const folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     fs::path const temporary = folder / ("." + file.filename().string() + ".tmp-" + std::to_string(getpid()));
     int failure = 0;
     {
-        Descriptor const out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+        Descriptor out{::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666)};
+        bool const is_nameless = out.fd >= 0;
+        if (!is_nameless) out.fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
         if (out.fd < 0) throw cannot("the file cannot be written", file, errno);
-        for (std::size_t at = 0; at < text.size() && failure == 0;) {
-            ssize_t const n = ::write(out.fd, text.data() + at, text.size() - at);
-            if (n > 0) at += std::size_t(n);
-            if (n < 0 && errno != EINTR) failure = errno;
-            if (n == 0) failure = ENOSPC;
-        }
+        for (std::size_t k = 0; k < parts.size() && failure == 0; ++k) failure = write_all(out.fd, parts[k]);
         if (failure == 0 && ::fsync(out.fd) != 0) failure = errno;
+        if (failure == 0 && is_nameless) failure = name_file(out.fd, temporary);
     }
     if (failure == 0 && ::rename(temporary.c_str(), file.c_str()) != 0) failure = errno;
     if (failure != 0) {

@@ -45,10 +45,10 @@ std::string channel_name(Layer const& layer, int c)
     return beauty ? suffix : layer.name + "." + suffix;
 }
 
-std::vector<half> to_half(Layer const& layer, Report& report)
+/// @param clamped  is raised by the number of clamped values
+std::vector<half> to_half(Layer const& layer, std::uint64_t& clamped)
 {
     std::vector<half> values(layer.data.size());
-    std::uint64_t clamped = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         float v = layer.data[i];
         if (std::abs(v) > kLargestHalf && std::isfinite(v)) {
@@ -57,7 +57,6 @@ std::vector<half> to_half(Layer const& layer, Report& report)
         }
         values[i] = half(v);
     }
-    report.lose("values clamped to half float", clamped, "layer '" + layer.name + "'");
     return values;
 }
 
@@ -81,6 +80,30 @@ void add(ExrAttributes const& a, Imf::Header& header)
     if (a.world_to_ndc) Imf::addWorldToNDC(header, matrix_of(*a.world_to_ndc));
 }
 
+/// One part of the file: a layer.
+struct Part {
+    Imf::OutputPart out;
+    bool is_single = true;
+    std::uint64_t clamped = 0;
+
+    /// Writes the next rows. @param first  number of the first
+    void write(Layer const& layer, int width, int first, int count)
+    {
+        std::vector<half> const halves = is_single ? std::vector<half>() : to_half(layer, clamped);
+        std::size_t const value = is_single ? sizeof(float) : sizeof(half);
+        std::size_t const pixel = value * std::size_t(layer.channels), row = pixel * std::size_t(width);
+        char const* const base = is_single ? reinterpret_cast<char const*>(layer.data.data())
+                                           : reinterpret_cast<char const*>(halves.data());
+        Imf::FrameBuffer buffer;
+        for (int c = 0; c < layer.channels; ++c)
+            buffer.insert(channel_name(layer, c),
+                          Imf::Slice::Make(is_single ? Imf::FLOAT : Imf::HALF, base + std::size_t(c) * value,
+                                           Imath::V2i(0, first), width, count, pixel, row));
+        out.setFrameBuffer(buffer);
+        out.writePixels(count);
+    }
+};
+
 } // namespace
 
 std::optional<ExrAttributes::TimeCode> time_code_of(std::uint64_t frame, double frames_per_s)
@@ -97,10 +120,18 @@ std::optional<ExrAttributes::TimeCode> time_code_of(std::uint64_t frame, double 
 void write_exr(std::filesystem::path const& file, Picture const& picture, PixelType type, Report& report,
                ExrAttributes const& attributes)
 {
+    write_exr(file, rows_of(picture), type, report, attributes);
+}
+
+void write_exr(std::filesystem::path const& file, PictureRows const& picture, PixelType type, Report& report,
+               ExrAttributes const& attributes)
+{
+    auto const count_from = [&](int first) { return std::min(kRowsAtOnce, picture.height - first); };
+    Picture rows = picture.read(0, count_from(0));
     std::vector<Imf::Header> headers;
-    std::vector<std::vector<half>> halves(picture.layers.size());
-    for (std::size_t l = 0; l < picture.layers.size(); ++l) {
-        Layer const& layer = picture.layers[l];
+    auto const is_single = [&](Layer const& l) { return type == PixelType::single || needs_single(l.name); };
+    for (std::size_t l = 0; l < rows.layers.size(); ++l) {
+        Layer const& layer = rows.layers[l];
         Imf::Header header(picture.width, picture.height);
         header.setName(layer.name);
         header.setType(Imf::SCANLINEIMAGE);
@@ -110,31 +141,23 @@ void write_exr(std::filesystem::path const& file, Picture const& picture, PixelT
         if (l == 0)
             for (auto const& [key, value] : picture.metadata)
                 header.insert(std::string(kMetadataPrefix) + key, Imf::StringAttribute(value));
-        bool const single = type == PixelType::single || needs_single(layer.name);
-        if (!single) halves[l] = to_half(layer, report);
         for (int c = 0; c < layer.channels; ++c)
-            header.channels().insert(channel_name(layer, c), Imf::Channel(single ? Imf::FLOAT : Imf::HALF));
+            header.channels().insert(channel_name(layer, c),
+                                     Imf::Channel(is_single(layer) ? Imf::FLOAT : Imf::HALF));
         headers.push_back(header);
     }
     write_by_rename(file, [&](std::filesystem::path const& temporary) {
         Imf::MultiPartOutputFile out(temporary.c_str(), headers.data(), int(headers.size()), false, 0);
-        for (std::size_t l = 0; l < picture.layers.size(); ++l) {
-            Layer const& layer = picture.layers[l];
-            bool const single = halves[l].empty();
-            std::size_t const value = single ? sizeof(float) : sizeof(half);
-            std::size_t const pixel = value * std::size_t(layer.channels),
-                              row = pixel * std::size_t(picture.width);
-            char const* const base = single ? reinterpret_cast<char const*>(layer.data.data())
-                                            : reinterpret_cast<char const*>(halves[l].data());
-            Imf::FrameBuffer buffer;
-            for (int c = 0; c < layer.channels; ++c)
-                buffer.insert(channel_name(layer, c),
-                              Imf::Slice::Make(single ? Imf::FLOAT : Imf::HALF, base + std::size_t(c) * value,
-                                               Imath::V2i(0), picture.width, picture.height, pixel, row));
-            Imf::OutputPart part(out, int(l));
-            part.setFrameBuffer(buffer);
-            part.writePixels(picture.height);
+        std::vector<Part> parts;
+        for (std::size_t l = 0; l < rows.layers.size(); ++l)
+            parts.push_back({Imf::OutputPart(out, int(l)), is_single(rows.layers[l])});
+        for (int y = 0; y < picture.height; y += kRowsAtOnce) {
+            if (y > 0) rows = picture.read(y, count_from(y));
+            for (std::size_t l = 0; l < parts.size(); ++l)
+                parts[l].write(rows.layers[l], picture.width, y, count_from(y));
         }
+        for (std::size_t l = 0; l < parts.size(); ++l)
+            report.lose("values clamped to half float", parts[l].clamped, "layer '" + rows.layers[l].name + "'");
     });
 }
 

@@ -1,5 +1,7 @@
 #include "gi/image_io/picture.h"
 
+#include "gi/image_io/picture_rows.h"
+
 #include <algorithm>
 
 namespace gi {
@@ -19,6 +21,23 @@ Layer& Picture::add(std::string const& name, int channels)
 {
     layers.push_back({name, channels, std::vector<float>(pixels() * std::size_t(channels), 0.0f)});
     return layers.back();
+}
+
+PictureRows rows_of(Picture const& picture)
+{
+    auto const read = [&picture](int first, int count) {
+        Picture some;
+        some.width = picture.width;
+        some.height = count;
+        for (Layer const& layer : picture.layers) {
+            std::size_t const row = std::size_t(picture.width) * std::size_t(layer.channels);
+            auto const begin = layer.data.begin() + std::ptrdiff_t(row * std::size_t(first));
+            some.layers.push_back(
+                {layer.name, layer.channels, {begin, begin + std::ptrdiff_t(row * std::size_t(count))}});
+        }
+        return some;
+    };
+    return {picture.width, picture.height, read, picture.metadata};
 }
 
 } // namespace gi

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -76,21 +75,5 @@ Picture decode_picture(std::span<unsigned char const> bytes, std::string const& 
 }
 
 Picture read_picture(std::filesystem::path const& file) { return decode_picture(read_bytes(file), file.string()); }
-
-void write_png(std::filesystem::path const& file, int width, int height, std::span<unsigned char const> bytes)
-{
-    bool const alpha = bytes.size() == 4 * std::size_t(width) * std::size_t(height);
-    cv::Mat const rgb(height, width, alpha ? CV_8UC4 : CV_8UC3, const_cast<unsigned char*>(bytes.data()));
-    cv::Mat bgr;
-    cv::cvtColor(rgb, bgr, alpha ? cv::COLOR_RGBA2BGRA : cv::COLOR_RGB2BGR);
-    std::vector<unsigned char> encoded;
-    cv::imencode(".png", bgr, encoded);
-    write_by_rename(file, [&](std::filesystem::path const& temporary) {
-        std::ofstream out(temporary, std::ios::binary);
-        out.exceptions(std::ios::failbit | std::ios::badbit);
-        out.write(reinterpret_cast<char const*>(encoded.data()), std::streamsize(encoded.size()));
-        out.flush();
-    });
-}
 
 } // namespace gi

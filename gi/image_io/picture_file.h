@@ -3,7 +3,7 @@
 // reader never sees half a picture.
 
 #include "gi/core/report.h"
-#include "gi/image_io/picture.h"
+#include "gi/image_io/picture_rows.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -39,6 +39,9 @@ std::optional<ExrAttributes::TimeCode> time_code_of(std::uint64_t frame, double 
 /// report.
 void write_exr(std::filesystem::path const& file, Picture const& picture, PixelType type, Report& report,
                ExrAttributes const& attributes = {});
+/// The same picture, read kRowsAtOnce rows at a time: the same file, in little memory.
+void write_exr(std::filesystem::path const& file, PictureRows const& picture, PixelType type, Report& report,
+               ExrAttributes const& attributes = {});
 
 /// Reads any OpenEXR image: scan-line or tiled (level 0), one or several parts, half/float/uint; sub-sampled
 /// channels are rejected. Channels are grouped into layers by their name up to the last '.'; the group without a
@@ -57,5 +60,8 @@ Picture decode_picture(std::span<unsigned char const> bytes, std::string const& 
 
 /// 8-bit sRGB PNG. Three display-encoded bytes per pixel, or four with alpha (colours not premultiplied).
 void write_png(std::filesystem::path const& file, int width, int height, std::span<unsigned char const> bytes);
+/// The same, kRowsAtOnce rows at a time, which `rows` gives as such bytes.
+void write_png(std::filesystem::path const& file, int width, int height,
+               std::function<std::vector<unsigned char>(int first, int count)> const& rows);
 
 } // namespace gi

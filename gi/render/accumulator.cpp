@@ -1,81 +1,182 @@
 #include "gi/render/accumulator.h"
 
-#include "gi/core/error.h"
-#include "gi/core/file.h"
+#include "gi/core/rng.h"
 
 #include <algorithm>
-#include <cstring>
-#include <fstream>
+#include <bit>
 #include <functional>
+#include <limits>
+#include <memory>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 namespace gi {
 
+namespace {
+
+/// Rounds numbers to single precision by chance, up or down, so that the error has mean 0: sums over many paths of
+/// small contributions keep them (Croci et al. 2022, "Stochastic rounding", sec. 2). What is representable stays
+/// as it is. The chance is a hash of the path, so that the same paths give the same bits.
+class UnbiasedRounding {
+public:
+    UnbiasedRounding(PathSample const& s, std::uint32_t paths)
+        : state_(mix_bits(std::uint64_t(paths) << 32 ^ std::bit_cast<std::uint32_t>(s.position.x) ^
+                          std::uint64_t(std::bit_cast<std::uint32_t>(s.radiance[2].y)) << 16))
+    {
+    }
+    float operator()(double value)
+    {
+        constexpr std::uint64_t kBeyondSingle = (std::uint64_t(1) << 29) - 1; // bits of a double's significand
+        state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+        std::uint64_t const bits = std::bit_cast<std::uint64_t>(value) + (state_ >> 35);
+        return float(std::bit_cast<double>(bits & ~kBeyondSingle));
+    }
+
+private:
+    std::uint64_t state_;
+};
+
+void move_to(vec3& mean, vec3 value, float weight) { mean += (value - mean) * weight; }
+
+double root(double squares) { return std::min(std::sqrt(squares), double(std::numeric_limits<float>::max())); }
+
+} // namespace
+
+void PixelMeans::add(PathSample const& s, std::uint32_t paths)
+{
+    UnbiasedRounding round(s, paths);
+    double const weight = 1 / double(paths);
+    dvec3 const of_path = dvec3(s.radiance[0]) + dvec3(s.radiance[1]) + dvec3(s.radiance[2]), before = color();
+    for (std::size_t i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c) {
+            double const mean = double(radiance[i][c]);
+            radiance[i][c] = round(mean + (double(s.radiance[i][c]) - mean) * weight);
+        }
+    dvec3 const after = color(), d(deviation);
+    for (int c = 0; c < 3; ++c)
+        deviation[c] =
+            round(root(d[c] * d[c] + std::max(0.0, (of_path[c] - before[c]) * (of_path[c] - after[c]))));
+    if (!s.hit) return;
+    float const of_hits = 1 / float(++hits);
+    move_to(albedo, s.albedo, of_hits);
+    move_to(normal, s.normal, of_hits);
+    move_to(position, s.position, of_hits);
+    depth += (s.depth - depth) * of_hits;
+}
+
+void PixelMeans::add(PixelMeans const& s, std::uint32_t mine, std::uint32_t theirs)
+{
+    auto const join = [](auto& mean, auto const& other, double share) {
+        mean = std::remove_reference_t<decltype(mean)>(dvec3(mean) + (dvec3(other) - dvec3(mean)) * share);
+    };
+    double const n = double(mine) + double(theirs), share = double(theirs) / n;
+    dvec3 const apart = s.color() - color(), a(deviation), b(s.deviation);
+    for (int c = 0; c < 3; ++c)
+        deviation[c] = float(root(a[c] * a[c] + b[c] * b[c] + apart[c] * apart[c] * double(mine) * share));
+    for (std::size_t i = 0; i < 3; ++i) join(radiance[i], s.radiance[i], share);
+    if (s.hits == 0) return;
+    double const of_hits = double(s.hits) / (double(hits) + double(s.hits));
+    join(albedo, s.albedo, of_hits);
+    join(normal, s.normal, of_hits);
+    join(position, s.position, of_hits);
+    depth = float(depth + (double(s.depth) - depth) * of_hits);
+    hits += s.hits;
+}
+
+PictureShape picture_shape(World const& world, PictureLayers layers)
+{
+    return {world.origin, world.scene->background.kind == BackgroundKind::transparent, layers};
+}
+
 void Accumulator::add(Accumulator const& other)
 {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, other.paths > 0 ? pixels.size() : 0, 4096),
                       [&](auto const& range) {
-                          for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                              if (paths == 0) pixels[i] = PixelSums{};
-                              pixels[i].add(other.pixels[i]);
-                          }
+                          for (std::size_t i = range.begin(); i != range.end(); ++i)
+                              if (paths == 0)
+                                  pixels[i] = other.pixels[i];
+                              else
+                                  pixels[i].add(other.pixels[i], paths, other.paths);
                       });
     paths += other.paths;
     counts += other.counts;
     seconds = std::max(seconds, other.seconds); // the two were rendered in parallel
 }
 
-dvec3 Accumulator::variance_of_mean(PixelSums const& p) const
+dvec3 Accumulator::variance_of_mean(PixelMeans const& p) const
 {
     if (paths < 2) return dvec3{0};
-    double const n = double(paths);
-    dvec3 const m = mean(p);
-    return glm::max(dvec3{0}, (p.color_squared / n - m * m) / (n - 1));
+    dvec3 const d(p.deviation);
+    return d * d / (double(paths) * (double(paths) - 1));
 }
 
 namespace {
 
-/// Means over windows of (2 r + 1)^2 values, fewer at the picture's border.
-std::vector<vec3> window_means(std::vector<vec3> values, int width, int height, int r)
-{
-    std::vector<vec3> rows(values.size());
-    auto const along = [](std::vector<vec3> const& from, std::vector<vec3>& to, int lines, int n, int step,
-                          int line_step, int reach) {
-        tbb::parallel_for(0, lines, [&](int line) {
-            for (int k = 0; k < n; ++k) {
-                int const first = std::max(0, k - reach), last = std::min(n - 1, k + reach);
-                vec3 sum{0};
-                for (int j = first; j <= last; ++j) sum += from[std::size_t(line * line_step + j * step)];
-                to[std::size_t(line * line_step + k * step)] = sum / float(last - first + 1);
-            }
-        });
+/// Means over windows of (2 reach + 1)^2 pixels, fewer at the picture's border, of one row after the other.
+class WindowMeans {
+public:
+    WindowMeans(Accumulator const& sums, int reach) : sums_(sums), reach_(reach), rows_(std::size_t(2 * reach + 1))
+    {
+    }
+
+    /// @param row  the next one after the row of the last call, or any
+    std::vector<vec3> const& of_row(int row)
+    {
+        int const first = std::max(0, row - reach_), last = std::min(sums_.height - 1, row + reach_);
+        for (int y = first; y <= last; ++y)
+            if (Row& kept = rows_[std::size_t(y % int(rows_.size()))]; kept.y != y) read(kept, y);
+        means_.assign(std::size_t(sums_.width), vec3{0});
+        for (int y = first; y <= last; ++y)
+            for (std::size_t x = 0; x < means_.size(); ++x)
+                means_[x] += rows_[std::size_t(y % int(rows_.size()))].means[x];
+        for (vec3& m : means_) m /= float(last - first + 1);
+        return means_;
+    }
+
+private:
+    struct Row {
+        int y = -1;
+        std::vector<vec3> means; ///< over 2 reach + 1 pixels of the row
     };
-    along(values, rows, height, width, 1, width, r);
-    along(rows, values, width, height, width, 1, r);
-    return values;
-}
+    void read(Row& row, int y)
+    {
+        row.y = y;
+        row.means.resize(std::size_t(sums_.width));
+        PixelMeans const* const pixels = &sums_.pixels[std::size_t(y) * std::size_t(sums_.width)];
+        for (int x = 0; x < sums_.width; ++x) {
+            int const first = std::max(0, x - reach_), last = std::min(sums_.width - 1, x + reach_);
+            vec3 sum{0};
+            for (int k = first; k <= last; ++k) sum += vec3(pixels[k].color());
+            row.means[std::size_t(x)] = sum / float(last - first + 1);
+        }
+    }
+
+    Accumulator const& sums_;
+    int reach_;
+    std::vector<Row> rows_; ///< row y in element y mod their number
+    std::vector<vec3> means_;
+};
 
 } // namespace
 
 double Accumulator::relative_mse() const
 {
+    constexpr int kReach = 2, kRows = 16;
     if (paths < 2) return 0;
-    std::vector<vec3> means(pixels.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), [&](auto const& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) means[i] = vec3(mean(pixels[i]));
-    });
-    constexpr int kReach = 2;
-    means = window_means(std::move(means), width, height, kReach);
-    auto const sum_of = [&](tbb::blocked_range<std::size_t> const& range, double sum) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            dvec3 const m(means[i]), v = variance_of_mean(pixels[i]) / (m * m + 0.01);
-            sum += v.x + v.y + v.z;
+    auto const sum_of = [&](tbb::blocked_range<int> const& range, double sum) {
+        WindowMeans windows(*this, kReach);
+        for (int y = range.begin(); y != range.end(); ++y) {
+            std::vector<vec3> const& means = windows.of_row(y);
+            for (std::size_t x = 0; x < means.size(); ++x) {
+                dvec3 const m(means[x]),
+                    v = variance_of_mean(pixels[std::size_t(y) * means.size() + x]) / (m * m + 0.01);
+                sum += v.x + v.y + v.z;
+            }
         }
         return sum;
     };
-    double const sum = tbb::parallel_deterministic_reduce(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096),
-                                                          0.0, sum_of, std::plus<>());
+    double const sum =
+        tbb::parallel_deterministic_reduce(tbb::blocked_range<int>(0, height, kRows), 0.0, sum_of, std::plus<>());
     return sum / (3.0 * double(pixels.size()));
 }
 
@@ -105,38 +206,42 @@ struct Targets {
 };
 
 /// Writes pixel i. Surface layers are averages over the paths that hit a surface, and 0 if none did.
-void put_pixel(Accumulator const& a, World const& world, PixelSums const& p, std::size_t i, Targets const& to)
+void put_pixel(Accumulator const& a, dvec3 origin, PixelMeans const& p, std::size_t i, Targets const& to)
 {
-    double const n = double(a.paths);
     auto const put = [i](float* layer, dvec3 v) {
         for (int c = 0; c < 3; ++c) layer[3 * i + std::size_t(c)] = float(v[c]);
     };
     bool const hit = p.hits > 0;
-    put(to.color, (p.radiance[0] + p.radiance[1] + p.radiance[2]) / n);
-    if (to.alpha != nullptr) to.alpha[i] = float(p.hits / n);
-    to.depth[i] = hit ? float(p.depth / p.hits) : 0.0f;
+    put(to.color, p.color());
+    if (to.alpha != nullptr) to.alpha[i] = float(double(p.hits) / double(a.paths));
+    to.depth[i] = hit ? p.depth : 0.0f;
     if (to.variance == nullptr) return;
-    for (std::size_t k = 0; k < 3; ++k) put(to.parts[k], p.radiance[k] / n);
+    for (std::size_t k = 0; k < 3; ++k) put(to.parts[k], p.radiance[k]);
     put(to.variance, a.variance_of_mean(p));
-    double const length = glm::length(p.normal);
-    put(to.albedo, hit ? p.albedo / p.hits : dvec3{0});
-    put(to.normal, hit && length > 0 ? p.normal / length : dvec3{0});
-    put(to.position, hit ? p.position / p.hits + world.origin : dvec3{0});
+    double const length = glm::length(dvec3(p.normal));
+    put(to.albedo, hit ? dvec3(p.albedo) : dvec3{0});
+    put(to.normal, hit && length > 0 ? dvec3(p.normal) / length : dvec3{0});
+    put(to.position, hit ? dvec3(p.position) + origin : dvec3{0});
 }
 
 } // namespace
 
 Picture Accumulator::picture(World const& world, PictureLayers layers) const
 {
+    return rows(picture_shape(world, layers), 0, height);
+}
+
+Picture Accumulator::rows(PictureShape const& shape, int first, int count) const
+{
     Picture out;
     out.width = width;
-    out.height = height;
+    out.height = count;
     auto const add = [&](char const* name, int channels) { out.layers.push_back({name, channels, {}}); };
     add("color", 3);
-    bool const all = layers == PictureLayers::all;
+    bool const all = shape.layers == PictureLayers::all;
     if (all)
         for (char const* const name : {"L0", "L1", "L2"}) add(name, 3);
-    if (world.scene->background.kind == BackgroundKind::transparent) add("alpha", 1);
+    if (shape.has_alpha) add("alpha", 1);
     if (all)
         for (char const* const name : {"variance", "albedo", "normal"}) add(name, 3);
     add("depth", 1);
@@ -147,76 +252,29 @@ Picture Accumulator::picture(World const& world, PictureLayers layers) const
     });
     if (paths == 0) return out;
     Targets const to(out);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), [&](auto const& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) put_pixel(*this, world, pixels[i], i, to);
+    std::span<PixelMeans const> const from =
+        std::span(pixels).subspan(std::size_t(first) * std::size_t(width), out.pixels());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, from.size(), 4096), [&](auto const& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) put_pixel(*this, shape.origin, from[i], i, to);
     });
     return out;
 }
 
-void Accumulator::put(World const& world, std::span<std::uint32_t const> at, std::span<PixelSums const> sums,
+void Accumulator::put(World const& world, std::span<std::uint32_t const> at, std::span<PixelMeans const> means,
                       Picture& picture) const
 {
     Targets const to(picture);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, at.size(), 4096), [&](auto const& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) put_pixel(*this, world, sums[i], at[i], to);
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            put_pixel(*this, world.origin, means[i], at[i], to);
     });
 }
 
-namespace {
-
-struct CheckpointHeader {
-    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '2'};
-    std::uint64_t fingerprint = 0;
-    std::int32_t width = 0, height = 0;
-    std::uint32_t paths = 0, pixel_bytes = sizeof(PixelSums);
-    PathCounts counts;
-    double seconds = 0;
-};
-static_assert(std::is_trivially_copyable_v<CheckpointHeader> && std::is_trivially_copyable_v<PixelSums>);
-
-} // namespace
-
-void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint)
+PictureRows picture_rows(Accumulator&& sums, PictureShape const& shape)
 {
-    CheckpointHeader header;
-    header.fingerprint = fingerprint;
-    header.width = a.width;
-    header.height = a.height;
-    header.paths = a.paths;
-    header.counts = a.counts;
-    header.seconds = a.seconds;
-    write_by_rename(file, [&](std::filesystem::path const& temporary) {
-        std::ofstream out(temporary, std::ios::binary);
-        out.exceptions(std::ios::failbit | std::ios::badbit);
-        out.write(reinterpret_cast<char const*>(&header), sizeof header);
-        out.write(reinterpret_cast<char const*>(a.pixels.data()),
-                  std::streamsize(a.pixels.size() * sizeof(PixelSums)));
-        out.flush();
-    });
-}
-
-bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint)
-{
-    if (file.empty() || !std::filesystem::exists(file)) return false;
-    auto const bytes = read_bytes(file);
-    CheckpointHeader header, expected;
-    if (bytes.size() < sizeof header || std::memcmp(bytes.data(), expected.magic, sizeof expected.magic) != 0)
-        throw InputError("'" + file.string() + "' is not a checkpoint", "it does not start like one",
-                         "delete it to start afresh");
-    std::memcpy(&header, bytes.data(), sizeof header);
-    if (header.fingerprint != fingerprint || header.width != a.width || header.height != a.height)
-        throw InputError("'" + file.string() + "' belongs to another render",
-                         "scene, camera or settings differ from when it was written",
-                         "delete it or drop --resume to start afresh");
-    if (header.pixel_bytes != sizeof(PixelSums) ||
-        bytes.size() != sizeof header + a.pixels.size() * sizeof(PixelSums))
-        throw InputError("'" + file.string() + "' is damaged", "its size does not fit its header",
-                         "delete it to start afresh");
-    std::memcpy(a.pixels.data(), bytes.data() + sizeof header, a.pixels.size() * sizeof(PixelSums));
-    a.paths = header.paths;
-    a.counts = header.counts;
-    a.seconds = header.seconds;
-    return true;
+    auto const kept = std::make_shared<Accumulator const>(std::move(sums));
+    return {kept->width, kept->height,
+            [kept, shape](int first, int count) { return kept->rows(shape, first, count); }};
 }
 
 } // namespace gi

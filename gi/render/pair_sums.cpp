@@ -37,13 +37,13 @@ void PairSums::add(std::span<PathSample const> first, std::span<std::uint32_t co
             slot_[p] = std::uint32_t(pixels_.size());
             pixels_.push_back(p);
             other_.push_back(kNone);
-            second_.push_back(first_.paths > 0 ? first_.pixels[p] : PixelSums{});
+            second_.push_back(first_.paths > 0 ? first_.pixels[p] : PixelMeans{});
         }
         other_[slot_[p]] = k;
     }
     in_parallel(first.size(), [&](std::size_t p) { first_.add(p, first[p], first_.paths); });
     in_parallel(second_.size(), [&](std::size_t s) {
-        second_[s].add(other_[s] == kNone ? first[pixels_[s]] : second[other_[s]]);
+        second_[s].add(other_[s] == kNone ? first[pixels_[s]] : second[other_[s]], first_.paths + 1);
     });
     ++first_.paths;
 }

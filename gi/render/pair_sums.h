@@ -30,7 +30,7 @@ private:
     std::vector<std::uint32_t> slot_;   ///< per pixel: index of its sums of the second picture; kNone = same as
                                         ///< first
     std::vector<std::uint32_t> pixels_; ///< per slot
-    std::vector<PixelSums> second_;     ///< per slot
+    std::vector<PixelMeans> second_;    ///< per slot
     std::vector<std::uint32_t> other_;  ///< per slot: index of its own path in this pass; kNone = same as first
 };
 

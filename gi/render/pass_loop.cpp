@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/core/threads.h"
+#include "gi/render/checkpoint.h"
 
 #include <algorithm>
 
@@ -33,18 +34,32 @@ std::uint32_t PassLoop::next_pass(double seconds_per_path) const
 /// A failed write (full disk) is reported, but must not end the render.
 bool PassLoop::save(std::uint64_t print)
 {
+    if (!is_announced_ && settings_.before_checkpoint)
+        settings_.before_checkpoint(checkpoint_bytes(sums_.width, sums_.height));
+    is_announced_ = true;
+    auto const begun = Clock::now();
+    bool is_written = true;
     try {
         save_checkpoint(settings_.checkpoint, sums_, print);
-        return true;
     } catch (InputError const& e) {
         report_.lose("checkpoints that could not be written", 1, e.what());
-        return false;
+        is_written = false;
     }
+    saved_ = Clock::now();
+    last_checkpoint_s_ = std::chrono::duration<double>(saved_ - begun).count();
+    checkpoints_s_ += last_checkpoint_s_;
+    return is_written;
+}
+
+bool PassLoop::is_checkpoint_due() const
+{
+    constexpr double kMostShare = 0.02;
+    return keeps_state() && settings_.checkpoint_s > 0 &&
+           seconds_since(saved_) >= std::max(settings_.checkpoint_s, last_checkpoint_s_ / kMostShare);
 }
 
 RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 {
-    constexpr double kCheckpointSeconds = 30;
     constexpr std::uint32_t kPathsForVariance = 16;
 
     if (settings_.resume) load_checkpoint(settings_.checkpoint, sums_, print);
@@ -53,7 +68,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     double const earlier = sums_.seconds;
     RenderResult result;
     auto const first_pass = Clock::now();
-    auto saved = first_pass;
+    saved_ = first_pass;
     double relmse = resumed > 0 ? sums_.relative_mse() : 0;
     double per_path = 0;
     while (true) {
@@ -74,7 +89,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
         on_threads(settings_.threads, [&] { pass(sums_, next_pass(per_path)); });
         double const now = seconds_since(start_);
         sums_.seconds = earlier + now;
-        per_path = seconds_since(first_pass) / double(sums_.paths - resumed);
+        per_path = (seconds_since(first_pass) - checkpoints_s_) / double(sums_.paths - resumed);
         if (settings_.until_relmse > 0 || progress_) relmse = sums_.relative_mse();
         if (progress_) {
             double fraction = double(sums_.paths) / double(limit());
@@ -83,22 +98,28 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
                 fraction = std::max(fraction, settings_.until_relmse / relmse);
             progress_({std::min(1.0, fraction), sums_.paths, relmse});
         }
-        if (keeps_state() && seconds_since(saved) > kCheckpointSeconds) {
-            is_saved |= save(print);
-            saved = Clock::now();
-        }
+        if (is_checkpoint_due() && sums_.paths < limit()) is_saved |= save(print);
     }
     bool const may_go_on = keeps_state() && (result.end == RenderEnd::interrupted ||
                                              (settings_.resume && result.end != RenderEnd::paths));
     if (may_go_on) result.resumable = save(print) || is_saved;
     if (settings_.share.merge) settings_.share.merge(sums_);
-    report_.add_time("trace", seconds_since(first_pass));
+    report_.add_time("trace", seconds_since(first_pass) - checkpoints_s_);
+    if (is_announced_) report_.add_time("checkpoints", checkpoints_s_);
     report_.lose("paths cut at 1024 surfaces", sums_.counts.cut_paths);
     report_.lose("path terms that were not finite, dropped", sums_.counts.invalid_paths);
     result.seconds = sums_.seconds;
     result.paths = sums_.paths;
     result.relmse = sums_.relative_mse();
     return result;
+}
+
+void PassLoop::deliver(World const& world, RenderResult& result)
+{
+    if (settings_.by_rows)
+        result.rows = picture_rows(std::move(sums_), picture_shape(world));
+    else
+        result.picture = sums_.picture(world);
 }
 
 } // namespace gi

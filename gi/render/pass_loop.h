@@ -29,6 +29,9 @@ public:
 
     bool keeps_state() const { return !settings_.checkpoint.empty(); }
     Accumulator const& sums() const { return sums_; }
+    /// Puts the picture into the result: its layers, or with RenderSettings::by_rows the sums that they are made
+    /// of. Call it last.
+    void deliver(World const& world, RenderResult& result);
     std::uint32_t first_path() const { return settings_.share.first; }
 
 private:
@@ -39,6 +42,7 @@ private:
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
     bool save(std::uint64_t print);
+    bool is_checkpoint_due() const;
     std::uint32_t next_pass(double seconds_per_path) const;
     std::uint32_t limit() const { return std::min(settings_.paths, settings_.share.count); }
 
@@ -47,7 +51,9 @@ private:
     RenderProgress const& progress_;
     Report& report_;
     Accumulator sums_;
-    Clock::time_point start_;
+    Clock::time_point start_, saved_{}; ///< saved_: end of the last checkpoint, or the start of the passes
+    double checkpoints_s_ = 0, last_checkpoint_s_ = 0; ///< time taken by all and by the last
+    bool is_announced_ = false;
 };
 
 } // namespace gi

@@ -144,7 +144,7 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
     renderer->report_work();
     result.rays = renderer->rays();
     result.options = renderer->options();
-    result.picture = loop.sums().picture(world);
+    loop.deliver(world, result);
     return result;
 }
 

@@ -3,7 +3,7 @@
 
 #include "gi/core/progress.h"
 #include "gi/core/report.h"
-#include "gi/image_io/picture.h"
+#include "gi/image_io/picture_rows.h"
 #include "gi/kernel/space.h"
 
 #include <algorithm>
@@ -212,7 +212,11 @@ struct RenderSettings {
     std::filesystem::path checkpoint{};    ///< file for the exact state of an unfinished render, or of a resuming
                                            ///< one that stops early; empty = none. The caller deletes it after
                                            ///< saving the picture unless RenderResult::resumable
-    Space space = Space::host;             ///< that traces the paths; device: slhb and reference, by CUDA kernels
+    double checkpoint_s = 30; ///< time between checkpoints; longer where writing them would take more than 2 % of
+                              ///< the time. 0 = only when a render is interrupted
+    std::function<void(std::uint64_t bytes)> before_checkpoint{}; ///< called once, before the first is written
+    bool by_rows = false;      ///< give a single picture by RenderResult::rows, which needs half of its memory
+    Space space = Space::host; ///< that traces the paths; device: slhb and reference, by CUDA kernels
     SlhbSettings slhb{};
     VirtualLightSettings vpl{};
     WhittedSettings whitted{};
@@ -239,6 +243,7 @@ enum class RenderEnd : std::uint8_t { paths, budget, error_target, interrupted }
 /// channel); alpha, one channel, where the background is transparent.
 struct RenderResult {
     Picture picture;
+    PictureRows rows; ///< instead of `picture`, with RenderSettings::by_rows
     RenderEnd end = RenderEnd::paths;
     std::uint32_t paths = 0;
     double seconds = 0; ///< for all paths, including those before an interruption

@@ -287,7 +287,7 @@ private:
             gi::StageTimer const timer(report, "save");
             show_picture(frame, picture);
             keep_layers(o_, picture);
-            if (f_.exr) save_exr(o_, f_.exr->of(frame), picture, report);
+            if (f_.exr) save_exr(o_, f_.exr->of(frame), rows_of(picture), report);
         }
         record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         result.picture = {};

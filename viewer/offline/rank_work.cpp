@@ -26,7 +26,7 @@ void give_sums(Cluster& cluster, gi::Accumulator const& sums)
     cluster.give({at, at + sizeof header});
     if (sums.paths == 0) return;
     auto const* const pixels = reinterpret_cast<std::uint8_t const*>(sums.pixels.data());
-    std::size_t const bytes = sums.pixels.size() * sizeof(gi::PixelSums);
+    std::size_t const bytes = sums.pixels.size() * sizeof(gi::PixelMeans);
     for (std::size_t from = 0; from < bytes; from += kPieceBytes)
         cluster.give({pixels + from, pixels + std::min(bytes, from + kPieceBytes)});
 }
@@ -43,7 +43,7 @@ bool take_sums(Cluster& cluster, int from, gi::Accumulator& sums)
     sums.seconds = header.seconds;
     if (header.paths == 0) return true;
     auto* const pixels = reinterpret_cast<std::uint8_t*>(sums.pixels.data());
-    std::size_t const bytes = sums.pixels.size() * sizeof(gi::PixelSums);
+    std::size_t const bytes = sums.pixels.size() * sizeof(gi::PixelMeans);
     for (std::size_t at = 0; at < bytes;) {
         auto const piece = cluster.take(from);
         if (!piece) return false;

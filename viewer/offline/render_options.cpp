@@ -37,6 +37,23 @@ void check_shutter(RenderOptions const& o, gi::RenderSettings const& s)
                              "leave --resume out");
 }
 
+/// Sets where and how often the state of a single picture is kept.
+void set_checkpoints(RenderOptions const& o, gi::RenderSettings& s)
+{
+    bool const is_kept = o.frames.empty() && o.shutter_s == 0;
+    if (!is_kept && !o.state.empty())
+        throw gi::InputError(o.frames.empty() ? "--state with --shutter" : "--state with --frames",
+                             o.frames.empty() ? "a picture with motion blur is rendered in one go"
+                                              : "each complete frame is kept, and --resume renders the others",
+                             "leave --state out");
+    s.checkpoint_s = o.checkpoint == "off" ? 0 : parse_duration("--checkpoint", o.checkpoint);
+    std::string const& picture = o.out.empty() ? o.png : o.out;
+    if (!o.state.empty())
+        s.checkpoint = o.state;
+    else if (is_kept && !picture.empty())
+        s.checkpoint = picture + ".state";
+}
+
 /// File name from the name of the scene, which may be a folder with a trailing slash.
 std::string default_out(std::string const& scene, char const* ending)
 {
@@ -58,9 +75,10 @@ gi::RenderSettings make_settings(RenderOptions& o)
     bool const is_sequence = !o.frames.empty();
     if (o.out.empty() && o.png.empty() && o.video.empty())
         o.out = default_out(o.scene, is_sequence ? "_%04d.exr" : ".exr");
-    if (o.out.empty() && (o.resume || o.half || !o.layers.empty()))
-        throw gi::InputError("--resume, --half and --aovs need an EXR output", "none is saved",
-                             is_sequence ? "add --out f_%04d.exr" : "add --out F.exr");
+    if (o.out.empty() && (o.half || !o.layers.empty() || (o.resume && is_sequence)))
+        throw gi::InputError(is_sequence ? "--resume, --half and --aovs need an EXR output"
+                                         : "--half and --aovs need an EXR output",
+                             "none is saved", is_sequence ? "add --out f_%04d.exr" : "add --out F.exr");
 
     gi::RenderSettings s = o.settings;
     std::tie(s.width, s.height) = parse_size(o.size);
@@ -71,7 +89,7 @@ gi::RenderSettings make_settings(RenderOptions& o)
     gi::check_device(s.space);
     s.resume = o.resume && !is_sequence; // a sequence is resumed frame by frame
     if (o.shutter_s > 0) check_shutter(o, s);
-    if (!o.out.empty() && !is_sequence && o.shutter_s == 0) s.checkpoint = o.out + ".state";
+    set_checkpoints(o, s);
     return s;
 }
 
@@ -236,8 +254,17 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--stats", o.stats, "JSON file for statistics: settings, structures, losses, times");
     c.add_flag(
         "--resume", o.resume,
-        "continue from F.exr.state, which is left by interrupted renders and by those that stopped early with\n"
-        "--resume; with --frames: render the missing frames");
+        "continue from the file of --state, which is left by interrupted and killed renders and by those that\n"
+        "stopped early with --resume; with --frames: render the missing frames");
+    c.add_option(
+         "--checkpoint", o.checkpoint,
+         "time after which the state of a picture is saved again, for --resume after a crash: 30s, 5min, or off\n"
+         "(only when interrupted); longer where writing would take more than 2 % of the time")
+        ->capture_default_str();
+    c.add_option(
+        "--state", o.state,
+        "file of that state, 92 bytes a pixel; deleted when the picture is saved (default: F.exr.state beside\n"
+        "--out, else F.png.state)");
     c.add_flag("--json", o.json, "print the statistics instead of text");
     c.add_flag("--quiet", o.quiet, "no progress bar");
     declare_frames(c, o);
@@ -250,6 +277,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render cornell --until relmse=0.05 --size 48x48 --aovs L1,L2,variance --out cornell.exr
   lightwell render atrium --background transparent --size 64x48 --paths 4 --out cut.exr --png cut.png
   lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
+  lightwell render atrium --size 64x64 --paths 64 --checkpoint 5min --state atrium.state --out long.exr
   lightwell render atrium --size 64x48 --paths 8 --aperture-radius 0.1 --focus-distance 3 --out lens.exr
   lightwell render atrium --camera courtyard --time 0.4 --shutter 0.04 --size 64x48 --paths 8 --out blur.exr
   lightwell render atrium --time 0.4 --eye left --screen-distance 6 --size 64x48 --paths 4 --out left.exr --png left.png
@@ -263,8 +291,10 @@ relmse_estimate, rays, rays_per_s), plan (what, build, reason), report (stages_s
 peak_memory_bytes); for --frames, instead of result, one record per frame (frame, time_s, outputs, reused, seconds,
 trace_s, paths_per_pixel, rays, relmse_estimate, end, losses) and frame_seconds (median, p95, p99, most, total).
 
-Ctrl-C saves the picture so far and F.exr.state, and exits with 130; a second one ends at once.
-With --frames, complete frames and the video so far are kept.)");
+Ctrl-C, SIGTERM and a closed terminal save the picture so far and its state, and exit with 130, 143 and 129; a second
+Ctrl-C ends at once. With --resume, the same command then gives the picture of an uninterrupted one, bit for bit, if
+--paths ends it; with --budget or --until, the number of paths depends on the time, and a budget counts for each call.
+(Except with --radiance-cache on, whose cache starts anew.) With --frames, complete frames and the video so far are kept.)");
 }
 
 } // namespace viewer

@@ -71,7 +71,7 @@ void keep_layers(RenderOptions const& o, gi::Picture& picture)
     });
 }
 
-void save_exr(RenderOptions const& o, std::string const& file, gi::Picture const& picture, gi::Report& report)
+void save_exr(RenderOptions const& o, std::string const& file, gi::PictureRows const& picture, gi::Report& report)
 {
     gi::write_exr(file, picture, o.half ? gi::PixelType::half : gi::PixelType::single, report);
 }

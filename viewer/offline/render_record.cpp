@@ -148,6 +148,8 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
                      {"seed", s.seed},
                      {"threads", s.threads},
                      {"resume", o.resume},
+                     {"state", name_or_null(s.checkpoint.string())},
+                     {"checkpoint_s", s.checkpoint.empty() || s.checkpoint_s == 0 ? Json() : Json(s.checkpoint_s)},
                      {"aovs", o.layers},
                      {"half", o.half},
                      {"exposure_ev", o.exposure_ev},

@@ -61,7 +61,7 @@ RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const
     report.count("closest-hit rays", double(total.nearest_rays));
     report.count("shadow rays", double(total.shadow_rays));
     result.rays = rays_of(total);
-    result.picture = loop.sums().picture(world);
+    loop.deliver(world, result);
     if (settings.space == Space::device) result.options = as_options(common_options(), settings, {"device"});
     return result;
 }

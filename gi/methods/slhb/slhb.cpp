@@ -42,7 +42,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     report.lose("radiance samples for which the radiance cache had no room", renderer.refused_notes());
     result.rays = renderer.rays();
     result.options = as_options(chosen);
-    result.picture = loop.sums().picture(world);
+    loop.deliver(world, result);
     return result;
 }
 

@@ -12,6 +12,7 @@
 #include "viewer/offline/frame_options.h"
 #include "viewer/offline/frame_sequence.h"
 #include "viewer/offline/load_world.h"
+#include "viewer/offline/picture_memory.h"
 #include "viewer/offline/rank_work.h"
 #include "viewer/offline/render_picture.h"
 #include "viewer/offline/render_record.h"
@@ -37,14 +38,22 @@ trace(RenderOptions const& o, RankWork& work,
     return render(work.stop(), show);
 }
 
+/// Makes the picture while it writes it, as that takes half of the memory.
 void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result, gi::Report& report)
 {
     gi::StageTimer const timer(report, "save");
-    gi::Picture& picture = result.picture;
-    picture.metadata = make_metadata(o, settings, result);
-    if (!o.png.empty()) gi::write_png(o.png, picture.width, picture.height, display_bytes(o, picture));
-    keep_layers(o, picture);
-    if (!o.out.empty()) save_exr(o, o.out, picture, report);
+    gi::PictureRows picture = result.rows ? std::move(result.rows) : rows_of(result.picture);
+    if (!o.png.empty())
+        gi::write_png(o.png, picture.width, picture.height,
+                      [&](int first, int count) { return display_bytes(o, picture.read(first, count)); });
+    if (o.out.empty()) return;
+    gi::PictureRows kept{picture.width, picture.height, [&](int first, int count) {
+                             gi::Picture rows = picture.read(first, count);
+                             keep_layers(o, rows);
+                             return rows;
+                         }};
+    kept.metadata = make_metadata(o, settings, result);
+    save_exr(o, o.out, kept, report);
 }
 
 struct Shot {
@@ -71,8 +80,10 @@ Shot shoot_motion(RenderOptions const& o, gi::RenderSettings const& settings, gi
     Exposure const exposure{*o.time_s, o.shutter_s, false, [&](gi::World const& now, double after_s) {
                                 return eye.of(now, *o.time_s + after_s, 0);
                             }};
+    gi::RenderSettings whole = settings;
+    whole.by_rows = false;
     gi::RenderResult result = trace(o, work, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
-        return expose(gi::find_method(o.method), world, exposure, settings, stop, progress, report);
+        return expose(gi::find_method(o.method), world, exposure, whole, stop, progress, report);
     });
     return {gi::plan_scene(world.world()), std::move(result), {}};
 }
@@ -146,8 +157,17 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
 {
     CameraMotion const motion = make_motion(o);
     check_outputs(outputs_of(o, settings), {o.scene, o.environment, o.camera_path});
-    std::string const state = o.out.empty() ? "" : o.out + ".state"; // may exist although this render writes none
+    std::string const state = settings.checkpoint.string(); // may exist although several processes write none
     bool const has_state = !state.empty() && std::filesystem::exists(state);
+    check_picture_memory(settings.width, settings.height);
+    settings.by_rows = true;
+    settings.before_checkpoint = [&](std::uint64_t bytes) {
+        std::string const again = settings.checkpoint_s > 0 && !work.stop().requested()
+                                      ? fmt::format(" and again about every {:g} s", settings.checkpoint_s)
+                                      : "";
+        say(fmt::format("the state of the render is saved in '{}' ({}){}; --resume continues from it", state,
+                        text_of_bytes(bytes), again));
+    };
     if (!work.alone()) {
         settings.checkpoint.clear();
         settings.share = work.share(settings.paths);
@@ -163,6 +183,10 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     if (!work.leads()) {
         work.finish();
         return 0;
+    }
+    if (denoise_settings.denoiser != gi::Denoiser::none && result.rows) {
+        result.picture = result.rows.whole();
+        result.rows = {};
     }
     std::string const remark = denoise(result.picture, denoise_settings, report);
     if (!remark.empty()) say(remark);
@@ -184,7 +208,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     if (result.end != gi::RenderEnd::interrupted) return 0;
     say(std::string("interrupted: the picture so far is saved") +
         (o.shutter_s > 0               ? "; with --shutter it cannot be resumed"
-         : settings.checkpoint.empty() ? "; with --out it could be resumed"
+         : settings.checkpoint.empty() ? "; it cannot be resumed"
          : !result.resumable           ? "; its state could not be written, so it cannot be resumed"
                                        : "; the same command with --resume continues"));
     return interrupted_code();

@@ -27,7 +27,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());
     result.rays = renderer.rays();
     result.options = as_options(chosen);
-    result.picture = loop.sums().picture(world);
+    loop.deliver(world, result);
     return result;
 }
 

@@ -64,12 +64,11 @@ std::uint32_t PartnerLight::find(PathStart const& start, PathSample& sample) con
     return std::uint32_t(*pixel);
 }
 
-bool same_surface(PixelSums const& a, PixelSums const& b, double pixel_m)
+bool same_surface(PixelMeans const& a, PixelMeans const& b, double pixel_m)
 {
     // The mean of different normals is shorter than 1.
-    if (!(glm::dot(a.normal, b.normal) > double(kSameNormal) * a.hits * b.hits)) return false;
-    dvec3 const apart = a.position / a.hits - b.position / b.hits;
-    return std::abs(glm::dot(apart, a.normal / a.hits)) < 2 * double(kOff_px) * pixel_m;
+    if (a.hits == 0 || b.hits == 0 || !(glm::dot(a.normal, b.normal) > kSameNormal)) return false;
+    return std::abs(double(glm::dot(a.position - b.position, a.normal))) < 2 * double(kOff_px) * pixel_m;
 }
 
 void take_light(PathSample const& partner, PathSample& sample)

@@ -41,7 +41,7 @@ private:
 
 /// True if all paths of two pixels (given as sums) hit the same surface, so that neither pixel lies on an edge.
 /// @param pixel_m  size of a pixel at the surface
-bool same_surface(PixelSums const& a, PixelSums const& b, double pixel_m);
+bool same_surface(PixelMeans const& a, PixelMeans const& b, double pixel_m);
 
 /// Sets L1 and L2 of the sample from the partner's completed path: divided by its albedo, times the sample's own.
 void take_light(PathSample const& partner, PathSample& sample);

@@ -210,8 +210,8 @@ void ViewPaths::add(SeenViews const& views, std::size_t index, bool sharing, std
     SeenView const* const partner = v.partner >= 0 ? &views[std::size_t(v.partner)] : nullptr;
     Accumulator& sums = all[index];
     auto const shows_same = [&](std::size_t pixel, std::uint32_t from) {
-        PixelSums const& here = sums.pixels[pixel];
-        double const pixel_m = here.depth / here.hits * double(glm::length(v.rays.step_x));
+        PixelMeans const& here = sums.pixels[pixel];
+        double const pixel_m = double(here.depth) * double(glm::length(v.rays.step_x));
         return same_surface(here, all[std::size_t(v.partner)].pixels[from], pixel_m);
     };
     work.in_blocks(v.pixels(), [&](std::size_t first, std::size_t last, Counts&) {

@@ -1,0 +1,32 @@
+#pragma once
+// A picture that is made while it is read, some rows at a time, so that large ones need not be in memory as a
+// whole.
+
+#include "gi/image_io/picture.h"
+
+#include <functional>
+
+namespace gi {
+
+/// Rows to read at once: few enough to stay small, many enough for the blocks of OpenEXR (16 rows).
+inline constexpr int kRowsAtOnce = 64;
+
+struct PictureRows {
+    int width = 0, height = 0;
+    std::function<Picture(int first, int count)>
+        read; ///< the same layers for all rows; empty = there is no picture
+    std::map<std::string, std::string> metadata = {};
+
+    explicit operator bool() const { return bool(read); }
+    Picture whole() const
+    {
+        Picture all = read(0, height);
+        all.metadata = metadata;
+        return all;
+    }
+};
+
+/// The rows of a picture, which must outlive them.
+PictureRows rows_of(Picture const& picture);
+
+} // namespace gi

@@ -1,0 +1,81 @@
+#include "gi/render/checkpoint.h"
+
+#include "gi/core/durable_file.h"
+#include "gi/core/error.h"
+
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+
+namespace gi {
+namespace {
+
+struct CheckpointHeader {
+    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '3'};
+    std::uint64_t fingerprint = 0;
+    std::int32_t width = 0, height = 0;
+    std::uint32_t paths = 0, pixel_bytes = sizeof(PixelMeans);
+    PathCounts counts;
+    double seconds = 0;
+};
+static_assert(std::is_trivially_copyable_v<CheckpointHeader> && std::is_trivially_copyable_v<PixelMeans>);
+
+} // namespace
+
+std::uint64_t checkpoint_bytes(int width, int height)
+{
+    return sizeof(CheckpointHeader) + std::uint64_t(width) * std::uint64_t(height) * sizeof(PixelMeans);
+}
+
+void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint)
+{
+    std::uint64_t const bytes = checkpoint_bytes(a.width, a.height);
+    std::error_code unknown;
+    auto const disk = std::filesystem::space(file.has_parent_path() ? file.parent_path() : ".", unknown);
+    if (!unknown && disk.available < bytes + bytes / 10)
+        throw InputError("'" + file.string() + "' cannot be written",
+                         fmt::format("it needs {} bytes, and the disk has {}", bytes, disk.available),
+                         "free some space, or choose another folder");
+    CheckpointHeader header;
+    header.fingerprint = fingerprint;
+    header.width = a.width;
+    header.height = a.height;
+    header.paths = a.paths;
+    header.counts = a.counts;
+    header.seconds = a.seconds;
+    std::string_view const parts[]{
+        {reinterpret_cast<char const*>(&header), sizeof header},
+        {reinterpret_cast<char const*>(a.pixels.data()), a.pixels.size() * sizeof(PixelMeans)}};
+    write_durably(file, parts);
+}
+
+bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint)
+{
+    if (file.empty() || !std::filesystem::exists(file)) return false;
+    auto const damaged = [&] {
+        return InputError("'" + file.string() + "' is damaged", "its size does not fit its header",
+                          "delete it to start afresh");
+    };
+    std::ifstream in(file, std::ios::binary);
+    CheckpointHeader header;
+    CheckpointHeader const expected;
+    in.read(reinterpret_cast<char*>(&header), sizeof header);
+    if (!in || std::memcmp(header.magic, expected.magic, sizeof expected.magic) != 0)
+        throw InputError("'" + file.string() + "' is not a checkpoint of this version",
+                         "it does not start like one", "delete it to start afresh");
+    if (header.fingerprint != fingerprint || header.width != a.width || header.height != a.height)
+        throw InputError("'" + file.string() + "' belongs to another render",
+                         "scene, camera or settings differ from when it was written",
+                         "delete it or drop --resume to start afresh");
+    if (header.pixel_bytes != sizeof(PixelMeans) ||
+        std::filesystem::file_size(file) != checkpoint_bytes(a.width, a.height))
+        throw damaged();
+    in.read(reinterpret_cast<char*>(a.pixels.data()), std::streamsize(a.pixels.size() * sizeof(PixelMeans)));
+    if (!in) throw damaged();
+    a.paths = header.paths;
+    a.counts = header.counts;
+    a.seconds = header.seconds;
+    return true;
+}
+
+} // namespace gi
