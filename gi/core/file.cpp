@@ -60,35 +60,42 @@ void write_text(fs::path const& file, std::string_view text)
     });
 }
 
-std::vector<unsigned char> read_bytes(fs::path const& file, std::size_t max_bytes)
+namespace {
+
+InputError cannot_read(fs::path const& file, std::string const& why, std::string const& suggestion)
 {
-    auto const cannot = [&](std::string const& why, std::string const& suggestion) {
-        return InputError("cannot read '" + file.string() + "'", why, suggestion);
-    };
+    return InputError("cannot read '" + file.string() + "'", why, suggestion);
+}
+
+} // namespace
+
+std::uintmax_t regular_file_bytes(fs::path const& file)
+{
     std::error_code error;
     fs::file_status const status = fs::status(file, error);
-    if (!fs::exists(status)) throw cannot("there is no such file", "check the path");
-    if (fs::is_directory(status)) throw cannot("it is a folder", "name a file in it");
+    if (!fs::exists(status)) throw cannot_read(file, "there is no such file", "check the path");
+    if (fs::is_directory(status)) throw cannot_read(file, "it is a folder", "name a file in it");
+    if (!fs::is_regular_file(status))
+        throw cannot_read(file,
+                          fs::is_fifo(status)     ? "it is a pipe"
+                          : fs::is_socket(status) ? "it is a socket"
+                                                  : "it is a device",
+                          "name a file");
+    std::uintmax_t const size = fs::file_size(file, error);
+    if (error) throw cannot_read(file, error.message(), "check the file");
+    return size;
+}
+
+std::vector<unsigned char> read_bytes(fs::path const& file, std::size_t max_bytes)
+{
+    std::uintmax_t const size = regular_file_bytes(file);
+    if (size > max_bytes)
+        throw cannot_read(file, fmt::format("it is larger than {} bytes", max_bytes), "use a smaller file");
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw cannot(std::strerror(errno), "check its permissions");
-    std::vector<unsigned char> bytes;
-    auto const too_large = [&] {
-        return cannot(fmt::format("it is larger than {} bytes", max_bytes), "use a smaller file");
-    };
-    if (fs::is_regular_file(status)) {
-        std::uintmax_t const size = fs::file_size(file, error);
-        if (error) throw cannot(error.message(), "check the file");
-        if (size > max_bytes) throw too_large();
-        bytes.resize(size);
-        in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
-        bytes.resize(std::size_t(in.gcount()));
-        return bytes;
-    }
-    char chunk[65536]; // a pipe or device: its size is not known beforehand
-    while (in.read(chunk, sizeof chunk) || in.gcount() > 0) {
-        bytes.insert(bytes.end(), chunk, chunk + in.gcount());
-        if (bytes.size() > max_bytes) throw too_large();
-    }
+    if (!in) throw cannot_read(file, std::strerror(errno), "check its permissions");
+    std::vector<unsigned char> bytes(size);
+    in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
+    bytes.resize(std::size_t(in.gcount()));
     return bytes;
 }
 

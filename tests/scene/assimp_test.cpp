@@ -1,15 +1,19 @@
 // OBJ, PLY, STL, ... through Assimp: what becomes of their materials, textures, bones and units.
 
 #include "gi/core/error.h"
+#include "gi/scene/load/assimp_trial.h"
 #include "gi/scene/load/load.h"
+#include "gi/scene/load/obj_numbers.h"
 #include "gi/scene/model/world.h"
 #include "gi/scene/motion/animation.h"
 
+#include <chrono>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace gi::test {
@@ -39,6 +43,16 @@ protected:
             "m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
         textures_ = scene.textures;
         return scene.materials.at(std::size_t(scene.meshes.at(0).material));
+    }
+    std::string refusal(std::string const& file)
+    {
+        try {
+            load_scene(file, report_);
+        } catch (InputError const& e) {
+            return e.what();
+        }
+        ADD_FAILURE() << file << " was read";
+        return {};
     }
     std::uint64_t lost(std::string const& what) const
     {
@@ -138,15 +152,95 @@ TEST_F(AssimpFolder, MissingMaterialLibrariesAreCounted)
 }
 
 /// A pipe that nobody writes to would be waited for without end.
-TEST_F(AssimpFolder, AReaderThatStallsIsEnded)
+TEST_F(AssimpFolder, PipesAndDevicesAreNotOpened)
 {
     ASSERT_EQ(mkfifo((folder_ / "pipe.mtl").c_str(), 0600), 0);
-    try {
-        load("a.obj", "mtllib pipe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-        FAIL() << "it was read";
-    } catch (InputError const& e) {
-        EXPECT_NE(std::string(e.what()).find("waits for something"), std::string::npos) << e.what();
+    ASSERT_EQ(mkfifo((folder_ / "pipe.obj").c_str(), 0600), 0);
+    EXPECT_EQ(load("a.obj", "mtllib pipe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").meshes.size(), 1u);
+    EXPECT_EQ(lost("material libraries that could not be read"), 1u);
+    EXPECT_NE(refusal((folder_ / "pipe.obj").string()).find("it is a pipe"), std::string::npos);
+    EXPECT_NE(refusal("/dev/zero").find("it is a device"), std::string::npos);
+}
+
+TEST_F(AssimpFolder, HeadersWithoutAnEndAreRefusedAtOnce)
+{
+    auto const begun = std::chrono::steady_clock::now();
+    for (std::string const header :
+         {"ply\nformat ascii 1.0\ncomment x\n", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x"})
+        EXPECT_NE(refusal(write("a.ply", header)).find("no end_header"), std::string::npos);
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(2));
+}
+
+/// The reader loops where the end of the header is not a line of its own.
+TEST_F(AssimpFolder, AReaderThatNeverEndsIsEnded)
+{
+    std::string const why =
+        refusal(write("a.ply", "ply\nformat ascii 1.0\nelement verteroperty float x\ncomment end_headerx"));
+    EXPECT_NE(why.find("did not finish in"), std::string::npos) << why;
+}
+
+constexpr char const* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+constexpr char const* kCrash = "1 1 1 1 0 0 0 0\np v\nfrom 0 0 0\na"; ///< crashes Assimp 5.2 as .nff
+
+TEST_F(AssimpFolder, OneProcessTriesManyFiles)
+{
+    std::vector<fs::path> files;
+    for (int k = 0; k < 40; ++k)
+        files.emplace_back(k == 20 ? write("20.nff", kCrash)
+                                   : write(std::to_string(k) + ".obj", k % 10 == 3 ? "nonsense" : kTriangle));
+    AssimpTrials trials(files, AssimpFaces::merged);
+    for (int k = 0; k < 40; ++k) {
+        auto const outcome = trials.outcome(files[std::size_t(k)], AssimpFaces::merged);
+        ASSERT_TRUE(outcome) << k;
+        EXPECT_EQ(outcome->empty(), k != 20 && k % 10 != 3) << k << *outcome;
+        EXPECT_EQ(outcome->find("crashed") != std::string::npos, k == 20) << *outcome;
     }
+    EXPECT_FALSE(trials.outcome(folder_ / "other.obj", AssimpFaces::merged));
+    EXPECT_FALSE(trials.outcome(files[0], AssimpFaces::polygons));
+}
+
+TEST_F(AssimpFolder, AModelThatCrashesAmongOthersIsNamed)
+{
+    std::string yaml = "models:\n";
+    for (int k = 0; k < 30; ++k) {
+        write(std::to_string(k) + ".obj", kTriangle);
+        yaml += "  - file: " + std::to_string(k) + ".obj\n";
+    }
+    EXPECT_EQ(load("many.yaml", yaml).meshes.size(), 30u);
+    write("bad.nff", kCrash);
+    std::string const why = refusal(write("many.yaml", yaml + "  - file: bad.nff\n  - file: 3.obj\n"));
+    EXPECT_NE(why.find("bad.nff"), std::string::npos) << why;
+    EXPECT_NE(why.find("crashed"), std::string::npos) << why;
+}
+
+TEST_F(AssimpFolder, NumbersMayBeginWithAPoint)
+{
+    Scene const scene = load("a.obj", "v .5 0 0\nv 1 .25 -.5\nv\t0 1 .125\nvt .5 .5\nusemtl .3x\nf 1 2 3\n");
+    ASSERT_EQ(scene.meshes.at(0).positions.size(), 3u);
+    EXPECT_EQ(scene.meshes[0].positions[0], (vec3{0.5f, 0, 0}));
+    EXPECT_EQ(scene.meshes[0].positions[1], (vec3{1, 0.25f, -0.5f}));
+    EXPECT_EQ(scene.meshes[0].positions[2], (vec3{0, 1, 0.125f}));
+    EXPECT_FALSE(with_leading_zeros("v 0.5 1. 2\nusemtl .3\n# .5\n"));
+    EXPECT_EQ(with_leading_zeros("v .5 1. .x\nvt .1 0"), "v 0.5 1. .x\nvt 0.1 0");
+}
+
+/// A child that was forked while another thread held a lock may sleep for ever.
+TEST(ChildProcess, OneThatStallsIsEnded)
+{
+    ChildProcess child([](int) { pause(); });
+    std::string told;
+    EXPECT_FALSE(child.read(told));
+    EXPECT_FALSE(child.status());
+}
+
+TEST(ChildProcess, TellsAndEnds)
+{
+    ChildProcess child([](int pipe) { _exit(write(pipe, "abc", 3) == 3 ? 7 : 1); });
+    std::string told;
+    while (child.read(told)) {
+    }
+    EXPECT_EQ(told, "abc");
+    EXPECT_EQ(WEXITSTATUS(child.status().value()), 7);
 }
 
 TEST_F(AssimpFolder, FilesThatWereReadAreNoted)

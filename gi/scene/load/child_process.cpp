@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstdint>
 #include <ctime>
-#include <exception>
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -26,59 +26,68 @@ std::int64_t processor_time_ns(pid_t process)
     return std::int64_t(t.tv_sec) * 1000000000 + t.tv_nsec;
 }
 
-/// Reads until the other end of the pipe is closed (true) or the process stalls (false).
-bool read_all(int pipe, pid_t process, std::string& told)
-{
-    std::int64_t used_ns = 0;
-    for (int idle = 0; idle < kStallSeconds * kLooksPerSecond;) {
-        at_step("reading");
-        pollfd waiting{pipe, POLLIN, 0};
-        int const ready = poll(&waiting, 1, 1000 / kLooksPerSecond);
-        if (ready > 0) {
-            char chunk[4096];
-            ssize_t const n = read(pipe, chunk, sizeof chunk);
-            if (n > 0) told.append(chunk, std::size_t(n));
-            if (n == 0 || (n < 0 && errno != EINTR)) return true;
-        } else if (ready == 0) {
-            std::int64_t const now_ns = processor_time_ns(process);
-            idle = now_ns == used_ns ? idle + 1 : 0;
-            used_ns = now_ns;
-        }
-    }
-    return false;
-}
-
 } // namespace
 
-std::optional<int> run_child(std::function<void(int pipe)> const& work, std::string& told)
+ChildProcess::ChildProcess(std::function<void(int pipe)> const& work)
 {
+    auto const cannot = [](char const* why) {
+        return InputError("a file cannot be tested", why, "close other programs");
+    };
     int ends[2];
-    if (pipe(ends) != 0)
-        throw InputError("a file cannot be tested", "no pipe is available", "close other programs");
-    pid_t const child = fork();
-    if (child == 0) {
+    if (pipe2(ends, O_CLOEXEC) != 0) throw cannot("no pipe is available");
+    child_ = fork();
+    if (child_ == 0) {
         prctl(PR_SET_PDEATHSIG, SIGKILL); // else a stalled child would outlive its parent
         close(ends[0]);
         work(ends[1]);
         _exit(1);
     }
     close(ends[1]);
-    bool ended = child < 0;
-    std::exception_ptr abandoned;
-    try {
-        ended = ended || read_all(ends[0], child, told);
-    } catch (...) { // by a listener of steps
-        abandoned = std::current_exception();
+    pipe_ = ends[0];
+    if (child_ > 0) return;
+    close(pipe_);
+    throw cannot("no process can be started");
+}
+
+ChildProcess::~ChildProcess()
+{
+    if (child_ > 0) {
+        kill(child_, SIGKILL);
+        status();
     }
-    close(ends[0]);
-    if (child < 0)
-        throw InputError("a file cannot be tested", "no process can be started", "close other programs");
-    if (!ended) kill(child, SIGKILL);
+    close(pipe_);
+}
+
+bool ChildProcess::read(std::string& told)
+{
+    std::int64_t used_ns = 0;
+    for (int idle = 0; idle < kStallSeconds * kLooksPerSecond;) {
+        at_step("reading");
+        pollfd waiting{pipe_, POLLIN, 0};
+        int const ready = poll(&waiting, 1, 1000 / kLooksPerSecond);
+        if (ready > 0) {
+            char chunk[4096];
+            ssize_t const n = ::read(pipe_, chunk, sizeof chunk);
+            if (n > 0) told.append(chunk, std::size_t(n));
+            if (n >= 0 || errno != EINTR) return n > 0;
+        } else if (ready == 0) {
+            std::int64_t const now_ns = processor_time_ns(child_);
+            idle = now_ns == used_ns ? idle + 1 : 0;
+            used_ns = now_ns;
+        }
+    }
+    stalled_ = true;
+    kill(child_, SIGKILL);
+    return false;
+}
+
+std::optional<int> ChildProcess::status()
+{
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
     }
-    if (abandoned) std::rethrow_exception(abandoned);
-    return ended ? std::optional(status) : std::nullopt;
+    child_ = -1;
+    return stalled_ ? std::nullopt : std::optional(status);
 }
 
 } // namespace gi

@@ -15,6 +15,20 @@ struct BuiltIn {
     char const* name;
     Scene (*make)();
 };
+enum class Reader : std::uint8_t { gltf, scene_file, mesh_sequence, assimp };
+
+Reader reader_of(std::filesystem::path const& file)
+{
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error) || file.filename() == "sequence.json")
+        return Reader::mesh_sequence;
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    if (extension == ".gltf" || extension == ".glb") return Reader::gltf;
+    return extension == ".yaml" || extension == ".yml" ? Reader::scene_file : Reader::assimp;
+}
+
 constexpr BuiltIn kBuiltIn[]{{"atrium", [] { return generate_atrium({}); }},
                              {"cornell", [] { return generate_cornell(); }},
                              {"mirror", [] { return generate_mirror(); }},
@@ -54,15 +68,20 @@ Scene load_scene(std::string const& file_or_name, Report& report)
                                    near.substr(near.find(':') + 2)
                              : near);
     }
-    if (std::filesystem::is_directory(file, error)) return load_mesh_sequence(file, report);
-    if (file.filename() == "sequence.json")
+    switch (reader_of(file)) {
+    case Reader::gltf:
+        return load_gltf(file, report);
+    case Reader::scene_file:
+        return load_scene_file(file, report);
+    case Reader::mesh_sequence:
+        if (std::filesystem::is_directory(file, error)) return load_mesh_sequence(file, report);
         return load_mesh_sequence(file.has_parent_path() ? file.parent_path() : ".", report);
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    if (extension == ".gltf" || extension == ".glb") return load_gltf(file, report);
-    if (extension == ".yaml" || extension == ".yml") return load_scene_file(file, report);
+    case Reader::assimp:
+        break;
+    }
     return load_assimp(file, report);
 }
+
+bool is_read_by_assimp(std::filesystem::path const& file) { return reader_of(file) == Reader::assimp; }
 
 } // namespace gi

@@ -21,6 +21,9 @@ std::vector<std::string> built_in_scenes();
 /// Endings of files that load_scene reads, lower case with the dot: ".glb", ".yaml", ".obj", ...
 std::vector<std::string> scene_extensions();
 
+/// True if load_scene would pass an existing file to Assimp.
+bool is_read_by_assimp(std::filesystem::path const& file);
+
 Scene load_gltf(std::filesystem::path const& file, Report& report);
 /// Parses glTF JSON or GLB from memory; external files are searched in `folder`, empty = none allowed.
 Scene parse_gltf(unsigned char const* bytes, std::size_t size, std::filesystem::path const& folder,

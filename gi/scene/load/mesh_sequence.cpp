@@ -5,6 +5,7 @@
 #include "gi/core/error.h"
 #include "gi/scene/load/assimp_convert.h"
 #include "gi/scene/load/assimp_import.h"
+#include "gi/scene/load/assimp_trial.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/load/mesh_frames.h"
 #include "gi/scene/load/sequence_timing.h"
@@ -75,6 +76,7 @@ public:
 
     Scene load()
     {
+        AssimpTrials const trials(files_, AssimpFaces::polygons);
         ImportedFiles const first_files =
             import_assimp(files_[0], AssimpFaces::triangles,
                           [&](aiScene const& source) { scene_ = convert_assimp(source, files_[0], report_); });

@@ -4,6 +4,7 @@
 #include "gi/core/file.h"
 #include "gi/core/yaml.h"
 #include "gi/scene/generate/generate.h"
+#include "gi/scene/load/assimp_trial.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/load/rotation_value.h"
 #include "gi/scene/load/scene_file_animation.h"
@@ -49,8 +50,11 @@ public:
     Scene read()
     {
         check_keys(root_, "scene");
-        if (root_.has("models"))
-            for (Yaml const& item : root_.at("models").items()) add_model(item);
+        if (root_.has("models")) {
+            std::vector<Yaml> const models = root_.at("models").items();
+            AssimpTrials const trials(files_of(models), AssimpFaces::merged);
+            for (Yaml const& item : models) add_model(item);
+        }
         if (root_.has("environment")) set_environment(root_.at("environment"));
         if (root_.has("background")) scene_.background = read_background(root_.at("background"));
         if (root_.has("lights"))
@@ -119,6 +123,17 @@ private:
         if (g.has("sun_elevation")) o.sun_elevation_deg = g.at("sun_elevation").number(0, 90);
         if (g.has("sun_azimuth")) o.sun_azimuth_deg = g.at("sun_azimuth").number(-360, 360);
         return generate_atrium(o);
+    }
+
+    /// The model files that Assimp will read, as far as they can be told; add_model reports what is wrong.
+    std::vector<fs::path> files_of(std::vector<Yaml> const& models) const
+    {
+        std::vector<fs::path> files;
+        for (Yaml const& m : models)
+            if (!folder_.empty() && m.is_map() && m.has("file") && m.at("file").is_text())
+                if (fs::path const file = folder_ / m.at("file").text(); is_read_by_assimp(file))
+                    files.push_back(file);
+        return files;
     }
 
     void add_model(Yaml const& m)

@@ -1,0 +1,83 @@
+#include "gi/scene/load/assimp_reader.h"
+
+#include "gi/scene/load/obj_numbers.h"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <cstring>
+#include <strings.h>
+
+namespace gi {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Opens regular files only (a pipe would be waited for), completes numbers of OBJ files, and notes what is
+/// opened.
+class NotingFiles : public Assimp::DefaultIOSystem {
+public:
+    explicit NotingFiles(ImportedFiles& files) : files_(files) {}
+
+    bool Exists(char const* file) const override
+    {
+        std::error_code error;
+        return fs::is_regular_file(file, error);
+    }
+    Assimp::IOStream* Open(char const* file, char const* mode) override
+    {
+        Assimp::IOStream* stream = Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+        (stream != nullptr ? files_.opened : files_.missing).insert(file);
+        bool const is_obj = strcasecmp(fs::path(file).extension().c_str(), ".obj") == 0;
+        return stream != nullptr && is_obj ? completed(stream) : stream;
+    }
+
+private:
+    static Assimp::IOStream* completed(Assimp::IOStream* stream)
+    {
+        std::string text(stream->FileSize(), '\0');
+        text.resize(stream->Read(text.data(), 1, text.size()));
+        stream->Seek(0, aiOrigin_SET);
+        auto const more = with_leading_zeros(text);
+        if (!more) return stream;
+        delete stream; // as this system's Close does
+        auto* const copy = new std::uint8_t[more->size()];
+        std::memcpy(copy, more->data(), more->size());
+        return new Assimp::MemoryIOStream(copy, more->size(), true);
+    }
+
+    ImportedFiles& files_;
+};
+
+unsigned steps(AssimpFaces faces)
+{
+    if (faces == AssimpFaces::polygons) return 0;
+    unsigned const cut = aiProcess_Triangulate | aiProcess_SortByPType;
+    return faces == AssimpFaces::merged ? cut | aiProcess_JoinIdenticalVertices : cut;
+}
+
+} // namespace
+
+AssimpReader::AssimpReader()
+{
+    importer_.SetIOHandler(new NotingFiles(files_)); // the importer takes ownership
+    importer_.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+    importer_.SetPropertyInteger(AI_CONFIG_PP_LBW_MAX_WEIGHTS, 4);
+}
+
+std::string AssimpReader::read(fs::path const& file, AssimpFaces faces)
+{
+    files_ = {};
+    try {
+        if (importer_.ReadFile(file.string(), steps(faces)) != nullptr) return {};
+        std::string const reason = importer_.GetErrorString();
+        return reason.empty() ? "Assimp reports no reason" : reason;
+    } catch (std::exception const& e) {
+        return e.what();
+    }
+}
+
+} // namespace gi
