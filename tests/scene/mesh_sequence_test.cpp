@@ -193,9 +193,9 @@ TEST_F(MeshSequence, OtherFormsOfItsName)
     World const w = build_world(std::make_shared<Scene const>(scene), 0.25 / 24, report_);
     EXPECT_NEAR(w.bounds.high.y, 11.5, 1e-5);
     SceneSummary const s = summarise(w);
-    EXPECT_TRUE(std::any_of(s.lines.begin(), s.lines.end(), [](SummaryLine const& l) {
-        return l.what == "mesh sequence" && l.value == "cloth (2 frames)";
-    }));
+    ASSERT_EQ(s.mesh_sequences.size(), 1u);
+    EXPECT_EQ(s.mesh_sequences[0].name, "cloth");
+    EXPECT_EQ(s.mesh_sequences[0].frames, 2u);
 }
 
 TEST_F(MeshSequence, FramesThatDifferAreRefusedByName)

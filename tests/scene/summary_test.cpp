@@ -10,7 +10,7 @@ namespace {
 
 std::string line(SceneSummary const& summary, std::string const& what)
 {
-    for (SummaryLine const& l : summary.lines)
+    for (SummaryLine const& l : text_lines(summary))
         if (l.what == what) return l.value;
     ADD_FAILURE() << "no line '" << what << "'";
     return {};
@@ -63,6 +63,16 @@ TEST(Summary, CountsEverything)
     EXPECT_EQ(line(s, "morph targets"), "3");
     EXPECT_EQ(line(s, "clips"), "Walk (1.5 s), Run (1.5 s)");
     EXPECT_EQ(line(s, "playing"), "Run");
+    EXPECT_EQ(s.triangles, 4u);
+    ASSERT_TRUE(s.bounds_m && s.environment);
+    EXPECT_EQ(s.bounds_m->second, (dvec3{2, 1, 3}));
+    EXPECT_EQ(s.materials.all, s.materials.matt + s.materials.mirror + s.materials.glass);
+    EXPECT_EQ(s.texture_bytes, std::size_t(1) << 20);
+    EXPECT_DOUBLE_EQ(s.emissive_area_m2, 6);
+    EXPECT_NEAR(s.environment->up.x, 3.14159, 1e-4);
+    EXPECT_NEAR(s.environment->smooth_share, 1, 1e-6);
+    EXPECT_EQ(s.clips.at(1).name, "Run");
+    EXPECT_EQ(s.playing.at(0).weight, 1);
 }
 
 TEST(Summary, EmptyScenesHaveOneToo)

@@ -27,10 +27,27 @@ TEST(OtherCommands, InfoTellsWhatIsBuiltAndWhy)
     EXPECT_NE(text.find("triangles"), std::string::npos) << text;
     auto const j = Json::parse(run_well("info cornell --json --time 0.5", folder.path()).out);
     EXPECT_EQ(j["scene"], "cornell");
-    EXPECT_TRUE(j["content"].contains("triangles"));
+    EXPECT_TRUE(j["content"]["triangles"].is_number_unsigned());
+    EXPECT_TRUE(j["content"]["bounds_m"]["low"][0].is_number_float());
+    EXPECT_TRUE(j["content"]["materials"]["mirror"].is_number_unsigned());
+    EXPECT_EQ(j["picture"]["memory_bytes"], 512 * 512 * 92);
+    EXPECT_GT(j["picture"]["state_file_bytes"], j["picture"]["memory_bytes"]);
     ASSERT_FALSE(j["plan"].empty());
     for (Json const& item : j["plan"]) EXPECT_FALSE(item["reason"].get<std::string>().empty()) << item;
     EXPECT_TRUE(j["report"].contains("losses"));
+}
+
+/// render lights a scene without light by a white sky, and builds for it.
+TEST(OtherCommands, InfoPlansWhatRenderBuilds)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "t.obj") << "v 0 0 0\nv .5 0 0\nv 0 .5 0\nf 1 2 3\n"; // no light, and numbers without 0
+    auto const planned = Json::parse(run_well("info t.obj --json", folder.path()).out);
+    auto const built =
+        Json::parse(run_well("render t.obj --size 8x8 --paths 1 --json --out t.exr", folder.path()).out);
+    EXPECT_EQ(planned["plan"], built["plan"]);
+    EXPECT_EQ(planned["content"]["environment_map"]["width_px"], 4);
+    EXPECT_EQ(planned["content"]["triangles"], 1);
 }
 
 TEST(OtherCommands, InfoTellsWhatMethodsBuild)

@@ -8,22 +8,22 @@
 namespace gi {
 namespace {
 
-std::string material_kinds(World const& world)
+MaterialKinds material_kinds(Scene const& scene)
 {
-    std::size_t phong = 0, metal = 0, mirror = 0, glass = 0, matt = 0, plastic = 0, light = 0;
-    for (Material const& m : world.scene->materials) {
-        light += emits(m);
+    MaterialKinds k;
+    k.all = scene.materials.size();
+    for (Material const& m : scene.materials) {
+        k.emitting += emits(m);
         if (m.model == MaterialModel::phong)
-            ++phong;
+            ++k.phong;
         else if (m.transmission > 0)
-            ++glass;
+            ++k.glass;
         else if (m.metallic > 0.5f)
-            ++(m.roughness * m.roughness < kSmoothAlpha ? mirror : metal);
+            ++(m.roughness * m.roughness < kSmoothAlpha ? k.mirror : k.metal);
         else
-            ++(m.specular > 0 ? plastic : matt);
+            ++(m.specular > 0 ? k.coated : k.matt);
     }
-    return fmt::format("{} ({} matt, {} coated, {} Phong, {} metal, {} mirror, {} glass; {} emit)",
-                       world.scene->materials.size(), matt, plastic, phong, metal, mirror, glass, light);
+    return k;
 }
 
 double emitting_area(World const& world)
@@ -37,6 +37,15 @@ double emitting_area(World const& world)
     return area;
 }
 
+/// Harmonics only find the brightest normal.
+EnvironmentSummary summarise_environment(World const& world)
+{
+    EnvironmentHarmonics const h = project(world, EnvironmentHarmonics::kMostDegree);
+    dvec3 const normals[] = {{0, 1, 0}, {0, -1, 0}, brightest_normal(h)};
+    std::vector<dvec3> const e = integrate_irradiance(world, normals);
+    return {world.environment->width, world.environment->height, e[0], e[1], e[2], normals[2], h.energy_share(2)};
+}
+
 template <class Items, class Text>
 std::string join(Items const& items, Text const& text)
 {
@@ -45,68 +54,87 @@ std::string join(Items const& items, Text const& text)
     return out.empty() ? "none" : out;
 }
 
-/// Unshadowed irradiance from the environment, integrated numerically; harmonics only find the brightest normal.
-void describe_environment(World const& world, SceneSummary& s)
-{
-    EnvironmentHarmonics const h = project(world, EnvironmentHarmonics::kMostDegree);
-    dvec3 const normals[] = {{0, 1, 0}, {0, -1, 0}, brightest_normal(h)};
-    std::vector<dvec3> const e = integrate_irradiance(world, normals);
-    auto const rgb = [](dvec3 v) { return fmt::format("{:.4g}, {:.4g}, {:.4g} W/m2", v.x, v.y, v.z); };
-    dvec3 const n = normals[2];
-    s.lines.push_back({"light on upward faces", rgb(e[0])});
-    s.lines.push_back({"on downward faces", rgb(e[1])});
-    s.lines.push_back(
-        {"on the brightest", fmt::format("{}, facing {:.2f}, {:.2f}, {:.2f}", rgb(e[2]), n.x, n.y, n.z)});
-    s.lines.push_back({"smooth part of the map",
-                       fmt::format("{:.3g} % of its squared radiance (spherical harmonics to degree 2)",
-                                   100 * h.energy_share(2))});
-}
-
 } // namespace
 
 SceneSummary summarise(World const& world)
 {
     Scene const& scene = *world.scene;
     SceneSummary s;
-    auto const add = [&](char const* what, std::string const& value) { s.lines.push_back({what, value}); };
-    add("nodes", std::to_string(scene.nodes.size()));
-    add("meshes", fmt::format("{} ({} placed)", scene.meshes.size(), world.instances));
-    add("triangles", std::to_string(world.triangles.size()));
-    add("vertices", std::to_string(world.positions.size()));
-    if (!world.bounds.empty()) {
-        dvec3 const low = dvec3(world.bounds.low) + world.origin, high = dvec3(world.bounds.high) + world.origin;
+    s.nodes = scene.nodes.size();
+    s.meshes = scene.meshes.size();
+    s.placed_meshes = world.instances;
+    s.triangles = world.triangles.size();
+    s.vertices = world.positions.size();
+    if (!world.bounds.empty())
+        s.bounds_m = {dvec3(world.bounds.low) + world.origin, dvec3(world.bounds.high) + world.origin};
+    s.materials = material_kinds(scene);
+    s.textures = scene.textures.textures.size();
+    s.texture_bytes = scene.textures.texels.size() * sizeof(Rgba8);
+    s.punctual_lights = world.lights.size();
+    s.emissive_triangles = world.emitters.size();
+    s.emissive_area_m2 = emitting_area(world);
+    if (world.environment) s.environment = summarise_environment(world);
+    for (Camera const& c : world.cameras) s.cameras.push_back({c.name, c.aperture_radius_m, c.focus_distance_m});
+    for (Skin const& k : scene.skins) s.skin_joints.push_back(k.joints.size());
+    for (Mesh const& m : scene.meshes) s.morph_targets += m.morph_targets.size();
+    for (Animation const& a : scene.animations) {
+        s.clips.push_back({a.name, a.duration_s});
+        if (!a.channels.empty() && a.channels[0].path == ChannelPath::morph_frame)
+            s.mesh_sequences.push_back(
+                {a.name, scene.nodes[std::size_t(a.channels[0].node)].morph_weights.size() + 1});
+    }
+    for (Playback const& p : scene.playbacks)
+        s.playing.push_back({scene.animations[std::size_t(p.animation)].name, double(p.weight)});
+    return s;
+}
+
+std::vector<SummaryLine> text_lines(SceneSummary const& s)
+{
+    std::vector<SummaryLine> lines;
+    auto const add = [&](char const* what, std::string const& value) { lines.push_back({what, value}); };
+    add("nodes", std::to_string(s.nodes));
+    add("meshes", fmt::format("{} ({} placed)", s.meshes, s.placed_meshes));
+    add("triangles", std::to_string(s.triangles));
+    add("vertices", std::to_string(s.vertices));
+    if (s.bounds_m) {
+        auto const& [low, high] = *s.bounds_m;
         add("bounds", fmt::format("{:.6g}, {:.6g}, {:.6g} to {:.6g}, {:.6g}, {:.6g} m", low.x, low.y, low.z,
                                   high.x, high.y, high.z));
     }
-    add("materials", material_kinds(world));
-    add("textures", fmt::format("{} ({:.1f} MiB)", scene.textures.textures.size(),
-                                double(scene.textures.texels.size() * sizeof(Rgba8)) / (1 << 20)));
-    add("punctual lights", std::to_string(world.lights.size()));
-    add("emissive triangles", fmt::format("{} ({:.6g} m2)", world.emitters.size(), emitting_area(world)));
+    MaterialKinds const& k = s.materials;
+    add("materials", fmt::format("{} ({} matt, {} coated, {} Phong, {} metal, {} mirror, {} glass; {} emit)",
+                                 k.all, k.matt, k.coated, k.phong, k.metal, k.mirror, k.glass, k.emitting));
+    add("textures", fmt::format("{} ({:.1f} MiB)", s.textures, double(s.texture_bytes) / (1 << 20)));
+    add("punctual lights", std::to_string(s.punctual_lights));
+    add("emissive triangles", fmt::format("{} ({:.6g} m2)", s.emissive_triangles, s.emissive_area_m2));
     add("environment map",
-        world.environment ? fmt::format("{} x {}", world.environment->width, world.environment->height) : "none");
-    if (world.environment) describe_environment(world, s);
-    add("cameras", join(world.cameras, [](Camera const& c) {
+        s.environment ? fmt::format("{} x {}", s.environment->width, s.environment->height) : "none");
+    if (auto const& e = s.environment) {
+        auto const rgb = [](dvec3 v) { return fmt::format("{:.4g}, {:.4g}, {:.4g} W/m2", v.x, v.y, v.z); };
+        dvec3 const n = e->brightest_normal;
+        add("light on upward faces", rgb(e->up));
+        add("on downward faces", rgb(e->down));
+        add("on the brightest",
+            fmt::format("{}, facing {:.2f}, {:.2f}, {:.2f}", rgb(e->brightest), n.x, n.y, n.z));
+        add("smooth part of the map",
+            fmt::format("{:.3g} % of its squared radiance (spherical harmonics to degree 2)",
+                        100 * e->smooth_share));
+    }
+    add("cameras", join(s.cameras, [](CameraSummary const& c) {
             if (c.aperture_radius_m == 0) return c.name;
             return fmt::format("{} (lens of {:.3g} m radius, focus at {:.3g} m)", c.name, c.aperture_radius_m,
                                c.focus_distance_m);
         }));
-    add("skins", join(scene.skins, [](Skin const& k) { return fmt::format("{} joints", k.joints.size()); }));
-    std::size_t targets = 0;
-    for (Mesh const& m : scene.meshes) targets += m.morph_targets.size();
-    add("morph targets", std::to_string(targets));
-    for (Animation const& a : scene.animations)
-        if (!a.channels.empty() && a.channels[0].path == ChannelPath::morph_frame)
-            add("mesh sequence",
-                fmt::format("{} ({} frames)", a.name,
-                            scene.nodes[std::size_t(a.channels[0].node)].morph_weights.size() + 1));
-    add("clips", join(scene.animations,
-                      [](Animation const& a) { return fmt::format("{} ({:.3g} s)", a.name, a.duration_s); }));
-    add("playing", join(scene.playbacks, [&](Playback const& p) {
-            std::string const& name = scene.animations[std::size_t(p.animation)].name;
-            return p.weight == 1 ? name : fmt::format("{} (weight {:g})", name, p.weight);
+    add("skins", join(s.skin_joints, [](std::size_t joints) { return fmt::format("{} joints", joints); }));
+    add("morph targets", std::to_string(s.morph_targets));
+    for (MeshSequenceSummary const& m : s.mesh_sequences)
+        add("mesh sequence", fmt::format("{} ({} frames)", m.name, m.frames));
+    add("clips",
+        join(s.clips, [](ClipSummary const& c) { return fmt::format("{} ({:.3g} s)", c.name, c.duration_s); }));
+    add("playing", join(s.playing, [](PlayingClip const& p) {
+            return p.weight == 1 ? p.name : fmt::format("{} (weight {:g})", p.name, p.weight);
         }));
-    return s;
+    return lines;
 }
 
 } // namespace gi

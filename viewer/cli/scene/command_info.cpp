@@ -6,6 +6,7 @@
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/model/summary.h"
+#include "viewer/base/arguments.h"
 #include "viewer/base/choices.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
@@ -13,6 +14,8 @@
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
 #include "viewer/offline/choose_camera.h"
+#include "viewer/offline/load_world.h"
+#include "viewer/offline/picture_memory.h"
 #include "viewer/study/setting_lookup.h"
 
 #include <CLI/CLI.hpp>
@@ -23,7 +26,7 @@ namespace viewer {
 namespace {
 
 struct InfoOptions {
-    std::string scene, directions, png;
+    std::string scene, directions, png, size = "512x512";
     std::vector<std::string> methods;
     std::optional<double> time_s;
     bool settings = false, json = false;
@@ -133,6 +136,52 @@ int run_settings(bool as_json)
     return 0;
 }
 
+/// The summary with units in the names of the keys.
+nlohmann::ordered_json content_json(gi::SceneSummary const& s)
+{
+    using Json = nlohmann::ordered_json;
+    auto const triple = [](gi::dvec3 v) { return Json{v.x, v.y, v.z}; };
+    Json j;
+    j["nodes"] = s.nodes;
+    j["meshes"] = s.meshes;
+    j["placed_meshes"] = s.placed_meshes;
+    j["triangles"] = s.triangles;
+    j["vertices"] = s.vertices;
+    j["bounds_m"] =
+        s.bounds_m ? Json{{"low", triple(s.bounds_m->first)}, {"high", triple(s.bounds_m->second)}} : Json();
+    gi::MaterialKinds const& k = s.materials;
+    j["materials"] = {{"all", k.all},     {"matt", k.matt},     {"coated", k.coated}, {"phong", k.phong},
+                      {"metal", k.metal}, {"mirror", k.mirror}, {"glass", k.glass},   {"emitting", k.emitting}};
+    j["textures"] = s.textures;
+    j["texture_bytes"] = s.texture_bytes;
+    j["punctual_lights"] = s.punctual_lights;
+    j["emissive_triangles"] = s.emissive_triangles;
+    j["emissive_area_m2"] = s.emissive_area_m2;
+    j["environment_map"] = nullptr;
+    if (auto const& e = s.environment)
+        j["environment_map"] = {{"width_px", e->width},
+                                {"height_px", e->height},
+                                {"irradiance_up_w_per_m2", triple(e->up)},
+                                {"irradiance_down_w_per_m2", triple(e->down)},
+                                {"irradiance_brightest_w_per_m2", triple(e->brightest)},
+                                {"brightest_normal", triple(e->brightest_normal)},
+                                {"smooth_share", e->smooth_share}};
+    for (char const* const list : {"cameras", "skins", "mesh_sequences", "clips", "playing"})
+        j[list] = Json::array();
+    for (gi::CameraSummary const& c : s.cameras) {
+        bool const has_lens = c.aperture_radius_m > 0;
+        j["cameras"].push_back({{"name", c.name},
+                                {"aperture_radius_m", c.aperture_radius_m},
+                                {"focus_distance_m", has_lens ? Json(c.focus_distance_m) : Json()}});
+    }
+    for (std::size_t const joints : s.skin_joints) j["skins"].push_back({{"joints", joints}});
+    j["morph_targets"] = s.morph_targets;
+    for (auto const& m : s.mesh_sequences) j["mesh_sequences"].push_back({{"name", m.name}, {"frames", m.frames}});
+    for (auto const& c : s.clips) j["clips"].push_back({{"name", c.name}, {"duration_s", c.duration_s}});
+    for (auto const& p : s.playing) j["playing"].push_back({{"name", p.name}, {"weight", p.weight}});
+    return j;
+}
+
 int run(InfoOptions const& o)
 {
     if (o.settings) {
@@ -150,17 +199,27 @@ int run(InfoOptions const& o)
     if (!o.png.empty()) throw gi::InputError("--png without --directions", "info draws no scenes", "use render");
     std::vector<gi::Method const*> const asked = methods_with_plans(o.methods);
     gi::Report report;
-    auto const scene = std::make_shared<gi::Scene const>(gi::load_scene(o.scene, report));
-    gi::World const world = gi::build_world(scene, o.time_s, report);
+    RenderOptions rendered; // as render loads the scene, which may get a sky
+    rendered.scene = o.scene;
+    rendered.time_s = o.time_s;
+    gi::RenderSettings settings;
+    std::tie(settings.width, settings.height) = parse_size(o.size);
+    gi::check_picture_size(settings.width, settings.height);
+    gi::World const world = load_world(rendered, report);
     gi::SceneSummary const summary = gi::summarise(world);
     gi::ScenePlan const plan = gi::plan_scene(world);
     gi::Camera const camera = choose_camera(world, {}).camera;
+    PictureMemory const memory = picture_memory(settings.width, settings.height);
     std::vector<MethodPlan> methods;
-    for (gi::Method const* const m : asked) methods.push_back({m->name, m->explain(world, {}, camera)});
+    for (gi::Method const* const m : asked) methods.push_back({m->name, m->explain(world, settings, camera)});
     if (o.json) {
         nlohmann::ordered_json j;
         j["scene"] = o.scene;
-        for (gi::SummaryLine const& line : summary.lines) j["content"][line.what] = line.value;
+        j["content"] = content_json(summary);
+        j["picture"] = {{"width_px", settings.width},
+                        {"height_px", settings.height},
+                        {"memory_bytes", memory.sums_bytes},
+                        {"state_file_bytes", memory.state_bytes}};
         auto const add_plan = [&](std::string const& name, std::vector<gi::PlanItem> const& items) {
             for (gi::PlanItem const& item : items)
                 j[name].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
@@ -173,15 +232,22 @@ int run(InfoOptions const& o)
     }
     std::string text =
         o.scene + "\n"; // written at once, so that an error is found at the end, as for all commands
-    for (gi::SummaryLine const& line : summary.lines) text += fmt::format("  {:<22} {}\n", line.what, line.value);
+    for (gi::SummaryLine const& line : text_lines(summary))
+        text += fmt::format("  {:<22} {}\n", line.what, line.value);
     auto const add_plan = [&](std::string const& title, std::vector<gi::PlanItem> const& items) {
         text += title + "\n";
         for (gi::PlanItem const& item : items)
             text += fmt::format("  {:<4} {:<38} {}\n", item.build ? "yes" : "no", item.what, item.reason);
     };
+    text += fmt::format(
+        "A picture of {} x {} pixels\n  {:<22} {} besides the scene and what methods build\n  {:<22} {}\n",
+        settings.width, settings.height, "memory", text_of_bytes(memory.sums_bytes), "state file",
+        text_of_bytes(memory.state_bytes));
     add_plan("What is built for the scene", plan.items);
     for (MethodPlan const& m : methods)
-        add_plan(fmt::format("What method {} builds, at 512 x 512 pixels", m.method), m.items);
+        add_plan(
+            fmt::format("What method {} builds, at {} x {} pixels", m.method, settings.width, settings.height),
+            m.items);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
     print_losses(report);
@@ -207,6 +273,8 @@ void add_info(CLI::App& app, int& exit_code)
           gi::method_names())
         ->delimiter(',')
         ->allow_extra_args(false);
+    c->add_option("--size", o->size, "width x height of the picture that is planned, pixels")
+        ->capture_default_str();
     c->add_option("--time", o->time_s, "animation time, s")->check(in_range(-1e9, 1e9));
     c->add_flag(
         "--settings", o->settings,
@@ -216,9 +284,14 @@ void add_info(CLI::App& app, int& exit_code)
     c->footer(R"(Examples:
   lightwell info atrium
   lightwell info cornell --json
+  lightwell info atrium --size 7680x4320 --method slhb
   lightwell info mirror --method ispm,lpv
   lightwell info --settings
   lightwell info --directions icosahedron:320 --png icosahedron.png
+
+A scene without light is described with the white sky of radiance 1 that render gives it. --json holds: scene, content
+(numbers, with units in the names of keys), picture (width_px, height_px, memory_bytes, state_file_bytes), plan and
+plan_METHOD (what, build, reason), report.
 
 The lines below "environment map" give the irradiance (red, green, blue) of unshadowed surfaces that face up, down
 and to the most light, and the share of the map, by squared radiance, that is smooth (small if it has a sun).)");
