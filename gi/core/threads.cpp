@@ -2,9 +2,12 @@
 
 #include <map>
 #include <mutex>
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 namespace gi {
+
+int available_threads() { return tbb::info::default_concurrency(); }
 
 void on_threads(int threads, std::function<void()> const& work)
 {

@@ -44,5 +44,14 @@ TEST(Streams, MessagesNeverEndUpInFiles)
     EXPECT_TRUE(file_text(folder / "s.json").ends_with("}\n"));
 }
 
+TEST(Streams, MoreThreadsThanThereAreAreTold)
+{
+    TemporaryFolder const folder;
+    Outcome const o =
+        run_well("render cornell --size 16x16 --paths 1 --quiet --threads 999 --out a.exr", folder.path());
+    EXPECT_TRUE(o.err.starts_with("note: --threads 999: ")) << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+}
+
 } // namespace
 } // namespace viewer::test

@@ -1,6 +1,10 @@
 #pragma once
+#include "gi/core/text.h"
+#include "gi/core/threads.h"
+
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdio>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -17,6 +21,22 @@ inline CLI::Validator in_range(double low, double high)
             return value >= low && value <= high ? std::string() : "Value " + text + " not in range " + range;
         },
         "FLOAT in " + range);
+}
+
+/// For options of threads: more than there are become as many as there are, which is said on stderr.
+inline CLI::Validator as_many_threads_as_there_are()
+{
+    return CLI::Validator(
+        [](std::string& text) {
+            auto const asked = gi::parse_finite(text);
+            int const most = gi::available_threads();
+            if (!asked || !(*asked > most) || *asked > 4096) return std::string();
+            std::fputs(fmt::format("note: --threads {}: {} can run here, and are used\n", text, most).c_str(),
+                       stderr);
+            text = std::to_string(most);
+            return std::string();
+        },
+        "");
 }
 
 } // namespace viewer

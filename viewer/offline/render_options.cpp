@@ -174,6 +174,7 @@ CLI::Option* declare_option(CLI::App& c, gi::RenderSettings& settings, std::stri
             ? c.add_flag_callback(
                   names, [set] { set("true"); }, o.meaning)
             : c.add_option_function<std::string>(names, set, o.meaning)->type_name("[" + o.values_text() + "]");
+    if (o.name == "threads") option->transform(as_many_threads_as_there_are());
     if (!o.group.empty()) option->group(o.group);
     bool const explains_default = o.meaning.find("(default") != std::string::npos;
     if (o.type != gi::OptionType::yes_or_no && !explains_default) option->default_str(o.get(settings));

@@ -2,6 +2,7 @@
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/report_json.h"
+#include "viewer/base/validators.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -52,7 +53,9 @@ void add_ar_synthesize(CLI::App& ar, int& exit_code)
     synthesize->add_option("--paths", made->options.quality.paths, "Paths per pixel of the reference renderer")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    synthesize->add_option("--threads", made->options.quality.threads, "0 = all")->check(CLI::NonNegativeNumber);
+    synthesize->add_option("--threads", made->options.quality.threads, "0 = all")
+        ->check(CLI::NonNegativeNumber)
+        ->transform(as_many_threads_as_there_are());
     synthesize->add_flag("--no-truth", made->no_truth,
                          "Do not render the reference pictures, which show the virtual objects as real ones");
     CLI::Option* const quick = synthesize->add_flag(

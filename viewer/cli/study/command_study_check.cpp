@@ -4,6 +4,7 @@
 #include "study/plan/plan_text.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/report_json.h"
+#include "viewer/base/validators.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/experiment/stimuli/script_check.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
@@ -107,6 +108,7 @@ void add_study_check(CLI::App& study, int& exit_code)
                 "do not look settings up: the script is for a presenter of its own (Python)");
     c->add_option("--threads", o->threads, "render threads, 0 = all")
         ->check(CLI::Range(0, 1024))
+        ->transform(as_many_threads_as_there_are())
         ->capture_default_str();
     c->add_flag("--json", o->json, "print JSON");
     c->callback([o, &exit_code] {

@@ -5,6 +5,7 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/base/validators.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/experiment/prepared_list.h"
@@ -103,6 +104,7 @@ void add_study_prepare(CLI::App& study, int& exit_code)
     c->add_option("--display-model", o->display_model, "display model of the monitor, for sizes in degrees");
     c->add_option("--threads", o->threads, "render threads, 0 = all")
         ->check(CLI::Range(0, 1024))
+        ->transform(as_many_threads_as_there_are())
         ->capture_default_str();
     declare_rank_options(*c, o->ranks);
     c->callback([o, &exit_code] { exit_code = run(*o); });

@@ -224,6 +224,7 @@ void add_study_run(CLI::App& study, int& exit_code)
     c->add_option("--prepared", o->prepared, "output folder of study prepare, for blocks with stimuli: prepared");
     c->add_option("--threads", o->threads, "render threads, 0 = all")
         ->check(CLI::Range(0, 1024))
+        ->transform(as_many_threads_as_there_are())
         ->capture_default_str();
     c->add_option("--remote", o->remote, "Unix socket for the experimenter (study control, docs/remote.md)");
     c->add_option("--remote-port", o->remote_port, "port on 127.0.0.1 for the experimenter; 0 = any free port")
