@@ -105,14 +105,19 @@ study::StepDone PythonPresenter::walk(study::TrialRequest const& where, std::str
         [&] { return from_dict<study::StepDone>(steps_.attr("walk")(to_dict(where), prompt, seconds)); });
 }
 
-study::QuestionnaireDone PythonPresenter::ask(study::Questionnaire const& questionnaire, int step)
+study::QuestionnaireDone PythonPresenter::ask(study::QuestionnaireRequest const& request)
 {
+    study::Questionnaire const& questionnaire = *request.questionnaire;
     return call<study::QuestionnaireDone>([&] {
         py::list items;
         for (study::QuestionnaireItem const& i : questionnaire.items) {
             py::dict d;
             d["id"] = i.id;
             d["text"] = i.text;
+            d["type"] = i.type == study::ItemType::text ? "text" : "scale";
+            d["is_required"] = i.is_required;
+            d["lines"] = i.lines;
+            d["max_chars"] = i.max_chars;
             d["low"] = i.low;
             d["high"] = i.high;
             d["step"] = i.step;
@@ -124,7 +129,7 @@ study::QuestionnaireDone PythonPresenter::ask(study::Questionnaire const& questi
         d["title"] = questionnaire.title;
         d["instructions"] = questionnaire.instructions;
         d["items"] = items;
-        return from_dict<study::QuestionnaireDone>(steps_.attr("ask")(d, step));
+        return from_dict<study::QuestionnaireDone>(steps_.attr("ask")(d, request.step));
     });
 }
 

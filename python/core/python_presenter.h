@@ -24,7 +24,7 @@ public:
     study::StepDone instruct(std::string const& markdown, int step) override;
     study::StepDone rest(std::string const& prompt, double least_s, int step) override;
     study::StepDone walk(study::TrialRequest const& where, std::string const& prompt, double seconds) override;
-    study::QuestionnaireDone ask(study::Questionnaire const& questionnaire, int step) override;
+    study::QuestionnaireDone ask(study::QuestionnaireRequest const& request) override;
     study::TrialDone show(study::TrialRequest const& trial) override;
     study::ExperimenterAction action() override;
     std::vector<study::NoteTaken> notes() override;

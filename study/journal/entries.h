@@ -89,10 +89,21 @@ struct StepDone {
     std::string reason; ///< empty = as planned; skipped
 };
 
+/// The participant has left an item of a questionnaire that is not complete yet: what counts if it never will be,
+/// and where it continues when the session is resumed. QuestionnaireDone repeats the last answers.
+struct ItemAnswered {
+    int step = 0;
+    double time_s = 0;
+    int item = 0;                 ///< of the questionnaire, from 0
+    std::optional<double> answer; ///< none = not answered, or a text
+    std::string text;             ///< of an item of type text; empty = not answered
+};
+
 struct QuestionnaireDone {
     int step = 0;
     double start_s = 0, end_s = 0;
     std::vector<std::optional<double>> answers; ///< by item of the questionnaire; none = not answered
+    std::vector<std::string> texts{}; ///< by item; empty = not answered, or no text; none if it asks for no text
 };
 
 /// Answers of a participant to the script's questions about the participant.
@@ -114,8 +125,8 @@ struct SessionEnded {
     std::string reason;
 };
 
-using JournalEntry = std::variant<SessionStarted, CalibrationDone, TrialDone, StepDone, QuestionnaireDone,
-                                  ParticipantAsked, NoteTaken, SessionEnded>;
+using JournalEntry = std::variant<SessionStarted, CalibrationDone, TrialDone, StepDone, ItemAnswered,
+                                  QuestionnaireDone, ParticipantAsked, NoteTaken, SessionEnded>;
 
 /// The record of one participant's session.
 struct SessionRecord {

@@ -118,6 +118,19 @@ struct Fields<StepDone> {
 };
 
 template <>
+struct Fields<ItemAnswered> {
+    static constexpr char const* kKind = "item_answered";
+    static void visit(auto& e, auto&& f)
+    {
+        f("step", e.step);
+        f("time_s", e.time_s);
+        f("item", e.item);
+        f("answer", e.answer);
+        f("text", e.text);
+    }
+};
+
+template <>
 struct Fields<QuestionnaireDone> {
     static constexpr char const* kKind = "questionnaire_done";
     static void visit(auto& e, auto&& f)
@@ -126,6 +139,7 @@ struct Fields<QuestionnaireDone> {
         f("start_s", e.start_s);
         f("end_s", e.end_s);
         f("answers", e.answers);
+        f(LaterField{"texts"}, e.texts);
     }
 };
 

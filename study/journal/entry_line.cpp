@@ -31,7 +31,9 @@ struct Put {
     {
         if (value) out[field.name] = json(*value);
     }
-    void operator()(LaterField field, std::string const& value) const
+    template <class T>
+    requires requires(T const& t) { t.empty(); }
+    void operator()(LaterField field, T const& value) const
     {
         if (!value.empty()) out[field.name] = json(value);
     }

@@ -46,6 +46,7 @@ std::optional<double> last_moment(JournalEntry const& entry)
             return last;
         }
         Maybe operator()(StepDone const& e) const { return e.end_s; }
+        Maybe operator()(ItemAnswered const& e) const { return e.time_s; }
         Maybe operator()(QuestionnaireDone const& e) const { return e.end_s; }
         Maybe operator()(ParticipantAsked const&) const { return {}; }
         Maybe operator()(NoteTaken const& e) const { return e.time_s; }

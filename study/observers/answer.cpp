@@ -180,18 +180,25 @@ ModelAnswer answer(Observer const& observer, TrialRequest const& trial, Random& 
     return Answering(observer, trial, random).answer();
 }
 
-std::vector<std::optional<double>> answer_items(Observer const& o, Questionnaire const& questionnaire,
-                                                Random& random)
+void answer_items(Observer const& o, Questionnaire const& questionnaire, Random& random, QuestionnaireDone& done)
 {
-    std::vector<std::optional<double>> answers;
-    for (QuestionnaireItem const& item : questionnaire.items) {
+    if (has_text_items(questionnaire)) done.texts.resize(questionnaire.items.size());
+    for (std::size_t i = 0; i < questionnaire.items.size(); ++i) {
+        QuestionnaireItem const& item = questionnaire.items[i];
+        if (item.type == ItemType::text) {
+            bool const is_missing = random.uniform() < o.model.items_missing && !item.is_required;
+            std::string text = is_missing ? "" : "simulated answer to " + item.id; // an id is ASCII
+            text.resize(std::min(text.size(), std::size_t(item.max_chars)));
+            done.texts[i] = std::move(text);
+            done.answers.emplace_back();
+            continue;
+        }
         double share = std::clamp(o.model.items_mean + o.model.items_sd * random.normal(), 0.0, 1.0);
         if (item.is_reversed) share = 1 - share;
         double const value = item.low + std::round(share * (item.high - item.low) / item.step) * item.step;
-        bool const is_missing = random.uniform() < o.model.items_missing;
-        answers.push_back(is_missing ? std::nullopt : std::optional(std::clamp(value, item.low, item.high)));
+        bool const is_missing = random.uniform() < o.model.items_missing && !item.is_required;
+        done.answers.push_back(is_missing ? std::nullopt : std::optional(std::clamp(value, item.low, item.high)));
     }
-    return answers;
 }
 
 } // namespace study

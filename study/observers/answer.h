@@ -13,8 +13,8 @@ struct ModelAnswer {
 /// comparing noisy percepts of the stimuli.
 ModelAnswer answer(Observer const& observer, TrialRequest const& trial, Random& random);
 
-/// Answers to the items of a questionnaire.
-std::vector<std::optional<double>> answer_items(Observer const& observer, Questionnaire const& questionnaire,
-                                                Random& random);
+/// Fills in the answers to the items of a questionnaire.
+void answer_items(Observer const& observer, Questionnaire const& questionnaire, Random& random,
+                  QuestionnaireDone& done);
 
 } // namespace study

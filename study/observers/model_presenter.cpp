@@ -78,11 +78,13 @@ StepDone ModelPresenter::walk(TrialRequest const& where, std::string const&, dou
     return take(where.step_index, duration_s);
 }
 
-QuestionnaireDone ModelPresenter::ask(Questionnaire const& questionnaire, int step)
+QuestionnaireDone ModelPresenter::ask(QuestionnaireRequest const& r)
 {
-    Random random = observer_.random(kItems + std::uint64_t(step));
-    StepDone const taken = take(step, seconds(questionnaire_us(questionnaire)));
-    return {step, taken.start_s, taken.end_s, answer_items(observer_, questionnaire, random)};
+    Random random = observer_.random(kItems + std::uint64_t(r.step));
+    StepDone const taken = take(r.step, seconds(questionnaire_us(*r.questionnaire)));
+    QuestionnaireDone done{r.step, taken.start_s, taken.end_s, {}};
+    answer_items(observer_, *r.questionnaire, random, done);
+    return done;
 }
 
 void ModelPresenter::show_stimuli(TrialRequest const& r, double reaction_s, Random& random, TrialDone& done)

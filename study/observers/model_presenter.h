@@ -19,7 +19,7 @@ public:
     StepDone instruct(std::string const& markdown, int step) override;
     StepDone rest(std::string const& prompt, double least_s, int step) override;
     StepDone walk(TrialRequest const& where, std::string const& prompt, double seconds) override;
-    QuestionnaireDone ask(Questionnaire const& questionnaire, int step) override;
+    QuestionnaireDone ask(QuestionnaireRequest const& request) override;
     TrialDone show(TrialRequest const& trial) override;
     ExperimenterAction action() override { return ExperimenterAction::go_on; }
     std::vector<NoteTaken> notes() override { return {}; }

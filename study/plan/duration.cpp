@@ -22,7 +22,10 @@ std::int64_t reading_us(std::string const& text)
 
 std::int64_t questionnaire_us(Questionnaire const& questionnaire)
 {
-    return 6000000 * std::int64_t(questionnaire.items.size());
+    std::int64_t us = 0;
+    for (QuestionnaireItem const& item : questionnaire.items)
+        us += item.type == ItemType::text ? 20000000 : 6000000;
+    return us;
 }
 
 std::int64_t until_onset_us(Script const& script, Block const& block)

@@ -26,10 +26,7 @@ RecordedSession simulated_record(Script const& script, Plan plan, Observer const
             int const which = due->is_questionnaire_of_trial ? script.blocks[std::size_t(step.block)].questionnaire
                                                              : step.questionnaire;
             Questionnaire const& asked = script.questionnaires[std::size_t(which)];
-            QuestionnaireDone done = presenter.ask(asked, due->step);
-            done.step = due->step;
-            done.answers.resize(asked.items.size());
-            keep(std::move(done));
+            keep(presenter.ask({&asked, due->step}));
         } else if (step.kind != PlanStepKind::trial ||
                    script.blocks[std::size_t(step.block)].task == Task::free_walk) {
             keep(StepDone{due->step, presenter.now(), presenter.now(), ""});

@@ -267,6 +267,30 @@ std::string gaze_html(std::span<RecordedSession const> sessions)
     return html_of(t);
 }
 
+/// Answers that participants typed, by item; empty if no item asks for a text.
+std::string texts_html(Script const& script, std::span<RecordedSession const> sessions)
+{
+    std::map<std::pair<Questionnaire const*, std::size_t>, std::vector<std::vector<gi::HtmlCell>>> answers;
+    for (RecordedSession const& session : sessions)
+        for (AnsweredQuestionnaire const& a : answered_questionnaires(script, session))
+            for (std::size_t i = 0; i < a.done->texts.size(); ++i)
+                if (!a.done->texts[i].empty())
+                    answers[{a.questionnaire, i}].push_back(
+                        {session.plan.participant_id, a.condition(script), std::to_string(a.time_point),
+                         gi::HtmlCell::of(gi::escaped_lines(a.done->texts[i]),
+                                          "white-space: pre-wrap; overflow-wrap: anywhere")});
+    std::string html;
+    for (auto const& [item, rows] : answers)
+        html += fmt::format("<h3>{}: {}</h3>\n", gi::escaped(item.first->name),
+                            gi::escaped(item.first->items[item.second].text)) +
+                gi::html_table({{"participant"},
+                                {"condition", false, "Levels of the factors that were fixed then"},
+                                {"time", true, "Number of the occasion in the session"},
+                                {"answer"}},
+                               rows);
+    return html.empty() ? "" : gi::html_section("Answers in words", html);
+}
+
 std::string provenance(std::span<RecordedSession const> sessions, ReportFacts const& facts)
 {
     std::map<std::string, std::map<std::string, int>> values;
@@ -321,6 +345,7 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
     html += gi::html_section("Numbers", shown({"scores", "hierarchical_scores", "effects", "group_differences",
                                                "thresholds", "parameters", "curves", "detection", "population",
                                                "questionnaires", "changes", "remarks"}));
+    html += texts_html(script, sessions);
     std::string const about = fmt::format("<p class=\"about\">Experiment {}: {} of {} participants, {} sessions, "
                                           "{} complete. Intervals of {:.0f} %, "
                                           "{} replicates of bootstraps.</p>\n",

@@ -2,12 +2,13 @@
 // Shows trials and collects the answers: a window, a wall, a headset, or a model observer.
 // Session decides what is recorded, chosen and repeated; a presenter keeps no state between calls. Calls return
 // when the participant is done, so a presenter processes its own events meanwhile; nothing is written to the disk
-// during a call. An exception from a call (Aborted, or any other: the display was lost, ...) ends the session, and
-// the step under way counts as not done.
+// during a call, except by QuestionnaireRequest::keep. An exception from a call (Aborted, or any other: the
+// display was lost, ...) ends the session, and the step under way counts as not done.
 
 #include "study/journal/entries.h"
 #include "study/plan/plan.h"
 
+#include <functional>
 #include <stdexcept>
 namespace study {
 
@@ -21,6 +22,18 @@ struct TrialRequest {
     std::optional<Stimulus> reference;       ///< also shown
     std::optional<double> level;             ///< of the varied setting
     int trials_done = 0, trials_planned = 0; ///< of the session, for progress displays
+};
+
+/// A questionnaire to be answered.
+struct QuestionnaireRequest {
+    Questionnaire const* questionnaire = nullptr;
+    int step = 0;
+    /// Answers before the session was interrupted, in the order in which items were left: the participant goes on
+    /// after the last one.
+    std::vector<ItemAnswered> given{};
+    /// Call it when the participant leaves an item, so that its answer is on the disk; a presenter that asks all
+    /// items at once does not need it. Empty = there is no disk.
+    std::function<void(ItemAnswered const&)> keep{};
 };
 
 /// The experimenter's command, which may come at any time.
@@ -48,7 +61,7 @@ public:
     virtual StepDone instruct(std::string const& markdown, int step) = 0;
     virtual StepDone rest(std::string const& prompt, double least_s, int step) = 0;
     virtual StepDone walk(TrialRequest const& where, std::string const& prompt, double seconds) = 0;
-    virtual QuestionnaireDone ask(Questionnaire const& questionnaire, int step) = 0;
+    virtual QuestionnaireDone ask(QuestionnaireRequest const& request) = 0;
     /// Runs a trial: iti, warm-up, stimuli, answer, feedback. Session fills in step, attempt, level, is_correct
     /// and bookkeeping_ms, and itself detects too many dropped frames and missing answers. A trial that the
     /// experimenter ends while it is shown is invalid, with the reason "skipped" (done; action() then returns

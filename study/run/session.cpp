@@ -288,10 +288,28 @@ private:
     void ask(NextStep const& due, int questionnaire)
     {
         Questionnaire const& asked = s_.questionnaires[std::size_t(questionnaire)];
-        QuestionnaireDone done = call([&] { return p_.ask(asked, due.step); });
+        QuestionnaireRequest const r{&asked, due.step, items_answered(due.step), [&](ItemAnswered item) {
+                                         item.step = due.step;
+                                         keep(item);
+                                     }};
+        QuestionnaireDone done = call([&] { return p_.ask(r); });
         done.step = due.step;
         done.answers.resize(asked.items.size());
+        if (has_text_items(asked)) done.texts.resize(asked.items.size());
         keep(done);
+    }
+
+    /// Items of the step's questionnaire that were answered before an interruption.
+    std::vector<ItemAnswered> items_answered(int step) const
+    {
+        std::vector<ItemAnswered> given;
+        for (JournalEntry const& entry : record_.entries) {
+            if (auto const* const item = std::get_if<ItemAnswered>(&entry); item && item->step == step)
+                given.push_back(*item);
+            auto const* const done = std::get_if<QuestionnaireDone>(&entry);
+            if (done && done->step == step) given.clear();
+        }
+        return given;
     }
 
     TrialRequest request(NextStep const& due) const { return request_of(s_, plan_, progress_, due); }

@@ -19,11 +19,23 @@
 
 namespace study {
 
+enum class ItemType {
+    scale, ///< a value of a scale
+    text,  ///< typed text, which no score uses
+};
+
 struct QuestionnaireItem {
     std::string id, text;
+    // Of a scale:
     double low = 1, high = 7, step = 1;
     std::vector<std::string> labels; ///< of low and high, or of every step
     bool is_reversed = false;        ///< scored low + high - answer
+
+    ItemType type = ItemType::scale;
+    bool is_required = false; ///< the participant cannot go on without an answer
+    // Of a text:
+    int lines = 1;        ///< its height in the window; line ends can be typed if more than one
+    int max_chars = 1000; ///< Unicode characters
 };
 
 enum class Combine {
@@ -47,6 +59,11 @@ struct Questionnaire {
     Place place; ///< in the script; {0, 0} for built-in ones
 };
 
+bool has_text_items(Questionnaire const& questionnaire);
+/// Why the text is no answer to an item of type text: "write an answer"; empty = it is one. An empty text, or one
+/// of blanks, is no answer.
+std::string flaw_of_text(QuestionnaireItem const& item, std::string const& text);
+
 /// ssq, sus_presence, sus_usability, ipq, nasa_tlx.
 std::span<Questionnaire const> known_questionnaires();
 
@@ -61,7 +78,7 @@ struct QuestionnaireScores {
     std::vector<std::optional<ItemScore>> items; ///< in the questionnaire's order
     std::vector<SubscaleScore> subscales;
 };
-/// @param answers one per item, within its range; none = not answered
+/// @param answers one per item, within its range; none = not answered, and always for items of type text
 /// Throws std::invalid_argument if the number of answers is wrong, or one is out of range or not on a step.
 QuestionnaireScores score(Questionnaire const& questionnaire, std::span<std::optional<double> const> answers);
 

@@ -1,5 +1,8 @@
 #include "study/script/questionnaire.h"
 
+#include "gi/core/text.h"
+
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <stdexcept>
@@ -9,6 +12,8 @@ namespace {
 
 ItemScore score_item(QuestionnaireItem const& item, double answer)
 {
+    if (item.type == ItemType::text)
+        throw std::invalid_argument(fmt::format("{} = {:g} (its answer is a text) give a text", item.id, answer));
     double const steps = (answer - item.low) / item.step;
     bool const is_within = answer >= item.low && answer <= item.high; // false for NaN
     if (!is_within || std::abs(steps - std::round(steps)) > 1e-9)
@@ -34,6 +39,22 @@ std::optional<double> combine(Subscale const& s, std::vector<std::optional<ItemS
 }
 
 } // namespace
+
+bool has_text_items(Questionnaire const& q)
+{
+    return std::any_of(q.items.begin(), q.items.end(),
+                       [](QuestionnaireItem const& item) { return item.type == ItemType::text; });
+}
+
+std::string flaw_of_text(QuestionnaireItem const& item, std::string const& text)
+{
+    bool const is_empty = text.find_first_not_of(" \t\n\r") == std::string::npos;
+    if (item.is_required && is_empty) return "write an answer";
+    std::size_t const length = gi::characters(text);
+    if (length > std::size_t(item.max_chars))
+        return fmt::format("write at most {} characters, these are {}", item.max_chars, length);
+    return {};
+}
 
 QuestionnaireScores score(Questionnaire const& q, std::span<std::optional<double> const> answers)
 {

@@ -13,6 +13,22 @@ QuestionnaireItem read_item(gi::Yaml const& y, RatingScale const* usual)
     QuestionnaireItem item;
     item.id = y.needed("id", "q1").name();
     item.text = y.needed("text", "\"How real did it look?\"").text();
+    if (y.has("type")) item.type = ItemType(y.at("type").one_of({"scale", "text"}, "type of item"));
+    if (y.has("required")) item.is_required = y.at("required").boolean();
+    bool const is_text = item.type == ItemType::text;
+    for (char const* key : {"min", "max", "step", "labels", "reverse"})
+        if (is_text && y.has(key))
+            throw y.at(key).error(fmt::format("'{}' of the text '{}'", key, item.id), "only scales have it",
+                                  "remove it, or 'type: text'");
+    for (char const* key : {"lines", "max_chars"})
+        if (!is_text && y.has(key))
+            throw y.at(key).error(fmt::format("'{}' of the scale '{}'", key, item.id), "only texts have it",
+                                  "remove it, or write 'type: text'");
+    if (is_text) {
+        if (y.has("lines")) item.lines = y.at("lines").integer(1, 50);
+        if (y.has("max_chars")) item.max_chars = y.at("max_chars").integer(1, 10000);
+        return item;
+    }
     if (usual != nullptr) {
         item.low = usual->low;
         item.high = usual->high;
@@ -47,8 +63,12 @@ Subscale read_subscale(gi::Yaml const& name, gi::Yaml const& y, Questionnaire co
     s.name = name.name();
     std::vector<std::string> ids;
     for (QuestionnaireItem const& item : q.items) ids.push_back(item.id);
-    for (gi::Yaml const& id : y.needed("items", "[q1, q2]").one_or_more())
+    for (gi::Yaml const& id : y.needed("items", "[q1, q2]").one_or_more()) {
         s.items.push_back(id.one_of(ids, "item"));
+        if (q.items[std::size_t(s.items.back())].type == ItemType::text)
+            throw id.error(fmt::format("item '{}' in the scale '{}'", id.text(), s.name),
+                           "its answer is a text, which has no score", "remove it");
+    }
     if (s.items.empty()) throw y.error("scale '" + s.name + "' has no items", "it has no score", "name some");
     if (y.has("score")) s.combine = Combine(y.at("score").one_of({"sum", "mean", "count"}, "way to score"));
     if (y.has("weight")) s.weight = y.at("weight").number(-1e6, 1e6);

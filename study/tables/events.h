@@ -28,6 +28,10 @@ struct AnsweredQuestionnaire {
     int time_point; ///< from 1: the n-th time that this questionnaire was answered in the session
     double offset_s;
     QuestionnaireScores scores;
+
+    /// Name of the factor's level that was fixed then; empty = none.
+    std::string level(Script const& script, std::size_t factor) const;
+    std::string condition(Script const& script) const; ///< all these levels: "cornell, exact"
 };
 /// @throws ScriptError if the journal has answers that the questionnaire does not allow
 std::vector<AnsweredQuestionnaire> answered_questionnaires(Script const& script, RecordedSession const& session);

@@ -62,6 +62,10 @@ std::vector<AnsweredQuestionnaire> answered_questionnaires(Script const& script,
         };
         if (which < 0) throw refuse(fmt::format("step {} is no questionnaire", done->step + 1));
         Questionnaire const& q = script.questionnaires[std::size_t(which)];
+        std::size_t const texts = has_text_items(q) ? q.items.size() : 0;
+        if (done->texts.size() != texts)
+            throw refuse(
+                fmt::format("{} texts for the {} items of {}", done->texts.size(), q.items.size(), q.name));
         try {
             out.push_back({&q, step, done, ++times[which], timed.offset_s, score(q, done->answers)});
         } catch (std::invalid_argument const& e) {
@@ -69,6 +73,21 @@ std::vector<AnsweredQuestionnaire> answered_questionnaires(Script const& script,
         }
     }
     return out;
+}
+
+std::string AnsweredQuestionnaire::level(Script const& script, std::size_t factor) const
+{
+    int const at =
+        step->kind == PlanStepKind::trial ? step->trial.stimuli.front().levels[factor] : step->levels[factor];
+    return at < 0 ? "" : script.factors[factor].levels[std::size_t(at)].name;
+}
+
+std::string AnsweredQuestionnaire::condition(Script const& script) const
+{
+    std::string all;
+    for (std::size_t f = 0; f < script.factors.size(); ++f)
+        if (std::string const name = level(script, f); !name.empty()) all += (all.empty() ? "" : ", ") + name;
+    return all;
 }
 
 Table questionnaires_table(Script const& script, RecordedSession const& session)
@@ -84,17 +103,15 @@ Table questionnaires_table(Script const& script, RecordedSession const& session)
         {"item", "Item, or the name of the score"},
         {"raw", "Answer as given"},
         {"reversed", "Whether the item is reverse-scored"},
-        {"scored", "Answer as scored, or the score"}};
+        {"scored", "Answer as scored, or the score"},
+        {"text",
+         "Answer as typed, of an item that asks for a text; in tab-separated files its line ends are blanks"}};
     table.columns.insert(table.columns.end(), more.begin(), more.end());
     for (AnsweredQuestionnaire const& a : answered_questionnaires(script, session)) {
         std::vector<std::string> head{seconds_cell(a.done->start_s + a.offset_s),
                                       seconds_cell(a.done->end_s - a.done->start_s), cell(a.questionnaire->name),
                                       cell(a.time_point)};
-        for (std::size_t f = 0; f < script.factors.size(); ++f) {
-            int const level =
-                a.step->kind == PlanStepKind::trial ? a.step->trial.stimuli.front().levels[f] : a.step->levels[f];
-            head.push_back(level < 0 ? cell("") : cell(script.factors[f].levels[std::size_t(level)].name));
-        }
+        for (std::size_t f = 0; f < script.factors.size(); ++f) head.push_back(cell(a.level(script, f)));
         auto const row = [&](std::vector<std::string> const& tail) {
             table.rows.push_back(head);
             table.rows.back().insert(table.rows.back().end(), tail.begin(), tail.end());
@@ -102,11 +119,12 @@ Table questionnaires_table(Script const& script, RecordedSession const& session)
         for (std::size_t i = 0; i < a.questionnaire->items.size(); ++i) {
             QuestionnaireItem const& item = a.questionnaire->items[i];
             auto const& s = a.scores.items[i];
-            row({"item", cell(item.id), s ? cell(s->raw) : cell(""), cell(item.is_reversed),
-                 s ? cell(s->scored) : cell("")});
+            bool const is_text = item.type == ItemType::text;
+            row({"item", cell(item.id), s ? cell(s->raw) : cell(""), is_text ? cell("") : cell(item.is_reversed),
+                 s ? cell(s->scored) : cell(""), is_text ? cell(a.done->texts[i]) : cell("")});
         }
         for (SubscaleScore const& s : a.scores.subscales)
-            row({"score", cell(s.subscale), cell(""), cell(""), cell(s.value)});
+            row({"score", cell(s.subscale), cell(""), cell(""), cell(s.value), cell("")});
     }
     return table;
 }

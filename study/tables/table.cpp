@@ -17,7 +17,10 @@ std::string joined(Table const& table, std::vector<std::string> const& cells)
     if (cells.size() != table.columns.size())
         throw std::logic_error(fmt::format("{} cells for {} columns", cells.size(), table.columns.size()));
     std::string line;
-    for (std::size_t i = 0; i < cells.size(); ++i) line += (i ? "\t" : "") + cells[i];
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        line += i ? "\t" : "";
+        std::replace_copy_if(cells[i].begin(), cells[i].end(), std::back_inserter(line), is_control, ' ');
+    }
     return line + "\n";
 }
 
@@ -44,7 +47,8 @@ std::string cell(std::string_view text)
 {
     if (text.empty()) return std::string(kNothing);
     std::string out(text);
-    std::replace_if(out.begin(), out.end(), is_control, ' ');
+    std::replace_if(
+        out.begin(), out.end(), [](char c) { return is_control(c) && c != '\t' && c != '\n'; }, ' ');
     return out;
 }
 

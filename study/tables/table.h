@@ -36,15 +36,15 @@ std::string cell(std::optional<double> value);
 std::string cell(int value);
 std::string cell(bool value); ///< true, false
 std::string cell(std::optional<bool> value);
-/// n/a for an empty text. Tabs, line ends and other control characters become spaces, because a table cannot
-/// represent them.
+/// n/a for an empty text. Control characters other than tabs and line ends become spaces.
 std::string cell(std::string_view text);
 inline std::string cell(char const* text) { return cell(std::string_view(text)); }
 inline std::string cell(std::string const& text) { return cell(std::string_view(text)); }
 /// Seconds with six decimals.
 std::string seconds_cell(double seconds);
 
-/// A line of column names and one per row, tab-separated.
+/// A line of column names and one per row, tab-separated. Tabs and line ends in cells become spaces, because the
+/// format cannot represent them.
 std::string tsv_text(Table const& table);
 /// Comma-separated text (RFC 4180, lines end in "\n"); `nothing` replaces n/a, such as "NA" for R.
 std::string csv_text(Table const& table, std::string_view nothing = kNothing);

@@ -117,5 +117,71 @@ TEST(Scores, OfAnOwnQuestionnaire)
     EXPECT_DOUBLE_EQ(scores_of(own, {5, 2}).at("ease"), 4.5); // 2 is reversed: 4
 }
 
+constexpr char const* kWithText = R"(schema: study/1
+id: x
+seed: 1
+participants: {count: 1}
+sequence: [{questionnaire: q}]
+blocks: {}
+questionnaires:
+  q:
+    items:
+      - {id: sure, text: "Sure?", required: true}
+      - {id: why, text: "Why?", type: text, lines: 4, max_chars: 20, required: true}
+      - {id: more, text: "More?", type: text}
+    scales: {all: {items: [sure]}}
+)";
+
+TEST(TextItems, AreReadAndHaveNoScore)
+{
+    Script const s = parse_script(kWithText, "x.yaml");
+    Questionnaire const& q = s.questionnaires.back();
+    ASSERT_EQ(q.items.size(), 3u);
+    EXPECT_EQ(q.items[0].type, ItemType::scale);
+    EXPECT_TRUE(q.items[0].is_required);
+    EXPECT_EQ(q.items[1].type, ItemType::text);
+    EXPECT_EQ(q.items[1].lines, 4);
+    EXPECT_EQ(q.items[1].max_chars, 20);
+    EXPECT_TRUE(q.items[1].is_required);
+    EXPECT_FALSE(q.items[2].is_required);
+    EXPECT_TRUE(has_text_items(q));
+    EXPECT_FALSE(has_text_items(known("ssq")));
+    auto const scores = score(q, std::vector<std::optional<double>>{3.0, {}, {}});
+    EXPECT_EQ(scores.subscales[0].value, 3);
+    EXPECT_THROW(score(q, std::vector<std::optional<double>>{3.0, 1.0, {}}), std::invalid_argument);
+}
+
+TEST(TextItems, SayWhatIsNoAnswer)
+{
+    Script const script = parse_script(kWithText, "x.yaml");
+    auto const& items = script.questionnaires.back().items;
+    EXPECT_EQ(flaw_of_text(items[1], " \n"), "write an answer");
+    EXPECT_EQ(flaw_of_text(items[2], ""), "");
+    EXPECT_EQ(flaw_of_text(items[1], "éééééééééééééééééééé"), "") << "characters, not bytes";
+    EXPECT_NE(flaw_of_text(items[1], "ééééééééééééééééééééé").find("at most 20"), std::string::npos);
+}
+
+TEST(TextItems, RefuseWhatOnlyScalesHave)
+{
+    struct Mistake {
+        char const *from, *to, *message;
+    };
+    for (auto const& [from, to, message] : {Mistake{"max_chars: 20", "max: 20", "x.yaml:10:"},
+                                            {"lines: 4", "step: 4", "only scales have it"},
+                                            {"lines: 4", "lines: 0", "lines"},
+                                            {"type: text}", "type: words}", "type of item"},
+                                            {"\"Sure?\",", "\"Sure?\", max_chars: 3,", "only texts have it"},
+                                            {"items: [sure]", "items: [why]", "which has no score"}}) {
+        std::string text = kWithText;
+        text.replace(text.find(from), std::string(from).size(), to);
+        try {
+            parse_script(text, "x.yaml");
+            ADD_FAILURE() << to;
+        } catch (std::exception const& e) {
+            EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+        }
+    }
+}
+
 } // namespace
 } // namespace study::test

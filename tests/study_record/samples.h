@@ -38,6 +38,9 @@ inline std::vector<JournalEntry> entries_of_every_kind()
             TrialDone{},
             StepDone{7, 1.5, 2.5, "skipped"},
             QuestionnaireDone{8, 0, 1, {3.0, std::nullopt, 0.1}},
+            QuestionnaireDone{8, 0, 1, {std::nullopt, 2.0}, {"\"Ça\", he said,\nłódź", ""}},
+            ItemAnswered{8, 0.5, 2, 3.0, ""},
+            ItemAnswered{8, 0.5, 3, std::nullopt, "nan"},
             ParticipantAsked{{{"age_band", "20-29"}, {"vision", "normal\n\t\"quoted\" \\ \xe2\x82\xac"}}},
             NoteTaken{1.25, "pause", "the telephone rang"},
             SessionEnded{100, "2026-11-22T09:00:00.000Z", true, ""}};

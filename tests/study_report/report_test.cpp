@@ -86,6 +86,27 @@ TEST(Report, OfEveryTaskIsAPageThatEscapesWhatScriptsSay)
     EXPECT_NE(page.find("fast.x+1"), std::string::npos);
 }
 
+TEST(Report, ListsTypedAnswers)
+{
+    Script const s = parse_script(R"(schema: study/1
+id: t
+seed: 1
+participants: {count: 1}
+sequence: [{questionnaire: q}]
+blocks: {}
+questionnaires: {q: {items: [{id: why, text: "Why <i>?", type: text, lines: 3}]}}
+)",
+                                  "t.yaml");
+    RecordedSession session{make_plan(s, 1), {}};
+    session.record.entries.emplace_back(started(s, session.plan));
+    session.record.entries.emplace_back(QuestionnaireDone{0, 1, 2, {{}}, {"<b>\"łódź\"</b> &\nmore"}});
+    std::vector<RecordedSession> const sessions{session};
+    std::string const page = report_page(s, sessions, analyze(s, sessions), {"lightwell", {}, {}});
+    expect_sound(page);
+    EXPECT_NE(page.find("q: Why &lt;i&gt;?"), std::string::npos);
+    EXPECT_NE(page.find("&lt;b&gt;&quot;łódź&quot;&lt;/b&gt; &amp;\nmore"), std::string::npos);
+}
+
 TEST(Report, OfOneObserverOrOfASessionWithoutTrialsSaysSo)
 {
     Script const s = all_tasks();

@@ -122,6 +122,41 @@ TEST(Resume, CutAnywhereGoesOnAsIfItHadNotBeen)
     }
 }
 
+TEST(Resume, GoesOnWithTheNextItemOfAQuestionnaire)
+{
+    TemporaryFolder const dir;
+    Script const s = parse_script(R"(schema: study/1
+id: t
+seed: 1
+participants: {count: 1}
+sequence: [{questionnaire: q}, {questionnaire: q}]
+blocks: {}
+questionnaires: {q: {items: [{id: why, text: Why?, type: text}, {id: sure, text: Sure?}, {id: end, text: End?}]}}
+)",
+                                  "t.yaml");
+    TestPresenter first;
+    first.on_ask = [](QuestionnaireRequest const& r) -> QuestionnaireDone {
+        if (r.step == 0) return {0, 0, 1, {{}, 1.0, 1.0}, {"before", "", ""}};
+        EXPECT_TRUE(r.given.empty());
+        r.keep({r.step, 1, 0, {}, "because"});
+        r.keep({r.step, 2, 1, 3.0, ""});
+        throw std::runtime_error("it was killed");
+    };
+    EXPECT_FALSE(run_session(s, 1, first, settings_in(dir.path())).is_complete);
+    TestPresenter second;
+    second.on_ask = [](QuestionnaireRequest const& r) -> QuestionnaireDone {
+        EXPECT_EQ(r.step, 1);
+        EXPECT_EQ(r.given.size(), 2u);
+        EXPECT_EQ(r.given.at(0).text, "because");
+        EXPECT_EQ(r.given.at(1).answer, 3.0);
+        return {1, 5, 6, {{}, 3.0, 4.0}, {"because"}};
+    };
+    EXPECT_TRUE(run_session(s, 1, second, settings_in(dir.path(), SessionStart::go_on)).is_complete);
+    auto const done = entries_of<QuestionnaireDone>(journal_in(dir.path()));
+    ASSERT_EQ(done.size(), 2u);
+    EXPECT_EQ(done[1].texts, (std::vector<std::string>{"because", "", ""}));
+}
+
 TEST(Resume, WithoutADisplayChangesNothing)
 {
     TemporaryFolder const dir;

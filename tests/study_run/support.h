@@ -63,6 +63,7 @@ blocks:
 class TestPresenter : public Presenter {
 public:
     std::function<void(TrialRequest const&, TrialDone&)> on_show = [](auto const&, auto&) {};
+    std::function<QuestionnaireDone(QuestionnaireRequest const&)> on_ask;
     std::function<ExperimenterAction()> on_wish = [] { return ExperimenterAction::go_on; };
     std::vector<NoteTaken> waiting_notes;
     bool agrees = true, display_is_good = true, has_display = true;
@@ -106,10 +107,11 @@ public:
     {
         return said_for(prompt, 0, seconds);
     }
-    QuestionnaireDone ask(Questionnaire const& q, int) override
+    QuestionnaireDone ask(QuestionnaireRequest const& r) override
     {
         clock_s += 5;
-        return {0, clock_s - 5, clock_s, std::vector<std::optional<double>>(q.items.size(), 4.0)};
+        if (on_ask) return on_ask(r);
+        return {0, clock_s - 5, clock_s, std::vector<std::optional<double>>(r.questionnaire->items.size(), 4.0)};
     }
     TrialDone show(TrialRequest const& r) override
     {

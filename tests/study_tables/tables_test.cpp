@@ -97,12 +97,64 @@ TEST(Events, HaveARowPerStimulusBesideThem)
 TEST(Questionnaires, HaveAnswersAndScores)
 {
     Script const s = script();
-    EXPECT_EQ(
-        tsv_text(questionnaires_table(s, session(s))),
-        "start\ttime_taken\tquestionnaire\ttime_point\tscene\tfactor_trial\tkind\titem\traw\treversed\tscored\n"
-        "11.000000\t9.000000\tmood\t1\tn/a\tn/a\titem\tgood\t1\tfalse\t1\n"
-        "11.000000\t9.000000\tmood\t1\tn/a\tn/a\titem\tbad\t1\ttrue\t5\n"
-        "11.000000\t9.000000\tmood\t1\tn/a\tn/a\tscore\tmood\tn/a\tn/a\t3\n");
+    EXPECT_EQ(tsv_text(questionnaires_table(s, session(s))),
+              "start\ttime_taken\tquestionnaire\ttime_point\tscene\tfactor_"
+              "trial\tkind\titem\traw\treversed\tscored\ttext\n"
+              "11.000000\t9.000000\tmood\t1\tn/a\tn/a\titem\tgood\t1\tfalse\t1\tn/a\n"
+              "11.000000\t9.000000\tmood\t1\tn/a\tn/a\titem\tbad\t1\ttrue\t5\tn/a\n"
+              "11.000000\t9.000000\tmood\t1\tn/a\tn/a\tscore\tmood\tn/a\tn/a\t3\tn/a\n");
+}
+
+constexpr char const* kTyped = "\"Ça\", she said,\n<b>łódź</b>";
+
+/// A session in which a text was typed.
+RecordedSession typed(Script const& s)
+{
+    RecordedSession r{make_plan(s, 1), {}};
+    r.record.entries.emplace_back(started(s, r.plan));
+    r.record.entries.emplace_back(QuestionnaireDone{0, 1, 2, {{}, 4.0}, {kTyped, ""}});
+    return r;
+}
+
+Script text_script()
+{
+    return parse_script(R"(schema: study/1
+id: t
+seed: 1
+participants: {count: 1}
+sequence: [{questionnaire: q}]
+blocks: {}
+questionnaires: {q: {items: [{id: why, text: Why?, type: text, lines: 3}, {id: sure, text: Sure?}]}}
+)",
+                        "t.yaml");
+}
+
+TEST(Questionnaires, HaveTextsWithTheirQuotesAndLineEnds)
+{
+    Script const s = text_script();
+    Table const t = questionnaires_table(s, typed(s));
+    ASSERT_EQ(t.rows.size(), 2u);
+    EXPECT_EQ(t.rows[0].back(), kTyped);
+    EXPECT_NE(tsv_text(t).find("item\twhy\tn/a\tn/a\tn/a\t\"Ça\", she said, <b>łódź</b>\n"), std::string::npos)
+        << tsv_text(t);
+    EXPECT_NE(csv_text(t).find("n/a,\"\"\"Ça\"\", she said,\n<b>łódź</b>\"\n"), std::string::npos) << csv_text(t);
+    RecordedSession without = typed(s);
+    std::get<QuestionnaireDone>(without.record.entries.back()).texts.clear();
+    EXPECT_THROW(questionnaires_table(s, without), ScriptError);
+
+    auto const file = std::filesystem::path(testing::TempDir()) / "lightwell_texts.sqlite";
+    std::filesystem::remove(file);
+    write_sqlite(file, export_tables(s, {typed(s)}));
+    sqlite3* db = nullptr;
+    ASSERT_EQ(sqlite3_open(file.c_str(), &db), SQLITE_OK);
+    std::string found;
+    auto const keep = [](void* out, int, char** values, char**) {
+        *static_cast<std::string*>(out) += values[0];
+        return 0;
+    };
+    sqlite3_exec(db, "SELECT text FROM questionnaires WHERE item = 'why'", keep, &found, nullptr);
+    sqlite3_close(db);
+    EXPECT_EQ(found, kTyped);
 }
 
 TEST(Sessions, OfTwoPartsGoOnInTime)
@@ -190,7 +242,8 @@ TEST(Cells, AreTheSameInEveryLocaleAndNeverBreakARow)
 {
     EXPECT_EQ(cell(0.1), "0.1");
     EXPECT_EQ(cell(double(NAN)), "n/a");
-    EXPECT_EQ(cell(std::string_view("a\tb\nc")), "a b c");
+    EXPECT_EQ(cell(std::string_view("a\tb\nc\x01")), "a\tb\nc ");
+    EXPECT_EQ(tsv_text({{{"a", ""}}, {{"a\tb\nc"}}}), "a\na b c\n");
     EXPECT_EQ(cell(std::string_view("")), "n/a");
     EXPECT_EQ(seconds_cell(1.0 / 3), "0.333333");
     EXPECT_EQ(label_of("ab", {"ab", "abx2"}), "abx3");

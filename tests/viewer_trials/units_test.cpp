@@ -13,6 +13,7 @@
 #include "viewer/experiment/response.h"
 #include "viewer/experiment/screens/refresh.h"
 #include "viewer/experiment/stimuli/stimulus_settings.h"
+#include "viewer/experiment/text_entry.h"
 #include "viewer/experiment/trial.h"
 #include "viewer/protocol/remote/remote_client.h"
 
@@ -253,6 +254,55 @@ nlohmann::json asked(Experimenter& experimenter, std::filesystem::path const& so
     auto answer = std::async(std::launch::async, [&] { return RemoteClient(socket).ask(request); });
     while (answer.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) experimenter.poll(1);
     return answer.get();
+}
+
+InputEvent typed(int unicode)
+{
+    InputEvent e;
+    e.kind = InputKind::character;
+    e.code = unicode;
+    return e;
+}
+
+TEST(TextEntry, IsEditedByCharactersNotBytes)
+{
+    TextEntry t(1, 6, "é€");
+    EXPECT_EQ(t.cursor(), 5u);
+    t.take(typed(0x1f600)); // four bytes
+    t.take(key(GLFW_KEY_LEFT));
+    t.take(key(GLFW_KEY_BACKSPACE));
+    EXPECT_EQ(t.text(), "é😀");
+    EXPECT_EQ(t.cursor(), 2u);
+    t.take(key(GLFW_KEY_DELETE));
+    t.take(key(GLFW_KEY_DELETE)); // nothing is there
+    EXPECT_EQ(t.text(), "é");
+    t.take(key(GLFW_KEY_HOME));
+    t.take(key(GLFW_KEY_BACKSPACE));
+    for (int const c : {'"', ',', '<'}) t.take(typed(c));
+    t.take(key(GLFW_KEY_END));
+    for (int const c : {0x142, 'x', 'y'}) t.take(typed(c));
+    EXPECT_EQ(t.text(), "\",<éłx") << "at most six characters";
+    EXPECT_TRUE(t.is_full());
+    t.take(key(GLFW_KEY_ENTER));
+    EXPECT_EQ(t.text().find('\n'), std::string::npos) << "one line";
+}
+
+TEST(TextEntry, OfSeveralLinesMovesBetweenThem)
+{
+    TextEntry t(3, 100);
+    for (int const c : {'a', 'b', 'c'}) t.take(typed(c));
+    t.take(key(GLFW_KEY_ENTER));
+    t.take(typed('d'));
+    t.take(key(GLFW_KEY_UP));
+    t.take(typed('1'));
+    t.take(key(GLFW_KEY_END));
+    t.take(key(GLFW_KEY_DOWN));
+    t.take(typed('2'));
+    EXPECT_EQ(t.text(), "a1bc\nd2");
+    InputEvent done = key(GLFW_KEY_ENTER);
+    done.modifiers = GLFW_MOD_CONTROL;
+    t.take(done);
+    EXPECT_EQ(t.text(), "a1bc\nd2") << "control and enter ends it";
 }
 
 TEST(Experimenter, NotesHaveText)

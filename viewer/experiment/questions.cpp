@@ -1,5 +1,6 @@
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/response.h"
+#include "viewer/experiment/text_entry.h"
 #include "viewer/experiment/trial_presenter.h"
 
 #include <GLFW/glfw3.h>
@@ -11,30 +12,10 @@
 namespace viewer {
 namespace {
 
-void append_utf8(std::string& text, unsigned unicode)
+bool is_enter(InputEvent const& e)
 {
-    auto const put = [&](unsigned byte) { text += char(byte); };
-    auto const more = [&](int shift) { put(0x80 | ((unicode >> shift) & 0x3f)); };
-    if (unicode < 0x80) return put(unicode);
-    if (unicode < 0x800) {
-        put(0xc0 | (unicode >> 6));
-    } else {
-        if (unicode < 0x10000) {
-            put(0xe0 | (unicode >> 12));
-        } else {
-            put(0xf0 | (unicode >> 18));
-            more(12);
-        }
-        more(6);
-    }
-    more(0);
-}
-
-/// Removes the last character with all its bytes.
-void remove_last(std::string& text)
-{
-    while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0) == 0x80) text.pop_back();
-    if (!text.empty()) text.pop_back();
+    return e.kind == InputKind::key && e.action == InputAction::press &&
+           (e.code == GLFW_KEY_ENTER || e.code == GLFW_KEY_KP_ENTER);
 }
 
 } // namespace
@@ -70,29 +51,27 @@ study::ParticipantAsked TrialPresenter::ask_participant(std::vector<study::Asked
 /// Typed text, asked until it is an answer.
 std::optional<std::string> TrialPresenter::type_answer(study::AskedQuestion const& question)
 {
-    constexpr std::size_t kMost = 2000;
-    std::string typed, flaw;
+    TextEntry typed(1, 1000);
+    std::string flaw;
     std::vector<PageLine> const lines{{PageLine::Kind::text, question.text}};
+    std::string answer;
     bool const answered = page(
         [&](glm::vec2 px) {
             draw_page(px, lines, "type, then enter", [&] {
-                ImGui::TextWrapped("%s_", typed.c_str());
+                typed.draw(ImGui::GetContentRegionAvail().x);
                 if (!flaw.empty()) ImGui::TextWrapped("%s", flaw.c_str());
             });
         },
         [&](InputEvent const& e) {
-            if (e.kind == InputKind::character && typed.size() < kMost && e.code >= 32)
-                append_utf8(typed, unsigned(e.code));
-            if (e.kind != InputKind::key || e.action == InputAction::release) return false;
-            if (e.code == GLFW_KEY_BACKSPACE) remove_last(typed);
-            bool const is_enter =
-                e.action == InputAction::press && (e.code == GLFW_KEY_ENTER || e.code == GLFW_KEY_KP_ENTER);
-            if (is_enter && question.type == study::AskedType::number)
-                std::replace(typed.begin(), typed.end(), ',', '.'); // a decimal point
-            if (is_enter) flaw = flaw_of_answer(question, typed);
-            return is_enter && flaw.empty();
+            typed.take(e);
+            if (!is_enter(e)) return false;
+            answer = typed.text();
+            if (question.type == study::AskedType::number)
+                std::replace(answer.begin(), answer.end(), ',', '.'); // a decimal point
+            flaw = flaw_of_answer(question, answer);
+            return flaw.empty();
         });
-    return answered ? std::optional(typed) : std::nullopt;
+    return answered ? std::optional(answer) : std::nullopt;
 }
 
 /// One of at most nine choices, by its digit; enter without one = no answer.
@@ -111,74 +90,129 @@ std::optional<std::string> TrialPresenter::choose_answer(study::AskedQuestion co
         [&](InputEvent const& e) {
             int const digit = digit_of(e);
             if (digit >= 1 && digit <= int(question.choices.size())) chosen = digit - 1;
-            return e.kind == InputKind::key && e.action == InputAction::press &&
-                   (e.code == GLFW_KEY_ENTER || e.code == GLFW_KEY_KP_ENTER);
+            return is_enter(e);
         });
     if (!answered) return {};
     return chosen >= 0 ? question.choices[std::size_t(chosen)] : std::string();
 }
 
-study::QuestionnaireDone TrialPresenter::ask(study::Questionnaire const& q, int step)
+study::QuestionnaireDone TrialPresenter::ask(study::QuestionnaireRequest const& r)
 {
-    study::QuestionnaireDone done{step, now(), 0, {}};
+    study::Questionnaire const& q = *r.questionnaire;
+    study::QuestionnaireDone done{r.step, now(), 0, {}};
     done.answers.resize(q.items.size());
+    if (has_text_items(q)) done.texts.resize(q.items.size());
+    std::size_t i = 0;
+    for (study::ItemAnswered const& given : r.given) {
+        if (given.item < 0 || given.item >= int(q.items.size())) continue;
+        i = std::size_t(given.item);
+        done.answers[i] = given.answer;
+        if (!done.texts.empty()) done.texts[i] = given.text;
+        ++i;
+    }
     experimenter_.status.doing = "questionnaire " + q.name;
-    std::string const heading = (q.title.empty() ? q.name : q.title);
-    for (std::size_t i = 0; i < q.items.size() && !should_end();) {
-        study::QuestionnaireItem const& item = q.items[i];
-        std::vector<double> const values = scale_values(item.low, item.high, item.step);
-        bool const labelled = item.labels.size() == values.size();
-        std::vector<std::string> steps;
-        for (std::size_t k = 0; k < values.size(); ++k)
-            steps.push_back(values.size() > 11 && k % 5 != 0 ? "" : fmt::format("{:g}", values[k]));
-        std::string const low = item.labels.empty() ? "" : item.labels.front(),
-                          high = item.labels.empty() ? "" : item.labels.back();
-        std::vector<PageLine> lines{{PageLine::Kind::heading, heading}};
+    while (i < q.items.size() && !should_end()) {
+        std::vector<PageLine> lines{{PageLine::Kind::heading, q.title.empty() ? q.name : q.title}};
         if (i == 0 && !q.instructions.empty())
             for (PageLine const& line : parse_page(q.instructions)) lines.push_back(line);
         lines.push_back({PageLine::Kind::gap, ""});
-        lines.push_back({PageLine::Kind::text, item.text});
-        int chosen = -1;
-        if (done.answers[i]) chosen = int(std::lround((*done.answers[i] - item.low) / item.step));
-        int go = 0; // 1 = to the next item, -1 = back
-        bool const answered = page(
-            [&](glm::vec2 px) {
-                std::string const footer = fmt::format(
-                    "{} of {}     {} and {}, {}: next     backspace: back     tab: no answer", i + 1,
-                    q.items.size(), keys_.input_of("down"), keys_.input_of("up"), keys_.input_of("confirm"));
-                draw_page(px, lines, footer, [&] {
-                    int const clicked = draw_scale(ImGui::GetContentRegionAvail().x, steps, low, high, chosen);
-                    if (clicked >= 0) chosen = clicked;
-                    if (labelled && chosen >= 0) ImGui::TextUnformatted(item.labels[std::size_t(chosen)].c_str());
-                });
-            },
-            [&](InputEvent const& e) {
-                int const last = int(values.size()) - 1;
-                if (int const digit = digit_of(e); digit >= 0)
-                    for (std::size_t k = 0; k < values.size(); ++k)
-                        if (values[k] == digit) chosen = int(k);
-                if (e.kind == InputKind::key && e.action == InputAction::press) {
-                    if (e.code == GLFW_KEY_BACKSPACE && i > 0) go = -1;
-                    if (e.code == GLFW_KEY_TAB) {
-                        chosen = -1;
-                        go = 1;
-                    }
-                }
-                if (auto const given = keys_.given(e, {"up", "down", "confirm"})) {
-                    if (given->answer == "confirm")
-                        go = chosen >= 0 ? 1 : 0;
-                    else
-                        chosen =
-                            chosen < 0 ? last / 2 : std::clamp(chosen + (given->answer == "up" ? 1 : -1), 0, last);
-                }
-                return go != 0;
-            });
-        if (!answered) break; // skipped: the remaining items stay unanswered
-        done.answers[i] = chosen < 0 ? std::nullopt : std::optional(values[std::size_t(chosen)]);
+        lines.push_back({PageLine::Kind::text, q.items[i].text});
+        bool const is_text = q.items[i].type == study::ItemType::text;
+        int const go = is_text ? type_item(q, i, lines, done.texts[i]) : choose_item(q, i, lines, done.answers[i]);
+        if (go == 0) break; // skipped: the remaining items stay unanswered
+        if (r.keep) r.keep({r.step, now(), int(i), done.answers[i], is_text ? done.texts[i] : std::string()});
         i = go < 0 ? i - 1 : i + 1;
     }
     done.end_s = now();
     return done;
+}
+
+/// A text; enter goes on, control and enter if enter begins a line. @return 1 = to the next item, -1 = back, 0 =
+/// skipped by the experimenter
+int TrialPresenter::type_item(study::Questionnaire const& q, std::size_t i, std::vector<PageLine> const& lines,
+                              std::string& text)
+{
+    study::QuestionnaireItem const& item = q.items[i];
+    TextEntry typed(item.lines, item.max_chars, text);
+    std::string flaw;
+    int go = 0;
+    std::string const footer = fmt::format("{} of {}     type     {}enter: next{}", i + 1, q.items.size(),
+                                           item.lines > 1 ? "ctrl + " : "", i > 0 ? "     page up: back" : "");
+    bool const answered = page(
+        [&](glm::vec2 px) {
+            draw_page(px, lines, footer, [&] {
+                typed.draw(ImGui::GetContentRegionAvail().x);
+                if (!flaw.empty())
+                    ImGui::TextWrapped("%s", flaw.c_str());
+                else if (typed.is_full())
+                    ImGui::TextWrapped("at most %d characters", item.max_chars);
+            });
+        },
+        [&](InputEvent const& e) {
+            typed.take(e);
+            if (e.kind != InputKind::key || e.action != InputAction::press) return false;
+            if (e.code == GLFW_KEY_PAGE_UP && i > 0) go = -1;
+            if (is_enter(e) && (item.lines == 1 || (e.modifiers & GLFW_MOD_CONTROL) != 0)) {
+                flaw = flaw_of_text(item, typed.text());
+                go = flaw.empty() ? 1 : 0;
+            }
+            return go != 0;
+        });
+    if (!answered) return 0;
+    text = typed.text();
+    return go;
+}
+
+/// A value of a scale. @return as type_item
+int TrialPresenter::choose_item(study::Questionnaire const& q, std::size_t i, std::vector<PageLine> const& lines,
+                                std::optional<double>& answer)
+{
+    study::QuestionnaireItem const& item = q.items[i];
+    std::vector<double> const values = scale_values(item.low, item.high, item.step);
+    bool const labelled = item.labels.size() == values.size();
+    std::vector<std::string> steps;
+    for (std::size_t k = 0; k < values.size(); ++k)
+        steps.push_back(values.size() > 11 && k % 5 != 0 ? "" : fmt::format("{:g}", values[k]));
+    std::string const low = item.labels.empty() ? "" : item.labels.front(),
+                      high = item.labels.empty() ? "" : item.labels.back();
+    int chosen = answer ? int(std::lround((*answer - item.low) / item.step)) : -1;
+    int go = 0;
+    bool const answered = page(
+        [&](glm::vec2 px) {
+            std::string const footer =
+                fmt::format("{} of {}     {} and {}, {}: next     backspace: back{}", i + 1, q.items.size(),
+                            keys_.input_of("down"), keys_.input_of("up"), keys_.input_of("confirm"),
+                            item.is_required ? "" : "     tab: no answer");
+            draw_page(px, lines, footer, [&] {
+                int const clicked = draw_scale(ImGui::GetContentRegionAvail().x, steps, low, high, chosen);
+                if (clicked >= 0) chosen = clicked;
+                if (labelled && chosen >= 0) ImGui::TextUnformatted(item.labels[std::size_t(chosen)].c_str());
+            });
+        },
+        [&](InputEvent const& e) {
+            int const last = int(values.size()) - 1;
+            if (int const digit = digit_of(e); digit >= 0)
+                for (std::size_t k = 0; k < values.size(); ++k)
+                    if (values[k] == digit) chosen = int(k);
+            if (e.kind == InputKind::key && e.action == InputAction::press) {
+                if (e.code == GLFW_KEY_BACKSPACE && i > 0) go = -1;
+                if (e.code == GLFW_KEY_TAB && !item.is_required) {
+                    chosen = -1;
+                    go = 1;
+                }
+            }
+            if (auto const given = keys_.given(e, {"up", "down", "confirm"})) {
+                if (given->answer == "confirm")
+                    go = chosen >= 0 ? 1 : 0;
+                else
+                    chosen =
+                        chosen < 0 ? last / 2 : std::clamp(chosen + (given->answer == "up" ? 1 : -1), 0, last);
+            }
+            return go != 0;
+        });
+    if (!answered) return 0;
+    answer = chosen < 0 ? std::nullopt : std::optional(values[std::size_t(chosen)]);
+    return go;
 }
 
 } // namespace viewer

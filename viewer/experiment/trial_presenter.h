@@ -8,6 +8,7 @@
 #include "viewer/experiment/frame_table.h"
 #include "viewer/experiment/gaze/gaze_recorder.h"
 #include "viewer/experiment/markers.h"
+#include "viewer/experiment/page.h"
 #include "viewer/experiment/screens/screen_settings.h"
 #include "viewer/experiment/stimuli/stimulus_source.h"
 
@@ -48,7 +49,7 @@ public:
     study::StepDone instruct(std::string const& markdown, int step) override;
     study::StepDone rest(std::string const& prompt, double least_s, int step) override;
     study::StepDone walk(study::TrialRequest const& where, std::string const& prompt, double seconds) override;
-    study::QuestionnaireDone ask(study::Questionnaire const& questionnaire, int step) override;
+    study::QuestionnaireDone ask(study::QuestionnaireRequest const& request) override;
     study::TrialDone show(study::TrialRequest const& trial) override;
     study::ExperimenterAction action() override;
     std::vector<study::NoteTaken> notes() override;
@@ -57,6 +58,10 @@ private:
     /// None = the experimenter skipped it.
     std::optional<std::string> type_answer(study::AskedQuestion const& question);
     std::optional<std::string> choose_answer(study::AskedQuestion const& question);
+    int type_item(study::Questionnaire const& q, std::size_t item, std::vector<PageLine> const& lines,
+                  std::string& text);
+    int choose_item(study::Questionnaire const& q, std::size_t item, std::vector<PageLine> const& lines,
+                    std::optional<double>& answer);
     using Clock = InputEvent::Clock;
     class Trial; ///< the running trial
 

@@ -67,12 +67,14 @@ std::string html_details(std::string_view summary, std::string_view html)
     return fmt::format("<details>\n<summary>{}</summary>\n{}</details>\n", escaped(summary), html);
 }
 
-std::string html_code(std::string_view text)
+std::string escaped_lines(std::string_view text)
 {
     std::string lines; // escaped() would make blanks of line ends
     for (char const c : text) lines += c == '\n' ? "\n" : escaped({&c, 1});
-    return "<pre><code>" + lines + "</code></pre>\n";
+    return lines;
 }
+
+std::string html_code(std::string_view text) { return "<pre><code>" + escaped_lines(text) + "</code></pre>\n"; }
 
 std::string html_figure(std::string_view html, std::string_view caption_html, double width_px)
 {

@@ -12,6 +12,8 @@ namespace gi {
 
 /// As text or as a quoted attribute of HTML and SVG. Control characters become blanks.
 std::string escaped(std::string_view text);
+/// The same with its line ends, for elements that show them.
+std::string escaped_lines(std::string_view text);
 
 /// A whole page. @param header_html below the title
 std::string html_page(std::string_view title, std::string_view main_html, std::string_view header_html = {});

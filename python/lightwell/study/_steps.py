@@ -46,6 +46,23 @@ def _check_answer(trial: Trial, done: Mapping[str, Any]) -> None:
         raise InputError(f"the rating {value!r} (the scale is {low:g} to {high:g}) choose a value in this range")
 
 
+def _check_item(asked: Questionnaire, item: QuestionnaireItem, answer: Any) -> None:
+    """Raises InputError unless the item allows the answer."""
+    name = f"{asked.name}.{item.id}"
+    if answer is None or (item.type == "text" and answer == ""):
+        if item.is_required:
+            raise InputError(f"no answer to {name} (it is required) return one")
+    elif item.type == "text":
+        if not isinstance(answer, str):
+            raise InputError(f"the answer {answer!r} to {name} (it is a text) return a str")
+        if len(answer) > item.max_chars:
+            raise InputError(f"{len(answer)} characters for {name} (at most {item.max_chars}) shorten it")
+    elif not item.low <= answer <= item.high:
+        raise InputError(
+            f"the answer {answer!r} to {name} (it is {item.low:g} to {item.high:g}) choose a value in this range"
+        )
+
+
 class Steps:
     """The object that the program calls (python/core/python_presenter.cpp); forwards to a Presenter."""
 
@@ -86,14 +103,15 @@ class Steps:
                 f"{len(answers)} answers to the questionnaire {asked.name} (it has {len(items)} items) "
                 "return one per item, None if not answered"
             )
+        numbers: list[float | None] = []
+        texts: list[str] = []
         for item, answer in zip(items, answers):
-            if answer is not None and not item.low <= answer <= item.high:
-                raise InputError(
-                    f"the answer {answer!r} to {asked.name}.{item.id} (it is {item.low:g} to {item.high:g}) "
-                    "choose a value in this range"
-                )
-        plain = [None if a is None else float(a) for a in answers]
-        return {"start_s": start_s, "end_s": self._presenter.now(), "answers": plain}
+            _check_item(asked, item, answer)
+            is_text = item.type == "text"
+            numbers.append(None if is_text or answer is None else float(answer))
+            texts.append(answer if isinstance(answer, str) else "")
+        done = {"start_s": start_s, "end_s": self._presenter.now(), "answers": numbers}
+        return {**done, "texts": texts} if any(item.type == "text" for item in items) else done
 
     def show(self, trial: dict[str, Any]) -> dict[str, Any]:
         shown = _trial(trial)

@@ -38,8 +38,8 @@ class Presenter:
         """Lets the participant walk freely in the scene ``where.stimuli["a"]`` for `seconds`."""
         raise NotImplementedError("the script has free walks: override walk()")
 
-    def ask(self, questionnaire: Questionnaire, step: int) -> Sequence[float | None]:
-        """Shows a questionnaire; returns one answer per item, None = not answered."""
+    def ask(self, questionnaire: Questionnaire, step: int) -> Sequence[float | str | None]:
+        """Shows a questionnaire; returns one answer per item (texts as str), None = not answered."""
         raise NotImplementedError("the script has questionnaires: override ask()")
 
     def ask_consent(self, markdown: str) -> bool:

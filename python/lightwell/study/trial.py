@@ -180,7 +180,9 @@ class Calibration:
 
 @dataclass(frozen=True)
 class QuestionnaireItem:
-    """A question with its scale; `labels` are for both ends, or for every step."""
+    """A question. Of type "scale", the answer is a value from `low` to `high`; `labels` are for both ends, or for every
+    step. Of type "text", it is a text of at most `max_chars` characters, in a box of `lines` lines.
+    """
 
     id: str
     text: str
@@ -188,6 +190,10 @@ class QuestionnaireItem:
     high: float
     step: float
     labels: list[str]
+    type: str = "scale"
+    is_required: bool = False
+    lines: int = 1
+    max_chars: int = 1000
 
 
 @dataclass(frozen=True)

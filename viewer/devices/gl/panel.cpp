@@ -17,9 +17,11 @@ void add_font(float px)
 {
     constexpr char const* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-    static ImWchar const kLatin[] = {0x20, 0x17f, 0x2010, 0x2027, 0x2190, 0x2193, 0};
+    // Latin, Greek, Cyrillic; punctuation, currencies, arrows.
+    static ImWchar const kLetters[] = {0x20,   0x24f,  0x370,  0x52f,  0x2010, 0x205e,
+                                       0x20a0, 0x20bf, 0x2190, 0x2193, 0};
     if (std::filesystem::exists(kFont)) {
-        fonts.AddFontFromFileTTF(kFont, px, nullptr, kLatin);
+        fonts.AddFontFromFileTTF(kFont, px, nullptr, kLetters);
         return;
     }
     ImFontConfig enlarged;
