@@ -9,7 +9,7 @@
 namespace bindings {
 namespace {
 
-using study::StimulusShown;
+using study::EntryPart;
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
 template <class Entry>
@@ -26,10 +26,11 @@ py::object to_python(Pairs const& pairs)
     for (auto const& [key, value] : pairs) d[py::str(key)] = value;
     return d;
 }
-py::object to_python(std::vector<StimulusShown> const& shown)
+template <EntryPart T>
+py::object to_python(std::vector<T> const& parts)
 {
     py::list all;
-    for (StimulusShown const& s : shown) all.append(fields_of(s));
+    for (T const& s : parts) all.append(fields_of(s));
     return all;
 }
 
@@ -46,10 +47,11 @@ void from_python(py::handle value, T& field)
 {
     field = py::cast<T>(value);
 }
-void from_python(py::handle value, std::vector<StimulusShown>& shown)
+template <EntryPart T>
+void from_python(py::handle value, std::vector<T>& parts)
 {
-    shown.clear();
-    for (py::handle const s : value) shown.push_back(from_dict<StimulusShown>(s));
+    parts.clear();
+    for (py::handle const s : value) parts.push_back(from_dict<T>(s));
 }
 
 } // namespace
@@ -96,6 +98,7 @@ Entry from_dict(py::handle given)
 
 template study::CalibrationDone from_dict(py::handle);
 template study::StimulusShown from_dict(py::handle);
+template study::SoundPlayed from_dict(py::handle);
 template study::TrialDone from_dict(py::handle);
 template study::StepDone from_dict(py::handle);
 template study::QuestionnaireDone from_dict(py::handle);

@@ -21,6 +21,7 @@ extern template study::CalibrationDone from_dict(py::handle);
 extern template study::StimulusShown from_dict(py::handle);
 extern template study::TrialDone from_dict(py::handle);
 extern template study::StepDone from_dict(py::handle);
+extern template study::SoundPlayed from_dict(py::handle);
 extern template study::QuestionnaireDone from_dict(py::handle);
 extern template study::NoteTaken from_dict(py::handle);
 

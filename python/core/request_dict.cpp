@@ -83,6 +83,21 @@ py::dict to_dict(study::TrialRequest const& r)
         d["labels"] = labels;
         d["modulus"] = b.magnitude.modulus;
         d["setting"] = b.compare ? b.compare->vary : std::string();
+        py::list cues;
+        for (study::Cue const& c : b.cues) {
+            constexpr char const* kMoments[] = {"fixation", "first_stimulus", "each_stimulus"};
+            study::Sound const& sound = s.sounds[std::size_t(c.sound)];
+            py::dict cue;
+            cue["sound"] = sound.name;
+            cue["at"] = kMoments[std::size_t(c.at)];
+            cue["offset_ms"] = c.offset_ms;
+            cue["file"] = sound.file;
+            cue["tone_hz"] = sound.file.empty() ? sound.tone_hz : 0;
+            cue["duration_ms"] = sound.file.empty() ? sound.duration_ms : 0;
+            cue["level_db"] = sound.level_db;
+            cues.append(cue);
+        }
+        d["cues"] = cues;
         d["range"] = b.compare ? py::make_tuple(b.compare->low, b.compare->high) : py::make_tuple(0.0, 0.0);
     }
     return d;

@@ -54,6 +54,24 @@ struct StimulusShown {
     std::optional<double> width_deg{}, height_deg{};
 };
 
+/// A sound that a cue of the trial played, or should have played.
+struct SoundPlayed {
+    std::string sound;             ///< its name in the script
+    std::string at;                ///< fixation, or the letters of the stimuli with which it was due
+    double event_s = 0;            ///< onset of those
+    double offset_ms = 0;          ///< of the cue: wanted from event_s to the sound
+    std::optional<double> onset_s; ///< when its first sample left, as the device says; none = it was not played
+    double duration_s = 0;
+    int underruns = 0;   ///< times that the device ran out of samples while it played
+    std::string missing; ///< why it was not played: trial ended, without sound, device failed, too many sounds
+};
+
+/// How much later it came than wanted; none = it was not played.
+inline std::optional<double> error_ms(SoundPlayed const& s)
+{
+    return s.onset_s ? std::optional(1e3 * (*s.onset_s - s.event_s) - s.offset_ms) : std::nullopt;
+}
+
 /// Reasons of trials with an answer that never counts: before min_response_ms, after max_response_ms.
 inline constexpr char const *kAnticipation = "anticipation", *kTooSlow = "too_slow";
 
@@ -71,10 +89,12 @@ struct TrialDone {
     double response_uncertainty_ms = 0; ///< of reaction_ms, including that of the onset
     std::string device;                 ///< input that gave the answer: "key:left"
     bool is_valid = true;
-    std::string reason; ///< why not: dropped_frames, timeout, anticipation, too_slow, skipped, lost_focus, ...
-    std::string chosen; ///< what was chosen when it came: a pair, "best/fair", or levels of further
-                        ///< varied settings, "camera.fov=40"; else empty
-    double bookkeeping_ms = 0; ///< time after the previous trial for journal and choice of the next step
+    std::string
+        reason; ///< why not: dropped_frames, timeout, anticipation, too_slow, skipped, lost_focus, no_sound, ...
+    std::string chosen;                ///< what was chosen when it came: a pair, "best/fair", or levels of further
+                                       ///< varied settings, "camera.fov=40"; else empty
+    std::vector<SoundPlayed> sounds{}; ///< in the order in which they were due
+    double bookkeeping_ms = 0;         ///< time after the previous trial for journal and choice of the next step
     // Of gaze, while stimuli were visible; none if gaze was not recorded:
     std::optional<int> gaze_samples{}, gaze_valid{};
     std::optional<int> gaze_dropped{}; ///< missing between samples

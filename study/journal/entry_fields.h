@@ -3,6 +3,8 @@
 
 #include "study/journal/entries.h"
 
+#include <concepts>
+
 namespace study {
 
 /// A field that was added later, and is written only if it has a value or is not empty: journals of earlier
@@ -79,6 +81,21 @@ struct Fields<StimulusShown> {
 };
 
 template <>
+struct Fields<SoundPlayed> {
+    static void visit(auto& e, auto&& f)
+    {
+        f("sound", e.sound);
+        f("at", e.at);
+        f("event_s", e.event_s);
+        f("offset_ms", e.offset_ms);
+        f("onset_s", e.onset_s);
+        f("duration_s", e.duration_s);
+        f("underruns", e.underruns);
+        f("missing", e.missing);
+    }
+};
+
+template <>
 struct Fields<TrialDone> {
     static constexpr char const* kKind = "trial_done";
     static void visit(auto& e, auto&& f)
@@ -102,6 +119,7 @@ struct Fields<TrialDone> {
         f(LaterField{"gaze_dropped"}, e.gaze_dropped);
         f(LaterField{"gaze_fixating"}, e.gaze_fixating);
         f(LaterField{"chosen"}, e.chosen);
+        f(LaterField{"sounds"}, e.sounds);
     }
 };
 
@@ -171,5 +189,9 @@ struct Fields<SessionEnded> {
         f("reason", e.reason);
     }
 };
+
+/// Parts of entries, which have fields of their own.
+template <class T>
+concept EntryPart = std::same_as<T, StimulusShown> || std::same_as<T, SoundPlayed>;
 
 } // namespace study

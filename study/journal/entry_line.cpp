@@ -49,10 +49,11 @@ struct Put {
     static Json json(char v) { return std::string(1, v); }
     static Json json(std::string const& v) { return v; }
     static Json json(std::pair<std::string, std::string> const& v) { return Json::array({v.first, v.second}); }
-    static Json json(StimulusShown const& v)
+    template <EntryPart T>
+    static Json json(T const& v)
     {
         Json out = Json::object();
-        Fields<StimulusShown>::visit(v, Put{out});
+        Fields<T>::visit(v, Put{out});
         return out;
     }
     template <class T>
@@ -129,7 +130,8 @@ struct Take {
     {
         return j.is_array() && j.size() == 2 && read(j[0], v.first) && read(j[1], v.second);
     }
-    static bool read(Json const& j, StimulusShown& v)
+    template <EntryPart T>
+    static bool read(Json const& j, T& v)
     {
         if (!j.is_object()) return false;
         take_all(j, v, {});

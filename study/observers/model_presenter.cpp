@@ -117,15 +117,44 @@ void ModelPresenter::show_stimuli(TrialRequest const& r, double reaction_s, Rand
     }
 }
 
+/// Without error: the display's clock is the sounds'. @param start_s of the trial, when the fixation is due
+void ModelPresenter::play_cues(TrialRequest const& r, double start_s, TrialDone& done) const
+{
+    std::vector<std::pair<std::string, double>> moments{{"fixation", start_s}}; // in order
+    for (StimulusShown const& s : done.shown)
+        if (moments.size() > 1 && moments.back().second == s.onset_s)
+            moments.back().first += s.letter; // shown together
+        else
+            moments.emplace_back(std::string(1, s.letter), s.onset_s);
+    for (std::size_t i = 0; i < moments.size(); ++i)
+        for (Cue const& c : r.block->cues) {
+            bool const is_due =
+                i == 0 ? c.at == CueMoment::fixation
+                       : c.at == CueMoment::each_stimulus || (i == 1 && c.at == CueMoment::first_stimulus);
+            if (!is_due) continue;
+            Sound const& sound = r.script->sounds[std::size_t(c.sound)];
+            SoundPlayed p;
+            p.sound = sound.name;
+            p.at = moments[i].first;
+            p.event_s = moments[i].second;
+            p.offset_ms = c.offset_ms;
+            p.onset_s = p.event_s + 1e-3 * c.offset_ms;
+            p.duration_s = sound.file.empty() ? 1e-3 * sound.duration_ms : 0; // files are not read
+            done.sounds.push_back(std::move(p));
+        }
+}
+
 TrialDone ModelPresenter::show(TrialRequest const& r)
 {
     TrialTiming const& timing = r.block->timing;
     Random random = observer_.random(purpose(r.step_index, r.attempt));
     TrialDone done;
+    double const start_s = now_s_;
     now_s_ += timing.iti_ms * 1e-3 + timing.warmup_frames / observer_.model.hz;
     double const reaction_s =
         1e-3 * observer_.model.reaction_ms * std::exp(observer_.model.reaction_sd * random.normal());
     show_stimuli(r, reaction_s, random, done);
+    play_cues(r, start_s, done);
     StimulusShown const& last = done.shown.back();
     bool const is_late = timing.timeout_ms &&
                          (reaction_s > *timing.timeout_ms * 1e-3 || random.uniform() < observer_.model.timeout);

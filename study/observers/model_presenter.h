@@ -26,6 +26,7 @@ public:
 
 private:
     StepDone take(int step, double seconds);
+    void play_cues(TrialRequest const& r, double start_s, TrialDone& done) const;
     void show_stimuli(TrialRequest const& trial, double reaction_s, Random& random, TrialDone& done);
 
     Observer observer_;

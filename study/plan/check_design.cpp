@@ -204,6 +204,16 @@ private:
                      s_.counterbalances[i].factor >= 0
                          ? fmt::format("add {{per: {}, do: [...]}}", s_.counterbalances[i].name)
                          : fmt::format("add '{}' to the sequence", s_.counterbalances[i].name));
+        for (std::size_t i = 0; i < s_.sounds.size(); ++i) {
+            auto const plays_it = [&](Cue const& c) { return c.sound == int(i); };
+            bool const is_used = std::any_of(s_.blocks.begin(), s_.blocks.end(), [&](Block const& b) {
+                return std::any_of(b.cues.begin(), b.cues.end(), plays_it);
+            });
+            if (!is_used && is_surely_unused(s_.sounds[i].name))
+                fail(s_.sounds[i].place, fmt::format("sound '{}' is not used", s_.sounds[i].name),
+                     "no cue plays it",
+                     fmt::format("add cues: [{{sound: {}}}] to a block, or remove it", s_.sounds[i].name));
+        }
         for (std::size_t q = 0; q < s_.questionnaires.size(); ++q)
             if (!questionnaire_used_[q] && s_.questionnaires[q].place.line > 0 &&
                 is_surely_unused(s_.questionnaires[q].name))

@@ -5,6 +5,8 @@
 #include "study/analysis/threshold_run.h"
 #include "study/report/figures.h"
 #include "study/report/findings.h"
+#include "study/stats/summary.h"
+#include "study/tables/events.h"
 
 #include <algorithm>
 #include <cmath>
@@ -267,6 +269,60 @@ std::string gaze_html(std::span<RecordedSession const> sessions)
     return html_of(t);
 }
 
+/// Sounds of cues, if the script has some: how exactly they came.
+std::string sounds_html(Script const& script, std::span<RecordedSession const> sessions)
+{
+    struct Counts {
+        std::vector<double> error_ms;
+        std::map<std::string, int> missing;
+        int due = 0, underruns = 0;
+    };
+    std::map<std::string, Counts> by_sound;
+    for (RecordedSession const& session : sessions)
+        for (JournalEntry const& entry : session.record.entries)
+            if (auto const* const t = std::get_if<TrialDone>(&entry))
+                for (SoundPlayed const& s : t->sounds) {
+                    Counts& c = by_sound[s.sound];
+                    ++c.due;
+                    c.underruns += s.underruns;
+                    if (auto const error = error_ms(s)) c.error_ms.push_back(*error);
+                    if (!s.missing.empty()) ++c.missing[s.missing];
+                }
+    if (by_sound.empty()) return {};
+    ResultTable t{
+        "sounds",
+        "Sounds",
+        "Error: how much later the device says that a sound began than the script wants, from the onset of "
+        "its stimulus or fixation. The device's own latency is measured by a recording (study photodiode "
+        "--sounds).",
+        false,
+        {}};
+    t.table.columns = {{"sound", "Name in the script"},
+                       {"due", "Times that it was due"},
+                       {"played", "Times that it was played"},
+                       {"mean_error", "Mean error, ms"},
+                       {"sd", "Standard deviation of errors, ms"},
+                       {"least", "Least error, ms"},
+                       {"most", "Largest error, ms"},
+                       {"underruns", "Times that the device ran out of samples"},
+                       {"not_played", "Why, with counts"}};
+    for (Sound const& sound : script.sounds) {
+        Counts const& c = by_sound[sound.name];
+        std::string missing;
+        for (auto const& [why, n] : c.missing)
+            missing += fmt::format("{}{} ({})", missing.empty() ? "" : ", ", why, n);
+        bool const any = !c.error_ms.empty();
+        auto const [least, most] = std::minmax_element(c.error_ms.begin(), c.error_ms.end());
+        auto const ms = [](double v) { return fmt::format("{:.2f}", v); };
+        double const mean = any ? study::mean(c.error_ms) : 0;
+        t.table.rows.push_back(
+            {cell(sound.name), cell(c.due), cell(int(c.error_ms.size())), any ? ms(mean) : cell(""),
+             c.error_ms.size() > 1 ? ms(standard_deviation(c.error_ms)) : cell(""), any ? ms(*least) : cell(""),
+             any ? ms(*most) : cell(""), cell(c.underruns), cell(missing)});
+    }
+    return html_of(t);
+}
+
 /// Answers that participants typed, by item; empty if no item asks for a text.
 std::string texts_html(Script const& script, std::span<RecordedSession const> sessions)
 {
@@ -283,10 +339,10 @@ std::string texts_html(Script const& script, std::span<RecordedSession const> se
     for (auto const& [item, rows] : answers)
         html += fmt::format("<h3>{}: {}</h3>\n", gi::escaped(item.first->name),
                             gi::escaped(item.first->items[item.second].text)) +
-                gi::html_table({{"participant"},
+                gi::html_table({{"participant", false, ""},
                                 {"condition", false, "Levels of the factors that were fixed then"},
                                 {"time", true, "Number of the occasion in the session"},
-                                {"answer"}},
+                                {"answer", false, ""}},
                                rows);
     return html.empty() ? "" : gi::html_section("Answers in words", html);
 }
@@ -336,7 +392,7 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
                              (a.exclusions.empty() ? "<p>Nothing except practice was excluded.</p>\n" : "") +
                                  exclusions_html(a) + shown({"observers", "agreement"}));
     html += gi::html_section("Timing", timing_html(a, facts) + shown({"timing", "reactions", "calibrations"}) +
-                                           gaze_html(sessions));
+                                           sounds_html(script, sessions) + gaze_html(sessions));
     std::string orders;
     for (TransitionResult const& t : a.transitions) orders += transitions_table(t);
     html += gi::html_section("Order", gi::html_note("How trials followed each other, summed over participants: "

@@ -7,7 +7,7 @@ std::map<std::string, std::set<std::string>> const& script_keys()
     static std::map<std::string, std::set<std::string>> const keys{
         {"study",
          {"schema", "id", "title", "seed", "participants", "timing", "factors", "reference", "defaults", "devices",
-          "counterbalance", "sequence", "blocks", "questionnaires", "record", "resume"}},
+          "counterbalance", "sequence", "blocks", "questionnaires", "sounds", "record", "resume"}},
         {"participants", {"count", "id", "ask", "consent"}},
         {"ask", {"id", "text", "type", "min", "max", "whole", "choices"}},
         {"timing",
@@ -17,7 +17,9 @@ std::map<std::string, std::set<std::string>> const& script_keys()
         {"calibrate", {"frames", "max_sd_ms", "max_deviation"}},
         {"defaults",
          {"camera", "warmup_frames", "isi_ms", "iti_ms", "stimulus_ms", "timeout_ms", "min_response_ms",
-          "max_response_ms", "expected_response_ms", "feedback_ms", "stimuli", "settings", "gaze"}},
+          "max_response_ms", "expected_response_ms", "feedback_ms", "stimuli", "settings", "gaze", "cues"}},
+        {"sound", {"tone_hz", "file", "duration_ms", "ramp_ms", "level_db", "channel"}},
+        {"cue", {"sound", "at", "offset_ms"}},
         {"gaze", {"start", "hold", "follow"}},
         {"gaze_start", {"within_deg", "for_ms", "timeout_ms"}},
         {"gaze_hold", {"within_deg", "grace_ms"}},
@@ -65,7 +67,8 @@ std::map<std::string, std::set<std::string>> const& script_keys()
           "standard",
           "questionnaire",
           "duration_s",
-          "gaze"}},
+          "gaze",
+          "cues"}},
         {"pairs", {"factor", "omit", "list", "order", "sampling", "trials", "batch"}},
         {"rank", {"factor", "omit"}},
         {"compare", {"vary", "factor", "omit", "against", "with", "scale", "range", "harder", "also"}},
@@ -106,7 +109,8 @@ std::set<std::string> block_keys(Task task)
     else if (task == Task::free_walk)
         keys.insert("duration_s");
     else
-        keys.insert({"practice", "stimulus_ms", "timeout_ms", "min_response_ms", "max_response_ms", "gaze"});
+        keys.insert(
+            {"practice", "stimulus_ms", "timeout_ms", "min_response_ms", "max_response_ms", "gaze", "cues"});
     if (shows_several) keys.insert("isi_ms");
     if (shows_several && task != Task::two_interval) keys.insert("presentation"); // intervals follow each other
     if (f.takes_pairs) keys.insert({"pairs", "catch"});

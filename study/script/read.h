@@ -27,6 +27,9 @@ std::vector<int> read_levels_of(gi::Yaml const& y, Script const& s, int factor, 
 void read_trial_timing(gi::Yaml const& y, TrialTiming& timing, Mistakes& m);
 /// Sets the rules that the mapping gives; `none` removes one. @param y gaze of defaults or a block
 void read_gaze(gi::Yaml const& y, GazeRules& gaze, Mistakes& m);
+std::vector<Sound> read_sounds(gi::Yaml const& y, Mistakes& m);
+/// A list, or `none`. @param s with its sounds
+std::vector<Cue> read_cues(gi::Yaml const& y, Script const& s, Mistakes& m);
 RatingScale read_scale(gi::Yaml const& y);
 std::vector<Questionnaire> read_questionnaires(gi::Yaml const& y, Mistakes& m);
 /// Reads a number, a list, or "a..b/n" (n values from a to b, evenly spaced on the scale). Values must rise and

@@ -428,6 +428,7 @@ void read_rest_of_block(gi::Yaml const& y, Script const& s, Block& b, Mistakes& 
         for (auto const& [key, value] : read_patch(v, m)) set_setting(b.settings, key, value);
     });
     m.take(y, "gaze", [&](gi::Yaml const& v) { read_gaze(v, b.gaze, m); });
+    m.take(y, "cues", [&](gi::Yaml const& v) { b.cues = read_cues(v, s, m); });
     m.take(y, "constraints", [&](gi::Yaml const& v) {
         for (gi::Yaml const& item : v.items())
             m.attempt([&] { b.constraints.push_back(read_constraint(item, s)); });
@@ -463,6 +464,7 @@ Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s, Mista
     b.stimuli = s.defaults.stimuli;
     b.settings = s.defaults.settings;
     b.gaze = s.defaults.gaze;
+    b.cues = s.defaults.cues;
     m.attempt([&] { name.name(); });
     b.knows_task = m.need(y, "task", "rating", [&](gi::Yaml const& v) { b.task = kTasks[read_task(v, m)]; });
     if (!b.knows_task) {

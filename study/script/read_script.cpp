@@ -144,7 +144,7 @@ Timing read_timing(gi::Yaml const& y, Mistakes& m)
     return t;
 }
 
-Defaults read_defaults(gi::Yaml const& y, Mistakes& m)
+Defaults read_defaults(gi::Yaml const& y, Script const& s, Mistakes& m)
 {
     m.check_keys(y, "defaults");
     Defaults d;
@@ -155,6 +155,7 @@ Defaults read_defaults(gi::Yaml const& y, Mistakes& m)
     });
     m.take(y, "settings", [&](gi::Yaml const& v) { d.settings = read_patch(v, m); });
     m.take(y, "gaze", [&](gi::Yaml const& v) { read_gaze(v, d.gaze, m); });
+    m.take(y, "cues", [&](gi::Yaml const& v) { d.cues = read_cues(v, s, m); });
     return d;
 }
 
@@ -300,7 +301,8 @@ void read_design(gi::Yaml const& y, Script& s, Mistakes& m)
 {
     m.take(y, "factors", [&](gi::Yaml const& v) { s.factors = read_factors(v, m); });
     m.take(y, "reference", [&](gi::Yaml const& v) { s.reference = read_choice(v, s, m); });
-    m.take(y, "defaults", [&](gi::Yaml const& v) { s.defaults = read_defaults(v, m); });
+    m.take(y, "sounds", [&](gi::Yaml const& v) { s.sounds = read_sounds(v, m); });
+    m.take(y, "defaults", [&](gi::Yaml const& v) { s.defaults = read_defaults(v, s, m); });
     m.take(y, "devices", [&](gi::Yaml const& v) { s.devices = read_devices(v, m); });
     auto const known = known_questionnaires();
     s.questionnaires.assign(known.begin(), known.end());

@@ -6,6 +6,7 @@
 #include "study/script/asked_question.h"
 #include "study/script/procedure.h"
 #include "study/script/questionnaire.h"
+#include "study/script/sound.h"
 #include "study/script/task.h"
 #include "study/signals/gaze.h"
 
@@ -89,6 +90,7 @@ struct Defaults {
     Stimuli stimuli = Stimuli::live;
     Patch settings;
     GazeRules gaze;
+    std::vector<Cue> cues;
 };
 
 /// The inputs that give an answer: "key:left", "pad:x", "xr:left/trigger", "mouse:left".
@@ -231,6 +233,7 @@ struct Block {
     Stimuli stimuli = Stimuli::live;
     Patch settings;
     GazeRules gaze;
+    std::vector<Cue> cues;
     bool knows_task = true; ///< false: its task is none
     bool is_broken = false; ///< read with mistakes: it cannot be planned
 };
@@ -256,6 +259,7 @@ struct Script {
     Timing timing;
     std::vector<Factor> factors;
     Choice reference;
+    std::vector<Sound> sounds;
     Defaults defaults;
     std::vector<Device> devices;
     std::vector<Questionnaire> questionnaires; ///< built-in ones first, then those of the script

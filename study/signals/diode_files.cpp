@@ -91,7 +91,7 @@ DiodeSignal read_diode_csv(std::string const& text, std::string const& file)
                 if (n == "t_s" || n == "time_s" || n == "t_ms" || n == "time_ms") {
                     time = i;
                     unit_s = n.ends_with("_ms") ? 1e-3 : 1;
-                } else if (n == "light" || n == "value" || n == "photodiode") {
+                } else if (n == "light" || n == "value" || n == "photodiode" || n == "sound") {
                     light = i;
                 } else if (n == "trigger") {
                     trigger = i;

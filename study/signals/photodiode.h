@@ -1,6 +1,7 @@
 #pragma once
-// Compares the signal of a photodiode on the sync patch with the onsets in a session's journal: lag and jitter of
-// the display, missed and doubled flashes, drift between the clocks.
+// Compares the signal of a photodiode on the sync patch, or a recording of the sounds, with the onsets in a
+// session's journal: lag and jitter of the display or the sound device, missed and doubled flashes, drift between
+// the clocks.
 
 #include <optional>
 #include <string>
@@ -80,10 +81,15 @@ struct DiodeResult {
 DiodeResult compare_with_onsets(DiodeSignal const& signal, std::vector<ReportedOnset> const& onsets,
                                 DiodeSettings const& settings);
 
+/// A recorded sound as a signal of two levels for compare_with_onsets(): 1 from the first sample that is louder
+/// than `threshold` times the loudest one, until none was for hold_ms. @throws gi::InputError it is silent, or the
+/// pauses are louder than a third of that
+DiodeSignal heard(DiodeSignal signal, double threshold, double hold_ms);
+
 /// Reads PCM (8 to 32 bits) or float WAV; channel 1 is the photodiode, 2 the trigger. The bytes of a cut-off file
 /// are read as far as they go. @throws gi::InputError
 DiodeSignal read_wav(std::string const& bytes, std::string const& file);
-/// Reads a table with columns t_s (or time_s, t_ms), light (or value, photodiode) and trigger (optional).
+/// Reads a table with columns t_s (or time_s, t_ms), light (or value, photodiode, sound) and trigger (optional).
 /// @throws gi::InputError with file:line:column
 DiodeSignal read_diode_csv(std::string const& text, std::string const& file);
 

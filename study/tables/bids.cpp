@@ -101,6 +101,7 @@ std::string readme(Script const& script, std::size_t sessions)
         "describes\n"
         "  its columns.\n"
         "* `*_task-BLOCK_acq-stimuli_events.tsv`: a row per shown stimulus.\n"
+        "* `*_acq-sounds_events.tsv`: sounds of cues.\n"
         "* `*_task-questionnaires_beh.tsv`: answers and scores.\n"
         "* `*_recording-eye1_physio.tsv.gz`: samples of gaze, if it was recorded.\n"
         "* `*_task-session_events.tsv`: session events: instructions, rests, notes.\n"
@@ -162,6 +163,7 @@ std::vector<TextFile> session_files(Script const& script, RecordedSession const&
         if (!block.prompt.empty()) facts.push_back({"Instructions", block.prompt});
         add_table(files, stem + labels.back() + "_events", events_table(script, rows, int(b)), facts);
         add_table(files, stem + labels.back() + "_acq-stimuli_events", stimuli_table(script, rows, int(b)), facts);
+        add_table(files, stem + labels.back() + "_acq-sounds_events", sounds_table(script, rows, int(b)), facts);
     }
     add_table(files, stem + "questionnaires_beh", questionnaires_table(script, session),
               about_task("questionnaires", start));

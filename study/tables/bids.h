@@ -14,6 +14,7 @@ std::string session_folder(SessionStarted const& start);
 /// Tables with their sidecars and session.json, relative to the folder of the data set:
 ///   <folder>/sub-P001_ses-01_task-NAME_events.tsv             a row per trial, NAME of each block
 ///   <folder>/sub-P001_ses-01_task-NAME_acq-stimuli_events.tsv a row per stimulus
+///   <folder>/sub-P001_ses-01_task-NAME_acq-sounds_events.tsv  a row per sound, of blocks with cues
 ///   <folder>/sub-P001_ses-01_task-questionnaires_beh.tsv
 ///   <folder>/sub-P001_ses-01_task-session_events.tsv          session events
 ///   <folder>/session.json                                     provenance

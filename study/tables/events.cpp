@@ -273,6 +273,13 @@ std::vector<std::string> factor_columns(Script const& script)
                                              "render_ms_mean",
                                              "render_ms_p99",
                                              "settings_sha256",
+                                             "sound",
+                                             "at",
+                                             "event_onset",
+                                             "offset_ms",
+                                             "error_ms",
+                                             "underruns",
+                                             "missing",
                                              "bookkeeping_ms",
                                              "response_uncertainty_ms",
                                              "onset_uncertainty_ms",
@@ -400,6 +407,37 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
             }
             table.rows.push_back(std::move(cells));
         }
+    }
+    return table;
+}
+
+Table sounds_table(Script const& script, std::vector<TrialRow> const& rows, int block)
+{
+    std::vector<std::pair<std::string, std::string>> tags;
+    for (Sound const& s : script.sounds)
+        tags.emplace_back(s.name,
+                          fmt::format("(Sensory-event, Auditory-presentation, Cue, Label/{})", hed_name(s.name)));
+    Table table{{{"onset",
+                  "When the first sample left, as the sound device says; since the beginning of the session", "s"},
+                 {"duration", "Duration of the sound", "s"},
+                 {"trial", "Number of the trial in its pass of the block, from 1", "", {}, "Experimental-trial/#"},
+                 {"pass", "Number of the pass of the block, from 1"},
+                 {"attempt", "Number of the attempt at the trial, from 1"},
+                 {"sound", "Its name in the script", "", {}, "", tags},
+                 {"at", "What it was due with: the fixation, or stimuli by their letters"},
+                 {"event_onset", "Onset of that, since the beginning of the session", "s"},
+                 {"offset_ms", "Wanted time from event_onset to the sound", "ms"},
+                 {"error_ms", "How much later it came than wanted", "ms"},
+                 {"underruns", "Times that the device ran out of samples while it played"},
+                 {"missing", "Why it was not played"}}};
+    for (TrialRow const& row : rows) {
+        if (row.step->block != block) continue;
+        for (SoundPlayed const& s : row.done->sounds)
+            table.rows.push_back({s.onset_s ? seconds_cell(*s.onset_s + row.offset_s) : cell(""),
+                                  seconds_cell(s.duration_s), cell(row.step->number), cell(row.step->pass + 1),
+                                  cell(row.done->attempt), cell(s.sound), cell(s.at),
+                                  seconds_cell(s.event_s + row.offset_s), cell(s.offset_ms), cell(error_ms(s)),
+                                  cell(s.underruns), cell(s.missing)});
     }
     return table;
 }

@@ -15,6 +15,8 @@ std::vector<std::string> factor_columns(Script const& script);
 Table events_table(Script const& script, std::vector<TrialRow> const& rows, int block);
 /// One row per stimulus shown in these trials.
 Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int block);
+/// One row per sound that was due in these trials.
+Table sounds_table(Script const& script, std::vector<TrialRow> const& rows, int block);
 /// One row per item, then one per score, for each time that a questionnaire was answered.
 Table questionnaires_table(Script const& script, RecordedSession const& session);
 /// Session events: starts, calibrations, instructions, rests, walks, notes, ends.

@@ -53,7 +53,7 @@ void append_trials(Table& to, Script const& s, std::vector<TrialRow> const& rows
 
 std::vector<NamedTable> export_tables(Script const& script, std::vector<RecordedSession> const& sessions)
 {
-    NamedTable trials{"trials", {}}, stimuli{"stimuli", {}}, answers{"questionnaires", {}},
+    NamedTable trials{"trials", {}}, stimuli{"stimuli", {}}, sounds{"sounds", {}}, answers{"questionnaires", {}},
         other{"session_events", {}};
     trials.table.columns = with_origin(events_table(script, {}, 0).columns);
     std::vector<Column> const more{{"first", "Stimulus shown first, or on the left"},
@@ -63,16 +63,23 @@ std::vector<NamedTable> export_tables(Script const& script, std::vector<Recorded
     trials.table.columns.insert(trials.table.columns.end(), more.begin(), more.end());
     stimuli.table.columns = with_origin(stimuli_table(script, {}, 0).columns);
     stimuli.table.columns.push_back({"block", "Block of the script"});
+    sounds.table.columns = with_origin(sounds_table(script, {}, 0).columns);
+    sounds.table.columns.push_back({"block", "Block of the script"});
     for (RecordedSession const& session : sessions) {
         SessionStarted const& start = start_of(script, session);
         std::vector<TrialRow> const rows = trial_rows(script, session);
         append_trials(trials.table, script, rows, start);
-        for (std::size_t b = 0; b < script.blocks.size(); ++b)
+        for (std::size_t b = 0; b < script.blocks.size(); ++b) {
             append(stimuli.table, stimuli_table(script, rows, int(b)), start, {cell(script.blocks[b].name)});
+            append(sounds.table, sounds_table(script, rows, int(b)), start, {cell(script.blocks[b].name)});
+        }
         append(answers.table, questionnaires_table(script, session), start);
         append(other.table, session_events_table(session), start);
     }
-    return {trials, stimuli, answers, other, {"participants", participants_table(script, sessions)}};
+    std::vector<NamedTable> all{trials, stimuli};
+    if (!script.sounds.empty()) all.push_back(sounds);
+    all.insert(all.end(), {answers, other, {"participants", participants_table(script, sessions)}});
+    return all;
 }
 
 std::vector<TextFile> export_files(Script const& script, std::vector<NamedTable> const& tables)

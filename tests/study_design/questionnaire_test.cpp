@@ -166,12 +166,13 @@ TEST(TextItems, RefuseWhatOnlyScalesHave)
     struct Mistake {
         char const *from, *to, *message;
     };
-    for (auto const& [from, to, message] : {Mistake{"max_chars: 20", "max: 20", "x.yaml:10:"},
-                                            {"lines: 4", "step: 4", "only scales have it"},
-                                            {"lines: 4", "lines: 0", "lines"},
-                                            {"type: text}", "type: words}", "type of item"},
-                                            {"\"Sure?\",", "\"Sure?\", max_chars: 3,", "only texts have it"},
-                                            {"items: [sure]", "items: [why]", "which has no score"}}) {
+    for (auto const& [from, to, message] :
+         {Mistake{"max_chars: 20", "max: 20", "x.yaml:11:60: 'max' of the text 'why'"},
+          {"lines: 4", "step: 4", "only scales have it"},
+          {"lines: 4", "lines: 0", "lines"},
+          {"type: text}", "type: words}", "type of item"},
+          {"\"Sure?\",", "\"Sure?\", max_chars: 3,", "only texts have it"},
+          {"items: [sure]", "items: [why]", "which has no score"}}) {
         std::string text = kWithText;
         text.replace(text.find(from), std::string(from).size(), to);
         try {

@@ -32,17 +32,19 @@ inline std::vector<JournalEntry> entries_of_every_kind()
     trial.is_valid = false;
     trial.reason = "dropped_frames";
     trial.bookkeeping_ms = 0.123456789012345678;
+    trial.sounds = {{"beep", "ab", 1.0 / 3, -200, 0.14, 0.05, 1, ""},
+                    {"beep", "fixation", 2, 0, {}, 0.05, 0, "trial ended"}};
     return {started,
             CalibrationDone{600, 59.94, 16.683, 0.021, "oml", false, "the period varies"},
             trial,
             TrialDone{},
             StepDone{7, 1.5, 2.5, "skipped"},
             QuestionnaireDone{8, 0, 1, {3.0, std::nullopt, 0.1}},
+            ParticipantAsked{{{"age_band", "20-29"}, {"vision", "normal\n\t\"quoted\" \\ \xe2\x82\xac"}}},
+            NoteTaken{1.25, "pause", "the telephone rang"},
             QuestionnaireDone{8, 0, 1, {std::nullopt, 2.0}, {"\"Ça\", he said,\nłódź", ""}},
             ItemAnswered{8, 0.5, 2, 3.0, ""},
             ItemAnswered{8, 0.5, 3, std::nullopt, "nan"},
-            ParticipantAsked{{{"age_band", "20-29"}, {"vision", "normal\n\t\"quoted\" \\ \xe2\x82\xac"}}},
-            NoteTaken{1.25, "pause", "the telephone rang"},
             SessionEnded{100, "2026-11-22T09:00:00.000Z", true, ""}};
 }
 

@@ -131,7 +131,7 @@ seed: 1
 participants: {count: 1}
 sequence: [{questionnaire: q}, {questionnaire: q}]
 blocks: {}
-questionnaires: {q: {items: [{id: why, text: Why?, type: text}, {id: sure, text: Sure?}, {id: end, text: End?}]}}
+questionnaires: {q: {items: [{id: why, text: "Why?", type: text}, {id: sure, text: "Sure?"}, {id: end, text: "End?"}]}}
 )",
                                   "t.yaml");
     TestPresenter first;

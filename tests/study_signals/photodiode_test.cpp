@@ -228,5 +228,48 @@ TEST(DiodeFiles, ReadsCsvAndNamesTheLineOfAMistake)
         }
 }
 
+/// Tones of 40 ms with ramps of 1 ms at these times of a recording of 48 kHz; a little noise.
+DiodeSignal tones_at(std::vector<double> const& times_s, double length_s, double noise)
+{
+    DiodeSignal s;
+    s.rate_hz = 48000;
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < int(length_s * s.rate_hz); ++i) {
+        double const t = i / s.rate_hz;
+        double v = noise * normal(random);
+        for (double const at : times_s)
+            if (t >= at && t < at + 0.04)
+                v +=
+                    0.5 * std::min({1.0, (t - at) / 1e-3, (at + 0.04 - t) / 1e-3}) * std::sin(6283.185 * (t - at));
+        s.time_s.push_back(t);
+        s.light.push_back(v);
+    }
+    return s;
+}
+
+TEST(HeardSounds, BeginWhereTheRecordingGetsLoud)
+{
+    std::vector<double> at;
+    std::vector<ReportedOnset> onsets;
+    for (int i = 0; i < 20; ++i) {
+        at.push_back(0.3 + 0.31 * i + 0.001 * (i * i % 7));
+        onsets.push_back({at.back() - 0.012, 0.04, 0, "sound", "x"});
+    }
+    DiodeSettings settings;
+    settings.clock = DiodeClock::session;
+    DiodeResult const r = compare_with_onsets(heard(tones_at(at, 7, 0.001), 0.05, 10), onsets, settings);
+    ASSERT_EQ(r.matched.size(), 20u);
+    EXPECT_EQ(r.extra, 0);
+    EXPECT_NEAR(r.methods[0].mean_ms, 12, 0.15);
+    EXPECT_LT(r.methods[0].sd_ms, 0.05);
+}
+
+TEST(HeardSounds, AreRefusedInNoiseAndSilence)
+{
+    EXPECT_THROW(heard(tones_at({0.3}, 1, 0.05), 0.05, 10), gi::InputError);
+    EXPECT_THROW(heard(tones_at({}, 1, 0), 0.05, 10), gi::InputError);
+}
+
 } // namespace
 } // namespace study::test

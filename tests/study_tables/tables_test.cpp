@@ -124,7 +124,7 @@ seed: 1
 participants: {count: 1}
 sequence: [{questionnaire: q}]
 blocks: {}
-questionnaires: {q: {items: [{id: why, text: Why?, type: text, lines: 3}, {id: sure, text: Sure?}]}}
+questionnaires: {q: {items: [{id: why, text: "Why?", type: text, lines: 3}, {id: sure, text: "Sure?"}]}}
 )",
                         "t.yaml");
 }

@@ -77,6 +77,9 @@ std::vector<std::string> told(std::string const& text, bool renders)
             "lights: [{type: spot, position: [0.2, 0.5, 0.5], target: [0.3, 0, 0.3], intensity: 2, cone: "
             "[15, 25]}]\n"
             "cameras: [{name: camera, from: [0.28, 0.27, 1.2], at: [0.28, 0.27, 0.2], fov: 40}]\n");
+    std::string wav(
+        "RIFF\x28\0\0\0WAVEfmt \x10\0\0\0\x01\0\x01\0\x40\x1f\0\0\x80\x3e\0\0\x02\0\x10\0data\x04\0\0\0", 44);
+    gi::write_text((folder.path() / "word.wav").string(), wav + std::string(4, '\x10'));
     ScriptToCheck read = load_script_to_check(file);
     ScriptCheckOptions options;
     options.stimuli.renders = renders;

@@ -280,7 +280,7 @@ TEST(TextEntry, IsEditedByCharactersNotBytes)
     t.take(key(GLFW_KEY_BACKSPACE));
     for (int const c : {'"', ',', '<'}) t.take(typed(c));
     t.take(key(GLFW_KEY_END));
-    for (int const c : {0x142, 'x', 'y'}) t.take(typed(c));
+    for (int const c : {0x142, int('x'), int('y')}) t.take(typed(c));
     EXPECT_EQ(t.text(), "\",<éłx") << "at most six characters";
     EXPECT_TRUE(t.is_full());
     t.take(key(GLFW_KEY_ENTER));

@@ -62,6 +62,7 @@ TrialPresenter::Trial::Trial(TrialPresenter& presenter, study::TrialRequest cons
       block_(*request.block),
       order_(presented(request)),
       response_(block_, p_.keys_, request.step->trial.order),
+      cues_(*request.script, block_, p_.options_.audio, p_.options_.sounds),
       level_(request.level)
 {
     for (char const letter : order_) {
@@ -132,7 +133,8 @@ bool TrialPresenter::Trial::get_all_ready()
 {
     for (LoadedStimulus& k : known_)
         if (!get_ready(k)) return false;
-    return wait(p_.trial_end_s_ + 1e-3 * block_.timing.iti_ms, block_.is_sequential);
+    double const lead_s = cues_.lead_s(study::CueMoment::each_stimulus, true);
+    return wait(p_.trial_end_s_ + 1e-3 * block_.timing.iti_ms - lead_s, block_.is_sequential);
 }
 
 /// Waits before the next stimulus. Prepares it again if it moves and was shown before.
@@ -142,7 +144,7 @@ bool TrialPresenter::Trial::wait_between(std::size_t next)
     for (LoadedStimulus& k : known_)
         if (k.letter == order_[next] && order_.find(k.letter) < next && k.source->moves() && !get_ready(k))
             return false;
-    return wait(until_s, true);
+    return wait(until_s - cues_.lead_s(study::CueMoment::each_stimulus), true);
 }
 
 bool TrialPresenter::Trial::has_ended()
@@ -234,11 +236,13 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
     }
     p_.gaze_.at(request_.step_index, letters);
     p_.gaze_.begin_capture();
+    start_cues(study::CueMoment::each_stimulus, letters);
     ScreenContent c = content(letters);
     if (stays) c.text = [this](glm::vec2 px) { response_.draw(px); };
     ScreenSwap swap = p_.present(c);
     ScreenSwap const onset = swap;
     onset_s_ = p_.seconds(onset.time);
+    cues_.came(onset_s_);
     onset_uncertainty_ms_ = onset.uncertainty_ms;
     p_.screen_->take_longest_look_ms();
     mark(onset_s_, "stimulus",
@@ -343,6 +347,7 @@ study::TrialDone TrialPresenter::Trial::run()
     p_.see_in(known_.front().settings.view.value_or(p_.options_.view));
     p_.gaze_.at(request_.step_index, "");
     mark(p_.now(), "trial", {{"phase", study::name_of(request_.step->trial.phase)}, {"order", order_}});
+    show_fixation();
     bool const ready = get_all_ready() && await_fixation();
     if (ready && !block_.is_sequential) {
         appear(order_, true);
@@ -367,6 +372,7 @@ study::TrialDone TrialPresenter::Trial::run()
     done_.level = level_;
     keep_gaze();
     if (p_.should_end()) {
+        keep_sounds();
         p_.end_early();
         done_.is_valid = false;
         done_.reason = "skipped";
@@ -390,6 +396,7 @@ study::TrialDone TrialPresenter::Trial::run()
         done_.is_valid = false;
         done_.reason = "lost_focus";
     }
+    keep_sounds();
     give_feedback();
     return done_;
 }

@@ -29,11 +29,15 @@ private:
         std::optional<ShownLight> shown_light{}; ///< of its first picture, on a calibrated display
     };
 
+    /// Starts the cues of what comes next and shows empty frames until it is due.
+    void start_cues(study::CueMoment moment, std::string const& at);
+    void show_fixation();
     bool get_ready(LoadedStimulus& k);
     bool get_all_ready();
     void calibrate_light(LoadedStimulus& k, bool counts);
     bool await_fixation();
     void keep_gaze();
+    void keep_sounds();
     nlohmann::ordered_json labels(std::string const& letters) const;
     void mark(double time_s, std::string const& what, nlohmann::ordered_json about);
     bool wait_between(std::size_t next);
@@ -54,6 +58,7 @@ private:
     study::Block const& block_;
     std::string order_; ///< letters in the order of presentation; r = the reference
     Response response_;
+    CuePlayer cues_;
     study::TrialDone done_;
     std::vector<LoadedStimulus> known_; ///< each letter once
     bool is_answered_ = false, is_lost_ = false;

@@ -4,6 +4,8 @@
 #include "viewer/experiment/stimuli/physical.h"
 #include "viewer/experiment/trial.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -60,6 +62,46 @@ void TrialPresenter::Trial::keep_gaze()
                            rules.hold ? rules.hold->within_deg : rules.start->within_deg);
     for (study::GazeSample const& s : gaze_seen_) watch.take(s);
     done_.gaze_fixating = watch.inside();
+}
+
+void TrialPresenter::Trial::start_cues(study::CueMoment moment, std::string const& at)
+{
+    bool const is_first = moment != study::CueMoment::fixation && done_.shown.empty();
+    ScreenContent empty = content("");
+    if (block_.is_sequential && moment != study::CueMoment::fixation)
+        empty.text = [](glm::vec2 px) { draw_cross(px); };
+    double due_s = p_.now();
+    int frames = 0;
+    if (cues_.plays_at(moment, is_first)) { // at a refresh that is far enough
+        double const last_s = p_.seconds(p_.present(empty).time);
+        frames = std::max(1, int(std::ceil(cues_.lead_s(moment, is_first) / p_.period_s_)));
+        due_s = last_s + frames * p_.period_s_;
+    }
+    cues_.start(moment, is_first, at, due_s);
+    for (; frames > 1 && !p_.should_end(); --frames) p_.present(empty);
+}
+
+void TrialPresenter::Trial::show_fixation()
+{
+    start_cues(study::CueMoment::fixation, "fixation");
+    if (!cues_.plays_at(study::CueMoment::fixation)) return;
+    ScreenContent empty = content("");
+    if (block_.is_sequential || block_.gaze.start) empty.text = [](glm::vec2 px) { draw_cross(px); };
+    cues_.came(p_.seconds(p_.present(empty).time));
+}
+
+/// A trial whose sound failed is not valid; one that ended before a sound was due is.
+void TrialPresenter::Trial::keep_sounds()
+{
+    done_.sounds = cues_.take(p_.now());
+    for (study::SoundPlayed const& s : done_.sounds) {
+        if (s.onset_s)
+            mark(*s.onset_s, "sound", {{"sound", s.sound}, {"at", s.at}, {"event_s", s.event_s}});
+        else if (s.missing == "device failed" || s.missing == "too many sounds") {
+            done_.is_valid = false;
+            done_.reason = "no_sound";
+        }
+    }
 }
 
 /// Conditions of stimuli, by letter: {"a": "bounces=2"}.

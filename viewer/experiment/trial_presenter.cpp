@@ -58,6 +58,12 @@ TrialPresenter::TrialPresenter(study::Script const& script, TrialOptions const& 
 
 TrialPresenter::~TrialPresenter()
 {
+    if (options_.audio) {
+        report_.lose("times that the sound device ran out of samples", std::size_t(options_.audio->underruns()),
+                     "raise --audio-latency-ms");
+        report_.lose("samples of sounds beyond full scale", options_.audio->clipped(),
+                     "sounds overlap: lower their level_db");
+    }
     keep_gaze_table();
     try {
         if (script_.record.compress_frames)
@@ -90,6 +96,10 @@ std::vector<std::pair<std::string, std::string>> TrialPresenter::about() const
         for (auto& fact : study::display_model_facts(*model())) all.push_back(std::move(fact));
     for (auto& fact : gaze_.about()) all.push_back(std::move(fact));
     for (auto& fact : markers_.about()) all.push_back(std::move(fact));
+    if (options_.audio)
+        for (auto& fact : options_.audio->about()) all.push_back(std::move(fact));
+    else if (!script_.sounds.empty())
+        all.emplace_back("audio_device", "none: the session ran without sound (--audio none)");
     return all;
 }
 
@@ -107,9 +117,10 @@ ScreenSwap TrialPresenter::present(ScreenContent content)
 {
     between_frames();
     if (paced_) screen_->wait_until(next_swap_);
-    ScreenSwap const swap = screen_->present(content);
     auto const period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s_));
-    // Drawing time counts towards the period; delays are not made up for.
+    // Drawing time counts towards the period; delays are not made up for, and after a pause a new period begins.
+    if (auto const now = Clock::now(); now > next_swap_ + period) next_swap_ = now;
+    ScreenSwap const swap = screen_->present(content);
     next_swap_ = std::max(next_swap_ + period, Clock::now());
     return swap;
 }

@@ -10,6 +10,7 @@
 #include "viewer/experiment/markers.h"
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/screens/screen_settings.h"
+#include "viewer/experiment/sound/cue_player.h"
 #include "viewer/experiment/stimuli/stimulus_source.h"
 
 namespace viewer {
@@ -28,6 +29,8 @@ struct TrialOptions {
     int marker_port = kMarkerPort;
     int session = 1;  ///< its number
     std::string gaze; ///< as of open_gaze, instead of record.gaze of the script; empty = that of the script
+    AudioOutput* audio = nullptr;   ///< null: cues are not heard
+    SoundBank sounds;               ///< of the script
     std::filesystem::path prepared; ///< folder of pictures made ahead (study prepare)
     std::string version;            ///< of the program
     std::vector<std::pair<std::string, std::string>> about;

@@ -17,9 +17,11 @@ from .records import Records, read_journal, read_records, rebuild
 from .script import Outcome, Script, example
 from .trial import (
     Calibration,
+    Cue,
     Note,
     Questionnaire,
     QuestionnaireItem,
+    SoundPlayed,
     Stimulus,
     StimulusShown,
     Timing,
@@ -29,6 +31,7 @@ from .trial import (
 
 __all__ = [
     "Calibration",
+    "Cue",
     "Note",
     "Outcome",
     "Presenter",
@@ -36,6 +39,7 @@ __all__ = [
     "QuestionnaireItem",
     "Records",
     "Script",
+    "SoundPlayed",
     "Stimulus",
     "StimulusShown",
     "Timing",

@@ -7,12 +7,13 @@ from typing import Any, Mapping
 
 from ..errors import InputError
 from .presenter import Presenter
-from .trial import Calibration, Questionnaire, QuestionnaireItem, Stimulus, StimulusShown, Timing, Trial, TrialDone
+from .trial import Calibration, Cue, Questionnaire, QuestionnaireItem, Stimulus, StimulusShown, Timing, Trial, TrialDone
 
 
 def _trial(d: dict[str, Any]) -> Trial:
     stimuli = {letter: Stimulus(**s) for letter, s in d["stimuli"].items()}
-    return Trial(**{**d, "stimuli": stimuli, "timing": Timing(**d.get("timing", {}))})
+    cues = [Cue(**cue) for cue in d.get("cues", [])]
+    return Trial(**{**d, "stimuli": stimuli, "timing": Timing(**d.get("timing", {})), "cues": cues})
 
 
 def _plain(given: Any, kind: type) -> dict[str, Any]:

@@ -37,6 +37,22 @@ class Timing:
 
 
 @dataclass(frozen=True)
+class Cue:
+    """A sound of a trial: a tone (`tone_hz`, `duration_ms`) or a `file` beside the script.
+
+    `at` is "fixation", "first_stimulus" or "each_stimulus"; `offset_ms` counts from that onset; `level_db` from full scale.
+    """
+
+    sound: str
+    at: str
+    offset_ms: float
+    file: str
+    tone_hz: float
+    duration_ms: float
+    level_db: float
+
+
+@dataclass(frozen=True)
 class Trial:
     """A fully specified trial; also used for the place of a walk, where `order` is "".
 
@@ -57,6 +73,7 @@ class Trial:
         timing: timing of the trial.
         scale, labels: for rating: (lowest, highest, step), and texts by value.
         modulus: for magnitude: number assigned to the standard; 0 = free modulus.
+        cues: sounds to be played; report them in `TrialDone.sounds`.
         setting, range: the varied setting and its (lowest, highest) value; "" = nothing is varied.
     """
 
@@ -81,6 +98,7 @@ class Trial:
     modulus: float = 0
     setting: str = ""
     range: tuple[float, float] = (0, 0)
+    cues: list[Cue] = field(default_factory=list)
 
     @property
     def presented(self) -> list[Stimulus]:
@@ -125,6 +143,27 @@ class StimulusShown:
 
 
 @dataclass
+class SoundPlayed:
+    """A sound that was due. Times are in seconds of `Presenter.now`.
+
+    Attributes:
+        sound: its name. at: "fixation", or the letters of the stimuli with which it was due.
+        event_s, offset_ms: onset of those, and the wanted time from then to the sound.
+        onset_s: when it began; None = it was not played, and `missing` says why.
+        duration_s: duration. underruns: times that the device ran out of samples.
+    """
+
+    sound: str
+    at: str
+    event_s: float
+    offset_ms: float = 0.0
+    onset_s: float | None = None
+    duration_s: float = 0.0
+    underruns: int = 0
+    missing: str = ""
+
+
+@dataclass
 class TrialDone:
     """Result of a trial. The session itself determines whether the answer is correct and the trial valid.
 
@@ -140,6 +179,7 @@ class TrialDone:
             The reasons "skipped" and "aborted" are for `Presenter.wish` returning "skip" or "abort".
         gaze_samples, gaze_valid, gaze_dropped, gaze_fixating: samples of gaze while stimuli were visible; valid ones;
             missing ones; valid ones near the place of fixation.
+        sounds: of the cues of the trial.
     """
 
     response: str = ""
@@ -155,6 +195,7 @@ class TrialDone:
     gaze_valid: int | None = None
     gaze_dropped: int | None = None
     gaze_fixating: int | None = None
+    sounds: list[SoundPlayed] = field(default_factory=list)
 
 
 @dataclass

@@ -19,11 +19,21 @@ struct PhotodiodeOptions {
     std::string file, session, clock = "own", out;
     study::DiodeSettings settings;
     int part = 1;
-    bool json = false;
+    bool json = false, sounds = false;
+    double threshold = 0.05;
 };
 
+void add_sounds(study::TrialDone const& t, std::vector<study::ReportedOnset>& onsets)
+{
+    for (study::SoundPlayed const& s : t.sounds)
+        if (s.onset_s)
+            onsets.push_back({*s.onset_s, s.duration_s, 0, "sound",
+                              fmt::format("step {} attempt {}, {} at {}", t.step + 1, t.attempt, s.sound, s.at)});
+}
+
 /// Onsets of one part of a session; stimuli that are shown together have one.
-std::vector<study::ReportedOnset> onsets_of(study::SessionRecord const& record, int wanted_part)
+/// @param sounds instead of stimuli
+std::vector<study::ReportedOnset> onsets_of(study::SessionRecord const& record, int wanted_part, bool sounds)
 {
     std::vector<study::ReportedOnset> onsets;
     int part = 0;
@@ -31,6 +41,10 @@ std::vector<study::ReportedOnset> onsets_of(study::SessionRecord const& record, 
         if (auto const* const s = std::get_if<study::SessionStarted>(&entry)) part = s->part;
         auto const* const t = std::get_if<study::TrialDone>(&entry);
         if (t == nullptr || part != wanted_part) continue;
+        if (sounds) {
+            add_sounds(*t, onsets);
+            continue;
+        }
         for (study::StimulusShown const& s : t->shown) {
             if (!onsets.empty() && onsets.back().time_s == s.onset_s) {
                 onsets.back().place += s.letter;
@@ -87,10 +101,11 @@ std::string table_text(study::DiodeResult const& r, std::vector<study::ReportedO
 }
 
 void print_result(study::DiodeResult const& r, std::vector<study::ReportedOnset> const& onsets,
-                  study::DiodeClock clock)
+                  study::DiodeClock clock, bool sounds)
 {
-    fmt::print("{} of {} onsets have a flash; {} missed, {} doubled, {} flashes without an onset, {} glitches\n",
-               r.matched.size(), onsets.size(), r.missed.size(), r.doubled.size(), r.extra, r.found.glitches);
+    fmt::print("{} of {} onsets have a {}; {} missed, {} doubled, {} {} without an onset, {} glitches\n",
+               r.matched.size(), onsets.size(), sounds ? "sound" : "flash", r.missed.size(), r.doubled.size(),
+               r.extra, sounds ? "sounds" : "flashes", r.found.glitches);
     for (std::size_t const i : r.missed)
         fmt::print("  missed: {} at {:.3f} s\n", onsets[i].place, onsets[i].time_s);
     for (std::size_t const i : r.doubled)
@@ -105,7 +120,7 @@ void print_result(study::DiodeResult const& r, std::vector<study::ReportedOnset>
                clock == study::DiodeClock::session ? "lag" : "recorder's clock", r.drift_ppm, r.drift_se_ppm);
     study::LagSummary const& last = r.methods.back();
     for (study::LagSummary const& s : r.methods)
-        if (std::isfinite(s.mean_ms) && (s.method == "all" || r.methods.size() == 1))
+        if (!sounds && std::isfinite(s.mean_ms) && (s.method == "all" || r.methods.size() == 1))
             fmt::print("in the script: timing: {{display_lag_ms: {:.2f}, display_lag_uncertainty_ms: {:.2f}}}\n",
                        s.mean_ms, 1.96 * last.mean_se_ms);
 }
@@ -119,19 +134,20 @@ int run_photodiode(PhotodiodeOptions const& o)
                                             : study::DiodeClock::own;
     std::filesystem::path journal = o.session;
     if (std::filesystem::is_directory(journal)) journal /= "journal.jsonl";
-    auto const onsets = onsets_of(study::read_journal(journal).record, o.part);
+    auto const onsets = onsets_of(study::read_journal(journal).record, o.part, o.sounds);
     if (onsets.empty())
         throw gi::InputError(fmt::format("{}: part {} has no onset", journal.string(), o.part),
                              "there is nothing to compare with", "name another --part");
     std::string const bytes = gi::read_text(o.file, std::size_t(4) << 30);
-    study::DiodeSignal const signal =
+    study::DiodeSignal signal =
         bytes.starts_with("RIFF") ? study::read_wav(bytes, o.file) : study::read_diode_csv(bytes, o.file);
+    if (o.sounds) signal = study::heard(std::move(signal), o.threshold, settings.hold_ms);
     study::DiodeResult const r = study::compare_with_onsets(signal, onsets, settings);
     if (!o.out.empty()) gi::write_text(o.out, table_text(r, onsets));
     if (o.json)
         std::fputs(to_text(to_json(r, onsets)).c_str(), stdout);
     else
-        print_result(r, onsets, settings.clock);
+        print_result(r, onsets, settings.clock, o.sounds);
     std::fflush(stdout);
     for (std::string const& w : r.warnings) std::fputs(("doubt: " + w + "\n").c_str(), stderr);
     return r.missed.empty() && r.doubled.empty() ? 0 : 1;
@@ -142,9 +158,9 @@ int run_photodiode(PhotodiodeOptions const& o)
 void add_study_photodiode(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<PhotodiodeOptions>();
-    CLI::App* const c = study.add_subcommand(
-        "photodiode",
-        "Compare a photodiode's signal with a session's onsets: lag, jitter, missed flashes, drift.");
+    CLI::App* const c =
+        study.add_subcommand("photodiode", "Compare a photodiode's signal, or recorded sounds, with a session's "
+                                           "onsets: lag, jitter, missed ones, drift.");
     c->add_option("FILE", o->file, "recording: WAV (channel 1 photodiode, 2 trigger) or CSV (t_s,light,trigger)")
         ->required();
     c->add_option("--session", o->session, "folder of the session (.../beh), or its journal")->required();
@@ -161,11 +177,20 @@ void add_study_photodiode(CLI::App& study, int& exit_code)
     c->add_option("--most-lag-ms", o->settings.most_lag_ms, "a later flash belongs to no onset")
         ->check(CLI::Range(1.0, 10000.0))
         ->capture_default_str();
+    c->add_flag("--sounds", o->sounds,
+                "the recording is of sounds (loop-back cable, microphone): compare it with the onsets of cues");
+    c->add_option("--threshold", o->threshold, "with --sounds: a sound begins at this share of the loudest sample")
+        ->check(CLI::Range(0.001, 0.9))
+        ->capture_default_str();
+    c->add_option("--most-early-ms", o->settings.most_early_ms, "one that is earlier by more belongs to no onset")
+        ->check(CLI::Range(0.0, 10000.0))
+        ->capture_default_str();
     c->add_option("-o,--out", o->out, "file for a row per onset (CSV)");
     c->add_flag("--json", o->json, "print JSON");
     c->callback([o, &exit_code] { exit_code = run_photodiode(*o); });
     c->footer(R"(Example:
   lightwell study photodiode diode.wav --session data/sub-P001/ses-01/beh --clock trigger
+  lightwell study photodiode loop.wav --sounds --session data/sub-P001/ses-01/beh
 
 The photodiode is on timing.sync_patch, which is white while a stimulus is visible.
 Exit codes: 0 every onset has one flash, 1 some have none or several, 2 the input or the call is wrong.)");

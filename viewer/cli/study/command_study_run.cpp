@@ -13,6 +13,7 @@
 #include "viewer/cli/command_table.h"
 #include "viewer/displays/display_file.h"
 #include "viewer/experiment/prepared_list.h"
+#include "viewer/experiment/sound/sound_files.h"
 #include "viewer/experiment/stimuli/prepared_files.h"
 #include "viewer/experiment/stimuli/script_check.h"
 #include "viewer/experiment/stimuli/stimulus_check.h"
@@ -32,6 +33,8 @@ namespace {
 
 struct RunOptions {
     std::string script, dir, size = "1280x720", fullscreen, remote, prepared, display, display_model, gaze;
+    std::string audio = "default";
+    double audio_latency_ms = 30;
     std::optional<int> remote_port;
     std::string remote_token;
     bool remote_open = false;
@@ -117,6 +120,17 @@ void check_gaze(study::Script const& script, RunOptions const& o, study::Display
     throw_first(m);
 }
 
+/// The device for the cues of the participant's blocks; null if there are none, or the session is without sound.
+std::unique_ptr<AudioOutput> open_audio(study::Script const& script, study::Plan const& plan, RunOptions const& o,
+                                        SoundBank const& sounds)
+{
+    bool const has_cues = std::any_of(plan.steps.begin(), plan.steps.end(), [&](study::PlanStep const& step) {
+        return step.kind == study::PlanStepKind::trial && !script.blocks[std::size_t(step.block)].cues.empty();
+    });
+    if (!has_cues || o.audio == "none") return nullptr;
+    return std::make_unique<AudioOutput>(o.audio, sounds.front()->rate_hz, o.audio_latency_ms);
+}
+
 int run(RunOptions const& o)
 {
     LoadedScript const loaded = load_script(o.script);
@@ -155,6 +169,9 @@ int run(RunOptions const& o)
     check_stimuli(loaded, plan, trials.scenes, shown_on);
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
     check_gaze(script, o, model);
+    trials.sounds = load_sounds(script, loaded.folder);
+    auto const audio = open_audio(script, plan, o, trials.sounds);
+    trials.audio = audio.get();
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
     trials.view = o.hmd ? StimulusViewer::headset : StimulusViewer::window;
     trials.headset.space = o.seated ? HmdSpace::local : HmdSpace::stage;
@@ -217,6 +234,13 @@ void add_study_run(CLI::App& study, int& exit_code)
                   "display model of the monitor (study calibrate): degrees, cd/m2, linear light");
     c->add_option("--gaze", o->gaze,
                   "gaze instead of record.gaze: lsl, lsl:NAME, none, or a table to replay (t_s,x_px,y_px,valid)");
+    c->add_option("--audio", o->audio,
+                  "sound device of cues, by a part of its name; none: without sound, which is recorded")
+        ->capture_default_str();
+    c->add_option("--audio-latency-ms", o->audio_latency_ms,
+                  "its latency; sounds are started earlier by it, smaller ones risk underruns")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str();
     c->add_flag("--hmd", o->hmd,
                 "show stimuli in a headset (OpenXR, docs/hmd.md) unless their `view` is set otherwise");
     c->add_flag("--seated", o->seated, "with --hmd: space without a floor, as in lightwell view");

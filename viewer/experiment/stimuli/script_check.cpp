@@ -1,6 +1,7 @@
 #include "viewer/experiment/stimuli/script_check.h"
 
 #include "study/script/setting_place.h"
+#include "viewer/experiment/sound/sound_files.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 
 #include <algorithm>
@@ -43,6 +44,7 @@ CheckedScript check_script(ScriptToCheck& read, SceneAccess const& scenes, Scrip
         }
         if (checked.plans == 1 || plan.duration_us > checked.longest.duration_us) checked.longest = plan;
     });
+    find_wrong_sounds(s, loaded.folder, m);
     if (o.any_settings) return checked;
     ar.find_wrong(m);
     checked.ar_stimuli = ar.count();
