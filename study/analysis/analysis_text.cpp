@@ -41,6 +41,7 @@ std::string shown_cell(Column const& column, std::string const& text)
     if (!v) return text;
     bool const is_p = column.name == "p" || column.name.starts_with("p_");
     if (is_p) return *v < 0.001 ? "<0.001" : fmt::format("{:.3f}", *v);
+    if (std::abs(*v) < 1e-12) return "0"; // rounding of estimates that are 0
     if (*v == std::floor(*v) && std::abs(*v) < 1e7) return fmt::format("{:.0f}", *v);
     if (std::abs(*v) >= 1000 && std::abs(*v) < 1e7) return fmt::format("{:.0f}", *v);
     return std::abs(*v) >= 0.001 && std::abs(*v) < 100 ? fmt::format("{:.3f}", *v) : fmt::format("{:.4g}", *v);

@@ -5,6 +5,8 @@
 
 namespace study {
 
+/// "[1, 2]"; an end that the data leave open is "open"; empty if both are.
+std::string range_text(Interval const& interval);
 /// Indices of the items, best first.
 std::vector<int> by_score(ScaleResult const& scale);
 /// The comparison of two items; null = none.

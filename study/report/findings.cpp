@@ -13,10 +13,8 @@ namespace {
 
 std::string interval_text(Uncertain const& u)
 {
-    std::string text = gi::short_number(u.value);
-    if (std::isfinite(u.interval.low))
-        text += fmt::format(" [{}, {}]", gi::short_number(u.interval.low), gi::short_number(u.interval.high));
-    return text;
+    std::string const range = range_text(u.interval);
+    return gi::short_number(u.value) + (range.empty() ? "" : " " + range);
 }
 
 /// Items, best first; "~" joins an item to the next one if they do not differ significantly.

@@ -31,7 +31,11 @@ std::string html_of(ResultTable const& t)
     }
     for (auto const& row : t.table.rows) {
         rows.emplace_back();
-        for (std::size_t c = 0; c < row.size(); ++c) rows.back().push_back(shown_cell(t.table.columns[c], row[c]));
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            rows.back().push_back(shown_cell(t.table.columns[c], row[c]));
+            if (row[c].size() > 30)
+                rows.back().back().css = "min-width: 14rem"; // where the table is wider than the page
+        }
     }
     return fmt::format("<h3>{}</h3>\n", gi::escaped(t.title)) +
            (t.note.empty() ? "" : gi::html_note(gi::escaped(t.note))) + gi::html_table(columns, rows);
@@ -187,7 +191,7 @@ std::string block_html(Script const& s, BlockResult const& r, Analysis const& a,
     Block const* const b = block_of(s, r.name);
     if (b == nullptr) return {};
     std::string html;
-    if (!r.prompt.empty()) html += fmt::format("<p>“{}”</p>\n", gi::escaped(r.prompt));
+    if (!r.prompt.empty()) html += fmt::format("<p class=\"prompt\">“{}”</p>\n", gi::escaped(r.prompt));
     for (ScaleResult const& scale : r.scales)
         if (!scale.refused.empty())
             html += fmt::format("<p>{}: no scale: {}</p>\n", gi::escaped(scale.group), gi::escaped(scale.refused));
@@ -334,16 +338,23 @@ std::string texts_html(Script const& script, std::span<RecordedSession const> se
                     answers[{a.questionnaire, i}].push_back(
                         {session.plan.participant_id, a.condition(script), std::to_string(a.time_point),
                          gi::HtmlCell::of(gi::escaped_lines(a.done->texts[i]),
-                                          "white-space: pre-wrap; overflow-wrap: anywhere")});
+                                          "min-width: 14rem; white-space: pre-wrap; overflow-wrap: anywhere")});
     std::string html;
-    for (auto const& [item, rows] : answers)
+    for (auto& [item, rows] : answers) {
+        std::vector<gi::HtmlColumn> columns{{"participant", false, ""},
+                                            {"condition", false, "Levels of the factors that were fixed then"},
+                                            {"time", true, "Number of the occasion in the session"},
+                                            {"answer", false, ""}};
+        bool const has_conditions =
+            std::any_of(rows.begin(), rows.end(), [](auto const& row) { return !row[1].html.empty(); });
+        if (!has_conditions) {
+            columns.erase(columns.begin() + 1);
+            for (auto& row : rows) row.erase(row.begin() + 1);
+        }
         html += fmt::format("<h3>{}: {}</h3>\n", gi::escaped(item.first->name),
                             gi::escaped(item.first->items[item.second].text)) +
-                gi::html_table({{"participant", false, ""},
-                                {"condition", false, "Levels of the factors that were fixed then"},
-                                {"time", true, "Number of the occasion in the session"},
-                                {"answer", false, ""}},
-                               rows);
+                gi::html_table(columns, rows);
+    }
     return html.empty() ? "" : gi::html_section("Answers in words", html);
 }
 

@@ -9,6 +9,13 @@
 
 namespace study {
 
+std::string range_text(Interval const& i)
+{
+    if (!std::isfinite(i.low) && !std::isfinite(i.high)) return {};
+    auto const end = [](double v) { return std::isfinite(v) ? gi::short_number(v) : std::string("open"); };
+    return fmt::format("[{}, {}]", end(i.low), end(i.high));
+}
+
 ItemDifference const* difference_of(ScaleResult const& s, int a, int b)
 {
     for (ItemDifference const& d : s.differences)
@@ -115,7 +122,8 @@ std::string cost_figure(ScaleResult const& s, std::string const& title)
     std::vector<double> costs, scores;
     for (ScaledItem const& i : s.items) {
         if (!(i.render_ms.value > 0)) continue;
-        costs.insert(costs.end(), {i.render_ms.value, i.render_ms.interval.low, i.render_ms.interval.high});
+        double const least = std::max(0.0, i.render_ms.interval.low); // no time is below 0, whatever Student says
+        costs.insert(costs.end(), {i.render_ms.value, least, i.render_ms.interval.high});
         scores.insert(scores.end(), {i.score.value, i.score.interval.low, i.score.interval.high});
     }
     if (!s.refused.empty() || costs.size() < 6) return {};
@@ -142,7 +150,8 @@ std::string cost_figure(ScaleResult const& s, std::string const& title)
         if (std::isfinite(item.score.interval.low))
             p.line(x, p.y(item.score.interval.low), x, p.y(item.score.interval.high), "interval");
         if (std::isfinite(item.render_ms.interval.low))
-            p.line(p.x(item.render_ms.interval.low), y, p.x(item.render_ms.interval.high), y, "interval");
+            p.line(p.x(std::max(0.0, item.render_ms.interval.low)), y, p.x(item.render_ms.interval.high), y,
+                   "interval");
         if (is_chosen) p.dot(x, y, 10, "ring");
         is_base ? p.box(x - 5, y - 5, 10, 10, "base") : p.dot(x, y, 4.5, "point");
         std::string const words = item.name + (is_base && s.cheapest->is_reference ? " (reference)" : "");

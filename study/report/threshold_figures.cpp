@@ -21,9 +21,12 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
     p.margins(54, 12, 16, 46);
     p.x_axis(setting);
     p.y_axis("proportion correct");
-    if (std::isfinite(c.threshold.interval.low))
-        p.box(p.x(c.threshold.interval.low), p.top(),
-              p.x(c.threshold.interval.high) - p.x(c.threshold.interval.low), p.bottom() - p.top(), "band");
+    Interval const& band = c.threshold.interval;
+    if (std::isfinite(band.low) || std::isfinite(band.high)) { // an open end goes to the border
+        double const from = std::isfinite(band.low) ? p.x(band.low) : p.left(),
+                     to = std::isfinite(band.high) ? p.x(band.high) : p.right();
+        p.box(from, p.top(), to - from, p.bottom() - p.top(), "band");
+    }
     if (std::isfinite(c.threshold.value)) {
         p.line(p.x(c.threshold.value), p.y(c.proportion), p.x(c.threshold.value), p.bottom(), "mark");
         p.line(p.left(), p.y(c.proportion), p.x(c.threshold.value), p.y(c.proportion), "mark");
@@ -42,10 +45,8 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
         p.line(p.x(l.level), p.y(i.low), p.x(l.level), p.y(i.high), "interval thin");
         p.dot(p.x(l.level), p.y(l.correct / l.trials), 2 + 4 * std::sqrt(l.trials / most), "point");
     }
-    std::string const range = std::isfinite(c.threshold.interval.low)
-                                  ? fmt::format(" [{}, {}]", gi::short_number(c.threshold.interval.low),
-                                                gi::short_number(c.threshold.interval.high))
-                                  : "";
+    std::string range = range_text(band);
+    if (!range.empty()) range = " " + range;
     return p.figure("psychometric function, " + c.cell,
                     fmt::format("<b>{}</b> {:.0f} % correct at {}{}; {}; {} observers{}", gi::escaped(c.cell),
                                 100 * c.proportion, gi::short_number(c.threshold.value), range,

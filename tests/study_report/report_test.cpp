@@ -1,7 +1,10 @@
+#include "gi/core/html/plot.h"
 #include "study/report/figures.h"
 #include "tests/study_analysis/made_sessions.h"
 
 #include <cmath>
+#include <fmt/format.h>
+#include <limits>
 
 namespace study::test {
 namespace {
@@ -134,6 +137,19 @@ TEST(SimulatedTruth, GivesTheLevelOfAShareOfRightAnswers)
     EXPECT_NEAR(true_level(t, "size", false, 0.5, 0.75), 5, 1e-9);
     EXPECT_TRUE(std::isnan(true_level(t, "nothing", false, 0.5, 0.75)));
     EXPECT_THROW(read_truth("{", "truth.json"), gi::InputError);
+}
+
+TEST(Intervals, ThatAreOpenSaySoAndGoToTheBorder)
+{
+    double const none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(range_text({1, 2}), "[1, 2]");
+    EXPECT_EQ(range_text({1, none}), "[1, open]");
+    EXPECT_EQ(range_text({none, none}), "");
+    gi::RowPlot p({"a"}, {0, 10}, "x", 100);
+    p.estimate(5, 4, none, p.row(0));
+    std::string const svg = p.svg("t");
+    EXPECT_NE(svg.find(fmt::format("x1=\"{:.1f}\"", p.x(4))), std::string::npos) << svg;
+    EXPECT_NE(svg.find(fmt::format("x2=\"{:.1f}\"", p.right())), std::string::npos) << svg;
 }
 
 TEST(Histogram, OfValuesThatHardlyDifferIsDrawn)

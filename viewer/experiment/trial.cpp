@@ -284,8 +284,9 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
     swap = p_.present(c);
     double const end_s = p_.seconds(swap.time);
     p_.gaze_.poll(p_.screen_->gaze_place(), p_.now());
+    gaze_seen_.emplace_back();
     for (study::GazeSample const& s : p_.gaze_.end_capture())
-        if (s.time_s >= onset_s_ && s.time_s <= end_s) gaze_seen_.push_back(s);
+        if (s.time_s >= onset_s_ && s.time_s <= end_s) gaze_seen_.back().push_back(s);
     p_.gaze_.watch(nullptr);
     p_.gaze_.at(request_.step_index, "");
     mark(end_s, "stimulus_end", {{"shown", letters}});

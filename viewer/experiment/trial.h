@@ -62,9 +62,9 @@ private:
     study::TrialDone done_;
     std::vector<LoadedStimulus> known_; ///< each letter once
     bool is_answered_ = false, is_lost_ = false;
-    std::string gaze_failure_;                      ///< no_fixation, gaze_left; empty = none
-    std::vector<study::GazeSample> gaze_seen_;      ///< while stimuli were visible
-    double onset_s_ = 0, onset_uncertainty_ms_ = 0; ///< of the last stimulus
+    std::string gaze_failure_;                              ///< no_fixation, gaze_left; empty = none
+    std::vector<std::vector<study::GazeSample>> gaze_seen_; ///< while stimuli were visible, by onset
+    double onset_s_ = 0, onset_uncertainty_ms_ = 0;         ///< of the last stimulus
     double longest_look_ms_ = 0;
     std::optional<double> level_; ///< current level of an adjustment
 };

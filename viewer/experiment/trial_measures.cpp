@@ -52,15 +52,22 @@ bool TrialPresenter::Trial::await_fixation()
 void TrialPresenter::Trial::keep_gaze()
 {
     if (!p_.gaze_.is_open()) return;
-    study::GazeSummary const sum = study::summarise(gaze_seen_);
-    done_.gaze_samples = sum.samples;
-    done_.gaze_valid = sum.valid;
-    done_.gaze_dropped = sum.dropped;
+    int samples = 0, valid = 0, dropped = 0;
+    for (auto const& shown : gaze_seen_) { // what was between them is not missing
+        study::GazeSummary const sum = study::summarise(shown);
+        samples += sum.samples;
+        valid += sum.valid;
+        dropped += sum.dropped;
+    }
+    done_.gaze_samples = samples;
+    done_.gaze_valid = valid;
+    done_.gaze_dropped = dropped;
     study::GazeRules const& rules = block_.gaze;
     if (!rules.hold && !rules.start) return;
     study::GazeWatch watch(p_.gaze_screen(), {0, 0},
                            rules.hold ? rules.hold->within_deg : rules.start->within_deg);
-    for (study::GazeSample const& s : gaze_seen_) watch.take(s);
+    for (auto const& shown : gaze_seen_)
+        for (study::GazeSample const& s : shown) watch.take(s);
     done_.gaze_fixating = watch.inside();
 }
 

@@ -104,7 +104,9 @@ void Plot::curve(std::vector<std::pair<double, double>> points, std::string_view
 
 void Plot::estimate(double value, double low, double high, double row)
 {
-    if (std::isfinite(low)) line(x(low), row, x(high), row, "interval");
+    if (std::isfinite(low) || std::isfinite(high)) // an open end goes to the border; beyond it are the names
+        line(std::isfinite(low) ? std::max(left(), x(low)) : left(), row, std::isfinite(high) ? x(high) : right(),
+             row, "interval");
     if (std::isfinite(value)) dot(x(value), row, 4, "point");
 }
 

@@ -41,7 +41,8 @@ public:
     void series(std::vector<PlotSeries> const& all);
     /// A curve without markers. @param points values
     void curve(std::vector<std::pair<double, double>> points, std::string_view style);
-    /// A value with its interval, if it is known, along the horizontal at the pixel `row`.
+    /// A value with its interval, if it is known, along the horizontal at the pixel `row`. An end that is not
+    /// finite is open, if the other is finite.
     void estimate(double value, double low, double high, double row);
 
     // In pixels.

@@ -91,7 +91,8 @@ label:has(.swap:checked) + .pair { flex-direction: row-reverse; }
   body { padding: 0; max-width: none; font-size: 10.5pt; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   .scroll, .strip { overflow: visible; flex-wrap: wrap; }
   table { font-size: 7.5pt; } th, td { padding: .12rem .3rem; } .matrix { font-size: 8pt; }
-  figure, tr, svg, li { break-inside: avoid; } h2, h3 { break-after: avoid; }
+  figure, tr, svg, li { break-inside: avoid; } h2, h3, .note, .prompt { break-after: avoid; }
+  td { min-width: 0 !important; }
   figure.wide { break-inside: auto; }
   .figures { gap: 3mm; } .figures > figure { width: 48% !important; } .figures > figure svg { width: 100%; }
   .figures > figure:has(.matrix) { width: auto !important; }
