@@ -256,9 +256,11 @@ std::string read_gaze_source(gi::Yaml const& y)
 {
     std::string const source = y.text();
     if (source == "none") return "";
-    if (source.empty() || source == "lsl" || (source.starts_with("lsl:") && source.size() > 4)) return source;
+    if (source.empty() || source == "lsl" || source == "openxr" ||
+        (source.starts_with("lsl:") && source.size() > 4))
+        return source;
     throw y.error("'" + source.substr(0, 64) + "' is no source of gaze", "it would not be recorded",
-                  "write lsl (any stream of type Gaze), lsl:NAME or none");
+                  "write lsl (any stream of type Gaze), lsl:NAME, openxr (a headset's) or none");
 }
 
 Record read_record(gi::Yaml const& y, Mistakes& m)

@@ -244,7 +244,7 @@ struct Record {
     double head_pose_hz = 0; ///< used if poses are not recorded per frame; 0 = none
     std::vector<std::string> markers;
     bool compress_frames = false;
-    std::string gaze; ///< where it comes from: lsl, lsl:NAME; empty = none
+    std::string gaze; ///< where it comes from: lsl, lsl:NAME, openxr; empty = none
 };
 struct Resume {
     double max_gap_min = 60; ///< after a longer gap, the steps listed in `repeat` are shown again

@@ -416,20 +416,22 @@ Table sounds_table(Script const& script, std::vector<TrialRow> const& rows, int 
     std::vector<std::pair<std::string, std::string>> tags;
     for (Sound const& s : script.sounds)
         tags.emplace_back(s.name,
-                          fmt::format("(Sensory-event, Auditory-presentation, Cue, Label/{})", hed_name(s.name)));
-    Table table{{{"onset",
-                  "When the first sample left, as the sound device says; since the beginning of the session", "s"},
-                 {"duration", "Duration of the sound", "s"},
-                 {"trial", "Number of the trial in its pass of the block, from 1", "", {}, "Experimental-trial/#"},
-                 {"pass", "Number of the pass of the block, from 1"},
-                 {"attempt", "Number of the attempt at the trial, from 1"},
-                 {"sound", "Its name in the script", "", {}, "", tags},
-                 {"at", "What it was due with: the fixation, or stimuli by their letters"},
-                 {"event_onset", "Onset of that, since the beginning of the session", "s"},
-                 {"offset_ms", "Wanted time from event_onset to the sound", "ms"},
-                 {"error_ms", "How much later it came than wanted", "ms"},
-                 {"underruns", "Times that the device ran out of samples while it played"},
-                 {"missing", "Why it was not played"}}};
+                          fmt::format("(Sensory-event, Auditory-presentation, Cue, Label/{}{})", hed_name(s.name),
+                                      hed_references({"trial", "pass", "attempt", "event_onset"})));
+    Table table{
+        {{"onset", "When the first sample left, as the sound device says; since the beginning of the session",
+          "s"},
+         {"duration", "Duration of the sound", "s"},
+         {"trial", "Number of the trial in its pass of the block, from 1", "", {}, "Experimental-trial/#"},
+         {"pass", "Number of the pass of the block, from 1", "", {}, hed_number("pass")},
+         {"attempt", "Number of the attempt at the trial, from 1", "", {}, hed_number("attempt")},
+         {"sound", "Its name in the script", "", {}, "", tags},
+         {"at", "What it was due with: the fixation, or stimuli by their letters"},
+         {"event_onset", "Onset of that, since the beginning of the session", "s", {}, hed_number("event-onset")},
+         {"offset_ms", "Wanted time from event_onset to the sound", "ms"},
+         {"error_ms", "How much later it came than wanted", "ms"},
+         {"underruns", "Times that the device ran out of samples while it played"},
+         {"missing", "Why it was not played"}}};
     for (TrialRow const& row : rows) {
         if (row.step->block != block) continue;
         for (SoundPlayed const& s : row.done->sounds)

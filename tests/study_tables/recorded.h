@@ -46,7 +46,7 @@ inline TrialDone unanswered(PlanStep const& step, int index, double start_s)
     return done;
 }
 
-/// The whole plan of a participant. Questionnaires are answered with their lowest values.
+/// The whole plan of a participant. Questionnaires are answered with their lowest values, or a text.
 inline RecordedSession record_session(Script const& script, int participant, Answering const& answer)
 {
     RecordedSession session{make_plan(script, participant), {}};
@@ -62,8 +62,15 @@ inline RecordedSession record_session(Script const& script, int participant, Ans
             entries.emplace_back(std::move(done));
         } else if (step.kind == PlanStepKind::questionnaire) {
             QuestionnaireDone q{int(i), t, t + 9, {}};
-            for (QuestionnaireItem const& item : script.questionnaires[std::size_t(step.questionnaire)].items)
-                q.answers.emplace_back(item.low);
+            Questionnaire const& asked = script.questionnaires[std::size_t(step.questionnaire)];
+            if (has_text_items(asked)) q.texts.assign(asked.items.size(), "");
+            for (std::size_t k = 0; k < asked.items.size(); ++k)
+                if (asked.items[k].type == ItemType::text) {
+                    q.answers.emplace_back();
+                    q.texts[k] = "\"Ça\",\nshe said";
+                } else {
+                    q.answers.emplace_back(asked.items[k].low);
+                }
             entries.emplace_back(std::move(q));
         } else
             entries.emplace_back(StepDone{int(i), t, t + 5, ""});

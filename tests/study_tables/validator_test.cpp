@@ -52,6 +52,11 @@ void write_dataset(fs::path const& folder, StudyExample const& example)
             }
             if (!b.is_sequential) // they appear together
                 for (StimulusShown& shown : done.shown) shown.onset_s = done.shown[0].onset_s;
+            for (Cue const& c : b.cues) // one was not played
+                done.sounds.push_back(
+                    {s.sounds[std::size_t(c.sound)].name, "a", done.shown.at(0).onset_s, c.offset_ms,
+                     c.offset_ms < 0 ? std::optional<double>() : done.shown.at(0).onset_s + 0.001, 0.05, 0,
+                     c.offset_ms < 0 ? "device failed" : ""});
             done.gaze_samples = 250;
             done.gaze_valid = 240;
             done.gaze_dropped = 1;

@@ -69,5 +69,77 @@ TEST_F(Monado, SessionInAHeadset)
         }
 }
 
+/// The session of kScriptText, without answers. @return its process
+Child gaze_session(std::filesystem::path const& folder, std::filesystem::path const& runtime,
+                   std::vector<std::string> const& environment, std::string const& more = "--hmd")
+{
+    std::string text = kScriptText;
+    text.replace(text.find("stimulus_ms: 500"), 16, "stimulus_ms: 500, timeout_ms: 600");
+    std::ofstream(folder / "x.yaml") << text;
+    std::vector<std::string> call{kScript, "client", "--dir", runtime, "--", LIGHTWELL_PROGRAM};
+    for (std::string const& a : words(fmt::format(
+             "study run {} --participant 1 --dir {} --size 320x240 --font 12 --threads 1 --gaze openxr {}",
+             (folder / "x.yaml").string(), (folder / "data").string(), more)))
+        call.push_back(a);
+    return Child(call, folder, "session", environment);
+}
+
+TEST_F(Monado, GazeOfTheHeadsetIsRecorded)
+{
+    gi::test::Xvfb const server(700, 500);
+    if (!server.problem().empty()) GTEST_SKIP() << "SKIPPED: " << server.problem();
+    start_service();
+    Child session =
+        gaze_session(folder.path(), runtime_folder(),
+                     {"XR_API_LAYER_PATH=" GAZE_LAYER, "XR_ENABLE_API_LAYERS=XR_APILAYER_LIGHTWELL_test_gaze"});
+    EXPECT_EQ(session.wait(Seconds(90)), 0) << session.out() << session.err();
+    auto const at = folder / "data/sub-P001/ses-01/beh";
+    auto const rows = read_log(at / "sub-P001_ses-01_part-01_gaze.csv");
+    // 10 degrees to the right and 5 up, in a window of 320 px that is 0.8 wide at a distance of 1.
+    double const scale = 320 / 0.8, degree = 0.017453292519943295;
+    int valid = 0, shown = 0;
+    double last_s = 0;
+    for (auto const& row : rows) {
+        EXPECT_GT(std::stod(row.at("t_s")), last_s);
+        last_s = std::stod(row.at("t_s"));
+        shown += row.at("shown") != "-";
+        if (row.at("valid") != "1") continue;
+        ++valid;
+        EXPECT_NEAR(std::stod(row.at("x_px")), 160 + scale * std::tan(10 * degree), 0.5);
+        EXPECT_NEAR(std::stod(row.at("y_px")), 120 - scale * std::tan(5 * degree) / std::cos(10 * degree), 0.5);
+    }
+    fmt::print("{} samples of gaze by OpenXR, {} valid, {} while a stimulus was shown\n", rows.size(), valid,
+               shown);
+    EXPECT_GT(valid, 20);
+    EXPECT_LT(valid, int(rows.size())) << "blinks";
+    EXPECT_GT(shown, 20);
+    study::SessionRecord const record = study::read_journal(at / "journal.jsonl").record;
+    for (study::JournalEntry const& e : record.entries)
+        if (auto const* const t = std::get_if<study::TrialDone>(&e)) {
+            EXPECT_GT(t->gaze_samples.value_or(0), 5);
+        }
+    auto const about = std::get<study::SessionStarted>(record.entries.at(0)).about;
+    std::map<std::string, std::string> const facts(about.begin(), about.end());
+    EXPECT_EQ(facts.at("gaze_source"), "openxr: XR_EXT_eye_gaze_interaction");
+    EXPECT_EQ(facts.at("gaze_px_per_tangent"), "400.000");
+    EXPECT_TRUE(std::filesystem::exists(at / "sub-P001_ses-01_task-session_recording-eye1_physio.tsv.gz"));
+}
+
+TEST_F(Monado, GazeThatTheHeadsetDoesNotHaveIsRefused)
+{
+    gi::test::Xvfb const server(700, 500);
+    if (!server.problem().empty()) GTEST_SKIP() << "SKIPPED: " << server.problem();
+    start_service();
+    Child session = gaze_session(folder.path(), runtime_folder(), {});
+    EXPECT_EQ(session.wait(Seconds(60)), 2) << session.out();
+    EXPECT_TRUE(session.err().find("the headset does not track eyes") != std::string::npos ||
+                session.err().find("XR_EXT_eye_gaze_interaction") != std::string::npos)
+        << session.err();
+    EXPECT_FALSE(std::filesystem::exists(folder / "data"));
+    Child in_window = gaze_session(folder.path(), runtime_folder(), {}, "");
+    EXPECT_EQ(in_window.wait(Seconds(60)), 2) << in_window.out();
+    EXPECT_NE(in_window.err().find("--hmd"), std::string::npos) << in_window.err();
+}
+
 } // namespace
 } // namespace viewer::test

@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "study/display/model_file.h"
+#include "viewer/experiment/gaze/screen_gaze.h"
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/screens/hmd_screen.h"
 #include "viewer/experiment/screens/refresh.h"
@@ -19,9 +20,11 @@ namespace {
 
 constexpr double kPage_Hz = 30;
 
-std::unique_ptr<GazeSource> open_gaze_of(study::Script const& script, TrialOptions const& options, double now_s)
+std::unique_ptr<GazeSource> open_gaze_of(study::Script const& script, TrialOptions const& options, double now_s,
+                                         std::function<Screen&()> const& screen)
 {
     std::string const& what = options.gaze.empty() ? script.record.gaze : options.gaze;
+    if (what == "openxr") return std::make_unique<ScreenGaze>(screen);
     return what.empty() || what == "none" ? nullptr : open_gaze(what, now_s);
 }
 
@@ -45,7 +48,8 @@ TrialPresenter::TrialPresenter(study::Script const& script, TrialOptions const& 
                report),
       experimenter_(options.remote, report),
       table_(options.folder, options.stem),
-      gaze_(open_gaze_of(script, options, now()), options.folder, options.stem),
+      gaze_(open_gaze_of(script, options, now(), [this]() -> Screen& { return *screen_; }), options.folder,
+            options.stem),
       period_s_(1 / script.timing.expected_hz)
 {
     experimenter_.status.experiment = script.id;

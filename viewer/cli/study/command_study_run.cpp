@@ -174,6 +174,11 @@ int run(RunOptions const& o)
     trials.audio = audio.get();
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
     trials.view = o.hmd ? StimulusViewer::headset : StimulusViewer::window;
+    std::string const& gaze = o.gaze.empty() ? script.record.gaze : o.gaze;
+    if (gaze == "openxr" && !o.hmd)
+        throw gi::InputError("gaze: openxr", "only headsets have it, and the session is in a window",
+                             "add --hmd, or name another source by --gaze");
+    if (gaze == "openxr") trials.headset.eye_tracking = HmdEyeTracking::on;
     trials.headset.space = o.seated ? HmdSpace::local : HmdSpace::stage;
     trials.screen.window.title = "Lightwell: " + script.id;
     trials.screen.window.size_px = {width, height};
@@ -233,7 +238,8 @@ void add_study_run(CLI::App& study, int& exit_code)
     c->add_option("--display-model", o->display_model,
                   "display model of the monitor (study calibrate): degrees, cd/m2, linear light");
     c->add_option("--gaze", o->gaze,
-                  "gaze instead of record.gaze: lsl, lsl:NAME, none, or a table to replay (t_s,x_px,y_px,valid)");
+                  "gaze instead of record.gaze: lsl, lsl:NAME, openxr (with --hmd), none, or a table to replay "
+                  "(t_s,x_px,y_px,valid)");
     c->add_option("--audio", o->audio,
                   "sound device of cues, by a part of its name; none: without sound, which is recorded")
         ->capture_default_str();

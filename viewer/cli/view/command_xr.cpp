@@ -10,10 +10,11 @@
 namespace viewer {
 namespace {
 
-char const* tracked(HmdInfo const& info)
+std::string tracked(HmdInfo const& info)
 {
-    if (info.tracks_position) return info.tracks_rotation ? "position and rotation" : "position";
-    return info.tracks_rotation ? "rotation" : "nothing";
+    std::string const gaze = info.tracks_gaze ? ", gaze" : "";
+    if (info.tracks_position) return (info.tracks_rotation ? "position and rotation" : "position") + gaze;
+    return (info.tracks_rotation ? "rotation" : "nothing") + gaze;
 }
 
 int run_info(bool as_json)
@@ -29,6 +30,7 @@ int run_info(bool as_json)
                                        {"highest", info.highest},
                                        {"tracks_position", info.tracks_position},
                                        {"tracks_rotation", info.tracks_rotation},
+                                       {"tracks_gaze", info.tracks_gaze},
                                        {"blend_modes", info.blend_modes},
                                        {"extensions_used", info.extensions_used},
                                        {"extensions_missing", info.extensions_missing}};

@@ -68,7 +68,8 @@ std::optional<RoomPose> locate(XrSpace what, XrSpace space, RoomPose const& room
     return room_from_space * pose_of({q.x, q.y, q.z, q.w}, {p.x, p.y, p.z});
 }
 
-Actions::Actions(XrInstance instance, XrSession session) : instance_(instance), session_(session)
+Actions::Actions(XrInstance instance, XrSession session, HmdEyeTracking eye_tracking)
+    : instance_(instance), session_(session)
 {
     XrActionSetCreateInfo create{};
     create.type = XR_TYPE_ACTION_SET_CREATE_INFO;
@@ -84,6 +85,11 @@ Actions::Actions(XrInstance instance, XrSession session) : instance_(instance), 
         trigger_ = make_action("trigger", "Trigger", XR_ACTION_TYPE_BOOLEAN_INPUT);
         menu_ = make_action("menu", "Menu", XR_ACTION_TYPE_BOOLEAN_INPUT);
         suggest();
+        if (eye_tracking == HmdEyeTracking::on) {
+            gaze_ = make_action("gaze", "Gaze", XR_ACTION_TYPE_POSE_INPUT, false);
+            suggest("/interaction_profiles/ext/eye_gaze_interaction",
+                    {{gaze_, path("/user/eyes_ext/input/gaze_ext/pose")}});
+        }
         XrSessionActionSetsAttachInfo attach{};
         attach.type = XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO;
         attach.countActionSets = 1;
@@ -98,6 +104,12 @@ Actions::Actions(XrInstance instance, XrSession session) : instance_(instance), 
                 place.poseInActionSpace.orientation.w = 1;
                 check(xrCreateActionSpace(session, &place, space), "xrCreateActionSpace");
             }
+        if (gaze_ == XR_NULL_HANDLE) return;
+        XrActionSpaceCreateInfo eyes{};
+        eyes.type = XR_TYPE_ACTION_SPACE_CREATE_INFO;
+        eyes.action = gaze_;
+        eyes.poseInActionSpace.orientation.w = 1;
+        check(xrCreateActionSpace(session, &eyes, &gaze_space_), "xrCreateActionSpace");
     } catch (...) {
         xrDestroyActionSet(set_); // also destroys its actions; the session destroys the spaces
         throw;
@@ -106,14 +118,14 @@ Actions::Actions(XrInstance instance, XrSession session) : instance_(instance), 
 
 Actions::~Actions() { xrDestroyActionSet(set_); }
 
-XrAction Actions::make_action(char const* action_name, char const* shown_name, XrActionType type) const
+XrAction Actions::make_action(char const* action_name, char const* shown_name, XrActionType type, bool hands) const
 {
     XrActionCreateInfo create{};
     create.type = XR_TYPE_ACTION_CREATE_INFO;
     std::snprintf(create.actionName, sizeof create.actionName, "%s", action_name);
     std::snprintf(create.localizedActionName, sizeof create.localizedActionName, "%s", shown_name);
     create.actionType = type;
-    create.countSubactionPaths = 2;
+    create.countSubactionPaths = hands ? 2 : 0;
     create.subactionPaths = hand_path_.data();
     XrAction action = XR_NULL_HANDLE;
     check(xrCreateAction(set_, &create, &action), "xrCreateAction");
@@ -141,13 +153,42 @@ void Actions::suggest() const
                 if (b.hand < 0 || b.hand == h)
                     bindings.push_back({action.at(b.what), path(hand + "/input/" + b.input)});
         }
-        XrInteractionProfileSuggestedBinding suggested{};
-        suggested.type = XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING;
-        suggested.interactionProfile = path(profile.path);
-        suggested.countSuggestedBindings = static_cast<std::uint32_t>(bindings.size());
-        suggested.suggestedBindings = bindings.data();
-        check(xrSuggestInteractionProfileBindings(instance_, &suggested), profile.path);
+        suggest(profile.path, bindings);
     }
+}
+
+void Actions::suggest(char const* profile, std::vector<XrActionSuggestedBinding> const& bindings) const
+{
+    XrInteractionProfileSuggestedBinding suggested{};
+    suggested.type = XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING;
+    suggested.interactionProfile = path(profile);
+    suggested.countSuggestedBindings = static_cast<std::uint32_t>(bindings.size());
+    suggested.suggestedBindings = bindings.data();
+    check(xrSuggestInteractionProfileBindings(instance_, &suggested), profile);
+}
+
+std::optional<Actions::Gaze> Actions::gaze(XrSpace head, XrTime time) const
+{
+    if (gaze_space_ == XR_NULL_HANDLE) return {};
+    XrActionStateGetInfo get{};
+    get.type = XR_TYPE_ACTION_STATE_GET_INFO;
+    get.action = gaze_;
+    XrActionStatePose state{};
+    state.type = XR_TYPE_ACTION_STATE_POSE;
+    check(xrGetActionStatePose(session_, &get, &state), "xrGetActionStatePose");
+    if (!state.isActive) return {};
+    XrEyeGazeSampleTimeEXT sample{};
+    sample.type = XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT;
+    XrSpaceLocation at{};
+    at.type = XR_TYPE_SPACE_LOCATION;
+    at.next = &sample;
+    check(xrLocateSpace(gaze_space_, head, time, &at), "xrLocateSpace");
+    Gaze gaze{{}, sample.time};
+    auto const [q, p] = at.pose;
+    glm::dvec3 const along = pose_of({q.x, q.y, q.z, q.w}, {p.x, p.y, p.z}).rotation * glm::dvec3(0, 0, -1);
+    gaze.state.is_valid = (at.locationFlags & XR_SPACE_LOCATION_ORIENTATION_VALID_BIT) != 0 && along.z < 0;
+    if (gaze.state.is_valid) gaze.state.tangent = glm::dvec2(along.x, along.y) / -along.z;
+    return gaze;
 }
 
 void Actions::read_profiles()

@@ -3,14 +3,16 @@
 
 #include "viewer/devices/xr/frame.h"
 #include "viewer/devices/xr/openxr.h"
+#include "viewer/devices/xr/session.h"
 
 namespace viewer {
 
 class Actions {
 public:
+    /// @param eye_tracking  on: also an action for gaze
     /// Suggests bindings for the simple controller and those of Oculus Touch, Valve Index, HTC Vive and Windows
     /// Mixed Reality, and attaches them to the session. Throws CallError.
-    Actions(XrInstance instance, XrSession session);
+    Actions(XrInstance instance, XrSession session, HmdEyeTracking eye_tracking);
     ~Actions();
     Actions(Actions const&) = delete;
     Actions& operator=(Actions const&) = delete;
@@ -23,11 +25,19 @@ public:
         HmdHand state;
         std::optional<RoomPose> grip;
     };
+    /// Gaze at a time, from the head. None without eye tracking, or while the session has no focus.
+    struct Gaze {
+        HmdGaze state;       ///< without its time
+        XrTime measured = 0; ///< 0 = the runtime does not say
+    };
+    std::optional<Gaze> gaze(XrSpace head, XrTime time) const;
     /// Poses of the hands at a time, in the room.
     std::array<Hand, 2> hands(XrSpace space, RoomPose const& room_from_space, XrTime time) const;
 
 private:
-    XrAction make_action(char const* name, char const* shown_name, XrActionType type) const;
+    /// @param hands  it has a value for each; else one for all
+    XrAction make_action(char const* name, char const* shown_name, XrActionType type, bool hands = true) const;
+    void suggest(char const* profile, std::vector<XrActionSuggestedBinding> const& bindings) const;
     void suggest() const;
     XrPath path(std::string const& text) const;
     XrActionStateGetInfo of_hand(XrAction action, std::size_t hand) const;
@@ -36,7 +46,8 @@ private:
     XrInstance instance_;
     XrSession session_;
     XrActionSet set_ = XR_NULL_HANDLE;
-    XrAction aim_{}, grip_{}, move_{}, select_{}, trigger_{}, menu_{};
+    XrAction aim_{}, grip_{}, move_{}, select_{}, trigger_{}, menu_{}, gaze_{};
+    XrSpace gaze_space_ = XR_NULL_HANDLE;
     std::array<XrPath, 2> hand_path_{};
     std::array<XrSpace, 2> aim_space_{}, grip_space_{};
     std::array<HmdHand, 2> hands_;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace viewer {
@@ -45,6 +46,14 @@ struct HmdHand {
     bool operator==(HmdHand const&) const = default;
 };
 
+/// Where both eyes together look, by the headset's eye tracker.
+struct HmdGaze {
+    double time_s = 0;     ///< when it was measured; of the question, if the runtime does not say
+    bool is_valid = false; ///< false: a blink, or the eyes were not found
+    glm::dvec2 tangent{0}; ///< direction from the head's forward one: to the right, up
+    bool operator==(HmdGaze const&) const = default;
+};
+
 struct HmdFrame {
     std::uint64_t frame = 0;    ///< of this session, from 0
     double display_s = 0;       ///< predicted display time, for which the poses are predicted
@@ -56,6 +65,7 @@ struct HmdFrame {
     std::array<HmdView, 2> views;
     Tracked tracked; ///< head, and the grips of the controllers
     std::array<HmdHand, 2> hands;
+    std::optional<HmdGaze> gaze; ///< none without eye tracking, or while the session has no focus
 };
 
 /// Encoding of texture values: linear or sRGB. Textures of format GL_SRGB8_ALPHA8 are `linear`, because reading

@@ -14,6 +14,7 @@ struct HmdInfo {
     int width = 0, height = 0;   ///< recommended pixels per eye
     int widest = 0, highest = 0; ///< at most
     bool tracks_position = false, tracks_rotation = false;
+    bool tracks_gaze = false;                    ///< if the extension is used
     std::vector<std::string> blend_modes;        ///< e.g. "opaque", "additive", "alpha blend"; the first is used
     std::vector<std::string> extensions_used;    ///< of those known to lightwell
     std::vector<std::string> extensions_missing; ///< likewise, each with the feature that is missing without it

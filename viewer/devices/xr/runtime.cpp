@@ -26,7 +26,12 @@ constexpr KnownExtension kKnown[] = {
     {XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME, "its clock is taken to be the system's monotonic one", false,
      false, false},
     {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, "pixels that no eye sees are rendered too", false, false, false},
+    {XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, "gaze cannot be recorded", false, false, false},
 };
+
+constexpr char const* kEyeGaze = XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME;
+constexpr char const* kWithoutGaze =
+    "use a headset with eye tracking, switch it on in its runtime, or go on without gaze";
 
 bool needed(KnownExtension const& e, PicturePath path)
 {
@@ -76,11 +81,11 @@ char const* name(XrEnvironmentBlendMode mode)
 
 } // namespace
 
-Runtime::Runtime(PicturePath path)
+Runtime::Runtime(PicturePath path, HmdEyeTracking eye_tracking)
 {
     // Silence the loader's own messages on stderr; the exception contains the error.
     setenv("XR_LOADER_DEBUG", "none", 0);
-    connect(path);
+    connect(path, eye_tracking);
     try {
         find_headset();
     } catch (...) {
@@ -91,7 +96,7 @@ Runtime::Runtime(PicturePath path)
 
 Runtime::~Runtime() { xrDestroyInstance(instance_); }
 
-void Runtime::connect(PicturePath path)
+void Runtime::connect(PicturePath path, HmdEyeTracking eye_tracking)
 {
     try {
         XrExtensionProperties empty{};
@@ -110,8 +115,13 @@ void Runtime::connect(PicturePath path)
             if (!is_offered && needed(e, path))
                 throw gi::InputError(fmt::format("the OpenXR runtime does not offer {}", e.name), e.without,
                                      "use a runtime that has it (Monado does)");
+            bool const is_gaze = std::strcmp(e.name, kEyeGaze) == 0, tracks = eye_tracking == HmdEyeTracking::on;
+            if (!is_offered && is_gaze && tracks)
+                throw gi::InputError(fmt::format("the OpenXR runtime does not offer {}", e.name), e.without,
+                                     kWithoutGaze);
             if (!is_offered) info.extensions_missing.push_back(fmt::format("{} ({})", e.name, e.without));
             if (!is_offered || !wanted(e, path)) continue;
+            if (is_gaze && !tracks && path != PicturePath::ask) continue; // it may ask for permission
             names.push_back(e.name);
             info.extensions_used.push_back(e.name);
         }
@@ -147,9 +157,13 @@ try {
     check(xrGetSystem(instance_, &get, &system_), "xrGetSystem");
     XrSystemProperties properties{};
     properties.type = XR_TYPE_SYSTEM_PROPERTIES;
+    XrSystemEyeGazeInteractionPropertiesEXT gaze{};
+    gaze.type = XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT;
+    if (uses(kEyeGaze)) properties.next = &gaze;
     check(xrGetSystemProperties(instance_, system_, &properties), "xrGetSystemProperties");
     info.system = properties.systemName;
     info.tracks_position = properties.trackingProperties.positionTracking;
+    info.tracks_gaze = gaze.supportsEyeGazeInteraction;
     info.tracks_rotation = properties.trackingProperties.orientationTracking;
 
     constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;

@@ -3,6 +3,7 @@
 
 #include "viewer/devices/xr/info.h"
 #include "viewer/devices/xr/openxr.h"
+#include "viewer/devices/xr/session.h"
 
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ enum class PicturePath { glx, egl, none, ask };
 class Runtime {
 public:
     /// Throws InputError if there is no runtime, no headset, or a required extension is missing.
-    explicit Runtime(PicturePath path);
+    /// @param eye_tracking  on: required
+    explicit Runtime(PicturePath path, HmdEyeTracking eye_tracking = HmdEyeTracking::off);
     ~Runtime();
     Runtime(Runtime const&) = delete;
     Runtime& operator=(Runtime const&) = delete;
@@ -40,7 +42,7 @@ public:
 
 private:
     PFN_xrVoidFunction pointer(char const* name) const;
-    void connect(PicturePath path);
+    void connect(PicturePath path, HmdEyeTracking eye_tracking);
     void find_headset();
 
     XrInstance instance_ = XR_NULL_HANDLE;

@@ -125,8 +125,12 @@ struct HmdSession::Parts {
 };
 
 HmdSession::Parts::Parts(GlContext const* context, HmdOptions const& options)
-    : runtime(context ? path_of(*context) : PicturePath::none)
+    : runtime(context ? path_of(*context) : PicturePath::none, options.eye_tracking)
 {
+    if (options.eye_tracking == HmdEyeTracking::on && !runtime.info.tracks_gaze)
+        throw gi::InputError("the headset does not track eyes",
+                             runtime.info.system + " reports no supportsEyeGazeInteraction",
+                             "use one that does, switch it on in its runtime, or go on without gaze");
     std::shared_ptr<void const> const binding = context ? graphics_binding(runtime, *context) : nullptr;
     XrSessionCreateInfo create{};
     create.type = XR_TYPE_SESSION_CREATE_INFO;
@@ -135,7 +139,7 @@ HmdSession::Parts::Parts(GlContext const* context, HmdOptions const& options)
     check(xrCreateSession(runtime.instance(), &create, &session.handle), "xrCreateSession");
     spaces.emplace(session.handle, options);
     runtime.info.space = spaces->description();
-    actions.emplace(runtime.instance(), session.handle);
+    actions.emplace(runtime.instance(), session.handle, options.eye_tracking);
     masks.emplace(runtime, session.handle);
     if (!context) return;
     auto const formats =
@@ -258,6 +262,11 @@ void HmdSession::Parts::add_bodies(HmdFrame& frame, XrTime time)
     for (std::size_t h = 0; h < 2; ++h) frame.hands[h] = hands[h].state;
     frame.tracked.left_hand = hands[0].grip;
     frame.tracked.right_hand = hands[1].grip;
+    // As it is now: what is predicted for the display's time would be a guess at the next saccade.
+    if (auto const gaze = actions->gaze(spaces->head_space(), runtime.xr_time(frame.pose_s))) {
+        frame.gaze = gaze->state;
+        frame.gaze->time_s = gaze->measured > 0 ? runtime.steady_s(gaze->measured) : frame.pose_s;
+    }
 }
 
 std::optional<HmdFrame> HmdSession::Parts::begin()

@@ -32,9 +32,15 @@ enum class HmdSpace {
     local, ///< seated: eyes start eye_height_m above the floor, for any user
 };
 
+enum class HmdEyeTracking {
+    off,
+    on, ///< XR_EXT_eye_gaze_interaction, which may ask the user for permission
+};
+
 struct HmdOptions {
     HmdSpace space = HmdSpace::stage;
     double eye_height_m = 1.6; ///< 0.2 to 3
+    HmdEyeTracking eye_tracking = HmdEyeTracking::off;
 };
 
 /// Session states of OpenXR, and two final ones.
@@ -57,8 +63,8 @@ struct HmdCounts {
 class HmdSession {
 public:
     /// Session with pictures for two eyes. The context must be current, from EGL or GLX, and outlive the session.
-    /// Throws InputError if there is no runtime or headset, the runtime lacks a required feature, or an option is
-    /// out of range.
+    /// Throws InputError if there is no runtime or headset, the runtime lacks a required feature (eye tracking, if
+    /// it is on), or an option is out of range.
     HmdSession(GlContext const& context, HmdOptions const& options);
     /// Session for poses only: a tracker of head and hands without pictures and GL (XR_MND_headless).
     explicit HmdSession(HmdOptions const& options);

@@ -13,6 +13,7 @@ public:
     Spaces(XrSession session, HmdOptions const& options);
 
     XrSpace base() const { return base_; }
+    XrSpace head_space() const { return head_; }
     std::string const& description() const { return description_; }
     RoomPose const& room_from_space() const { return room_from_space_; }
     std::optional<RoomPose> head(XrTime time) const;

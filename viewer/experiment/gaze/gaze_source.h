@@ -25,6 +25,7 @@ public:
     virtual std::vector<std::pair<std::string, std::string>> about() const = 0;
 };
 
+/// Not "openxr", which is the screen's (screen_gaze.h).
 /// @param what  "lsl", "lsl:NAME", or the file of a table (study::read_gaze_csv: px from the window's top left
 /// corner),
 ///     which is replayed from the start of the session at its own pace, again and again

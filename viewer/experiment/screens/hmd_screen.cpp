@@ -108,8 +108,23 @@ void HmdScreen::look(HmdFrame const& frame)
         }
     }
     hands_ = frame.hands;
+    if (frame.gaze && frame.gaze->time_s > last_gaze_s_) { // a tracker may be slower than the display
+        last_gaze_s_ = frame.gaze->time_s;
+        double const scale = px_per_tangent();
+        gaze_.push_back({last_gaze_s_, scale * frame.gaze->tangent.x, -scale * frame.gaze->tangent.y, NAN,
+                         frame.gaze->is_valid});
+    }
     if (!start_ && frame.tracked.head) start_ = frame.tracked.head->position;
     frame_ = frame;
+}
+
+double HmdScreen::px_per_tangent() const { return size_px().x / kTextWidth; }
+
+std::vector<std::pair<std::string, std::string>> HmdScreen::gaze_about() const
+{
+    return {{"gaze_source", "openxr: XR_EXT_eye_gaze_interaction"},
+            {"gaze_rate_hz", "once a frame"},
+            {"gaze_px_per_tangent", fmt::format("{:.3f}", px_per_tangent())}};
 }
 
 gi::dmat4 HmdScreen::world_from_room() const

@@ -24,6 +24,9 @@ public:
     std::vector<InputEvent> take_input() override;
     double take_longest_look_ms() override { return std::exchange(longest_look_ms_, 0); }
     GazePlace gaze_place() const override { return {size_px(), {}, {}, {}}; }
+    /// Samples are read once a frame. Their pixels are those of the text's window, which floats straight ahead.
+    std::vector<study::GazeSample> take_gaze() override { return std::exchange(gaze_, {}); }
+    std::vector<std::pair<std::string, std::string>> gaze_about() const override;
     bool has_own_views() const override { return true; }
     std::vector<ViewCommand> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
 
@@ -33,6 +36,7 @@ private:
     void draw_text(ScreenContent const& content);
     void place_text(HmdFrame const& frame);
     gi::dmat4 world_from_room() const;
+    double px_per_tangent() const; ///< of the text's window
 
     HmdContext context_;
     std::unique_ptr<Panel> panel_;
@@ -41,6 +45,8 @@ private:
     HmdFrame frame_; ///< the last one
     std::array<HmdHand, 2> hands_;
     std::vector<InputEvent> input_;
+    std::vector<study::GazeSample> gaze_;
+    double last_gaze_s_ = 0;
     std::shared_ptr<LiveFrame const> taken_;
     gi::dmat4 world_from_camera_{1}; ///< of the stimulus
     std::optional<gi::dvec3> start_; ///< first position of the head, in the room

@@ -66,6 +66,10 @@ public:
     /// The window on its monitor, for gaze.
     virtual GazePlace gaze_place() const = 0;
 
+    /// Gaze that the screen itself has measured since the last call; pixels from the centre, as in gaze_place.
+    virtual std::vector<study::GazeSample> take_gaze() { return {}; }
+    virtual std::vector<std::pair<std::string, std::string>> gaze_about() const { return {}; }
+
     /// True if the screen defines its own views (walls or headset eyes, from tracked heads). Then it shows one
     /// stimulus at a time.
     virtual bool has_own_views() const = 0;
