@@ -23,7 +23,7 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
     p.y_axis("proportion correct");
     Interval const& band = c.threshold.interval;
     if (std::isfinite(band.low) || std::isfinite(band.high)) { // an open end goes to the border
-        double const from = std::isfinite(band.low) ? p.x(band.low) : p.left(),
+        double const from = std::isfinite(band.low) ? std::max(p.left(), p.x(band.low)) : p.left(),
                      to = std::isfinite(band.high) ? p.x(band.high) : p.right();
         p.box(from, p.top(), to - from, p.bottom() - p.top(), "band");
     }

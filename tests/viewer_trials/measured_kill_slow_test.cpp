@@ -39,7 +39,7 @@ TEST_F(MeasuredKills, LoseNoTrialAndNoGazeOfIt)
     calibrated(folder);
     write_gaze(folder, 2.5);
     // Trials without an answer count as done: nobody needs to press keys.
-    std::string text = measured_script("repeats: 400, stimulus_ms: 60, timeout_ms: 80",
+    std::string text = measured_script("repeats: 400, stimulus_ms: 60, timeout_ms: 80, min_response_ms: 0",
                                        has_lsl ? "[udp, lsl]" : "[udp]", "[seen]");
     text.replace(text.find("max_dropped_frames"), 0, "on_bad_trial: keep, ");
     std::mt19937 random(20261126);
