@@ -9,9 +9,9 @@ namespace viewer {
 
 class Actions {
 public:
-    /// @param eye_tracking  on: also an action for gaze
     /// Suggests bindings for the simple controller and those of Oculus Touch, Valve Index, HTC Vive and Windows
     /// Mixed Reality, and attaches them to the session. Throws CallError.
+    /// @param eye_tracking  on: also an action for gaze
     Actions(XrInstance instance, XrSession session, HmdEyeTracking eye_tracking);
     ~Actions();
     Actions(Actions const&) = delete;
