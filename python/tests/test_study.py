@@ -282,3 +282,39 @@ def test_without_pandas_the_module_works_and_says_what_tables_need(script):
     )
     printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert "pip install pandas" in printed
+
+
+def test_texts_and_sounds_reach_the_records(tmp_path):
+    file = tmp_path / "sounds.yaml"
+    file.write_text(study.example("sounds"))
+
+    class Typist(Clockwork):
+        text = 'Ça, "she" said,\nłódź'
+
+        def ask(self, questionnaire, step):
+            assert [i.type for i in questionnaire.items] == ["scale", "text", "text"]
+            assert questionnaire.items[1].is_required and questionnaire.items[1].lines == 4
+            return [5, self.text, None]
+
+        def calibrate(self, timing):
+            return study.Calibration(passed=True)
+
+        def show(self, trial):
+            self.seen.append(trial)
+            onsets = [self.now() for _ in trial.order]
+            shown = [study.StimulusShown(letter, onset, 0.1, "test") for letter, onset in zip(trial.order, onsets)]
+            assert [(c.sound, c.at) for c in trial.cues] == [("ready", "first_stimulus"), ("beep", "each_stimulus")]
+            sounds = [study.SoundPlayed("beep", s.letter, s.onset_s, onset_s=s.onset_s + 0.002) for s in shown]
+            return study.TrialDone("first", response_s=onsets[-1] + 0.5, reaction_ms=500.0, shown=shown, sounds=sounds)
+
+    assert study.Script(file).run(1, Typist(), dir=tmp_path / "data").is_complete
+    entries = study.read_journal(next((tmp_path / "data").glob("sub-*/ses-01/beh/journal.jsonl")))
+    done = next(e for e in entries if e["kind"] == "questionnaire_done")
+    assert done["texts"] == ["", Typist.text, ""] and done["answers"] == [5, None, None]
+    assert next(e for e in entries if e["kind"] == "trial_done")["sounds"][0]["sound"] == "beep"
+
+    class Silent(Typist):
+        text = ""
+
+    with pytest.raises(Exception, match="it is required"):
+        study.Script(file).run(2, Silent(), dir=tmp_path / "data")
