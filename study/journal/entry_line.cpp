@@ -1,6 +1,6 @@
 #include "study/journal/entry_line.h"
 
-#include "gi/core/crc32.h"
+#include "gi/core/checked_line.h"
 #include "study/journal/entry_fields.h"
 
 #include <cmath>
@@ -15,8 +15,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr char const* kFormat = "journal/1";
-constexpr std::string_view kSum = ",\"crc32\":\"";
-constexpr std::size_t kSumLength = 20; // ,"crc32":"89abcdef"}
 
 struct Put {
     Json& out;
@@ -195,22 +193,13 @@ std::string entry_line(JournalEntry const& entry, int number)
             Fields<Entry>::visit(e, Put{j});
         },
         entry);
-    std::string line = j.dump(-1, ' ', false, Json::error_handler_t::replace);
-    line.pop_back(); // the brace
-    return line + fmt::format("{}{:08x}\"}}", kSum, gi::crc32(line));
-}
-
-bool has_checksum(std::string_view line)
-{
-    return line.size() >= kSumLength && line.substr(line.size() - kSumLength, kSum.size()) == kSum &&
-           line.ends_with("\"}");
+    return gi::checked_line(j.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 JournalEntry entry_of_line(std::string_view line, int number)
 {
-    if (!has_checksum(line)) throw BadLine("it has no checksum at its end", false);
-    std::string_view const summed = line.substr(0, line.size() - kSumLength);
-    if (line.substr(line.size() - kSumLength + kSum.size()) != fmt::format("{:08x}\"}}", gi::crc32(summed)))
+    if (!gi::has_checksum(line)) throw BadLine("it has no checksum at its end", false);
+    if (!gi::checksum_holds(line))
         throw BadLine("its checksum does not match: it was changed after it was written", false);
     Json const j = Json::parse(line, nullptr, false);
     if (!j.is_object()) throw BadLine("it is not a JSON object", false);

@@ -1,7 +1,7 @@
 #pragma once
 // An entry of a journal as one line of JSON:
 //   {"n":12,"kind":"trial_done", the fields as named in entries.h, "crc32":"89abcdef"}
-// n is the line number, from 1. The checksum is the CRC-32 of gzip over the line up to `,"crc32"`.
+// n is the line number, from 1; the checksum is that of gi/core/checked_line.h.
 // Numbers are written with enough digits to restore the same double; non-finite ones are the strings "nan", "inf"
 // and "-inf". Missing values are null: a line has every field of its kind and no other. The kind session_started
 // also has the format "journal/1".
@@ -27,8 +27,6 @@ private:
     bool is_newer_;
 };
 
-/// True if a line ends like a complete one, with a checksum.
-bool has_checksum(std::string_view line);
 /// @param number  expected number of the line
 /// @throws BadLine if entry_line cannot have written it: no JSON, wrong checksum or number, fields that are
 /// missing, unknown, or of another type

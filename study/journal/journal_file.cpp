@@ -1,5 +1,6 @@
 #include "study/journal/journal_file.h"
 
+#include "gi/core/checked_line.h"
 #include "gi/core/file.h"
 #include "study/journal/entry_line.h"
 #include "study/script/script_error.h"
@@ -11,7 +12,7 @@ namespace {
 
 /// True for an incomplete last line: its end is missing, or after a power failure parts of it still have the zeros
 /// or empty lines of the preallocated space.
-bool is_torn(std::string_view line) { return !has_checksum(line) || line.find('\0') != std::string_view::npos; }
+bool is_torn(std::string_view line) { return !gi::has_checksum(line) || line.find('\0') != std::string_view::npos; }
 
 } // namespace
 

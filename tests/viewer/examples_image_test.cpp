@@ -58,13 +58,14 @@ INSTANTIATE_TEST_SUITE_P(Of, Examples,
                                          "bench rays", "bench accuracy", "bench thesis", "track", "track listen",
                                          "track send", "track walk", "ar", "ar synthesize", "ar run", "ar track",
                                          "ar bench", "ar cameras", "ar record", "ar replay", "ar board",
-                                         "ar calibrate", "ar map", "ar albedo", "ar light"),
+                                         "ar calibrate", "ar map", "ar albedo", "ar light", "batch"),
                          test_name);
 
 /// A newcomer's hour: what the README and the documents say, in this order, in one folder.
 TEST(DocumentExamples, Run)
 {
-    for (char const* const document : {"README.md", "docs/commands.md", "docs/displays.md", "docs/study.md"}) {
+    for (char const* const document :
+         {"README.md", "docs/commands.md", "docs/batch.md", "docs/displays.md", "docs/study.md"}) {
         SCOPED_TRACE(document);
         std::vector<std::string> shell;
         bool inside = false;

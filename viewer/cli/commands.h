@@ -21,6 +21,7 @@ void add_xr(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, int& exit_code);
 void add_ar(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
+void add_batch(CLI::App& app, int& exit_code);
 // Within study
 void add_study_check(CLI::App& study, int& exit_code);
 void add_study_run(CLI::App& study, int& exit_code);

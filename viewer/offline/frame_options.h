@@ -1,6 +1,6 @@
 #pragma once
 #include "viewer/offline/frame_camera.h"
-#include "viewer/offline/frame_range.h"
+#include "viewer/base/frame_range.h"
 #include "viewer/offline/render_options.h"
 
 namespace viewer {

@@ -2,7 +2,7 @@
 
 #include "gi/image_io/picture_file.h"
 #include "viewer/app/frame_hash.h"
-#include "viewer/offline/frame_range.h"
+#include "viewer/base/frame_range.h"
 #include "viewer/offline/video_writer.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 #include "study/display/model_file.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
@@ -24,20 +25,37 @@ struct PrepareOptions {
     std::string script, size = "1280x720", out, display_model;
     double font_px = 22;
     int threads = 0;
+    std::string part = "1/1";
     RankOptions ranks;
 };
 
+/// "2/8": the second of eight parts.
+std::pair<std::size_t, std::size_t> parse_part(std::string const& text)
+{
+    std::size_t const slash = std::min(text.find('/'), text.size());
+    auto const part = gi::parse_number<std::size_t>(std::string_view(text).substr(0, slash));
+    auto const parts =
+        gi::parse_number<std::size_t>(std::string_view(text).substr(std::min(slash + 1, text.size())));
+    if (!part || !parts || *part < 1 || *part > *parts)
+        throw gi::InputError("--part '" + text + "' is not understood", "it is a part of several, from 1",
+                             "write 1/8 to 8/8");
+    return {*part, *parts};
+}
+
 int run(PrepareOptions const& o)
 {
+    auto const [part, parts] = parse_part(o.part);
     LoadedScript const loaded = load_script(o.script);
     auto const [width, height] = parse_size(o.size);
     std::optional<study::DisplayModel> model;
     if (!o.display_model.empty()) model = study::load_display_model(o.display_model);
-    auto const list =
+    auto list =
         prepared_list(loaded.script, {width, height}, float(o.font_px), version_text(), model ? &*model : nullptr);
     if (list.empty())
         throw gi::InputError("nothing to prepare in " + o.script, "no block has stimuli: prepared",
                              "add it to a block, or run with live stimuli");
+    for (auto [at, number] = std::pair(list.begin(), std::size_t(0)); at != list.end(); ++number)
+        at = number % parts == part - 1 ? std::next(at) : list.erase(at);
     gi::make_folder(o.out);
     Cluster cluster(
         {version_text(), "study prepare " + o.size, Cluster::started_by_mpirun() ? file_hash(o.script) : 0},
@@ -106,6 +124,7 @@ void add_study_prepare(CLI::App& study, int& exit_code)
         ->check(CLI::Range(0, 1024))
         ->transform(as_many_threads_as_there_are())
         ->capture_default_str();
+    c->add_option("--part", o->part, "render only a part of the stimuli, e.g. 2/8")->capture_default_str();
     declare_rank_options(*c, o->ranks);
     c->callback([o, &exit_code] { exit_code = run(*o); });
     c->footer(R"(Example:

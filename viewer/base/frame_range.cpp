@@ -1,4 +1,4 @@
-#include "viewer/offline/frame_range.h"
+#include "viewer/base/frame_range.h"
 
 #include "gi/core/error.h"
 #include "gi/core/text.h"

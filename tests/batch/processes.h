@@ -1,0 +1,29 @@
+#pragma once
+#include "tests/viewer/run_program.h"
+
+namespace viewer::test {
+
+/// Processes whose command line has the folder and all the parts.
+inline std::vector<int> processes_with(std::filesystem::path const& folder, std::vector<std::string> const& parts)
+{
+    std::vector<int> found;
+    for (auto const& entry : std::filesystem::directory_iterator("/proc")) {
+        std::string const name = entry.path().filename().string();
+        if (name.find_first_not_of("0123456789") != name.npos) continue;
+        std::string const line = file_text(entry.path() / "cmdline");
+        if (line.find(folder.string()) == line.npos) continue;
+        if (std::ranges::all_of(parts, [&](std::string const& part) { return line.find(part) != line.npos; }))
+            found.push_back(std::stoi(name));
+    }
+    return found;
+}
+
+/// Makes the Python of scripts/setup --tests that of batches; false if it has no HyperQueue.
+inline bool has_hyperqueue()
+{
+    if (std::getenv("LIGHTWELL_PYTHON") == nullptr)
+        setenv("LIGHTWELL_PYTHON", LIGHTWELL_SOURCE_DIR "/build/python/bin/python3", 1);
+    return std::system("$LIGHTWELL_PYTHON -c 'import hyperqueue' 2> /dev/null") == 0;
+}
+
+} // namespace viewer::test

@@ -1,0 +1,142 @@
+#include "viewer/batch/child.h"
+
+#include "gi/core/error.h"
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fstream>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace viewer::batch {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kGrace = std::chrono::milliseconds(150), kLook = std::chrono::milliseconds(100);
+
+/// Between fork and exec: system calls only.
+[[noreturn]] void become(ChildCall const& call, char* const* argv, pid_t parent, int error_pipe)
+{
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(127); // it died before that
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
+    int const in = open("/dev/null", O_RDONLY);
+    int const out = open(call.standard_output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    int const err = open(call.standard_error.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (in >= 0 && out >= 0 && err >= 0 && dup2(in, 0) == 0 && dup2(out, 1) == 1 && dup2(err, 2) == 2 &&
+        chdir(call.folder.c_str()) == 0)
+        execv(call.program.c_str(), argv);
+    int const error = errno;
+    (void)!write(error_pipe, &error, sizeof error);
+    _exit(127);
+}
+
+std::uint64_t resident_bytes(pid_t process)
+{
+    std::ifstream in(fmt::format("/proc/{}/statm", process));
+    std::uint64_t size = 0, resident = 0;
+    in >> size >> resident;
+    return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
+}
+
+/// Waits until the process ends or `until`.
+bool ends_before(int process_fd, Clock::time_point until)
+{
+    auto const left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+    pollfd p{process_fd, POLLIN, 0};
+    return ::poll(&p, 1, int(std::max<long long>(0, left))) == 1;
+}
+
+pid_t start(ChildCall const& call)
+{
+    std::vector<std::string> words{call.program.string()};
+    words.insert(words.end(), call.arguments.begin(), call.arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    int pipe_ends[2];
+    if (::pipe2(pipe_ends, O_CLOEXEC) != 0) throw std::runtime_error(std::strerror(errno));
+    pid_t const parent = getpid(), child = fork();
+    if (child == 0) become(call, argv.data(), parent, pipe_ends[1]);
+    int error = child < 0 ? errno : 0;
+    ::close(pipe_ends[1]);
+    if (child > 0) {
+        setpgid(child, child); // whoever is first
+        if (::read(pipe_ends[0], &error, sizeof error) != ssize_t(sizeof error)) error = 0;
+    }
+    ::close(pipe_ends[0]);
+    if (error == 0) return child;
+    if (child > 0) ::waitpid(child, nullptr, 0);
+    throw gi::InputError("'" + call.program.string() + "' cannot be started", std::strerror(error),
+                         "check the programs and the store");
+}
+
+} // namespace
+
+ChildEnd run_child(ChildCall const& call, gi::StopRequest const& stop)
+{
+    auto const begin = Clock::now();
+    pid_t const child = start(call);
+    int const process_fd = int(::syscall(SYS_pidfd_open, child, 0)); // Debian 12's function is for C only
+    ChildEnd end;
+    using Reason = ChildEnd::Reason;
+    auto const limit =
+        call.limit_s > 0
+            ? begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(call.limit_s))
+            : Clock::time_point::max();
+    while (!ends_before(process_fd, std::min(limit, Clock::now() + kLook))) {
+        if (stop.requested()) {
+            end.reason = Reason::interrupted;
+            kill(-child, SIGTERM);
+            if (!ends_before(process_fd, Clock::now() + kGrace)) kill(-child, SIGKILL);
+        } else if (Clock::now() >= limit) {
+            end.reason = Reason::too_long;
+            kill(-child, SIGKILL);
+        } else if (call.memory_bytes > 0 && resident_bytes(child) > call.memory_bytes) {
+            end.reason = Reason::too_much_memory;
+            kill(-child, SIGKILL);
+        }
+    }
+    ::close(process_fd);
+    kill(-child, SIGKILL); // what it left running; not yet waited for, so its number is no other's
+    int status = 0;
+    rusage usage{};
+    while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
+    }
+    end.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    end.memory_bytes = std::uint64_t(usage.ru_maxrss) * 1024;
+    end.code = WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);
+    if (end.reason == Reason::exited && WIFSIGNALED(status)) end.reason = Reason::signalled;
+    return end;
+}
+
+std::string text_of(ChildEnd const& end, ChildCall const& call)
+{
+    switch (end.reason) {
+    case ChildEnd::Reason::exited:
+        return fmt::format("exit code {}", end.code);
+    case ChildEnd::Reason::signalled:
+        return fmt::format("SIG{} ({})", sigabbrev_np(end.code) != nullptr ? sigabbrev_np(end.code) : "?",
+                           sigdescr_np(end.code) != nullptr ? sigdescr_np(end.code) : "unknown");
+    case ChildEnd::Reason::too_long:
+        return fmt::format("longer than {} s", call.limit_s);
+    case ChildEnd::Reason::too_much_memory:
+        return fmt::format("more than {:.0f} MB of memory", double(call.memory_bytes) * 1e-6);
+    case ChildEnd::Reason::interrupted:
+        break;
+    }
+    return "interrupted";
+}
+
+} // namespace viewer::batch

@@ -1,0 +1,25 @@
+#pragma once
+// Puts the outputs of a batch where people look for them: FOLDER/GROUP/NAME, and joins tables.
+
+#include "viewer/batch/store.h"
+
+namespace viewer::batch {
+
+enum class Placing { copy, link };
+enum class Existing { refuse, replace };
+
+struct Gathered {
+    std::size_t files = 0;            ///< placed, or there already with the same content
+    std::size_t tasks = 0;            ///< whose outputs are there
+    std::size_t missing = 0;          ///< tasks without a result
+    std::vector<std::string> merged;  ///< files
+    std::vector<std::string> damaged; ///< outputs whose content in the store is not what it was
+};
+
+/// Each output is checked against its hash on the way. A damaged one is forgotten, so that resuming makes it anew.
+/// @throws InputError a file of another content is there, two tasks made different files of one name, or the
+/// tables of a group have different columns
+Gathered gather(Store const& store, Batch const& batch, std::filesystem::path const& folder, Placing placing,
+                Existing existing);
+
+} // namespace viewer::batch

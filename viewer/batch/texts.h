@@ -1,0 +1,7 @@
+#pragma once
+namespace viewer::batch {
+
+extern char const* const kHyperQueueScript; ///< hyperqueue.py
+extern char const* const kExampleManifest;  ///< data/batch/example.yaml
+
+} // namespace viewer::batch

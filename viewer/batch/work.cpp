@@ -1,0 +1,192 @@
+#include "viewer/batch/work.h"
+
+#include "gi/core/error.h"
+#include "viewer/batch/child.h"
+#include "viewer/batch/claim.h"
+#include "viewer/batch/file_hash.h"
+#include "viewer/batch/journal.h"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <thread>
+
+namespace viewer::batch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostMessages = 4000; ///< bytes
+
+struct Attempt {
+    ChildEnd end;
+    std::string why; ///< it failed; empty = it did not
+    bool may_pass = true;
+};
+
+/// The end of a text file.
+std::string end_of(fs::path const& file)
+{
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    if (!in) return {};
+    auto const size = std::streamoff(in.tellg());
+    auto const from = std::max<std::streamoff>(0, size - std::streamoff(kMostMessages));
+    in.seekg(from);
+    return (from > 0 ? "..." : "") + std::string{std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What is wrong with an input now; empty = it is as it was planned.
+std::string change_of(InputFile const& file)
+{
+    std::error_code failed;
+    if (fs::file_size(file.path, failed) == file.bytes && !failed && changed_ns(file.path) == file.changed_ns)
+        return {};
+    if (failed) return "the input '" + file.path.string() + "' cannot be read: " + failed.message();
+    return file_sha256(file.path) == file.sha256
+               ? ""
+               : "the input '" + file.path.string() +
+                     "' has changed since the batch was planned: call lightwell batch "
+                     "with the manifest again";
+}
+
+class Run {
+public:
+    Run(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
+        gi::StopRequest const& stop)
+        : store_(store), batch_(batch), task_(task), settings_(settings), stop_(stop), journal_(store.journal())
+    {
+    }
+
+    WorkEnd run()
+    {
+        for (int const i : task_.inputs)
+            if (std::string const why = change_of(batch_.files[std::size_t(i)]); !why.empty()) {
+                Event event;
+                event.kind = EventKind::failed;
+                event.why = why;
+                tell(event);
+                return WorkEnd::failed;
+            }
+        for (int attempt = 1;; ++attempt) {
+            Event event; // started
+            event.attempt = attempt;
+            tell(event);
+            Attempt const a = try_once();
+            event.seconds = a.end.seconds;
+            event.why = a.why;
+            event.messages = end_of(folder() / "stderr");
+            if (a.end.reason == ChildEnd::Reason::interrupted) {
+                event.kind = EventKind::interrupted;
+                tell(event);
+                return WorkEnd::interrupted;
+            }
+            if (a.why.empty()) {
+                if (settings_.computed) settings_.computed();
+                Result result;
+                result.task = task_.key;
+                result.seconds = a.end.seconds;
+                result.memory_bytes = a.end.memory_bytes;
+                result.attempts = attempt;
+                result.messages = std::move(event.messages); // they need not be in the journal too
+                for (std::string const& name : task_.outputs) result.outputs.push_back({name, {}, 0});
+                store_.publish(result, folder() / "run");
+                event.kind = EventKind::finished;
+                event.messages.clear();
+                tell(event);
+                return WorkEnd::done;
+            }
+            event.kind = EventKind::failed;
+            tell(event);
+            if (!a.may_pass || attempt > task_.retries) return WorkEnd::failed;
+        }
+    }
+
+    fs::path folder() const { return store_.work(task_.key); }
+
+private:
+    void tell(Event event)
+    {
+        event.task = task_.key;
+        journal_.append(std::move(event));
+    }
+
+    /// An empty folder with links to the inputs, and folders for outputs.
+    void make_folder()
+    {
+        fs::remove_all(folder());
+        fs::path const inside = folder() / "run";
+        fs::create_directories(inside);
+        for (int const i : task_.inputs) {
+            InputFile const& file = batch_.files[std::size_t(i)];
+            if (fs::path(file.name).is_absolute()) continue;
+            fs::create_directories((inside / file.name).parent_path());
+            fs::create_symlink(file.path, inside / file.name);
+        }
+        for (std::string const& output : task_.outputs) // the folder of a folder: the program makes that itself
+            fs::create_directories((inside / output.substr(0, output.find_last_not_of('/') + 1)).parent_path());
+    }
+
+    Attempt try_once()
+    {
+        try {
+            make_folder();
+        } catch (fs::filesystem_error const& e) {
+            throw gi::InputError("cannot make the folder of a task '" + folder().string() + "'",
+                                 e.code().message(), "free some space, or make the store writable");
+        }
+        ChildCall const call{.program = settings_.program,
+                             .arguments = task_.command,
+                             .folder = folder() / "run",
+                             .standard_output = task_.standard_output.empty()
+                                                    ? folder() / "stdout"
+                                                    : folder() / "run" / task_.standard_output,
+                             .standard_error = folder() / "stderr",
+                             .limit_s = task_.limit_s,
+                             .memory_bytes = task_.resources.memory_bytes};
+        Attempt a;
+        a.end = run_child(call, stop_);
+        if (!a.end.is_good()) {
+            a.why = text_of(a.end, call);
+            a.may_pass = a.end.reason != ChildEnd::Reason::exited || a.end.code != 2;
+            return a;
+        }
+        for (std::string const& output : task_.outputs) {
+            fs::path const file = folder() / "run" / output;
+            std::error_code none;
+            bool const is_there = output.ends_with('/') ? fs::is_directory(file, none)
+                                                        : fs::is_regular_file(fs::symlink_status(file, none));
+            if (is_there) continue;
+            a.why = "it made no '" + output + "'";
+            a.may_pass = false;
+            break;
+        }
+        return a;
+    }
+
+    Store const& store_;
+    Batch const& batch_;
+    Task const& task_;
+    WorkSettings const& settings_;
+    gi::StopRequest const& stop_;
+    Journal journal_;
+};
+
+} // namespace
+
+WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
+                gi::StopRequest const& stop)
+{
+    Claim claim(store.claims(), task.key);
+    while (!claim.take()) {
+        if (settings.if_taken == IfTaken::leave) return WorkEnd::taken;
+        if (stop.requested()) return WorkEnd::interrupted;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    if (store.result(task.key)) return WorkEnd::was_done;
+    Run run(store, batch, task, settings, stop);
+    WorkEnd const end = run.run();
+    std::error_code none; // a folder that is left is removed by the next run of the task
+    fs::remove_all(run.folder(), none);
+    return end;
+}
+
+} // namespace viewer::batch

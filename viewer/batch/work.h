@@ -1,0 +1,32 @@
+#pragma once
+// Runs one task and publishes its outputs.
+
+#include "gi/core/progress.h"
+#include "viewer/batch/store.h"
+
+namespace viewer::batch {
+
+enum class WorkEnd {
+    done,
+    was_done, ///< before, or another process has done it meanwhile
+    taken,    ///< another process runs it
+    failed,   ///< the journal says why
+    interrupted
+};
+
+enum class IfTaken { wait, leave };
+
+struct WorkSettings {
+    std::filesystem::path program; ///< the launcher, lightwell
+    IfTaken if_taken = IfTaken::wait;
+    std::function<void()>
+        computed; ///< called when the task's process has ended well, before its outputs are published
+};
+
+/// Claims the task, runs it in a folder of its own, in which its inputs are linked, and again after a failure that
+/// may pass, as often as the task says. Exit code 2 (wrong input) and missing outputs do not pass.
+/// @param batch of the task @throws InputError the store cannot be used
+WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
+                gi::StopRequest const& stop);
+
+} // namespace viewer::batch

@@ -1,0 +1,71 @@
+#include "gi/core/error.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/batch/work.h"
+#include "viewer/batch/worker_process.h"
+#include "viewer/cli/batch/batch_text.h"
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <fcntl.h>
+#include <memory>
+#include <unistd.h>
+
+namespace viewer {
+namespace {
+
+struct WorkOptions {
+    std::string store, id;
+    std::size_t index = 0;
+    bool leaves_taken = false, tells = false;
+};
+
+int run_work(WorkOptions const& o)
+{
+    if (o.tells) fcntl(batch::kComputedFd, F_SETFD, FD_CLOEXEC);
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    batch::Store const store = batch::Store::open(o.store);
+    batch::Batch const b = store.batch_of_task(o.id, o.index);
+    std::filesystem::path const folder = batch::program_folder();
+    if (b.program != batch::program_identity(folder))
+        throw gi::InputError("the program of this machine is another version than the batch was planned by",
+                             "here it is " + batch::program_identity(folder) + ", there " + b.program,
+                             "install the same one on all machines");
+    batch::WorkSettings const settings{folder / "lightwell",
+                                       o.leaves_taken ? batch::IfTaken::leave : batch::IfTaken::wait, [&] {
+                                           if (o.tells && ::write(batch::kComputedFd, "c", 1) != 1)
+                                               return; // nobody is interested any more
+                                       }};
+    switch (work_on(store, b, b.tasks.front(), settings, stop)) {
+    case batch::WorkEnd::done:
+    case batch::WorkEnd::was_done:
+        return batch::kWorkDone;
+    case batch::WorkEnd::taken:
+        return batch::kWorkTaken;
+    case batch::WorkEnd::interrupted:
+        return batch::kWorkInterrupted;
+    case batch::WorkEnd::failed:
+        break;
+    }
+    return batch::kWorkFailed;
+}
+
+} // namespace
+
+void add_batch_work(CLI::App& batch_command, int& exit_code)
+{
+    auto const o = std::make_shared<WorkOptions>();
+    CLI::App* const c = batch_command.add_subcommand("work", "Run one task and publish its outputs.");
+    c->group(""); // called by runners, not by people
+    c->add_option("STORE", o->store)->required();
+    c->add_option("BATCH", o->id)->required();
+    c->add_option("INDEX", o->index)->required();
+    c->add_flag("--leave-taken", o->leaves_taken);
+    c->add_flag("--tell-computed", o->tells);
+    c->callback([o, &exit_code] {
+        std::signal(SIGPIPE, SIG_IGN); // its runner may have been killed
+        exit_code = run_work(*o);
+    });
+}
+
+} // namespace viewer
