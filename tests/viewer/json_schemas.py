@@ -75,7 +75,7 @@ CALLS = [
     Call("display check cave4.yaml --json", "display_check", before=("display example cave4.yaml --out cave4.yaml",)),
     Call("display check room.yaml --json", "display_check"),
     Call("recording info walk.lwr --json", "recording_info", needs="display",
-         before=("view cornell --size 64x48 --time-limit 1 --record walk.lwr",)),
+         before=("view cornell --size 64x48 --time-limit 3 --record walk.lwr",)),
     Call("track listen --type file --file walk.csv --seconds 0.2 --json", "track_listen", before=("track walk --seconds 1 --out walk.csv",)),
     Call("track listen --type vrpn --device Tracker0@127.0.0.1:1 --seconds 0.2 --json", "track_listen"),
     Call("xr info --json", "xr_info", needs="headset"),
@@ -133,8 +133,8 @@ def display():
     if not shutil.which("Xvfb"):
         return ""
     read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24", "-nolisten", "tcp"], pass_fds=[write],
-                              stderr=subprocess.DEVNULL)
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24", "-nolisten", "tcp", "-noreset"],
+                              pass_fds=[write], stderr=subprocess.DEVNULL)
     atexit.register(server.terminate)
     os.close(write)
     number = os.read(read, 16).decode().strip()
@@ -146,7 +146,8 @@ def commands_with_json(path=()):
     found = {" ".join(path)} if re.search(r"^  (-\w,)?--json\b", text, re.M) else set()
     for block in re.findall(r"^[A-Z][^\n]*:\n((?:  [a-z]\w*  .*\n(?: {6,}.*\n)*)+)", text, re.M):
         for name in re.findall(r"^  ([a-z]\w*)  ", block, re.M):
-            found |= commands_with_json((*path, name))
+            if name != "help":  # prints the help of all others
+                found |= commands_with_json((*path, name))
     return found
 
 
