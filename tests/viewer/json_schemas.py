@@ -86,6 +86,11 @@ CALLS = [
          before=("ar synthesize desk --frames 2 --size 160x120 --paths 4",)),
     Call("ar light desk/session.yaml --poses desk/poses.csv --views 2 --out light.exr --stats light.json", "ar_light", file="light.json"),
     Call("ar run desk/session.yaml --fast --poses desk/poses.csv --stats run.json", "ar_run_stats", file="run.json"),
+    Call("batch plan example.yaml --json", "batch_plan", before=("batch example --out example.yaml",)),
+    Call("batch --store walk.batch --json --quiet render atrium --frames 0:2@24 --paths 1 --size 16x12 --out w_%04d.exr", "batch"),
+    Call("batch resume walk.batch --json --quiet", "batch"),
+    Call("batch status walk.batch --messages --json", "batch_status"),
+    Call("batch gather walk.batch --out walk --json", "batch_gather"),
     Call("ar bench --counter --size 320x240 --frames 4 --json", "bench_table"),
     Call("ar bench desk/session.yaml --frames 2 --still-frames 2 --json", "bench_table", codes=(0, 1)),  # 1: too few pixels to find the camera
 ]
