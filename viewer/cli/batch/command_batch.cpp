@@ -106,7 +106,7 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
         outcome = run_locally(store, id, b, {self, machine, !o.quiet && rank == 0, rank, ranks}, stop);
     }
     if (rank == 0) print_run(store, id, b, outcome, o.json);
-    return outcome.is_interrupted ? kInterrupted : outcome.counts.failed > 0 ? 1 : 0;
+    return outcome.is_interrupted ? interrupted_code() : outcome.counts.failed > 0 ? 1 : 0;
 }
 
 int start(BatchOptions const& o, batch::Batch const& b)
