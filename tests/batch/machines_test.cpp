@@ -50,7 +50,7 @@ TEST(BatchOnHyperQueue, RunsAndResumes)
     FakePrograms const p;
     p.sweep(12, 0.05, "", "    cores: 1\n");
     p.write("f.yaml",
-            file_text(p / "m.yaml") + "  f: {command: render {n} 0 wrong, over: {n: [99]}, outputs: x}\n");
+            file_text(p / "m.yaml") + "  f: {command: 'render {n} 0 wrong', over: {n: [99]}, outputs: x}\n");
     Outcome const o = p.run("batch m.yaml --on hyperqueue --hq-workers 1,2 --json");
     EXPECT_EQ(o.code, 0) << o.err;
     EXPECT_EQ(json_of(o)["done"], 12);

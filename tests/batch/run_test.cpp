@@ -1,6 +1,7 @@
 // Batches as they run: real processes, a script as the program of their tasks.
 
 #include "tests/batch/fake_programs.h"
+#include "viewer/batch/store.h"
 
 namespace viewer::test {
 namespace {
@@ -235,9 +236,18 @@ TEST(BatchRun, WrongCallsAreToldInOneLine)
         EXPECT_NE(o.err.find(part), std::string::npos) << call << "\n" << o.err;
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
     }
-    EXPECT_EQ(p.run("batch m.yaml").code, 0);
-    std::ofstream(p / "bin/lightwell-other") << "x"; // another version of the program
-    Outcome const o = p.run("batch resume m.batch");
+}
+
+TEST(BatchRun, PlanOfAnotherVersionIsRefused)
+{
+    FakePrograms const p;
+    batch::Batch b;
+    b.name = "old";
+    b.program = "lightwell 0.0.1";
+    b.tasks.emplace_back().outputs = {"x"};
+    batch::give_keys(b);
+    batch::Store::open_or_make(p / "s").keep(b);
+    Outcome const o = p.run("batch resume s");
     EXPECT_EQ(o.code, 2);
     EXPECT_NE(o.err.find("planned by another version of the program"), std::string::npos) << o.err;
 }

@@ -289,9 +289,26 @@ TEST(MergedTable, JsonBecomesLines)
     EXPECT_THROW(table.add(t, "a.json", "[1]"), gi::InputError);
 }
 
+TEST(MachineParts, ProcessesOnOneMachineShareIt)
+{
+    Machine const all{{0, 1, 2, 3, 4}, {0, 1}, 9000};
+    Machine const first = part_of(all, 0, 3), last = part_of(all, 2, 3);
+    EXPECT_EQ(first.cores, (std::vector<int>{0, 3}));
+    EXPECT_EQ(first.gpus, std::vector<int>{0});
+    EXPECT_EQ(last.cores, std::vector<int>{2});
+    EXPECT_TRUE(last.gpus.empty());
+    EXPECT_EQ(last.memory_bytes, 3000u);
+    EXPECT_EQ(part_of({{7}, {}, 1}, 2, 3).cores, std::vector<int>{7});
+    Machine more = all;
+    set_cores(more, 7);
+    EXPECT_EQ(more.cores, (std::vector<int>{0, 1, 2, 3, 4, 0, 1}));
+    set_cores(more, 1);
+    EXPECT_EQ(more.cores, std::vector<int>{0});
+}
+
 TEST(MachineParts, AreGivenOnceAndComeBack)
 {
-    Allocator a({{0, 1, 2, 3}, 2, 8000});
+    Allocator a({{0, 1, 2, 3}, {0, 1}, 8000});
     EXPECT_EQ(a.refusal({99, 0, 0}), "") << "it gets the whole machine";
     EXPECT_NE(a.refusal({1, 3, 0}), "");
     EXPECT_NE(a.refusal({1, 0, 8001}), "");

@@ -43,6 +43,24 @@ TEST(PrepareCommand, MakesDamagedStimuliAnew)
               std::string::npos);
 }
 
+TEST(PrepareCommand, PartsMakeTheWholeAndSoDoTasksOfABatch)
+{
+    TemporaryFolder const folder;
+    write(folder / "x.yaml", script("scene: cornell", 100));
+    for (char const* const part : {"1/3", "2/3", "3/3"}) // the third has none
+        run_well(kPrepare + "out --part " + part, folder.path());
+    EXPECT_NE(run_well(kPrepare + "out", folder.path()).out.find("0 rendered, 2 existed already"),
+              std::string::npos);
+    for (char const* const part : {"0/3", "4/3", "1", "x/3", "1/"})
+        EXPECT_EQ(run(kPrepare + "no --part " + part, folder.path()).code, 2) << part;
+    EXPECT_FALSE(fs::exists(folder / "no"));
+    write(folder / "b.yaml", "batch: b\nstimuli:\n  s: {script: x.yaml, size: 64x48, font: 8, parts: 3}\n");
+    run_well("batch b.yaml", folder.path());
+    run_well("batch gather b.batch --out gathered", folder.path());
+    EXPECT_NE(run_well(kPrepare + "gathered/s/stimuli", folder.path()).out.find("0 rendered, 2 existed already"),
+              std::string::npos);
+}
+
 TEST(PrepareCommand, AFileIsNoFolder)
 {
     TemporaryFolder const folder;

@@ -3,8 +3,10 @@
 #include "gi/core/checked_line.h"
 #include "gi/core/error.h"
 #include "gi/core/sha256.h"
+#include "gi/core/text.h"
 
 #include <fmt/format.h>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace viewer::batch {
@@ -13,6 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr char const* kPlanFormat = "batch/1";
+constexpr int kIndexBytes = 17; ///< of a line of the index
 
 std::string line(Json const& j)
 {
@@ -29,11 +32,17 @@ Json json_of(Batch const& b)
     return j;
 }
 
-Json json_of(Task const& t)
+Json json_of(Task const& t, std::size_t number)
 {
-    Json j{{"task", t.key},        {"group", t.group},          {"parameters", t.parameters},
-           {"command", t.command}, {"inputs", t.inputs},        {"outputs", t.outputs},
-           {"retries", t.retries}, {"cores", t.resources.cores}};
+    Json j{{"n", number},
+           {"task", t.key},
+           {"group", t.group},
+           {"parameters", t.parameters},
+           {"command", t.command},
+           {"inputs", t.inputs},
+           {"outputs", t.outputs},
+           {"retries", t.retries},
+           {"cores", t.resources.cores}};
     if (!t.standard_output.empty()) j["stdout"] = t.standard_output;
     if (t.resources.gpus > 0) j["gpus"] = t.resources.gpus;
     if (t.resources.memory_bytes > 0) j["memory_bytes"] = t.resources.memory_bytes;
@@ -41,23 +50,44 @@ Json json_of(Task const& t)
     return j;
 }
 
-void read_head(Json const& j, Batch& b)
+gi::InputError damaged(std::string const& file, std::size_t line, std::string const& why)
 {
+    return {gi::TextLocation{file, int(line), 0}, "this plan of a batch cannot be read", why,
+            "call lightwell batch MANIFEST again: it makes the plan anew, finished tasks stay"};
+}
+
+Json parse(std::string_view line, std::string const& file, std::size_t number)
+{
+    if (!gi::checksum_holds(line)) throw damaged(file, number, "its checksum does not match");
+    return Json::parse(line, nullptr, false);
+}
+
+/// @return the number of tasks
+std::size_t read_head(std::string_view line, std::string const& file, Batch& b)
+try {
+    Json const j = parse(line, file, 1);
+    if (j.at("format") != kPlanFormat) throw damaged(file, 1, "its format is not " + std::string(kPlanFormat));
     b.name = j.at("name");
     b.program = j.at("program");
     for (Json const& f : j.at("files")) {
-        InputFile& file = b.files.emplace_back();
-        file.name = f.at(0);
-        file.path = f.at(1).get<std::string>();
-        file.sha256 = f.at(2);
-        file.bytes = f.at(3);
-        file.changed_ns = f.at(4);
+        InputFile& input = b.files.emplace_back();
+        input.name = f.at(0);
+        input.path = f.at(1).get<std::string>();
+        input.sha256 = f.at(2);
+        input.bytes = f.at(3);
+        input.changed_ns = f.at(4);
     }
     for (Json const& m : j.at("merges")) b.merges.push_back({m.at(0), m.at(1)});
+    return j.at("tasks");
+} catch (Json::exception const& e) {
+    throw damaged(file, 1, e.what());
 }
 
-Task task_of(Json const& j)
-{
+/// @param number of the task, from 0
+Task read_task(std::string_view line, std::string const& file, std::size_t number)
+try {
+    Json const j = parse(line, file, number + 2);
+    if (j.at("n") != number) throw damaged(file, number + 2, "it is the line of another task");
     Task t;
     t.key = j.at("task");
     t.group = j.at("group");
@@ -72,6 +102,8 @@ Task task_of(Json const& j)
     t.resources.gpus = j.value("gpus", 0);
     t.resources.memory_bytes = j.value("memory_bytes", std::uint64_t(0));
     return t;
+} catch (Json::exception const& e) {
+    throw damaged(file, number + 2, e.what());
 }
 
 } // namespace
@@ -79,7 +111,7 @@ Task task_of(Json const& j)
 std::string text_of_batch(Batch const& batch)
 {
     std::string text = line(json_of(batch));
-    for (Task const& t : batch.tasks) text += line(json_of(t));
+    for (std::size_t i = 0; i < batch.tasks.size(); ++i) text += line(json_of(batch.tasks[i], i));
     return text;
 }
 
@@ -90,41 +122,45 @@ std::string batch_id(Batch const& batch)
     return batch.name + "-" + gi::sha256(keys).substr(0, 8);
 }
 
-Batch batch_of_text(std::string const& text, std::string const& file, std::optional<std::size_t> only)
+std::string index_of(std::string_view text)
+{
+    std::string index = fmt::format("{:016x}\n", 0);
+    for (std::size_t end = 0; (end = text.find('\n', end)) + 1 < text.size() && end != text.npos; ++end)
+        index += fmt::format("{:016x}\n", end + 1);
+    return index;
+}
+
+Batch batch_of_text(std::string const& text, std::string const& file)
 {
     Batch batch;
-    std::size_t expected = 0, number = 0;
     std::string_view rest = text;
-    auto const damaged = [&](std::string const& why) {
-        return gi::InputError(gi::TextLocation{file, int(number) + 1, 0}, "this plan of a batch cannot be read",
-                              why,
-                              "call lightwell batch MANIFEST again: it makes the plan anew, finished tasks stay");
-    };
-    for (; !rest.empty(); ++number) {
-        std::size_t const end = rest.find('\n');
-        if (end == rest.npos) throw damaged("its last line is incomplete");
-        std::string_view const line = rest.substr(0, end);
-        rest.remove_prefix(end + 1);
-        if (number > 0 && only && number != *only + 1) continue;
-        if (!gi::checksum_holds(line)) throw damaged("a checksum does not match");
-        try {
-            Json const j = Json::parse(line);
-            if (number > 0) {
-                batch.tasks.push_back(task_of(j));
-                continue;
-            }
-            if (j.at("format") != kPlanFormat) throw damaged("its format is not " + std::string(kPlanFormat));
-            read_head(j, batch);
-            expected = j.at("tasks");
-        } catch (Json::exception const& e) {
-            throw damaged(e.what());
-        }
+    std::size_t const tasks = read_head(gi::take_until(rest, '\n'), file, batch);
+    batch.tasks.reserve(tasks);
+    while (!rest.empty()) {
+        if (rest.find('\n') == rest.npos) throw damaged(file, batch.tasks.size() + 2, "it is incomplete");
+        batch.tasks.push_back(read_task(gi::take_until(rest, '\n'), file, batch.tasks.size()));
     }
-    if (number == 0) throw damaged("it is empty");
-    if (number != expected + 1) throw damaged("tasks are missing");
-    if (only && batch.tasks.empty())
-        throw gi::InputError(fmt::format("there is no task {} in '{}'", *only, file),
-                             fmt::format("it has {} tasks, from 0", expected), "choose another");
+    if (batch.tasks.size() != tasks) throw damaged(file, batch.tasks.size() + 1, "tasks are missing after it");
+    return batch;
+}
+
+Batch batch_with_task(std::filesystem::path const& text_file, std::filesystem::path const& index_file,
+                      std::size_t task)
+{
+    std::string const name = text_file.string();
+    std::ifstream text(text_file, std::ios::binary), index(index_file, std::ios::binary);
+    Batch batch;
+    std::string line, place;
+    std::getline(text, line);
+    std::size_t const tasks = read_head(line, name, batch);
+    if (task >= tasks)
+        throw gi::InputError(fmt::format("there is no task {} in '{}'", task, name),
+                             fmt::format("it has {} tasks, from 0", tasks), "choose another");
+    index.seekg(std::streamoff(task + 1) * kIndexBytes);
+    std::getline(index, place);
+    text.seekg(std::streamoff(std::strtoull(place.c_str(), nullptr, 16)));
+    std::getline(text, line);
+    batch.tasks.push_back(read_task(line, name, task));
     return batch;
 }
 

@@ -3,15 +3,21 @@
 
 #include "viewer/batch/task.h"
 
-#include <optional>
+#include <string_view>
 
 namespace viewer::batch {
 
 std::string text_of_batch(Batch const& batch);
+/// Where its lines begin, so that a process can read its task alone: 16 hexadecimal digits and a line end for
+/// each.
+std::string index_of(std::string_view text);
 /// NAME-1a2b3c4d: the hash is that of the keys of its tasks.
 std::string batch_id(Batch const& batch);
-/// @param only  index of the one task to read; all others are left out
-/// @throws InputError with the line: damaged, or there is no such task
-Batch batch_of_text(std::string const& text, std::string const& file, std::optional<std::size_t> only = {});
+
+/// @throws InputError with the line: damaged
+Batch batch_of_text(std::string const& text, std::string const& file);
+/// The plan with one task alone, from 0. @throws InputError damaged, or there is no such task
+Batch batch_with_task(std::filesystem::path const& text_file, std::filesystem::path const& index_file,
+                      std::size_t task);
 
 } // namespace viewer::batch

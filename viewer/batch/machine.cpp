@@ -39,21 +39,40 @@ Machine this_machine()
             if (CPU_ISSET(i, &set)) m.cores.push_back(i);
     if (m.cores.empty()) m.cores.push_back(0);
     std::error_code none;
-    while (std::filesystem::exists(fmt::format("/dev/nvidia{}", m.gpus), none)) ++m.gpus;
+    while (std::filesystem::exists(fmt::format("/dev/nvidia{}", m.gpus.size()), none))
+        m.gpus.push_back(int(m.gpus.size()));
     m.memory_bytes = available_memory();
     return m;
 }
 
-Allocator::Allocator(Machine const& machine)
-    : all_(machine), free_cores_(machine.cores), free_memory_(machine.memory_bytes)
+Machine part_of(Machine const& machine, int index, int count)
 {
-    for (int i = 0; i < machine.gpus; ++i) free_gpus_.push_back(i);
+    auto const part = [&](std::vector<int> const& all) {
+        std::vector<int> mine;
+        for (std::size_t i = std::size_t(index); i < all.size(); i += std::size_t(count)) mine.push_back(all[i]);
+        return mine;
+    };
+    Machine m{part(machine.cores), part(machine.gpus), machine.memory_bytes / std::uint64_t(count)};
+    if (m.cores.empty()) m.cores.push_back(machine.cores[std::size_t(index) % machine.cores.size()]);
+    return m;
+}
+
+void set_cores(Machine& machine, int cores)
+{
+    std::size_t const there = machine.cores.size();
+    machine.cores.resize(std::size_t(cores));
+    for (std::size_t i = there; i < machine.cores.size(); ++i) machine.cores[i] = machine.cores[i - there];
+}
+
+Allocator::Allocator(Machine const& machine)
+    : all_(machine), free_cores_(machine.cores), free_gpus_(machine.gpus), free_memory_(machine.memory_bytes)
+{
 }
 
 std::string Allocator::refusal(Resources const& wanted) const
 {
-    if (wanted.gpus > all_.gpus)
-        return fmt::format("it needs {} GPUs, this machine has {}", wanted.gpus, all_.gpus);
+    if (std::size_t(wanted.gpus) > all_.gpus.size())
+        return fmt::format("it needs {} GPUs, this machine has {}", wanted.gpus, all_.gpus.size());
     if (wanted.memory_bytes > all_.memory_bytes)
         return fmt::format("it needs {:.1f} GB of memory, this machine has {:.1f} GB available",
                            double(wanted.memory_bytes) * 1e-9, double(all_.memory_bytes) * 1e-9);

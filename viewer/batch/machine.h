@@ -10,12 +10,16 @@ namespace viewer::batch {
 
 struct Machine {
     std::vector<int> cores; ///< numbers of the processors that may be used
-    int gpus = 0;
+    std::vector<int> gpus;  ///< their numbers
     std::uint64_t memory_bytes = 0;
 };
 
 /// This machine: processors that this process may use, memory that is available, NVIDIA's GPUs.
 Machine this_machine();
+/// What one of several processes may use that share it: at least one core.
+Machine part_of(Machine const& machine, int index, int count);
+/// As many cores as wanted: the first ones, or each several times, for more tasks at a time than processors.
+void set_cores(Machine& machine, int cores);
 
 /// Cores, GPUs and memory that a task has.
 struct Share {

@@ -78,6 +78,11 @@ std::vector<std::string> files_of(std::vector<Output> const& outputs, fs::path c
     return names;
 }
 
+fs::path index_file(fs::path const& plan)
+{
+    return plan.parent_path() / ("." + plan.filename().string() + ".index");
+}
+
 /// Hands everything that was written to this file system to its disk.
 void sync_all(fs::path const& folder)
 {
@@ -183,10 +188,12 @@ std::string Store::keep(Batch const& batch) const
     std::string const text = text_of_batch(batch), id = batch_id(batch);
     fs::path const file = folder_ / "batches" / id;
     std::error_code failed;
-    if (!fs::exists(file, failed) || gi::read_text(file) != text)
+    if (!fs::exists(file, failed) || gi::read_text(file) != text) {
+        gi::write_durably(index_file(file), index_of(text));
         gi::write_durably(file, text);
-    else
+    } else {
         fs::last_write_time(file, fs::file_time_type::clock::now(), failed); // the newest one is meant by default
+    }
     return id;
 }
 
@@ -224,7 +231,7 @@ Batch Store::batch(std::string const& id) const
 Batch Store::batch_of_task(std::string const& id, std::size_t index) const
 {
     fs::path const file = folder_ / "batches" / id;
-    return batch_of_text(gi::read_text(file), file.string(), index);
+    return batch_with_task(file, index_file(file), index);
 }
 
 } // namespace viewer::batch

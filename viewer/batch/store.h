@@ -2,6 +2,7 @@
 // The folder of a batch's results. Any number of batches and machines may use one at the same time.
 //
 //   batches/NAME-1a2b3c4d   the plan of a batch: a line about all tasks, then one per task
+//   batches/.NAME-1a2b3c4d.index   where its lines begin
 //   objects/ab/cdef...      outputs, named by the SHA-256 of their content
 //   results/ab/abcdef...    one file per finished task, named by its key: names and hashes of its outputs
 //   journal/HOST.jsonl      what happened on each machine (journal.h)

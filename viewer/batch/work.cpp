@@ -100,9 +100,9 @@ public:
         }
     }
 
+private:
     fs::path folder() const { return store_.work(task_.key); }
 
-private:
     void tell(Event event)
     {
         event.task = task_.key;
@@ -181,12 +181,20 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
         if (stop.requested()) return WorkEnd::interrupted;
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    if (store.result(task.key)) return WorkEnd::was_done;
-    Run run(store, batch, task, settings, stop);
-    WorkEnd const end = run.run();
-    std::error_code none; // a folder that is left is removed by the next run of the task
-    fs::remove_all(run.folder(), none);
+    WorkEnd const end = store.result(task.key) ? WorkEnd::was_done : Run(store, batch, task, settings, stop).run();
+    std::error_code none;
+    fs::remove_all(store.work(task.key), none);
     return end;
+}
+
+void remove_leftovers(Store const& store)
+{
+    std::error_code none;
+    for (auto const& entry : fs::directory_iterator(store.work("").parent_path(), none)) {
+        std::string const key = entry.path().filename().string();
+        if (key.size() != 64 || !store.result(key)) continue;
+        if (Claim claim(store.claims(), key); claim.take()) fs::remove_all(entry.path(), none);
+    }
 }
 
 } // namespace viewer::batch

@@ -29,4 +29,7 @@ struct WorkSettings {
 WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
                 gi::StopRequest const& stop);
 
+/// Removes the folders of tasks that are done: of processes that were killed between the two.
+void remove_leftovers(Store const& store);
+
 } // namespace viewer::batch

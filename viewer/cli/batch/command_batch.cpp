@@ -10,6 +10,7 @@
 #include "viewer/batch/manifest.h"
 #include "viewer/batch/state.h"
 #include "viewer/batch/texts.h"
+#include "viewer/batch/work.h"
 #include "viewer/cli/batch/batch_text.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
@@ -74,6 +75,7 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
         throw gi::InputError("the batch '" + id + "' was planned by another version of the program",
                              "it was " + b.program + ", its results would differ from this one's",
                              "use that one, or call lightwell batch with the manifest again");
+    remove_leftovers(store);
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     fs::path const self = batch::program_folder() / "lightwell-batch";
@@ -89,20 +91,9 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
             !o.workers.empty() ? o.workers : std::vector{o.cores > 0 ? o.cores : int(machine.cores.size())};
         outcome = run_on_hyperqueue(store, id, b, {self, o.server_dir, cores, !o.quiet}, stop);
     } else {
-        // Processes of mpirun on one machine share its cores.
-        int const here = std::max(1, number_of("OMPI_COMM_WORLD_LOCAL_SIZE", 1)),
-                  mine = number_of("OMPI_COMM_WORLD_LOCAL_RANK", 0);
-        std::size_t const share = std::max<std::size_t>(1, machine.cores.size() / std::size_t(here));
-        if (here > 1) {
-            std::rotate(machine.cores.begin(),
-                        machine.cores.begin() + std::ptrdiff_t(std::size_t(mine) * share % machine.cores.size()),
-                        machine.cores.end());
-            machine.cores.resize(share);
-            machine.memory_bytes /= std::uint64_t(here);
-        }
-        for (std::size_t i = 0; o.cores > 0 && machine.cores.size() < std::size_t(o.cores); ++i)
-            machine.cores.push_back(machine.cores[i]); // more tasks at a time than processors
-        if (o.cores > 0) machine.cores.resize(std::size_t(o.cores));
+        if (int const here = number_of("OMPI_COMM_WORLD_LOCAL_SIZE", 1); here > 1)
+            machine = part_of(machine, number_of("OMPI_COMM_WORLD_LOCAL_RANK", 0), here);
+        if (o.cores > 0) set_cores(machine, o.cores);
         outcome = run_locally(store, id, b, {self, machine, !o.quiet && rank == 0, rank, ranks}, stop);
     }
     if (rank == 0) print_run(store, id, b, outcome, o.json);
