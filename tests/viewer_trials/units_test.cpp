@@ -175,6 +175,34 @@ TEST(AnswerKeys, UnknownInputsAreRefused)
     }
 }
 
+TEST(AnswerKeys, EveryMistakeIsToldWithItsPlace)
+{
+    study::Mistakes mistakes;
+    find_wrong_devices(script("{task: pair, pairs: {factor: scene}}",
+                              "devices:\n  first: [pad:dpad_up, key:a]\n  second: [key:nothing]\n"),
+                       mistakes);
+    auto const told = mistakes.in_order();
+    ASSERT_EQ(told.size(), 2u);
+    EXPECT_TRUE(std::string(told[0].what()).starts_with("x.yaml:8:3: devices: first: pad:dpad_up"))
+        << told[0].what();
+    EXPECT_TRUE(std::string(told[1].what()).starts_with("x.yaml:9:3: devices: second: key:nothing"));
+    study::Mistakes taken;
+    find_wrong_devices(script("{task: pair, pairs: {factor: scene}, ties: true}",
+                              "devices: {neither: [key:left, pad:x, xr:left/trigger]}\n"),
+                       taken);
+    ASSERT_EQ(taken.count(), 1u);
+    EXPECT_NE(std::string(taken.in_order()[0].what()).find("all default inputs of 'first'"), std::string::npos);
+}
+
+TEST(AnswerKeys, ShippedScriptsCanBeAnswered)
+{
+    for (study::StudyExample const& e : study::study_examples()) {
+        study::Mistakes mistakes;
+        find_wrong_devices(study::parse_script(std::string(e.text), std::string(e.name)), mistakes);
+        EXPECT_EQ(mistakes.count(), 0u) << e.name;
+    }
+}
+
 TEST(Response, ScaleByDigitsByStepsAndByMouse)
 {
     study::Script const s = rating();

@@ -63,7 +63,8 @@ int number_of(std::string const& name, std::vector<std::string> const& known)
 AnswerKeys::AnswerKeys(study::Script const& script)
 {
     for (study::Device const& d : script.devices)
-        for (std::string const& input : d.inputs) bind(d.answer, input);
+        for (std::string const& input : d.inputs)
+            bind(d.answer, input, {script.file, d.place.line, d.place.column});
     auto const is_taken = [n = bindings_.size(), this](std::string const& input) {
         return std::any_of(bindings_.begin(), bindings_.begin() + std::ptrdiff_t(n),
                            [&](Binding const& b) { return b.input == input; });
@@ -73,17 +74,31 @@ AnswerKeys::AnswerKeys(study::Script const& script)
                                           [&](Binding const& b) { return b.answer == u.answer; });
         if (is_bound) continue;
         for (char const* const input : u.inputs)
-            if (!is_taken(input)) bind(u.answer, input);
+            if (!is_taken(input)) bind(u.answer, input, {});
     }
     for (study::Block const& block : script.blocks)
         for (std::string_view const answer : facts(block.task).answers)
             if (input_of(std::string(answer)).empty())
-                throw gi::InputError(script.file + ": block " + block.name,
+                throw gi::InputError(gi::TextLocation{script.file, block.place.line, block.place.column},
+                                     "block " + block.name,
                                      fmt::format("the script reassigns all default inputs of '{}'", answer),
                                      fmt::format("write devices: {{{}: [key:...]}}", answer));
 }
 
-void AnswerKeys::bind(std::string const& answer, std::string const& input)
+void find_wrong_devices(study::Script const& script, study::Mistakes& mistakes)
+{
+    std::size_t const before = mistakes.count();
+    study::Script one; // with one input at a time, so that each mistake is told
+    one.file = script.file;
+    for (study::Device const& d : script.devices)
+        for (std::string const& input : d.inputs) {
+            one.devices = {{d.answer, {input}, d.place}};
+            mistakes.attempt([&] { AnswerKeys const keys(one); });
+        }
+    if (mistakes.count() == before) mistakes.attempt([&] { AnswerKeys const keys(script); });
+}
+
+void AnswerKeys::bind(std::string const& answer, std::string const& input, gi::TextLocation const& place)
 {
     auto const colon = input.find(':');
     std::string const device = input.substr(0, colon),
@@ -106,7 +121,7 @@ void AnswerKeys::bind(std::string const& answer, std::string const& input)
                      : number_of(name.substr(slash + 1), {"select", "trigger", "menu"});
     }
     if (b.code < 0)
-        throw gi::InputError("devices: " + answer + ": " + input, "there is no such input",
+        throw gi::InputError(place, "devices: " + answer + ": " + input, "there is no such input",
                              "write key:left, key:a, key:1, pad:x, mouse:left or xr:left/trigger");
     bindings_.push_back(b);
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Maps inputs to answers: those in the script's `devices`, or default ones for answers without an entry.
 
+#include "study/script/mistakes.h"
 #include "study/script/script.h"
 #include "viewer/devices/gl/input_event.h"
 
@@ -19,8 +20,8 @@ struct GivenAnswer {
 
 class AnswerKeys {
 public:
-    /// Throws InputError on an unknown input. Inputs are key:NAME, pad:NAME, mouse:NAME,
-    /// xr:left/trigger.
+    /// Throws InputError, with its place in the script, on an unknown input, or if an answer has none left. Inputs
+    /// are key:NAME, pad:NAME, mouse:NAME, xr:left/trigger.
     explicit AnswerKeys(study::Script const& script);
 
     /// The answer, if the event presses an input of one of these answers.
@@ -34,10 +35,13 @@ private:
         InputKind kind = InputKind::key;
         int code = 0, device = -1; ///< device: -1 = any
     };
-    void bind(std::string const& answer, std::string const& input);
+    void bind(std::string const& answer, std::string const& input, gi::TextLocation const& place);
 
     std::vector<Binding> bindings_;
 };
+
+/// Adds every mistake in a script's `devices`.
+void find_wrong_devices(study::Script const& script, study::Mistakes& mistakes);
 
 /// The digit pressed, also on the keypad; -1 = none.
 int digit_of(InputEvent const& event);

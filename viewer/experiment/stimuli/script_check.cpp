@@ -1,6 +1,7 @@
 #include "viewer/experiment/stimuli/script_check.h"
 
 #include "study/script/setting_place.h"
+#include "viewer/experiment/answer_keys.h"
 #include "viewer/experiment/sound/sound_files.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 
@@ -34,6 +35,7 @@ CheckedScript check_script(ScriptToCheck& read, SceneAccess const& scenes, Scrip
     std::set<std::pair<std::string, std::string>> wrong;
     if (!o.any_settings) wrong = find_wrong_settings(s, loaded.text, loaded.folder, m);
     StimulusCollection stimuli(s, wrong);
+    if (!o.any_settings) find_wrong_devices(s, m);
     if (o.stimuli.shown_on) find_wrong_gaze(s, true, o.stimuli.shown_on->model, m);
     ArStimulusCheck ar(loaded, o.stimuli.shown_on);
     study::find_plan_mistakes(s, std::min(s.participants.count, kMostPlans), m, [&](study::Plan const& plan) {
