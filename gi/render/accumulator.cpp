@@ -15,13 +15,13 @@ namespace gi {
 namespace {
 
 /// Rounds numbers to single precision by chance, up or down, so that the error has mean 0: sums over many paths of
-/// small contributions keep them (Croci et al. 2022, "Stochastic rounding", sec. 2). What is representable stays
-/// as it is. The chance is a hash of the path, so that the same paths give the same bits.
+/// small contributions keep them (Croci et al. 2022, "Stochastic rounding"). What is representable stays
+/// as it is. The chance is a hash of the path's number and first surface, so that the same paths give the same
+/// bits, in each layer whatever the others hold.
 class UnbiasedRounding {
 public:
     UnbiasedRounding(PathSample const& s, std::uint32_t paths)
-        : state_(mix_bits(std::uint64_t(paths) << 32 ^ std::bit_cast<std::uint32_t>(s.position.x) ^
-                          std::uint64_t(std::bit_cast<std::uint32_t>(s.radiance[2].y)) << 16))
+        : state_(mix_bits(std::uint64_t(paths) << 32 ^ std::bit_cast<std::uint32_t>(s.position.x)))
     {
     }
     float operator()(double value)

@@ -5,6 +5,7 @@
 #include "gi/render/checkpoint.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gi {
 
@@ -58,11 +59,16 @@ bool PassLoop::is_checkpoint_due() const
            seconds_since(saved_) >= std::max(settings_.checkpoint_s, last_checkpoint_s_ / kMostShare);
 }
 
+void PassLoop::resume(std::uint64_t print)
+{
+    if (settings_.resume && !std::exchange(is_resumed_, true)) load_checkpoint(settings_.checkpoint, sums_, print);
+}
+
 RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 {
     constexpr std::uint32_t kPathsForVariance = 16;
 
-    if (settings_.resume) load_checkpoint(settings_.checkpoint, sums_, print);
+    resume(print);
     std::uint32_t const resumed = sums_.paths;
     bool is_saved = resumed > 0;
     double const earlier = sums_.seconds;

@@ -18,13 +18,19 @@ public:
     PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
              Report& report, double spent_s = 0);
 
+    /// Continues from the checkpoint, if the settings say so and it exists; run() does that if nobody did before.
+    /// @param print  see fingerprint.h; only used with a checkpoint
+    /// @throws InputError if the checkpoint belongs to another render.
+    void resume(std::uint64_t print);
+    /// Number of the next path of every pixel.
+    std::uint32_t next_path() const { return first_path() + sums_.paths; }
+
     /// Callback that traces `paths` more paths for every pixel and adds them to the sums. The first of them has
     /// the number first_path() plus the number of paths already in the sums.
     using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;
 
     /// Runs the passes in an arena of settings.threads and fills in all of the result except picture and rays.
-    /// @param print  see fingerprint.h; only used with a checkpoint
-    /// @throws InputError if the checkpoint belongs to another render.
+    /// @param print  as for resume(), whose errors it throws
     RenderResult run(std::uint64_t print, Pass const& pass);
 
     bool keeps_state() const { return !settings_.checkpoint.empty(); }
@@ -54,6 +60,7 @@ private:
     Clock::time_point start_, saved_{}; ///< saved_: end of the last checkpoint, or the start of the passes
     double checkpoints_s_ = 0, last_checkpoint_s_ = 0; ///< time taken by all and by the last
     bool is_announced_ = false;
+    bool is_resumed_ = false; ///< resume() was called
 };
 
 } // namespace gi

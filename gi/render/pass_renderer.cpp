@@ -135,10 +135,11 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
     auto const renderer = start(world, settings, world.triangles.size(), report, &stop);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
     FrameView const eye{camera, settings.width, settings.height};
-    on_threads(settings.threads, [&] { renderer->begin(loop.first_path(), {&eye, 1}); });
+    loop.resume(print);
+    on_threads(settings.threads, [&] { renderer->begin(loop.next_path(), {&eye, 1}); });
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         run_some(paths, stop, sums, [&] {
-            renderer->pass(loop.first_path() + sums.paths, {&eye, 1}, {&sums, 1}, nullptr);
+            renderer->pass(loop.next_path(), {&eye, 1}, {&sums, 1}, nullptr);
         });
     });
     renderer->report_work();

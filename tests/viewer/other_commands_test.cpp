@@ -118,7 +118,7 @@ TEST(OtherCommands, StandardOutputThatIsFullIsNotSuccess)
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "SKIPPED: no /dev/full here";
     std::string const command =
         "cd " + folder.path().string() + " && " LIGHTWELL_PROGRAM " info cornell > /dev/full 2> err";
-    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2);
     EXPECT_NE(file_text(folder / "err").find("standard output"), std::string::npos);
 }
 
