@@ -71,7 +71,7 @@ RenderStats to_render_stats(StatsJson const& json)
     r.eye_distance_m = number_at(settings, "eye_distance_m", 0);
     r.screen_distance_m = number_at(settings, "screen_distance_m", 0);
     StatsJson others = settings;
-    others.erase("eye");
+    for (char const* const own : {"eye", "state", "checkpoint_s"}) others.erase(own);
     r.but_for_eye = others.dump();
     r.width = settings.at("width");
     r.height = settings.at("height");
