@@ -92,7 +92,13 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
             result.end = RenderEnd::error_target;
             break;
         }
-        on_threads(settings_.threads, [&] { pass(sums_, next_pass(per_path)); });
+        try {
+            on_threads(settings_.threads, [&] { pass(sums_, next_pass(per_path)); });
+        } catch (Interrupted const&) {
+            if (sums_.paths == 0 || !stop_.requested()) throw;
+            sums_.seconds = earlier + seconds_since(start_);
+            continue;
+        }
         double const now = seconds_since(start_);
         sums_.seconds = earlier + now;
         per_path = (seconds_since(first_pass) - checkpoints_s_) / double(sums_.paths - resumed);

@@ -21,20 +21,14 @@ std::optional<tbb::global_control> limit_threads(int threads)
 
 /// Calls pass() up to `most` times, at least once; ends when a stop is requested or half a second is over, as
 /// passes that make light of their own may take much longer than those from which PassLoop foretells their time.
-/// A pass that a stop interrupts is left out; throws Interrupted if there is no earlier one.
 template <class Pass>
-void run_some(std::uint32_t most, StopRequest const& stop, Accumulator const& sums, Pass const& pass)
+void run_some(std::uint32_t most, StopRequest const& stop, Pass const& pass)
 {
     constexpr auto kLong = std::chrono::milliseconds(500);
     auto const begun = std::chrono::steady_clock::now();
     for (std::uint32_t i = 0; i < most; ++i) {
         if (i > 0 && (stop.requested() || std::chrono::steady_clock::now() - begun > kLong)) return;
-        try {
-            pass();
-        } catch (Interrupted const&) {
-            if (sums.paths == 0 || !stop.requested()) throw;
-            return;
-        }
+        pass();
     }
 }
 
@@ -63,7 +57,7 @@ public:
         motion_.see({&whole, 1});
         if (!moments) renderer_->begin(passes_, {&whole, 1});
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
-            run_some(paths, stop, sums, [&] {
+            run_some(paths, stop, [&] {
                 FrameView eye = whole;
                 if (moments) {
                     Moment const now = moments(sums.paths);
@@ -138,9 +132,7 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
     loop.resume(print);
     on_threads(settings.threads, [&] { renderer->begin(loop.next_path(), {&eye, 1}); });
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
-        run_some(paths, stop, sums, [&] {
-            renderer->pass(loop.next_path(), {&eye, 1}, {&sums, 1}, nullptr);
-        });
+        run_some(paths, stop, [&] { renderer->pass(loop.next_path(), {&eye, 1}, {&sums, 1}, nullptr); });
     });
     renderer->report_work();
     result.rays = renderer->rays();
