@@ -8,6 +8,7 @@
 namespace viewer::batch {
 namespace {
 
+namespace fs = std::filesystem;
 using test::TemporaryFolder;
 
 std::vector<std::string> const kCommands{"render", "study", "bench"};
@@ -188,6 +189,21 @@ TEST(BatchFromCommand, BenchIsSplitByItsScenes)
     EXPECT_EQ(b.tasks[1].command, test::words("bench sweep --scene atrium --budgets 20ms --out atrium"));
     EXPECT_EQ(b.tasks[1].resources.cores, Resources::kAllCores);
     EXPECT_THROW(batch_of_bench(test::words("bench rays --out x")), gi::InputError);
+    EXPECT_EQ(batch_of_bench(test::words("bench sweep --scene cornell -o x")).tasks[0].command,
+              test::words("bench sweep --scene cornell --out cornell"));
+}
+
+/// A folder that is called like the command is no input.
+TEST(BatchFromCommand, NamesOfCommandsAreNoFiles)
+{
+    TemporaryFolder const folder;
+    fs::create_directory(folder / "sweep");
+    fs::path const before = fs::current_path();
+    fs::current_path(folder.path());
+    Batch const b = batch_of_bench(test::words("bench sweep --scene cornell --out x"));
+    fs::current_path(before);
+    EXPECT_TRUE(b.files.empty());
+    EXPECT_EQ(b.tasks[0].command[1], "sweep");
 }
 
 } // namespace

@@ -174,7 +174,7 @@ TEST(BatchRun, InterruptEndsSoonAndKeepsWhatIsFinished)
 TEST(BatchRun, KilledWorkerCostsOneTaskAndKilledRunnerNone)
 {
     FakePrograms const p;
-    p.sweep(6, 0.3);
+    p.sweep(6, 1.5); // seconds: the first task is still running below
     Program program(words("batch m.yaml --cores 2 --json"), p.folder());
     ASSERT_TRUE(wait_until([&] { return !(p.starts().size() < 2); }));
     std::istringstream first(file_text(p / "starts"));

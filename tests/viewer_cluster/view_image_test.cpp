@@ -52,7 +52,7 @@ users:
 
 TEST_F(ViewOnTwoRanks, StatisticsHaveTheLossesOfEachRankAndAllFrames)
 {
-    Mpirun mpirun(2, "", LIGHTWELL_PROGRAM " view paper.obj --display room.yaml --time-limit 3 --stats s.json",
+    Mpirun mpirun(2, "", LIGHTWELL_PROGRAM " view paper.obj --display room.yaml --time-limit 8 --stats s.json",
                   folder.path());
     EXPECT_EQ(mpirun.wait(std::chrono::seconds(60)), 0) << mpirun.text();
     auto const stats = nlohmann::json::parse(file_text(folder / "s.json"));

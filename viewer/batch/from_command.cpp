@@ -18,7 +18,10 @@ namespace fs = std::filesystem;
 /// A command line in which options are found and replaced.
 class Words {
 public:
-    explicit Words(std::vector<std::string> words) : words_(std::move(words)) {}
+    explicit Words(std::vector<std::string> words) : words_(std::move(words))
+    {
+        std::ranges::replace(words_, "-o", "--out");
+    }
 
     /// The value of `--name value` or `--name=value`.
     std::optional<std::string> value(std::string const& option) const
@@ -55,12 +58,14 @@ bool stands_alone(fs::path const& file)
 }
 
 /// Makes the files that the words name inputs, by their whole paths: those of a scene too that refers to others.
-std::vector<int> find_inputs(Words& words, std::set<std::string> const& outputs, Batch& batch)
+/// @param names  number of words that name the command, not files
+std::vector<int> find_inputs(Words& words, std::ptrdiff_t names, std::set<std::string> const& outputs,
+                             Batch& batch)
 {
     InputFinder finder(batch, fs::current_path());
     std::set<int> found;
     bool is_scene = true; // the first file that is named
-    for (std::string& word : words.all()) {
+    for (std::string& word : std::ranges::subrange(words.all().begin() + names, words.all().end())) {
         std::size_t const equals = word.starts_with("--") ? word.find('=') : word.npos;
         std::string const name = equals == word.npos ? word : word.substr(equals + 1);
         std::error_code none;
@@ -114,7 +119,7 @@ Batch batch_of_render(std::vector<std::string> const& given, int frames_per_task
     batch.name = "render";
     Task task;
     task.group = "render";
-    task.inputs = find_inputs(words, outputs, batch);
+    task.inputs = find_inputs(words, 1, outputs, batch);
     for (int first = all.first; first < all.end; first += frames_per_task) {
         int const end = std::min(all.end, first + frames_per_task);
         words.set("--frames", fmt::format("{}:{}{}", first, end, rate));
@@ -154,7 +159,7 @@ Batch batch_of_bench(std::vector<std::string> const& given)
         task.group = "bench";
         task.parameters = {{"of", stem_of(scene)}};
         task.resources.cores = Resources::kAllCores; // others beside it would disturb its times
-        task.inputs = find_inputs(one, {stem_of(scene)}, batch);
+        task.inputs = find_inputs(one, 2, {stem_of(scene)}, batch);
         task.command = one.all();
         task.outputs = {stem_of(scene) + "/"};
         for (Task const& other : batch.tasks)
