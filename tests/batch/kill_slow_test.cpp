@@ -12,6 +12,9 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr int kKills = 50;
+constexpr char const* kRetries = "    retries: 50\n"; // one task may be hit often
+
+std::string const kWork("\0batch\0work\0", 12); // in a command line
 
 struct KillTest : testing::Test {
     /// Runs a batch of 240 tasks and kills `what` until it was killed kKills times; after a kill that ends the
@@ -19,14 +22,20 @@ struct KillTest : testing::Test {
     void kill_often(std::string const& options, std::vector<std::string> const& what, int allowed_per_kill)
     {
         std::mt19937 random(1);
-        p.sweep(tasks_, 0.1);
+        p.sweep(tasks_, 0.1, "", kRetries);
         std::optional<Program> program;
         program.emplace(words("batch m.yaml --quiet --json " + options), p.folder());
         int kills = 0, worst = 0;
+        auto const all_starts = [&] {
+            std::string const text = file_text(p / "starts");
+            return std::count(text.begin(), text.end(), '\n');
+        };
+        auto starts_before = all_starts();
         std::optional<Outcome> last;
         while (!last) {
             std::this_thread::sleep_for(std::chrono::milliseconds(random() % 300));
-            if (kills < kKills && int(p.starts().size()) < tasks_ - 8) {
+            if (kills < kKills && all_starts() > starts_before && int(p.starts().size()) < tasks_ - 8) {
+                starts_before = all_starts(); // the next kill comes when something runs again
                 std::vector<int> victims = processes_with(p.folder(), what);
                 if (victims.empty()) continue;
                 kill(victims[random() % victims.size()], SIGKILL);
@@ -38,9 +47,7 @@ struct KillTest : testing::Test {
                 if (o.code == 0 && kills >= kKills) {
                     last = o;
                 } else if (o.code == 0) { // done before all kills: more tasks
-                    p.write("m.yaml", fmt::format("batch: m\nsweeps:\n  s:\n    command: render {{n}} 0.1\n"
-                                                  "    over: {{n: 1..{}}}\n    outputs: [\"out-{{n}}.txt\"]\n",
-                                                  tasks_ += 120));
+                    p.sweep(tasks_ += 120, 0.1, "", kRetries);
                     program.emplace(words("batch m.yaml --quiet --json " + options), p.folder());
                 } else {
                     EXPECT_EQ(o.signal, SIGKILL) << o.err;
@@ -78,9 +85,9 @@ struct KillTest : testing::Test {
     int tasks_ = 240;
 };
 
-TEST_F(KillTest, WorkersWithOneTwoAndSixAtATime) { kill_often("--cores 1", {"batch", "work"}, 1); }
-TEST_F(KillTest, WorkersOfTwo) { kill_often("--cores 2", {"batch", "work"}, 1); }
-TEST_F(KillTest, WorkersOfSix) { kill_often("--cores 6", {"batch", "work"}, 1); }
+TEST_F(KillTest, WorkersOfOne) { kill_often("--cores 1", {kWork}, 1); }
+TEST_F(KillTest, WorkersOfTwo) { kill_often("--cores 2", {kWork}, 1); }
+TEST_F(KillTest, WorkersOfSix) { kill_often("--cores 6", {kWork}, 1); }
 TEST_F(KillTest, TasksThemselves) { kill_often("--cores 2", {"bin/lightwell", "render"}, 1); }
 TEST_F(KillTest, ServerOfHyperQueue)
 {
@@ -90,7 +97,7 @@ TEST_F(KillTest, ServerOfHyperQueue)
 TEST_F(KillTest, WorkersOfHyperQueue)
 {
     if (!has_hyperqueue()) GTEST_SKIP() << "scripts/setup --tests installs HyperQueue";
-    kill_often("--on hyperqueue --hq-workers 2", {"batch", "work"}, 1);
+    kill_often("--on hyperqueue --hq-workers 2", {kWork}, 1);
 }
 TEST_F(KillTest, Runner) { kill_often("--cores 2", {"lightwell-batch", "m.yaml"}, 0); }
 

@@ -10,7 +10,9 @@ inline std::vector<int> processes_with(std::filesystem::path const& folder, std:
     for (auto const& entry : std::filesystem::directory_iterator("/proc")) {
         std::string const name = entry.path().filename().string();
         if (name.find_first_not_of("0123456789") != name.npos) continue;
-        std::string const line = file_text(entry.path() / "cmdline");
+        std::ifstream in(entry.path() / "cmdline", std::ios::binary);
+        std::string line; // of a process that ends meanwhile: empty
+        std::getline(in, line, '\xff');
         if (line.find(folder.string()) == line.npos) continue;
         if (std::ranges::all_of(parts, [&](std::string const& part) { return line.find(part) != line.npos; }))
             found.push_back(std::stoi(name));

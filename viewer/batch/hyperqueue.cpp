@@ -4,6 +4,7 @@
 #include "gi/core/file.h"
 #include "gi/core/host_name.h"
 #include "gi/core/text.h"
+#include "viewer/batch/claim.h"
 #include "viewer/batch/journal.h"
 #include "viewer/batch/texts.h"
 #include "viewer/batch/worker_process.h"
@@ -17,6 +18,7 @@
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 namespace viewer::batch {
@@ -24,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostInVain = 3;    ///< jobs one after another without a finished task
+constexpr int kMostInVain = 3;    ///< jobs one after another in which no task was started
 constexpr int kCrashLimit = 1000; ///< workers that HyperQueue may lose with one task
 constexpr int kNoPackage = 4;     ///< exit code of hyperqueue.py
 
@@ -40,7 +42,8 @@ public:
           view_(batch.name + " on HyperQueue", settings.shows_progress),
           journal_(store.journal()),
           folder_(store.folder() / "work" / fmt::format("{}{}", folder_start(), getpid())),
-          has_failed_(batch.tasks.size())
+          has_failed_(batch.tasks.size()),
+          lost_(batch.tasks.size())
     {
         out_.counts.total = batch.tasks.size();
         for (std::size_t i = 0; i < batch.tasks.size(); ++i) by_key_.emplace(batch.tasks[i].key, i);
@@ -53,18 +56,21 @@ public:
         std::vector<std::size_t> missing = find_missing();
         out_.was_done = out_.counts.done;
         for (int in_vain = 0; !missing.empty() && !stop_.requested();) {
-            std::size_t const before = out_.counts.done;
+            was_started_.assign(batch_.tasks.size(), false);
             int const code = run_job(missing);
             if (stop_.requested()) break;
             if (code == kNoPackage)
                 throw gi::InputError("HyperQueue cannot be used",
                                      "'" + python_program() + "' has no package hyperqueue",
                                      "pip install hyperqueue, and name its interpreter by LIGHTWELL_PYTHON");
+            missing = wait_for_publishing(find_missing());
+            for (std::size_t const i : missing)
+                if (was_started_[i] && ++lost_[i] > kMostLost) has_failed_[i] = true;
+            in_vain = std::ranges::count(was_started_, true) > 0 ? 0 : in_vain + 1;
             missing = find_missing();
-            in_vain = out_.counts.done > before ? 0 : in_vain + 1;
             if (!missing.empty() && ((code != 0 && !settings_.server_dir.empty()) || in_vain > kMostInVain))
                 throw gi::InputError("the server of HyperQueue was lost, or cannot run the tasks",
-                                     settings_.server_dir.empty() ? "no task was finished in several tries"
+                                     settings_.server_dir.empty() ? "no task was started in several tries"
                                                                   : "it is that of '" + settings_.server_dir + "'",
                                      "finished tasks are kept: lightwell batch resume '" +
                                          store_.folder().string() + "' goes on");
@@ -106,6 +112,20 @@ private:
         return missing;
     }
 
+    /// Tasks that HyperQueue took for done when their processes had computed. @return those that nobody publishes
+    std::vector<std::size_t> wait_for_publishing(std::vector<std::size_t> missing)
+    {
+        auto const is_published_now = [&](std::size_t i) {
+            return Claim(store_.claims(), batch_.tasks[i].key).is_taken_elsewhere();
+        };
+        while (!stop_.requested() && std::ranges::any_of(missing, is_published_now)) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            follow_journal();
+            missing = find_missing();
+        }
+        return missing;
+    }
+
     fs::path write_call(std::vector<std::size_t> const& tasks)
     {
         fs::remove_all(folder_);
@@ -116,7 +136,8 @@ private:
             {"workers", is_own ? settings_.worker_cores : std::vector<int>{}},
             {"name", id_},
             {"crash_limit", kCrashLimit},
-            {"command", {settings_.worker.string(), "batch", "work", store_.folder().string(), id_}},
+            {"command",
+             {settings_.worker.string(), "batch", "work", "--publish-aside", store_.folder().string(), id_}},
             {"tasks", nlohmann::json::array()}};
         for (std::size_t const i : tasks) {
             Resources const& r = batch_.tasks[i].resources;
@@ -151,6 +172,7 @@ private:
             if (found == by_key_.end()) continue;
             bool const starts = event.kind == EventKind::started;
             has_failed_[found->second] = event.kind == EventKind::failed; // until it is started again
+            if (starts) was_started_[found->second] = true;
             out_.counts.running += starts ? 1 : 0;
             if (!starts && out_.counts.running > 0) --out_.counts.running;
             out_.counts.done += event.kind == EventKind::finished;
@@ -168,7 +190,9 @@ private:
     fs::path folder_; ///< of this process: the call, and an own server's files
     RunOutcome out_;
     std::map<std::string_view, std::size_t> by_key_;
-    std::vector<bool> has_failed_; ///< in this run
+    std::vector<bool> has_failed_;  ///< in this run
+    std::vector<bool> was_started_; ///< in this job
+    std::vector<int> lost_;         ///< times that a task was started and killed
 };
 
 } // namespace

@@ -19,7 +19,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr int kMostLost = 10;          ///< workers that one task may lose, or it is what kills them
 constexpr auto kLookElsewhere = 300ms; ///< between looks at tasks that other processes run
 constexpr auto kTimeToEnd = 1s;        ///< for workers to end their tasks
 

@@ -79,21 +79,7 @@ public:
                 tell(event);
                 return WorkEnd::interrupted;
             }
-            if (a.why.empty()) {
-                if (settings_.computed) settings_.computed();
-                Result result;
-                result.task = task_.key;
-                result.seconds = a.end.seconds;
-                result.memory_bytes = a.end.memory_bytes;
-                result.attempts = attempt;
-                result.messages = std::move(event.messages); // they need not be in the journal too
-                for (std::string const& name : task_.outputs) result.outputs.push_back({name, {}, 0});
-                store_.publish(result, folder() / "run");
-                event.kind = EventKind::finished;
-                event.messages.clear();
-                tell(event);
-                return WorkEnd::done;
-            }
+            if (a.why.empty()) return publish(a, event);
             event.kind = EventKind::failed;
             tell(event);
             if (!a.may_pass || attempt > task_.retries) return WorkEnd::failed;
@@ -102,6 +88,27 @@ public:
 
 private:
     fs::path folder() const { return store_.work(task_.key); }
+
+    WorkEnd publish(Attempt const& a, Event event)
+    {
+        if (settings_.computed) settings_.computed();
+        Result result;
+        result.task = task_.key;
+        result.seconds = a.end.seconds;
+        result.memory_bytes = a.end.memory_bytes;
+        result.attempts = event.attempt;
+        result.messages = std::exchange(event.messages, {}); // they need not be in the journal too
+        for (std::string const& name : task_.outputs) result.outputs.push_back({name, {}, 0});
+        event.kind = EventKind::finished;
+        try {
+            store_.publish(result, folder() / "run");
+        } catch (gi::InputError const& e) {
+            event.kind = EventKind::failed;
+            event.why = e.what();
+        }
+        tell(event);
+        return event.kind == EventKind::finished ? WorkEnd::done : WorkEnd::failed;
+    }
 
     void tell(Event event)
     {

@@ -12,6 +12,9 @@ namespace viewer::batch {
 /// Exit codes of `lightwell batch work`.
 enum WorkCode { kWorkDone = 0, kWorkFailed = 1, kWorkTaken = 3, kWorkInterrupted = 130 };
 
+/// Workers that may be killed with one task before it counts as failed: it may be what kills them.
+inline constexpr int kMostLost = 10;
+
 /// The worker's end of the pipe on which it tells that its task has computed and its share of the machine is free.
 inline constexpr int kComputedFd = 3;
 

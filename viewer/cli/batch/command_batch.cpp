@@ -1,4 +1,3 @@
-#include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/interrupt.h"
@@ -75,7 +74,6 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
         throw gi::InputError("the batch '" + id + "' was planned by another version of the program",
                              "it was " + b.program + ", its results would differ from this one's",
                              "use that one, or call lightwell batch with the manifest again");
-    remove_leftovers(store);
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     fs::path const self = batch::program_folder() / "lightwell-batch";
@@ -96,6 +94,7 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
         if (o.cores > 0) set_cores(machine, o.cores);
         outcome = run_locally(store, id, b, {self, machine, !o.quiet && rank == 0, rank, ranks}, stop);
     }
+    remove_leftovers(store);
     if (rank == 0) print_run(store, id, b, outcome, o.json);
     return outcome.is_interrupted ? interrupted_code() : outcome.counts.failed > 0 ? 1 : 0;
 }

@@ -16,8 +16,16 @@ namespace {
 struct WorkOptions {
     std::string store, id;
     std::size_t index = 0;
-    bool leaves_taken = false, tells = false;
+    bool leaves_taken = false, tells = false, publishes_aside = false;
 };
+
+/// Goes on as another process, so that who waits for this one can start the next task. The claim goes with it.
+void go_on_aside()
+{
+    pid_t const child = fork();
+    if (child > 0) _exit(batch::kWorkDone);
+    if (child == 0) setsid(); // where it cannot fork, it publishes as it is
+}
 
 int run_work(WorkOptions const& o)
 {
@@ -34,7 +42,8 @@ int run_work(WorkOptions const& o)
     batch::WorkSettings const settings{folder / "lightwell",
                                        o.leaves_taken ? batch::IfTaken::leave : batch::IfTaken::wait, [&] {
                                            if (o.tells && ::write(batch::kComputedFd, "c", 1) != 1)
-                                               return; // nobody is interested any more
+                                               return; // its runner was killed
+                                           if (o.publishes_aside) go_on_aside();
                                        }};
     switch (work_on(store, b, b.tasks.front(), settings, stop)) {
     case batch::WorkEnd::done:
@@ -62,6 +71,7 @@ void add_batch_work(CLI::App& batch_command, int& exit_code)
     c->add_option("INDEX", o->index)->required();
     c->add_flag("--leave-taken", o->leaves_taken);
     c->add_flag("--tell-computed", o->tells);
+    c->add_flag("--publish-aside", o->publishes_aside);
     c->callback([o, &exit_code] {
         std::signal(SIGPIPE, SIG_IGN); // its runner may have been killed
         exit_code = run_work(*o);
