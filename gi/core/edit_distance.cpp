@@ -22,21 +22,26 @@ int edit_distance(std::string const& a, std::string const& b)
     return above.back();
 }
 
-std::string suggest(std::string const& word, std::vector<std::string> const& known)
+std::optional<std::string> nearest_word(std::string const& word, std::vector<std::string> const& known)
 {
-    std::string all;
-    std::string const* nearest = nullptr;
+    std::optional<std::string> nearest;
     int least = std::max(1, int(word.size()) / 2) + 1;
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        int const distance = edit_distance(known[i], word);
-        if (distance < least) {
+    for (std::string const& name : known)
+        if (int const distance = edit_distance(name, word); distance < least) {
             least = distance;
-            nearest = &known[i];
+            nearest = name;
         }
-        if (i < 24) all += (i ? ", " : "") + known[i];
-    }
-    if (nearest != nullptr) return "did you mean '" + *nearest + "'?";
-    return known.empty() ? "remove it" : "there are: " + all;
+    return nearest;
+}
+
+std::string suggest(std::string const& word, std::vector<std::string> const& known, std::string const& otherwise)
+{
+    if (auto const nearest = nearest_word(word, known)) return "did you mean '" + *nearest + "'?";
+    if (!otherwise.empty()) return otherwise;
+    if (known.empty()) return "remove it";
+    std::string all;
+    for (std::size_t i = 0; i < std::min<std::size_t>(24, known.size()); ++i) all += (i ? ", " : "") + known[i];
+    return "there are: " + all;
 }
 
 } // namespace gi

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,12 @@ namespace gi {
 /// alignment).
 int edit_distance(std::string const& a, std::string const& b);
 
-/// "did you mean 'x'?" where a known word is near, else "there are: ..." (the first 24).
-std::string suggest(std::string const& word, std::vector<std::string> const& known);
+/// The nearest known word, if its distance is at most half of the word's length, or one.
+std::optional<std::string> nearest_word(std::string const& word, std::vector<std::string> const& known);
+
+/// "did you mean 'x'?" where a known word is near, else `otherwise`, or, if that is empty, "there are: ..." (the
+/// first 24).
+std::string suggest(std::string const& word, std::vector<std::string> const& known,
+                    std::string const& otherwise = "");
 
 } // namespace gi

@@ -1,3 +1,4 @@
+#include "gi/core/edit_distance.h"
 #include "study/script/condition.h"
 #include "study/script/read.h"
 
@@ -442,13 +443,10 @@ std::size_t read_task(gi::Yaml const& y, Mistakes& m)
     for (Task const t : kTasks) names.emplace_back(facts(t).name);
     auto const found = std::find(names.begin(), names.end(), y.text());
     if (found != names.end()) return std::size_t(found - names.begin());
-    gi::InputError const unknown = y.unknown("task", names);
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (unknown.suggestion() == "did you mean '" + names[i] + "'?") {
-            m.add(unknown);
-            return i;
-        }
-    throw unknown;
+    auto const nearest = gi::nearest_word(y.text(), names);
+    if (!nearest) throw y.unknown("task", names);
+    m.add(y.unknown("task", names));
+    return std::size_t(std::ranges::find(names, *nearest) - names.begin());
 }
 
 } // namespace

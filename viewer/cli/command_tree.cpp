@@ -4,18 +4,14 @@
 
 namespace viewer {
 
-std::vector<CLI::App*> subcommands(CLI::App const& app)
+std::vector<CLI::App const*> subcommands(CLI::App const& app)
 {
-    // Only this form is const, and it gives constant pointers to what the caller made.
-    std::vector<CLI::App*> all;
-    for (CLI::App const* const s : app.get_subcommands([](CLI::App const*) { return true; }))
-        all.push_back(const_cast<CLI::App*>(s));
-    return all;
+    return app.get_subcommands([](CLI::App const*) { return true; });
 }
 
-CLI::App* find_subcommand(CLI::App const& app, std::string const& name)
+CLI::App const* find_subcommand(CLI::App const& app, std::string const& name)
 {
-    for (CLI::App* const s : subcommands(app))
+    for (CLI::App const* const s : subcommands(app))
         if (s->get_name() == name) return s;
     return nullptr;
 }

@@ -11,9 +11,9 @@ class Option;
 
 namespace viewer {
 
-std::vector<CLI::App*> subcommands(CLI::App const& app);
+std::vector<CLI::App const*> subcommands(CLI::App const& app);
 /// Null if there is none of that name.
-CLI::App* find_subcommand(CLI::App const& app, std::string const& name);
+CLI::App const* find_subcommand(CLI::App const& app, std::string const& name);
 /// The option of "--size", "-o" or "--size=8x8"; null if there is none.
 CLI::Option const* find_option(CLI::App const& app, std::string const& word);
 /// "--out", or "-o" where that is its only name.

@@ -15,10 +15,10 @@ namespace {
 struct Called {
     CLI::App const* command;
     std::string name; ///< "study run"
-    std::size_t words = 0;
+    std::ptrdiff_t words = 0;
 };
 
-Called called(CLI::App const& app, std::span<std::string const> words)
+Called called(CLI::App const& app, std::vector<std::string> const& words)
 {
     Called c{&app, "", 0};
     for (std::string const& word : words) {
@@ -67,12 +67,12 @@ std::string config_file()
     return !folder.empty() && std::filesystem::is_regular_file(file, none) ? file : std::string();
 }
 
-std::vector<std::string> configured_options(CLI::App const& app, std::span<std::string const> words,
-                                            std::string const& file)
+std::vector<std::string> add_configured_options(CLI::App const& app, std::string const& file,
+                                                std::vector<std::string>& words)
 {
     Called const now = called(app, words);
-    std::vector<std::string> out;
-    if (now.words == 0) return out;
+    std::vector<std::string> added;
+    if (now.words == 0) return added;
     gi::Yaml const config = gi::Yaml::parse(gi::read_text(file, 1 << 20), file, "configuration");
     for (auto const& [section, options] : config.entries()) {
         std::string const name = section.text();
@@ -89,13 +89,14 @@ std::vector<std::string> configured_options(CLI::App const& app, std::span<std::
                 for (std::string const& n : option_names(*now.command)) known.push_back(n.substr(2));
                 throw key.unknown("option of " + name, known);
             }
-            bool const is_given = std::ranges::any_of(words.subspan(now.words), [&](std::string const& w) {
+            bool const is_given = std::any_of(words.begin() + now.words, words.end(), [&](std::string const& w) {
                 return w.starts_with('-') && option->check_name(w.substr(0, w.find('=')));
             });
-            if (!is_given) add_option(value, *option, out);
+            if (!is_given) add_option(value, *option, added);
         }
     }
-    return out;
+    words.insert(words.begin() + now.words, added.begin(), added.end());
+    return added;
 }
 
 } // namespace viewer

@@ -5,6 +5,7 @@
 #include "gi/core/file.h"
 #include "gi/core/progress.h"
 #include "viewer/base/interrupt.h"
+#include "viewer/base/kept_memory.h"
 #include "viewer/base/standard_streams.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
@@ -18,7 +19,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
-#include <malloc.h>
 #include <new>
 #include <stdexcept>
 #include <unistd.h>
@@ -35,24 +35,16 @@ std::string path_of_given(CLI::App const& app)
     return path;
 }
 
-/// "did you mean 'render'? ", or empty if no known word is close.
-std::string suggest(std::string const& word, std::vector<std::string> const& known)
-{
-    int least = 3;
-    std::string nearest;
-    for (std::string const& name : known)
-        if (int const distance = gi::edit_distance(word, name); distance < std::min(least, int(word.size()) / 2)) {
-            least = distance;
-            nearest = name;
-        }
-    return nearest.empty() ? "" : "did you mean '" + nearest + "'? ";
-}
-
-std::vector<std::string> names_of(std::vector<CLI::App*> const& commands)
+std::vector<std::string> names_of(std::vector<CLI::App const*> const& commands)
 {
     std::vector<std::string> names;
     for (CLI::App const* const c : commands) names.push_back(c->get_name());
     return names;
+}
+
+std::string suggest(std::string const& word, std::vector<std::string> const& known, std::string const& help)
+{
+    return gi::nearest_word(word, known) ? gi::suggest(word, known) + " " + help : help;
 }
 
 /// What is wrong with an invalid call. Unknown words are reported before missing arguments.
@@ -68,8 +60,8 @@ gi::InputError describe(CLI::ParseError const& e, CLI::App const& app)
                 unknown.front().substr(0, std::min<std::size_t>(64, unknown.front().find('=')));
             if (!word.starts_with('-') && given.empty() && a->get_require_subcommand_min() > 0)
                 return {"there is no subcommand '" + word + "'", misfit,
-                        suggest(word, names_of(subcommands(*a))) + help};
-            return {"'" + word + "' was not expected", misfit, suggest(word, option_names(*a)) + help};
+                        suggest(word, names_of(subcommands(*a)), help)};
+            return {"'" + word + "' was not expected", misfit, suggest(word, option_names(*a), help)};
         }
         a = given.empty() ? nullptr : given.back();
     }
@@ -119,19 +111,6 @@ void add_commands(CLI::App& app, std::span<AddedCommand const> own, int& exit_co
     }
 }
 
-/// Inserts the options of the user's configuration after the command's name, and says so.
-void add_configured(CLI::App const& app, std::vector<std::string>& words)
-{
-    std::string const file = config_file();
-    if (file.empty()) return;
-    std::vector<std::string> const added = configured_options(app, words, file);
-    if (added.empty()) return;
-    std::fputs(fmt::format("lightwell: with {} of {}\n", fmt::join(added, " "), file).c_str(), stderr);
-    auto at = words.begin();
-    for (CLI::App const* c = &app; at != words.end() && (c = find_subcommand(*c, *at)) != nullptr;) ++at;
-    words.insert(at, added.begin(), added.end());
-}
-
 /// One page for each command of this program; the launcher writes that of all.
 int write_man_pages(CLI::App const& app, std::span<AddedCommand const> own, std::filesystem::path const& folder)
 {
@@ -170,11 +149,7 @@ bool output_failed()
 int run_program(int argc, char const* const* argv, std::span<AddedCommand const> own)
 {
     guard_standard_streams();
-    // Keep freed memory: each frame needs the same amount, and mapping it anew takes a quarter of a short frame.
-    mallopt(M_MMAP_MAX, 0);
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
-    mallopt(M_TOP_PAD, 64 << 20);
-    mallopt(M_ARENA_MAX, 2); // as each arena keeps its peak memory
+    keep_freed_memory();
     CLI::App app{"Lightwell: renders global illumination and measures its error."};
     app.set_version_flag("-V,--version", version_text());
     app.require_subcommand(1);
@@ -196,7 +171,9 @@ Exit codes: 0 done, 1 a comparison failed or not all outputs could be written, 2
             return 0;
         }
         if (char const* const folder = std::getenv(kManVariable)) return write_man_pages(app, own, folder);
-        add_configured(app, words);
+        if (std::string const file = config_file(); !file.empty())
+            if (auto const added = add_configured_options(app, file, words); !added.empty())
+                std::fputs(fmt::format("lightwell: with {} of {}\n", fmt::join(added, " "), file).c_str(), stderr);
         std::ranges::reverse(words); // as CLI11 wants them
         app.parse(std::move(words));
         return output_failed() ? std::max(exit_code, 2) : exit_code;

@@ -116,9 +116,8 @@ SettingKey const& known(std::string const& key)
     if (SettingKey const* const k = find(key)) return *k;
     std::vector<std::string> all;
     for (SettingKey const& k : setting_keys()) all.push_back(k.key);
-    std::string const near = gi::suggest(key, all);
     throw gi::InputError("there is no setting '" + key + "'", "its key is unknown",
-                         near.starts_with("did") ? near : "lightwell info --settings has the list");
+                         gi::suggest(key, all, "lightwell info --settings has the list"));
 }
 
 std::string dumped(Json const& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <map>
 
 namespace viewer {
@@ -76,9 +77,8 @@ void check_known(std::string const& key)
         find_scene_edit(key);
         return;
     }
-    std::string const near = gi::suggest(key, known_keys());
     throw gi::InputError("there is no setting '" + key + "'", "the renderer does not know it",
-                         near.starts_with("did") ? near : "lightwell info --settings has the list");
+                         gi::suggest(key, known_keys(), "lightwell info --settings has the list"));
 }
 
 void check_number(std::string const& key, double value, double low, double high)
@@ -95,11 +95,10 @@ void check_scene(std::string const& scene, std::filesystem::path const& folder)
     auto const known = gi::built_in_scenes();
     if (std::filesystem::exists(scene_file(folder, scene), none)) return;
     if (std::find(known.begin(), known.end(), scene) != known.end()) return;
-    std::string const near = gi::suggest(scene, known);
-    throw gi::InputError("there is no scene '" + scene + "'",
-                         "no file of that name is beside the script or in the current folder, nor is it generated",
-                         near.starts_with("did") ? near
-                                                 : "name a file, or one of " + near.substr(near.find(':') + 2));
+    throw gi::InputError(
+        "there is no scene '" + scene + "'",
+        "no file of that name is beside the script or in the current folder, nor is it generated",
+        gi::suggest(scene, known, fmt::format("name a file, or one of {}", fmt::join(known, ", "))));
 }
 
 void check_own(std::string const& key, std::string const& value, std::filesystem::path const& folder)

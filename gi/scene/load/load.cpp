@@ -60,13 +60,12 @@ Scene load_scene(std::string const& file_or_name, Report& report)
         for (BuiltIn const& b : kBuiltIn)
             if (file_or_name == b.name) return b.make();
         bool const is_word = file_or_name.find_first_of("./") == file_or_name.npos;
-        std::string const near = suggest(is_word ? file_or_name : "", built_in_scenes());
-        throw InputError("there is no scene '" + file_or_name + "'",
-                         "no such file, and no built-in scene of that name",
-                         near.starts_with("there are: ")
-                             ? "give a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of frames, or one of: " +
-                                   near.substr(near.find(':') + 2)
-                             : near);
+        std::string names;
+        for (BuiltIn const& b : kBuiltIn) names += (names.empty() ? "" : ", ") + std::string(b.name);
+        throw InputError(
+            "there is no scene '" + file_or_name + "'", "no such file, and no built-in scene of that name",
+            suggest(is_word ? file_or_name : "", built_in_scenes(),
+                    "give a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of frames, or one of: " + names));
     }
     switch (reader_of(file)) {
     case Reader::gltf:

@@ -1,11 +1,12 @@
 #include "gi/scene/load/obj_numbers.h"
 
+#include "gi/core/text.h"
+
 #include <vector>
 
 namespace gi {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 } // namespace
