@@ -37,9 +37,9 @@ using namespace viewer;
 namespace fs = std::filesystem;
 
 struct Options {
-    std::string scene, head, avatar;
+    std::string scene, head, avatar, truth_filter = "oidn-high";
     fs::path out, truth;
-    int truth_paths = 128, width = 640, height = 480, eyes = 1, scored = 8, young = 0;
+    int truth_paths = 128, width = 640, height = 480, eyes = 1, scored = 8, young = 0, paths = 1;
     double fov_deg = 60, offline_hz = 0, light_scale = 0.25;
     std::vector<Change> settings;
 };
@@ -213,7 +213,7 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
                 if (scenes.drive) exact->drive_bodies(scenes.drive);
                 for (Change const& c : o.settings) exact->apply(c);
                 for (Change const& c : std::vector<Change>{{"method", "reference"},
-                                                           {"denoise", o.truth_paths < 512 ? "atrous" : "none"},
+                                                           {"denoise", o.truth_filter},
                                                            {"reuse", 1},
                                                            {"first_surfaces", "off"}})
                     try {
@@ -231,9 +231,9 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
             command.views[0].partner = -1;
             command.paths = o.truth_paths;
             fs::path const kept =
-                o.truth / fmt::format("{}_{}_{}x{}_{}_{}_{:.4f}_{}.exr", fs::path(o.scene).stem().string(),
+                o.truth / fmt::format("{}_{}_{}x{}_{}_{}_{}_{:.4f}_{}.exr", fs::path(o.scene).stem().string(),
                                       fs::path(o.head).stem().string(), o.width, o.height, o.fov_deg,
-                                      o.truth_paths, seen[k].scene_s, e);
+                                      o.truth_paths, o.truth_filter, seen[k].scene_s, e);
             if (o.offline_hz > 0 && fs::exists(kept)) {
                 truth.push_back(gi::read_exr(kept));
             } else {
@@ -281,6 +281,7 @@ void render_offline(Options const& o, RenderSession& session, Walk& walk, std::v
         command.tracked = at.tracked;
         command.views = at.views;
         command.light_scale = o.light_scale;
+        command.paths = o.paths;
         if (!session.settings().first_surfaces) {
             command.light_scale = 1;
             for (ViewCommand& v : command.views)
@@ -440,6 +441,8 @@ try {
             o.truth = value();
         else if (a == "--truth-paths")
             o.truth_paths = std::stoi(value());
+        else if (a == "--truth-filter")
+            o.truth_filter = value();
         else if (a == "--size") {
             if (std::sscanf(value().c_str(), "%dx%d", &o.width, &o.height) != 2) return 2;
         } else if (a == "--eyes")
@@ -448,6 +451,8 @@ try {
             o.fov_deg = std::stod(value());
         else if (a == "--offline")
             o.offline_hz = std::stod(value());
+        else if (a == "--paths")
+            o.paths = std::stoi(value());
         else if (a == "--young")
             o.young = std::stoi(value());
         else if (a == "--light-scale")
