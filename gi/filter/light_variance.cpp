@@ -9,10 +9,6 @@ namespace gi {
 namespace {
 
 constexpr int kRadius = 2;
-/// Factors for variances measured over frames, tuned by FLIP on four sequences: sharp shadow edges are worth some
-/// noise, and the noise of indirect light shared between neighbouring pixels averages out more slowly than a
-/// filter expects.
-constexpr float kDirectShare = 0.5f, kIndirectShare = 64;
 
 /// Squared second differences of one luminance along row y; 0 if a neighbour has no surface.
 void measure_noise(FilterInput const& in, int which, int y, float* out)
@@ -126,8 +122,8 @@ void pool_variance(FilterInput& in)
                 v = vec2{sums.row(0, 0)[x], sums.row(1, 0)[x]} / count[x];
             else if (surface[x] > 0)
                 v = variance_around(in, x, y);
-            direct[x] = kDirectShare * v.x;
-            indirect[x] = kIndirectShare * v.y;
+            direct[x] = v.x;
+            indirect[x] = v.y;
         }
     });
 }

@@ -224,6 +224,14 @@ struct RenderSettings {
     ShGridSettings sh_grid{};
     bool resume = false; ///< continue from the checkpoint if it exists and fits
     PathShare share{};   ///< for single pictures only; frame sequences and checkpoints need all paths
+
+    /// True if options are set that only look-ups in hit buffers have: slhb then takes them.
+    bool has_look_up_options() const
+    {
+        return slhb.schedule != Schedule::automatic || !slhb.directions.empty() || slhb.resolution > 0 ||
+               slhb.axes > 0 || slhb.fresh_axes > 0 || slhb.most_layers > 0 || slhb.packed || slhb.cone > 0 ||
+               slhb.gather || slhb.exact.any() || space == Space::device;
+    }
 };
 
 struct RenderStatus {

@@ -14,13 +14,16 @@ void put(Layer& layer, std::size_t pixel, vec3 v)
 } // namespace
 
 Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
-                    std::span<std::uint8_t const> hidden, LitCounts& counts)
+                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before)
 {
     Picture picture{width, height, {}, {}};
     picture.add("color", 3);
     picture.add("depth", 1);
     float* const color = picture.find("color")->data.data();
     float* const depth = picture.find("depth")->data.data();
+    Layer* const motion = before ? &picture.add("motion", 3) : nullptr;
+    if (motion) std::ranges::fill(motion->data, std::numeric_limits<float>::quiet_NaN());
+    std::optional<Projection> const project_before = before ? std::optional<Projection>(*before) : std::nullopt;
     vec2 const smaller{float(light.width()) / float(width), float(light.height()) / float(height)};
     tbb::combinable<LitCounts> sums;
     tbb::parallel_for(0, height, [&](int y) {
@@ -33,15 +36,20 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
             if (!hidden.empty() && hidden[i] != 0) continue;
             SeenSurface const& s = row[std::size_t(x)];
             vec3 radiance = s.emitted + s.direct;
+            vec2 const place = vec2{float(x), float(y)} + seen.at();
             if (s.depth > 0) {
-                FoundLight const found =
-                    light.find(s.position, s.normal, smaller * vec2{float(x) + 0.5f, float(y) + 0.5f});
+                FoundLight const found = light.find(s.position, s.normal, smaller * place);
                 radiance += s.albedo * (found.direct + found.indirect);
                 ++local.surfaces;
                 local.unlike += found.likeness < KeptLight::kUnlike;
             }
             for (std::size_t c = 0; c < 3; ++c) color[3 * i + c] = radiance[int(c)];
             depth[i] = s.depth;
+            if (!motion) continue;
+            bool const is_surface = s.depth > 0;
+            vec3 const was = (*project_before)(
+                is_surface ? s.position - s.moved : before->origin + seen.camera().through(place).direction);
+            if (was.z > 0) put(*motion, i, {was.x - place.x, was.y - place.y, is_surface ? was.z : 0});
         }
     });
     sums.combine_each([&](LitCounts const& c) {

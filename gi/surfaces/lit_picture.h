@@ -14,8 +14,9 @@ struct LitCounts {
 
 /// Layers color and depth (of what mirrors show, as an image behind them) of the last view of `seen`.
 /// @param hidden  1 for each pixel that stays black and without a surface; empty = none
+/// @param before  of the previous frame: adds the layer "motion" for Antialiasing::add; null = none
 Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
-                    std::span<std::uint8_t const> hidden, LitCounts& counts);
+                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before = nullptr);
 
 /// What a method's picture says of pixels that show a mirror or a pane.
 struct MirrorLayers {

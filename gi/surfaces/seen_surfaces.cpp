@@ -46,6 +46,7 @@ SeenSurfaces::SeenSurfaces(World const& world, int threads)
     : world_(world), threads_(threads), view_(view(world)), soup_(make_soup(world)), cut_outs_(world)
 {
     earlier_.first_moving = first_moving();
+    now_ = corners_of(world_, first_moving());
     find_needs();
 }
 
@@ -66,10 +67,9 @@ void SeenSurfaces::find_needs()
     bool const needed = mirrors_ || has_few_lights(world_);
     if (needed == (exact_ != nullptr)) return;
     exact_.reset();
-    now_.clear();
-    if (!needed) return;
-    exact_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, threads_, first_moving());
-    now_ = corners_of(world_, first_moving());
+    if (needed)
+        exact_ =
+            std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, threads_, first_moving());
 }
 
 void SeenSurfaces::changed(Changes const& changes)
@@ -77,11 +77,9 @@ void SeenSurfaces::changed(Changes const& changes)
     view_ = view(world_);
     if (changes.geometry) {
         update_soup(world_, first_moving(), soup_);
-        if (exact_) {
-            exact_->moved(world_);
-            if (earlier_.corners.empty()) earlier_.corners = std::move(now_);
-            now_ = corners_of(world_, first_moving());
-        }
+        if (exact_) exact_->moved(world_);
+        if (earlier_.corners.empty()) earlier_.corners = std::move(now_);
+        now_ = corners_of(world_, first_moving());
     }
     if (changes.coverage) {
         cut_outs_ = CutOuts(world_);
@@ -90,14 +88,15 @@ void SeenSurfaces::changed(Changes const& changes)
     if (changes.materials || changes.coverage || changes.lights) find_needs();
 }
 
-void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights lights)
+void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights lights, vec2 at)
 {
     constexpr float kNear = 1e-5f;         // of the world's radius
     constexpr std::uint32_t kSeed = 0x5ee; // of partial coverage: the same in all frames
     camera_ = camera;
     camera_.focus = 0;
+    at_ = at;
     clear(map_, std::uint32_t(width), std::uint32_t(height));
-    grid_ = camera_grid(camera_, width, height, vec2{0.5f}, kNear * glm::max(world_.bounds.radius(), 1e-30f));
+    grid_ = camera_grid(camera_, width, height, at, kNear * glm::max(world_.bounds.radius(), 1e-30f));
     draw_view(soup_, 0, soup_.count, cut_outs_, grid_, kSeed, map_);
     lights_ = lights == Lights::few && has_few_lights(world_) ? std::uint32_t(world_.lights.size()) : 0;
     if (lights_ == 0) return;
@@ -195,7 +194,7 @@ bool SeenSurfaces::arrive(std::uint32_t triangle, vec2 weights, int y, Way& way,
     out.position = way.mirrors == 0 ? at.position : camera_.origin + way.length_m * way.eye_direction;
     out.depth = glm::dot(out.position - camera_.origin, camera_.forward);
     out.in_mirror = way.mirrors > 0;
-    if (out.in_mirror && triangle >= earlier_.first_moving && !earlier_.corners.empty())
+    if (triangle >= earlier_.first_moving && !earlier_.corners.empty())
         out.moved =
             way.image * (at.position - point_on(earlier_.corners[triangle - earlier_.first_moving], weights));
     if (lights_ > 0) light(at, way, out, y, sent, out);
@@ -222,7 +221,7 @@ void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
             Surface const& surface = view_.surfaces[seen.primitive];
             if (!surface.is(Surface::kVaries) && !may_mirror(view_.bsdfs[surface.material])) continue;
         }
-        Ray const ray = camera_.through({float(x) + 0.5f, float(y) + 0.5f});
+        Ray const ray = camera_.through(vec2{float(x), float(y)} + at_);
         SeenSurface found;
         if (seen.primitive == kNoPrimitive) {
             found.emitted = background_radiance(view_, ray.direction);

@@ -21,9 +21,9 @@ struct SeenSurface {
     vec3 emitted{
         0}; ///< radiance of emission, or of the background; times the same as the albedo. Plus what mirrors and
             ///< panes on the way bring of it by their other lobes (a lamp reflected in a window)
-    vec3 moved{0};   ///< m, as mirrored, since the previous frame; only of surfaces seen in mirrors
-    vec3 direct{0};  ///< radiance of the light of punctual lights; times the same
-    float depth = 0; ///< m along the camera's axis; 0 = no surface
+    vec3 moved{0};                     ///< m, as mirrored, since the previous frame
+    vec3 direct{0};                    ///< radiance of the light of punctual lights; times the same
+    float depth = 0;                   ///< m along the camera's axis; 0 = no surface
     std::uint8_t lit = 0, blocked = 0; ///< bits of lights that reach it or would, by shadow rays of its own
     bool in_mirror = false;
 };
@@ -38,10 +38,13 @@ public:
     /// Ends a frame: SeenSurface::moved is counted from its state.
     void end_frame() { earlier_.corners.clear(); }
 
-    /// Rasterises a view; rays pass the middle of pixels. Not for orthographic cameras; a lens is a pinhole.
+    /// Rasterises a view. Not for orthographic cameras; a lens is a pinhole.
     /// @param lights  few: with the light of punctual lights, if there are at most kMostLights
+    /// @param at  where rays pass their pixels, 0..1 from the top left corner
     enum class Lights : std::uint8_t { none, few };
-    void look(CameraRays const& camera, int width, int height, Lights lights = Lights::none);
+    void look(CameraRays const& camera, int width, int height, Lights lights = Lights::none, vec2 at = vec2{0.5f});
+    CameraRays const& camera() const { return camera_; } ///< of the last view, with a pinhole
+    vec2 at() const { return at_; }
     /// Surfaces of a row of the last view. Safe for concurrent calls.
     void row(int y, std::span<SeenSurface> out) const { fill(y, out, Pixels::all); }
     /// The same for those pixels of a row that show a mirror or a pane; the others stay as they are.
@@ -73,11 +76,12 @@ private:
     bool mirrors_ = false;
     std::unique_ptr<ExactVisibility> exact_; ///< null without mirrors and without few punctual lights
     CameraRays camera_{};
+    vec2 at_{0.5f};
     PerspectiveGrid grid_;
     NearestMap map_;
     std::uint32_t lights_ = 0;        ///< punctual lights in the last view
     std::vector<SeenSurface> coarse_; ///< every fourth pixel, with its own shadow rays
-    std::vector<Corners> now_;        ///< of triangles that can move, if there are mirrors
+    std::vector<Corners> now_;        ///< of triangles that can move
     EarlierCorners earlier_;
 };
 

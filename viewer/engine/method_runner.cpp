@@ -91,7 +91,9 @@ MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& wor
     s.width = std::max(1, int(std::sqrt(start.pixels))); // the plan needs only the number of pixels
     s.height = std::max(1, int(std::lround(start.pixels / s.width)));
     // Use the same axes for all frames: fresh axes in every frame would flicker.
-    if (s.slhb.schedule == gi::Schedule::automatic && method == "slhb") s.slhb.schedule = gi::Schedule::stored;
+    bool const by_look_ups = s.slhb.look_ups == gi::LookUps::all || s.has_look_up_options();
+    if (by_look_ups && s.slhb.schedule == gi::Schedule::automatic && method == "slhb")
+        s.slhb.schedule = gi::Schedule::stored;
     s.slhb.interleave = 1;
     renderer_ = gi::find_method(method).frames(world, start.camera, s, report);
 }

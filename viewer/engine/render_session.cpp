@@ -118,6 +118,7 @@ void RenderSession::adopt(PreparedScene p)
     main_.reset(); // method runners refer to the old world
     compared_.reset();
     seen_.reset();
+    forget_smoothed();
     placed_.clear();
     edits_.clear();
     pending_ = {};
@@ -173,25 +174,38 @@ gi::Changes RenderSession::move_to(FrameCommand const& command)
     return changes;
 }
 
+void RenderSession::forget_smoothed()
+{
+    smoothed_.clear();
+    smoothed_compared_.clear();
+}
+
 /// Replaces the pictures of light by pictures of the views' size.
 void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& frame)
 {
     gi::StageTimer const timer(report_, kSurfacesStage);
     gi::LitCounts counts;
+    smoothed_.resize(command.views.size());
+    smoothed_compared_.resize(command.views.size());
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& v = command.views[k];
         std::span<std::uint8_t const> const hidden = frame.views[k].hidden
                                                          ? std::span<std::uint8_t const>(*frame.views[k].hidden)
                                                          : std::span<std::uint8_t const>();
-        auto const draw = [&](MethodRunner const& runner) {
+        auto const draw = [&](MethodRunner const& runner, SmoothedView& smoothed) {
             auto const lights =
                 runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
-            seen_->look(gi::camera_rays(v.camera, v.width, v.height, world_->world().origin), v.width, v.height,
-                        lights);
-            return gi::lit_picture(*seen_, v.width, v.height, *runner.light(k), hidden, counts);
+            gi::CameraRays const rays = gi::camera_rays(v.camera, v.width, v.height, world_->world().origin);
+            if (smoothed.name != v.name) smoothed = {v.name, rays, {}};
+            seen_->look(rays, v.width, v.height, lights, smoothed.antialiasing.sample());
+            gi::Picture picture =
+                gi::lit_picture(*seen_, v.width, v.height, *runner.light(k), hidden, counts, &smoothed.rays);
+            smoothed.antialiasing.add(picture);
+            smoothed.rays = rays;
+            return picture;
         };
-        frame.views[k].picture = draw(*main_);
-        if (frame.views[k].compared) frame.views[k].compared = draw(*compared_);
+        frame.views[k].picture = draw(*main_, smoothed_[k]);
+        if (frame.views[k].compared) frame.views[k].compared = draw(*compared_, smoothed_compared_[k]);
     }
     report_.count("surfaces drawn", double(counts.surfaces));
     report_.count("surfaces that found no light of a similar surface", double(counts.unlike));
@@ -255,6 +269,7 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
             frame.views[k].compared = std::move(others[k].picture);
         }
     }
+    if (!smaller || scene_change(changes, false) == gi::SceneChange::light) forget_smoothed();
     if (smaller) draw_surfaces(command, frame);
     frame.stages_s = added_.times();
     return frame;

@@ -3,6 +3,7 @@
 // windows, clocks or devices: the same sequence of changes and frame commands gives bit-identical pixels on any
 // number of threads. The live viewer, the ranks of a cluster and the replay of a recording all drive it.
 
+#include "gi/surfaces/antialiasing.h"
 #include "viewer/engine/hidden_views.h"
 #include "viewer/engine/method_runner.h"
 #include "viewer/engine/scene_edits.h"
@@ -86,6 +87,7 @@ private:
     void place_object(Change const& change);
     void restart();
     gi::Changes move_to(FrameCommand const& command);
+    void forget_smoothed();
     void draw_surfaces(FrameCommand const& command, SessionFrame& frame);
 
     LoadScene load_;
@@ -100,6 +102,13 @@ private:
     std::vector<Change> edits_; ///< of lights, materials, environment: one per key, reapplied to a new world
     HiddenViews hidden_, hidden_light_;      ///< of views, and of their pictures of light if those are smaller
     std::unique_ptr<gi::SeenSurfaces> seen_; ///< of the world, once needed
+    /// A view whose pictures are antialiased.
+    struct SmoothedView {
+        std::string name;
+        gi::CameraRays rays; ///< of its last picture
+        gi::Antialiasing antialiasing;
+    };
+    std::vector<SmoothedView> smoothed_, smoothed_compared_; ///< since surfaces are drawn and light is the same
     DriveBodies drive_;
     gi::Changes pending_; ///< edits since the last frame
     double time_s_ = 0;   ///< of the last frame

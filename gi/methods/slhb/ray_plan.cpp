@@ -14,14 +14,6 @@ constexpr double kTrusted = 0.87;
 /// Largest fraction of the budget that building a BVH may take.
 constexpr double kMostForBvh = 0.8;
 
-bool says_look_ups(RenderSettings const& asked)
-{
-    SlhbSettings const& s = asked.slhb;
-    return s.schedule != Schedule::automatic || !s.directions.empty() || s.resolution > 0 || s.axes > 0 ||
-           s.fresh_axes > 0 || s.most_layers > 0 || s.packed || s.cone > 0 || s.gather || s.exact.any() ||
-           asked.space == Space::device;
-}
-
 bool says_maps(RenderSettings const& asked)
 {
     SlhbSettings const& s = asked.slhb;
@@ -81,7 +73,7 @@ RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& worl
     RayPlan plan;
     SlhbSettings const& s = asked.slhb;
     bool const no_time = !lasting && asked.budget_s > 0 && costs.bvh > kMostForBvh * budget_of(asked);
-    if (s.look_ups != LookUps::automatic || says_look_ups(asked)) {
+    if (s.look_ups != LookUps::automatic || asked.has_look_up_options()) {
         plan.look_ups = s.look_ups != LookUps::automatic ? s.look_ups : LookUps::all;
         plan.why_look_ups = "requested";
     } else if (!no_time || camera.orthographic) {
@@ -98,7 +90,7 @@ RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& worl
     if (s.shadows != Shadows::automatic) {
         plan.shadows = s.shadows;
         plan.why_shadows = "requested";
-    } else if (says_maps(asked) || says_look_ups(asked) || !bvh) {
+    } else if (says_maps(asked) || asked.has_look_up_options() || !bvh) {
         plan.shadows = Shadows::maps;
         plan.why_shadows = bvh ? "requested" : "there is no BVH";
     } else {
