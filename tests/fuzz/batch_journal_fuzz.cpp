@@ -1,0 +1,30 @@
+// Any text as the journal of a batch: events and damaged lines, together as many as there are lines. Lines get the
+// checksum that fits them, or nothing would pass it.
+
+#include "gi/core/checked_line.h"
+#include "viewer/batch/journal.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
+{
+    namespace fs = std::filesystem;
+    fs::path const folder = fs::temp_directory_path() / ("batch_journal_fuzz_" + std::to_string(getpid()));
+    fs::create_directory(folder);
+    std::string text;
+    std::istringstream in(std::string(data, data + size));
+    for (std::string line; std::getline(in, line);)
+        text += (line.starts_with('{') && line.ends_with('}') && line.size() > 2 ? gi::checked_line(line) : line) +
+                "\n";
+    std::ofstream(folder / "machine.jsonl", std::ios::binary) << text;
+    viewer::batch::JournalReader reader(folder);
+    std::size_t const events = reader.read().size();
+    if (events + reader.damaged() != std::size_t(std::ranges::count(text, '\n'))) std::abort();
+    if (!reader.read().empty()) std::abort();
+    fs::remove_all(folder);
+    return 0;
+}
