@@ -1,10 +1,12 @@
 #include "gi/core/durable_file.h"
 
 #include "gi/core/error.h"
+#include "gi/core/temporary_file.h"
 
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <optional>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -39,12 +41,18 @@ int write_all(int fd, std::string_view text)
     return 0;
 }
 
-/// Gives a file that was opened without a name the name of a temporary file. Returns errno.
-int name_file(int fd, fs::path const& temporary)
+/// Puts a file that was opened without a name in the place of `file`. Returns errno.
+int replace_by_nameless(fs::path const& file, int fd)
 {
+    fs::path const temporary =
+        file.parent_path() / ("." + file.filename().string() + ".tmp-" + std::to_string(getpid()));
     ::unlink(temporary.c_str());
     std::string const opened = "/proc/self/fd/" + std::to_string(fd);
-    return ::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, temporary.c_str(), AT_SYMLINK_FOLLOW) == 0 ? 0 : errno;
+    if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, temporary.c_str(), AT_SYMLINK_FOLLOW) != 0) return errno;
+    if (::rename(temporary.c_str(), file.c_str()) == 0) return 0;
+    int const error = errno;
+    ::unlink(temporary.c_str());
+    return error;
 }
 
 } // namespace
@@ -54,22 +62,18 @@ void write_durably(fs::path const& file, std::string_view text) { write_durably(
 void write_durably(fs::path const& file, std::span<std::string_view const> parts)
 {
     fs::path const folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    fs::path const temporary = folder / ("." + file.filename().string() + ".tmp-" + std::to_string(getpid()));
+    Descriptor out{::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666)};
+    std::optional<TemporaryFile> named;
+    if (out.fd < 0) {
+        named.emplace(file);
+        out.fd = ::open(named->path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    }
+    if (out.fd < 0) throw cannot("the file cannot be written", file, errno);
     int failure = 0;
-    {
-        Descriptor out{::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666)};
-        bool const is_nameless = out.fd >= 0;
-        if (!is_nameless) out.fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-        if (out.fd < 0) throw cannot("the file cannot be written", file, errno);
-        for (std::size_t k = 0; k < parts.size() && failure == 0; ++k) failure = write_all(out.fd, parts[k]);
-        if (failure == 0 && ::fsync(out.fd) != 0) failure = errno;
-        if (failure == 0 && is_nameless) failure = name_file(out.fd, temporary);
-    }
-    if (failure == 0 && ::rename(temporary.c_str(), file.c_str()) != 0) failure = errno;
-    if (failure != 0) {
-        ::unlink(temporary.c_str());
-        throw cannot("the file cannot be written", file, failure);
-    }
+    for (std::size_t k = 0; k < parts.size() && failure == 0; ++k) failure = write_all(out.fd, parts[k]);
+    if (failure == 0 && ::fsync(out.fd) != 0) failure = errno;
+    if (failure == 0) failure = named ? named->replace(file) : replace_by_nameless(file, out.fd);
+    if (failure != 0) throw cannot("the file cannot be written", file, failure);
     sync_folder(folder);
 }
 

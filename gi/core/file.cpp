@@ -1,6 +1,7 @@
 #include "gi/core/file.h"
 
 #include "gi/core/error.h"
+#include "gi/core/temporary_file.h"
 
 #include <cerrno>
 #include <cstring>
@@ -27,19 +28,12 @@ void write_by_rename(fs::path const& file, std::function<void(fs::path const&)> 
     if (access(folder.c_str(), W_OK) != 0)
         throw cannot("the folder '" + folder.string() + "' is read-only", "choose another folder");
 
-    fs::path const temporary = folder / fmt::format(".{}.tmp-{}", file.filename().string(), getpid());
-    struct Cleanup {
-        fs::path const& path;
-        ~Cleanup()
-        {
-            std::error_code ignored;
-            fs::remove(path, ignored);
-        }
-    } const cleanup{temporary};
+    TemporaryFile temporary(file);
     errno = 0;
     try {
-        write(temporary);
-        fs::rename(temporary, file);
+        write(temporary.path());
+        if (int const failure = temporary.replace(file); failure != 0)
+            throw std::system_error(errno = failure, std::generic_category());
     } catch (InputError const&) {
         throw;
     } catch (std::exception const& e) {

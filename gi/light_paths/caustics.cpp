@@ -5,7 +5,6 @@
 #include "gi/render/ray_path.h"
 
 #include <algorithm>
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -65,11 +64,16 @@ PlanItem explain_caustics(World const& world, PhotonSettings const& s)
 {
     std::size_t const smooth = find_caustic_targets(world, {}).triangles.size();
     if (smooth == 0)
-        return {"caustics", false, "no smooth surface: nothing mirrors or refracts without scattering"};
+        return {"caustics", "caustics", false,
+                "no smooth surface: nothing mirrors or refracts without scattering"};
+    Figure const triangles = figure("smooth_triangles", smooth);
     if (s.caustic_paths == 0)
-        return {"caustics", false, fmt::format("{} smooth triangles, but --caustic-photons 0", smooth)};
-    return {"caustics", true,
-            fmt::format("{} light paths per pass begin on {} smooth triangles", s.caustic_paths, smooth)};
+        return {"caustics", "caustics", false, {"{} smooth triangles, but --caustic-photons 0", {triangles}}};
+    return {
+        "caustics",
+        "caustics",
+        true,
+        {"{} light paths per pass begin on {} smooth triangles", {figure("paths", s.caustic_paths), triangles}}};
 }
 
 Caustics::Caustics(World const& world, RenderSettings const& settings, Report& report)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <set>
 
 namespace gi::test {
 namespace {
@@ -19,7 +20,7 @@ constexpr Explain kExplain[] = {explain_ispm, explain_lpv, explain_isllpm, expla
 PlanItem item(std::vector<PlanItem> const& items, std::string const& what)
 {
     auto const found = std::ranges::find(items, what, &PlanItem::what);
-    return found != items.end() ? *found : PlanItem{what, false, "missing"};
+    return found != items.end() ? *found : PlanItem("missing", what, false, "missing");
 }
 
 bool says(PlanItem const& item, std::string const& words) { return item.reason.find(words) != std::string::npos; }
@@ -54,7 +55,12 @@ TEST(ExplainPhotons, EachItemHasItsReason)
         EXPECT_FALSE(item(items, "bounce maps").build);
         EXPECT_TRUE(says(item(items, "new photons when something moves"), "nothing moves"));
         EXPECT_TRUE(says(item(items, "light from afar towards what is shown"), "no sky"));
-        for (PlanItem const& i : items) EXPECT_FALSE(i.reason.empty()) << i.what;
+        for (PlanItem const& i : items) {
+            EXPECT_FALSE(i.name.empty() || i.reason.empty()) << i.what;
+            std::set<std::string> keys;
+            for (PlanNumber const& n : i.numbers)
+                EXPECT_TRUE(keys.insert(n.key).second) << i.what << ": " << n.key;
+        }
     }
     EXPECT_FALSE(item(explain_ispm(world, s, in_the_room()), "distance impostors").build);
     EXPECT_FALSE(item(explain_lpv(world, s, in_the_room()), "caustics").build);

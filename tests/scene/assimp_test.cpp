@@ -166,16 +166,20 @@ TEST_F(AssimpFolder, HeadersWithoutAnEndAreRefusedAtOnce)
 {
     auto const begun = std::chrono::steady_clock::now();
     for (std::string const header :
-         {"ply\nformat ascii 1.0\ncomment x\n", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x"})
-        EXPECT_NE(refusal(write("a.ply", header)).find("no end_header"), std::string::npos);
+         {"ply\nformat ascii 1.0\ncomment x\n", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x",
+          "ply\nformat ascii 1.0\nelement verteroperty float x\ncomment end_headerx",
+          "ply\nformat ascii 1.0\nelement vertexces\n0 1 0end_header\n0 0\n",
+          "ply\nformat ascii 1.0\nelement vertexces\nendend_header_header\n0 0\n"})
+        EXPECT_NE(refusal(write("a.ply", header)).find("no line end_header"), std::string::npos);
     EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(2));
 }
 
-/// The reader loops where the end of the header is not a line of its own.
-TEST_F(AssimpFolder, AReaderThatNeverEndsIsEnded)
+/// The reader looks for each of the vertices, though the file has ended.
+TEST_F(AssimpFolder, AReaderThatTakesTooLongIsEnded)
 {
     std::string const why =
-        refusal(write("a.ply", "ply\nformat ascii 1.0\nelement verteroperty float x\ncomment end_headerx"));
+        refusal(write("a.ply", "ply\nformat ascii 1.0\nelement vertex 60000000\nproperty float x\n"
+                               "property float y\nproperty float z\nend_header\n0 0 0\n"));
     EXPECT_NE(why.find("did not finish in"), std::string::npos) << why;
 }
 

@@ -67,7 +67,25 @@ TEST(Plan, EverythingThatIsThereIsBuilt)
     EXPECT_EQ(item(plan, "alpha").reason, "1 of 4 materials are masks or blend");
     EXPECT_EQ(item(plan, "delta").reason, "2 of 4 materials are perfectly smooth");
     EXPECT_EQ(item(plan, "emissive").reason, "2 triangles emit");
+    EXPECT_EQ(item(plan, "alpha").name, "alpha_tests");
+    ASSERT_EQ(item(plan, "alpha").numbers.size(), 2u);
+    EXPECT_EQ(item(plan, "alpha").numbers[1].key, "materials");
+    EXPECT_EQ(std::get<std::int64_t>(item(plan, "alpha").numbers[1].value), 4);
     EXPECT_EQ(item(plan, "updates").reason, "2 of 8 triangles in 1 of 4 instances can move: clip 'slide'");
+}
+
+TEST(Plan, NumbersOfSentencesAreDataToo)
+{
+    PlanText const text =
+        PlanText("{} lattices of {} m, ", {figure("lattices", 3), figure("cell_m", 0.12345, 3)}) +
+        PlanText("{}", {figure_of_bytes("memory_bytes", 1234567)});
+    EXPECT_EQ(text.text, "3 lattices of 0.123 m, 1.23 MB");
+    ASSERT_EQ(text.numbers.size(), 3u);
+    EXPECT_EQ(text.numbers[0].key, "lattices");
+    EXPECT_EQ(std::get<std::int64_t>(text.numbers[0].value), 3);
+    EXPECT_EQ(std::get<double>(text.numbers[1].value), 0.12345);
+    EXPECT_EQ(std::get<std::int64_t>(text.numbers[2].value), 1234567);
+    EXPECT_THROW(PlanText("one", {figure("many", 2)}), std::out_of_range);
 }
 
 TEST(Plan, OnlyMaterialsInUseCount)

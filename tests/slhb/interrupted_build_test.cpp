@@ -1,4 +1,5 @@
-// A stop while the hit buffers of a later pass are built ends the render soon, and keeps the passes before.
+// A stop while a pass builds or traces ends the render soon, and keeps the passes before, so that a resumed render
+// has the same bits as an undisturbed one.
 
 #include "gi/methods/slhb/slhb.h"
 #include "gi/scene/generate/generate.h"
@@ -43,6 +44,62 @@ TEST(InterruptedBuild, OfALaterPassKeepsThePicture)
     EXPECT_GE(r.paths, 2u);
     EXPECT_FALSE(r.picture.layers.empty());
     RecordProperty("seconds", std::to_string(took_s));
+}
+
+RenderSettings settings_of_long_passes()
+{
+    RenderSettings s;
+    s.threads = 1;
+    s.width = s.height = 512; // some tenths of a second for each pass
+    s.paths = 12;
+    s.slhb.look_ups = LookUps::all;
+    s.slhb.directions = "icosahedron:20";
+    s.slhb.resolution = 64;
+    return s;
+}
+
+TEST(InterruptedPass, TheFirstIsGivenUp)
+{
+    World const world = world_of(generate_boxes(2000, 1));
+    RenderSettings s = settings_of_long_passes();
+    s.width = s.height = 1024;
+    StopRequest stop;
+    stop.request();
+    Report report;
+    auto const begun = Clock::now();
+    EXPECT_THROW(render_slhb(world, look_at({0, 0, 3}, {0, 0, 0}, 50), s, stop, {}, report), Interrupted);
+    RecordProperty("seconds", std::to_string(std::chrono::duration<double>(Clock::now() - begun).count()));
+}
+
+TEST(InterruptedPass, ALaterOneLeavesNoTrace)
+{
+    World const world = world_of(generate_boxes(2000, 1));
+    Camera const camera = look_at({0, 0, 3}, {0, 0, 0}, 50);
+    RenderSettings s = settings_of_long_passes();
+    Report report;
+    RenderResult const whole = render_slhb(world, camera, s, {}, {}, report);
+    s.checkpoint = std::filesystem::temp_directory_path() / "lightwell_interrupted_pass.state";
+    std::filesystem::remove(s.checkpoint);
+    StopRequest stop;
+    std::jthread asks;
+    auto const in_the_next_pass = [&](RenderStatus const& now) {
+        if (now.paths >= 2 && !asks.joinable())
+            asks = std::jthread([&] {
+                std::this_thread::sleep_for(std::chrono::milliseconds(30));
+                stop.request();
+            });
+    };
+    RenderResult const part = render_slhb(world, camera, s, stop, in_the_next_pass, report);
+    ASSERT_EQ(part.end, RenderEnd::interrupted);
+    ASSERT_TRUE(part.resumable);
+    EXPECT_LT(part.paths, s.paths);
+    s.resume = true;
+    RenderResult const resumed = render_slhb(world, camera, s, {}, {}, report);
+    std::filesystem::remove(s.checkpoint);
+    EXPECT_EQ(resumed.paths, s.paths);
+    for (std::size_t k = 0; k < whole.picture.layers.size(); ++k)
+        EXPECT_TRUE(resumed.picture.layers[k].data == whole.picture.layers[k].data)
+            << whole.picture.layers[k].name;
 }
 
 } // namespace

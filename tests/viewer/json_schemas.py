@@ -91,8 +91,8 @@ CALLS = [
     Call("batch resume walk.batch --json --quiet", "batch"),
     Call("batch status walk.batch --messages --json", "batch_status"),
     Call("batch gather walk.batch --out walk --json", "batch_gather"),
-    Call("ar bench --counter --size 320x240 --frames 4 --json", "bench_table"),
-    Call("ar bench desk/session.yaml --frames 2 --still-frames 2 --json", "bench_table", codes=(0, 1)),  # 1: too few pixels to find the camera
+    Call("ar bench --counter --size 320x240 --frames 4 --json", "ar_bench"),
+    Call("ar bench desk/session.yaml --frames 2 --still-frames 2 --json", "ar_bench", codes=(0, 1)),  # 1: too few pixels to find the camera
 ]
 
 

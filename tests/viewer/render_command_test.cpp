@@ -130,7 +130,7 @@ TEST(RenderCommand, StatisticsHaveTheDocumentedKeys)
     expect_keys(j["result"], {"end", "paths_per_pixel", "seconds", "relmse_estimate", "rays", "rays_per_s"}, help);
     expect_keys(j["report"], {"stages_s", "counts", "losses", "peak_memory_bytes"}, help);
     ASSERT_FALSE(j["plan"].empty());
-    expect_keys(j["plan"][0], {"what", "build", "reason"}, help);
+    expect_keys(j["plan"][0], {"name", "what", "build", "reason", "numbers"}, help);
     EXPECT_EQ(j["schema"], 1);
     EXPECT_EQ(j["result"]["end"], "paths");
     EXPECT_EQ(j["result"]["paths_per_pixel"], 4);

@@ -54,7 +54,7 @@ TEST(ArBench, FindsNumberBallAndTimesInAgreement)
     TemporaryFolder const folder;
     Outcome const o = run("ar bench --counter --size 320x240 --frames 12 --json", folder.path());
     EXPECT_EQ(o.code, 0) << o.err << o.out;
-    Json const table = Json::parse(o.out);
+    Json const table = Json::parse(o.out).at("ar_counter");
     EXPECT_EQ(value_of(table, "frames"), 12);
     EXPECT_EQ(value_of(table, "ball_elsewhere"), 0);
     EXPECT_LT(value_of(table, "ball_off_most_px"), 1.5);

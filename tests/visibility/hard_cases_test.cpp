@@ -4,6 +4,7 @@
 #include "tests/visibility/visibility_render.h"
 
 #include <numeric>
+#include <unistd.h>
 
 namespace gi::test {
 namespace {
@@ -53,6 +54,31 @@ TEST(VisibilityHardCases, LampOutsideAClosedBoxLightsNothingInIt)
         // Surfaces outside face away from those inside, but for the lamp's own black quad: nothing leaks even
         // here.
         EXPECT_LT(mean, 1e-6) << int(kind);
+    }
+}
+
+TEST(VisibilityHardCases, ResumedRendersHaveTheBitsOfUninterruptedOnes)
+{
+    World const world = world_of(box_with_block());
+    std::filesystem::path const state =
+        std::filesystem::temp_directory_path() / ("lightwell_vpl_" + std::to_string(getpid()) + ".state");
+    for (VisibilityKind const kind : kKinds) {
+        RenderSettings s = small_picture(16, 6, 3);
+        Picture const whole = render_visibility(kind, world, in_the_box(), s).result.picture;
+        s.checkpoint = state;
+        StopRequest stop;
+        Report report;
+        auto const after_the_first_pass = [&](RenderStatus const&) { stop.request(); };
+        RenderResult const part =
+            render_with_virtual_lights(kind, world, in_the_box(), s, stop, after_the_first_pass, report);
+        ASSERT_TRUE(part.resumable) << int(kind);
+        EXPECT_LT(part.paths, s.paths);
+        s.resume = true;
+        RenderResult const resumed = render_visibility(kind, world, in_the_box(), s).result;
+        EXPECT_EQ(resumed.paths, s.paths);
+        for (Layer const& layer : whole.layers)
+            EXPECT_EQ(resumed.picture.find(layer.name)->data, layer.data) << int(kind) << " " << layer.name;
+        std::filesystem::remove(state);
     }
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <optional>
 #include <set>
+#include <span>
 
 namespace viewer::batch {
 namespace {
@@ -65,7 +66,7 @@ std::vector<int> find_inputs(Words& words, std::ptrdiff_t names, std::set<std::s
     InputFinder finder(batch, fs::current_path());
     std::set<int> found;
     bool is_scene = true; // the first file that is named
-    for (std::string& word : std::ranges::subrange(words.all().begin() + names, words.all().end())) {
+    for (std::string& word : std::span(words.all()).subspan(std::size_t(names))) {
         std::size_t const equals = word.starts_with("--") ? word.find('=') : word.npos;
         std::string const name = equals == word.npos ? word : word.substr(equals + 1);
         std::error_code none;

@@ -79,9 +79,12 @@ private:
         gi::make_folder(to.parent_path());
         gi::write_by_rename(to, [&](fs::path const& temporary) {
             std::error_code cannot_link;
-            if (placing_ == Placing::link) fs::create_hard_link(from, temporary, cannot_link);
+            if (placing_ == Placing::link) {
+                fs::remove(temporary);
+                fs::create_hard_link(from, temporary, cannot_link);
+            }
             if (placing_ == Placing::copy || cannot_link) { // another disk
-                fs::copy_file(from, temporary);
+                fs::copy_file(from, temporary, fs::copy_options::overwrite_existing);
                 fs::permissions(temporary, fs::perms::owner_write, fs::perm_options::add);
             }
         });

@@ -58,6 +58,7 @@ private:
         std::size_t task = 0;
         Share share;
         bool has_computed = false;
+        bool is_ending = false; ///< its end of the pipe is closed: it will soon be gone
     };
 
     void list_tasks()
@@ -127,8 +128,10 @@ private:
         std::vector<pollfd> pipes;
         for (Running const& r : running_) pipes.push_back({r.worker.pipe, POLLIN, 0});
         ::poll(pipes.data(), nfds_t(pipes.size()), 100);
-        for (std::size_t k = 0; k < pipes.size(); ++k)
+        for (std::size_t k = 0; k < pipes.size(); ++k) {
             if ((pipes[k].revents & POLLIN) != 0) free_share(running_[k]);
+            running_[k].is_ending = (pipes[k].revents & POLLHUP) != 0;
+        }
     }
 
     void free_share(Running& r)
@@ -142,8 +145,8 @@ private:
     void end_workers()
     {
         std::erase_if(running_, [&](Running& r) {
-            int status = 0;
-            pid_t const ended = ::waitpid(r.worker.pid, &status, WNOHANG);
+            int status = 0; // asking an ending process again and again would keep it from ending
+            pid_t const ended = ::waitpid(r.worker.pid, &status, r.is_ending ? 0 : WNOHANG);
             if (ended != r.worker.pid) return false;
             ::close(r.worker.pipe);
             if (!r.has_computed) allocator_.give_back(r.share);

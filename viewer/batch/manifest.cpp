@@ -120,7 +120,7 @@ private:
     {
         m_.take(y, kind, [&](gi::Yaml const& all) {
             for (auto const& [key, group] : m_.entries(all))
-                m_.attempt([&] {
+                m_.attempt([&, &key = key, &group = group] { // clang 14 cannot capture the names themselves
                     std::string const name = key.name();
                     if (!groups_.insert(name).second)
                         throw key.error("there are two groups '" + name + "'", "their outputs would be mixed",
@@ -270,7 +270,9 @@ private:
         std::vector<std::pair<std::string, std::vector<std::string>>> over;
         complete = m_.need(y, "over", "{paths: [1, 4, 16]}", [&](gi::Yaml const& v) {
             for (auto const& [key, values] : m_.entries(v))
-                complete = m_.attempt([&] { over.emplace_back(key.name(), values_of(values)); }) && complete;
+                complete = m_.attempt([&, &key = key, &values = values] {
+                    over.emplace_back(key.name(), values_of(values));
+                }) && complete;
             for (auto const& [parameter, values] : over)
                 if (zips && values.size() != over.front().second.size())
                     throw v.error(fmt::format("'{}' has {} values, '{}' has {}", over.front().first,

@@ -12,6 +12,7 @@
 #include "viewer/offline/frame_follower.h"
 #include "viewer/offline/frame_record.h"
 #include "viewer/offline/frame_state.h"
+#include "viewer/offline/plan_json.h"
 #include "viewer/offline/render_picture.h"
 #include "viewer/offline/render_record.h"
 #include "viewer/offline/video_writer.h"
@@ -47,7 +48,7 @@ public:
         gi::Report unused; // losses of the world are reported with the frame
         gi::World const first = world_of(f_.range.first, unused);
         if (o.reuse > 1) origin_ = first.origin; // one world advances through all frames
-        plan_ = to_json(gi::plan_scene(first));
+        plan_ = to_json(gi::plan_scene(first).items);
         camera_ = std::make_unique<FrameCamera>(first, choice, f_.motion);
         if (!camera_->note().empty()) say(camera_->note());
         blurs_ = o.shutter_s > 0 && depends_on_time(*scene_, o.time_s.has_value(), f_.motion);

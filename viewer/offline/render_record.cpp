@@ -3,6 +3,7 @@
 #include "gi/core/shell.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/version.h"
+#include "viewer/offline/plan_json.h"
 #include "viewer/report/machine.h"
 
 #include <fmt/format.h>
@@ -85,14 +86,6 @@ std::string stop_option(gi::RenderSettings const& s)
 
 Json relmse_json(gi::RenderResult const& r) { return knows_error(r) ? Json(r.relmse) : Json(); }
 
-Json to_json(gi::ScenePlan const& plan)
-{
-    Json j = Json::array();
-    for (gi::PlanItem const& item : plan.items)
-        j.push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
-    return j;
-}
-
 std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::RenderSettings const& s,
                                                  gi::RenderResult const& result)
 {
@@ -174,7 +167,7 @@ Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePl
     j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
                    {"seconds", r.seconds},   {"relmse_estimate", relmse_json(r)},
                    {"rays", r.rays},         {"rays_per_s", rays_per_second(r)}};
-    j["plan"] = to_json(plan);
+    j["plan"] = to_json(plan.items);
     j["report"] = to_json(report);
     return j;
 }

@@ -21,7 +21,6 @@ std::string stop_option(gi::RenderSettings const& settings);
 /// @param amount  stop condition as an option   @param chosen  settings chosen by the method, as options
 nlohmann::ordered_json describe_call(RenderOptions const& options, gi::RenderSettings const& settings,
                                      std::string const& amount, std::string const& chosen);
-nlohmann::ordered_json to_json(gi::ScenePlan const& plan);
 char const* end_text(gi::RenderEnd end);
 /// Estimated relMSE; null if unknown, as with one path.
 nlohmann::ordered_json relmse_json(gi::RenderResult const& result);

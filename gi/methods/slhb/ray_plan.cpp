@@ -82,9 +82,9 @@ RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& worl
         double const trusted = look_up_agreement(
             world, soup, camera_rays(camera, asked.width, asked.height, world.origin), std::uint32_t(resolution));
         plan.look_ups = trusted < kTrusted ? LookUps::none : LookUps::all;
-        plan.why_look_ups =
-            fmt::format("a BVH takes about {:.2g} s of one core, and {:.0f} % of look-ups can be trusted",
-                        costs.bvh, 100 * trusted);
+        plan.why_look_ups = {"a BVH takes about {} s of one core, and {} % of look-ups can be trusted",
+                             {figure("bvh_s", costs.bvh, 2),
+                              Figure{{"trusted_percent", 100 * trusted}, fmt::format("{:.0f}", 100 * trusted)}}};
     }
     bool const bvh = narrow_somewhere(world) || plan.look_ups == LookUps::none;
     if (s.shadows != Shadows::automatic) {

@@ -5,6 +5,7 @@
 #include "gi/raster/triangle_soup.h"
 #include "gi/render/render_settings.h"
 #include "gi/scene/model/camera.h"
+#include "gi/scene/model/plan_text.h"
 
 namespace gi {
 
@@ -14,7 +15,7 @@ namespace gi {
 struct RayPlan {
     LookUps look_ups = LookUps::none;
     Shadows shadows = Shadows::rays;
-    std::string why_look_ups, why_shadows;
+    PlanText why_look_ups = "", why_shadows = "";
 };
 
 /// @param resolution  texels per side that a hit buffer would have

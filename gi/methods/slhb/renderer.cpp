@@ -100,7 +100,8 @@ void SlhbRenderer::make_light_points()
                                              .fresh = std::uint32_t(slhb_.fresh_light_samples),
                                              .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
                                              .seed = settings_.seed,
-                                             .first_moving = first_moving_});
+                                             .first_moving = first_moving_,
+                                             .stop = stop_});
 }
 
 void SlhbRenderer::changed(Changes const& c)
@@ -185,15 +186,16 @@ void SlhbRenderer::see(std::span<FrameView const> views)
     if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
 }
 
-void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
+void SlhbRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& stop)
 {
     axes_.prepare(settings_.bounces + (to_the_end() ? 1 : 0), index);
     {
         StageTimer const timer(report_, "shadow maps");
-        light_points_->refresh(index);
+        light_points_->refresh(index, stop);
     }
     StageTimer const timer(report_, "G-buffer");
     for (SeenView& v : views_) {
+        stop.check();
         if (!v.primary) continue;
         CameraRays const eye = eye_of_pass(v.rays, settings_.seed, index);
         float const near_m = near_plane(world_.bounds);
@@ -204,7 +206,7 @@ void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
     }
 }
 
-SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
+SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached, PassStop const& stop)
 {
     bool const walks = axes_.walks();
     std::uint32_t const gathered = slhb_.gather && walks
@@ -221,6 +223,7 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
     return {.axes = axes_.set(),
             .light_points = *light_points_,
             .exact = exact_.get(),
+            .stop = stop,
             .index = index,
             .gather_axis = gathered,
             .sky = sky_,
@@ -234,9 +237,10 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
 
 void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing)
 {
-    prepare(index, Sides::one);
+    PassStop const stop(stop_, sums[0].paths > 0 ? PassStop::Pass::later : PassStop::Pass::first);
+    prepare(index, Sides::one, stop);
     StageTimer const timer(report_, "paths");
-    paths_.trace(tracing(index, sharing == VertexSharing::cached), views_, sharing, sums);
+    paths_.trace(tracing(index, sharing == VertexSharing::cached, stop), views_, sharing, sums);
     if (cache_) cache_->end_pass();
     for (Accumulator& s : sums) ++s.paths;
 }
@@ -246,9 +250,10 @@ void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& co
     if (!std::exchange(shadow_maps_, true))
         make_light_points(); // shadow maps show which paths dynamic geometry may
                              // affect
-    prepare(index, Sides::pair);
+    PassStop const never(nullptr);
+    prepare(index, Sides::pair, never);
     StageTimer const timer(report_, "paths");
-    SlhbTracer::Pass now = tracing(index, false);
+    SlhbTracer::Pass now = tracing(index, false, never);
     now.first_watched = std::uint32_t(first_moving_);
     // The world is not changed: look-ups ignore dynamic geometry.
     auto const show_moving = [&](bool shown) {

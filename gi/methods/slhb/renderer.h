@@ -38,7 +38,8 @@ public:
     /// Sets the views from the next pass on. Each continues the previous frame's view of the same index.
     void see(std::span<FrameView const> views);
     /// Traces one more path for every pixel. @param index  of the pass; selects the random numbers
-    /// @param sums  one per view
+    /// @param sums  one per view; unchanged if a requested stop makes this throw Interrupted: then there can be no
+    ///   further pass
     void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::exact);
 
     /// Traces a pass of one view with and without dynamic geometry, with the same random numbers; without it,
@@ -96,15 +97,15 @@ private:
     bool walks() const;
     bool to_the_end() const;
     enum class Sides : std::uint8_t { one, pair };
-    void prepare(std::uint32_t index, Sides sides);
-    SlhbTracer::Pass tracing(std::uint32_t index, bool cached);
+    void prepare(std::uint32_t index, Sides sides, PassStop const& stop);
+    SlhbTracer::Pass tracing(std::uint32_t index, bool cached, PassStop const& stop);
 
     World const& world_;
     RenderSettings settings_;
     SlhbSettings const& slhb_ = settings_.slhb;
     std::size_t first_moving_; ///< index of the first dynamic triangle
     FirstSurfaces first_surfaces_;
-    StopRequest const* stop_; ///< checked while building; may be null
+    StopRequest const* stop_; ///< of building and of passes; may be null
     Report& report_;
     SeenViews views_;
     TriangleSoup soup_;

@@ -217,38 +217,51 @@ std::vector<PlanItem> explain_settings(World const& world, RenderSettings const&
     RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, false);
     std::vector<PlanItem> items;
     bool const walks = plan.look_ups == LookUps::all;
-    items.push_back({"look-ups in hit buffers", walks, plan.why_look_ups});
+    items.push_back({"look_ups", "look-ups in hit buffers", walks, plan.why_look_ups});
     if (walks) {
         char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
-        items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
+        items.push_back({std::string("schedule_") + names[int(s.schedule)],
+                         std::string("schedule ") + names[int(s.schedule)], true,
                          s.schedule == Schedule::streamed ? "the error is not limited by a fixed set of directions"
                                                           : "there is a sky, or it was requested"});
         if (s.schedule == Schedule::stored)
             items.push_back(
-                {"directions " + s.directions, true,
+                {"directions", "directions " + s.directions, true,
                  world.environment_select.empty() ? "requested" : "a sky needs many axes to be found"});
         else
-            items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
-                             fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(),
-                                         asked.width, asked.height)});
-        items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
-                         fmt::format("{:.1f} layers per texel, texels of {:.2g} m", costs.layers,
-                                     2 * world.bounds.radius() / s.resolution)});
-        items.push_back({fmt::format("at most {} MiB of hit buffers", s.memory_mib), true,
+            items.push_back({"axes",
+                             {"{} axes for each bounce of a pass", {figure("axes", s.axes)}},
+                             true,
+                             {"for {} triangles and {} x {} pixels",
+                              {figure("triangles", world.triangles.size()), figure("width_px", asked.width),
+                               figure("height_px", asked.height)}}});
+        items.push_back({"hit_buffers",
+                         {"hit buffers of {} x {} texels",
+                          {figure("width_px", s.resolution), figure("height_px", s.resolution)}},
+                         true,
+                         {"{} layers per texel, texels of {} m",
+                          {Figure{{"layers_per_texel", costs.layers}, fmt::format("{:.1f}", costs.layers)},
+                           figure("texel_m", 2 * double(world.bounds.radius()) / s.resolution, 2)}}});
+        Figure const most{{"most_memory_bytes", std::int64_t(s.memory_mib) << 20}, std::to_string(s.memory_mib)};
+        items.push_back({"hit_buffer_memory",
+                         {"at most {} MiB of hit buffers", {most}},
+                         true,
                          "else they get fewer texels (--memory)"});
     }
     bool const cached = choose_cache(asked, false) == RadianceCaching::on;
-    items.push_back({"radiance cache", cached,
+    items.push_back({"radiance_cache", "radiance cache", cached,
                      asked.slhb.cache != RadianceCaching::automatic ? "requested"
                      : cached ? "there is a budget; it trades noise for a little blur"
                               : "it would leave a small error even in long renders; --radiance-cache on"});
     bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
-    items.push_back({rays ? "shadow rays"
-                          : fmt::format("{} shadow maps of {} x {}", s.light_samples, s.shadow_resolution,
-                                        s.shadow_resolution),
+    items.push_back({rays ? "shadow_rays" : "shadow_maps",
+                     rays ? "shadow rays"
+                          : PlanText("{} shadow maps of {} x {}",
+                                     {figure("maps", s.light_samples), figure("width_px", s.shadow_resolution),
+                                      figure("height_px", s.shadow_resolution)}),
                      lit, lit ? plan.why_shadows : "there are no lights"});
     bool const narrow = narrow_somewhere(world);
-    items.push_back({"exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
+    items.push_back({"exact_rays", "exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
                      !walks                ? "in place of look-ups"
                      : rays                ? "for shadows"
                      : camera.orthographic ? "the camera is orthographic"

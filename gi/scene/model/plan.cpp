@@ -30,53 +30,63 @@ ScenePlan plan_scene(World const& world)
         return found;
     };
     std::size_t const materials = count([](Material const&) { return true; });
-    auto const decide = [&](std::string const& what, bool build, std::string const& yes, std::string const& no) {
-        plan.items.push_back({what, build, build ? yes : no});
+    auto const decide = [&](char const* name, char const* what, bool build, PlanText const& yes,
+                            PlanText const& no) {
+        plan.items.emplace_back(name, what, build, build ? yes : no);
         return build;
     };
-    auto const of_materials = [&](std::size_t n, std::string const& what) {
-        return fmt::format("{} of {} materials {}", n, materials, what);
+    auto const of_materials = [&](std::size_t n, char const* words) {
+        return PlanText(words, {figure("materials_concerned", n), figure("materials", materials)});
     };
 
     std::size_t const masked = count([](Material const& m) { return m.alpha_mode != AlphaMode::opaque; });
-    plan.alpha_tests = decide("alpha tests along rays", masked > 0, of_materials(masked, "are masks or blend"),
-                              "every material is opaque");
+    plan.alpha_tests =
+        decide("alpha_tests", "alpha tests along rays", masked > 0,
+               of_materials(masked, "{} of {} materials are masks or blend"), "every material is opaque");
     EnvironmentMap const* const map = world.environment.get();
     plan.environment =
-        decide("environment sampling", world.environment_pdf > 0,
-               map != nullptr ? fmt::format("a map of {} x {} texels", map->width, map->height) : "",
+        decide("environment", "environment sampling", world.environment_pdf > 0,
+               map != nullptr ? PlanText("a map of {} x {} texels",
+                                         {figure("width_px", map->width), figure("height_px", map->height)})
+                              : "",
                map != nullptr ? "the map is black" : "no environment map");
-    plan.emitters = decide("emissive-triangle sampling", !world.emitters.empty(),
-                           fmt::format("{} triangles emit", world.emitters.size()), "nothing emits");
-    plan.punctual_lights = decide("punctual lights", !world.lights.empty(),
-                                  fmt::format("{} point, spot or directional lights", world.lights.size()),
-                                  "no point, spot or directional light");
+    plan.emitters = decide("emitters", "emissive-triangle sampling", !world.emitters.empty(),
+                           {"{} triangles emit", {figure("triangles", world.emitters.size())}}, "nothing emits");
+    plan.punctual_lights =
+        decide("punctual_lights", "punctual lights", !world.lights.empty(),
+               {"{} point, spot or directional lights", {figure("lights", world.lights.size())}},
+               "no point, spot or directional light");
     std::size_t const mirrors = count(delta);
-    plan.delta_lobes = decide("delta lobes (mirrors, smooth glass)", mirrors > 0,
-                              of_materials(mirrors, "are perfectly smooth"), "nothing is perfectly smooth");
+    plan.delta_lobes =
+        decide("delta_lobes", "delta lobes (mirrors, smooth glass)", mirrors > 0,
+               of_materials(mirrors, "{} of {} materials are perfectly smooth"), "nothing is perfectly smooth");
     std::size_t const glass = count([](Material const& m) { return m.transmission > 0; });
-    plan.transmission = decide("transmission", glass > 0, of_materials(glass, "let light through"),
-                               "no material lets light through");
+    plan.transmission =
+        decide("transmission", "transmission", glass > 0,
+               of_materials(glass, "{} of {} materials let light through"), "no material lets light through");
     std::size_t const maps = count(has_textures);
-    plan.textures =
-        decide("texture lookups", maps > 0, of_materials(maps, "have textures"), "no material has a texture");
+    plan.textures = decide("textures", "texture lookups", maps > 0,
+                           of_materials(maps, "{} of {} materials have textures"), "no material has a texture");
     std::size_t const bumps = count([](Material const& m) { return m.normal_map.texture >= 0; });
-    plan.normal_maps =
-        decide("normal maps", bumps > 0, of_materials(bumps, "have one"), "no material has a normal map");
-    plan.skins = decide("skinning", !scene.skins.empty(), fmt::format("{} skins", scene.skins.size()), "no skin");
+    plan.normal_maps = decide("normal_maps", "normal maps", bumps > 0,
+                              of_materials(bumps, "{} of {} materials have one"), "no material has a normal map");
+    plan.skins = decide("skinning", "skinning", !scene.skins.empty(),
+                        {"{} skins", {figure("skins", scene.skins.size())}}, "no skin");
     auto const morphing = std::count_if(scene.meshes.begin(), scene.meshes.end(),
                                         [](Mesh const& m) { return !m.morph_targets.empty(); });
-    plan.morphs = decide("morph targets", morphing > 0, fmt::format("{} meshes have them", morphing),
-                         "no mesh has morph targets");
-    plan.motion = decide("motion", !scene.playbacks.empty(), fmt::format("{} clips play", scene.playbacks.size()),
+    plan.morphs = decide("morph_targets", "morph targets", morphing > 0,
+                         {"{} meshes have them", {figure("meshes", morphing)}}, "no mesh has morph targets");
+    plan.motion = decide("motion", "motion", !scene.playbacks.empty(),
+                         {"{} clips play", {figure("clips", scene.playbacks.size())}},
                          scene.animations.empty() ? "no animation clip" : "no clip was chosen to play");
-    std::size_t const moving = world.triangles.size() - world.static_triangles;
-    std::vector<std::string> const reasons = reasons_for_motion(scene);
-    plan.moving_parts =
-        decide("updates of moving parts", moving > 0,
-               fmt::format("{} of {} triangles in {} of {} instances can move: {}", moving, world.triangles.size(),
-                           world.instances - world.static_instances, world.instances, fmt::join(reasons, "; ")),
-               fmt::format("none of the {} triangles can move", world.triangles.size()));
+    std::size_t const triangles = world.triangles.size(), moving = triangles - world.static_triangles;
+    PlanText const what_moves("{} of {} triangles in {} of {} instances can move: ",
+                              {figure("moving_triangles", moving), figure("triangles", triangles),
+                               figure("moving_instances", world.instances - world.static_instances),
+                               figure("instances", world.instances)});
+    plan.moving_parts = decide("moving_parts", "updates of moving parts", moving > 0,
+                               what_moves + fmt::format("{}", fmt::join(reasons_for_motion(scene), "; ")),
+                               {"none of the {} triangles can move", {figure("triangles", triangles)}});
     return plan;
 }
 

@@ -210,14 +210,15 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
 
 void keep(std::vector<BenchTable*> const& tables, BenchArguments const& a)
 {
+    std::string json;
     for (BenchTable* const t : tables) {
         if (!a.out.empty()) write(*t, a.out);
-        if (a.json)
-            fmt::print("{}", to_json(*t));
-        else
-            print(*t);
-        if (!a.out.empty() && !a.json) fmt::print("{}\n", (fs::path(a.out) / (t->name + ".json")).string());
+        json += fmt::format("{}\"{}\": {}", json.empty() ? "{" : ", ", t->name, to_json(*t));
+        if (a.json) continue;
+        print(*t);
+        if (!a.out.empty()) fmt::print("{}\n", (fs::path(a.out) / (t->name + ".json")).string());
     }
+    if (a.json) fmt::print("{}}}\n", json);
 }
 
 int run_bench(BenchArguments const& a)
@@ -367,7 +368,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
                 "Only the albedo of the paper is known, not that of table and things")
         ->needs(maps);
     c->add_option("-o,--out", a->out, "Folder for the tables, as JSON and CSV");
-    c->add_flag("--json", a->json, "Print the tables as JSON");
+    c->add_flag("--json", a->json, "Print the tables as JSON, in one object by their names");
     c->footer(R"(Examples:
   lightwell ar bench --size 640x480 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
   lightwell ar bench --counter --size 320x240 --frames 10

@@ -16,6 +16,7 @@
 #include "viewer/offline/choose_camera.h"
 #include "viewer/offline/load_world.h"
 #include "viewer/offline/picture_memory.h"
+#include "viewer/offline/plan_json.h"
 #include "viewer/study/setting_lookup.h"
 
 #include <CLI/CLI.hpp>
@@ -220,12 +221,8 @@ int run(InfoOptions const& o)
                         {"height_px", settings.height},
                         {"memory_bytes", memory.sums_bytes},
                         {"state_file_bytes", memory.state_bytes}};
-        auto const add_plan = [&](std::string const& name, std::vector<gi::PlanItem> const& items) {
-            for (gi::PlanItem const& item : items)
-                j[name].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
-        };
-        for (MethodPlan const& m : methods) add_plan("plan_" + std::string(m.method), m.items);
-        add_plan("plan", plan.items);
+        for (MethodPlan const& m : methods) j["plan_" + std::string(m.method)] = to_json(m.items);
+        j["plan"] = to_json(plan.items);
         j["report"] = to_json(report);
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
@@ -291,7 +288,7 @@ void add_info(CLI::App& app, int& exit_code)
 
 A scene without light is described with the white sky of radiance 1 that render gives it. --json holds: scene, content
 (numbers, with units in the names of keys), picture (width_px, height_px, memory_bytes, state_file_bytes), plan and
-plan_METHOD (what, build, reason), report.
+plan_METHOD (name, what, build, reason, and the numbers in them), report.
 
 The lines below "environment map" give the irradiance (red, green, blue) of unshadowed surfaces that face up, down
 and to the most light, and the share of the map, by squared radiance, that is smooth (small if it has a sun).)");

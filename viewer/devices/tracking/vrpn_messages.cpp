@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <string_view>
 
 namespace viewer {
@@ -118,9 +117,10 @@ bool VrpnReader::take_stream(std::span<unsigned char const> bytes, TrackerPacket
     if (!greeted_) {
         // The longest common beginning decides early, so that another kind of server is named at once.
         std::string_view const major = kVersion.substr(0, kVersion.rfind('.') + 1);
-        std::size_t const compared = std::min(rest.size(), major.size());
-        if (std::memcmp(rest.data(), major.data(), compared) != 0) {
-            bool const is_vrpn = compared > 10 && std::memcmp(rest.data(), "vrpn: ver.", 10) == 0;
+        std::string_view const greeting(reinterpret_cast<char const*>(rest.data()),
+                                        std::min(rest.size(), major.size()));
+        if (!major.starts_with(greeting)) {
+            bool const is_vrpn = greeting.starts_with("vrpn: ver.");
             fault_ = is_vrpn ? "the server has another version of VRPN than 07.xx" : "it is no VRPN server";
             return false;
         }

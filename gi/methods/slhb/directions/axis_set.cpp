@@ -93,7 +93,7 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
     }
     built_ += axes.size();
     if (axes.empty() && pool_.size() > 0) return;
-    fill_pool(buffers_, pool_, source_.packed);
+    fill_pool(buffers_, pool_, source_.packed, building);
     moving_.forget();
     moved_ = true;
 }

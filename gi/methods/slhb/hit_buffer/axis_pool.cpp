@@ -46,7 +46,7 @@ HitLayer AxisPool::layer(std::size_t a, std::uint32_t k) const
             ((word & kPackedTriangles) != 0 ? kAlongAxis : 0) | (word & (kPackedTriangles - 1))};
 }
 
-void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packed)
+void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packed, BuildStop const& stop)
 {
     pool.grids.clear();
     pool.ranges.clear();
@@ -69,6 +69,7 @@ void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packe
     pool.packed_step.clear();
     std::size_t offset = 0, layer = 0;
     for (HitBuffer const& b : buffers) {
+        if (stop.given_up()) throw Interrupted();
         pool.grids.push_back(b.grid);
         pool.first_offset.push_back(std::uint32_t(offset));
         pool.first_layer.push_back(std::uint32_t(layer));

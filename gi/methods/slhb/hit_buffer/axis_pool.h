@@ -1,6 +1,7 @@
 #pragma once
 // The hit buffers of several axes, stored together.
 
+#include "gi/core/progress.h"
 #include "gi/methods/slhb/hit_buffer/query.h"
 
 namespace gi {
@@ -46,7 +47,8 @@ struct AxisPool {
 inline constexpr std::uint32_t kPackedTriangles = 1u << 19;
 
 /// Fills the pool, reusing its memory. Throws InputError if 32-bit indices, or 19 bits for a packed triangle, are
-/// not enough.
-void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packed = false);
+/// not enough, and Interrupted where `stop` is given up.
+void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packed = false,
+               BuildStop const& stop = BuildStop(nullptr));
 
 } // namespace gi

@@ -61,7 +61,7 @@ LightPoints::LightPoints(World const& world, Bounds const& bounds, TriangleSoup 
     chances_ = make_alias_table(weights);
     std::vector<LightPoint*> all;
     for (LightPoint& light_point : light_points_) all.push_back(&light_point);
-    build(all, 0);
+    build(all, 0, PassStop(settings.stop));
 }
 
 void LightPoints::take_point(LightPoint& light_point, std::uint64_t number)
@@ -76,11 +76,11 @@ void LightPoints::take_point(LightPoint& light_point, std::uint64_t number)
     light_point.light = distant_light(world_, light_point.choice, light_point.u);
 }
 
-void LightPoints::refresh(std::uint32_t pass)
+void LightPoints::refresh(std::uint32_t pass, PassStop const& stop)
 {
     if (none()) return;
     if (fixed_) {
-        if (moved_) build({}, pass);
+        if (moved_) build({}, pass, stop);
         return;
     }
     order_.update(world_); // lights may have moved
@@ -93,10 +93,10 @@ void LightPoints::refresh(std::uint32_t pass)
         take_point(light_point, number);
         fresh.push_back(&light_point);
     }
-    build(fresh, pass);
+    build(fresh, pass, stop);
 }
 
-void LightPoints::build(std::span<LightPoint* const> fresh, std::uint32_t pass)
+void LightPoints::build(std::span<LightPoint* const> fresh, std::uint32_t pass, PassStop const& stop)
 {
     Pcg32 rng = Pcg32::for_path(settings_.seed, 0x1a395, pass);
     for (LightPoint* const light_point : fresh) {
@@ -117,6 +117,7 @@ void LightPoints::build(std::span<LightPoint* const> fresh, std::uint32_t pass)
     }
     built_ += fresh.size();
     tbb::parallel_for(std::size_t(0), 6 * fresh.size(), [&](std::size_t job) {
+        if (stop.given_up()) return;
         LightPoint& light_point = *fresh[job / 6];
         builder_.build(light_point.view, int(job % 6), first_moving_, seed, light_point.shadow);
         builder_.move(int(job % 6), first_moving_, seed, light_point.shadow, light_point.taken);
@@ -127,6 +128,7 @@ void LightPoints::build(std::span<LightPoint* const> fresh, std::uint32_t pass)
             if (std::ranges::find(fresh, &light_point) == fresh.end())
                 builder_.move(int(job % 6), first_moving_, seed, light_point.shadow, light_point.taken);
         });
+    stop.check();
     moved_ = false;
 }
 

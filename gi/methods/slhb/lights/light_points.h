@@ -6,6 +6,7 @@
 
 #include "gi/methods/slhb/lights/light_pool.h"
 #include "gi/methods/slhb/lights/shadow_map.h"
+#include "gi/render/pass_stop.h"
 
 #include <functional>
 #include <span>
@@ -30,6 +31,7 @@ struct LightPointSettings {
     std::uint32_t resolution = 64; ///< texels per side of a shadow map
     std::uint64_t seed = 0;
     std::size_t first_moving = ~std::size_t(0); ///< index of the first triangle that may move
+    StopRequest const* stop = nullptr;          ///< makes the constructor throw Interrupted; null = nothing does
 };
 
 class LightPoints {
@@ -48,8 +50,9 @@ public:
 
     /// The triangles from LightPointSettings::first_moving on have moved.
     void moved() { moved_ = true; }
-    /// Updates points and shadow maps for a pass. Pass numbers must increase.
-    void refresh(std::uint32_t pass);
+    /// Updates points and shadow maps for a pass. Pass numbers must increase. After Interrupted, which `stop`
+    /// makes it throw, this object is of no more use.
+    void refresh(std::uint32_t pass, PassStop const& stop = PassStop(nullptr));
     /// Puts dynamic geometry into the shadow maps or removes it; must be shown again before the next refresh.
     void show_moving(bool shown);
     std::vector<LightPoint> const& light_points() const { return light_points_; }
@@ -61,7 +64,7 @@ public:
 
 private:
     void take_point(LightPoint& light_point, std::uint64_t number);
-    void build(std::span<LightPoint* const> fresh, std::uint32_t pass);
+    void build(std::span<LightPoint* const> fresh, std::uint32_t pass, PassStop const& stop);
 
     World const& world_;
     LightPointSettings settings_;

@@ -231,7 +231,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
     for (std::size_t k = 0; k < states.size(); ++k) states[k].u = &numbers[k];
     for (SharedVertex& e : shared_vertices) e.triangle = kNoLayerHit;
     std::size_t active = starts.size();
-    while (active > 0) {
+    while (active > 0 && !pass.stop.given_up()) {
         std::size_t going = 0;
         prepare_vertices(std::span(vertices).first(active), states);
         for (std::size_t k = 0; k < active; ++k) {

@@ -58,10 +58,12 @@ struct ViewPaths::Counts {
 struct ViewPaths::Work {
     tbb::combinable<Counts> counts;
 
+    /// Leaves blocks out once `stop` is given up.
     template <class F>
-    void in_blocks(std::size_t n, F const& work, std::size_t block = kBlock)
+    void in_blocks(std::size_t n, PassStop const& stop, F const& work, std::size_t block = kBlock)
     {
         tbb::parallel_for(std::size_t(0), (n + block - 1) / block, [&](std::size_t k) {
+            if (stop.given_up()) return;
             FlushDenormals const guard;
             work(k * block, std::min(n, (k + 1) * block), counts.local());
         });
@@ -165,11 +167,12 @@ void ViewPaths::trace_view(SlhbTracer::Pass const& pass, SeenViews const& views,
     bool const in_turns = pass.cache != nullptr && pass.cache->empty();
     for (std::uint32_t turn = 0; turn < (in_turns ? kTurns : 1); ++turn) {
         work.in_blocks(
-            view.pixels(),
+            view.pixels(), pass.stop,
             [&](std::size_t first, std::size_t last, Counts& local) {
                 if (!in_turns || turn_of(first / block_) == turn) trace_block(first, last, local);
             },
             block_);
+        pass.stop.check();
         if (pass.cache == nullptr) continue;
         pass.cache->learn(notes_);
         for (std::vector<CacheNote>& notes : notes_) notes.clear();
@@ -193,7 +196,7 @@ void ViewPaths::send_on(SlhbTracer::Pass const& pass, SeenView const& view, Work
 {
     shared_.collect(shared_vertices_);
     SlhbTracer const tracer = tracer_of(view);
-    work.in_blocks(shared_.starts().size(), [&](std::size_t first, std::size_t last, Counts& local) {
+    work.in_blocks(shared_.starts().size(), pass.stop, [&](std::size_t first, std::size_t last, Counts& local) {
         thread_local std::vector<PathSample> sent;
         sent.resize(last - first);
         std::vector<CacheNote> none;
@@ -214,7 +217,7 @@ void ViewPaths::add(SeenViews const& views, std::size_t index, bool sharing, std
         double const pixel_m = double(here.depth) * double(glm::length(v.rays.step_x));
         return same_surface(here, all[std::size_t(v.partner)].pixels[from], pixel_m);
     };
-    work.in_blocks(v.pixels(), [&](std::size_t first, std::size_t last, Counts&) {
+    work.in_blocks(v.pixels(), PassStop(nullptr), [&](std::size_t first, std::size_t last, Counts&) {
         for (std::size_t p = first; p < last; ++p) {
             PathSample& sample = samples_[v.first + p];
             if (sharing && shared_.has(v.first + p))
@@ -246,6 +249,7 @@ void ViewPaths::trace(SlhbTracer::Pass const& pass, SeenViews const& views, Vert
     Work work;
     for (SeenView const& v : views) trace_view(pass, views, v, shares, work);
     send_on(pass, views[0], work);
+    pass.stop.check();
     if (pass.spread && settings_.slhb.interleave > 1)
         for (SeenView const& v : views)
             spread_indirect(std::span(samples_).subspan(v.first, v.pixels()), v.width,
@@ -278,7 +282,7 @@ void ViewPaths::trace_pair(SlhbTracer::Pass const& pass, SeenViews const& views,
         tracer.trace(without, starts, std::span(without_).subspan(first, last - first), {}, none, local.paths,
                      local.slhb);
     };
-    work.in_blocks(without_.size(), trace_some, kSmallBlock);
+    work.in_blocks(without_.size(), pass.stop, trace_some, kSmallBlock);
     show_moving(true);
     pair_paths_ += view.pixels();
     without_paths_ += without_.size();

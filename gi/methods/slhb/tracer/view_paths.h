@@ -22,7 +22,8 @@ public:
     /// All arguments must outlive this object.
     ViewPaths(World const& world, RenderSettings const& settings, Report& report);
 
-    /// Traces one more path for every pixel; the pass's G-buffers must be ready. @param sums  one per view
+    /// Traces one more path for every pixel; the pass's G-buffers must be ready. @param sums  one per view;
+    ///   unchanged if Pass::stop makes this throw Interrupted
     void trace(SlhbTracer::Pass const& pass, SeenViews const& views, VertexSharing sharing,
                std::span<Accumulator> sums);
 

@@ -1,0 +1,30 @@
+#pragma once
+// When a pass of a render is abandoned.
+
+#include "gi/core/progress.h"
+
+namespace gi {
+
+/// After a stop request, the first pass goes on if it has taken less than 150 ms, so that there is a picture to
+/// keep; a later one ends at once. Once given up, it stays so.
+class PassStop {
+public:
+    enum class Pass : bool { first, later };
+    /// @param stop  must outlive this object; null = never abandon
+    explicit PassStop(StopRequest const* stop, Pass pass = Pass::first) : stop_(stop), first_(stop), pass_(pass) {}
+    bool given_up() const
+    {
+        return pass_ == Pass::first ? first_.given_up() : stop_ != nullptr && stop_->requested();
+    }
+    void check() const
+    {
+        if (given_up()) throw Interrupted();
+    }
+
+private:
+    StopRequest const* stop_;
+    BuildStop first_;
+    Pass pass_;
+};
+
+} // namespace gi
