@@ -110,14 +110,20 @@ ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& b, Pro
 std::optional<double> lowest_share(Task task, std::vector<TrialRow> const& trials)
 {
     if (guess_rate(task) > 0) return guess_rate(task);
-    double false_alarms = 0, noises = 0;
+    RateCount const noise = false_alarms(trials);
+    if (noise.trials == 0) return {};
+    return (noise.yes + 0.5) / (noise.trials + 1);
+}
+
+RateCount false_alarms(std::vector<TrialRow> const& trials)
+{
+    RateCount noise;
     for (TrialRow const& row : trials)
         if (row.done->is_correct && row.step->trial.is_noise) {
-            noises += 1;
-            false_alarms += !*row.done->is_correct;
+            noise.trials += 1;
+            noise.yes += !*row.done->is_correct;
         }
-    if (noises == 0) return {};
-    return (false_alarms + 0.5) / (noises + 1);
+    return noise;
 }
 
 ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, PsychometricChoice const& function,

@@ -1,6 +1,7 @@
 #pragma once
 #include "study/analysis/groups.h"
 #include "study/stats/group_threshold.h"
+#include "study/stats/shrunken_rates.h"
 
 namespace study {
 
@@ -16,6 +17,8 @@ ThresholdRun threshold_run(Block const& block, Procedure const& procedure, std::
 /// What the trials of an observer without a signal say of guessing: the task's guess rate, or the false alarm rate
 /// (log-linear); none if there are no trials to estimate it.
 std::optional<double> lowest_share(Task task, std::vector<TrialRow> const& trials);
+/// False alarms among the trials without a signal.
+RateCount false_alarms(std::vector<TrialRow> const& trials);
 
 /// A group's threshold and its functions, in the units of group_threshold.h.
 struct GroupCurve {

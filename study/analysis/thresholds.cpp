@@ -36,6 +36,8 @@ Uncertain level_of(PsychometricShape const& shape, double u, Interval const& int
 struct RunOf {
     ThresholdRun run;
     std::optional<double> guess;
+    RateCount noise{};         ///< trials without a signal from which `guess` was estimated
+    bool is_own_noise = false; ///< those of the run, not of all its cell
 };
 using Place = std::pair<std::string, int>; ///< cell, procedure
 
@@ -59,7 +61,10 @@ std::map<Place, std::vector<RunOf>> runs_of(Script const& script, Block const& b
             int const procedure = std::get<1>(key);
             RunOf r{threshold_run(b, b.procedures[std::size_t(procedure)], rows), lowest_share(b.task, rows)};
             if (r.run.levels.empty()) continue;
-            if (!r.guess) r.guess = lowest_share(b.task, cells.at(std::get<0>(key)));
+            auto const& cell = cells.at(std::get<0>(key));
+            r.is_own_noise = r.guess.has_value();
+            if (!r.guess) r.guess = lowest_share(b.task, cell);
+            if (guess_rate(b.task) == 0 && !settings.guess) r.noise = false_alarms(r.is_own_noise ? rows : cell);
             if (settings.guess) r.guess = settings.guess;
             r.run.participant = o.participant;
             r.run.cell = std::get<0>(key);
@@ -116,6 +121,7 @@ struct GroupData {
     std::vector<ObserverLevels> observers;
     std::vector<std::string> who;
     bool fits_guess = false;
+    std::map<std::string, double> rates; ///< false alarm rates given those of all, of observers with such trials
     std::string note;
 };
 
@@ -125,16 +131,30 @@ GroupData data_of(std::vector<RunOf const*> const& runs, double proportion)
     GroupData d;
     std::map<std::string, std::pair<std::vector<double>, std::vector<int>>> people;
     std::map<std::string, std::optional<double>> guess;
+    std::map<std::string, RateCount> noise;
     for (RunOf const* r : runs) {
         auto& [levels, correct] = people[r->run.participant];
         levels.insert(levels.end(), r->run.levels.begin(), r->run.levels.end());
         correct.insert(correct.end(), r->run.correct.begin(), r->run.correct.end());
         guess[r->run.participant] = r->guess;
+        RateCount& own = noise[r->run.participant];
+        own = r->is_own_noise ? RateCount{own.yes + r->noise.yes, own.trials + r->noise.trials} : r->noise;
         d.fits_guess = d.fits_guess || !r->guess;
     }
     for (auto const& [who, data] : people) {
         d.observers.push_back({count_levels(data.first, data.second), d.fits_guess ? 0 : guess[who].value_or(0)});
         d.who.push_back(who);
+    }
+    std::vector<RateCount> counts;
+    double noises = 0;
+    for (auto const& [who, count] : noise) {
+        counts.push_back(count);
+        noises += count.trials;
+    }
+    if (!d.fits_guess && noises > 0) {
+        std::vector<double> const rates = shrunken_rates(counts);
+        for (std::size_t i = 0; i < rates.size(); ++i) // by name, as counts are
+            d.observers[i].guess = d.rates[d.who[i]] = rates[i];
     }
     if (!d.fits_guess) d.note = left_out_note(leave_out_guessers(d.observers, d.who, proportion));
     return d;
@@ -199,8 +219,8 @@ std::optional<GroupCurve> add_proportion(Block const& b, Procedure const& p, std
     for (RunOf const& r : runs) all.push_back(&r);
     ThresholdSummary likelihood{p.name, runs.front().run.cell, "likelihood", proportion, {}, kUnknown, {}};
     std::optional<GroupCurve> group;
-    if (!function.formula)
-        group = group_curve(c, function, data_of(all, proportion), proportion, settings, likelihood.note);
+    GroupData const data = data_of(all, proportion);
+    if (!function.formula) group = group_curve(c, function, data, proportion, settings, likelihood.note);
     if (group) {
         GroupThreshold const& g = group->threshold;
         likelihood.level = level_of(group->settings.shape, g.mean, g.interval, g.observers);
@@ -218,7 +238,9 @@ std::optional<GroupCurve> add_proportion(Block const& b, Procedure const& p, std
         if (settings.guess && settings.lapse)
             r.run.estimates.push_back(
                 maximum_likelihood_estimate(r.run, b, function, r.guess, proportion, settings));
-        r.run.estimates.push_back(likelihood_estimate(r.run, b, function, r.guess, proportion, group, settings));
+        auto const rate = data.rates.find(r.run.participant);
+        r.run.estimates.push_back(likelihood_estimate(
+            r.run, b, function, rate != data.rates.end() ? rate->second : r.guess, proportion, group, settings));
     }
     if (with_reversals) {
         average(reversals, c, by_observer, settings);

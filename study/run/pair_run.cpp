@@ -20,7 +20,7 @@ std::vector<ActivePairs::Pair> items_of_pairs(Pairs const& pairs, std::vector<in
 ActiveSettings active_settings(Script const& s, Pairs const& pairs, int participant, std::uint64_t purpose)
 {
     ActiveSettings settings;
-    settings.is_batch = pairs.is_batch;
+    settings.is_tree = pairs.is_tree;
     Random random = random_for(s, participant, purpose);
     std::uint64_t const high = random.next();
     settings.seed = (high << 32) | random.next();

@@ -34,7 +34,7 @@ void read_sampling(gi::Yaml const& y, Pairs& p, Mistakes& m)
     p.active_trials = 1;
     m.need(y, "trials", "40", [&](gi::Yaml const& v) { p.active_trials = int(v.integer(1, 5000)); });
     m.take(y, "batch", [&](gi::Yaml const& v) {
-        p.is_batch = v.one_of({"spanning_tree", "none"}, "batch of pairs") == 0;
+        p.is_tree = v.one_of({"none", "spanning_tree"}, "batch of pairs") == 1;
     });
     if (y.has("order") && p.order != PairOrder::random)
         m.add(y.at("order").error("an order of pairs that are chosen during the session",

@@ -133,7 +133,7 @@ struct Pairs {
     std::vector<std::pair<int, int>> pairs; ///< levels
     PairOrder order = PairOrder::balanced;
     int active_trials = 0; ///< of each cell, whose pairs are chosen during the session; 0 = the plan has all pairs
-    bool is_batch = true;  ///< active: chosen for a spanning tree at a time; false: after each answer
+    bool is_tree = false;  ///< active: chosen for a spanning tree at a time; false: after each answer
     bool is_active() const { return active_trials > 0; }
 };
 

@@ -1,50 +1,38 @@
 #pragma once
-// Which pair to show next: the one whose answer is expected to say most about the scores (active sampling, as
-// ASAP: Mikhailiuk, Wilmot, Perez-Ortiz, Yue, Mantiuk 2021, ICPR, arXiv:2004.05691; information gain in closed
-// form for probit choices: Houlsby et al. 2011, arXiv:1112.5745).
+// Which pair to show next: the one whose answer is expected to make the scores' errors smallest (active sampling
+// of pairs, as ASAP: Mikhailiuk, Wilmot, Perez-Ortiz, Yue, Mantiuk 2021, ICPR, arXiv:2004.05691, but not for the
+// most information about their order and distances).
 //
-// The posterior of the scores is the normal approximation at its mode (Laplace), of Thurstone's model with
-// P(first is chosen) = Phi(s_first - s_second) and a normal prior. An answer depends on the scores only through
-// d = s_first - s_second ~ N(m, v), so its expected gain is the mutual information H(E Phi(d)) - E H(Phi(d)).
-// In batches (the usual), the pairs are the edges of the spanning tree of all items with the most gain, in random
-// order: every item is shown in each, and answers between updates need no wait. Ties within 1e-9 bits are broken
-// by the seed, so that rounding does not decide.
+// The criterion is the sum of the posterior variances of the scores around their mean (A-optimality: Chaloner &
+// Verdinelli 1995, Statistical Science 10:273), for the posterior of pair_posterior.h with covariance C. An answer
+// about a pair with the difference d ~ N(m, v) has the information w = phi(d)^2 / (Phi(d) Phi(-d)), after which
+// C is C - c c^T w / (1 + w v), c = the pair's column of C. For w the difference is taken one posterior standard
+// deviation nearer to 0 than m: otherwise pairs that seem far apart by chance are no longer shown, so that the
+// error stays, and scales whose items are all near each other come out worse than with random pairs.
+// In trees, the pairs are the edges of a spanning tree of all items, chosen one after the other as if the answers
+// before had been given, and shown in random order. Ties within 1e-9 are broken by the seed, so that rounding does
+// not decide.
 
-#include "study/stats/matrix.h"
+#include "study/stats/pair_posterior.h"
 #include "study/stats/random.h"
 
+#include <cstdint>
 #include <deque>
 #include <optional>
-#include <span>
-#include <utility>
 
 namespace study {
 
 struct ActiveSettings {
-    bool is_batch = true; ///< false: the posterior is updated after each answer
+    bool is_tree = false; ///< choose a spanning tree at a time; false: one pair, another one, after each answer
     double prior_sd = 3;  ///< of scores, in units of F
     std::uint64_t seed = 0;
 };
-
-/// An answer about a pair of items. first_wins  1: the first was chosen, 0: the second, 1/2: neither
-struct PairAnswer {
-    std::pair<int, int> pair;
-    double first_wins = 0;
-};
-/// Normal approximation of the posterior of the scores at its mode, in units of F; the prior makes their mean 0.
-struct PairPosterior {
-    std::vector<double> mode;
-    Matrix covariance;
-};
-/// @param start  of the search, such as an earlier mode; empty = all 0
-PairPosterior pair_posterior(int items, std::span<PairAnswer const> answers, double prior_sd,
-                             std::vector<double> const& start = {});
 
 class ActivePairs {
 public:
     using Pair = std::pair<int, int>;
 
-    /// @param allowed  pairs of items that may be shown; they connect all items, or a batch is a forest
+    /// @param allowed  pairs of items that may be shown; they connect all items, or a tree is a forest
     /// @throws std::invalid_argument no pair, or an item out of range or paired with itself
     ActivePairs(int items, std::vector<Pair> allowed, ActiveSettings const& settings);
 
@@ -54,11 +42,11 @@ public:
     /// was no valid answer
     void shown(Pair pair, std::optional<double> first_wins);
 
-    int answers() const { return int(answers_.size()); }
-    /// Mode and covariance of the posterior, in units of F; the prior makes the mean of the scores 0.
-    std::vector<double> const& scores() const { return posterior_.mode; }
-    Matrix const& covariance() const { return posterior_.covariance; }
-    /// Expected information of an answer, bits.
+    int answers() const { return answers_; }
+    /// Mean and covariance of the posterior, in units of F; the prior makes the mean of the scores 0.
+    std::vector<double> const& scores() const { return posterior_.mean(); }
+    Matrix const& covariance() const { return posterior_.covariance(); }
+    /// By how much an answer is expected to lower the sum of the scores' variances, squared units of F.
     double gain(Pair pair) const;
 
 private:
@@ -68,9 +56,9 @@ private:
     std::vector<Pair> allowed_;
     ActiveSettings settings_;
     Random random_;
-    std::vector<PairAnswer> answers_;
-    PairPosterior posterior_;
-    bool is_outdated_ = false;
+    RunningPairPosterior posterior_;
+    int answers_ = 0;
+    Pair last_{-1, -1};
     std::deque<Pair> queue_;
 };
 

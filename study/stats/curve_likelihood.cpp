@@ -67,6 +67,7 @@ LevelLikelihood level_likelihood(std::span<LevelAnswers const> levels, LevelCurv
             add_beta_binomial(l, p, q, c.nu, s, pull);
             inflation = 1 + (l.trials - 1) / (c.nu + 1);
         }
+        s.surprises += l.trials * p * q;
         double const by_z = span * f.density, by_threshold = -by_z / c.scale;
         s.by_threshold += pull * by_threshold;
         s.information += l.trials / (p * q * inflation) * by_threshold * by_threshold;

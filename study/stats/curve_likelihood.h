@@ -29,6 +29,7 @@ std::optional<LevelCurve> level_curve(Sigmoid kind, double proportion, double sc
 /// Log-likelihood, without binomial coefficients, and its derivatives; information: Fisher's, of the threshold.
 struct LevelLikelihood {
     double value = 0, by_threshold = 0, information = 0;
+    double surprises = 0;                                           ///< sum over trials of p (1 - p)
     double by_log_scale = 0, by_lapse = 0, by_guess = 0, by_nu = 0; ///< 0 if not asked for
 };
 LevelLikelihood level_likelihood(std::span<LevelAnswers const> levels, LevelCurve const& curve, double threshold,

@@ -22,9 +22,10 @@ double deviation(double parameter) { return kLeastSd + std::exp(parameter); }
 
 struct Observer {
     DetectionCounts counts;
-    DetectionPoint mode; ///< of the last population: where the next search starts
-    double dprime = 0;   ///< mean under the last population
-    double information = 0;
+    DetectionPoint mode;                 ///< of the last population: where the next search starts
+    double dprime = 0;                   ///< mean under the last population
+    std::array<double, 3> information{}; ///< of d', of both, of criterion, at the mode
+    std::array<double, 2> score{};       ///< of the means of d' and criterion
 };
 
 class Marginal {
@@ -32,7 +33,7 @@ public:
     Marginal(DetectionTask task, std::span<DetectionCounts const> counts) : task_(task)
     {
         for (DetectionCounts const& c : counts)
-            if (c.signals + c.noises > 0) observers_.push_back({c, detection_point(task, c), 0, 0});
+            if (c.signals + c.noises > 0) observers_.push_back({c, detection_point(task, c), 0, {}, {}});
     }
 
     std::vector<Observer> const& observers() const { return observers_; }
@@ -79,7 +80,7 @@ private:
                  two ? l.information[2] + c.precision() : 1};
             double const determinant = h[0] * h[2] - h[1] * h[1];
             double const dx = (h[2] * gx - h[1] * gy) / determinant, dy = (h[0] * gy - h[1] * gx) / determinant;
-            o.information = l.information[0] - h[1] * h[1] / h[2];
+            o.information = {l.information[0], l.information[1], l.information[2]};
             if (gx * dx + gy * dy < 1e-8) break;
             double step = 1;
             for (; step > 1e-6; step /= 2) {
@@ -128,11 +129,12 @@ private:
             c2 += w * (zc * zc - 1);
         }
         o.dprime = dprime / sum;
+        o.score = {d1 / sum / d.sd, two ? c1 / sum / c.sd : 0};
         // Fisher's identity: the score is the mean, given the answers, of that of the complete data.
-        gradient[0] += d1 / sum / d.sd;
+        gradient[0] += o.score[0];
         gradient[1] += d2 / sum * (1 - kLeastSd / d.sd);
         if (two) {
-            gradient[2] += c1 / sum / c.sd;
+            gradient[2] += o.score[1];
             gradient[3] += c2 / sum * (1 - kLeastSd / c.sd);
         }
         return most + std::log(sum) - std::log(r00) - (two ? std::log(r11) - 0.5 * std::log(2.0) : 0) +
@@ -169,6 +171,8 @@ public:
         std::vector<int> every = free_;
         every.push_back(0);
         most_ = maximise(best_, every);
+        Population unused;
+        marginal_(best_, unused); // scores are those of the best
     }
 
     Population const& best() const { return best_; }
@@ -197,6 +201,37 @@ private:
     Population best_{}, last_{};
     double most_ = 0;
 };
+
+/// The variance of the mean by how observers' scores differ (the sandwich estimator: Huber 1967), by that of the
+/// likelihood.
+double variance_ratio(DetectionTask task, Fit& fit)
+{
+    Population const& best = fit.best();
+    double const d_variance = std::pow(deviation(best[1]), 2), c_variance = std::pow(deviation(best[3]), 2);
+    bool const two = has_criterion(task);
+    double dd = 0, dc = 0, cc = 0, surprises = 0, trials = 0;
+    auto const& observers = fit.marginal().observers();
+    for (Observer const& o : observers) {
+        // (J^-1 + variances)^-1 = (1 + J variances)^-1 J
+        auto const& j = o.information;
+        double const a = 1 + j[0] * d_variance, b = j[1] * c_variance, c = j[1] * d_variance,
+                     e = 1 + j[2] * c_variance, determinant = a * e - b * c;
+        dd += (e * j[0] - b * j[1]) / determinant;
+        dc += (e * j[1] - b * j[2]) / determinant;
+        cc += (a * j[2] - c * j[1]) / determinant;
+        DetectionRates const r = detection_rates(task, o.mode.dprime, o.mode.criterion);
+        surprises +=
+            o.counts.signals * r.hit.yes * r.hit.no + o.counts.noises * r.false_alarm.yes * r.false_alarm.no;
+        trials += o.counts.signals + o.counts.noises;
+    }
+    double const slope = two ? dc / cc : 0; // the criterion's mean is estimated too
+    double sum = 0;
+    for (Observer const& o : observers) sum += std::pow(o.score[0] - slope * o.score[1], 2);
+    auto const n = double(observers.size());
+    // More than the likelihood's is taken up by its variances between observers, except around d' = 0, where the
+    // information of three tasks vanishes.
+    return moderated(std::min(1.0, sum / (dd - slope * dc)), n, surprises / n, trials / n);
+}
 
 void check(std::span<DetectionCounts const> observers)
 {
@@ -232,15 +267,9 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
     g.deviation = deviation(best[1]);
     g.criterion = best[2];
     g.criterion_deviation = deviation(best[3]);
-    double information = 0;
-    for (Observer const& o : fit.marginal().observers()) {
-        g.observer.push_back(o.dprime);
-        information += o.information;
-    }
+    for (Observer const& o : fit.marginal().observers()) g.observer.push_back(o.dprime);
     auto const n = double(g.observer.size());
-    information /= n;
-    double const between = g.deviation * g.deviation * information;
-    double const limit = profile_limit(confidence, n, between / (1 + between));
+    double const limit = profile_limit(confidence, n, variance_ratio(task, fit));
     if (std::abs(g.mean) > kLargestMean) {
         g.mean = std::copysign(kInfinity, g.mean);
         g.note = "all answers are right (or all wrong): d' has no upper limit";

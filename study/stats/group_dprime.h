@@ -5,9 +5,8 @@
 // 4:12). No observer's own d' is needed, so none is cut off at 0 or infinite, and the answers of observers with
 // few trials are weighted as they deserve.
 //
-// Intervals are those of the profile likelihood: the means that would not be rejected. The limit of the likelihood
-// ratio lies between that of chi-square, if observers do not differ, and n log(1 + t^2 / (n - 1)), which is
-// Student's interval for n observers, if they differ by much more than their trials explain.
+// Intervals are those of the profile likelihood, the means that would not be rejected, with the limit of Student's
+// interval for n observers: see profile_limit.
 
 #include "study/stats/binomial.h"
 #include "study/stats/detection_model.h"

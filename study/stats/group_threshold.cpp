@@ -7,6 +7,8 @@
 #include "study/stats/profile.h"
 #include "study/stats/special.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,6 +42,8 @@ struct Person {
     double guess = 0.5, mode = 0; ///< where the last search for the mode ended
     double mean = 0;              ///< of the threshold under the last population
     double information = 0;
+    double surprises = 0; ///< sum over trials of p (1 - p)
+    Thresholds score{};   ///< derivatives of this observer's log-likelihood
 };
 
 class ThresholdMarginal {
@@ -76,9 +80,11 @@ public:
         gradient.fill(0);
         double sum = 0;
         for (Person& p : people_) {
+            p.score.fill(0);
             auto const curve = curve_of(at, s_.fits_guess ? inverse_logit(at[kGuess]) : p.guess);
             if (!curve) return -kInfinity;
-            sum += integrate(p, at, *curve, gradient);
+            sum += integrate(p, at, *curve);
+            for (std::size_t i = 0; i < kParts; ++i) gradient[i] += p.score[i];
         }
         double const lapse = lapse_of(at), eta = inverse_logit(at[kEta]),
                      from_usual = at[kScale] - std::log(0.125);
@@ -123,7 +129,7 @@ private:
                            is_repeated_ ? inverse_logit(at[kEta]) : 0);
     }
 
-    double integrate(Person& p, Thresholds const& at, LevelCurve const& c, Thresholds& gradient) const
+    double integrate(Person& p, Thresholds const& at, LevelCurve const& c) const
     {
         static auto const nodes = gauss_hermite(9);
         double const mean = at[kMean], sd = spread_of(at[kSpread]), precision = 1 / (sd * sd);
@@ -152,6 +158,7 @@ private:
         }
         p.mode = t;
         p.information = s.information;
+        p.surprises = s.surprises;
         double const width = 1 / std::sqrt(s.information + precision);
         std::array<LevelLikelihood, 9> at_node;
         std::array<double, 9> place, log_value;
@@ -177,14 +184,12 @@ private:
         m1 /= sum;
         m2 /= sum;
         p.mean = mean + m1;
-        gradient[kMean] += m1 * precision;
-        gradient[kSpread] += (m2 * precision - 1) * (1 - kLeastThresholdSd / sd);
-        gradient[kScale] += average.by_log_scale / sum;
-        gradient[kLapse] += average.by_lapse / sum * c.lapse * (1 - c.lapse);
-        if (s_.fits_guess) gradient[kGuess] += average.by_guess / sum * c.guess * (1 - c.guess);
-        if (is_repeated_) {
-            gradient[kEta] += average.by_nu / sum * nu_by_logit(inverse_logit(at[kEta]));
-        }
+        p.score[kMean] = m1 * precision;
+        p.score[kSpread] = (m2 * precision - 1) * (1 - kLeastThresholdSd / sd);
+        p.score[kScale] = average.by_log_scale / sum;
+        p.score[kLapse] = average.by_lapse / sum * c.lapse * (1 - c.lapse);
+        if (s_.fits_guess) p.score[kGuess] = average.by_guess / sum * c.guess * (1 - c.guess);
+        if (is_repeated_) p.score[kEta] = average.by_nu / sum * nu_by_logit(inverse_logit(at[kEta]));
         return most + std::log(sum) + std::log(width / sd);
     }
 
@@ -227,6 +232,46 @@ public:
 
     Thresholds const& best() const { return best_; }
     ThresholdMarginal const& marginal() const { return marginal_; }
+
+    /// The variance of the mean by how observers' scores differ (the sandwich estimator: Huber 1967), by that of
+    /// the likelihood. The spread of thresholds is left out: its estimate and that of the mean are independent.
+    double variance_ratio()
+    {
+        std::vector<std::size_t> parts{kMean};
+        for (int const i : shared_)
+            if (i != kSpread) parts.push_back(std::size_t(i));
+        auto const size = Eigen::Index(parts.size());
+        Eigen::MatrixXd information(size, size), by_scores = Eigen::MatrixXd::Zero(size, size);
+        constexpr double kStep = 1e-3;
+        for (Eigen::Index i = 0; i < size; ++i) {
+            Thresholds at = best_, above, below;
+            at[parts[std::size_t(i)]] += kStep;
+            marginal_(at, above);
+            at[parts[std::size_t(i)]] -= 2 * kStep;
+            marginal_(at, below);
+            for (Eigen::Index k = 0; k < size; ++k) {
+                auto const part = parts[std::size_t(k)];
+                information(k, i) = (below[part] - above[part]) / (2 * kStep);
+            }
+        }
+        Thresholds unused;
+        marginal_(best_, unused);
+        double surprises = 0, trials = 0;
+        for (Person const& p : marginal_.people()) {
+            Eigen::VectorXd score(size);
+            for (Eigen::Index i = 0; i < size; ++i) score[i] = p.score[parts[std::size_t(i)]];
+            by_scores += score * score.transpose();
+            surprises += p.surprises;
+            for (LevelAnswers const& l : p.levels) trials += l.trials;
+        }
+        // The covariances of the mean with all parts, times the information.
+        Eigen::VectorXd const of_mean =
+            ((information + information.transpose()) / 2).ldlt().solve(Eigen::VectorXd::Unit(size, 0));
+        double const ratio = of_mean.dot(by_scores * of_mean) / of_mean[0];
+        auto const n = double(marginal_.people().size());
+        return std::isfinite(ratio) && of_mean[0] > 0 ? moderated(ratio, n, surprises / n, trials / n) : 1;
+    }
+
     void start_over() { last_ = best_; }
     double loss(double mean)
     {
@@ -292,8 +337,8 @@ GroupThreshold group_threshold(std::span<ObserverLevels const> observers, GroupT
     auto const n = double(g.observers);
     double information = 0;
     for (Person const& p : m.people()) information += p.information / n;
-    double const sd = spread_of(fit.best()[kSpread]), between = sd * sd * information;
-    double const limit = profile_limit(settings.confidence, n, between / (1 + between));
+    double const sd = spread_of(fit.best()[kSpread]);
+    double const limit = profile_limit(settings.confidence, n, n > 1 ? fit.variance_ratio() : 1);
     auto const end = [&](double direction) {
         fit.start_over();
         double const step = 1.5 * std::sqrt((sd * sd + 1 / (information + 1)) / n);

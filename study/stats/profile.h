@@ -45,12 +45,21 @@ double profile_end(ProfileSearch const& s, Loss const& loss)
     return inside + 0.5 * (outside - inside);
 }
 
-/// The limit of the likelihood ratio of a mean over n observers. Chi-square's, if observers do not differ. If they
-/// are found to differ, their variance is estimated, whatever its share: n log(1 + t^2 / (n - 1)), which is
-/// Student's interval. Where they do not differ, half of all samples suggest that they do, and intervals would
-/// hold the mean in 97 instead of 95 %: by simulation, the limit is lowered by up to a tenth if many observers
-/// seem equal.
-/// @param share of the variance of observers' estimates that is due to their differences
-double profile_limit(double confidence, double n, double share);
+/// The limit of the likelihood ratio of a mean over n observers, for Student's interval with n - 1 degrees of
+/// freedom: exact where observers' estimates are normal with equal variances, whether observers differ or not.
+/// The variance between observers is estimated with the mean. If it is not 0, that limit is n log(1 + t^2 / (n -
+/// 1)), and the ratio below is 1. If it is 0, observers differ by as much as or less than their trials explain;
+/// the likelihood takes what the trials explain, Student's interval the ratio of it that was found. Taking the
+/// former would make intervals too narrow where observers differ, but by too little to be seen in this sample.
+/// @param ratio  variance of the mean by how observers differ, by that of the likelihood
+/// @param n      1: chi-square's limit
+double profile_limit(double confidence, double n, double ratio);
+
+/// Few observers, and few answers that are not as expected (nearly perfect observers all seem equal), tell little
+/// of the variance of a mean. This moves its ratio to that of the likelihood towards 1, the more the fewer there
+/// are (as Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3:3).
+/// @param surprises  mean over observers of the sum of p (1 - p) of their trials
+/// @param trials     mean over observers
+double moderated(double ratio, double n, double surprises, double trials);
 
 } // namespace study

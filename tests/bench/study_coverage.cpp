@@ -1,6 +1,7 @@
 // Bias and coverage of what `study analyze` reports, over many simulated experiments:
-//   bench_study_coverage [detection|false_alarms|thresholds|observers] [EXPERIMENTS]
-// Rows are printed as they are finished, as a Markdown table.
+//   bench_study_coverage [detection|false_alarms|thresholds|observers] [EXPERIMENTS [OBSERVERS [TRIALS [ROWS]]]]
+// OBSERVERS of each experiment (20); TRIALS of each observer in detection (30); ROWS: only those whose names
+// contain this. Rows are printed as they are finished, as a Markdown table.
 
 #include "tests/study_analysis/coverage.h"
 
@@ -13,6 +14,15 @@ namespace {
 using namespace study;
 using namespace study::test;
 
+/// Of the command line.
+struct Choice {
+    int observers = 20, trials = 30;
+    std::string rows;
+
+    bool has(std::string const& row) const { return row.find(rows) != std::string::npos; }
+};
+Choice g_choice;
+
 void print(Tally const& t, char const* unit)
 {
     double const error = 100 * std::sqrt(0.05 * 0.95 / std::max(1, t.experiments));
@@ -21,8 +31,11 @@ void print(Tally const& t, char const* unit)
     std::fflush(stdout);
 }
 
-void detection_row(DetectionExperiment const& e, std::string const& name, int experiments)
+void detection_row(DetectionExperiment e, std::string const& name, int experiments)
 {
+    if (!g_choice.has(name)) return;
+    e.observers = g_choice.observers;
+    e.trials = g_choice.trials;
     AnalysisSettings settings;
     settings.draws = 0;
     Tally t{name};
@@ -98,7 +111,9 @@ void thresholds(int experiments)
 {
     AnalysisSettings settings;
     settings.draws = 0;
-    for (ThresholdExperiment const& e : threshold_experiments()) {
+    for (ThresholdExperiment e : threshold_experiments()) {
+        if (!g_choice.has(name_of(e))) continue;
+        e.observers = g_choice.observers;
         Tally group{name_of(e) + ": population"}, own{name_of(e) + ": observers"},
             target{name_of(e) + ": population, mean of reversals"}, quest{name_of(e) + ": observers, QUEST+"},
             reversals{name_of(e) + ": observers, mean of reversals"};
@@ -144,6 +159,9 @@ void observers(int experiments)
         e.task = DetectionTask(k);
         e.mean = 1.5;
         e.sd = 0.4;
+        e.observers = g_choice.observers;
+        e.trials = g_choice.trials;
+        if (!g_choice.has(study::test::name_of(e.task))) continue;
         Tally mean{fmt::format("hierarchical d' of {}: population", study::test::name_of(e.task))},
             each{fmt::format("hierarchical d' of {}: observers", study::test::name_of(e.task))};
         for (int i = 0; i < experiments; ++i) {
@@ -154,8 +172,9 @@ void observers(int experiments)
         print(mean, "");
         print(each, "");
     }
-    for (ThresholdExperiment const& e : threshold_experiments()) {
-        if (e.lapse == 0.05 && e.eta == 0) continue;
+    for (ThresholdExperiment e : threshold_experiments()) {
+        if ((e.lapse == 0.05 && e.eta == 0) || !g_choice.has(name_of(e))) continue;
+        e.observers = g_choice.observers;
         Tally mean{"hierarchical, " + name_of(e) + ": population"},
             each{"hierarchical, " + name_of(e) + ": observers"};
         for (int i = 0; i < experiments; ++i) {
@@ -173,6 +192,9 @@ int main(int argc, char** argv)
 {
     std::string const what = argc > 1 ? argv[1] : "";
     int const experiments = argc > 2 ? std::atoi(argv[2]) : 100;
+    if (argc > 3) g_choice.observers = std::atoi(argv[3]);
+    if (argc > 4) g_choice.trials = std::atoi(argv[4]);
+    if (argc > 5) g_choice.rows = argv[5];
     fmt::print("| estimate | intervals | bias | coverage % | below | above | no estimate or end | +- % |\n"
                "|---|---|---|---|---|---|---|---|\n");
     if (what.empty() || what == "detection") detection(experiments);

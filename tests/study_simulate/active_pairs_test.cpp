@@ -81,7 +81,7 @@ TEST(ActiveSessions, ArePlannedWithoutPairsAndRecordedWithThem)
 
 TEST(ActiveSessions, DependOnlyOnSeedParticipantAndAnswers)
 {
-    for (char const* const batch : {"", ", batch: none"}) {
+    for (char const* const batch : {"", ", batch: spanning_tree"}) {
         Script const s = active(batch);
         TemporaryFolder const one, two, other;
         ObserverModel const m = exact_model(s);
