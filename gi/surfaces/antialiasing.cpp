@@ -1,5 +1,6 @@
 #include "gi/surfaces/antialiasing.h"
 
+#include "gi/core/radical_inverse.h"
 #include "gi/filter/filter_input.h"
 
 #include <array>
@@ -17,13 +18,6 @@ constexpr float kMostFrames = 8;
 constexpr float kSpread = 1;
 /// Relative difference of depths from which on a pixel showed another surface.
 constexpr float kDepth = 0.05f;
-
-float radical_inverse(std::uint32_t i, std::uint32_t base)
-{
-    float value = 0, digit = 1 / float(base);
-    for (; i > 0; i /= base, digit /= float(base)) value += digit * float(i % base);
-    return value;
-}
 
 /// Weights of four texels of which the middle two are `t` and 1 - `t` away (Catmull and Rom 1974).
 std::array<float, 4> catmull_rom(float t)
@@ -72,7 +66,8 @@ struct Around {
 vec2 Antialiasing::sample() const
 {
     constexpr std::uint32_t kPeriod = 16;
-    return {radical_inverse(frame_ % kPeriod + 1, 2), radical_inverse(frame_ % kPeriod + 1, 3)};
+    std::size_t const i = frame_ % kPeriod + 1;
+    return {float(radical_inverse(i, 2)), float(radical_inverse(i, 3))};
 }
 
 /// What the last picture showed, with 0 frames where that was another surface or beyond its borders.

@@ -17,8 +17,6 @@ public:
     /// Replaces "color" by its mean with earlier pictures, and takes the layer "motion" away, which must be as in
     /// gi/render/motion.h, except that pixels without a surface may have a motion, with depth 0. Sizes may change.
     void add(Picture& picture);
-    /// Forgets earlier pictures.
-    void forget() { width_ = height_ = 0; }
 
 private:
     struct Texel {

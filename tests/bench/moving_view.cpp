@@ -1,15 +1,16 @@
 // What people see while they move: the viewer's rendering thread and its presenter run in real time, driven by a
 // recorded head, and what they show at given moments is compared with converged pictures of those moments.
-//   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--size WxH] [--eyes 1|2] [--fov
-//   DEG]
+//   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--truth-filter NAME] [--size WxH]
+//   [--eyes 1|2] [--fov DEG]
 //                     [--avatar FILE] [--scored N] [--set KEY=VALUE]... [--offline HZ] [--light-scale S] [--young
 //                     N]
 // HEAD.csv: time_s, then the head relative to the scene's first camera: x_m,y_m,z_m (right, up, back), yaw_deg,
 // pitch_deg (left, up). --fov is the vertical field of view (60). The truth is that of the method reference at the
-// session's bounces; it is kept in its folder and reused. With two eyes (0.063 m apart), rivalry is the mean
-// difference of the eyes' errors at points that both see. --offline: frames at a fixed rate instead of real time,
-// with light at a fixed scale; --young: N frames of a head that holds still, scored after 1, 2, 4, ... Writes
-// shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment, E eye) and prints a row of figures.
+// session's bounces, through a filter (oidn-high); it is kept in its folder and reused. With two eyes (0.063 m
+// apart), rivalry is the mean difference of the eyes' errors at points that both see. --offline: frames at a fixed
+// rate instead of real time, with light at a fixed scale and --paths (1); --young: N frames of a head that holds
+// still, scored after 1, 2, 4, ... Writes shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment, E eye) and
+// prints a row of figures.
 
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
@@ -215,11 +216,8 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
                 for (Change const& c : std::vector<Change>{{"method", "reference"},
                                                            {"denoise", o.truth_filter},
                                                            {"reuse", 1},
-                                                           {"first_surfaces", "off"}})
-                    try {
-                        exact->apply(c);
-                    } catch (gi::InputError const&) {
-                    }
+                                                           {"first_surfaces", false}})
+                    exact->apply(c);
                 exact->apply({"scene", o.scene});
             }
             FrameCommand command;

@@ -134,6 +134,7 @@ void RenderSession::rebuild(std::shared_ptr<gi::Scene const> scene)
     auto world = std::make_unique<gi::MovingWorld>(scene, time_s_, report_);
     restart(); // method runners refer to the old world
     seen_.reset();
+    forget_smoothed();
     world_ = std::move(world);
     scene_ = std::move(scene);
     pending_ = {};

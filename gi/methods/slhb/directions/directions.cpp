@@ -1,6 +1,7 @@
 #include "gi/methods/slhb/directions/directions.h"
 
 #include "gi/core/error.h"
+#include "gi/core/radical_inverse.h"
 
 #include <algorithm>
 #include <array>
@@ -111,16 +112,6 @@ dvec3 on_half_sphere(double u, double v)
 {
     double const r = std::sqrt(std::max(0.0, 1 - u * u));
     return {r * std::cos(2 * kPiD * v), r * std::sin(2 * kPiD * v), u};
-}
-
-double radical_inverse(std::size_t i, std::size_t base)
-{
-    double out = 0, digit = 1;
-    for (; i > 0; i /= base) {
-        digit /= double(base);
-        out += digit * double(i % base);
-    }
-    return out;
 }
 
 std::vector<dvec3> halton(std::size_t axes)
