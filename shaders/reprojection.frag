@@ -1,8 +1,8 @@
 // See viewer/devices/gl/reprojection.h. All positions are pixels of picture A from its top left; w = 1 / depth. SEARCHES is a
 // define, 0 where B stands where A stood.
 
-layout(binding = 0) uniform sampler2D picture;
-layout(binding = 1) uniform sampler2D depth;
+layout(binding = 0) uniform sampler2D picture; // radiance and w, 0 = no surface
+layout(binding = 1) uniform sampler2D around;  // of tiles: least and greatest w of the tile and those beside it
 
 uniform mat3 a_from_b;
 uniform vec3 b_in_a;
@@ -28,77 +28,87 @@ ivec2 cell(vec2 x, out vec2 f)
     return ivec2(whole);
 }
 
-struct Corners {
-    ivec2 a, b; // opposite pixels
-    vec2 f;
-    vec4 w;      // of (a), (b.x, a.y), (a.x, b.y), (b)
-    bool smooth_; // all of one surface
-};
-
-Corners corners_at(vec2 x)
+/// Weights of the next row and column: 0 or 1 where the four pixels, whose w are given, show several surfaces.
+vec2 weights(vec2 f, vec4 w)
 {
-    Corners c;
-    c.a = cell(x, c.f);
-    c.b = min(c.a + 1, textureSize(picture, 0) - 1);
-    c.w = vec4(0.0);
-    c.smooth_ = true;
-    if (SEARCHES == 1) {
-        // At the corner that the four share, half a pixel from where others would be meant.
-        vec4 d = textureGather(depth, (vec2(c.a) + 1.0) / vec2(textureSize(depth, 0))).wzxy;
-        c.w = mix(vec4(0.0), 1.0 / d, greaterThan(d, vec4(0.0)));
-        float most = max(max(c.w.x, c.w.y), max(c.w.z, c.w.w)), least = min(min(c.w.x, c.w.y), min(c.w.z, c.w.w));
-        c.smooth_ = most - least <= kSame * most;
-    }
-    return c;
+    float most = max(max(w.x, w.y), max(w.z, w.w)), least = min(min(w.x, w.y), min(w.z, w.w));
+    return most - least <= kSame * most ? f : step(0.5, f);
 }
-
-int nearest_corner(vec2 f) { return (f.x < 0.5 ? 0 : 1) + (f.y < 0.5 ? 0 : 2); }
 
 float w_at(vec2 x)
 {
-    Corners c = corners_at(inside(x));
-    if (!c.smooth_) return c.w[nearest_corner(c.f)];
-    return mix(mix(c.w.x, c.w.y, c.f.x), mix(c.w.z, c.w.w, c.f.x), c.f.y);
+    vec2 f;
+    ivec2 a = cell(inside(x), f);
+    // At the corner that the four share, half a pixel from where others would be meant.
+    vec4 w = textureGather(picture, (vec2(a) + 1.0) / vec2(textureSize(picture, 0)), 3).wzxy;
+    f = weights(f, w);
+    return mix(mix(w.x, w.y, f.x), mix(w.z, w.w, f.x), f.y);
 }
 
 vec3 color_at(vec2 x)
 {
-    Corners c = corners_at(inside(x));
-    int n = nearest_corner(c.f);
-    ivec2 near = ivec2((n & 1) == 0 ? c.a.x : c.b.x, (n & 2) == 0 ? c.a.y : c.b.y);
-    if (!c.smooth_ || c.f == vec2(0.0)) return texelFetch(picture, near, 0).rgb;
-    vec3 top = mix(texelFetch(picture, c.a, 0).rgb, texelFetch(picture, ivec2(c.b.x, c.a.y), 0).rgb, c.f.x);
-    vec3 bottom = mix(texelFetch(picture, ivec2(c.a.x, c.b.y), 0).rgb, texelFetch(picture, c.b, 0).rgb, c.f.x);
-    return mix(top, bottom, c.f.y);
+    vec2 f;
+    ivec2 a = cell(inside(x), f), b = min(a + 1, textureSize(picture, 0) - 1);
+    vec4 p = texelFetch(picture, a, 0), q = texelFetch(picture, ivec2(b.x, a.y), 0),
+         r = texelFetch(picture, ivec2(a.x, b.y), 0), s = texelFetch(picture, b, 0);
+    return mix(mix(p, q, f.x), mix(r, s, f.x), f.y).rgb;
 }
 
-struct Found {
-    float w;        // of the last place looked at
-    float residual; // px
-};
-
-/// @param needed whether the answer is wanted: the loop is not entered otherwise
-Found search(vec2 r, vec2 c, float w, bool needed)
+/// Least and greatest w that can lie at r after a shift.
+vec2 range_at(vec2 r, float shift)
 {
-    float shift = length(c);
-    Found found = Found(w, needed ? 1e30 : 0.0);
-    for (int k = 0; k < kSteps && found.residual > kClose; ++k) {
-        float there = w_at(r + c * found.w);
-        found = Found(there, shift * abs(there - found.w));
-    }
-    return found;
+    vec2 range = texelFetch(around, ivec2(inside(r)) / TILE, 0).rg;
+    return shift * nearest <= float(TILE) ? range : vec2(0.0, nearest);
 }
 
-/// The first place beside x along the shift that is not nearer than w.
-vec2 beside(vec2 x, vec2 c, float w, bool good)
+/// The place that B shows at a pixel which would show r if all were far away. One loop with one look-up, because
+/// pixels that are drawn together take as many as the slowest of them.
+/// @param c  shift, px per w    @param found  false: a hole, filled by what is beside it
+vec2 search(vec2 r, vec2 c, out bool found)
 {
-    if (good) return x;
-    vec2 reach = c * max(nearest - w, 0.0);
-    float limit = w * (1.0 + kSame) + 1e-6;
-    for (int k = 1; k <= kWalk; ++k) {
-        vec2 step = reach * (float(k) / float(kWalk));
-        if (w_at(x + step) <= limit) return x + step;
-        if (w_at(x - step) <= limit) return x - step;
+    const int kFar = 0, kNear = 1, kHole = 2, kBeside = 3, kDone = 4;
+    float shift = length(c), far_w = 0.0, limit = 0.0;
+    vec2 range = range_at(r, shift), hole = r;
+    float near = range.y, w = shift * (range.y - range.x) < kConverged ? 0.5 * (range.x + range.y) : 0.0;
+    bool far_good = false;
+    int state = kFar, n = 0;
+    vec2 x = r + c * w;
+    found = true;
+    while (state != kDone) {
+        float there = w_at(x);
+        ++n;
+        if (state == kFar || state == kNear) {
+            float residual = shift * abs(there - w);
+            bool good = residual < kConverged, ends = residual <= kClose || n > kSteps;
+            w = there;
+            if (ends && state == kFar) {
+                // Nothing is so much nearer that it would lie elsewhere.
+                state = good && shift * (near - w) < kConverged ? kDone : kNear;
+                far_w = w;
+                far_good = good;
+                w = state == kNear ? near : w;
+                n = 0;
+            } else if (ends) {
+                state = good || far_good ? kDone : kHole;
+                w = good && !(far_good && far_w >= w) ? w : far_good ? far_w : min(far_w, w);
+                n = 0;
+            }
+            x = r + c * w;
+        } else if (state == kHole) { // the first place along the shift that is not nearer
+            found = false;
+            w = min(w, there);
+            limit = w * (1.0 + kSame) + 1e-6;
+            hole = r + c * w;
+            state = kBeside;
+            n = 0;
+            x = hole + c * (max(nearest - w, 0.0) / float(kWalk));
+        } else if (there <= limit || n == 2 * kWalk) {
+            x = there <= limit ? x : hole;
+            state = kDone;
+        } else {
+            float way = float(n / 2 + 1) / float(kWalk);
+            x = hole + c * (max(nearest - w, 0.0) * ((n & 1) == 0 ? way : -way));
+        }
     }
     return x;
 }
@@ -107,24 +117,12 @@ void main()
 {
     vec3 far = a_from_b * vec3(gl_FragCoord.xy, 1.0); // FragCoord: the target's top row is its first
     // Behind A: the edge on that side.
-    vec2 r = far.xy / max(far.z, 1e-6);
+    vec2 r = far.xy / max(far.z, 1e-6), x = r;
     bool seen = far.z > 0.0;
-    vec2 x = r;
     if (SEARCHES == 1) {
-        vec2 c = b_in_a.xy - r * b_in_a.z;
-        Found from_far = search(r, c, w_at(r), true);
-        bool far_good = from_far.residual < kConverged;
-        // Nothing in the picture is so much nearer that it would lie elsewhere.
-        bool alone = far_good && length(c) * (nearest - from_far.w) < kConverged;
-        Found from_near = search(r, c, alone ? from_far.w : nearest, !alone);
-        bool near_good = from_near.residual < kConverged;
-        seen = seen && (far_good || near_good);
-        float w = near_good && (!far_good || from_near.w > from_far.w) ? from_near.w : from_far.w;
-        if (!far_good && !near_good) {
-            w = min(from_far.w, from_near.w);
-            w = min(w, w_at(r + c * w));
-        }
-        x = beside(r + c * w, c, w, far_good || near_good);
+        bool found;
+        x = search(r, b_in_a.xy - r * b_in_a.z, found);
+        seen = seen && found;
     }
     vec2 size = vec2(textureSize(picture, 0));
     seen = seen && all(greaterThanEqual(x, vec2(0.0))) && all(lessThanEqual(x, size));

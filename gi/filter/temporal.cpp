@@ -1,5 +1,6 @@
 #include "gi/filter/temporal.h"
 
+#include "gi/core/catmull_rom.h"
 #include "gi/core/error.h"
 #include "gi/filter/filter_input.h"
 
@@ -177,6 +178,34 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
     total.renewed += renewed.combine(std::plus<>());
 }
 
+/// Replaces bilinear means of the last frame's light by Catmull and Rom's cubics, where all 4 x 4 pixels showed
+/// the surface: bilinear means would blur it in every frame.
+/// @param place  in the last frame, from the middle of its first pixel   @param shows  of a Surface
+template <class Shows>
+void TemporalReuse::sharpen(vec2 place, int width, int height, Shows const& shows, Light& light) const
+{
+    vec2 const first = glm::floor(place) - 1.0f;
+    if (first.x < 0 || first.y < 0 || first.x + 4 > float(width) || first.y + 4 > float(height)) return;
+    std::array<float, 4> const across = catmull_rom(place.x - first.x - 1),
+                               down = catmull_rom(place.y - first.y - 1);
+    Light sum{};
+    for (std::size_t j = 0; j < 4; ++j)
+        for (std::size_t k = 0; k < 4; ++k) {
+            std::size_t const t = (std::size_t(first.y) + j) * std::size_t(width) + std::size_t(first.x) + k;
+            if (!shows(last_surfaces_[t])) return;
+            Light const& there = last_lights_[t];
+            float const w = across[k] * down[j];
+            sum.direct += w * there.direct;
+            sum.indirect += w * there.indirect;
+            sum.recent_direct += w * there.recent_direct;
+            sum.recent_indirect += w * there.recent_indirect;
+        }
+    light.direct = glm::max(sum.direct, vec3{0});
+    light.indirect = glm::max(sum.indirect, vec3{0});
+    light.recent_direct = glm::max(sum.recent_direct, vec3{0});
+    light.recent_indirect = glm::max(sum.recent_indirect, vec3{0});
+}
+
 /// Averages the light of this frame with the surface's earlier light.
 void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                            TemporalCounts& total)
@@ -267,6 +296,10 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             };
             float const slope = std::min(change(x > 0, -1), change(x + 1 < width, 1)) +
                                 std::min(change(y > 0, -width), change(y + 1 < height, width));
+            auto const shows = [&](Surface const& there, float tolerance) {
+                return std::abs(there.depth - was.z) < kDepth * was.z + tolerance &&
+                       glm::dot(there.normal, here.normal) >= kCosine;
+            };
             Light before{};
             float weight = 0;
             if (finite(was) && std::abs(was.x) < 1e6f && std::abs(was.y) < 1e6f) {
@@ -277,9 +310,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                     if (tx < 0 || ty < 0 || tx >= width || ty >= height || !(w > 0)) continue;
                     std::size_t const t = std::size_t(ty) * std::size_t(width) + std::size_t(tx);
                     Surface const& there = last_surfaces_[t];
-                    bool const same = std::abs(there.depth - was.z) < kDepth * was.z + slope &&
-                                      glm::dot(there.normal, here.normal) >= kCosine;
-                    if (!same && !(resting && is_beside(there, x, y))) continue;
+                    if (!shows(there, slope) && !(resting && is_beside(there, x, y))) continue;
                     Light const& l = last_lights_[t];
                     before.direct += w * l.direct;
                     before.indirect += w * l.indirect;
@@ -296,6 +327,10 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                 local.started += !taken;
                 continue;
             }
+            if (!still && weight > 0.999f)
+                sharpen(
+                    vec2{float(x), float(y)} + vec2(was), width, height,
+                    [&](Surface const& there) { return shows(there, 2 * slope); }, before);
             Light& now = lights_[i];
             if (Light const& last = last_lights_[i]; still && weight > 1 - kStill) {
                 now.still_frames = std::min(last.still_frames + 1, float(settings_.most_frames));

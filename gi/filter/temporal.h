@@ -87,6 +87,8 @@ private:
     };
     void follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                 TemporalCounts& counts);
+    template <class Shows>
+    void sharpen(vec2 place, int width, int height, Shows const& shows, Light& light) const;
     /// Where the light has changed, replaces means by those of the latest frames.
     void renew_changed(int width, int height, TemporalCounts& counts);
     void rest(Picture& frame, TemporalCounts& counts);

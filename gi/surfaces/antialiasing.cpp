@@ -1,5 +1,6 @@
 #include "gi/surfaces/antialiasing.h"
 
+#include "gi/core/catmull_rom.h"
 #include "gi/core/radical_inverse.h"
 #include "gi/filter/filter_input.h"
 
@@ -13,30 +14,25 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr float kMostFrames = 8;
+/// Weight of the earlier samples, at most.
+constexpr float kMost = 5;
+/// A sample so many pixels of the mean from a pixel's middle has exp(-kNarrow d^2) of the weight.
+constexpr float kNarrow = 1;
 /// Earlier colours are held within the mean +- so many standard deviations of 3 x 3 pixels.
 constexpr float kSpread = 1;
 /// Relative difference of depths from which on a pixel showed another surface.
 constexpr float kDepth = 0.05f;
 
-/// Weights of four texels of which the middle two are `t` and 1 - `t` away (Catmull and Rom 1974).
-std::array<float, 4> catmull_rom(float t)
-{
-    return {t * (-0.5f + t * (1 - 0.5f * t)), 1 + t * t * (-2.5f + 1.5f * t), t * (0.5f + t * (2 - 1.5f * t)),
-            t * t * (-0.5f + 0.5f * t)};
-}
-
-/// Mean and standard deviation of colours in 3 x 3 pixels around each pixel of a row.
+/// Range of colours in 3 x 3 pixels around each pixel of a row: the mean +- kSpread standard deviations.
 struct Around {
-    std::vector<float> sums, squares;
+    std::vector<float> sums, squares, least, most;
 
     void find(float const* color, int width, int height, int y)
     {
         std::size_t const n = 3 * std::size_t(width);
         float const *const row = color + n * std::size_t(y), *const up = y > 0 ? row - n : row,
                            *const down = y + 1 < height ? row + n : row;
-        sums.resize(n + 6);
-        squares.resize(n + 6);
+        for (auto* const v : {&sums, &squares, &least, &most}) v->resize(n + 6);
         for (std::size_t i = 0; i < n; ++i) {
             sums[i + 3] = row[i] + up[i] + down[i];
             squares[i + 3] = row[i] * row[i] + up[i] * up[i] + down[i] * down[i];
@@ -46,20 +42,55 @@ struct Around {
                 (*v)[c] = (*v)[3 + c];
                 (*v)[n + 3 + c] = (*v)[n + c];
             }
-    }
-    vec3 hold(int x, vec3 color) const
-    {
-        vec3 held;
-        for (std::size_t c = 0; c < 3; ++c) {
-            std::size_t const i = 3 * std::size_t(x) + c;
+        for (std::size_t i = 0; i < n; ++i) {
             float const mean = (sums[i] + sums[i + 3] + sums[i + 6]) / 9,
                         square = (squares[i] + squares[i + 3] + squares[i + 6]) / 9,
                         reach = kSpread * std::sqrt(std::max(0.0f, square - mean * mean));
-            held[int(c)] = std::clamp(color[int(c)], mean - reach, mean + reach);
+            least[i] = mean - reach;
+            most[i] = mean + reach;
         }
-        return held;
+    }
+    vec3 hold(int x, vec3 color) const
+    {
+        std::size_t const i = 3 * std::size_t(x);
+        return glm::clamp(color, vec3{least[i], least[i + 1], least[i + 2]},
+                          vec3{most[i], most[i + 1], most[i + 2]});
     }
 };
+
+/// Where the middles of a mean's pixels lie along one axis of a picture.
+struct Axis {
+    struct Pixel {
+        float place;  ///< from the sample of the picture's first pixel, in its pixels
+        int nearest;  ///< pixel of the picture
+        float weight; ///< of its sample
+    };
+    std::vector<Pixel> pixels;
+
+    /// @param at  where samples lie in the picture's pixels
+    Axis(int of_mean, int of_picture, float at)
+    {
+        float const scale = float(of_picture) / float(of_mean);
+        for (int x = 0; x < of_mean; ++x) {
+            float const place = (float(x) + 0.5f) * scale - at;
+            int const nearest = std::clamp(int(std::floor(place + 0.5f)), 0, of_picture - 1);
+            float const away = (float(nearest) - place) / scale;
+            pixels.push_back({place, nearest, std::exp(-kNarrow * away * away)});
+        }
+    }
+};
+
+/// Interpolates between samples; @param x, y  from the first pixel's sample, in pixels
+vec3 bilinear(Layer const& color, int width, int height, float x, float y)
+{
+    float const left = std::floor(x), top = std::floor(y);
+    vec2 const f{x - left, y - top};
+    auto const at = [&](int i, int j) {
+        return rgb(color, std::size_t(std::clamp(int(top) + j, 0, height - 1)) * std::size_t(width) +
+                              std::size_t(std::clamp(int(left) + i, 0, width - 1)));
+    };
+    return glm::mix(glm::mix(at(0, 0), at(1, 0), f.x), glm::mix(at(0, 1), at(1, 1), f.x), f.y);
+}
 
 } // namespace
 
@@ -70,7 +101,7 @@ vec2 Antialiasing::sample() const
     return {float(radical_inverse(i, 2)), float(radical_inverse(i, 3))};
 }
 
-/// What the last picture showed, with 0 frames where that was another surface or beyond its borders.
+/// What the last mean showed, with weight 0 where that was another surface or beyond its borders.
 Antialiasing::Texel Antialiasing::earlier(vec2 place, float depth) const
 {
     float const u = place.x - 0.5f, v = place.y - 0.5f;
@@ -89,10 +120,13 @@ Antialiasing::Texel Antialiasing::earlier(vec2 place, float depth) const
     std::array<float, 4> const across = catmull_rom(u - float(left)), down = catmull_rom(v - float(top));
     hn::FixedTag<float, 4> const lanes;
     auto sum = hn::Zero(lanes);
-    for (std::size_t j = 0; j < 4; ++j)
-        for (std::size_t i = 0; i < 4; ++i)
-            sum = hn::MulAdd(hn::Set(lanes, across[i] * down[j]),
-                             hn::LoadU(lanes, &last_[rows[j] + columns[i]].color.x), sum);
+    for (std::size_t j = 0; j < 4; ++j) {
+        Texel const* const row = &last_[rows[j]];
+        auto of_row = hn::Mul(hn::Set(lanes, across[0]), hn::LoadU(lanes, &row[columns[0]].color.x));
+        for (std::size_t i = 1; i < 4; ++i)
+            of_row = hn::MulAdd(hn::Set(lanes, across[i]), hn::LoadU(lanes, &row[columns[i]].color.x), of_row);
+        sum = hn::MulAdd(hn::Set(lanes, down[j]), of_row, sum);
+    }
     static_assert(sizeof(Texel) == 4 * sizeof(float));
     hn::StoreU(sum, lanes, &found.color.x);
     if (!std::isfinite(found.color.x + found.color.y + found.color.z)) return {};
@@ -100,35 +134,47 @@ Antialiasing::Texel Antialiasing::earlier(vec2 place, float depth) const
     return found;
 }
 
-void Antialiasing::add(Picture& picture)
+Picture Antialiasing::add(Picture const& picture, int width, int height)
 {
-    int const width = picture.width, height = picture.height;
-    Layer &color = *picture.find("color"), &motion = *picture.find("motion");
-    Layer const& depth = *picture.find("depth");
+    Layer const &color = *picture.find("color"), &motion = *picture.find("motion"),
+                &depth = *picture.find("depth");
+    Picture shown{width, height, {}, {}};
+    shown.add("color", 3);
+    shown.add("depth", 1);
+    std::vector<float>&mean = shown.find("color")->data, &depths = shown.find("depth")->data;
     std::swap(texels_, last_);
-    std::swap(depths_, last_depths_);
-    texels_.resize(picture.pixels());
-    depths_ = depth.data;
-    vec2 const scale{float(width_) / float(width), float(height_) / float(height)};
+    texels_.resize(shown.pixels());
+    vec2 const at = sample(), larger{float(width) / float(picture.width), float(height) / float(picture.height)},
+               scale{float(width_) / float(width), float(height_) / float(height)};
+    Axis const columns(width, picture.width, at.x), rows(height, picture.height, at.y);
     tbb::parallel_for(0, height, [&](int y) {
         thread_local Around around;
-        around.find(color.data.data(), width, height, y);
+        Axis::Pixel const row = rows.pixels[std::size_t(y)];
+        around.find(color.data.data(), picture.width, picture.height, row.nearest);
         for (int x = 0; x < width; ++x) {
             std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            vec3 const now = rgb(color, i), was = rgb(motion, i);
-            vec2 const place = scale * (vec2{float(x) + 0.5f, float(y) + 0.5f} + vec2(was));
+            Axis::Pixel const& column = columns.pixels[std::size_t(x)];
+            std::size_t const nearest =
+                std::size_t(row.nearest) * std::size_t(picture.width) + std::size_t(column.nearest);
+            vec3 const was = rgb(motion, nearest);
+            vec2 const place = scale * (vec2{float(x) + 0.5f, float(y) + 0.5f} + larger * vec2(was));
             Texel const before = std::isfinite(was.x + was.y + was.z) ? earlier(place, was.z) : Texel{};
-            float const frames = std::clamp(before.frames, 0.0f, kMostFrames - 1) + 1;
-            texels_[i] = {frames > 1 ? glm::mix(around.hold(x, before.color), now, 1 / frames) : now, frames};
+            float const earlier_weight = std::clamp(before.weight, 0.0f, kMost),
+                        weight = column.weight * row.weight;
+            vec3 const now = earlier_weight > 0
+                                 ? glm::mix(around.hold(column.nearest, before.color), rgb(color, nearest),
+                                            weight / (earlier_weight + weight))
+                                 : bilinear(color, picture.width, picture.height, column.place, row.place);
+            texels_[i] = {now, earlier_weight + weight};
+            for (std::size_t c = 0; c < 3; ++c) mean[3 * i + c] = now[int(c)];
+            depths[i] = depth.data[nearest];
         }
     });
-    tbb::parallel_for(std::size_t(0), texels_.size(), [&](std::size_t i) {
-        for (std::size_t c = 0; c < 3; ++c) color.data[3 * i + c] = texels_[i].color[int(c)];
-    });
-    std::erase_if(picture.layers, [](Layer const& l) { return l.name == "motion"; });
+    last_depths_ = depths;
     width_ = width;
     height_ = height;
     ++frame_;
+    return shown;
 }
 
 } // namespace gi

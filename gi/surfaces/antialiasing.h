@@ -1,7 +1,8 @@
 #pragma once
-// Temporal antialiasing: pictures whose rays pass another place of their pixels in each frame are averaged along
-// the motion of what they show, so that outlines and textures are smooth (Yang, Liu and Salvi 2020). Earlier
-// colours are held within the range of the pixels around, so that what has changed does not stay.
+// Temporal antialiasing and upsampling: pictures whose rays pass another place of their pixels in each frame are
+// averaged along the motion of what they show, at the size of the screen, which may be larger than theirs. So
+// outlines and textures are smooth, and finer than one picture's (Yang, Liu and Salvi 2020). Earlier colours are
+// held within the range of the pixels around, so that what has changed does not stay.
 
 #include "gi/image_io/picture.h"
 
@@ -14,21 +15,23 @@ class Antialiasing {
 public:
     /// Where the rays of the next picture pass its pixels, 0..1 from their top left corner.
     vec2 sample() const;
-    /// Replaces "color" by its mean with earlier pictures, and takes the layer "motion" away, which must be as in
-    /// gi/render/motion.h, except that pixels without a surface may have a motion, with depth 0. Sizes may change.
-    void add(Picture& picture);
+    /// Returns the mean with earlier pictures: layers "color" and "depth", of a size that is at least the
+    /// picture's.
+    /// @param picture  with the layer "motion" as in gi/render/motion.h, except that pixels without a surface may
+    ///   have a motion, with depth 0. Sizes may change from frame to frame.
+    Picture add(Picture const& picture, int width, int height);
 
 private:
     struct Texel {
         vec3 color{0};
-        float frames = 0; ///< that it is the mean of
+        float weight = 0; ///< of the samples that it is the mean of; one at its middle has 1
     };
     Texel earlier(vec2 place, float depth) const;
 
     std::uint32_t frame_ = 0;
-    int width_ = 0, height_ = 0; ///< of the last picture; 0 = none
+    int width_ = 0, height_ = 0; ///< of the last mean; 0 = none
     std::vector<Texel> texels_, last_;
-    std::vector<float> depths_, last_depths_;
+    std::vector<float> last_depths_; ///< of the last mean
 };
 
 } // namespace gi

@@ -2,15 +2,15 @@
 // recorded head, and what they show at given moments is compared with converged pictures of those moments.
 //   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--truth-filter NAME] [--size WxH]
 //   [--eyes 1|2] [--fov DEG]
-//                     [--avatar FILE] [--scored N] [--set KEY=VALUE]... [--offline HZ] [--light-scale S] [--young
-//                     N]
+//   [--avatar FILE] [--scored N] [--set KEY=VALUE]... [--offline HZ] [--light-scale S] [--surface-scale S]
+//   [--paths N] [--young N]
 // HEAD.csv: time_s, then the head relative to the scene's first camera: x_m,y_m,z_m (right, up, back), yaw_deg,
 // pitch_deg (left, up). --fov is the vertical field of view (60). The truth is that of the method reference at the
 // session's bounces, through a filter (oidn-high); it is kept in its folder and reused. With two eyes (0.063 m
 // apart), rivalry is the mean difference of the eyes' errors at points that both see. --offline: frames at a fixed
-// rate instead of real time, with light at a fixed scale and --paths (1); --young: N frames of a head that holds
-// still, scored after 1, 2, 4, ... Writes shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment, E eye) and
-// prints a row of figures.
+// rate instead of real time, with light and surfaces at fixed scales and --paths (1); --young: N frames of a head
+// that holds still, scored after 1, 2, 4, ... Writes shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment,
+// E eye) and prints a row of figures.
 
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
@@ -41,7 +41,7 @@ struct Options {
     std::string scene, head, avatar, truth_filter = "oidn-high";
     fs::path out, truth;
     int truth_paths = 128, width = 640, height = 480, eyes = 1, scored = 8, young = 0, paths = 1;
-    double fov_deg = 60, offline_hz = 0, light_scale = 0.25;
+    double fov_deg = 60, offline_hz = 0, light_scale = 0.25, surface_scale = 1;
     std::vector<Change> settings;
 };
 
@@ -279,9 +279,10 @@ void render_offline(Options const& o, RenderSession& session, Walk& walk, std::v
         command.tracked = at.tracked;
         command.views = at.views;
         command.light_scale = o.light_scale;
+        command.surface_scale = o.surface_scale;
         command.paths = o.paths;
         if (!session.settings().first_surfaces) {
-            command.light_scale = 1;
+            command.light_scale = command.surface_scale = 1;
             for (ViewCommand& v : command.views)
                 v.width = int(v.width * o.light_scale), v.height = int(v.height * o.light_scale);
         }
@@ -393,7 +394,7 @@ void run(Options const& o)
                 read_bytes(part_of(targets[0].target(), {0, 0}, {1, 1})); // waits as a swap does
             }
             double const drew_s = clock.now_s() - drawing;
-            double const next_s = std::max(now + 1.0 / 60, begun + now + 3 * drew_s - begun);
+            double const next_s = std::max(now + 1.0 / 60, begun + now + 5 * drew_s - begun);
             while (clock.now_s() - begun < next_s) { // as the window's loop does
                 double const t = clock.now_s() - begun;
                 if (t - last > 0.004) {
@@ -455,6 +456,8 @@ try {
             o.young = std::stoi(value());
         else if (a == "--light-scale")
             o.light_scale = std::stod(value());
+        else if (a == "--surface-scale")
+            o.surface_scale = std::stod(value());
         else if (a == "--avatar")
             o.avatar = value();
         else if (a == "--scored")

@@ -57,15 +57,55 @@ double edge_error(Value const& value, float shift = 0)
 float shown(Picture const& p, int x, int y) { return rgb(*p.find("color"), std::size_t(y * p.width + x)).x; }
 vec3 still(vec2) { return {0, 0, 2}; }
 
-TEST(Antialiasing, FirstPictureStaysAsItIsAndMotionIsTakenAway)
+/// Adds a picture at its own size.
+Picture add(Antialiasing& a, Picture const& p) { return a.add(p, p.width, p.height); }
+
+float ramp(vec2 at) { return 1 + 0.1f * at.x + 0.3f * at.y; }
+/// Interpolated at the middles of pixels, away from the borders.
+void expect_ramp(Picture const& p)
+{
+    for (int y = 1; y + 1 < kSize; ++y)
+        for (int x = 1; x + 1 < kSize; ++x)
+            ASSERT_NEAR(shown(p, x, y), ramp({float(x) + 0.5f, float(y) + 0.5f}), 1e-5f);
+}
+
+TEST(Antialiasing, FirstPictureIsInterpolated)
 {
     Antialiasing a;
-    Picture p = sampled([](vec2 at) { return edge(at); }, still, a.sample());
-    Picture const was = p;
-    a.add(p);
-    EXPECT_EQ(p.find("color")->data, was.find("color")->data);
+    Picture const p = add(a, sampled(ramp, still, a.sample()));
+    expect_ramp(p);
     EXPECT_EQ(p.find("motion"), nullptr);
-    EXPECT_NE(p.find("depth"), nullptr);
+    EXPECT_EQ(p.find("depth")->data, std::vector<float>(p.pixels(), 2));
+}
+
+/// A picture of half the size becomes one of the whole size: an edge as with all samples, nearly.
+TEST(Antialiasing, SmallerPicturesBecomeSharpOnes)
+{
+    auto const error_of = [](int size, float step) {
+        Antialiasing a;
+        double sum = 0;
+        float const larger = float(kSize) / float(size);
+        for (int frame = 0; frame < 32; ++frame) {
+            float const shift = step * float(frame) - 4 * (step != 0);
+            Picture const p = a.add(sampled([&](vec2 at) { return edge(larger * at, shift); },
+                                            [&](vec2) {
+                                                return vec3{-step / larger, 0, 2};
+                                            },
+                                            a.sample(), size),
+                                    kSize, kSize);
+            EXPECT_EQ(p.width, kSize);
+            if (frame >= 24) sum += edge_error([&](int x, int y) { return shown(p, x, y); }, shift) / 8;
+        }
+        return sum;
+    };
+    double const hard = edge_error([](int x, int y) {
+        return edge({2 * float(x / 2) + 1, 2 * float(y / 2) + 1});
+    });
+    RecordProperty("error", std::to_string(error_of(12, 0)) + " still, " + std::to_string(error_of(12, 0.37f)) +
+                                " moving, of " + std::to_string(hard));
+    EXPECT_LT(error_of(12, 0), 0.5 * hard);
+    EXPECT_LT(error_of(12, 0.37f), 0.8 * hard);
+    EXPECT_LT(error_of(18, 0), error_of(12, 0));
 }
 
 TEST(Antialiasing, StillEdgeBecomesItsCoverage)
@@ -73,8 +113,7 @@ TEST(Antialiasing, StillEdgeBecomesItsCoverage)
     Antialiasing a;
     Picture p;
     for (int frame = 0; frame < 32; ++frame) {
-        p = sampled([](vec2 at) { return edge(at); }, still, a.sample());
-        a.add(p);
+        p = add(a, sampled([](vec2 at) { return edge(at); }, still, a.sample()));
     }
     double const hard = edge_error([](int x, int y) {
         return edge({float(x) + 0.5f, float(y) + 0.5f});
@@ -96,7 +135,7 @@ TEST(Antialiasing, MovingEdgeIsFollowed)
                                 return vec3{-kStep, 0, 2};
                             },
                             a.sample());
-        a.add(p);
+        p = add(a, p);
         if (frame < 8) continue;
         hard += edge_error([&](int x, int y) { return edge({float(x) + 0.5f, float(y) + 0.5f}, shift); }, shift);
         smooth += edge_error([&](int x, int y) { return shown(p, x, y); }, shift);
@@ -114,7 +153,7 @@ TEST(Antialiasing, ConstantColoursStayAlsoWhenTheSizeChanges)
                                 return vec3{0.4f, -1.3f, 2};
                             },
                             a.sample(), size);
-        a.add(p);
+        p = add(a, p);
         for (float const v : p.find("color")->data) ASSERT_NEAR(v, 0.7f, 1e-5f) << size;
     }
 }
@@ -124,7 +163,7 @@ TEST(Antialiasing, LightThatEndsIsGoneInTheNextPicture)
     Antialiasing a;
     for (int frame = 0; frame < 9; ++frame) {
         Picture p = sampled([&](vec2) { return frame < 8 ? 5.0f : 0.25f; }, still, a.sample());
-        a.add(p);
+        p = add(a, p);
         for (float const v : p.find("color")->data) ASSERT_NEAR(v, frame < 8 ? 5 : 0.25f, 1e-4f);
     }
 }
@@ -134,12 +173,9 @@ TEST(Antialiasing, AnotherSurfaceAndUnknownMotionBeginAnew)
     for (vec3 const motion : {vec3{0, 0, 9}, vec3{std::numeric_limits<float>::quiet_NaN()}, vec3{1e30f, 0, 2},
                               vec3{-100, 0, 2}, vec3{kInf, 0, 2}}) {
         Antialiasing a;
-        Picture p = sampled([](vec2 at) { return edge(at); }, still, a.sample());
-        a.add(p);
-        p = sampled([](vec2 at) { return edge(at); }, [&](vec2) { return motion; }, a.sample());
-        Picture const was = p;
-        a.add(p);
-        EXPECT_EQ(p.find("color")->data, was.find("color")->data) << motion.x << ' ' << motion.z;
+        add(a, sampled([](vec2) { return 7.0f; }, still, a.sample()));
+        expect_ramp(add(a, sampled(
+                               ramp, [&](vec2) { return motion; }, a.sample())));
     }
 }
 
@@ -150,7 +186,7 @@ TEST(Antialiasing, ValuesThatAreNotFiniteDoNotStay)
         Picture p = sampled([](vec2) { return 1.0f; }, still, a.sample());
         if (frame == 0) p.find("color")->data[3 * (10 * kSize + 10)] = std::numeric_limits<float>::quiet_NaN();
         if (frame == 0) p.find("color")->data[3 * (14 * kSize + 14)] = kInf;
-        a.add(p);
+        p = add(a, p);
         if (frame == 0) continue;
         for (float const v : p.find("color")->data) ASSERT_NEAR(v, 1, 1e-5f);
     }

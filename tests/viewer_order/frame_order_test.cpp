@@ -110,9 +110,26 @@ TEST(FrameCommand, LightMayBeSmaller)
         EXPECT_NE(why.find("of the size of the views"), std::string::npos) << wrong << why;
     }
     std::vector<std::uint8_t> unknown = full;
-    for (std::uint8_t const version : {std::uint8_t(0), std::uint8_t(3), std::uint8_t(255)}) {
+    for (std::uint8_t const version : {std::uint8_t(0), std::uint8_t(4), std::uint8_t(255)}) {
         unknown[0] = version;
         EXPECT_THROW(command_from_bytes(unknown), gi::InputError) << int(version);
+    }
+}
+
+/// The third version has a surface scale, too.
+TEST(FrameCommand, SurfacesMayBeSmaller)
+{
+    FrameCommand o = cave_order();
+    std::size_t const bytes = to_bytes(o).size();
+    o.light_scale = 0.375;
+    o.surface_scale = 0.5;
+    std::vector<std::uint8_t> const small = to_bytes(o);
+    EXPECT_EQ(small[0], 3);
+    EXPECT_EQ(small.size(), bytes + 16);
+    EXPECT_EQ(command_from_bytes(small), o);
+    for (double const wrong : {0.25, 1.001, kNaN}) {
+        o.surface_scale = wrong;
+        EXPECT_NE(why_refused(o).find("surfaces at"), std::string::npos) << wrong;
     }
 }
 
@@ -158,12 +175,12 @@ TEST(FrameCommand, EveryCutAndEveryFlippedByteIsAnOrderOrAnInputError)
     longer.push_back(0);
     EXPECT_THROW(command_from_bytes(longer), gi::InputError);
     longer = whole;
-    longer[0] = 3;
+    longer[0] = 4;
     try {
         command_from_bytes(longer);
         FAIL();
     } catch (gi::InputError const& e) {
-        EXPECT_NE(std::string(e.what()).find("version 3"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("version 4"), std::string::npos) << e.what();
     }
 }
 

@@ -60,6 +60,7 @@ TEST(ExportCsv, HoldsEveryFrameExactly)
         EXPECT_EQ(row["frame"], std::to_string(n));
         EXPECT_EQ(std::stod(row["pose_s"]), o.pose_s);
         EXPECT_EQ(std::stod(row["light_scale"]), o.light_scale);
+        EXPECT_EQ(std::stod(row["surface_scale"]), o.surface_scale);
         EXPECT_EQ(std::stod(row["room_z_m"]), o.world_from_room[3].z);
         EXPECT_NEAR(std::stod(row["room_scale"]), 1, 1e-12);
         EXPECT_EQ(std::stod(row["head_x_m"]), o.tracked.head->position.x);

@@ -40,11 +40,12 @@ RenderSession started(gi::Report& report, int threads = 0, char const* scene = "
     return s;
 }
 
-FrameCommand command(std::uint64_t frame, double light_scale, bool stereo = false)
+FrameCommand command(std::uint64_t frame, double light_scale, bool stereo = false, double surface_scale = 1)
 {
     FrameCommand o;
     o.frame = frame;
     o.light_scale = light_scale;
+    o.surface_scale = surface_scale;
     gi::Camera camera = gi::look_at({-0.6, 0.1, 0.9}, {0.1, -0.3, 0}, 60);
     for (int eye = 0; eye < (stereo ? 2 : 1); ++eye) {
         gi::Camera c = camera;
@@ -79,7 +80,7 @@ TEST(FirstSurfaces, ViewsHaveTheirFullSizeAndAreNearThoseOfFullLight)
         RenderSession small = started(report, 0, scene), full = started(other, 0, scene);
         SessionFrame a, b;
         for (std::uint64_t f = 0; f < 12; ++f) {
-            a = small.render(command(f, 0.25), {});
+            a = small.render(command(f, 0.25, false, f % 3 == 0 ? 0.5 : 1), {});
             FrameCommand o = command(f, 1);
             o.paths = 16;
             b = full.render(o, {});
@@ -106,7 +107,8 @@ TEST_P(SameFirstSurfaces, OfTheSameCommands)
     RenderSession two = started(report, 2), one = started(report, cached ? 2 : 1);
     for (RenderSession* const s : {&two, &one}) s->apply({"radiance_cache", GetParam()});
     for (std::uint64_t f = 0; f < 8; ++f) {
-        FrameCommand o = command(f, f % 4 == 3 ? 1 : 0.25, true); // light changes its size on the way
+        // Light and surfaces change their sizes on the way.
+        FrameCommand o = command(f, f % 4 == 3 ? 1 : 0.25, true, f % 4 == 1 ? 0.5 : 1);
         if (f >= 2) o.changes.push_back({"object.block.position", {0.03 * double(f), 0, 0}});
         if (f == 5) o.changes.push_back({"light.0.intensity", {3, 2, 1}});
         FrameCommand const kept = command_from_bytes(to_bytes(o));
@@ -152,7 +154,7 @@ TEST(FirstSurfaces, ComparedMethodsAndHiddenPixelsAreDrawnToo)
     s.apply(hidden_change("left", {{{-9, 0.1f}, {9, 0.1f}, {9, 9}, {-9, 9}}, {0, 1, 2, 0, 2, 3}})); // upper part
     SessionFrame f;
     for (std::uint64_t k = 0; k < 6; ++k) {
-        FrameCommand o = command(k, 0.25);
+        FrameCommand o = command(k, 0.25, false, k % 2 == 0 ? 1 : 0.5);
         o.paths = 16;
         f = s.render(o, {});
     }

@@ -219,7 +219,7 @@ void Requests::pick(RemoteRequest const& r)
 {
     if (!state_.frame) throw gi::InputError("nothing to pick", "no frame was shown yet", "try again later");
     ViewCommand const& v = state_.frame->command.views[0];
-    double const scale = state_.frame->budget.surfaces > 0 ? state_.frame->budget.surfaces : 1;
+    double const scale = state_.frame->command.light_scale < 1 ? 1 : state_.frame->budget.scale; // of the view
     double const width = v.width / scale, height = v.height / scale;
     double const x = r.arguments.at("x_px").get<double>(), y = r.arguments.at("y_px").get<double>();
     if (!(x >= 0 && x <= width && y >= 0 && y <= height))

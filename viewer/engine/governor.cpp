@@ -10,12 +10,20 @@ namespace {
 
 constexpr double kBesides = 1.0; // k (governor.h), in paths
 constexpr double kMargin = 0.85; // of the time between frames
-constexpr double kScales[] = {1, 0.75, 0.5, 0.375, 0.25};
+/// Sizes of light, and the share of the wished rate that must hold with them: light at a quarter of the size is
+/// further from the truth than pictures that come less often, since these follow the head anyway.
+struct LightSize {
+    double scale, rate;
+};
+constexpr LightSize kLightSizes[] = {{1, 1}, {0.75, 1}, {0.5, 1}, {0.375, 0.6}, {0.25, 0}};
 constexpr double kSurfaceScales[] = {1, 0.75, 0.5};
 constexpr int kMostPaths = 256;
+constexpr double kLeast = 0.05; // of a frame's work that the next one gets
 /// A larger picture must fit with this margin, because a change of size costs sharpness and reused light.
 constexpr double kToGrow = 1.15;
-constexpr double kForSurfaces = 0.75; // of the time between frames: what is sharp counts more than the rate
+/// Of the time between frames, where surfaces are larger than half the size: antialiasing brings smaller ones to
+/// the size of the view, nearly as sharp.
+constexpr double kForSurfaces = 0.3;
 
 } // namespace
 
@@ -33,14 +41,13 @@ double Governor::surfaces_scale() const
 FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed, bool own_surfaces) const
 {
     auto const paths_at = [&](double scale) { return work_ / (pixels * scale * scale) - kBesides; };
+    double const frame_s = kMargin / rate_hz_, free_s = std::max(frame_s - surface_s_, kLeast * frame_s);
     FrameBudget b;
-    b.scale = kScales[std::size(kScales) - 1];
-    for (double const scale : kScales) {
-        double const needed = last_scale_ > 0 && scale > last_scale_ ? kToGrow * (1 + kBesides) - kBesides : 1;
-        if (paths_at(scale) >= needed) {
-            b.scale = scale;
-            break;
-        }
+    for (LightSize const& size : kLightSizes) {
+        b.scale = size.scale;
+        double const grows = last_scale_ > 0 && size.scale > last_scale_ ? kToGrow : 1,
+                     needed_s = free_s * grows * (1 + kBesides) / (paths_at(size.scale) + kBesides);
+        if (size.rate * (needed_s + frame_s - free_s) <= frame_s) break;
     }
     if (still) b.scale = 1;
     if (fixed.scale > 0) b.scale = fixed.scale;
@@ -52,7 +59,7 @@ FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed, bool ow
 void Governor::measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz,
                         double surfaces_s)
 {
-    constexpr double kLeast = 0.05, kGrowth = 1.25;
+    constexpr double kGrowth = 1.25;
     double const done = pixels * budget.scale * budget.scale * (budget.paths + kBesides);
     double const light_s = seconds - surfaces_s, free_s = std::max(kMargin / rate_hz - surfaces_s, 0.0);
     double const fits = free_s / light_s;

@@ -5,8 +5,8 @@
 // Work on light is counted in paths: s^2 N (p + k), with N the pixels of all views at full size, s the scale of
 // the sides of the pictures of light, p the paths per pixel, and k the other cost of such a pixel in paths
 // (G-buffer, reuse, filter). After a frame that took too long, the next one gets proportionally less work; work
-// grows slowly. So a frame's fixed costs need no model. Surfaces have the full size while they take at most three
-// quarters of the time.
+// grows slowly. So a frame's fixed costs need no model. Surfaces are larger than half the size while
+// they take at most three tenths of the time.
 
 namespace viewer {
 

@@ -19,7 +19,22 @@ SceneStart start_of(FrameCommand const& command)
     return start;
 }
 
+/// Sets hidden pixels to black, without a surface.
+void blacken(gi::Picture& picture, std::vector<std::uint8_t> const& hidden)
+{
+    std::vector<float>&color = picture.find("color")->data, &depth = picture.find("depth")->data;
+    for (std::size_t i = 0; i < hidden.size(); ++i)
+        if (hidden[i] != 0) color[3 * i] = color[3 * i + 1] = color[3 * i + 2] = depth[i] = 0;
+}
+
 } // namespace
+
+ViewCommand scaled(ViewCommand view, double scale)
+{
+    view.width = std::max(1, int(std::lround(view.width * scale)));
+    view.height = std::max(1, int(std::lround(view.height * scale)));
+    return view;
+}
 
 bool has_own_surfaces(FrameCommand const& command)
 {
@@ -58,6 +73,7 @@ void RenderSession::apply(Change const& change)
     }
     if (is_hidden_mask(change.key)) {
         hidden_.apply(change);
+        hidden_surfaces_.apply(change);
         return hidden_light_.apply(change);
     }
     Settings changed = settings_;
@@ -189,21 +205,22 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
     smoothed_.resize(command.views.size());
     smoothed_compared_.resize(command.views.size());
     for (std::size_t k = 0; k < command.views.size(); ++k) {
-        ViewCommand const& v = command.views[k];
-        std::span<std::uint8_t const> const hidden = frame.views[k].hidden
-                                                         ? std::span<std::uint8_t const>(*frame.views[k].hidden)
-                                                         : std::span<std::uint8_t const>();
+        ViewCommand const &shown = command.views[k], v = scaled(shown, command.surface_scale);
+        HiddenPixels const hidden = hidden_surfaces_.pixels(v);
         auto const draw = [&](MethodRunner const& runner, SmoothedView& smoothed) {
             auto const lights =
                 runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
             gi::CameraRays const rays = gi::camera_rays(v.camera, v.width, v.height, world_->world().origin);
             if (smoothed.name != v.name) smoothed = {v.name, rays, {}};
             seen_->look(rays, v.width, v.height, lights, smoothed.antialiasing.sample());
-            gi::Picture picture =
-                gi::lit_picture(*seen_, v.width, v.height, *runner.light(k), hidden, counts, &smoothed.rays);
-            smoothed.antialiasing.add(picture);
+            gi::Picture const picture =
+                gi::lit_picture(*seen_, v.width, v.height, *runner.light(k),
+                                hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(),
+                                counts, &smoothed.rays);
             smoothed.rays = rays;
-            return picture;
+            gi::Picture whole = smoothed.antialiasing.add(picture, shown.width, shown.height);
+            if (frame.views[k].hidden) blacken(whole, *frame.views[k].hidden);
+            return whole;
         };
         frame.views[k].picture = draw(*main_, smoothed_[k]);
         if (frame.views[k].compared) frame.views[k].compared = draw(*compared_, smoothed_compared_[k]);
@@ -231,11 +248,8 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
     FrameCommand light = command; // the views of the pictures of light
     bool const smaller = command.light_scale < 1 && has_own_surfaces(command);
     if (!smaller) light.light_scale = 1;
-    for (ViewCommand& v : light.views) {
-        if (!smaller) break;
-        v.width = std::max(1, int(std::lround(v.width * command.light_scale)));
-        v.height = std::max(1, int(std::lround(v.height * command.light_scale)));
-    }
+    if (smaller)
+        for (ViewCommand& v : light.views) v = scaled(v, command.light_scale);
     if (!seen_ && (smaller || (settings_.first_surfaces && gi::SeenSurfaces::mirrors_in(world_->world())))) {
         gi::StageTimer const timer(report_, "update of surfaces");
         seen_ = std::make_unique<gi::SeenSurfaces>(world_->world(), threads_);

@@ -50,6 +50,8 @@ struct SessionFrame {
 
 /// Stage of SessionFrame::stages_s in which surfaces of another size than light are drawn.
 inline constexpr char const* kSurfacesStage = "first surfaces";
+/// A view of the same camera with sides of so many times the pixels, at least 1.
+ViewCommand scaled(ViewCommand view, double scale);
 /// False if a view is orthographic or has a lens: then light has the size of the views.
 bool has_own_surfaces(FrameCommand const& command);
 
@@ -100,7 +102,8 @@ private:
     std::unique_ptr<gi::MovingWorld> world_;
     std::vector<PlacedObject> placed_;
     std::vector<Change> edits_; ///< of lights, materials, environment: one per key, reapplied to a new world
-    HiddenViews hidden_, hidden_light_;      ///< of views, and of their pictures of light if those are smaller
+    HiddenViews hidden_, hidden_surfaces_,
+        hidden_light_;                       ///< of views, and of their pictures of surfaces and light
     std::unique_ptr<gi::SeenSurfaces> seen_; ///< of the world, once needed
     /// A view whose pictures are antialiased.
     struct SmoothedView {

@@ -110,7 +110,11 @@ void check_command(FrameCommand const& o)
     if (o.paths < 1 || o.paths > CommandLimits::paths)
         refuse(fmt::format("{} paths per pixel", o.paths), fmt::format("allowed: 1 to {}", CommandLimits::paths));
     if (!(o.light_scale > 0 && o.light_scale <= 1))
-        refuse(fmt::format("light at {} of the size of the views", o.light_scale), "it is more than 0 and at most 1");
+        refuse(fmt::format("light at {} of the size of the views", o.light_scale),
+               "it is more than 0 and at most 1");
+    if (!(o.surface_scale >= o.light_scale && o.surface_scale <= 1))
+        refuse(fmt::format("surfaces at {} of the size of the views", o.surface_scale),
+               fmt::format("it is at least that of light, {}, and at most 1", o.light_scale));
     if (o.changes.size() > CommandLimits::changes)
         refuse(fmt::format("{} changes", o.changes.size()),
                fmt::format("the limit is {}", CommandLimits::changes));

@@ -10,8 +10,9 @@
 namespace viewer {
 namespace {
 
-/// The second version has a light scale. It is written only where that is not 1.
-constexpr std::uint8_t kVersion = 2;
+/// The second version has a light scale, the third also a surface scale. They are written only where these are not
+/// 1.
+constexpr std::uint8_t kVersion = 3;
 
 gi::dmat4 const kIdentity{1};
 std::array<double, 7> constexpr kNoPose{0, 0, 0, 0, 0, 0, 1};
@@ -134,6 +135,7 @@ FrameCommand get_order(ByteReader& from)
     for (double* const t : {&o.pose_s, &o.display_s, &o.scene_s}) *t = from.number();
     o.paths = int(from.count(CommandLimits::paths));
     if (version > 1) o.light_scale = from.number();
+    if (version > 2) o.surface_scale = from.number();
     o.world_from_room = get_matrix(from);
     bool others = false;
     o.tracked = get_tracked(from, others);
@@ -163,12 +165,13 @@ std::vector<std::uint8_t> to_bytes(FrameCommand const& o)
 {
     check_command(o);
     ByteWriter to;
-    bool const small_light = o.light_scale != 1;
-    to.put_byte(small_light ? kVersion : 1);
+    bool const small_surfaces = o.surface_scale != 1, small_light = small_surfaces || o.light_scale != 1;
+    to.put_byte(small_surfaces ? kVersion : small_light ? 2 : 1);
     to.put_count(o.frame);
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) to.put_number(t);
     to.put_count(std::uint64_t(o.paths));
     if (small_light) to.put_number(o.light_scale);
+    if (small_surfaces) to.put_number(o.surface_scale);
     to.put_numbers(numbers_of(o.world_from_room), numbers_of(kIdentity));
     put(to, o.tracked, !o.others.empty());
     for (Tracked const& t : o.others) put(to, t, &t != &o.others.back());

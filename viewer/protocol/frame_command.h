@@ -62,8 +62,10 @@ struct FrameCommand {
     std::vector<Tracked> others;  ///< of the following users; only those with an avatar
     std::vector<Change> changes;  ///< since the previous frame, in order
     std::vector<ViewCommand> views;
-    int paths = 1;          ///< per pixel of the pictures of light
-    double light_scale = 1; ///< side of the pictures of light over that of the views, in (0, 1]
+    int paths = 1;            ///< per pixel of the pictures of light
+    double light_scale = 1;   ///< side of the pictures of light over that of the views, in (0, 1]
+    double surface_scale = 1; ///< side of the pictures of surfaces over that of the views, in [light_scale, 1];
+                              ///< only where light_scale is below 1
 
     bool operator==(FrameCommand const&) const = default;
 };

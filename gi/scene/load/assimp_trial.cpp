@@ -36,7 +36,7 @@ rlim_t seconds(AssimpTrial const& trial) { return kSlower * (5 + trial.file_byte
 rlim_t memory_bytes(AssimpTrial const& trial) { return kBytes + kBytesPerByte * trial.file_bytes; }
 
 /// Size of this process's address space, bytes.
-rlim_t used_memory()
+[[maybe_unused]] rlim_t used_memory()
 {
     rlim_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;

@@ -3,7 +3,9 @@
 
 #include "viewer/devices/gl/draw_target.h"
 
+#include <glm/vec4.hpp>
 #include <span>
+#include <vector>
 
 namespace viewer {
 
@@ -16,12 +18,18 @@ public:
     void upload(glm::ivec2 size_px, std::span<float const> rgb, std::span<float const> depth_m = {});
 
     ShownPicture shown() const { return {color_.id(), size_px_}; }
-    unsigned depth_texture() const { return has_depth_ ? depth_.id() : 0; } ///< 0 = no depth
+    /// Side of the tiles of around().
+    static constexpr int kTile = 16;
+    /// R, G: least and greatest 1 / depth of each tile and of those beside it, 1/m; 0 = no depth was given.
+    unsigned around() const { return has_depth_ ? around_.id() : 0; }
     float nearest_m() const { return nearest_m_; } ///< smallest depth except 0; infinite if there is none
 
 private:
+    std::vector<glm::vec2> least_and_greatest(glm::ivec2 tiles) const;
+
     glm::ivec2 size_px_{};
-    GlObject color_, depth_;
+    GlObject color_, around_; ///< color_: radiance and 1 / depth
+    std::vector<glm::vec4> texels_;
     bool has_depth_ = false;
     float nearest_m_ = 0;
 };

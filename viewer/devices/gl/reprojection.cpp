@@ -50,8 +50,9 @@ ReprojectionMaps reprojection_maps(gi::Camera const& a, glm::ivec2 a_px, gi::Cam
 }
 
 Reprojection::Reprojection()
-    : turn_({"full_screen.vert"}, {"reprojection.frag"}, "#define SEARCHES 0\n"),
-      search_({"full_screen.vert"}, {"reprojection.frag"}, "#define SEARCHES 1\n")
+    : turn_({"full_screen.vert"}, {"reprojection.frag"}, "#define SEARCHES 0\n#define TILE 1\n"),
+      search_({"full_screen.vert"}, {"reprojection.frag"},
+              "#define SEARCHES 1\n#define TILE " + std::to_string(PictureTexture::kTile) + "\n")
 {
 }
 
@@ -64,10 +65,10 @@ ShownPicture Reprojection::draw(PictureTexture const& picture, gi::Camera const&
     ReprojectionMaps const maps = reprojection_maps(a, shown.size_px, b, size_px);
     if (!out_ || out_->shown().size_px != size_px) out_.emplace(TextureTarget::Format::linear, size_px);
     bool const searches =
-        picture.depth_texture() != 0 && std::isfinite(picture.nearest_m()) && maps.b_in_a != glm::vec3(0.0f);
+        picture.around() != 0 && std::isfinite(picture.nearest_m()) && maps.b_in_a != glm::vec3(0.0f);
     bind(out_->target());
     glBindTextureUnit(0, shown.texture);
-    glBindTextureUnit(1, searches ? picture.depth_texture() : shown.texture);
+    glBindTextureUnit(1, searches ? picture.around() : shown.texture);
     GlProgram const& program = searches ? search_ : turn_;
     program.set("a_from_b", maps.a_from_b);
     program.set("b_in_a", maps.b_in_a);

@@ -236,8 +236,8 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
     Settings const& s = session_.settings();
     FrameCommand command;
     command.views = now.views;
-    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale, s.scale},
-                            s.first_surfaces && has_own_surfaces(command));
+    bool const own_surfaces = s.first_surfaces && has_own_surfaces(command) && !(s.scale > 0);
+    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale, s.scale}, own_surfaces);
     command.frame = frame_++;
     command.pose_s = now.pose_s;
     command.display_s = now.display_s;
@@ -248,12 +248,13 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
     command.tracked = now.tracked;
     command.others = now.others;
     command.changes = std::exchange(changes_, {});
-    for (ViewCommand& v : command.views) {
-        v.width = std::max(1, int(std::lround(v.width * budget.surfaces)));
-        v.height = std::max(1, int(std::lround(v.height * budget.surfaces)));
-    }
     command.paths = budget.paths;
-    command.light_scale = budget.scale / budget.surfaces;
+    if (own_surfaces) {
+        command.light_scale = budget.scale;
+        command.surface_scale = budget.surfaces;
+    } else {
+        for (ViewCommand& v : command.views) v = scaled(v, budget.scale);
+    }
     return command;
 }
 

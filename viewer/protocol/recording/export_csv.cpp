@@ -48,6 +48,7 @@ std::vector<CsvColumn> columns(Most const& most)
                              {"scene_s", "s, time of the scene's animations"},
                              {"paths", "paths per pixel of the pictures of light"},
                              {"light_scale", "side of the pictures of light over that of the views"},
+                             {"surface_scale", "side of the pictures of surfaces over that of the views"},
                              {"pixel_hash", "XXH64 of the pixels, hexadecimal; empty = not recorded"},
                              {"swap_s", "s, when the frame was shown; empty = not measured"},
                              {"render_ms", "ms of rendering; empty = not measured"},
@@ -127,6 +128,7 @@ std::string row_of(RecordedFrame const& f, Most const& most)
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) row.add(t);
     row.add(o.paths);
     row.add(o.light_scale);
+    row.add(o.surface_scale);
     row.add(f.pixel_hash ? fmt::format("{:016x}", *f.pixel_hash) : "");
     row.add(f.times ? fmt::format("{}", f.times->swap_s) : "");
     row.add(f.times ? fmt::format("{}", f.times->render_ms) : "");
