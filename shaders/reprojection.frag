@@ -45,13 +45,15 @@ float w_at(vec2 x)
     return mix(mix(w.x, w.y, f.x), mix(w.z, w.w, f.x), f.y);
 }
 
-vec3 color_at(vec2 x)
+/// @param found  false: x lies beside a hole, and only the pixels' nearest is of the surface that fills it
+vec3 color_at(vec2 x, bool found)
 {
     vec2 f;
     ivec2 a = cell(inside(x), f), b = min(a + 1, textureSize(picture, 0) - 1);
     vec4 p = texelFetch(picture, a, 0), q = texelFetch(picture, ivec2(b.x, a.y), 0),
          r = texelFetch(picture, ivec2(a.x, b.y), 0), s = texelFetch(picture, b, 0);
-    return mix(mix(p, q, f.x), mix(r, s, f.x), f.y).rgb;
+    f = found ? f : weights(f, vec4(p.a, q.a, r.a, s.a));
+    return f == vec2(0.0) ? p.rgb : mix(mix(p, q, f.x), mix(r, s, f.x), f.y).rgb;
 }
 
 /// Least and greatest w that can lie at r after a shift.
@@ -118,13 +120,9 @@ void main()
     vec3 far = a_from_b * vec3(gl_FragCoord.xy, 1.0); // FragCoord: the target's top row is its first
     // Behind A: the edge on that side.
     vec2 r = far.xy / max(far.z, 1e-6), x = r;
-    bool seen = far.z > 0.0;
-    if (SEARCHES == 1) {
-        bool found;
-        x = search(r, b_in_a.xy - r * b_in_a.z, found);
-        seen = seen && found;
-    }
+    bool found = true;
+    if (SEARCHES == 1) x = search(r, b_in_a.xy - r * b_in_a.z, found);
     vec2 size = vec2(textureSize(picture, 0));
-    seen = seen && all(greaterThanEqual(x, vec2(0.0))) && all(lessThanEqual(x, size));
-    color = vec4(color_at(x), seen ? 1.0 : 0.0);
+    bool seen = far.z > 0.0 && found && all(greaterThanEqual(x, vec2(0.0))) && all(lessThanEqual(x, size));
+    color = vec4(color_at(x, found), seen ? 1.0 : 0.0);
 }
