@@ -45,7 +45,8 @@ int counted_reversals(ThresholdRun const& run)
     return all > 4 ? all - 2 : all;
 }
 
-/// Means of reversals of simulated runs, in units of the staircase, by an observer with this threshold.
+/// Means of reversals of simulated runs, in units of the staircase, by an observer with this threshold. Their
+/// scales differ by the error of the group's.
 std::vector<double> simulated_means(StaircaseSettings settings, Compare const& c, GroupCurve const& group,
                                     double threshold, double guess, ThresholdRun const& run, std::uint64_t seed)
 {
@@ -54,11 +55,12 @@ std::vector<double> simulated_means(StaircaseSettings settings, Compare const& c
     PsychometricShape const shape = group.settings.shape;
     PsychometricParameters p = group.threshold.shared;
     p.guess = guess;
-    p.threshold = 0;
-    double const offset = transformed(shape, level_at(shape, p, group.settings.proportion));
-    p.threshold = threshold - offset;
     std::vector<double> means;
     for (int i = 0; i < kRuns; ++i) {
+        p.scale = group.threshold.shared.scale *
+                  std::exp(group.threshold.scale_error * normal_quantile((i + 0.5) / kRuns));
+        p.threshold = 0;
+        p.threshold = threshold - transformed(shape, level_at(shape, p, group.settings.proportion));
         Random random = Random::part(seed, std::uint64_t(i));
         Staircase staircase(settings);
         while (!staircase.finished()) {
