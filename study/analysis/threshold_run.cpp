@@ -45,20 +45,19 @@ int counted_reversals(ThresholdRun const& run)
     return all > 4 ? all - 2 : all;
 }
 
-/// Means of reversals of simulated runs, in units of the staircase, by an observer with this threshold. Their
-/// scales differ by the error of the group's.
+/// Means of reversals of simulated runs, in units of the staircase, by an observer with this threshold.
+/// @param scale_error  standard error of the logarithm of the group's scale, by which the runs' scales differ
 std::vector<double> simulated_means(StaircaseSettings settings, Compare const& c, GroupCurve const& group,
-                                    double threshold, double guess, ThresholdRun const& run, std::uint64_t seed)
+                                    double threshold, double scale_error, ThresholdRun const& run,
+                                    std::uint64_t seed)
 {
     constexpr int kRuns = 200;
     settings.stop.max_trials = std::max(settings.stop.max_trials, int(run.levels.size()));
     PsychometricShape const shape = group.settings.shape;
     PsychometricParameters p = group.threshold.shared;
-    p.guess = guess;
     std::vector<double> means;
     for (int i = 0; i < kRuns; ++i) {
-        p.scale = group.threshold.shared.scale *
-                  std::exp(group.threshold.scale_error * normal_quantile((i + 0.5) / kRuns));
+        p.scale = group.threshold.shared.scale * std::exp(scale_error * normal_quantile((i + 0.5) / kRuns));
         p.threshold = 0;
         p.threshold = threshold - transformed(shape, level_at(shape, p, group.settings.proportion));
         Random random = Random::part(seed, std::uint64_t(i));
@@ -100,14 +99,14 @@ ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& b, Pro
     // The staircase's own error at a threshold where it would, on average, find what it found; twice, since the
     // error depends on where that is.
     StaircaseSettings const rule = staircase_settings(p, c);
-    auto const means_at = [&](double on_staircase) {
-        return simulated_means(rule, c, *group, transformed(group->settings.shape, at(on_staircase)),
-                               group->threshold.shared.guess, run, settings.seed);
+    auto const means_at = [&](double on_staircase, double scale_error) {
+        return simulated_means(rule, c, *group, transformed(group->settings.shape, at(on_staircase)), scale_error,
+                               run, settings.seed);
     };
     double threshold = *m;
     std::vector<double> means;
     for (int i = 0; i < 2; ++i) {
-        means = means_at(threshold);
+        means = means_at(threshold, 0);
         if (means.size() < kLeastRuns) {
             e.note = "not corrected for the bias of means of reversals: simulated runs have too few of them";
             return e;
@@ -116,12 +115,13 @@ ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& b, Pro
     }
     // Ends: thresholds at which so extreme a mean would be found with the probability of a tail (test inversion:
     // Carpenter 1999, J. R. Stat. Soc. B 61:159). Runs err more at some thresholds than at others, and more to one
-    // side than to the other. Shifts of the simulated means lead there in a few steps.
+    // side than to the other, and they err more because the group's scale is not known exactly. Shifts by what the
+    // simulated means miss lead there in a few steps.
     double const spread = standard_deviation(means), tail = (1 - settings.confidence) / 2;
     auto const end = [&](double direction) {
         double x = threshold - direction * normal_quantile(tail) * spread;
         for (int i = 0; i < 3; ++i) {
-            auto const found = means_at(x);
+            auto const found = means_at(x, group->threshold.scale_error);
             if (found.size() < kLeastRuns) break;
             x += *m - predicted_quantile(found, direction > 0 ? tail : 1 - tail);
         }
