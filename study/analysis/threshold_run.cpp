@@ -1,5 +1,6 @@
 #include "study/analysis/threshold_run.h"
 
+#include "gi/core/quantile.h"
 #include "study/script/procedure_settings.h"
 #include "study/stats/psychometric_posterior.h"
 #include "study/stats/random.h"
@@ -13,6 +14,15 @@
 
 namespace study {
 namespace {
+
+constexpr std::size_t kLeastRuns = 20; ///< simulated ones, from which something is taken
+
+/// The value that a further one falls below with this probability (definition 6 of Hyndman & Fan 1996).
+double predicted_quantile(std::vector<double> const& values, double probability)
+{
+    auto const n = double(values.size());
+    return gi::quantile(values, std::clamp((probability * (n + 1) - 1) / (n - 1), 0.0, 1.0));
+}
 
 /// Replays the staircase; empty if the recorded levels differ from those that it would have shown.
 std::optional<Staircase> replayed(Procedure const& p, Compare const& c, ThresholdRun const& run)
@@ -36,19 +46,20 @@ int counted_reversals(ThresholdRun const& run)
 }
 
 /// Means of reversals of simulated runs, in units of the staircase, by an observer with this threshold.
+/// @param scale_error  standard error of the logarithm of the group's scale, by which the runs' scales differ
 std::vector<double> simulated_means(StaircaseSettings settings, Compare const& c, GroupCurve const& group,
-                                    double threshold, double guess, ThresholdRun const& run, std::uint64_t seed)
+                                    double threshold, double scale_error, ThresholdRun const& run,
+                                    std::uint64_t seed)
 {
     constexpr int kRuns = 200;
     settings.stop.max_trials = std::max(settings.stop.max_trials, int(run.levels.size()));
     PsychometricShape const shape = group.settings.shape;
     PsychometricParameters p = group.threshold.shared;
-    p.guess = guess;
-    p.threshold = 0;
-    double const offset = transformed(shape, level_at(shape, p, group.settings.proportion));
-    p.threshold = threshold - offset;
     std::vector<double> means;
     for (int i = 0; i < kRuns; ++i) {
+        p.scale = group.threshold.shared.scale * std::exp(scale_error * normal_quantile((i + 0.5) / kRuns));
+        p.threshold = 0;
+        p.threshold = threshold - transformed(shape, level_at(shape, p, group.settings.proportion));
         Random random = Random::part(seed, std::uint64_t(i));
         Staircase staircase(settings);
         while (!staircase.finished()) {
@@ -88,19 +99,35 @@ ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& b, Pro
     // The staircase's own error at a threshold where it would, on average, find what it found; twice, since the
     // error depends on where that is.
     StaircaseSettings const rule = staircase_settings(p, c);
+    auto const means_at = [&](double on_staircase, double scale_error) {
+        return simulated_means(rule, c, *group, transformed(group->settings.shape, at(on_staircase)), scale_error,
+                               run, settings.seed);
+    };
     double threshold = *m;
     std::vector<double> means;
     for (int i = 0; i < 2; ++i) {
-        means = simulated_means(rule, c, *group, transformed(group->settings.shape, at(threshold)),
-                                group->threshold.shared.guess, run, settings.seed);
-        if (means.size() < 20) {
+        means = means_at(threshold, 0);
+        if (means.size() < kLeastRuns) {
             e.note = "not corrected for the bias of means of reversals: simulated runs have too few of them";
             return e;
         }
         threshold = *m - (mean(means) - threshold);
     }
-    double const half = normal_quantile((1 + settings.confidence) / 2) * standard_deviation(means);
-    double const a = at(threshold - half), z = at(threshold + half);
+    // Ends: thresholds at which so extreme a mean would be found with the probability of a tail (test inversion:
+    // Carpenter 1999, J. R. Stat. Soc. B 61:159). Runs err more at some thresholds than at others, and more to one
+    // side than to the other, and they err more because the group's scale is not known exactly. Shifts by what the
+    // simulated means miss lead there in a few steps.
+    double const spread = standard_deviation(means), tail = (1 - settings.confidence) / 2;
+    auto const end = [&](double direction) {
+        double x = threshold - direction * normal_quantile(tail) * spread;
+        for (int i = 0; i < 3; ++i) {
+            auto const found = means_at(x, group->threshold.scale_error);
+            if (found.size() < kLeastRuns) break;
+            x += *m - predicted_quantile(found, direction > 0 ? tail : 1 - tail);
+        }
+        return at(x);
+    };
+    double const a = end(-1), z = end(1);
     e.level = {at(threshold), {std::min(a, z), std::max(a, z)}, 1};
     return e;
 }

@@ -27,7 +27,7 @@ struct GroupCurve {
 };
 
 /// The mean of the last reversals, corrected for what simulated runs of this staircase find too high or low with
-/// the group's function; the interval is that of such runs.
+/// the group's function; the interval holds the thresholds at which such runs give this mean by chance.
 ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
                                     std::optional<GroupCurve> const& group, AnalysisSettings const& settings);
 /// The threshold by the run's own trials: with the group's scale and lapse rate if there are three observers or

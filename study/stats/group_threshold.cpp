@@ -233,11 +233,16 @@ public:
     Thresholds const& best() const { return best_; }
     ThresholdMarginal const& marginal() const { return marginal_; }
 
-    /// The variance of the mean by how observers' scores differ (the sandwich estimator: Huber 1967), by that of
-    /// the likelihood. The spread of thresholds is left out: its estimate and that of the mean are independent.
-    double variance_ratio()
+    struct Errors {
+        /// The variance of the mean by how observers' scores differ (the sandwich estimator: Huber 1967), by that
+        /// of the likelihood.
+        double variance_ratio = 1;
+        double scale = 0; ///< standard error of the logarithm
+    };
+    /// The spread of thresholds is left out: its estimate and that of the mean are independent.
+    Errors errors()
     {
-        std::vector<std::size_t> parts{kMean};
+        std::vector<std::size_t> parts{kMean}; // the scale is next
         for (int const i : shared_)
             if (i != kSpread) parts.push_back(std::size_t(i));
         auto const size = Eigen::Index(parts.size());
@@ -264,12 +269,16 @@ public:
             surprises += p.surprises;
             for (LevelAnswers const& l : p.levels) trials += l.trials;
         }
-        // The covariances of the mean with all parts, times the information.
-        Eigen::VectorXd const of_mean =
-            ((information + information.transpose()) / 2).ldlt().solve(Eigen::VectorXd::Unit(size, 0));
+        auto const solved = ((information + information.transpose()) / 2).ldlt();
+        Eigen::VectorXd const of_mean = solved.solve(Eigen::VectorXd::Unit(size, 0)); // its covariances
         double const ratio = of_mean.dot(by_scores * of_mean) / of_mean[0];
+        double const scale = solved.solve(Eigen::VectorXd::Unit(size, 1))[1]; // its variance
         auto const n = double(marginal_.people().size());
-        return std::isfinite(ratio) && of_mean[0] > 0 ? moderated(ratio, n, surprises / n, trials / n) : 1;
+        Errors e;
+        if (n > 1 && std::isfinite(ratio) && of_mean[0] > 0)
+            e.variance_ratio = moderated(ratio, n, surprises / n, trials / n);
+        if (std::isfinite(scale) && scale > 0) e.scale = std::sqrt(scale);
+        return e;
     }
 
     void start_over() { last_ = best_; }
@@ -338,7 +347,9 @@ GroupThreshold group_threshold(std::span<ObserverLevels const> observers, GroupT
     double information = 0;
     for (Person const& p : m.people()) information += p.information / n;
     double const sd = spread_of(fit.best()[kSpread]);
-    double const limit = profile_limit(settings.confidence, n, n > 1 ? fit.variance_ratio() : 1);
+    auto const errors = fit.errors();
+    g.scale_error = errors.scale;
+    double const limit = profile_limit(settings.confidence, n, errors.variance_ratio);
     auto const end = [&](double direction) {
         fit.start_over();
         double const step = 1.5 * std::sqrt((sd * sd + 1 / (information + 1)) / n);

@@ -37,6 +37,7 @@ struct GroupThreshold {
     double mean = 0, deviation = 0; ///< of thresholds in the population
     Interval interval;              ///< of the mean; ends beyond 1.5 ranges from the range are infinite
     PsychometricParameters shared;  ///< threshold: the mean; scale, guess, lapse
+    double scale_error = 0;         ///< standard error of the scale's logarithm; 0 = not computed
     double eta = 0;                 ///< overdispersion: variance of n answers is n p q (1 + (n - 1) eta^2)
     int observers = 0;
     std::string note; ///< what is doubtful; empty = nothing
@@ -45,7 +46,7 @@ struct GroupThreshold {
 /// @throws std::invalid_argument no trials, levels off the axis, a range without width, a proportion that the
 /// function cannot reach
 GroupThreshold group_threshold(std::span<ObserverLevels const> observers, GroupThresholdSettings const& settings);
-/// The same without its interval, which takes most of the time.
+/// The same without its interval, which takes most of the time, and without errors.
 GroupThreshold group_threshold_mode(std::span<ObserverLevels const> observers,
                                     GroupThresholdSettings const& settings);
 

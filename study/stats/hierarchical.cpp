@@ -16,6 +16,7 @@ struct RandomEffect {
     std::size_t first = 0;                      ///< of the observers' numbers
     double prior_mean = 0, prior_deviation = 1; ///< of the mean
     double prior_spread = 1;                    ///< half-normal, of the standard deviation
+    std::vector<double> variances{};            ///< of observers' own estimates, for the reference prior; or none
 
     double deviation(std::span<double const> x) const { return std::exp(x[population + 1]); }
     double of(std::span<double const> x, std::size_t i) const
@@ -36,6 +37,16 @@ struct RandomEffect {
         g[population] -= z / prior_deviation;
         g[population + 1] += 1 - s * s;
         double sum = -0.5 * z * z - 0.5 * s * s + x[population + 1];
+        double squares = 0, slopes = 0;
+        for (double const v : variances) {
+            double const total = sd * sd + v, square = std::pow(sd / total, 2);
+            squares += square;
+            slopes += square * (v - sd * sd) / total;
+        }
+        if (!variances.empty()) {
+            sum += 0.5 * std::log(squares);
+            g[population + 1] += slopes / squares;
+        }
         for (std::size_t i = first; i < first + observers; ++i) {
             sum -= 0.5 * x[i] * x[i];
             g[i] -= x[i];
@@ -43,6 +54,9 @@ struct RandomEffect {
         return sum;
     }
 };
+
+/// The variance of an observer's own estimate, bounded where answers tell nothing, as around d' = 0.
+double own_variance(double information) { return 1 / (std::fmax(information, 0) + 1); }
 
 /// Population and observers from the draws, with their diagnostics.
 Hierarchical summed_up(Draws const& draws, RandomEffect const& e, std::size_t observers, double confidence,
@@ -75,26 +89,30 @@ Hierarchical hierarchical_dprime(DetectionTask task, std::span<DetectionCounts c
         refuse("d' of observers without trials", "nothing was answered", "leave the condition out");
     std::size_t const n = people.size();
     bool const two = has_criterion(task);
-    RandomEffect const d{0, two ? 4u : 2u, 0, 2, 1}, c{2, 4 + n, 0, 2, 1};
+    double mean = 0, criteria = 0;
+    for (DetectionCounts const& k : people) {
+        DetectionPoint const p = detection_point(task, k);
+        mean += p.dprime / double(n);
+        criteria += p.criterion / double(n);
+    }
+    RandomEffect d{0, two ? 4u : 2u, 0, 2, 2}, c{2, 4 + n, 0, 2, 1};
+    for (DetectionCounts const& k : people) {
+        auto const [dd, dc, cc] = detection_likelihood(task, k, mean, criteria).information;
+        d.variances.push_back(own_variance(two ? dd - dc * dc / cc : dd));
+    }
     auto const density = [&](std::span<double const> x, std::span<double> g) {
         std::fill(g.begin(), g.end(), 0.0);
-        double sum = d.log_prior(x, n, g) + (two ? c.log_prior(x, n, g) : 0);
+        double value = d.log_prior(x, n, g) + (two ? c.log_prior(x, n, g) : 0);
         for (std::size_t i = 0; i < n; ++i) {
             DetectionLikelihood const l = detection_likelihood(task, people[i], d.of(x, i), two ? c.of(x, i) : 0);
-            sum += l.value;
+            value += l.value;
             d.pass(x, i, l.by_dprime, g);
             if (two) c.pass(x, i, l.by_criterion, g);
         }
-        return sum;
+        return value;
     };
     std::vector<double> start((two ? 4 : 2) + (two ? 2 : 1) * n, 0.0);
-    double sum = 0, criteria = 0;
-    for (DetectionCounts const& k : people) {
-        DetectionPoint const p = detection_point(task, k);
-        sum += p.dprime / double(n);
-        criteria += p.criterion / double(n);
-    }
-    start[0] = sum;
+    start[0] = mean;
     start[1] = -1;
     if (two) {
         start[2] = criteria;
@@ -129,8 +147,15 @@ Hierarchical hierarchical_psychometric(std::span<ObserverLevels const> observers
     }
     is_repeated = is_repeated && group.eta > 0;
     std::size_t const n = people.size(), shared = is_repeated ? 7 : 6;
-    RandomEffect const threshold{0, shared, 0, 1, 0.5}, scale{2, shared + n, std::log(0.125), 1, 0.5},
-        lapse{4, shared + 2 * n, -1.7, 1, 0.5};
+    RandomEffect threshold{0, shared, 0, 1, 1};
+    RandomEffect const scale{2, shared + n, std::log(0.125), 1, 0.5}, lapse{4, shared + 2 * n, -1.7, 1, 0.5};
+    double const mean = (group.mean - centre) / range;
+    for (std::size_t i = 0; i < n; ++i) {
+        auto const curve = level_curve(s.shape.sigmoid, s.proportion, group.shared.scale / range,
+                                       group.shared.lapse, guess[i], group.eta);
+        threshold.variances.push_back(
+            own_variance(curve ? level_likelihood(people[i], *curve, mean, false).information : 0));
+    }
     double const most_lapses =
         std::min(0.2, 0.9 * (1 - s.proportion)); // so that every curve reaches the proportion
     auto const density = [&](std::span<double const> x, std::span<double> g) -> double {
@@ -156,7 +181,7 @@ Hierarchical hierarchical_psychometric(std::span<ObserverLevels const> observers
         return sum;
     };
     std::vector<double> start(shared + 3 * n, 0.0);
-    start[0] = (group.mean - centre) / range;
+    start[0] = mean;
     start[1] = std::log(std::max(0.03, group.deviation / range));
     start[2] = std::log(group.shared.scale / range);
     start[3] = -2;

@@ -4,10 +4,18 @@
 // observer's parameters are mean + standard deviation * standard normal number (non-centred), which leaves no
 // funnel for few trials.
 //
-// d': d' and criterion of each observer; priors: means N(0, 2^2), standard deviations half-normal (1).
+// The standard deviation s of d' or thresholds between observers has the reference prior of random effects,
+//   sqrt(sum over observers of (s / (s^2 + v))^2),
+// v being the variance of an observer's own estimate (Bodnar, Link, Arendacka, Possolo & Elster 2017, Stat. Med.
+// 36:378), times a wide half-normal density, which bounds it for few observers. It vanishes at 0 and is largest
+// near the errors of observers' estimates. A half-normal density alone does not vanish, and takes observers who
+// differ by about those errors as too equal: 95 % intervals of observers held 93 %.
+//
+// d': d' and criterion of each observer; priors: means N(0, 2^2), standard deviations half-normal (2, of criteria
+// 1).
 // Psychometric function: threshold (at a proportion correct), log scale and logit of the lapse rate of each
 // observer, a common overdispersion; in units of the range of levels: mean threshold N(0, 1) from the middle, its
-// standard deviation half-normal (0.5); log scale N(log 1/8, 1), half-normal (0.5); lapse rate L logistic(y), L =
+// standard deviation half-normal (1); log scale N(log 1/8, 1), half-normal (0.5); lapse rate L logistic(y), L =
 // 0.2, but at most 0.9 (1 - proportion), y N(-1.7, 1), half-normal (0.5); eta Beta(1, 10).
 
 #include "study/stats/detection_model.h"

@@ -154,16 +154,16 @@ void observers(int experiments)
         for (std::size_t k = 0; k < own.size(); ++k)
             each.add(on(h.each[k].value), both(h.each[k].interval), own[k]);
     };
-    for (int k = 0; k < 5; ++k) {
+    auto const detect = [&](DetectionTask task, double sd) {
         DetectionExperiment e;
-        e.task = DetectionTask(k);
+        e.task = task;
         e.mean = 1.5;
-        e.sd = 0.4;
+        e.sd = sd;
         e.observers = g_choice.observers;
         e.trials = g_choice.trials;
-        if (!g_choice.has(study::test::name_of(e.task))) continue;
-        Tally mean{fmt::format("hierarchical d' of {}: population", study::test::name_of(e.task))},
-            each{fmt::format("hierarchical d' of {}: observers", study::test::name_of(e.task))};
+        std::string const name = fmt::format("hierarchical d' of {}, sd {}", study::test::name_of(task), sd);
+        if (!g_choice.has(name)) return;
+        Tally mean{name + ": population"}, each{name + ": observers"};
         for (int i = 0; i < experiments; ++i) {
             std::vector<double> own;
             Analysis const a = analyse_detection(e, 50000 + std::uint64_t(i), settings, &own);
@@ -171,7 +171,9 @@ void observers(int experiments)
         }
         print(mean, "");
         print(each, "");
-    }
+    };
+    for (double const sd : {0.4, 0.2, 0.8})
+        for (int k = 0; k < 5; ++k) detect(DetectionTask(k), sd);
     for (ThresholdExperiment e : threshold_experiments()) {
         if ((e.lapse == 0.05 && e.eta == 0) || !g_choice.has(name_of(e))) continue;
         e.observers = g_choice.observers;

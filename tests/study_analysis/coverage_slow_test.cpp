@@ -2,6 +2,7 @@
 
 #include "tests/study_analysis/coverage.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace study::test {
@@ -65,6 +66,47 @@ TEST(Coverage, OfThresholdsOfEveryMethodIs90To99PerCent)
             EXPECT_GE(own.coverage(), 91) << method << " " << lapse;
             EXPECT_LE(own.coverage(), 98) << method << " " << lapse;
         }
+}
+
+TEST(Coverage, OfMeansOfReversalsIs93To97PerCentAndMissesToBothSides)
+{
+    ThresholdExperiment e;
+    e.method = "staircase";
+    Tally own;
+    for (std::uint64_t i = 0; i < 60; ++i) {
+        SimulatedThresholds const s = analyse_thresholds(e, 2000 + i, without_hierarchical());
+        auto const& runs = s.analysis.blocks.at(0).runs;
+        for (std::size_t k = 0; k < runs.size(); ++k)
+            for (ThresholdEstimate const& t : runs[k].estimates)
+                if (t.method == "mean of reversals")
+                    own.add(std::log10(t.level.value),
+                            {std::log10(t.level.interval.low), std::log10(t.level.interval.high)},
+                            s.own_target[k]);
+    }
+    RecordProperty("coverage", std::to_string(own.coverage()));
+    EXPECT_GE(own.coverage(), 93);
+    EXPECT_LE(own.coverage(), 97);
+    EXPECT_GE(3 * std::min(own.below, own.above), std::max(own.below, own.above));
+}
+
+TEST(Coverage, OfObserversByHierarchicalModelsIs93To97PerCent)
+{
+    DetectionExperiment e;
+    e.task = DetectionTask::yes_no;
+    e.mean = 1.5;
+    e.sd = 0.4;
+    Tally own;
+    for (std::uint64_t i = 0; i < 100; ++i) {
+        std::vector<double> truth;
+        AnalysisSettings settings;
+        settings.draws = 300;
+        Analysis const a = analyse_detection(e, 3000 + i, settings, &truth);
+        HierarchicalResult const& h = a.blocks.at(0).hierarchical.at(0);
+        for (std::size_t k = 0; k < truth.size(); ++k) own.add(h.each[k].value, h.each[k].interval, truth[k]);
+    }
+    RecordProperty("coverage", std::to_string(own.coverage()));
+    EXPECT_GE(own.coverage(), 93);
+    EXPECT_LE(own.coverage(), 97);
 }
 
 } // namespace

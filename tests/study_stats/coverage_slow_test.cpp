@@ -86,7 +86,7 @@ TEST(Coverage, OfScoresOfPairsIs93To97PerCentInManyKindsOfExperiments)
                                           {"seven items", seven, 30, 1, 0.7},
                                           {"very different people", mid, 20, 6, 0.8},
                                           {"no differences", {0, 0, 0, 0, 0}, 20, 2, 0.3}};
-    int const simulations = 1000;
+    int const simulations = 5000;
     for (PairExperiment const& e : all) {
         PairSettings settings;
         if (e.tie > 0) settings.ties = TieModel::threshold;
