@@ -31,6 +31,7 @@ constexpr auto kGrace = std::chrono::milliseconds(150), kLook = std::chrono::mil
     if (getppid() != parent) _exit(127); // it died before that
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
+    signal(SIGPIPE, SIG_DFL);
     int const in = open("/dev/null", O_RDONLY);
     int const out = open(call.standard_output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
     int const err = open(call.standard_error.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);

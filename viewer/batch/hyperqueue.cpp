@@ -7,6 +7,7 @@
 #include "viewer/batch/claim.h"
 #include "viewer/batch/journal.h"
 #include "viewer/batch/texts.h"
+#include "viewer/batch/work.h"
 #include "viewer/batch/worker_process.h"
 
 #include <algorithm>
@@ -136,8 +137,7 @@ private:
             {"workers", is_own ? settings_.worker_cores : std::vector<int>{}},
             {"name", id_},
             {"crash_limit", kCrashLimit},
-            {"command",
-             {settings_.worker.string(), "batch", "work", "--publish-aside", store_.folder().string(), id_}},
+            {"command", {settings_.worker.string(), "batch", "work", store_.folder().string(), id_}},
             {"tasks", nlohmann::json::array()}};
         for (std::size_t const i : tasks) {
             Resources const& r = batch_.tasks[i].resources;
@@ -150,9 +150,8 @@ private:
     /// @return exit code of the Python process; -1 where it was killed
     int run_job(std::vector<std::size_t> const& tasks)
     {
-        auto const bridge = WorkerProcess::start(
-            "/usr/bin/env", {python_program(), "-c", kHyperQueueScript, write_call(tasks).string()}, {},
-            Lifetime::of_starter);
+        auto const bridge =
+            WorkerProcess::start_program({python_program(), "-c", kHyperQueueScript, write_call(tasks).string()});
         int status = 0;
         while (::waitpid(bridge.pid, &status, WNOHANG) == 0) {
             if (stop_.requested()) kill(bridge.pid, SIGKILL); // an own server ends with it, and so do the tasks

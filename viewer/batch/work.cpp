@@ -194,6 +194,22 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
     return end;
 }
 
+int exit_code_of(WorkEnd end)
+{
+    switch (end) {
+    case WorkEnd::done:
+    case WorkEnd::was_done:
+        return kWorkDone;
+    case WorkEnd::taken:
+        return kWorkTaken;
+    case WorkEnd::interrupted:
+        return kWorkInterrupted;
+    case WorkEnd::failed:
+        break;
+    }
+    return kWorkFailed;
+}
+
 void remove_leftovers(Store const& store)
 {
     std::error_code none;

@@ -29,6 +29,13 @@ struct WorkSettings {
 WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
                 gi::StopRequest const& stop);
 
+/// Exit codes of processes that work on a task.
+enum WorkCode { kWorkDone = 0, kWorkFailed = 1, kWorkTaken = 3, kWorkInterrupted = 130 };
+int exit_code_of(WorkEnd end);
+
+/// Workers that may be killed with one task before it counts as failed: it may be what kills them.
+inline constexpr int kMostLost = 10;
+
 /// Removes the folders of tasks that are done: of processes that were killed between the two.
 void remove_leftovers(Store const& store);
 

@@ -5,9 +5,8 @@
 #include "viewer/cli/batch/batch_text.h"
 
 #include <CLI/CLI.hpp>
-#include <csignal>
-#include <fcntl.h>
 #include <memory>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 namespace viewer {
@@ -16,7 +15,6 @@ namespace {
 struct WorkOptions {
     std::string store, id;
     std::size_t index = 0;
-    bool leaves_taken = false, tells = false, publishes_aside = false;
 };
 
 /// Goes on as another process, so that who waits for this one can start the next task. The claim goes with it.
@@ -29,7 +27,7 @@ void go_on_aside()
 
 int run_work(WorkOptions const& o)
 {
-    if (o.tells) fcntl(batch::kComputedFd, F_SETFD, FD_CLOEXEC);
+    prctl(PR_SET_NAME, batch::kWorkerName);
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     batch::Store const store = batch::Store::open(o.store);
@@ -39,24 +37,8 @@ int run_work(WorkOptions const& o)
         throw gi::InputError("the program of this machine is another version than the batch was planned by",
                              "here it is " + batch::program_identity(folder) + ", there " + b.program,
                              "install the same one on all machines");
-    batch::WorkSettings const settings{folder / "lightwell",
-                                       o.leaves_taken ? batch::IfTaken::leave : batch::IfTaken::wait, [&] {
-                                           if (o.tells && ::write(batch::kComputedFd, "c", 1) != 1)
-                                               return; // its runner was killed
-                                           if (o.publishes_aside) go_on_aside();
-                                       }};
-    switch (work_on(store, b, b.tasks.front(), settings, stop)) {
-    case batch::WorkEnd::done:
-    case batch::WorkEnd::was_done:
-        return batch::kWorkDone;
-    case batch::WorkEnd::taken:
-        return batch::kWorkTaken;
-    case batch::WorkEnd::interrupted:
-        return batch::kWorkInterrupted;
-    case batch::WorkEnd::failed:
-        break;
-    }
-    return batch::kWorkFailed;
+    batch::WorkSettings const settings{folder / "lightwell", batch::IfTaken::wait, go_on_aside};
+    return batch::exit_code_of(work_on(store, b, b.tasks.front(), settings, stop));
 }
 
 } // namespace
@@ -69,13 +51,7 @@ void add_batch_work(CLI::App& batch_command, int& exit_code)
     c->add_option("STORE", o->store)->required();
     c->add_option("BATCH", o->id)->required();
     c->add_option("INDEX", o->index)->required();
-    c->add_flag("--leave-taken", o->leaves_taken);
-    c->add_flag("--tell-computed", o->tells);
-    c->add_flag("--publish-aside", o->publishes_aside);
-    c->callback([o, &exit_code] {
-        std::signal(SIGPIPE, SIG_IGN); // its runner may have been killed
-        exit_code = run_work(*o);
-    });
+    c->callback([o, &exit_code] { exit_code = run_work(*o); });
 }
 
 } // namespace viewer
