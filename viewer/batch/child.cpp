@@ -22,7 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kGrace = std::chrono::milliseconds(150), kLook = std::chrono::milliseconds(100);
-constexpr std::size_t kMostMessages = 4000;
+constexpr std::size_t kMostMessages = 4000, kPipeBytes = 65536;
 
 /// Between vfork and exec: system calls only. @return if it fails: errno
 int become(ChildCall const& call, char* const* argv, pid_t parent, int messages)
@@ -147,8 +147,7 @@ ChildEnd run_child(ChildCall const& call, gi::StopRequest const& stop)
     rusage usage{};
     while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
     }
-    while (messages.read()) {
-    }
+    for (std::size_t k = 0; k <= kPipeBytes / kMostMessages && messages.read();) ++k; // what a pipe holds
     end.messages = messages.text();
     end.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     end.memory_bytes = std::uint64_t(usage.ru_maxrss) * 1024;
