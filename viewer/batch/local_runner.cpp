@@ -100,7 +100,10 @@ private:
     /// What a worker does.
     int work(Task const& task, int pipe) const
     {
-        WorkSettings const settings{settings_.program, IfTaken::leave, [pipe] { (void)!::write(pipe, "c", 1); }};
+        WorkSettings const settings{settings_.program, IfTaken::leave, [pipe] {
+                                        (void)!::write(pipe, "c", 1);
+                                        return Publish::here;
+                                    }};
         return exit_code_of(work_on(store_, batch_, task, settings, stop_));
     }
 

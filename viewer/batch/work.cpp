@@ -77,7 +77,7 @@ private:
 
     WorkEnd publish(Attempt const& a, Event event)
     {
-        if (settings_.computed) settings_.computed();
+        if (settings_.computed && settings_.computed() == Publish::elsewhere) return WorkEnd::passed_on;
         Result result;
         result.task = task_.key;
         result.seconds = a.end.seconds;
@@ -174,6 +174,7 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     WorkEnd const end = store.result(task.key) ? WorkEnd::was_done : Run(store, batch, task, settings, stop).run();
+    if (end == WorkEnd::passed_on) return end;
     std::error_code none;
     if (!fs::remove(store.work(task.key), none)) fs::remove_all(store.work(task.key), none);
     return end;
@@ -184,6 +185,7 @@ int exit_code_of(WorkEnd end)
     switch (end) {
     case WorkEnd::done:
     case WorkEnd::was_done:
+    case WorkEnd::passed_on:
         return kWorkDone;
     case WorkEnd::taken:
         return kWorkTaken;

@@ -8,19 +8,23 @@ namespace viewer::batch {
 
 enum class WorkEnd {
     done,
-    was_done, ///< before, or another process has done it meanwhile
-    taken,    ///< another process runs it
-    failed,   ///< the journal says why
+    was_done,  ///< before, or another process has done it meanwhile
+    passed_on, ///< another process publishes its outputs
+    taken,     ///< another process runs it
+    failed,    ///< the journal says why
     interrupted
 };
 
 enum class IfTaken { wait, leave };
 
+/// Whether this process publishes the outputs, or a copy of it that was made before.
+enum class Publish { here, elsewhere };
+
 struct WorkSettings {
     std::filesystem::path program; ///< the launcher, lightwell
     IfTaken if_taken = IfTaken::wait;
-    std::function<void()>
-        computed; ///< called when the task's process has ended well, before its outputs are published
+    /// Called when the task's process has ended well, before its outputs are published.
+    std::function<Publish()> computed;
 };
 
 /// Claims the task, runs it in a folder of its own, in which its inputs are linked, and again after a failure that
