@@ -127,7 +127,7 @@ TEST_F(KillTest, Machine)
     EXPECT_EQ(o.code, 0) << o.err;
     int repeated = 0;
     for (auto const& [task, n] : p.starts()) repeated += n - 1;
-    EXPECT_LE(repeated, kills * kCores) << "at most what ran";
+    EXPECT_LE(repeated, kills * 2 * kCores) << "at most what ran, and what was not yet on the disk";
     EXPECT_EQ(json_of(o)["done"], tasks_);
     expect_outputs();
     std::printf("%d times switched off with %d tasks at a time: %d attempts repeated\n", kills, kCores, repeated);

@@ -82,7 +82,10 @@ private:
 
     void start_tasks()
     {
-        while (!pending_.empty()) {
+        auto const publishing = [&] {
+            return std::size_t(std::ranges::count(running_, true, &Running::has_computed));
+        };
+        while (!pending_.empty() && publishing() < settings_.machine.cores.size()) { // the disk may be slow
             std::size_t const i = pending_.front();
             Task const& task = batch_.tasks[i];
             if (settings_.ranks > 1 && settle(i)) {

@@ -82,9 +82,9 @@ WorkerProcess WorkerProcess::start(Share const& share, std::function<int(int)> c
 
 WorkerProcess WorkerProcess::start_program(std::vector<std::string> words)
 {
-    return start({}, [&](int pipe) {
+    return start({}, [&](int own_end) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        fcntl(pipe, F_SETFD, 0); // closed at its end
+        fcntl(own_end, F_SETFD, 0); // closed at its end
         std::vector<char*> argv;
         for (std::string& word : words) argv.push_back(word.data());
         argv.push_back(nullptr);
