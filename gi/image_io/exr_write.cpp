@@ -135,7 +135,8 @@ void write_exr(std::filesystem::path const& file, PictureRows const& picture, Pi
         Imf::Header header(picture.width, picture.height);
         header.setName(layer.name);
         header.setType(Imf::SCANLINEIMAGE);
-        header.compression() = Imf::ZIP_COMPRESSION;
+        header.compression() =
+            attributes.compression == ExrCompression::zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
         Imf::addChromaticities(header, Imf::Chromaticities()); // the default is Rec. 709
         add(attributes, header);                               // such attributes are the same in all parts
         if (l == 0)

@@ -15,6 +15,8 @@ namespace gi {
 
 enum class PixelType { half, single };
 
+enum class ExrCompression { zip, none };
+
 /// Standard attributes of OpenEXR that a film's pictures have; empty ones are left out.
 struct ExrAttributes {
     double frames_per_s = 0; ///< 0 = none
@@ -26,6 +28,7 @@ struct ExrAttributes {
     std::optional<TimeCode> time_code = {};
     /// Points of the world to those of a camera that looks along -z with y up, and to its picture, -1..1 each way.
     std::optional<dmat4> world_to_camera = {}, world_to_ndc = {};
+    ExrCompression compression = ExrCompression::zip;
 };
 
 /// SMPTE time code of a frame; drop-frame counting is not used: at 29.97 Hz the code runs as at 30. Nothing above

@@ -38,17 +38,19 @@ TEST(Exr, RoundTripsAllLayersExactly)
 {
     Picture const p = sample_picture(13, 7);
     Report report;
-    write_exr(scratch("a.exr"), p, PixelType::single, report);
-    Picture const q = read_exr(scratch("a.exr"));
-    ASSERT_EQ(q.width, 13);
-    ASSERT_EQ(q.height, 7);
-    EXPECT_EQ(q.metadata, p.metadata);
-    ASSERT_EQ(q.layers.size(), p.layers.size());
-    for (Layer const& l : p.layers) {
-        Layer const* const m = q.find(l.name);
-        ASSERT_NE(m, nullptr) << l.name;
-        EXPECT_EQ(m->channels, l.channels);
-        EXPECT_EQ(m->data, l.data) << l.name;
+    for (ExrCompression const compression : {ExrCompression::zip, ExrCompression::none}) {
+        write_exr(scratch("a.exr"), p, PixelType::single, report, {.compression = compression});
+        Picture const q = read_exr(scratch("a.exr"));
+        ASSERT_EQ(q.width, 13);
+        ASSERT_EQ(q.height, 7);
+        EXPECT_EQ(q.metadata, p.metadata);
+        ASSERT_EQ(q.layers.size(), p.layers.size());
+        for (Layer const& l : p.layers) {
+            Layer const* const m = q.find(l.name);
+            ASSERT_NE(m, nullptr) << l.name;
+            EXPECT_EQ(m->channels, l.channels);
+            EXPECT_EQ(m->data, l.data) << l.name;
+        }
     }
     EXPECT_TRUE(report.losses().empty());
 }

@@ -26,6 +26,7 @@ case "$4" in
   links) cat data/in.txt > out-$2.txt; exit $? ;;
   ranks) echo "${OMPI_COMM_WORLD_SIZE:-none}" > out-$2.txt; exit 0 ;;
   cores) nproc > out-$2.txt; exit 0 ;;
+  talk) seq 1 100000 >&2 ;;
   lost) echo "lost: triangles: 3" >&2 ;;
 esac
 sleep "$3"

@@ -48,16 +48,16 @@ TEST(BatchOnHyperQueue, RunsAndResumes)
 {
     if (!has_hyperqueue()) GTEST_SKIP() << "scripts/setup --tests installs HyperQueue";
     FakePrograms const p;
-    p.sweep(12, 0.05, "", "    cores: 1\n");
+    p.sweep(32, 0.05, "", "    cores: 1\n");
     p.write("f.yaml",
             file_text(p / "m.yaml") + "  f: {command: 'render {n} 0 wrong', over: {n: [99]}, outputs: x}\n");
     Outcome const o = p.run("batch m.yaml --on hyperqueue --hq-workers 1,2 --json");
     EXPECT_EQ(o.code, 0) << o.err;
-    EXPECT_EQ(json_of(o)["done"], 12);
-    expect_each_once(p, 12);
+    EXPECT_EQ(json_of(o)["done"], 32);
+    expect_each_once(p, 32); // several by each process
     Outcome const more = p.run("batch f.yaml --store m.batch --on hyperqueue --hq-workers 2 --json");
     EXPECT_EQ(more.code, 1) << more.err;
-    EXPECT_EQ(json_of(more)["done_before"], 12);
+    EXPECT_EQ(json_of(more)["done_before"], 32);
     ASSERT_EQ(json_of(more)["failures"].size(), 1u) << more.out;
     EXPECT_EQ(json_of(more)["failures"][0]["why"], "exit code 2");
 }

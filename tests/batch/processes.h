@@ -1,10 +1,14 @@
 #pragma once
 #include "tests/viewer/run_program.h"
+#include "viewer/batch/worker_process.h"
 
 namespace viewer::test {
 
-/// Processes whose command line has the folder and all the parts.
-inline std::vector<int> processes_with(std::filesystem::path const& folder, std::vector<std::string> const& parts)
+enum class Workers { none, only };
+
+/// Processes whose command line has the folder and all the parts, and whose name is that of workers, or is not.
+inline std::vector<int> processes_with(std::filesystem::path const& folder, std::vector<std::string> const& parts,
+                                       Workers which = Workers::none)
 {
     std::vector<int> found;
     for (auto const& entry : std::filesystem::directory_iterator("/proc")) {
@@ -14,6 +18,8 @@ inline std::vector<int> processes_with(std::filesystem::path const& folder, std:
         std::string line; // of a process that ends meanwhile: empty
         std::getline(in, line, '\xff');
         if (line.find(folder.string()) == line.npos) continue;
+        bool const is_worker = file_text(entry.path() / "comm") == std::string(batch::kWorkerName) + "\n";
+        if (is_worker != (which == Workers::only)) continue;
         if (std::ranges::all_of(parts, [&](std::string const& part) { return line.find(part) != line.npos; }))
             found.push_back(std::stoi(name));
     }

@@ -150,6 +150,17 @@ TEST(BatchRun, LossesThatTasksReportAreTold)
     EXPECT_NE(p.run("batch status m.batch --messages").out.find("lost: triangles: 3"), std::string::npos);
 }
 
+TEST(BatchRun, OnlyTheEndOfWhatATaskSaysIsKept)
+{
+    FakePrograms const p;
+    p.sweep(1, 0, "talk");
+    EXPECT_EQ(p.run("batch m.yaml").code, 0);
+    std::string const told = p.run("batch status m.batch --messages").out;
+    EXPECT_NE(told.find("..."), std::string::npos);
+    EXPECT_NE(told.find("100000"), std::string::npos) << told;
+    EXPECT_LT(told.size(), 8000u);
+}
+
 TEST(BatchRun, InterruptEndsSoonAndKeepsWhatIsFinished)
 {
     FakePrograms const p;

@@ -43,13 +43,13 @@ struct StoreTest : testing::Test {
     /// Publishes out/NAME with a text as the output of a task.
     void publish(Task const& task, std::string const& name, std::string const& text)
     {
-        fs::create_directories(store.work(task.key) / "run/out");
-        gi::write_text(store.work(task.key) / "run/out" / name, text);
+        fs::create_directories(store.work(task.key) / "out");
+        gi::write_text(store.work(task.key) / "out" / name, text);
         Result r;
         r.task = task.key;
         r.outputs = {{"out/", "", 0}};
         r.seconds = 2;
-        store.publish(r, store.work(task.key) / "run");
+        store.publish(r, store.work(task.key));
     }
 
     TemporaryFolder folder;

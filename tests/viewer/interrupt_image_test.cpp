@@ -28,7 +28,7 @@ void interrupt_and_resume(int signal, int code)
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.exr"});
     run_well(kLongRender, undisturbed.path());
     std::string const whole = file_text(undisturbed / "a.exr");
-    EXPECT_NE(part, whole);
+    EXPECT_GT(part.size(), whole.size()) << "compressing the unfinished picture takes time";
     EXPECT_TRUE(file_text(folder / "a.exr") == whole) << "resumed and undisturbed pictures differ";
 }
 

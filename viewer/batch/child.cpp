@@ -22,25 +22,52 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kGrace = std::chrono::milliseconds(150), kLook = std::chrono::milliseconds(100);
+constexpr std::size_t kMostMessages = 4000, kPipeBytes = 65536;
 
-/// Between fork and exec: system calls only.
-[[noreturn]] void become(ChildCall const& call, char* const* argv, pid_t parent, int error_pipe)
+/// Between vfork and exec: system calls only. @return if it fails: errno
+int become(ChildCall const& call, char* const* argv, pid_t parent, int messages)
 {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(127); // it died before that
-    signal(SIGINT, SIG_DFL);
-    signal(SIGTERM, SIG_DFL);
-    int const in = open("/dev/null", O_RDONLY);
-    int const out = open(call.standard_output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    int const err = open(call.standard_error.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (in >= 0 && out >= 0 && err >= 0 && dup2(in, 0) == 0 && dup2(out, 1) == 1 && dup2(err, 2) == 2 &&
+    if (getppid() != parent) return ECHILD; // it died before that
+    for (int const s : {SIGINT, SIGTERM, SIGPIPE}) signal(s, SIG_DFL);
+    int const in = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    int const out = open(call.standard_output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (in >= 0 && out >= 0 && dup2(in, 0) == 0 && dup2(out, 1) == 1 && dup2(messages, 2) == 2 &&
         chdir(call.folder.c_str()) == 0)
         execv(call.program.c_str(), argv);
-    int const error = errno;
-    (void)!write(error_pipe, &error, sizeof error);
-    _exit(127);
+    return errno;
 }
+
+/// Reads a pipe as it comes and keeps the end of the text.
+class Messages {
+public:
+    explicit Messages(int pipe) : pipe_(pipe) {}
+    ~Messages() { ::close(pipe_); }
+    Messages(Messages const&) = delete;
+    Messages& operator=(Messages const&) = delete;
+
+    int pipe() const { return is_open_ ? pipe_ : -1; }
+    /// @return false if there is nothing now
+    bool read()
+    {
+        char part[kMostMessages];
+        ssize_t const n = ::read(pipe_, part, sizeof part);
+        if (n == 0) is_open_ = false;
+        if (n <= 0) return false;
+        text_.append(part, std::size_t(n));
+        if (text_.size() <= kMostMessages) return true;
+        text_.erase(0, text_.size() - kMostMessages);
+        is_cut_ = true;
+        return true;
+    }
+    std::string text() const { return (is_cut_ ? "..." : "") + text_; }
+
+private:
+    int pipe_;
+    bool is_open_ = true, is_cut_ = false;
+    std::string text_;
+};
 
 std::uint64_t resident_bytes(pid_t process)
 {
@@ -50,32 +77,33 @@ std::uint64_t resident_bytes(pid_t process)
     return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
 }
 
-/// Waits until the process ends or `until`.
-bool ends_before(int process_fd, Clock::time_point until)
+/// Waits until the process ends or `until`, and reads what it says.
+bool ends_before(int process_fd, Clock::time_point until, Messages& messages)
 {
-    auto const left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
-    pollfd p{process_fd, POLLIN, 0};
-    return ::poll(&p, 1, int(std::max<long long>(0, left))) == 1;
+    for (;;) {
+        auto const left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+        pollfd p[]{{process_fd, POLLIN, 0}, {messages.pipe(), POLLIN, 0}};
+        if (::poll(p, 2, int(std::max<long long>(0, left))) <= 0) return false;
+        if (p[1].revents != 0) messages.read();
+        if (p[0].revents != 0) return true;
+        if (left <= 0) return false;
+    }
 }
 
-pid_t start(ChildCall const& call)
+pid_t start(ChildCall const& call, int messages)
 {
     std::vector<std::string> words{call.program.string()};
     words.insert(words.end(), call.arguments.begin(), call.arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    int pipe_ends[2];
-    if (::pipe2(pipe_ends, O_CLOEXEC) != 0) throw std::runtime_error(std::strerror(errno));
-    pid_t const parent = getpid(), child = fork();
-    if (child == 0) become(call, argv.data(), parent, pipe_ends[1]);
-    int error = child < 0 ? errno : 0;
-    ::close(pipe_ends[1]);
-    if (child > 0) {
-        setpgid(child, child); // whoever is first
-        if (::read(pipe_ends[0], &error, sizeof error) != ssize_t(sizeof error)) error = 0;
+    int volatile error = 0; // vfork: the child has this process's memory until it becomes the program
+    pid_t const parent = getpid(), child = vfork();
+    if (child == 0) {
+        error = become(call, argv.data(), parent, messages);
+        _exit(127);
     }
-    ::close(pipe_ends[0]);
+    if (child < 0) error = errno;
     if (error == 0) return child;
     if (child > 0) ::waitpid(child, nullptr, 0);
     throw gi::InputError("'" + call.program.string() + "' cannot be started", std::strerror(error),
@@ -87,7 +115,12 @@ pid_t start(ChildCall const& call)
 ChildEnd run_child(ChildCall const& call, gi::StopRequest const& stop)
 {
     auto const begin = Clock::now();
-    pid_t const child = start(call);
+    int pipe_ends[2];
+    if (::pipe2(pipe_ends, O_CLOEXEC) != 0) throw std::runtime_error(std::strerror(errno));
+    ::fcntl(pipe_ends[0], F_SETFL, O_NONBLOCK);
+    Messages messages(pipe_ends[0]);
+    pid_t const child = start(call, pipe_ends[1]);
+    ::close(pipe_ends[1]);
     int const process_fd = int(::syscall(SYS_pidfd_open, child, 0)); // Debian 12's function is for C only
     ChildEnd end;
     using Reason = ChildEnd::Reason;
@@ -95,11 +128,11 @@ ChildEnd run_child(ChildCall const& call, gi::StopRequest const& stop)
         call.limit_s > 0
             ? begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(call.limit_s))
             : Clock::time_point::max();
-    while (!ends_before(process_fd, std::min(limit, Clock::now() + kLook))) {
+    while (!ends_before(process_fd, std::min(limit, Clock::now() + kLook), messages)) {
         if (stop.requested()) {
             end.reason = Reason::interrupted;
             kill(-child, SIGTERM);
-            if (!ends_before(process_fd, Clock::now() + kGrace)) kill(-child, SIGKILL);
+            if (!ends_before(process_fd, Clock::now() + kGrace, messages)) kill(-child, SIGKILL);
         } else if (Clock::now() >= limit) {
             end.reason = Reason::too_long;
             kill(-child, SIGKILL);
@@ -114,6 +147,8 @@ ChildEnd run_child(ChildCall const& call, gi::StopRequest const& stop)
     rusage usage{};
     while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
     }
+    for (std::size_t k = 0; k <= kPipeBytes / kMostMessages && messages.read();) ++k; // what a pipe holds
+    end.messages = messages.text();
     end.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     end.memory_bytes = std::uint64_t(usage.ru_maxrss) * 1024;
     end.code = WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);

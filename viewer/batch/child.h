@@ -14,9 +14,10 @@ namespace viewer::batch {
 struct ChildCall {
     std::filesystem::path program;
     std::vector<std::string> arguments;
-    std::filesystem::path folder, standard_output, standard_error; ///< the files are replaced
-    double limit_s = 0;                                            ///< 0 = unlimited
-    std::uint64_t memory_bytes = 0;                                ///< 0 = unlimited
+    std::filesystem::path folder;
+    std::filesystem::path standard_output; ///< a file that is replaced, or /dev/null
+    double limit_s = 0;                    ///< 0 = unlimited
+    std::uint64_t memory_bytes = 0;        ///< 0 = unlimited
 };
 
 struct ChildEnd {
@@ -26,6 +27,7 @@ struct ChildEnd {
     int code = 0; ///< exit code, or the signal
     double seconds = 0;
     std::uint64_t memory_bytes = 0; ///< peak of its resident memory
+    std::string messages;           ///< the end of its stderr, 4,000 bytes
 
     bool is_good() const { return reason == Reason::exited && code == 0; }
 };

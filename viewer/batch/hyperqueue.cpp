@@ -7,6 +7,7 @@
 #include "viewer/batch/claim.h"
 #include "viewer/batch/journal.h"
 #include "viewer/batch/texts.h"
+#include "viewer/batch/work.h"
 #include "viewer/batch/worker_process.h"
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <poll.h>
 #include <sys/wait.h>
 #include <thread>
@@ -28,7 +30,9 @@ namespace fs = std::filesystem;
 
 constexpr int kMostInVain = 3;    ///< jobs one after another in which no task was started
 constexpr int kCrashLimit = 1000; ///< workers that HyperQueue may lose with one task
-constexpr int kNoPackage = 4;     ///< exit code of hyperqueue.py
+constexpr std::size_t kMostTogether = 16;
+constexpr std::size_t kUnknownWorkers = 1024; ///< those of a server that runs already
+constexpr int kNoPackage = 4;                 ///< exit code of hyperqueue.py
 
 class HyperQueueRunner {
 public:
@@ -126,6 +130,26 @@ private:
         return missing;
     }
 
+    /// Tasks that one process runs one after the other, as HyperQueue takes some 30 ms to start one: at first
+    /// many, towards the end single ones, so that all workers end together.
+    std::vector<std::vector<std::size_t>> share_out(std::vector<std::size_t> const& tasks) const
+    {
+        std::vector<int> const& cores = settings_.worker_cores; // of an own server
+        std::size_t const at_a_time =
+            settings_.server_dir.empty() ? std::size_t(std::reduce(cores.begin(), cores.end())) : kUnknownWorkers;
+        std::vector<std::vector<std::size_t>> all;
+        for (std::size_t k = 0; k < tasks.size();) {
+            std::size_t const left = tasks.size() - k;
+            std::size_t const most = std::clamp<std::size_t>(left / (4 * at_a_time), 1, kMostTogether);
+            std::vector<std::size_t>& together = all.emplace_back();
+            auto const fits = [&](std::size_t i) {
+                return together.empty() || batch_.tasks[i].resources == batch_.tasks[together.front()].resources;
+            };
+            for (; k < tasks.size() && together.size() < most && fits(tasks[k]); ++k) together.push_back(tasks[k]);
+        }
+        return all;
+    }
+
     fs::path write_call(std::vector<std::size_t> const& tasks)
     {
         fs::remove_all(folder_);
@@ -136,12 +160,11 @@ private:
             {"workers", is_own ? settings_.worker_cores : std::vector<int>{}},
             {"name", id_},
             {"crash_limit", kCrashLimit},
-            {"command",
-             {settings_.worker.string(), "batch", "work", "--publish-aside", store_.folder().string(), id_}},
+            {"command", {settings_.worker.string(), "batch", "work", store_.folder().string(), id_}},
             {"tasks", nlohmann::json::array()}};
-        for (std::size_t const i : tasks) {
-            Resources const& r = batch_.tasks[i].resources;
-            call["tasks"].push_back({i, r.cores, r.gpus, (r.memory_bytes + 1048575) / 1048576});
+        for (std::vector<std::size_t> const& together : share_out(tasks)) {
+            Resources const& r = batch_.tasks[together.front()].resources;
+            call["tasks"].push_back({together, r.cores, r.gpus, (r.memory_bytes + 1048575) / 1048576});
         }
         gi::write_text(folder_ / "call.json", call.dump());
         return folder_ / "call.json";
@@ -150,9 +173,8 @@ private:
     /// @return exit code of the Python process; -1 where it was killed
     int run_job(std::vector<std::size_t> const& tasks)
     {
-        auto const bridge = WorkerProcess::start(
-            "/usr/bin/env", {python_program(), "-c", kHyperQueueScript, write_call(tasks).string()}, {},
-            Lifetime::of_starter);
+        auto const bridge =
+            WorkerProcess::start_program({python_program(), "-c", kHyperQueueScript, write_call(tasks).string()});
         int status = 0;
         while (::waitpid(bridge.pid, &status, WNOHANG) == 0) {
             if (stop_.requested()) kill(bridge.pid, SIGKILL); // an own server ends with it, and so do the tasks

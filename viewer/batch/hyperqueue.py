@@ -1,7 +1,7 @@
 """Submits tasks of a batch to HyperQueue and waits for them: what viewer/batch/hyperqueue.cpp runs.
 
 argv: a JSON file with server_dir, workers (cores of each worker to start with an own server; none = the server runs),
-command (words) and tasks ([index, cores, gpus, megabytes] each; cores 0 = all).
+command (words) and tasks ([indices, cores, gpus, megabytes] each; cores 0 = all).
 Exit codes: 0 the job ended, 1 the server was lost or refused, 4 the package hyperqueue is missing.
 """
 
@@ -37,9 +37,9 @@ def main():
             cluster.start_worker(WorkerConfig(cores=cores))
     client = Client(call["server_dir"] or None)
     job = Job(max_fails=None, name=call["name"])
-    for index, *resources in call["tasks"]:
+    for indices, *resources in call["tasks"]:
         job.program(
-            call["command"] + [str(index)],
+            call["command"] + [str(i) for i in indices],
             stdout=None,
             stderr=None,
             resources=request(*resources),

@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "viewer/batch/claim.h"
+#include "viewer/batch/work.h"
 #include "viewer/batch/worker_process.h"
 
 #include <algorithm>
@@ -24,10 +25,8 @@ constexpr auto kTimeToEnd = 1s;        ///< for workers to end their tasks
 
 class Runner {
 public:
-    Runner(Store const& store, std::string const& id, Batch const& batch, LocalSettings const& settings,
-           gi::StopRequest const& stop)
+    Runner(Store const& store, Batch const& batch, LocalSettings const& settings, gi::StopRequest const& stop)
         : store_(store),
-          id_(id),
           batch_(batch),
           settings_(settings),
           stop_(stop),
@@ -83,7 +82,10 @@ private:
 
     void start_tasks()
     {
-        while (!pending_.empty()) {
+        auto const publishing = [&] {
+            return std::size_t(std::ranges::count(running_, true, &Running::has_computed));
+        };
+        while (!pending_.empty() && publishing() < settings_.machine.cores.size()) { // the disk may be slow
             std::size_t const i = pending_.front();
             Task const& task = batch_.tasks[i];
             if (settings_.ranks > 1 && settle(i)) {
@@ -93,12 +95,19 @@ private:
             auto const share = allocator_.take(task.resources);
             if (!share) return;
             pending_.pop_front();
-            running_.push_back({WorkerProcess::start(settings_.worker,
-                                                     {"batch", "work", store_.folder().string(), id_,
-                                                      std::to_string(i), "--leave-taken", "--tell-computed"},
-                                                     *share, Lifetime::own),
-                                i, *share});
+            running_.push_back(
+                {WorkerProcess::start(*share, [&](int pipe) { return work(task, pipe); }), i, *share});
         }
+    }
+
+    /// What a worker does.
+    int work(Task const& task, int pipe) const
+    {
+        WorkSettings const settings{settings_.program, IfTaken::leave, [pipe] {
+                                        (void)!::write(pipe, "c", 1);
+                                        return Publish::here;
+                                    }};
+        return exit_code_of(work_on(store_, batch_, task, settings, stop_));
     }
 
     /// Counts a task that another process has done meanwhile, or puts it aside if one runs it.
@@ -193,7 +202,6 @@ private:
     }
 
     Store const& store_;
-    std::string const& id_;
     Batch const& batch_;
     LocalSettings const& settings_;
     gi::StopRequest const& stop_;
@@ -209,10 +217,10 @@ private:
 
 } // namespace
 
-RunOutcome run_locally(Store const& store, std::string const& id, Batch const& batch,
-                       LocalSettings const& settings, gi::StopRequest const& stop)
+RunOutcome run_locally(Store const& store, Batch const& batch, LocalSettings const& settings,
+                       gi::StopRequest const& stop)
 {
-    return Runner(store, id, batch, settings, stop).run();
+    return Runner(store, batch, settings, stop).run();
 }
 
 } // namespace viewer::batch

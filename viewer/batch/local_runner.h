@@ -1,6 +1,6 @@
 #pragma once
-// Runs the tasks of a batch on this machine, each by a process of its own, `lightwell batch work`, that publishes
-// the task's outputs by itself: if this runner is killed, the tasks that run are finished nevertheless.
+// Runs the tasks of a batch on this machine, each by a process of its own (worker_process.h) that publishes the
+// task's outputs by itself: if this runner is killed, the tasks that run are finished nevertheless.
 
 #include "viewer/batch/machine.h"
 #include "viewer/batch/progress_view.h"
@@ -9,7 +9,7 @@
 namespace viewer::batch {
 
 struct LocalSettings {
-    std::filesystem::path worker; ///< the program that has the command `batch work`
+    std::filesystem::path program; ///< the launcher, lightwell
     Machine machine;
     bool shows_progress = true;
     int rank = 0, ranks = 1; ///< of processes under mpirun that run the same batch: each begins elsewhere in it
@@ -25,7 +25,7 @@ struct RunOutcome {
 /// Tasks start in the order of the batch as soon as the machine has what they need; those that other processes run
 /// are waited for. After a stop request all tasks that run are ended, what is finished is kept.
 /// @throws InputError a task needs more than the machine has
-RunOutcome run_locally(Store const& store, std::string const& id, Batch const& batch,
-                       LocalSettings const& settings, gi::StopRequest const& stop);
+RunOutcome run_locally(Store const& store, Batch const& batch, LocalSettings const& settings,
+                       gi::StopRequest const& stop);
 
 } // namespace viewer::batch

@@ -83,6 +83,15 @@ fs::path index_file(fs::path const& plan)
     return plan.parent_path() / ("." + plan.filename().string() + ".index");
 }
 
+void write(fs::path const& file, std::string const& text)
+{
+    errno = 0;
+    std::ofstream out(file, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) throw cannot_keep(file, std::strerror(errno));
+}
+
 /// Hands everything that was written to this file system to its disk.
 void sync_all(fs::path const& folder)
 {
@@ -166,9 +175,9 @@ void Store::publish(Result& result, fs::path const& made) const
         }
         result.outputs = std::move(outputs);
         result.host = gi::host_name();
-        fs::path const to = result_file(result.task), temporary = made.parent_path() / "result";
+        fs::path const to = result_file(result.task), temporary = made.string() + ".result";
         fs::create_directories(to.parent_path());
-        gi::write_text(temporary, line_of(result));
+        write(temporary, line_of(result));
         sync_all(folder_);
         fs::rename(temporary, to);
     } catch (fs::filesystem_error const& e) {

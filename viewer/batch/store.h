@@ -7,7 +7,7 @@
 //   results/ab/abcdef...    one file per finished task, named by its key: names and hashes of its outputs
 //   journal/HOST.jsonl      what happened on each machine (journal.h)
 //   claims/ab               locks of running tasks (claim.h)
-//   work/abcdef...          the folder of a running task
+//   work/abcdef...          the folder in which a task runs; abcdef....result: its result before that appears
 //
 // A result appears whole, by renaming, once its objects are on the disk. So a task is finished or it is not,
 // whatever is killed and whenever; a result without its objects, or with a wrong checksum, counts as none.

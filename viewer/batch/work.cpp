@@ -7,7 +7,6 @@
 #include "viewer/batch/journal.h"
 
 #include <fmt/format.h>
-#include <fstream>
 #include <thread>
 
 namespace viewer::batch {
@@ -15,24 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostMessages = 4000; ///< bytes
-
 struct Attempt {
     ChildEnd end;
     std::string why; ///< it failed; empty = it did not
     bool may_pass = true;
 };
-
-/// The end of a text file.
-std::string end_of(fs::path const& file)
-{
-    std::ifstream in(file, std::ios::binary | std::ios::ate);
-    if (!in) return {};
-    auto const size = std::streamoff(in.tellg());
-    auto const from = std::max<std::streamoff>(0, size - std::streamoff(kMostMessages));
-    in.seekg(from);
-    return (from > 0 ? "..." : "") + std::string{std::istreambuf_iterator<char>(in), {}};
-}
 
 /// What is wrong with an input now; empty = it is as it was planned.
 std::string change_of(InputFile const& file)
@@ -73,7 +59,7 @@ public:
             Attempt const a = try_once();
             event.seconds = a.end.seconds;
             event.why = a.why;
-            event.messages = end_of(folder() / "stderr");
+            event.messages = a.end.messages;
             if (a.end.reason == ChildEnd::Reason::interrupted) {
                 event.kind = EventKind::interrupted;
                 tell(event);
@@ -91,7 +77,7 @@ private:
 
     WorkEnd publish(Attempt const& a, Event event)
     {
-        if (settings_.computed) settings_.computed();
+        if (settings_.computed && settings_.computed() == Publish::elsewhere) return WorkEnd::passed_on;
         Result result;
         result.task = task_.key;
         result.seconds = a.end.seconds;
@@ -101,7 +87,7 @@ private:
         for (std::string const& name : task_.outputs) result.outputs.push_back({name, {}, 0});
         event.kind = EventKind::finished;
         try {
-            store_.publish(result, folder() / "run");
+            store_.publish(result, folder());
         } catch (gi::InputError const& e) {
             event.kind = EventKind::failed;
             event.why = e.what();
@@ -119,17 +105,18 @@ private:
     /// An empty folder with links to the inputs, and folders for outputs.
     void make_folder()
     {
-        fs::remove_all(folder());
-        fs::path const inside = folder() / "run";
-        fs::create_directories(inside);
+        if (!fs::create_directory(folder())) { // one that a killed process left
+            fs::remove_all(folder());
+            fs::create_directory(folder());
+        }
         for (int const i : task_.inputs) {
             InputFile const& file = batch_.files[std::size_t(i)];
             if (fs::path(file.name).is_absolute()) continue;
-            fs::create_directories((inside / file.name).parent_path());
-            fs::create_symlink(file.path, inside / file.name);
+            fs::create_directories((folder() / file.name).parent_path());
+            fs::create_symlink(file.path, folder() / file.name);
         }
         for (std::string const& output : task_.outputs) // the folder of a folder: the program makes that itself
-            fs::create_directories((inside / output.substr(0, output.find_last_not_of('/') + 1)).parent_path());
+            fs::create_directories((folder() / output.substr(0, output.find_last_not_of('/') + 1)).parent_path());
     }
 
     Attempt try_once()
@@ -142,11 +129,9 @@ private:
         }
         ChildCall const call{.program = settings_.program,
                              .arguments = task_.command,
-                             .folder = folder() / "run",
-                             .standard_output = task_.standard_output.empty()
-                                                    ? folder() / "stdout"
-                                                    : folder() / "run" / task_.standard_output,
-                             .standard_error = folder() / "stderr",
+                             .folder = folder(),
+                             .standard_output = task_.standard_output.empty() ? fs::path("/dev/null")
+                                                                              : folder() / task_.standard_output,
                              .limit_s = task_.limit_s,
                              .memory_bytes = task_.resources.memory_bytes};
         Attempt a;
@@ -157,7 +142,7 @@ private:
             return a;
         }
         for (std::string const& output : task_.outputs) {
-            fs::path const file = folder() / "run" / output;
+            fs::path const file = folder() / output;
             std::error_code none;
             bool const is_there = output.ends_with('/') ? fs::is_directory(file, none)
                                                         : fs::is_regular_file(fs::symlink_status(file, none));
@@ -189,9 +174,27 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     WorkEnd const end = store.result(task.key) ? WorkEnd::was_done : Run(store, batch, task, settings, stop).run();
+    if (end == WorkEnd::passed_on) return end;
     std::error_code none;
-    fs::remove_all(store.work(task.key), none);
+    if (!fs::remove(store.work(task.key), none)) fs::remove_all(store.work(task.key), none);
     return end;
+}
+
+int exit_code_of(WorkEnd end)
+{
+    switch (end) {
+    case WorkEnd::done:
+    case WorkEnd::was_done:
+    case WorkEnd::passed_on:
+        return kWorkDone;
+    case WorkEnd::taken:
+        return kWorkTaken;
+    case WorkEnd::interrupted:
+        return kWorkInterrupted;
+    case WorkEnd::failed:
+        break;
+    }
+    return kWorkFailed;
 }
 
 void remove_leftovers(Store const& store)

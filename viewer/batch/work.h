@@ -8,19 +8,23 @@ namespace viewer::batch {
 
 enum class WorkEnd {
     done,
-    was_done, ///< before, or another process has done it meanwhile
-    taken,    ///< another process runs it
-    failed,   ///< the journal says why
+    was_done,  ///< before, or another process has done it meanwhile
+    passed_on, ///< another process publishes its outputs
+    taken,     ///< another process runs it
+    failed,    ///< the journal says why
     interrupted
 };
 
 enum class IfTaken { wait, leave };
 
+/// Whether this process publishes the outputs, or a copy of it that was made before.
+enum class Publish { here, elsewhere };
+
 struct WorkSettings {
     std::filesystem::path program; ///< the launcher, lightwell
     IfTaken if_taken = IfTaken::wait;
-    std::function<void()>
-        computed; ///< called when the task's process has ended well, before its outputs are published
+    /// Called when the task's process has ended well, before its outputs are published.
+    std::function<Publish()> computed;
 };
 
 /// Claims the task, runs it in a folder of its own, in which its inputs are linked, and again after a failure that
@@ -28,6 +32,13 @@ struct WorkSettings {
 /// @param batch of the task @throws InputError the store cannot be used
 WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
                 gi::StopRequest const& stop);
+
+/// Exit codes of processes that work on a task.
+enum WorkCode { kWorkDone = 0, kWorkFailed = 1, kWorkTaken = 3, kWorkInterrupted = 130 };
+int exit_code_of(WorkEnd end);
+
+/// Workers that may be killed with one task before it counts as failed: it may be what kills them.
+inline constexpr int kMostLost = 10;
 
 /// Removes the folders of tasks that are done: of processes that were killed between the two.
 void remove_leftovers(Store const& store);

@@ -1,34 +1,31 @@
 #pragma once
-// A process `lightwell batch work` as its runner sees it.
+// A process that is forked from this one to run one task, or another program.
 
 #include "viewer/batch/machine.h"
 
-#include <filesystem>
+#include <functional>
 #include <string>
 #include <sys/types.h>
+#include <vector>
 
 namespace viewer::batch {
 
-/// Exit codes of `lightwell batch work`.
-enum WorkCode { kWorkDone = 0, kWorkFailed = 1, kWorkTaken = 3, kWorkInterrupted = 130 };
+/// Their name in the lists of `ps` and `top`.
+inline constexpr char const* kWorkerName = "batch work";
 
-/// Workers that may be killed with one task before it counts as failed: it may be what kills them.
-inline constexpr int kMostLost = 10;
-
-/// The worker's end of the pipe on which it tells that its task has computed and its share of the machine is free.
-inline constexpr int kComputedFd = 3;
-
-/// Whether a process ends with the one that started it.
-enum class Lifetime { own, of_starter };
-
-/// A process in a session of its own: Ctrl-C in a terminal and its end do not reach it.
+/// A process in a session of its own: Ctrl-C in a terminal and the end of its starter do not reach it.
 struct WorkerProcess {
     pid_t pid = -1;
-    int pipe = -1; ///< readable: it has computed; closed: it has ended
+    int pipe = -1; ///< readable: it has told something; closed: it has ended
 
+    /// Runs `work` in a copy of this process, which must have no other threads, without the time that starting a
+    /// program takes.
     /// @param share its processors and GPUs; without any it may use those of this process
-    static WorkerProcess start(std::filesystem::path const& program, std::vector<std::string> words,
-                               Share const& share, Lifetime lifetime);
+    /// @param work  gets its end of the pipe, returns the exit code; 2 where it throws an InputError, which is
+    /// told
+    static WorkerProcess start(Share const& share, std::function<int(int pipe)> const& work);
+    /// Runs a program, found as a shell finds it, that ends with this process.
+    static WorkerProcess start_program(std::vector<std::string> words);
 };
 
 } // namespace viewer::batch

@@ -76,7 +76,7 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
                              "use that one, or call lightwell batch with the manifest again");
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    fs::path const self = batch::program_folder() / "lightwell-batch";
+    fs::path const folder = batch::program_folder();
     int const rank = number_of("OMPI_COMM_WORLD_RANK", 0),
               ranks = std::max(1, number_of("OMPI_COMM_WORLD_SIZE", 1));
     batch::Machine machine = batch::this_machine();
@@ -87,12 +87,13 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
                                  "leave out one");
         std::vector<int> const cores =
             !o.workers.empty() ? o.workers : std::vector{o.cores > 0 ? o.cores : int(machine.cores.size())};
-        outcome = run_on_hyperqueue(store, id, b, {self, o.server_dir, cores, !o.quiet}, stop);
+        outcome =
+            run_on_hyperqueue(store, id, b, {folder / "lightwell-batch", o.server_dir, cores, !o.quiet}, stop);
     } else {
         if (int const here = number_of("OMPI_COMM_WORLD_LOCAL_SIZE", 1); here > 1)
             machine = part_of(machine, number_of("OMPI_COMM_WORLD_LOCAL_RANK", 0), here);
         if (o.cores > 0) set_cores(machine, o.cores);
-        outcome = run_locally(store, id, b, {self, machine, !o.quiet && rank == 0, rank, ranks}, stop);
+        outcome = run_locally(store, b, {folder / "lightwell", machine, !o.quiet && rank == 0, rank, ranks}, stop);
     }
     remove_leftovers(store);
     if (rank == 0) print_run(store, id, b, outcome, o.json);

@@ -5,9 +5,8 @@
 #include "viewer/cli/batch/batch_text.h"
 
 #include <CLI/CLI.hpp>
-#include <csignal>
-#include <fcntl.h>
 #include <memory>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 namespace viewer {
@@ -15,48 +14,39 @@ namespace {
 
 struct WorkOptions {
     std::string store, id;
-    std::size_t index = 0;
-    bool leaves_taken = false, tells = false, publishes_aside = false;
+    std::vector<std::size_t> indices;
 };
 
-/// Goes on as another process, so that who waits for this one can start the next task. The claim goes with it.
-void go_on_aside()
-{
-    pid_t const child = fork();
-    if (child > 0) _exit(batch::kWorkDone);
-    if (child == 0) setsid(); // where it cannot fork, it publishes as it is
-}
-
+/// Runs one task after the other. A copy of this process publishes the outputs of each beside the next one; the
+/// claim goes with it.
 int run_work(WorkOptions const& o)
 {
-    if (o.tells) fcntl(batch::kComputedFd, F_SETFD, FD_CLOEXEC);
+    prctl(PR_SET_NAME, batch::kWorkerName);
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     batch::Store const store = batch::Store::open(o.store);
-    batch::Batch const b = store.batch_of_task(o.id, o.index);
     std::filesystem::path const folder = batch::program_folder();
-    if (b.program != batch::program_identity(folder))
-        throw gi::InputError("the program of this machine is another version than the batch was planned by",
-                             "here it is " + batch::program_identity(folder) + ", there " + b.program,
-                             "install the same one on all machines");
-    batch::WorkSettings const settings{folder / "lightwell",
-                                       o.leaves_taken ? batch::IfTaken::leave : batch::IfTaken::wait, [&] {
-                                           if (o.tells && ::write(batch::kComputedFd, "c", 1) != 1)
-                                               return; // its runner was killed
-                                           if (o.publishes_aside) go_on_aside();
+    std::string const program = batch::program_identity(folder);
+    bool is_copy = false;
+    batch::WorkSettings const settings{folder / "lightwell", batch::IfTaken::wait, [&] {
+                                           pid_t const child = fork();
+                                           if (child > 0) return batch::Publish::elsewhere;
+                                           if (child == 0) setsid();
+                                           is_copy = child == 0; // where it cannot fork, it publishes as it is
+                                           return batch::Publish::here;
                                        }};
-    switch (work_on(store, b, b.tasks.front(), settings, stop)) {
-    case batch::WorkEnd::done:
-    case batch::WorkEnd::was_done:
-        return batch::kWorkDone;
-    case batch::WorkEnd::taken:
-        return batch::kWorkTaken;
-    case batch::WorkEnd::interrupted:
-        return batch::kWorkInterrupted;
-    case batch::WorkEnd::failed:
-        break;
+    int result = batch::kWorkDone;
+    for (std::size_t const index : o.indices) {
+        batch::Batch const b = store.batch_of_task(o.id, index);
+        if (b.program != program)
+            throw gi::InputError("the program of this machine is another version than the batch was planned by",
+                                 "here it is " + program + ", there " + b.program,
+                                 "install the same one on all machines");
+        int const code = batch::exit_code_of(work_on(store, b, b.tasks.front(), settings, stop));
+        if (code != batch::kWorkDone) result = code;
+        if (is_copy || code == batch::kWorkInterrupted) break;
     }
-    return batch::kWorkFailed;
+    return result;
 }
 
 } // namespace
@@ -64,18 +54,13 @@ int run_work(WorkOptions const& o)
 void add_batch_work(CLI::App& batch_command, int& exit_code)
 {
     auto const o = std::make_shared<WorkOptions>();
-    CLI::App* const c = batch_command.add_subcommand("work", "Run one task and publish its outputs.");
+    CLI::App* const c =
+        batch_command.add_subcommand("work", "Run tasks one after the other and publish their outputs.");
     c->group(""); // called by runners, not by people
     c->add_option("STORE", o->store)->required();
     c->add_option("BATCH", o->id)->required();
-    c->add_option("INDEX", o->index)->required();
-    c->add_flag("--leave-taken", o->leaves_taken);
-    c->add_flag("--tell-computed", o->tells);
-    c->add_flag("--publish-aside", o->publishes_aside);
-    c->callback([o, &exit_code] {
-        std::signal(SIGPIPE, SIG_IGN); // its runner may have been killed
-        exit_code = run_work(*o);
-    });
+    c->add_option("INDEX", o->indices)->required();
+    c->callback([o, &exit_code] { exit_code = run_work(*o); });
 }
 
 } // namespace viewer

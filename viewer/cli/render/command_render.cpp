@@ -53,7 +53,8 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
                              return rows;
                          }};
     kept.metadata = make_metadata(o, settings, result);
-    save_exr(o, o.out, kept, report);
+    bool const is_left = result.end == gi::RenderEnd::interrupted; // compressing takes longer than all else then
+    save_exr(o, o.out, kept, report, is_left ? gi::ExrCompression::none : gi::ExrCompression::zip);
 }
 
 struct Shot {
