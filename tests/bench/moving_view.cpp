@@ -3,12 +3,13 @@
 //   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--truth-filter NAME] [--size WxH]
 //   [--eyes 1|2] [--fov DEG]
 //   [--avatar FILE] [--scored N] [--set KEY=VALUE]... [--offline HZ] [--light-scale S] [--surface-scale S]
-//   [--paths N] [--young N]
+//   [--late S] [--paths N] [--young N]
 // HEAD.csv: time_s, then the head relative to the scene's first camera: x_m,y_m,z_m (right, up, back), yaw_deg,
 // pitch_deg (left, up). --fov is the vertical field of view (60). The truth is that of the method reference at the
 // session's bounces, through a filter (oidn-high); it is kept in its folder and reused. With two eyes (0.063 m
 // apart), rivalry is the mean difference of the eyes' errors at points that both see. --offline: frames at a fixed
-// rate instead of real time, with light and surfaces at fixed scales and --paths (1); --young: N frames of a head
+// rate instead of real time, with light and surfaces at fixed scales and --paths (1); with
+// --late, reprojected to the head of S seconds later; --young: N frames of a head
 // that holds still, scored after 1, 2, 4, ... Writes shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment,
 // E eye) and prints a row of figures.
 
@@ -41,7 +42,7 @@ struct Options {
     std::string scene, head, avatar, truth_filter = "oidn-high";
     fs::path out, truth;
     int truth_paths = 128, width = 640, height = 480, eyes = 1, scored = 8, young = 0, paths = 1;
-    double fov_deg = 60, offline_hz = 0, light_scale = 0.25, surface_scale = 1;
+    double fov_deg = 60, offline_hz = 0, light_scale = 0.25, surface_scale = 1, late_s = 0;
     std::vector<Change> settings;
 };
 
@@ -265,13 +266,39 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
                o.eyes == 2 ? fmt::format("; rivalry {:.2f}/255", rivalry_sum) : "");
 }
 
+/// What is shown of a frame at another pose.
+Seen reprojected(Options const& o, SessionFrame const& frame, FrameCommand const& command, Viewpoint const& now,
+                 Settings const& settings)
+{
+    auto shown = std::make_shared<LiveFrame>();
+    shown->command = command;
+    for (ViewPicture const& v : frame.views) shown->result.views.push_back({v.picture, {}, v.hidden});
+    PresentSettings present;
+    present.tone = tone_settings(settings);
+    Seen s{now, command.scene_s, {}};
+    std::vector<Pane> panes;
+    std::vector<gi::Camera> cameras;
+    for (int e = 0; e < o.eyes; ++e) {
+        panes.push_back({{0, 0}, {o.width, o.height}, StereoMode::off, e, -1});
+        cameras.push_back(now.views[std::size_t(e)].camera);
+    }
+    Presenter presenter({});
+    presenter.take(shown, panes);
+    for (int e = 0; e < o.eyes; ++e) {
+        TextureTarget const target(TextureTarget::Format::bytes, {o.width, o.height});
+        presenter.draw(target.target(), {0, 0}, {panes[std::size_t(e)]}, present, cameras);
+        s.shown.push_back(read_bytes(target.target()));
+    }
+    return s;
+}
+
 /// Frames at a fixed rate, each for its own moment, at a fixed scale of light and one path.
 void render_offline(Options const& o, RenderSession& session, Walk& walk, std::vector<Seen>& seen)
 {
     int const frames = int(walk.seconds() * o.offline_hz);
     for (int f = 0, k = 0; o.young > 0 ? f < o.young : f < frames && k < o.scored; ++f) {
         double const t = o.young > 0 ? 0 : f / o.offline_hz;
-        Viewpoint const at = walk.at(t, 1 / o.offline_hz);
+        Viewpoint const at = walk.at(std::max(0.0, t - o.late_s), 1 / o.offline_hz);
         FrameCommand command;
         command.frame = std::uint64_t(f);
         command.scene_s = t;
@@ -289,6 +316,10 @@ void render_offline(Options const& o, RenderSession& session, Walk& walk, std::v
         SessionFrame const frame = session.render(command, {});
         if (o.young > 0 ? ((f + 1) & f) != 0 : t < 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored) continue;
         ++k;
+        if (o.late_s > 0) {
+            seen.push_back(reprojected(o, frame, command, walk.at(t, 0), session.settings()));
+            continue;
+        }
         Seen s{at, t, {}};
         for (ViewPicture const& v : frame.views) {
             std::vector<unsigned char> const bytes =
@@ -456,6 +487,8 @@ try {
             o.young = std::stoi(value());
         else if (a == "--light-scale")
             o.light_scale = std::stod(value());
+        else if (a == "--late")
+            o.late_s = std::stod(value());
         else if (a == "--surface-scale")
             o.surface_scale = std::stod(value());
         else if (a == "--avatar")

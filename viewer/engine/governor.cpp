@@ -15,7 +15,7 @@ constexpr double kMargin = 0.85; // of the time between frames
 struct LightSize {
     double scale, rate;
 };
-constexpr LightSize kLightSizes[] = {{1, 1}, {0.75, 1}, {0.5, 1}, {0.375, 0.6}, {0.25, 0}};
+constexpr LightSize kLightSizes[] = {{1, 1}, {0.75, 1}, {0.5, 1}, {0.375, 0.5}, {0.25, 0}};
 constexpr double kSurfaceScales[] = {1, 0.75, 0.5};
 constexpr int kMostPaths = 256;
 constexpr double kLeast = 0.05; // of a frame's work that the next one gets
@@ -24,6 +24,12 @@ constexpr double kToGrow = 1.15;
 /// Of the time between frames, where surfaces are larger than half the size: antialiasing brings smaller ones to
 /// the size of the view, nearly as sharp.
 constexpr double kForSurfaces = 0.3;
+
+/// Of times, 0 = none yet: single slow frames say little, fast ones show what is possible.
+double smoothed(double before, double now)
+{
+    return before > 0 ? before + (now < before ? 0.5 : 0.1) * (now - before) : now;
+}
 
 } // namespace
 
@@ -40,18 +46,20 @@ double Governor::surfaces_scale() const
 
 FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed, bool own_surfaces) const
 {
-    auto const paths_at = [&](double scale) { return work_ / (pixels * scale * scale) - kBesides; };
     double const frame_s = kMargin / rate_hz_, free_s = std::max(frame_s - surface_s_, kLeast * frame_s);
     FrameBudget b;
     for (LightSize const& size : kLightSizes) {
         b.scale = size.scale;
         double const grows = last_scale_ > 0 && size.scale > last_scale_ ? kToGrow : 1,
-                     needed_s = free_s * grows * (1 + kBesides) / (paths_at(size.scale) + kBesides);
+                     of_one_path = pixels * size.scale * size.scale * (1 + kBesides) * grows,
+                     // Single slow frames must not change the size where the rate may fall anyway.
+            needed_s = size.rate < 1 && work_s_ > 0 ? work_s_ * of_one_path : free_s * of_one_path / work_;
         if (size.rate * (needed_s + frame_s - free_s) <= frame_s) break;
     }
     if (still) b.scale = 1;
     if (fixed.scale > 0) b.scale = fixed.scale;
-    b.paths = fixed.paths > 0 ? fixed.paths : std::clamp(int(paths_at(b.scale)), 1, kMostPaths);
+    b.paths = fixed.paths > 0 ? fixed.paths
+                              : std::clamp(int(work_ / (pixels * b.scale * b.scale) - kBesides), 1, kMostPaths);
     b.surfaces = own_surfaces && !(fixed.scale > 0) ? std::max(b.scale, surfaces_scale()) : b.scale;
     return b;
 }
@@ -66,6 +74,7 @@ void Governor::measured(FrameBudget const& budget, double pixels, double seconds
     if (!(done > 0) || !(light_s > 0)) return; // nothing was rendered, or in no time
     // Paths are whole numbers: the remainder accumulates until it allows one more.
     work_ = fits < 1 ? done * std::max(fits, kLeast) : std::min(kGrowth * std::max(work_, done), done * fits);
+    work_s_ = smoothed(work_s_, light_s / done);
     last_scale_ = budget.scale;
     rate_hz_ = rate_hz;
     if (!(surfaces_s > 0)) return;
@@ -76,9 +85,7 @@ void Governor::measured(FrameBudget const& budget, double pixels, double seconds
         if (budget.surfaces < surfaces_) to_wait_ = std::exchange(wait_, std::min(2 * wait_, kLongestWait));
     }
     surfaces_ = budget.surfaces;
-    // Single slow frames say little; fast ones show what is possible.
-    double const newest = surfaces_s < surface_s_ ? 0.5 : 0.1;
-    surface_s_ = surface_s_ > 0 ? surface_s_ + newest * (surfaces_s - surface_s_) : surfaces_s;
+    surface_s_ = smoothed(surface_s_, surfaces_s);
 }
 
 } // namespace viewer

@@ -34,6 +34,7 @@ private:
     double surfaces_scale() const;
 
     double work_ = 1e5; ///< of the next frame, in paths
+    double work_s_ = 0;   ///< per path, smoothed; 0 = unknown
     double last_scale_ = 0;
     double surface_s_ = 0; ///< per frame at the scale surfaces_, smoothed; 0 = unknown
     double surfaces_ = 1;  ///< scale of the last frame's
