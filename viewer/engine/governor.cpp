@@ -35,6 +35,7 @@ double smoothed(double before, double now)
 
 double Governor::surfaces_scale() const
 {
+    if (surface_s_ == 0) return surfaces_;
     for (double const scale : kSurfaceScales) {
         if (scale > surfaces_ && to_wait_ > 0) continue;
         // Of a smaller picture, more of the time does not depend on its size.

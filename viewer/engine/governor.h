@@ -37,7 +37,7 @@ private:
     double work_s_ = 0;   ///< per path, smoothed; 0 = unknown
     double last_scale_ = 0;
     double surface_s_ = 0; ///< per frame at the scale surfaces_, smoothed; 0 = unknown
-    double surfaces_ = 1;  ///< scale of the last frame's
+    double surfaces_ = 0.5; ///< scale of the last frame's; small until their time is known
     int drawn_ = 0;        ///< frames with such surfaces
     static constexpr int kFirstFrames = 3;
     int to_wait_ = 0, wait_ = kFirstWait; ///< frames until surfaces may grow; the same after they shrank next
