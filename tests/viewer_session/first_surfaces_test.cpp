@@ -174,6 +174,22 @@ TEST(FirstSurfaces, ComparedMethodsAndHiddenPixelsAreDrawnToo)
     }
 }
 
+/// What was averaged before is still there when surfaces get another size.
+TEST(FirstSurfaces, AChangeOfSizeKeepsWhatWasAveraged)
+{
+    for (double const after : {0.75, 1.0}) {
+        gi::Report report;
+        RenderSession s = started(report);
+        SessionFrame mean, same, changed;
+        for (std::uint64_t f = 0; f < 16; ++f) mean = s.render(command(0, 0.25, false, 0.5), {});
+        same = s.render(command(0, 0.25, false, 0.5), {});
+        double const step = relmse(color(same), color(mean));
+        changed = s.render(command(0, 0.25, false, after), {});
+        RecordProperty("change", std::to_string(relmse(color(changed), color(same)) / step));
+        EXPECT_LT(relmse(color(changed), color(same)), 2 * step) << after;
+    }
+}
+
 /// Without reuse there is no history either, and a picture that stands still is still.
 TEST(FirstSurfaces, AStillPictureIsStillWithSmallLightAndWithoutReuse)
 {

@@ -175,7 +175,7 @@ void Store::publish(Result& result, fs::path const& made) const
         }
         result.outputs = std::move(outputs);
         result.host = gi::host_name();
-        fs::path const to = result_file(result.task), temporary = made.string() + ".result";
+        fs::path const to = result_file(result.task), temporary = made.string() + kResult;
         fs::create_directories(to.parent_path());
         write(temporary, line_of(result));
         sync_all(folder_);

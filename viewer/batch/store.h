@@ -47,6 +47,8 @@ public:
     std::filesystem::path journal() const { return folder_ / "journal"; }
     std::filesystem::path object(std::string const& sha256) const;
     std::filesystem::path work(std::string const& key) const { return folder_ / "work" / key; }
+    /// Appended to that: a result that is not published yet.
+    static constexpr char const* kResult = ".result";
 
     /// The result of a finished task.
     std::optional<Result> result(std::string const& key) const;

@@ -105,7 +105,7 @@ private:
     /// An empty folder with links to the inputs, and folders for outputs.
     void make_folder()
     {
-        if (!fs::create_directory(folder())) { // one that a killed process left
+        if (!fs::create_directories(folder())) { // one that a killed process left
             fs::remove_all(folder());
             fs::create_directory(folder());
         }
@@ -177,6 +177,7 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
     if (end == WorkEnd::passed_on) return end;
     std::error_code none;
     if (!fs::remove(store.work(task.key), none)) fs::remove_all(store.work(task.key), none);
+    fs::remove(store.work(task.key).string() + Store::kResult, none); // of a publication that failed
     return end;
 }
 

@@ -47,7 +47,8 @@ double Governor::surfaces_scale() const
 
 FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed, bool own_surfaces) const
 {
-    double const frame_s = kMargin / rate_hz_, free_s = std::max(frame_s - surface_s_, kLeast * frame_s);
+    double const frame_s = kMargin / rate_hz_,
+                 free_s = std::max(frame_s - (own_surfaces ? surface_s_ : 0), kLeast * frame_s);
     FrameBudget b;
     for (LightSize const& size : kLightSizes) {
         b.scale = size.scale;

@@ -13,7 +13,7 @@ namespace viewer {
 struct FrameBudget {
     int paths = 1;       ///< per pixel of the pictures of light
     double scale = 1;    ///< side of the pictures of light over full-size side
-    double surfaces = 1; ///< side of the pictures that are shown over full-size side; at least scale
+    double surfaces = 1; ///< side of the pictures of surfaces over full-size side; at least scale
 
     bool operator==(FrameBudget const&) const = default;
 };

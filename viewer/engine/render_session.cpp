@@ -211,13 +211,18 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
             auto const lights =
                 runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
             gi::CameraRays const rays = gi::camera_rays(v.camera, v.width, v.height, world_->world().origin);
-            if (smoothed.name != v.name) smoothed = {v.name, rays, {}};
+            if (smoothed.name != v.name) smoothed = {v.name, rays, v.width, v.height, {}};
+            gi::CameraRays before = smoothed.rays; // in pixels of this picture, which may have another size
+            before.step_x *= float(smoothed.width) / float(v.width);
+            before.step_y *= float(smoothed.height) / float(v.height);
             seen_->look(rays, v.width, v.height, lights, smoothed.antialiasing.sample());
             gi::Picture const picture =
                 gi::lit_picture(*seen_, v.width, v.height, *runner.light(k),
                                 hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(),
-                                counts, &smoothed.rays);
+                                counts, &before);
             smoothed.rays = rays;
+            smoothed.width = v.width;
+            smoothed.height = v.height;
             gi::Picture whole = smoothed.antialiasing.add(picture, shown.width, shown.height);
             if (frame.views[k].hidden) blacken(whole, *frame.views[k].hidden);
             return whole;

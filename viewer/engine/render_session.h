@@ -108,7 +108,8 @@ private:
     /// A view whose pictures are antialiased.
     struct SmoothedView {
         std::string name;
-        gi::CameraRays rays; ///< of its last picture
+        gi::CameraRays rays; ///< of its last picture of surfaces
+        int width = 0, height = 0;
         gi::Antialiasing antialiasing;
     };
     std::vector<SmoothedView> smoothed_, smoothed_compared_; ///< since surfaces are drawn and light is the same

@@ -69,7 +69,7 @@ std::vector<SettingKey> make_keys()
              &S::reuse),
          own("denoise", gi::filter_names(), "filter that removes noise", &S::denoise),
          own("first-surfaces", {},
-             "while things move, draw surfaces, textures and what mirrors show at full size, and only light at a "
+             "while things move, show surfaces, textures and what mirrors show at full size, and only light at a "
              "smaller one",
              &S::first_surfaces),
          own("share-eyes", {}, "each eye may reuse light computed for the other eye", &S::share_eyes),

@@ -19,7 +19,7 @@ struct Settings {
                           ///< schedule auto, the live viewer sets it every frame (update_governor.h)
     int reuse = 16;       ///< frames of temporal reuse; 1 = none
     std::string denoise = "atrous";
-    bool first_surfaces = true; ///< surfaces are drawn at full size where light is computed at a smaller one
+    bool first_surfaces = true; ///< surfaces are shown at full size where light is computed at a smaller one
     bool share_eyes = true;     ///< each eye may reuse light computed for the other
     double exposure_ev = 0;
     std::string auto_exposure =

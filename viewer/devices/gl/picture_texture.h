@@ -25,8 +25,6 @@ public:
     float nearest_m() const { return nearest_m_; } ///< smallest depth except 0; infinite if there is none
 
 private:
-    std::vector<glm::vec2> least_and_greatest(glm::ivec2 tiles) const;
-
     glm::ivec2 size_px_{};
     GlObject color_, around_; ///< color_: radiance and 1 / depth
     std::vector<glm::vec4> texels_;
