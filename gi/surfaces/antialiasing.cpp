@@ -16,8 +16,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Weight of the earlier samples, at most.
 constexpr float kMost = 5;
-/// A sample so many pixels of the mean from a pixel's middle has exp(-kNarrow d^2) of the weight.
-constexpr float kNarrow = 1;
 /// Earlier colours are held within the mean +- so many standard deviations of 3 x 3 pixels.
 constexpr float kSpread = 1;
 /// Relative difference of depths from which on a pixel showed another surface.
@@ -75,7 +73,7 @@ struct Axis {
             float const place = (float(x) + 0.5f) * scale - at;
             int const nearest = std::clamp(int(std::floor(place + 0.5f)), 0, of_picture - 1);
             float const away = (float(nearest) - place) / scale;
-            pixels.push_back({place, nearest, std::exp(-kNarrow * away * away)});
+            pixels.push_back({place, nearest, std::exp(-away * away)});
         }
     }
 };

@@ -152,7 +152,7 @@ std::vector<std::string> frame_notes(ViewState const& s, LiveFrame const& f)
     else if (still && !s.settings.refine)
         notes.emplace_back("Refinement of still pictures is off");
     if (!still && (f.budget.scale < 1 || s.settings.paths == 0))
-        notes.push_back(fmt::format("To hold {:g} Hz: {} path{} per pixel, {:.0f} % of the window's width{}",
+        notes.push_back(fmt::format("For up to {:g} Hz: {} path{} per pixel, {:.0f} % of the window's width{}",
                                     f.settings.rate_hz, f.command.paths, f.command.paths == 1 ? "" : "s",
                                     100 * f.budget.scale,
                                     f.budget.surfaces > f.budget.scale
