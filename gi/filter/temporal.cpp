@@ -3,6 +3,7 @@
 #include "gi/core/catmull_rom.h"
 #include "gi/core/error.h"
 #include "gi/filter/filter_input.h"
+#include "gi/filter/neighbourhoods.h"
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -14,7 +15,7 @@ namespace {
 
 // A pixel of the previous frame shows the same surface within these limits: cosine of normals, and relative
 // difference of depths beyond what the surface's slope explains.
-constexpr float kCosine = 0.8f, kDepth = 0.02f;
+constexpr float kCosine = 0.9f, kDepth = 0.02f;
 // Motion below this, in pixels, counts as static.
 constexpr float kStill = 1e-3f;
 
@@ -25,14 +26,7 @@ Layer const& layer_of(Picture const& picture, char const* name)
                      "render frames with a method that provides it");
 }
 
-/// Light over albedo; channels that are too dark are not divided.
-vec3 over(vec3 light, vec3 albedo)
-{
-    for (int c = 0; c < 3; ++c)
-        if (albedo[c] >= kDarkest) light[c] /= albedo[c];
-    return light;
-}
-
+/// The reverse of light_over().
 vec3 times(vec3 light, vec3 albedo)
 {
     for (int c = 0; c < 3; ++c)
@@ -49,80 +43,49 @@ bool same_dark(vec3 a, vec3 b)
 
 bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// Statistics of direct light over albedo in windows around pixels: computed for all pixels at once, or pixel by
-/// pixel if only few are needed.
-class Neighbourhoods {
-public:
-    Neighbourhoods(Layer const& l1, Layer const& albedo, int width, int height, bool few,
-                   TemporalSettings const& settings)
-        : l1_(l1),
-          albedo_(albedo),
-          width_(width),
-          height_(height),
-          window_(settings.window),
-          spread_(settings.spread),
-          few_(few)
-    {
-        if (few) return;
-        cv::Mat direct(height, width, CV_32FC3);
-        tbb::parallel_for(0, height, [&](int y) {
-            for (int x = 0; x < width; ++x) direct.ptr<vec3>(y)[x] = direct_at(x, y);
-        });
-        cv::Size const size(window_, window_);
-        cv::boxFilter(direct, mean_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
-        cv::sqrBoxFilter(direct, squares_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
-    }
-    struct Range {
-        vec3 low, high;
-    };
-    /// Mean +- deviations of the window around a pixel.
-    Range around(int x, int y) const
-    {
-        vec3 mean{0}, squares{0};
-        if (few_) {
-            for (int j = -window_ / 2; j <= window_ / 2; ++j)
-                for (int i = -window_ / 2; i <= window_ / 2; ++i) {
-                    vec3 const d = direct_at(std::clamp(x + i, 0, width_ - 1), std::clamp(y + j, 0, height_ - 1));
-                    mean += d;
-                    squares += d * d;
-                }
-            mean /= float(window_ * window_);
-            squares /= float(window_ * window_);
-        } else {
-            mean = mean_.ptr<vec3>(y)[x];
-            squares = squares_.ptr<vec3>(y)[x];
-        }
-        vec3 const deviation = spread_ * glm::sqrt(glm::max(vec3{0}, squares - mean * mean));
-        return {mean - deviation, mean + deviation};
-    }
-
-private:
-    vec3 direct_at(int x, int y) const
-    {
-        std::size_t const i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
-        return over(rgb(l1_, i), rgb(albedo_, i));
-    }
-
-    Layer const &l1_, &albedo_;
-    int width_, height_, window_;
-    float spread_;
-    bool few_;
-    cv::Mat mean_, squares_; ///< 3 channels
-};
-
 } // namespace
+
+void TemporalReuse::Means::add(float weight, Means const& other)
+{
+    direct += weight * other.direct;
+    indirect += weight * other.indirect;
+    normal += weight * other.normal;
+}
+
+void TemporalReuse::Means::scale(float by)
+{
+    direct *= by;
+    indirect *= by;
+    normal *= by;
+}
+
+void TemporalReuse::Means::approach(Means const& other, float share)
+{
+    direct = glm::mix(direct, other.direct, share);
+    indirect = glm::mix(indirect, other.indirect, share);
+    normal = glm::mix(normal, other.normal, share);
+}
 
 /// Adds this frame's light to earlier means.
 void TemporalReuse::Light::add_to(Light const& before, TemporalSettings const& settings)
 {
     frames = std::min(before.frames + 1, float(std::max(settings.most_frames, settings.most_unchanged)));
-    float const share = 1 / frames, recent = std::max(share, 1 / float(settings.most_frames));
-    vec2 const step{luminance(direct - before.direct), luminance(indirect - before.indirect)};
+    float const share = 1 / frames;
+    Means const now = all;
+    vec2 const step{luminance(now.direct - before.all.direct), luminance(now.indirect - before.all.indirect)};
     variance = (1 - share) * (before.variance + share * step * step);
-    recent_direct = glm::mix(before.recent_direct, direct, recent);
-    recent_indirect = glm::mix(before.recent_indirect, indirect, recent);
-    direct = glm::mix(before.direct, direct, share);
-    indirect = glm::mix(before.indirect, indirect, share);
+    recent = before.recent;
+    recent.approach(now, std::max(share, 1 / float(settings.most_frames)));
+    all = before.all;
+    all.approach(now, share);
+}
+
+void TemporalReuse::Light::take(Light const& there)
+{
+    all = there.all;
+    recent = there.recent;
+    frames = there.frames;
+    variance = there.variance;
 }
 
 void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
@@ -141,10 +104,10 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
             std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
             Light const& l = lights_[i];
             bool const is_surface = surfaces_[i].depth > 0;
-            float const d1 = is_surface ? luminance(l.recent_direct - l.direct) : 0,
-                        d2 = is_surface ? luminance(l.recent_indirect - l.indirect) : 0;
-            values.at<Values>(y, x) = {d1, d2, is_surface ? luminance(l.direct) : 0,
-                                       is_surface ? luminance(l.indirect) : 0, float(is_surface)};
+            float const d1 = is_surface ? luminance(l.recent.direct - l.all.direct) : 0,
+                        d2 = is_surface ? luminance(l.recent.indirect - l.all.indirect) : 0;
+            values.at<Values>(y, x) = {d1, d2, is_surface ? luminance(l.all.direct) : 0,
+                                       is_surface ? luminance(l.all.indirect) : 0, float(is_surface)};
             squares.at<cv::Vec2f>(y, x) = {d1 * d1, d2 * d2};
         }
     });
@@ -169,8 +132,7 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
                     std::max(most, glm::smoothstep(kErrors.x * error, kErrors.y * error + 1e-20f, std::abs(mean)) *
                                        glm::smoothstep(kRelative.x, kRelative.y, std::abs(v[k]) / whole));
             }
-            l.direct = glm::mix(l.direct, l.recent_direct, most);
-            l.indirect = glm::mix(l.indirect, l.recent_indirect, most);
+            l.all.approach(l.recent, most);
             l.frames = glm::mix(l.frames, 0.5f * float(settings_.most_frames), most); // the shorter one lags, too
             sum += most;
         }
@@ -178,32 +140,36 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
     total.renewed += renewed.combine(std::plus<>());
 }
 
-/// Replaces bilinear means of the last frame's light by Catmull and Rom's cubics, where all 4 x 4 pixels showed
-/// the surface: bilinear means would blur it in every frame.
+/// Replaces bilinear means of the last frame's light by Catmull and Rom's cubics over those of 4 x 4 pixels that
+/// showed the surface: bilinear means would blur it in every frame.
 /// @param place  in the last frame, from the middle of its first pixel   @param shows  of a Surface
 template <class Shows>
 void TemporalReuse::sharpen(vec2 place, int width, int height, Shows const& shows, Light& light) const
 {
+    constexpr float kMostly = 0.8f; // least sum of the weights of such pixels
     vec2 const first = glm::floor(place) - 1.0f;
     if (first.x < 0 || first.y < 0 || first.x + 4 > float(width) || first.y + 4 > float(height)) return;
     std::array<float, 4> const across = catmull_rom(place.x - first.x - 1),
                                down = catmull_rom(place.y - first.y - 1);
-    Light sum{};
+    Means all{}, recent{};
+    float weights = 0;
     for (std::size_t j = 0; j < 4; ++j)
         for (std::size_t k = 0; k < 4; ++k) {
             std::size_t const t = (std::size_t(first.y) + j) * std::size_t(width) + std::size_t(first.x) + k;
-            if (!shows(last_surfaces_[t])) return;
-            Light const& there = last_lights_[t];
+            if (!shows(last_surfaces_[t])) continue;
             float const w = across[k] * down[j];
-            sum.direct += w * there.direct;
-            sum.indirect += w * there.indirect;
-            sum.recent_direct += w * there.recent_direct;
-            sum.recent_indirect += w * there.recent_indirect;
+            all.add(w, last_lights_[t].all);
+            recent.add(w, last_lights_[t].recent);
+            weights += w;
         }
-    light.direct = glm::max(sum.direct, vec3{0});
-    light.indirect = glm::max(sum.indirect, vec3{0});
-    light.recent_direct = glm::max(sum.recent_direct, vec3{0});
-    light.recent_indirect = glm::max(sum.recent_indirect, vec3{0});
+    if (weights < kMostly) return;
+    for (Means* const m : {&all, &recent}) {
+        m->scale(1 / weights);
+        m->direct = glm::max(m->direct, vec3{0});
+        m->indirect = glm::max(m->indirect, vec3{0});
+    }
+    light.all = all;
+    light.recent = recent;
 }
 
 /// Averages the light of this frame with the surface's earlier light.
@@ -227,18 +193,10 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             Light& light = lights_[i];
             if (partner && from[i] != kOwnLight) takes[i] = same_dark(a, partner->lights_[from[i]].albedo);
             if (partner && takes[i]) {
-                Light const& there = partner->lights_[from[i]];
-                light.direct = there.direct;
-                light.indirect = there.indirect;
-                light.frames = there.frames;
-                light.variance = there.variance;
-                light.recent_direct = there.recent_direct;
-                light.recent_indirect = there.recent_indirect;
+                light.take(partner->lights_[from[i]]);
             } else {
-                light.direct = over(rgb(l1, i), a);
-                light.indirect = over(rgb(l2, i), a);
-                light.recent_direct = light.direct;
-                light.recent_indirect = light.indirect;
+                light.all = {light_over(rgb(l1, i), a), light_over(rgb(l2, i), a), surfaces_[i].normal};
+                light.recent = light.all;
                 light.frames = 1;
                 light.variance = vec2{0};
             }
@@ -252,8 +210,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
         for (std::size_t i = 0; i < known_.size() && i < pixels; ++i)
             if (KnownLight const& k = known_[i]; k.frames > 0) {
                 Light before{};
-                before.direct = before.recent_direct = k.direct;
-                before.indirect = before.recent_indirect = k.indirect;
+                before.all = before.recent = {k.direct, k.indirect, surfaces_[i].normal};
                 before.frames = k.frames;
                 lights_[i].add_to(before, settings_);
             }
@@ -312,10 +269,8 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                     Surface const& there = last_surfaces_[t];
                     if (!shows(there, slope) && !(resting && is_beside(there, x, y))) continue;
                     Light const& l = last_lights_[t];
-                    before.direct += w * l.direct;
-                    before.indirect += w * l.indirect;
-                    before.recent_direct += w * l.recent_direct;
-                    before.recent_indirect += w * l.recent_indirect;
+                    before.all.add(w, l.all);
+                    before.recent.add(w, l.recent);
                     before.frames += w * l.frames;
                     before.variance += w * l.variance;
                     weight += w;
@@ -327,7 +282,11 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                 local.started += !taken;
                 continue;
             }
-            if (!still && weight > 0.999f)
+            before.all.scale(1 / weight);
+            before.recent.scale(1 / weight);
+            before.frames /= weight;
+            before.variance /= weight;
+            if (!still)
                 sharpen(
                     vec2{float(x), float(y)} + vec2(was), width, height,
                     [&](Surface const& there) { return shows(there, 2 * slope); }, before);
@@ -338,16 +297,11 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                 now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);
             }
             if (taken) continue;
-            before.direct /= weight;
             auto const [low, high] = neighbourhoods.around(x, y);
-            vec3 const held = glm::clamp(before.direct, low, high);
-            local.held += held != before.direct;
-            before.direct = held;
-            before.recent_direct = glm::clamp(before.recent_direct / weight, low, high);
-            before.indirect /= weight;
-            before.recent_indirect /= weight;
-            before.frames /= weight;
-            before.variance /= weight;
+            vec3 const held = glm::clamp(before.all.direct, low, high);
+            local.held += held != before.all.direct;
+            before.all.direct = held;
+            before.recent.direct = glm::clamp(before.recent.direct, low, high);
             now.add_to(before, settings_);
         }
     });
@@ -364,6 +318,7 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
 {
     for (char const* const name : {"variance_direct", "variance_indirect"})
         if (frame.find(name) == nullptr) frame.add(name, 1);
+    Layer* const normals = settings_.keep_normals ? &frame.add("light_normal", 3) : nullptr;
     Layer &albedo = *frame.find("albedo"), &l0 = *frame.find("L0"), &l1 = *frame.find("L1"),
           &l2 = *frame.find("L2"), &color = *frame.find("color"),
           &direct_variance = *frame.find("variance_direct"), &indirect_variance = *frame.find("variance_indirect");
@@ -374,9 +329,9 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
     tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
         double& sum = frames.local();
         for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i) {
-            std::array<vec3, 3> const now{rgb(l0, i), rgb(l1, i), rgb(l2, i)};
-            std::array<vec3, 3>& mean = mean_[i];
-            for (std::size_t k = 0; k < 3; ++k) mean[k] = first ? now[k] : glm::mix(mean[k], now[k], 1 / n);
+            std::array<vec3, 4> const now{rgb(l0, i), rgb(l1, i), rgb(l2, i), surfaces_[i].normal};
+            std::array<vec3, 4>& mean = mean_[i];
+            for (std::size_t k = 0; k < 4; ++k) mean[k] = first ? now[k] : glm::mix(mean[k], now[k], 1 / n);
             Light const& light = lights_[i];
             // Frames since the last motion are in both means; earlier ones count while they are many in
             // comparison, those of long means for as many frames as those of others.
@@ -385,8 +340,8 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
                                   surplus * std::max(0.0f, 1 - n / most),
                         share = first ? 1 : earlier / (earlier + n);
             vec3 const e0 = glm::mix(mean[0], light.l0, share),
-                       e1 = glm::mix(mean[1], times(light.direct, light.albedo), share),
-                       e2 = glm::mix(mean[2], times(light.indirect, light.albedo), share);
+                       e1 = glm::mix(mean[1], times(light.all.direct, light.albedo), share),
+                       e2 = glm::mix(mean[2], times(light.all.indirect, light.albedo), share);
             for (int c = 0; c < 3; ++c) {
                 std::size_t const k = 3 * i + std::size_t(c);
                 l0.data[k] = e0[c];
@@ -394,6 +349,7 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
                 l1.data[k] = e1[c];
                 l2.data[k] = e2[c];
                 color.data[k] = e0[c] + e1[c] + e2[c];
+                if (normals) normals->data[k] = glm::mix(mean[3][c], light.all.normal[c], share);
             }
             // Variance of one frame, corrected for the bias of a mean that contains the frame; then variance of
             // the mean of all frames.

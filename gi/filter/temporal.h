@@ -27,6 +27,7 @@ struct TemporalSettings {
     /// follow shadows, but where light is found by few paths, windows without any make pictures dark.
     int window = 5;
     float spread = 1;
+    bool keep_normals = false; ///< adds the layer light_normal
 };
 
 /// What has changed since the previous frame.
@@ -61,7 +62,9 @@ public:
     bool is_new() const { return frames_ == 0; } ///< no frame was added yet
     /// Replaces L0, L1, L2, color and albedo by means over frames, and adds the layers variance_direct and
     /// variance_indirect: variances of these means' luminance of L1 and of L2 over the albedo, measured over
-    /// frames; negative if there was only one frame. Needs color, L0, L1, L2, albedo, normal, depth and motion
+    /// frames; negative if there was only one frame. With TemporalSettings::keep_normals, light_normal is the mean
+    /// of the normals whose light is in the mean of L1 and L2: both are filtered alike, so that light which is
+    /// linear in the normal stays so. Needs color, L0, L1, L2, albedo, normal, depth and motion
     /// (throws InputError if one is missing). "motion" is as in gi/render/motion.h: x, y: offset in pixels to the
     /// surface's previous position; z: its previous depth, m; NaN if there was none. All frames have one size.
     /// @param partner, from  the partner's reuse, to which this frame has already been added, and the partner's
@@ -74,16 +77,24 @@ private:
         vec3 normal;
         float depth; ///< m; 0 = no surface
     };
+    /// Means over frames of L1 and L2 over the albedo, and of the normals of the surfaces whose light that is.
+    struct Means {
+        vec3 direct, indirect, normal;
+
+        void add(float weight, Means const& other);
+        void scale(float by);
+        void approach(Means const& other, float share);
+    };
     struct Light {
-        vec3 direct, indirect; ///< L1 and L2 over the albedo
-        float frames;          ///< number of frames in these means
-        vec2 variance;         ///< of their luminances, over those frames
+        Means all, recent; ///< recent: of the latest most_frames
+        float frames;      ///< number of frames in `all`
+        vec2 variance;     ///< of its luminances, over those frames
         vec3 l0, albedo;
-        float still_frames;                  ///< number of frames in l0 and albedo
-        bool still;                          ///< true if its surface did not move in the image
-        vec3 recent_direct, recent_indirect; ///< means of the latest most_frames
+        float still_frames; ///< number of frames in l0 and albedo
+        bool still;         ///< true if its surface did not move in the image
 
         void add_to(Light const& before, TemporalSettings const& settings);
+        void take(Light const& there); ///< instead of its own
     };
     void follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                 TemporalCounts& counts);
@@ -98,7 +109,7 @@ private:
     std::vector<KnownLight> known_;
     std::vector<Surface> surfaces_, last_surfaces_;
     std::vector<Light> lights_, last_lights_;
-    std::vector<std::array<vec3, 3>> mean_; ///< of L0, L1, L2 since the last motion
+    std::vector<std::array<vec3, 4>> mean_; ///< of L0, L1, L2 and normals since the last motion
 };
 
 } // namespace gi

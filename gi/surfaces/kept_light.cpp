@@ -10,6 +10,8 @@ namespace {
 
 /// Distance from the plane of a surface at which another one begins, relative to the depth.
 constexpr float kOfDepth = 0.005f;
+/// A surface that faces otherwise than those whose light it takes has at least and at most so many times as much.
+constexpr float kLeastTurned = 0.2f, kMostTurned = 4;
 
 } // namespace
 
@@ -17,13 +19,14 @@ struct KeptLight::Sum {
     vec3 direct{0}, indirect{0}, weights{0};
     float likeness = 0;
 
-    void add(Texel const& t, float weight, float like)
+    void add(Texel const& t, vec3 normal, float weight, float like)
     {
+        float const turned = std::clamp(1 + glm::dot(t.slope, normal - t.mean_normal), kLeastTurned, kMostTurned);
         vec3 w{weight * (like + kLeastLikeness)};
         for (int c = 0; c < 3; ++c)
             if ((t.dark >> c & 1) != 0) w[c] = 0;
-        direct += w * t.direct;
-        indirect += w * t.indirect;
+        direct += w * turned * t.direct;
+        indirect += w * turned * t.indirect;
         weights += w;
         likeness = std::max(likeness, like);
     }
@@ -45,12 +48,20 @@ KeptLight::KeptLight(Picture const& picture, CameraRays const& camera, dvec3 ori
     Layer const &l1 = needed_layer(picture, "L1"), &l2 = needed_layer(picture, "L2"),
                 &albedo = needed_layer(picture, "albedo"), &normal = needed_layer(picture, "normal"),
                 &position = needed_layer(picture, "position");
+    Layer const* const mean_normal = picture.find("light_normal");
     tbb::parallel_for(0, height_, [&](int y) {
         for (int x = 0; x < width_; ++x) {
             std::size_t const i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
             Texel& t = texels_[i];
             vec3 const a = rgb(albedo, i), n = rgb(normal, i), p{dvec3(rgb(position, i)) - origin};
-            t = {p, 0, n, 0, over_albedo(rgb(l1, i), a), over_albedo(rgb(l2, i), a)};
+            t = {p,
+                 0,
+                 n,
+                 0,
+                 over_albedo(rgb(l1, i), a),
+                 over_albedo(rgb(l2, i), a),
+                 mean_normal && in_range(rgb(*mean_normal, i)) ? rgb(*mean_normal, i) : n,
+                 {}};
             for (int c = 0; c < 3; ++c) t.dark |= a[c] < kDarkest ? 1u << c : 0;
             bool const known =
                 n != vec3{0} && in_range(p) && in_range(t.direct) && in_range(t.indirect) && t.dark != 7;
@@ -58,6 +69,47 @@ KeptLight::KeptLight(Picture const& picture, CameraRays const& camera, dvec3 ori
             t.normal = glm::normalize(n);
             float const depth = glm::dot(p - camera_.origin, camera_.forward);
             t.reach = depth > 0 ? 1 / std::max(kOfDepth * depth, 1e-30f) : 0;
+        }
+    });
+    if (mean_normal) find_slopes();
+}
+
+/// Fits light = a + b * normal to the texels around each one, by ridge regression weighted by distance.
+void KeptLight::find_slopes()
+{
+    constexpr int kTaps = 2, kStep = 2;  // to each side; texels between them
+    constexpr float kNear = 0.1f;        // distance of half the weight, relative to the depth
+    constexpr float kRidge = 0.002f;     // variance of normals below which little is learnt from them
+    constexpr float kLeastOfMean = 0.1f; // light below this share of the mean counts as so much
+    tbb::parallel_for(0, height_, [&](int y) {
+        for (int x = 0; x < width_; ++x) {
+            Texel& t = texels_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
+            if (!(t.reach > 0)) continue;
+            float const by_near2 = square(t.reach * kOfDepth / kNear);
+            float weights = 0, light = 0;
+            vec3 normals{0}, products{0};
+            mat3 squares{0};
+            for (int v = std::max(y % kStep, y - kTaps * kStep); v <= std::min(height_ - 1, y + kTaps * kStep);
+                 v += kStep)
+                for (int u = std::max(x % kStep, x - kTaps * kStep); u <= std::min(width_ - 1, x + kTaps * kStep);
+                     u += kStep) {
+                    Texel const& other = texels_[std::size_t(v) * std::size_t(width_) + std::size_t(u)];
+                    if (!(other.reach > 0)) continue;
+                    vec3 const away = other.position - t.position, n = other.mean_normal - t.mean_normal;
+                    float const w = 1 / (1 + square(glm::dot(away, away) * by_near2)),
+                                e = luminance(other.direct + other.indirect);
+                    weights += w;
+                    light += w * e;
+                    normals += w * n;
+                    products += w * e * n;
+                    squares += glm::outerProduct(w * n, n);
+                }
+            float const mean = light / weights;
+            vec3 const mean_n = normals / weights, covariance = products / weights - mean * mean_n;
+            mat3 const variance = squares * (1 / weights) - glm::outerProduct(mean_n, mean_n) + mat3(kRidge);
+            float const own = std::max(luminance(t.direct + t.indirect), kLeastOfMean * mean);
+            vec3 const slope = glm::inverse(variance) * covariance / own;
+            t.slope = own > 0 && in_range(slope) ? slope : vec3{0};
         }
     });
 }
@@ -76,7 +128,7 @@ FoundLight KeptLight::find(vec3 position, vec3 normal, vec2 place) const
     auto const take = [&](int x, int y, float weight) {
         if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
         Texel const& t = texels_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
-        if (t.reach > 0) sum.add(t, weight, likeness(t, position, normal));
+        if (t.reach > 0) sum.add(t, normal, weight, likeness(t, position, normal));
     };
     constexpr float kBeside = 0.02f; // least weight, so that a pixel at the place does not count alone
     for (int j = 0; j < 2; ++j)

@@ -3,6 +3,12 @@
 // of another size or camera, or a later one. Light is that of L1 and L2 over the albedo; where a surface of the
 // other picture lies in this one, the nearest pixels that show a similar surface are averaged (joint bilateral
 // upsampling, Kopf et al. 2007).
+//
+// Irradiance is nearly linear in the normal (its spherical harmonics of order 0 and 1: Ramamoorthi and Hanrahan
+// 2001). So where the picture has the layer light_normal, means of normals made with the same weights as those of
+// light (gi/filter/temporal.h), light is fitted as a linear function of them around each pixel, and folds and
+// reliefs that are finer than its pixels, or were blurred over frames, are shaded by the normals of the other
+// picture.
 
 #include "gi/image_io/picture.h"
 #include "gi/scene/model/projection.h"
@@ -21,7 +27,8 @@ class KeptLight {
 public:
     static constexpr float kUnlike = 0.01f;
 
-    /// Needs the layers L1, L2, albedo, normal and position (throws InputError if one is missing).
+    /// Needs the layers L1, L2, albedo, normal and position (throws InputError if one is missing); uses
+    /// light_normal.
     /// @param origin  of the world, from which camera and later positions are measured
     KeptLight(Picture const& picture, CameraRays const& camera, dvec3 origin);
 
@@ -41,8 +48,11 @@ private:
         vec3 normal;
         std::uint32_t dark; ///< bits of the channels in which the albedo is too dark
         vec3 direct, indirect;
+        vec3 mean_normal; ///< of the surfaces whose light this is
+        vec3 slope{0};    ///< relative change of light with the normal
     };
     struct Sum;
+    void find_slopes();
     static float likeness(Texel const& texel, vec3 position, vec3 normal);
 
     CameraRays camera_;

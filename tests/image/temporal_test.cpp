@@ -104,6 +104,34 @@ TEST(Temporal, VariancesAreThoseOfTheMeans)
     }
 }
 
+/// Light that is linear in the normal stays so, in the means of both, however they are resampled.
+TEST(Temporal, NormalsAreAveragedAsTheirLightIs)
+{
+    TemporalReuse reuse({.most_frames = 8, .most_unchanged = 64, .keep_normals = true});
+    auto const lit = [](vec3 n) { return 0.6f * n.z + 0.3f * n.x; };
+    Picture p;
+    for (int frame = 0; frame < 20; ++frame) {
+        p = picture([&](int x, int) {
+            float const angle = 0.3f * std::sin((float(x) + 0.5f * float(frame)) * 0.9f);
+            Values v;
+            v.normal = {std::sin(angle), 0, std::cos(angle)};
+            v.motion = {0.5f, 0, 2};
+            v.l2 = v.albedo * lit(v.normal);
+            return v;
+        });
+        reuse.add(p, SceneChange::motion);
+    }
+    Layer const& normal = *p.find("light_normal");
+    double blurred = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            std::size_t const i = std::size_t(y * kWidth + x);
+            ASSERT_NEAR(value(p, "L2", x, y) / 0.5f, lit(rgb(normal, i)), 1e-4f) << x << ", " << y;
+            blurred = std::max(blurred, double(glm::length(rgb(normal, i) - rgb(*p.find("normal"), i))));
+        }
+    EXPECT_GT(blurred, 0.01) << "nothing was resampled";
+}
+
 /// A camera that moves, light that stays: the mean covers more frames than where light changes.
 TEST(Temporal, UnchangedLightIsAveragedOverMoreFrames)
 {

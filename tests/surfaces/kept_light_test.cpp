@@ -6,6 +6,7 @@
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
+#include <iostream>
 #include <limits>
 
 namespace gi::test {
@@ -14,7 +15,7 @@ namespace {
 constexpr int kWidth = 32, kHeight = 24;
 
 struct Pixel {
-    vec3 albedo{0.5f}, normal{0, 0, 1}, position{0}, l1{0}, l2{0};
+    vec3 albedo{0.5f}, normal{0, 0, 1}, position{0}, l1{0}, l2{0}, light_normal{0};
     float depth = 2;
 };
 
@@ -28,9 +29,10 @@ vec3 in_plane(float x, float y, float depth)
 }
 
 template <class At>
-KeptLight kept(At const& at)
+KeptLight kept(At const& at, bool light_normals = false)
 {
     Picture p{kWidth, kHeight, {}, {}};
+    if (light_normals) p.add("light_normal", 3);
     for (char const* const name : {"L1", "L2", "albedo", "normal", "position"}) p.add(name, 3);
     p.add("depth", 1);
     for (int y = 0; y < kHeight; ++y)
@@ -41,8 +43,9 @@ KeptLight kept(At const& at)
                                               {"L2", v.l2},
                                               {"albedo", v.albedo},
                                               {"normal", v.normal},
-                                              {"position", v.position}})
-                for (int c = 0; c < 3; ++c) p.find(name)->data[3 * i + std::size_t(c)] = value[c];
+                                              {"position", v.position},
+                                              {"light_normal", v.light_normal}})
+                for (int c = 0; p.find(name) && c < 3; ++c) p.find(name)->data[3 * i + std::size_t(c)] = value[c];
             p.find("depth")->data[i] = v.depth;
         }
     return KeptLight(p, rays(), dvec3{0});
@@ -95,6 +98,42 @@ TEST(KeptLight, LightDoesNotCrossEdges)
         FoundLight const wall = light.find(in_plane(7.5f, y - 0.5f, 2), {0, 0, 1}, {8, y});
         EXPECT_NEAR(wall.direct.x, 1, 0.2f) << y;
     }
+}
+
+/// A curtain, one fold of which is 10 pixels wide.
+vec3 fold_normal(float x)
+{
+    float const angle = 0.5f * std::sin(x * 6.2832f / 10);
+    return {std::sin(angle), 0, std::cos(angle)};
+}
+
+/// Light that was blurred over some pixels is given back the folds of its surface, from normals blurred likewise.
+TEST(KeptLight, BlurredFoldsAreShadedByTheirNormals)
+{
+    auto const lit = [](vec3 n) { return std::max(0.0f, glm::dot(n, glm::normalize(vec3{1, 0.2f, 1}))); };
+    auto const blurred = [](int x, auto const& f) {
+        auto sum = f(fold_normal(float(x)));
+        for (int k = 1; k <= 3; ++k) sum += f(fold_normal(float(x + k))) + f(fold_normal(float(x - k)));
+        return sum / 7.0f;
+    };
+    auto const pixel = [&](int x, int y) {
+        Pixel p;
+        p.normal = fold_normal(float(x));
+        p.position = in_plane(float(x), float(y), 2);
+        p.l1 = p.albedo * blurred(x, lit);
+        p.light_normal = blurred(x, [](vec3 n) { return n; });
+        return p;
+    };
+    KeptLight const plain = kept(pixel), light = kept(pixel, true);
+    double error = 0, of_plain = 0;
+    int n = 0;
+    for (float x = 4; x < kWidth - 4; x += 0.27f, ++n) {
+        vec3 const at = in_plane(x, 12, 2), normal = fold_normal(x);
+        error += std::abs(double(light.find(at, normal, {x + 0.5f, 12.5f}).direct.x - lit(normal)));
+        of_plain += std::abs(double(plain.find(at, normal, {x + 0.5f, 12.5f}).direct.x - lit(normal)));
+    }
+    std::cout << "mean error " << error / n << ", without the normals " << of_plain / n << '\n';
+    EXPECT_LT(error, 0.35 * of_plain);
 }
 
 TEST(KeptLight, ThinThingsGetTheLightAroundThemAndAreCounted)

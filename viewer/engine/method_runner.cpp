@@ -117,7 +117,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
                           s.most_frames == settings.reuse && s.punctual != left_out_punctual_ && s.small == small;
         if (!same)
             s.reuse = std::make_unique<gi::TemporalReuse>(
-                small ? gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse, 17, 2}
+                small ? gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse, 17, 2, true}
                       : gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse});
         s.small = small;
         moved[k] = !same || !(s.camera == now.camera) || s.hidden != hidden[k];
