@@ -4,7 +4,6 @@
 #include "study/script/procedure_settings.h"
 #include "study/stats/psychometric_posterior.h"
 #include "study/stats/random.h"
-#include "study/stats/root.h"
 #include "study/stats/special.h"
 #include "study/stats/summary.h"
 
@@ -191,54 +190,6 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
         if (right == int(run.correct.size()))
             e.note = "nothing but correct responses: there is no threshold among these levels";
         if (right == 0) e.note = "no correct response at all: there is no threshold among these levels";
-    } catch (std::invalid_argument const& error) {
-        e.note = error.what();
-    }
-    return e;
-}
-
-ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& b, Procedure const& p,
-                                     double proportion, AnalysisSettings const& settings)
-{
-    Compare const& c = *b.compare;
-    ThresholdEstimate e{"QUEST+ posterior", proportion, {}, {}};
-    QuestSettings const s = quest_settings(p, c);
-    bool const takes_levels = assumed_function(p).takes_levels();
-    auto const on_axis = [&](double level) { return takes_levels ? level : to_scale(c.scale, level); };
-    try {
-        QuestPlus quest(s);
-        for (std::size_t i = 0; i < run.levels.size(); ++i) {
-            auto const nearest = std::min_element(s.stimuli.begin(), s.stimuli.end(), [&](double x, double y) {
-                return std::abs(x - on_axis(run.levels[i])) < std::abs(y - on_axis(run.levels[i]));
-            });
-            quest.respond(std::size_t(nearest - s.stimuli.begin()), run.correct[i] != 0);
-        }
-        // In the scale's unit: the posterior's grid is even on the scale, not on levels.
-        auto const posterior = quest.threshold_posterior();
-        QuestParameters mean = quest.mean();
-        double m = 0, squares = 0;
-        for (std::size_t i = 0; i < posterior.size(); ++i) {
-            double const t = to_scale(c.scale, p.threshold[i]);
-            m += posterior[i] * t;
-            squares += posterior[i] * t * t;
-        }
-        double const half =
-            normal_quantile((1 + settings.confidence) / 2) * std::sqrt(std::max(0.0, squares - m * m));
-        mean.threshold = on_axis(from_scale(c.scale, m));
-        // The level where the function of the posterior's mean has that proportion.
-        double const width = to_scale(c.scale, c.high) - to_scale(c.scale, c.low);
-        double const low = to_scale(c.scale, c.low) - width, high = to_scale(c.scale, c.high) + width;
-        auto const above = [&](double at) { // the wanted proportion
-            return proportion_by(s, mean, on_axis(from_scale(c.scale, at))) - proportion;
-        };
-        double const at_low = above(low), at_high = above(high);
-        if (at_low * at_high < 0) {
-            double const sign = at_low < 0 ? 1 : -1;
-            double const at = bisect([&](double x) { return sign * above(x); }, low, high);
-            double const a = from_scale(c.scale, at - half), z = from_scale(c.scale, at + half);
-            e.level = {from_scale(c.scale, at), {std::min(a, z), std::max(a, z)}, 1};
-        } else
-            e.note = "the function of the posterior's mean never reaches this proportion";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();
     }

@@ -36,6 +36,8 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& bloc
                                       PsychometricChoice const& function, std::optional<double> guess,
                                       double proportion, std::optional<GroupCurve> const& group,
                                       AnalysisSettings const& settings);
+/// The median and the quantiles of the level at which the proportion is reached, by the posterior of all
+/// parameters.
 ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
                                      double proportion, AnalysisSettings const& settings);
 

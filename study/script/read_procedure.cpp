@@ -209,7 +209,7 @@ void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes&
                       [&](gi::Yaml const& v) { p.slope = read_grid(v, Scale::linear, 1e-6, kAny); });
     has_all &=
         m.need(y, "guess", "0.5", [&](gi::Yaml const& v) { p.guess = read_grid(v, Scale::linear, 0, 0.99); });
-    has_all &= m.need(y, "lapse", "[0, 0.02, 0.04]",
+    has_all &= m.need(y, "lapse", "[0, 0.02, 0.05]",
                       [&](gi::Yaml const& v) { p.lapse = read_grid(v, Scale::linear, 0, 0.5); });
     p.stimuli = p.threshold;
     m.take(y, "levels", [&](gi::Yaml const& v) { p.stimuli = read_grid(v, c.scale, c.low, c.high); });

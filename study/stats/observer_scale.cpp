@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace study {
@@ -52,10 +53,51 @@ std::vector<std::vector<PairOutcome>> outcomes_of(std::vector<PairCount> const& 
     return all;
 }
 
+Matrix kept(Eigen::MatrixXd const& m)
+{
+    Matrix out(std::size_t(m.rows()), std::size_t(m.cols()));
+    for (Eigen::Index r = 0; r < m.rows(); ++r)
+        for (Eigen::Index c = 0; c < m.cols(); ++c) out(std::size_t(r), std::size_t(c)) = m(r, c);
+    return out;
+}
+
+/// How observers differ, as covariance of their own parameters: items one by one, and units.
+/// @param at  parameters; the first `scores` of them are scores relative to the first item
+Eigen::MatrixXd observers_covariance(std::vector<Eigen::VectorXd> const& gradient,
+                                     std::vector<Eigen::MatrixXd> const& information, Eigen::VectorXd const& at,
+                                     Eigen::Index scores)
+{
+    Eigen::Index const n = at.size();
+    std::array<Eigen::MatrixXd, 2> parts{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+    parts[0].topLeftCorner(scores, scores) =
+        Eigen::MatrixXd::Identity(scores, scores) + Eigen::MatrixXd::Ones(scores, scores);
+    parts[1].topLeftCorner(scores, scores) = at.head(scores) * at.head(scores).transpose();
+    Eigen::Matrix2d expected = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d excess = Eigen::Vector2d::Zero();
+    for (std::size_t o = 0; o < gradient.size(); ++o) {
+        std::array<Eigen::MatrixXd, 2> const moved{information[o] * parts[0], information[o] * parts[1]};
+        for (int k = 0; k < 2; ++k) {
+            excess[k] += gradient[o].dot(parts[k] * gradient[o]) - moved[k].trace();
+            for (int l = 0; l < 2; ++l) expected(k, l) += (moved[k] * moved[l]).trace();
+        }
+    }
+    // Of two items, or of equal ones, units are no other differences than those of items.
+    Eigen::Vector2d const share = expected.completeOrthogonalDecomposition().solve(excess);
+    return share[0] * parts[0] + share[1] * parts[1];
+}
+
 double weighted(std::span<double const> weights, std::vector<double> const& values)
 {
     double sum = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * values[i];
+    return sum;
+}
+
+double weighted_variance(std::span<double const> weights, Matrix const& covariance)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        for (std::size_t j = 0; j < weights.size(); ++j) sum += weights[i] * weights[j] * covariance(i, j);
     return sum;
 }
 
@@ -123,16 +165,19 @@ ObserverScale scale_observers(std::vector<std::vector<PairCount>> const& observe
         Eigen::MatrixXd const lifted =
             n > 0 ? power(Eigen::MatrixXd::Identity(n, n) - leverage, -0.5, 0.05) : leverage;
         Eigen::VectorXd const standard = lifted * (root * gradient[o]), moved = centre * (root * standard);
+        gradient[o] = all * root * standard;
         squares += standard.squaredNorm();
         s.influence.emplace_back(moved.data(), moved.data() + moved.size());
-        Eigen::MatrixXd const expected = centre * root * leverage * root * centre.transpose();
-        Matrix kept(s.fit.score.size(), s.fit.score.size());
-        for (Eigen::Index r = 0; r < items; ++r)
-            for (Eigen::Index c = 0; c < items; ++c) kept(std::size_t(r), std::size_t(c)) = expected(r, c);
-        s.expected.push_back(std::move(kept));
+        s.expected.push_back(kept(centre * root * leverage * root * centre.transpose()));
     }
     s.dispersion = n > 0 ? std::max(0.5, squares / double(n)) : 1;
-    s.outcomes = outcomes_of(pooled, settings.model, layout, at, centre * root * root);
+    Eigen::MatrixXd const own =
+        observers_covariance(gradient, information, Eigen::VectorXd::Map(at.data(), n), items - 1);
+    Eigen::MatrixXd variances = all;
+    for (Eigen::MatrixXd const& i : information) variances += i * own * i;
+    Eigen::MatrixXd const to_scores = centre * root * root;
+    s.modelled = kept(to_scores * variances * to_scores.transpose());
+    s.outcomes = outcomes_of(pooled, settings.model, layout, at, to_scores);
     return s;
 }
 
@@ -147,10 +192,7 @@ Contrast contrast(ObserverScale const& s, std::span<double const> weights, doubl
     double over_observers = 0, model = 0, squares = 0;
     for (std::size_t o = 0; o < s.influence.size(); ++o) {
         over_observers += std::pow(weighted(weights, s.influence[o]), 2);
-        double expected = 0;
-        for (std::size_t i = 0; i < weights.size(); ++i)
-            for (std::size_t j = 0; j < weights.size(); ++j)
-                expected += weights[i] * weights[j] * s.expected[o](i, j);
+        double const expected = weighted_variance(weights, s.expected[o]);
         model += expected;
         squares += expected * expected;
     }
@@ -160,7 +202,8 @@ Contrast contrast(ObserverScale const& s, std::span<double const> weights, doubl
     double const d = std::max(1.0, model * model / std::max(noise, 1e-12 * model * model) - 1);
     double const d0 = 2 * double(weights.size() - 1);
     c.degrees_of_freedom = d + d0;
-    c.standard_error = std::sqrt((d * over_observers + d0 * s.dispersion * model) / (d + d0));
+    double const modelled = std::max(weighted_variance(weights, s.modelled), 0.5 * model);
+    c.standard_error = std::sqrt((d * over_observers + d0 * modelled) / (d + d0));
     double const half = student_quantile((1 + confidence) / 2, c.degrees_of_freedom) * c.standard_error;
     c.interval = {c.reduced - half, c.reduced + half};
     if (c.standard_error > 0) c.p = 2 * student_cdf(-std::abs(c.reduced) / c.standard_error, c.degrees_of_freedom);

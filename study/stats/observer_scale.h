@@ -4,10 +4,16 @@
 // Variances are those of the sandwich estimator by observers (Huber 1967; Liang & Zeger 1986, Biometrika 73:13)
 // with the correction of Kauermann & Carroll (2001, JASA 96:1387) for few observers, whose own choices pull the
 // fit towards themselves. With d degrees of freedom (Fay & Graubard 2001, Biometrics 57:1198; here with the
-// kurtosis of choices, which matters if nearly all agree) they are moderated by the model's own variance times its
-// dispersion, with d0 degrees (Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3:3): V = (d V_observers + d0 V_model) /
-// (d + d0). d0 is twice the number of free scores. Intervals have Student's distribution with d + d0 degrees
-// around scores with Jeffreys' prior, because those of maximum likelihood are too far apart on average.
+// kurtosis of choices, which matters if nearly all agree) they are moderated by those of a model, with d0 degrees
+// (Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3:3): V = (d V_observers + d0 V_model) / (d + d0). d0 is twice the
+// number of free scores. Intervals have Student's distribution with d + d0 degrees around scores with Jeffreys'
+// prior, because those of maximum likelihood are too far apart on average.
+//
+// In the model observer o has scores s + e_o with covariance C = a I + b s s^T: differences of single items, and a
+// unit of his or her own, which stretches the scale and so moves its ends most. A gradient has then covariance
+// I_o + I_o C I_o, with the information I_o of independent trials, and a and b follow from the score statistics of
+// variance components, g^T C_k g (Lin 1997, Biometrika 84:309): sum over o of g^T C_k g - tr(I_o C_k) =
+// sum over l of c_l tr(I_o C_k I_o C_l). They may come out below 0, so that they are not too large on average.
 
 #include "study/stats/binomial.h"
 #include "study/stats/pair_scale.h"
@@ -31,6 +37,7 @@ struct ObserverScale {
     std::vector<std::vector<double>>
         influence;                ///< by observer: change of each score by his or her choices, unit of F
     std::vector<Matrix> expected; ///< by observer: covariance of that for independent trials
+    Matrix modelled;              ///< covariance of the scores by the model of how observers differ
     std::vector<std::vector<PairOutcome>> outcomes; ///< by pair
 };
 

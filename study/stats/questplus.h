@@ -61,11 +61,12 @@ public:
     QuestParameters mode() const; ///< the most probable cell; the first of ties
     QuestParameters mean() const;
     QuestParameters standard_deviation() const;
-    std::vector<double> threshold_posterior() const; ///< marginal of the threshold
+    std::vector<double> threshold_posterior() const;                    ///< marginal of the threshold
+    std::vector<double> const& posterior() const { return posterior_; } ///< of all cells; sum 1
+    QuestParameters parameters(std::size_t cell) const;
     QuestSettings const& settings() const { return settings_; }
 
 private:
-    QuestParameters parameters(std::size_t cell) const;
     double expected_information(std::size_t stimulus) const;
     template <class Value>
     QuestParameters expectation(Value const& value) const;

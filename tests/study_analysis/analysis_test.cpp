@@ -259,9 +259,26 @@ TEST(Analysis, OfQuestPlusThatNeverReachesItsShareSaysSo)
     };
     EXPECT_EQ(estimate("0.5").method, "QUEST+ posterior");
     EXPECT_TRUE(std::isnan(estimate("0.5").level.value));
-    EXPECT_EQ(estimate("0.5").note, "the function of the posterior's mean never reaches this proportion");
+    EXPECT_EQ(estimate("0.5").note, "most functions of the posterior never reach this proportion");
     EXPECT_EQ(estimate("0.2").note, "");
     EXPECT_NEAR(std::log10(estimate("0.2").level.value), std::log10(6), 0.15);
+}
+
+TEST(Analysis, OfQuestPlusKnowsThatSlopesMoveTheLevelOfAShare)
+{
+    // The share of the grid's threshold is 1 - 1/e of what guesses and lapses leave; slopes that differ move the
+    // level of another share, on which the answers at that threshold tell nothing.
+    auto const width = [](char const* slopes) {
+        Interval const i =
+            yes_no_block(std::string("{method: questplus, threshold: 9.9..10.1/3, slope: ") + slopes +
+                         ", guess: 0.2, lapse: 0.02, levels: [10, 10.1], stop: {trials: 300}}")
+                .runs.at(0)
+                .estimates.at(1)
+                .level.interval;
+        return std::log10(i.high / i.low);
+    };
+    EXPECT_LT(width("1"), 0.02);
+    EXPECT_GT(width("[0.5, 1, 2]"), 0.2);
 }
 
 TEST(ResultTables, HaveNoRoundingInPlaceOfZero)

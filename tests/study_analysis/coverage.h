@@ -149,7 +149,7 @@ inline Script threshold_script(ThresholdExperiment const& e)
                                     "stop: {reversals: 10, max_trials: 50}}"
                                   : "{method: questplus, threshold: 1..100/33, slope: [1, 2, 3.5, 5], guess: " +
                                         std::string(e.false_alarms > 0 ? "0.1" : "0.5") +
-                                        ", lapse: [0, 0.02, 0.04], stop: {trials: 25}}";
+                                        ", lapse: [0, 0.02, 0.05], stop: {trials: 25}}";
     return parse_script(
         fmt::format(
             "schema: study/1\nid: s\nseed: 1\nparticipants: {{count: {}}}\nfactors: {{scene: [hall]}}\n"

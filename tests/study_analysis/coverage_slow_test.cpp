@@ -68,25 +68,43 @@ TEST(Coverage, OfThresholdsOfEveryMethodIs90To99PerCent)
         }
 }
 
-TEST(Coverage, OfMeansOfReversalsIs93To97PerCentAndMissesToBothSides)
+/// Of single runs, in decades.
+Tally tally_of(ThresholdExperiment const& e, char const* method, std::vector<double> SimulatedThresholds::*truth)
 {
-    ThresholdExperiment e;
-    e.method = "staircase";
     Tally own;
     for (std::uint64_t i = 0; i < 60; ++i) {
         SimulatedThresholds const s = analyse_thresholds(e, 2000 + i, without_hierarchical());
         auto const& runs = s.analysis.blocks.at(0).runs;
         for (std::size_t k = 0; k < runs.size(); ++k)
             for (ThresholdEstimate const& t : runs[k].estimates)
-                if (t.method == "mean of reversals")
+                if (t.method == method)
                     own.add(std::log10(t.level.value),
-                            {std::log10(t.level.interval.low), std::log10(t.level.interval.high)},
-                            s.own_target[k]);
+                            {std::log10(t.level.interval.low), std::log10(t.level.interval.high)}, (s.*truth)[k]);
     }
+    return own;
+}
+
+TEST(Coverage, OfMeansOfReversalsIs93To97PerCentAndMissesToBothSides)
+{
+    ThresholdExperiment e;
+    e.method = "staircase";
+    Tally const own = tally_of(e, "mean of reversals", &SimulatedThresholds::own_target);
     RecordProperty("coverage", std::to_string(own.coverage()));
     EXPECT_GE(own.coverage(), 93);
     EXPECT_LE(own.coverage(), 97);
     EXPECT_GE(3 * std::min(own.below, own.above), std::max(own.below, own.above));
+}
+
+TEST(Coverage, OfQuestPlusWithManyLapsesIs94To97PerCentAndMissesToBothSides)
+{
+    ThresholdExperiment e;
+    e.method = "questplus";
+    e.lapse = 0.05;
+    Tally const own = tally_of(e, "QUEST+ posterior", &SimulatedThresholds::own);
+    RecordProperty("coverage", std::to_string(own.coverage()));
+    EXPECT_GE(own.coverage(), 94);
+    EXPECT_LE(own.coverage(), 97.5);
+    EXPECT_GE(2 * std::min(own.below, own.above), std::max(own.below, own.above));
 }
 
 TEST(Coverage, OfObserversByHierarchicalModelsIs93To97PerCent)

@@ -60,6 +60,21 @@ TEST(ObserverScale, OfObserversWhoDifferHasLargerErrors)
     EXPECT_NEAR(score_of(s, 0).standard_error * jod / b.standard_error[0], 1, 0.12);
 }
 
+TEST(ObserverScale, OfObserversWithUnitsOfTheirOwnModelsLargerErrorsOfTheEnds)
+{
+    std::vector<std::vector<PairCount>> data;
+    for (std::uint64_t o = 0; o < 600; ++o) {
+        double const unit = o % 2 ? 0.5 : 1.5;
+        data.push_back(simulated(1, 4, {-2 * unit, -0.7 * unit, 0, 0.7 * unit, 2 * unit}, 0.2, 0, o).front());
+    }
+    ObserverScale const s = scale_observers(data, 5);
+    for (std::size_t i = 0; i < 5; ++i) {
+        double observed = 0;
+        for (auto const& moved : s.influence) observed += moved[i] * moved[i];
+        EXPECT_NEAR(s.modelled(i, i) / observed, 1, 0.15) << i;
+    }
+}
+
 TEST(ObserverScale, WithAThresholdOfTiesDoesNotShrink)
 {
     std::vector<double> const truth{-0.8, 0, 0.8};

@@ -1,0 +1,95 @@
+// The threshold by QUEST+'s own posterior: that of the level at which the proportion of answers is right.
+
+#include "study/analysis/threshold_run.h"
+#include "study/script/procedure_settings.h"
+#include "study/stats/root.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace study {
+namespace {
+
+struct LevelShare {
+    double at = 0, probability = 0;
+};
+
+/// Where a proportion of the posterior lies below; between cells in the order of `at`.
+double quantile_of(std::vector<LevelShare> const& cells, double proportion)
+{
+    double below = 0, last = -INFINITY, at_last = 0;
+    for (LevelShare const& c : cells) {
+        double const middle = below + c.probability / 2;
+        if (middle >= proportion)
+            return std::isfinite(last) && std::isfinite(c.at)
+                       ? std::lerp(last, c.at, (proportion - at_last) / (middle - at_last))
+                       : c.at;
+        last = c.at;
+        at_last = middle;
+        below += c.probability;
+    }
+    return last;
+}
+
+QuestPlus replayed(ThresholdRun const& run, QuestSettings const& s, auto const& on_axis)
+{
+    QuestPlus quest(s);
+    for (std::size_t i = 0; i < run.levels.size(); ++i) {
+        double const shown = on_axis(run.levels[i]);
+        auto const nearest = std::min_element(s.stimuli.begin(), s.stimuli.end(), [&](double x, double y) {
+            return std::abs(x - shown) < std::abs(y - shown);
+        });
+        quest.respond(std::size_t(nearest - s.stimuli.begin()), run.correct[i] != 0);
+    }
+    return quest;
+}
+
+} // namespace
+
+ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& b, Procedure const& p,
+                                     double proportion, AnalysisSettings const& settings)
+{
+    Compare const& c = *b.compare;
+    ThresholdEstimate e{"QUEST+ posterior", proportion, {}, {}};
+    bool const takes_levels = assumed_function(p).takes_levels();
+    auto const on_axis = [&](double level) { return takes_levels ? level : to_scale(c.scale, level); };
+    try {
+        QuestPlus const quest = replayed(run, quest_settings(p, c), on_axis);
+        double const width = to_scale(c.scale, c.high) - to_scale(c.scale, c.low);
+        double low = to_scale(c.scale, c.low) - width;
+        double const high = to_scale(c.scale, c.high) + width;
+        if (c.scale == Scale::linear && takes_levels) low = std::max(low, 1e-6 * width); // none below 0
+        std::vector<LevelShare> cells;
+        for (std::size_t i = 0; i < quest.posterior().size(); ++i) {
+            double const probability = quest.posterior()[i];
+            if (probability < 1e-12) continue;
+            auto const above = [&](double at) {
+                return proportion_by(quest.settings(), quest.parameters(i), on_axis(from_scale(c.scale, at))) -
+                       proportion;
+            };
+            double const at_low = above(low), at_high = above(high);
+            double const sign = at_low < at_high ? 1 : -1;
+            // Functions that never reach the proportion have their threshold beyond the last level.
+            double const at = at_low * at_high < 0 ? bisect([&](double x) { return sign * above(x); }, low, high)
+                              : (at_low > 0) == (sign > 0) ? -INFINITY
+                                                           : INFINITY;
+            cells.push_back({at, probability});
+        }
+        std::sort(cells.begin(), cells.end(),
+                  [](LevelShare const& x, LevelShare const& y) { return x.at < y.at; });
+        auto const level = [&](double part) {
+            double const at = quantile_of(cells, part);
+            return std::isfinite(at) ? from_scale(c.scale, at) : kUnknown;
+        };
+        double const tail = (1 - settings.confidence) / 2;
+        if (double const median = level(0.5); std::isfinite(median))
+            e.level = {median, {level(tail), level(1 - tail)}, 1};
+        else
+            e.note = "most functions of the posterior never reach this proportion";
+    } catch (std::invalid_argument const& error) {
+        e.note = error.what();
+    }
+    return e;
+}
+
+} // namespace study
