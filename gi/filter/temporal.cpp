@@ -45,20 +45,6 @@ bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::is
 
 } // namespace
 
-void TemporalReuse::Means::add(float weight, Means const& other)
-{
-    direct += weight * other.direct;
-    indirect += weight * other.indirect;
-    normal += weight * other.normal;
-}
-
-void TemporalReuse::Means::scale(float by)
-{
-    direct *= by;
-    indirect *= by;
-    normal *= by;
-}
-
 void TemporalReuse::Means::approach(Means const& other, float share)
 {
     direct = glm::mix(direct, other.direct, share);

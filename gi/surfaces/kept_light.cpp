@@ -77,7 +77,7 @@ KeptLight::KeptLight(Picture const& picture, CameraRays const& camera, dvec3 ori
 /// Fits light = a + b * normal to the texels around each one, by ridge regression weighted by distance.
 void KeptLight::find_slopes()
 {
-    constexpr int kTaps = 2, kStep = 2;  // to each side; texels between them
+    constexpr int kTaps = 1, kStep = 3;  // to each side; texels between them
     constexpr float kNear = 0.1f;        // distance of half the weight, relative to the depth
     constexpr float kRidge = 0.002f;     // variance of normals below which little is learnt from them
     constexpr float kLeastOfMean = 0.1f; // light below this share of the mean counts as so much
