@@ -20,7 +20,10 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fmt/format.h>
+#include <future>
+#include <malloc.h>
 #include <memory>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -55,6 +58,25 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
     kept.metadata = make_metadata(o, settings, result);
     bool const is_left = result.end == gi::RenderEnd::interrupted; // compressing takes longer than all else then
     save_exr(o, o.out, kept, report, is_left ? gi::ExrCompression::none : gi::ExrCompression::zip);
+}
+
+/// Saves picture and state, if there is one, at the same time.
+void save_all(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result,
+              gi::Report& report)
+{
+    std::future<void> state;
+    if (result.save_state) {
+        malloc_trim(0); // the system takes such pages for the files: they are faster than untouched ones
+        state = std::async(std::launch::async, std::exchange(result.save_state, nullptr));
+    }
+    save(o, settings, result, report);
+    if (!state.valid()) return;
+    try {
+        state.get();
+        result.resumable = true;
+    } catch (gi::InputError const& e) {
+        report.lose("checkpoints that could not be written", 1, e.what());
+    }
 }
 
 struct Shot {
@@ -191,7 +213,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     }
     std::string const remark = denoise(result.picture, denoise_settings, report);
     if (!remark.empty()) say(remark);
-    save(o, settings, result, report);
+    save_all(o, settings, result, report);
     if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
 
     nlohmann::ordered_json const stats = make_stats(o, settings, plan, result, report);
