@@ -1,5 +1,6 @@
 #include "gi/core/file.h"
 #include "gi/image_io/exr.h"
+#include "gi/image_io/exr_output.h"
 #include "gi/image_io/picture_file.h"
 
 #include <ImfChannelList.h>
@@ -17,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <half.h>
+#include <optional>
 
 namespace gi {
 namespace {
@@ -148,15 +150,19 @@ void write_exr(std::filesystem::path const& file, PictureRows const& picture, Pi
         headers.push_back(header);
     }
     write_by_rename(file, [&](std::filesystem::path const& temporary) {
-        Imf::MultiPartOutputFile out(temporary.c_str(), headers.data(), int(headers.size()), false, 0);
+        ExrOutput stream(temporary);
+        std::optional<Imf::MultiPartOutputFile> out;
+        out.emplace(stream, headers.data(), int(headers.size()), false, 0);
         std::vector<Part> parts;
         for (std::size_t l = 0; l < rows.layers.size(); ++l)
-            parts.push_back({Imf::OutputPart(out, int(l)), is_single(rows.layers[l])});
+            parts.push_back({Imf::OutputPart(*out, int(l)), is_single(rows.layers[l])});
         for (int y = 0; y < picture.height; y += kRowsAtOnce) {
             if (y > 0) rows = picture.read(y, count_from(y));
             for (std::size_t l = 0; l < parts.size(); ++l)
                 parts[l].write(rows.layers[l], picture.width, y, count_from(y));
         }
+        out.reset(); // writes where the blocks are
+        stream.finish();
         for (std::size_t l = 0; l < parts.size(); ++l)
             report.lose("values clamped to half float", parts[l].clamped, "layer '" + rows.layers[l].name + "'");
     });

@@ -270,11 +270,10 @@ void Accumulator::put(World const& world, std::span<std::uint32_t const> at, std
     });
 }
 
-PictureRows picture_rows(Accumulator&& sums, PictureShape const& shape)
+PictureRows picture_rows(std::shared_ptr<Accumulator const> const& sums, PictureShape const& shape)
 {
-    auto const kept = std::make_shared<Accumulator const>(std::move(sums));
-    return {kept->width, kept->height,
-            [kept, shape](int first, int count) { return kept->rows(shape, first, count); }};
+    return {sums->width, sums->height,
+            [sums, shape](int first, int count) { return sums->rows(shape, first, count); }};
 }
 
 } // namespace gi

@@ -7,6 +7,7 @@
 #include "gi/render/path_sample.h"
 #include "gi/scene/model/world.h"
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -110,6 +111,6 @@ struct Accumulator {
 };
 
 /// The picture of sums that nobody adds to any more, made while it is read.
-PictureRows picture_rows(Accumulator&& sums, PictureShape const& shape);
+PictureRows picture_rows(std::shared_ptr<Accumulator const> const& sums, PictureShape const& shape);
 
 } // namespace gi

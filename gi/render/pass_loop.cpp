@@ -32,12 +32,17 @@ std::uint32_t PassLoop::next_pass(double seconds_per_path) const
     return std::uint32_t(std::clamp(paths, 1.0, double(limit() - sums_.paths)));
 }
 
-/// A failed write (full disk) is reported, but must not end the render.
-bool PassLoop::save(std::uint64_t print)
+void PassLoop::announce_state()
 {
     if (!is_announced_ && settings_.before_checkpoint)
         settings_.before_checkpoint(checkpoint_bytes(sums_.width, sums_.height));
     is_announced_ = true;
+}
+
+/// A failed write (full disk) is reported, but must not end the render.
+bool PassLoop::save(std::uint64_t print)
+{
+    announce_state();
     auto const begun = Clock::now();
     bool is_written = true;
     try {
@@ -114,7 +119,13 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     }
     bool const may_go_on = keeps_state() && (result.end == RenderEnd::interrupted ||
                                              (settings_.resume && result.end != RenderEnd::paths));
-    if (may_go_on) result.resumable = save(print) || is_saved;
+    if (may_go_on && settings_.by_rows) {
+        announce_state();
+        unsaved_ = print;
+        result.resumable = is_saved;
+    } else if (may_go_on) {
+        result.resumable = save(print) || is_saved;
+    }
     if (settings_.share.merge) settings_.share.merge(sums_);
     report_.add_time("trace", seconds_since(first_pass) - checkpoints_s_);
     if (is_announced_) report_.add_time("checkpoints", checkpoints_s_);
@@ -128,10 +139,16 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 
 void PassLoop::deliver(World const& world, RenderResult& result)
 {
-    if (settings_.by_rows)
-        result.rows = picture_rows(std::move(sums_), picture_shape(world));
-    else
+    if (!settings_.by_rows) {
         result.picture = sums_.picture(world);
+        return;
+    }
+    auto const sums = std::make_shared<Accumulator const>(std::move(sums_));
+    result.rows = picture_rows(sums, picture_shape(world));
+    if (unsaved_)
+        result.save_state = [file = settings_.checkpoint, sums, print = *unsaved_] {
+            save_checkpoint(file, *sums, print);
+        };
 }
 
 } // namespace gi

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <optional>
 
 namespace gi {
 
@@ -37,7 +38,7 @@ public:
     bool keeps_state() const { return !settings_.checkpoint.empty(); }
     Accumulator const& sums() const { return sums_; }
     /// Puts the picture into the result: its layers, or with RenderSettings::by_rows the sums that they are made
-    /// of. Call it last.
+    /// of, and the state of an unfinished render. Call it last.
     void deliver(World const& world, RenderResult& result);
     std::uint32_t first_path() const { return settings_.share.first; }
 
@@ -48,6 +49,7 @@ private:
     {
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
+    void announce_state();
     bool save(std::uint64_t print);
     bool is_checkpoint_due() const;
     std::uint32_t next_pass(double seconds_per_path) const;
@@ -61,7 +63,8 @@ private:
     Clock::time_point start_, saved_{}; ///< saved_: end of the last checkpoint, or the start of the passes
     double checkpoints_s_ = 0, last_checkpoint_s_ = 0; ///< time taken by all and by the last
     bool is_announced_ = false;
-    bool is_resumed_ = false; ///< resume() was called
+    std::optional<std::uint64_t> unsaved_; ///< print of a state that deliver() leaves to be saved
+    bool is_resumed_ = false;              ///< resume() was called
 };
 
 } // namespace gi

@@ -258,7 +258,10 @@ struct RenderResult {
     double relmse = 0;
     std::string options;    ///< settings chosen by the method, as command-line options
     bool resumable = false; ///< settings.checkpoint holds the state needed to continue
-    double rays = 0;        ///< closest-hit and shadow rays, or look-ups
+    /// With RenderSettings::by_rows, where the state is not saved yet: saves it, on any thread, also while `rows`
+    /// is read. Throws InputError. By then the memory of the method is free, and the picture need not wait for it.
+    std::function<void()> save_state;
+    double rays = 0; ///< closest-hit and shadow rays, or look-ups
     /// For a view with a partner: per pixel, the partner's pixel (to half a pixel) if all its paths took its
     /// light from there, else kOwnLight (gi/filter/reused_light.h). Empty without a partner.
     std::vector<std::uint32_t> light_from;

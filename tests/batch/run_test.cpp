@@ -1,7 +1,15 @@
 // Batches as they run: real processes, a script as the program of their tasks.
 
 #include "tests/batch/fake_programs.h"
+#include "viewer/batch/child.h"
 #include "viewer/batch/store.h"
+
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace viewer::test {
 namespace {
@@ -261,6 +269,77 @@ TEST(BatchRun, PlanOfAnotherVersionIsRefused)
     Outcome const o = p.run("batch resume s");
     EXPECT_EQ(o.code, 2);
     EXPECT_NE(o.err.find("planned by another version of the program"), std::string::npos) << o.err;
+}
+
+TEST(BatchRun, OneFolderThatCannotBeMadeDoesNotKeepTheOthersOfItsProcessFromRunning)
+{
+    FakePrograms const p;
+    p.sweep(3, 0);
+    ASSERT_EQ(p.run("batch plan m.yaml").code, 0);
+    EXPECT_EQ(p.run("batch m.yaml").code, 0);
+    batch::Store const store = batch::Store::open(p / "m.batch");
+    std::string const id = store.batches().front();
+    auto const tasks = store.batch(id).tasks;
+    fs::remove_all(p / "m.batch/results");
+    p.write("m.batch/work/" + tasks[0].key, "a file");
+    Outcome const o = p.run("batch work m.batch " + id + " 0 1 2");
+    EXPECT_EQ(o.code, 1);
+    EXPECT_NE(o.err.find("cannot make the folder of a task"), std::string::npos) << o.err;
+    EXPECT_FALSE(store.result(tasks[0].key));
+    EXPECT_TRUE(wait_until([&] { return store.result(tasks[1].key) && store.result(tasks[2].key); }));
+}
+
+TEST(BatchRun, ProgramThatIsMissingLeavesNothingOpen)
+{
+    TemporaryFolder const folder;
+    auto const open = [] {
+        auto const all = fs::directory_iterator("/proc/self/fd");
+        return std::distance(begin(all), end(all));
+    };
+    auto const before = open();
+    batch::ChildCall const call{
+        .program = folder / "none", .arguments = {}, .folder = folder.path(), .standard_output = "/dev/null"};
+    gi::StopRequest const stop;
+    for (int i = 0; i < 3; ++i) EXPECT_THROW(batch::run_child(call, stop), gi::InputError);
+    EXPECT_EQ(open(), before);
+}
+
+/// From now on a system call fails in this process.
+bool refuse(long system_call)
+{
+    sock_filter code[]{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+                       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, unsigned(system_call), 0, 1),
+                       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS),
+                       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+    sock_fprog const program{std::size(code), code};
+    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+           prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+/// On a kernel before 5.3, or where a container forbids it.
+TEST(BatchRun, TaskWhoseEndCannotBeWaitedForIsEndedAtOnce)
+{
+    TemporaryFolder const folder;
+    pid_t const child = fork(); // the refusal stays
+    if (child == 0) {
+        alarm(20);
+        if (!refuse(SYS_pidfd_open)) _exit(8);
+        batch::ChildCall const call{.program = "/bin/sleep",
+                                    .arguments = {"100"},
+                                    .folder = folder.path(),
+                                    .standard_output = "/dev/null"};
+        try {
+            batch::run_child(call, gi::StopRequest());
+        } catch (gi::InputError const&) {
+            _exit(::waitpid(-1, nullptr, 0) < 0 && errno == ECHILD ? 7 : 6);
+        }
+        _exit(1);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    if (WEXITSTATUS(status) == 8) GTEST_SKIP() << "seccomp is not permitted";
+    EXPECT_EQ(WEXITSTATUS(status), 7);
 }
 
 } // namespace

@@ -11,6 +11,7 @@
 #include "viewer/batch/machine.h"
 #include "viewer/batch/merge.h"
 #include "viewer/batch/state.h"
+#include "viewer/batch/work.h"
 
 #include <sys/wait.h>
 
@@ -40,8 +41,10 @@ Batch small_batch(int tasks)
 }
 
 struct StoreTest : testing::Test {
-    /// Publishes out/NAME with a text as the output of a task.
-    void publish(Task const& task, std::string const& name, std::string const& text)
+    enum class End { published, killed_before };
+
+    /// Publishes out/NAME with a text as the output of a task, or is killed before.
+    void publish(Task const& task, std::string const& name, std::string const& text, End how = End::published)
     {
         fs::create_directories(store.work(task.key) / "out");
         gi::write_text(store.work(task.key) / "out" / name, text);
@@ -49,7 +52,8 @@ struct StoreTest : testing::Test {
         r.task = task.key;
         r.outputs = {{"out/", "", 0}};
         r.seconds = 2;
-        store.publish(r, store.work(task.key));
+        store.prepare(r);
+        if (how == End::published) store.publish(task.key);
     }
 
     TemporaryFolder folder;
@@ -88,6 +92,43 @@ TEST_F(StoreTest, EveryTruncatedOrChangedResultCountsAsNone)
     }
     gi::write_text(file, whole);
     EXPECT_TRUE(store.result(batch.tasks[0].key));
+}
+
+TEST_F(StoreTest, WhatWasPreparedIsPublishedLaterIfItIsWhole)
+{
+    std::string const whole = batch.tasks[0].key, damaged = batch.tasks[1].key, torn = batch.tasks[2].key;
+    for (Task const& task : batch.tasks) publish(task, "a.txt", "text of " + task.key, End::killed_before);
+    for (Task const& task : batch.tasks) ASSERT_FALSE(store.result(task.key));
+    fs::path const object = store.object(gi::sha256("text of " + damaged));
+    fs::permissions(object, fs::perms::owner_write, fs::perm_options::add);
+    gi::write_text(object, "test of " + damaged); // as long as before
+    fs::path const result = store.work(torn).string() + ".result";
+    fs::resize_file(result, fs::file_size(result) - 1);
+    settle_leftovers(store);
+    auto const r = store.result(whole);
+    ASSERT_TRUE(r);
+    EXPECT_EQ(test::file_text(store.object(r->outputs.at(0).sha256)), "text of " + whole);
+    EXPECT_FALSE(store.result(damaged));
+    EXPECT_FALSE(store.result(torn));
+    std::set<std::string> left;
+    for (auto const& entry : fs::directory_iterator(store.folder() / "work")) left.insert(entry.path().filename());
+    EXPECT_EQ(left, (std::set{damaged, torn})) << "folders of tasks that are not done";
+    JournalReader journal(store.journal());
+    auto const events = journal.read();
+    ASSERT_EQ(events.size(), 1u);
+    EXPECT_EQ(events[0].task, whole);
+    EXPECT_EQ(events[0].kind, EventKind::finished);
+}
+TEST_F(StoreTest, WhatAnotherProcessIsAboutToPublishIsLeftToIt)
+{
+    publish(batch.tasks[0], "a.txt", "hello", End::killed_before);
+    std::string const key = batch.tasks[0].key;
+    Claim claim(store.claims(), key);
+    ASSERT_TRUE(claim.take());
+    settle_leftovers(store);
+    EXPECT_FALSE(store.result(key));
+    store.publish(key);
+    EXPECT_TRUE(store.result(key));
 }
 
 TEST_F(StoreTest, PlanOfABatchComesBackWholeAndByTask)

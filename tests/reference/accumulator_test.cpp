@@ -173,7 +173,7 @@ TEST(Accumulator, RowsMakeThePicture)
     Accumulator a = noise(21, 130, 2);
     PictureShape const shape{{1, 2, 3}, true, PictureLayers::all};
     Picture const whole = a.rows(shape, 0, a.height);
-    PictureRows const rows = picture_rows(std::move(a), shape);
+    PictureRows const rows = picture_rows(std::make_shared<Accumulator const>(std::move(a)), shape);
     for (int y = 0; y < rows.height; y += 50) {
         Picture const some = rows.read(y, std::min(50, rows.height - y));
         ASSERT_EQ(some.layers.size(), whole.layers.size());

@@ -108,6 +108,33 @@ TEST(Determinism, AStateThatCannotBeWrittenCostsNoPicture)
     EXPECT_EQ(report.losses().count("checkpoints that could not be written"), 1u);
 }
 
+/// The picture need not wait for it.
+TEST(Determinism, StateOfAPictureByRowsIsSavedByItsReader)
+{
+    std::filesystem::path const state =
+        std::filesystem::temp_directory_path() / ("lightwell_by_rows_" + std::to_string(getpid()) + ".state");
+    RenderSettings s = settings();
+    Picture const whole = render(room(), s).picture;
+    s.checkpoint = state;
+    s.by_rows = true;
+    StopRequest stop;
+    stop.request();
+    RenderResult const part = render(room(), s, stop);
+    EXPECT_FALSE(part.resumable);
+    EXPECT_FALSE(std::filesystem::exists(state));
+    ASSERT_TRUE(part.save_state);
+    part.save_state();
+    EXPECT_TRUE(part.rows);
+    s.resume = true;
+    RenderResult const rest = render(room(), s);
+    EXPECT_FALSE(rest.save_state);
+    expect_same_bits(whole, rest.rows.whole());
+    std::filesystem::remove(state);
+
+    s.checkpoint = std::filesystem::temp_directory_path() / "lightwell_no_folder" / "x.state";
+    EXPECT_THROW(render(room(), s, stop).save_state(), InputError);
+}
+
 /// Whatever changes the picture makes a state unusable.
 TEST(Determinism, StatesOfOtherScenesAreRefused)
 {

@@ -47,6 +47,21 @@ TEST(Checkpoint, ItsFileCanBeNamed)
     EXPECT_EQ(run(call, folder.path()).code, 2) << "would destroy what is unfinished";
 }
 
+/// The kernel and the shell both tell it.
+TEST(Checkpoint, OneTerminalThatClosesMayTellItOftenWhileItIsSaved)
+{
+    TemporaryFolder const folder;
+    Program program(words("render cornell --size 640x480 --paths 100000 --quiet --out a.exr"), folder.path());
+    ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    while (program.runs() && !std::filesystem::exists(folder / "a.exr.state")) {
+        program.send(SIGHUP);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    program.wait();
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
+}
+
 TEST(Checkpoint, OffLeavesItToInterruptions)
 {
     TemporaryFolder const folder;

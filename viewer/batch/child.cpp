@@ -90,7 +90,19 @@ bool ends_before(int process_fd, Clock::time_point until, Messages& messages)
     }
 }
 
-pid_t start(ChildCall const& call, int messages)
+struct StartedChild {
+    pid_t process;
+    int fd; ///< readable at its end
+};
+
+gi::InputError cannot_start(ChildCall const& call, int error)
+{
+    return {"'" + call.program.string() + "' cannot be started", std::strerror(error),
+            "check the programs and the store"};
+}
+
+/// @param messages is closed
+StartedChild start(ChildCall const& call, int messages)
 {
     std::vector<std::string> words{call.program.string()};
     words.insert(words.end(), call.arguments.begin(), call.arguments.end());
@@ -104,10 +116,16 @@ pid_t start(ChildCall const& call, int messages)
         _exit(127);
     }
     if (child < 0) error = errno;
-    if (error == 0) return child;
-    if (child > 0) ::waitpid(child, nullptr, 0);
-    throw gi::InputError("'" + call.program.string() + "' cannot be started", std::strerror(error),
-                         "check the programs and the store");
+    ::close(messages);
+    int const fd =
+        error == 0 ? int(::syscall(SYS_pidfd_open, child, 0)) : -1; // Debian 12's function is for C only
+    if (fd >= 0) return {child, fd};
+    if (error == 0) error = errno;
+    if (child > 0) {
+        kill(-child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+    }
+    throw cannot_start(call, error);
 }
 
 } // namespace
@@ -116,12 +134,12 @@ ChildEnd run_child(ChildCall const& call, gi::StopRequest const& stop)
 {
     auto const begin = Clock::now();
     int pipe_ends[2];
-    if (::pipe2(pipe_ends, O_CLOEXEC) != 0) throw std::runtime_error(std::strerror(errno));
+    if (::pipe2(pipe_ends, O_CLOEXEC) != 0) throw cannot_start(call, errno);
     ::fcntl(pipe_ends[0], F_SETFL, O_NONBLOCK);
     Messages messages(pipe_ends[0]);
-    pid_t const child = start(call, pipe_ends[1]);
-    ::close(pipe_ends[1]);
-    int const process_fd = int(::syscall(SYS_pidfd_open, child, 0)); // Debian 12's function is for C only
+    StartedChild const started = start(call, pipe_ends[1]);
+    pid_t const child = started.process;
+    int const process_fd = started.fd;
     ChildEnd end;
     using Reason = ChildEnd::Reason;
     auto const limit =

@@ -56,7 +56,7 @@ private:
         WorkerProcess worker;
         std::size_t task = 0;
         Share share;
-        bool has_computed = false;
+        bool is_prepared = false;
         bool is_ending = false; ///< its end of the pipe is closed: it will soon be gone
     };
 
@@ -83,7 +83,7 @@ private:
     void start_tasks()
     {
         auto const publishing = [&] {
-            return std::size_t(std::ranges::count(running_, true, &Running::has_computed));
+            return std::size_t(std::ranges::count(running_, true, &Running::is_prepared));
         };
         while (!pending_.empty() && publishing() < settings_.machine.cores.size()) { // the disk may be slow
             std::size_t const i = pending_.front();
@@ -146,8 +146,8 @@ private:
     void free_share(Running& r)
     {
         char told = 0;
-        if (r.has_computed || ::read(r.worker.pipe, &told, 1) != 1) return;
-        r.has_computed = true;
+        if (r.is_prepared || ::read(r.worker.pipe, &told, 1) != 1) return;
+        r.is_prepared = true;
         allocator_.give_back(r.share);
     }
 
@@ -158,7 +158,7 @@ private:
             pid_t const ended = ::waitpid(r.worker.pid, &status, r.is_ending ? 0 : WNOHANG);
             if (ended != r.worker.pid) return false;
             ::close(r.worker.pipe);
-            if (!r.has_computed) allocator_.give_back(r.share);
+            if (!r.is_prepared) allocator_.give_back(r.share);
             count(r.task, status);
             return true;
         });

@@ -56,6 +56,20 @@ std::optional<Result> result_of(std::string text)
     }
 }
 
+std::optional<Result> read_result(fs::path const& file, std::string const& key)
+{
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return std::nullopt;
+    auto found = result_of({std::istreambuf_iterator<char>(in), {}});
+    return found && found->task == key ? found : std::nullopt;
+}
+
+bool has_size(fs::path const& file, std::uint64_t bytes)
+{
+    std::error_code failed;
+    return fs::file_size(file, failed) == bytes && !failed;
+}
+
 gi::InputError cannot_keep(fs::path const& file, std::string const& why)
 {
     return {"cannot keep '" + file.string() + "'", why, "free some space, or check the permissions of the store"};
@@ -144,28 +158,26 @@ fs::path Store::object(std::string const& sha256) const
 
 fs::path Store::result_file(std::string const& key) const { return folder_ / "results" / key.substr(0, 2) / key; }
 
+fs::path Store::prepared_file(std::string const& key) const { return work(key).string() + ".result"; }
+
 std::optional<Result> Store::result(std::string const& key) const
 {
-    std::ifstream in(result_file(key), std::ios::binary);
-    if (!in) return std::nullopt;
-    auto found = result_of({std::istreambuf_iterator<char>(in), {}});
-    if (!found || found->task != key) return std::nullopt;
-    for (Output const& o : found->outputs) {
-        std::error_code failed;
-        if (fs::file_size(object(o.sha256), failed) != o.bytes || failed) return std::nullopt;
-    }
+    auto found = read_result(result_file(key), key);
+    if (!found) return std::nullopt;
+    for (Output const& o : found->outputs)
+        if (!has_size(object(o.sha256), o.bytes)) return std::nullopt;
     return found;
 }
 
-void Store::publish(Result& result, fs::path const& made) const
+void Store::prepare(Result& result) const
 {
+    fs::path const made = work(result.task);
     std::vector<Output> outputs;
     try {
         for (std::string const& name : files_of(result.outputs, made)) {
             Output const output{name, file_sha256(made / name), fs::file_size(made / name)};
             fs::path const to = object(output.sha256);
-            std::error_code absent;
-            if (fs::file_size(to, absent) != output.bytes || absent) {
+            if (!has_size(to, output.bytes)) {
                 fs::create_directories(to.parent_path());
                 fs::permissions(made / name,
                                 fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
@@ -175,14 +187,40 @@ void Store::publish(Result& result, fs::path const& made) const
         }
         result.outputs = std::move(outputs);
         result.host = gi::host_name();
-        fs::path const to = result_file(result.task), temporary = made.string() + kResult;
-        fs::create_directories(to.parent_path());
-        write(temporary, line_of(result));
-        sync_all(folder_);
-        fs::rename(temporary, to);
+        write(prepared_file(result.task), line_of(result));
     } catch (fs::filesystem_error const& e) {
         throw cannot_keep(e.path2().empty() ? e.path1() : e.path2(), e.code().message());
     }
+}
+
+void Store::publish(std::string const& key) const
+{
+    fs::path const to = result_file(key);
+    try {
+        fs::create_directories(to.parent_path());
+        sync_all(folder_);
+        fs::rename(prepared_file(key), to);
+    } catch (fs::filesystem_error const& e) {
+        throw cannot_keep(to, e.code().message());
+    }
+}
+
+std::optional<Result> Store::recover(std::string const& key) const
+{
+    fs::path const prepared = prepared_file(key);
+    std::error_code none;
+    if (!fs::exists(prepared, none)) return std::nullopt;
+    auto found = read_result(prepared, key);
+    bool const is_whole =
+        found && std::ranges::all_of(found->outputs, [&](Output const& o) {
+            return has_size(object(o.sha256), o.bytes) && file_sha256(object(o.sha256)) == o.sha256;
+        });
+    if (is_whole) {
+        publish(key);
+        return found;
+    }
+    fs::remove(prepared, none);
+    return std::nullopt;
 }
 
 void Store::forget(std::string const& key, std::string const& object_sha256) const

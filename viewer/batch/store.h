@@ -10,7 +10,8 @@
 //   work/abcdef...          the folder in which a task runs; abcdef....result: its result before that appears
 //
 // A result appears whole, by renaming, once its objects are on the disk. So a task is finished or it is not,
-// whatever is killed and whenever; a result without its objects, or with a wrong checksum, counts as none.
+// whatever is killed and whenever; a result without its objects, or with a wrong checksum, counts as none. What
+// was prepared but did not get that far is published later if it is whole.
 
 #include "viewer/batch/task.h"
 
@@ -47,14 +48,16 @@ public:
     std::filesystem::path journal() const { return folder_ / "journal"; }
     std::filesystem::path object(std::string const& sha256) const;
     std::filesystem::path work(std::string const& key) const { return folder_ / "work" / key; }
-    /// Appended to that: a result that is not published yet.
-    static constexpr char const* kResult = ".result";
-
     /// The result of a finished task.
     std::optional<Result> result(std::string const& key) const;
-    /// Makes a task finished: moves its outputs from `made` to the objects, hands them and the journal to the
-    /// disk, and makes the result appear. @param result without hashes and sizes, which are filled in
-    void publish(Result& result, std::filesystem::path const& made) const;
+    /// Moves the outputs of a task to the objects and writes its result, which does not count yet.
+    /// @param result without hashes and sizes, which are filled in
+    void prepare(Result& result) const;
+    /// Makes a prepared task finished: hands its outputs and the journal to the disk, and lets the result appear.
+    void publish(std::string const& key) const;
+    /// Publishes what a process prepared before it was killed, if every byte of it is there, and removes it if
+    /// not. For holders of the task's claim. @return the result
+    std::optional<Result> recover(std::string const& key) const;
     /// Forgets a result, one of whose objects is damaged, and that object.
     void forget(std::string const& key, std::string const& object_sha256) const;
 
@@ -71,6 +74,7 @@ public:
 private:
     explicit Store(std::filesystem::path folder) : folder_(std::move(folder)) {}
     std::filesystem::path result_file(std::string const& key) const;
+    std::filesystem::path prepared_file(std::string const& key) const;
 
     std::filesystem::path folder_; ///< absolute
 };

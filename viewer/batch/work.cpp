@@ -7,12 +7,15 @@
 #include "viewer/batch/journal.h"
 
 #include <fmt/format.h>
+#include <set>
 #include <thread>
 
 namespace viewer::batch {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kKeyLength = 64; ///< hexadecimal SHA-256
 
 struct Attempt {
     ChildEnd end;
@@ -77,7 +80,6 @@ private:
 
     WorkEnd publish(Attempt const& a, Event event)
     {
-        if (settings_.computed && settings_.computed() == Publish::elsewhere) return WorkEnd::passed_on;
         Result result;
         result.task = task_.key;
         result.seconds = a.end.seconds;
@@ -87,7 +89,9 @@ private:
         for (std::string const& name : task_.outputs) result.outputs.push_back({name, {}, 0});
         event.kind = EventKind::finished;
         try {
-            store_.publish(result, folder());
+            store_.prepare(result);
+            if (settings_.prepared && settings_.prepared() == Publish::elsewhere) return WorkEnd::passed_on;
+            store_.publish(task_.key);
         } catch (gi::InputError const& e) {
             event.kind = EventKind::failed;
             event.why = e.what();
@@ -162,6 +166,20 @@ private:
     Journal journal_;
 };
 
+/// Publishes what was prepared before its process was killed. The journal tells of the end that it had.
+bool recover(Store const& store, std::string const& key)
+{
+    auto const result = store.recover(key);
+    if (!result) return false;
+    Event event;
+    event.kind = EventKind::finished;
+    event.task = key;
+    event.attempt = result->attempts;
+    event.seconds = result->seconds;
+    Journal(store.journal()).append(event);
+    return true;
+}
+
 } // namespace
 
 WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
@@ -173,11 +191,11 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
         if (stop.requested()) return WorkEnd::interrupted;
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    WorkEnd const end = store.result(task.key) ? WorkEnd::was_done : Run(store, batch, task, settings, stop).run();
+    bool const is_done = store.result(task.key) || recover(store, task.key);
+    WorkEnd const end = is_done ? WorkEnd::was_done : Run(store, batch, task, settings, stop).run();
     if (end == WorkEnd::passed_on) return end;
     std::error_code none;
     if (!fs::remove(store.work(task.key), none)) fs::remove_all(store.work(task.key), none);
-    fs::remove(store.work(task.key).string() + Store::kResult, none); // of a publication that failed
     return end;
 }
 
@@ -198,13 +216,17 @@ int exit_code_of(WorkEnd end)
     return kWorkFailed;
 }
 
-void remove_leftovers(Store const& store)
+void settle_leftovers(Store const& store)
 {
     std::error_code none;
-    for (auto const& entry : fs::directory_iterator(store.work("").parent_path(), none)) {
-        std::string const key = entry.path().filename().string();
-        if (key.size() != 64 || !store.result(key)) continue;
-        if (Claim claim(store.claims(), key); claim.take()) fs::remove_all(entry.path(), none);
+    std::set<std::string> keys;
+    for (auto const& entry : fs::directory_iterator(store.work("").parent_path(), none))
+        if (std::string const key = entry.path().stem().string(); key.size() == kKeyLength) keys.insert(key);
+    for (std::string const& key : keys) {
+        Claim claim(store.claims(), key);
+        if (!claim.take()) continue;
+        bool const is_done = store.result(key) || recover(store, key);
+        if (is_done) fs::remove_all(store.work(key), none);
     }
 }
 

@@ -23,8 +23,9 @@ enum class Publish { here, elsewhere };
 struct WorkSettings {
     std::filesystem::path program; ///< the launcher, lightwell
     IfTaken if_taken = IfTaken::wait;
-    /// Called when the task's process has ended well, before its outputs are published.
-    std::function<Publish()> computed;
+    /// Called when a kill of all processes no longer costs the task, before its outputs are published: the next
+    /// one may start.
+    std::function<Publish()> prepared;
 };
 
 /// Claims the task, runs it in a folder of its own, in which its inputs are linked, and again after a failure that
@@ -40,7 +41,7 @@ int exit_code_of(WorkEnd end);
 /// Workers that may be killed with one task before it counts as failed: it may be what kills them.
 inline constexpr int kMostLost = 10;
 
-/// Removes the folders of tasks that are done: of processes that were killed between the two.
-void remove_leftovers(Store const& store);
+/// Publishes what killed processes had prepared, and removes the folders of tasks that are done.
+void settle_leftovers(Store const& store);
 
 } // namespace viewer::batch

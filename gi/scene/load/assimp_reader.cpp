@@ -1,22 +1,18 @@
 #include "gi/scene/load/assimp_reader.h"
 
-#include "gi/scene/load/obj_numbers.h"
+#include "gi/scene/load/obj/obj_importer.h"
 
 #include <assimp/DefaultIOSystem.h>
-#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <cstring>
-#include <strings.h>
 
 namespace gi {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Opens regular files only (a pipe would be waited for), completes numbers of OBJ files, and notes what is
-/// opened.
+/// Opens regular files only (a pipe would be waited for), and notes what is opened.
 class NotingFiles : public Assimp::DefaultIOSystem {
 public:
     explicit NotingFiles(ImportedFiles& files) : files_(files) {}
@@ -30,24 +26,10 @@ public:
     {
         Assimp::IOStream* stream = Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
         (stream != nullptr ? files_.opened : files_.missing).insert(file);
-        bool const is_obj = strcasecmp(fs::path(file).extension().c_str(), ".obj") == 0;
-        return stream != nullptr && is_obj ? completed(stream) : stream;
+        return stream;
     }
 
 private:
-    static Assimp::IOStream* completed(Assimp::IOStream* stream)
-    {
-        std::string text(stream->FileSize(), '\0');
-        text.resize(stream->Read(text.data(), 1, text.size()));
-        stream->Seek(0, aiOrigin_SET);
-        auto const more = with_leading_zeros(text);
-        if (!more) return stream;
-        delete stream; // as this system's Close does
-        auto* const copy = new std::uint8_t[more->size()];
-        std::memcpy(copy, more->data(), more->size());
-        return new Assimp::MemoryIOStream(copy, more->size(), true);
-    }
-
     ImportedFiles& files_;
 };
 
@@ -62,6 +44,7 @@ unsigned steps(AssimpFaces faces)
 
 AssimpReader::AssimpReader()
 {
+    ObjImporter::replace_in(importer_);
     importer_.SetIOHandler(new NotingFiles(files_)); // the importer takes ownership
     importer_.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer_.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);

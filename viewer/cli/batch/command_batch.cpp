@@ -81,6 +81,7 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
               ranks = std::max(1, number_of("OMPI_COMM_WORLD_SIZE", 1));
     batch::Machine machine = batch::this_machine();
     batch::RunOutcome outcome;
+    settle_leftovers(store); // so that nothing is done again that need not be
     if (o.on == "hyperqueue") {
         if (ranks > 1)
             throw gi::InputError("--on hyperqueue under mpirun", "HyperQueue has workers of its own",
@@ -95,7 +96,7 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
         if (o.cores > 0) set_cores(machine, o.cores);
         outcome = run_locally(store, b, {folder / "lightwell", machine, !o.quiet && rank == 0, rank, ranks}, stop);
     }
-    remove_leftovers(store);
+    settle_leftovers(store); // of processes that were killed meanwhile
     if (rank == 0) print_run(store, id, b, outcome, o.json);
     return outcome.is_interrupted ? interrupted_code() : outcome.counts.failed > 0 ? 1 : 0;
 }

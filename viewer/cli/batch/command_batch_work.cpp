@@ -5,6 +5,7 @@
 #include "viewer/cli/batch/batch_text.h"
 
 #include <CLI/CLI.hpp>
+#include <iostream>
 #include <memory>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -42,7 +43,12 @@ int run_work(WorkOptions const& o)
             throw gi::InputError("the program of this machine is another version than the batch was planned by",
                                  "here it is " + program + ", there " + b.program,
                                  "install the same one on all machines");
-        int const code = batch::exit_code_of(work_on(store, b, b.tasks.front(), settings, stop));
+        int code = batch::kWorkFailed;
+        try {
+            code = batch::exit_code_of(work_on(store, b, b.tasks.front(), settings, stop));
+        } catch (gi::InputError const& e) { // the next tasks may be luckier
+            std::cerr << "lightwell: " << e.what() << std::endl;
+        }
         if (code != batch::kWorkDone) result = code;
         if (is_copy || code == batch::kWorkInterrupted) break;
     }

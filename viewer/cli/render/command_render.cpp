@@ -20,17 +20,21 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fmt/format.h>
+#include <future>
+#include <malloc.h>
 #include <memory>
+#include <utility>
 
 namespace viewer {
 namespace {
 
+/// @param guard   holds from now on
 /// @param render  called with the stop request and a progress callback
 gi::RenderResult
-trace(RenderOptions const& o, RankWork& work,
+trace(RenderOptions const& o, RankWork& work, std::unique_ptr<InterruptGuard>& guard,
       std::function<gi::RenderResult(gi::StopRequest const&, gi::RenderProgress const&)> const& render)
 {
-    InterruptGuard const guard(work.stop());
+    guard = std::make_unique<InterruptGuard>(work.stop());
     gi::ProgressBar bar("render " + std::filesystem::path(o.scene).filename().string(), !o.quiet && work.leads());
     auto const show = [&](gi::RenderStatus const& s) {
         bar.update(s.fraction, fmt::format("{} paths, relMSE {:.2g}", s.paths, s.relmse));
@@ -57,10 +61,30 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
     save_exr(o, o.out, kept, report, is_left ? gi::ExrCompression::none : gi::ExrCompression::zip);
 }
 
+/// Saves picture and state, if there is one, at the same time.
+void save_all(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result,
+              gi::Report& report)
+{
+    std::future<void> state;
+    if (result.save_state) {
+        malloc_trim(0); // the system takes such pages for the files: they are faster than untouched ones
+        state = std::async(std::launch::async, std::exchange(result.save_state, nullptr));
+    }
+    save(o, settings, result, report);
+    if (!state.valid()) return;
+    try {
+        state.get();
+        result.resumable = true;
+    } catch (gi::InputError const& e) {
+        report.lose("checkpoints that could not be written", 1, e.what());
+    }
+}
+
 struct Shot {
     gi::ScenePlan plan;
     gi::RenderResult result;
     std::map<std::string, gi::Report::Loss> loaded; ///< losses before path tracing
+    std::unique_ptr<InterruptGuard> guard;
 };
 
 Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi::World const& world,
@@ -68,10 +92,12 @@ Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi
 {
     gi::Camera const camera = eye.of(world, o.time_s.value_or(0), 0);
     auto const loaded = report.losses();
-    gi::RenderResult result = trace(o, work, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
-        return gi::find_method(o.method).render(world, camera, settings, stop, progress, report);
-    });
-    return {gi::plan_scene(world), std::move(result), loaded};
+    std::unique_ptr<InterruptGuard> guard;
+    gi::RenderResult result =
+        trace(o, work, guard, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
+            return gi::find_method(o.method).render(world, camera, settings, stop, progress, report);
+        });
+    return {gi::plan_scene(world), std::move(result), loaded, std::move(guard)};
 }
 
 /// Renders with motion blur, over the time that the shutter is open.
@@ -83,10 +109,12 @@ Shot shoot_motion(RenderOptions const& o, gi::RenderSettings const& settings, gi
                             }};
     gi::RenderSettings whole = settings;
     whole.by_rows = false;
-    gi::RenderResult result = trace(o, work, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
-        return expose(gi::find_method(o.method), world, exposure, whole, stop, progress, report);
-    });
-    return {gi::plan_scene(world.world()), std::move(result), {}};
+    std::unique_ptr<InterruptGuard> guard;
+    gi::RenderResult result =
+        trace(o, work, guard, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
+            return expose(gi::find_method(o.method), world, exposure, whole, stop, progress, report);
+        });
+    return {gi::plan_scene(world.world()), std::move(result), {}, std::move(guard)};
 }
 
 std::vector<std::string> outputs_of(RenderOptions const& o, gi::RenderSettings const& settings)
@@ -179,7 +207,9 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
                              "add --resume to continue, or delete it");
 
     gi::Report report;
-    auto [plan, result, loaded] = shoot(o, settings, choice, motion, work, report);
+    auto [plan, result, loaded, guard] = shoot(o, settings, choice, motion, work, report);
+    // What was interrupted is saved under the guard, as a closed terminal sends SIGHUP twice.
+    if (result.end != gi::RenderEnd::interrupted) guard.reset();
     work.gather(result, report, loaded);
     if (!work.leads()) {
         work.finish();
@@ -191,7 +221,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     }
     std::string const remark = denoise(result.picture, denoise_settings, report);
     if (!remark.empty()) say(remark);
-    save(o, settings, result, report);
+    save_all(o, settings, result, report);
     if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
 
     nlohmann::ordered_json const stats = make_stats(o, settings, plan, result, report);
