@@ -1,0 +1,212 @@
+// What people see while they move: the viewer's rendering thread and its presenter run in real time, driven by a
+// recorded head, and what they show at given moments is compared with converged pictures of those moments.
+//   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--truth-filter NAME] [--size WxH]
+//   [--eyes 1|2] [--fov DEG]
+//   [--avatar FILE] [--scored N] [--set KEY=VALUE]... [--offline HZ] [--light-scale S] [--surface-scale S]
+//   [--late S] [--paths N] [--young N]
+// HEAD.csv: time_s, then the head relative to the scene's first camera: x_m,y_m,z_m (right, up, back), yaw_deg,
+// pitch_deg (left, up). --fov is the vertical field of view (60). The truth is that of the method reference at the
+// session's bounces, through a filter (oidn-high); it is kept in its folder and reused. With two eyes (0.063 m
+// apart), rivalry is the mean difference of the eyes' errors at points that both see. --offline: frames at a fixed
+// rate instead of real time, with light and surfaces at fixed scales and --paths (1); with
+// --late, reprojected to the head of S seconds later; --young: N frames of a head
+// that holds still, scored after 1, 2, 4, ... Writes shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment,
+// E eye) and prints a row of figures.
+
+#include "gi/core/error.h"
+#include "tests/bench/moving_view/offline.h"
+#include "viewer/app/presenter.h"
+#include "viewer/devices/gl/context.h"
+#include "viewer/engine/live/live_renderer.h"
+#include "viewer/offline/choose_camera.h"
+
+#include <algorithm>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <map>
+
+namespace {
+
+using namespace viewer;
+
+/// Time of the scene's clips at a moment, if the frame's is that of the moment in which it is seen.
+double scene_now(LiveFrame const& f, double now_s)
+{
+    return f.command.scene_s - f.ahead_s * f.settings.speed +
+           f.settings.speed * (f.settings.play ? now_s - f.begun_s : 0);
+}
+
+void run(Options const& o)
+{
+    fs::create_directories(o.out);
+    gi::Report report;
+    GlContext const gl = GlContext::surfaceless(report);
+    std::vector<AvatarChoice> const avatars = avatar_choices(o.avatar, kEyeHeight_m, {}, {});
+    RecordedScenes const scenes = scenes_with({}, avatars, report);
+    RenderSession session(scenes.load, 0, report);
+    if (scenes.drive) session.drive_bodies(scenes.drive);
+    for (Change const& c : o.settings) session.apply(c);
+    session.apply({"scene", o.scene});
+    gi::Camera const first = choose_camera(session.world(), {}).camera;
+    gi::dvec3 const origin = session.world().origin;
+    Walk walk(o, first, scenes.avatars.empty() ? std::nullopt : scenes.avatars[0].stance);
+    SessionClock const clock;
+    std::vector<double> done_s;
+    std::map<std::string, double> stages_s;
+    double light_scale = 0, surfaces = 0, paths = 0;
+    LiveRenderer::Hooks hooks;
+    hooks.finished = [&](LiveFrame const& f) {
+        done_s.push_back(f.done_s);
+        for (auto const& [stage, s] : f.result.stages_s) stages_s[stage] += s;
+        light_scale += f.budget.scale;
+        surfaces += f.budget.surfaces;
+        paths += f.budget.paths;
+    };
+    hooks.failed = [](std::string const& why) { fmt::print(stderr, "failed: {}\n", why); };
+    std::vector<Seen> seen;
+    if (o.offline_hz > 0) {
+        render_offline(o, session, walk, seen);
+        fmt::print("{} {} {}x{} x{}\n", o.scene, o.young > 0 ? "still" : fs::path(o.head).stem().string(), o.width,
+                   o.height, o.eyes);
+        for (auto const& [what, n] : report.counts()) fmt::print("  {}: {:.6g}\n", what, n);
+        for (auto const& [stage, s] : report.times()) fmt::print("  {}: {:.2f} s\n", stage, s);
+        return score(o, scenes, seen, origin);
+    }
+    int presented = 0;
+    double draw_s = 0;
+    double begun = 0;
+    std::size_t first_frame = 0;
+    {
+        LiveRenderer renderer(session, clock, nullptr, hooks);
+        Presenter presenter({});
+        PresentSettings settings;
+        settings.tone = tone_settings(session.settings());
+        std::vector<Pane> panes;
+        std::vector<TextureTarget> targets;
+        for (int e = 0; e < o.eyes; ++e) {
+            panes.push_back({{0, 0}, {o.width, o.height}, StereoMode::off, e, -1});
+            targets.emplace_back(TextureTarget::Format::bytes, glm::ivec2(o.width, o.height));
+        }
+        renderer.look(walk.at(0, 0));
+        if (!renderer.next_frame(60)) throw gi::InputError("no frame in 60 s", "", "");
+        std::shared_ptr<LiveFrame const> shown;
+        begun = clock.now_s();
+        walk.begin(begun);
+        first_frame = done_s.size();
+        std::map<std::string, double>().swap(stages_s);
+        light_scale = surfaces = paths = 0;
+        double last = 0;
+        for (int k = 0; k < o.scored;) {
+            double const now = clock.now_s() - begun;
+            Viewpoint const at = walk.at(now, now - last);
+            last = now;
+            std::vector<gi::Camera> cameras;
+            for (ViewCommand const& v : at.views) cameras.push_back(v.camera);
+            renderer.look(at);
+            auto const newest = renderer.newest();
+            if (newest != shown) presenter.take(newest, panes);
+            shown = newest;
+            double const drawing = clock.now_s();
+            for (int e = 0; e < o.eyes; ++e)
+                presenter.draw(targets[std::size_t(e)].target(), {0, 0}, {panes[std::size_t(e)]}, settings,
+                               cameras);
+            ++presented;
+            glFinish();
+            draw_s += clock.now_s() - drawing;
+            // The first second is not scored.
+            if (now >= 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored) {
+                Seen s{at, scene_now(*newest, begun + now), {}};
+                for (TextureTarget const& t : targets) s.shown.push_back(read_bytes(t.target()));
+                seen.push_back(std::move(s));
+                ++k;
+            } else if (!targets.empty()) {
+                read_bytes(part_of(targets[0].target(), {0, 0}, {1, 1})); // waits as a swap does
+            }
+            double const drew_s = clock.now_s() - drawing;
+            double const next_s = std::max(now + 1.0 / 60, begun + now + 5 * drew_s - begun);
+            while (clock.now_s() - begun < next_s) { // as the window's loop does
+                double const t = clock.now_s() - begun;
+                if (t - last > 0.004) {
+                    renderer.look(walk.at(t, t - last));
+                    last = t;
+                }
+                if (renderer.newest() != shown) break;
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            }
+        }
+    }
+    double const took = clock.now_s() - begun;
+    std::vector<double> gaps;
+    for (std::size_t k = std::max<std::size_t>(1, first_frame); k < done_s.size(); ++k)
+        gaps.push_back(1e3 * (done_s[k] - done_s[k - 1]));
+    std::ranges::sort(gaps);
+    double const frames = double(std::max<std::size_t>(1, gaps.size()));
+    fmt::print(
+        "{} {} {}x{} x{}: {:.1f} frames/s rendered, {:.1f} shown; ms between frames: median {:.0f}, 95 % {:.0f}, "
+        "most {:.0f}; drawn in {:.1f} ms; scale of light {:.3f}, of surfaces {:.3f}, paths {:.1f}\n",
+        o.scene, fs::path(o.head).stem().string(), o.width, o.height, o.eyes, frames / took, presented / took,
+        gaps[gaps.size() / 2], gaps[gaps.size() * 95 / 100], gaps.back(), 1e3 * draw_s / presented,
+        light_scale / frames, surfaces / frames, paths / frames);
+    for (auto const& [stage, s] : stages_s)
+        if (1e3 * s / frames >= 0.5) fmt::print("  {}: {:.1f} ms\n", stage, 1e3 * s / frames);
+    for (auto const& [loss, entry] : report.losses()) fmt::print("  lost: {}\n", loss);
+
+    score(o, scenes, seen, origin);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+try {
+    Options o;
+    std::vector<std::string> files;
+    for (int i = 1; i < argc; ++i) {
+        std::string const a = argv[i];
+        auto const value = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
+        if (a == "--out")
+            o.out = value();
+        else if (a == "--truth")
+            o.truth = value();
+        else if (a == "--truth-paths")
+            o.truth_paths = std::stoi(value());
+        else if (a == "--truth-filter")
+            o.truth_filter = value();
+        else if (a == "--size") {
+            if (std::sscanf(value().c_str(), "%dx%d", &o.width, &o.height) != 2) return 2;
+        } else if (a == "--eyes")
+            o.eyes = std::stoi(value());
+        else if (a == "--fov")
+            o.fov_deg = std::stod(value());
+        else if (a == "--offline")
+            o.offline_hz = std::stod(value());
+        else if (a == "--paths")
+            o.paths = std::stoi(value());
+        else if (a == "--young")
+            o.young = std::stoi(value());
+        else if (a == "--light-scale")
+            o.light_scale = std::stod(value());
+        else if (a == "--late")
+            o.late_s = std::stod(value());
+        else if (a == "--surface-scale")
+            o.surface_scale = std::stod(value());
+        else if (a == "--avatar")
+            o.avatar = value();
+        else if (a == "--scored")
+            o.scored = std::stoi(value());
+        else if (a == "--set")
+            o.settings.push_back(parse_change(value()));
+        else
+            files.push_back(a);
+    }
+    if (files.size() != 2 || o.out.empty()) {
+        fmt::print(stderr, "usage: bench_moving_view SCENE HEAD.csv --out DIR ...\n");
+        return 2;
+    }
+    o.scene = files[0];
+    o.head = files[1];
+    run(o);
+    return 0;
+} catch (std::exception const& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+}
