@@ -304,7 +304,8 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
 {
     for (char const* const name : {"variance_direct", "variance_indirect"})
         if (frame.find(name) == nullptr) frame.add(name, 1);
-    Layer* const normals = settings_.keep_normals ? &frame.add("light_normal", 3) : nullptr;
+    if (settings_.keep_normals && frame.find("light_normal") == nullptr) frame.add("light_normal", 3);
+    Layer* const normals = settings_.keep_normals ? frame.find("light_normal") : nullptr;
     Layer &albedo = *frame.find("albedo"), &l0 = *frame.find("L0"), &l1 = *frame.find("L1"),
           &l2 = *frame.find("L2"), &color = *frame.find("color"),
           &direct_variance = *frame.find("variance_direct"), &indirect_variance = *frame.find("variance_indirect");

@@ -21,7 +21,9 @@ struct KeptLight::Sum {
 
     void add(Texel const& t, vec3 normal, float weight, float like)
     {
-        float const turned = std::clamp(1 + glm::dot(t.slope, normal - t.mean_normal), kLeastTurned, kMostTurned);
+        // What was fitted to a surface says nothing of another one that faces elsewhere.
+        float const change = like < kUnlike ? 0 : glm::dot(t.slope, normal - t.mean_normal),
+                    turned = std::clamp(1 + change, kLeastTurned, kMostTurned);
         vec3 w{weight * (like + kLeastLikeness)};
         for (int c = 0; c < 3; ++c)
             if ((t.dark >> c & 1) != 0) w[c] = 0;
@@ -94,7 +96,7 @@ void KeptLight::find_slopes()
                 for (int u = std::max(x % kStep, x - kTaps * kStep); u <= std::min(width_ - 1, x + kTaps * kStep);
                      u += kStep) {
                     Texel const& other = texels_[std::size_t(v) * std::size_t(width_) + std::size_t(u)];
-                    if (!(other.reach > 0)) continue;
+                    if (!(other.reach > 0) || other.dark != t.dark) continue; // other channels, another luminance
                     vec3 const away = other.position - t.position, n = other.mean_normal - t.mean_normal;
                     float const w = 1 / (1 + square(glm::dot(away, away) * by_near2)),
                                 e = luminance(other.direct + other.indirect);

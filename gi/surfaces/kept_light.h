@@ -5,10 +5,10 @@
 // upsampling, Kopf et al. 2007).
 //
 // Irradiance is nearly linear in the normal (its spherical harmonics of order 0 and 1: Ramamoorthi and Hanrahan
-// 2001). So where the picture has the layer light_normal, means of normals made with the same weights as those of
-// light (gi/filter/temporal.h), light is fitted as a linear function of them around each pixel, and folds and
-// reliefs that are finer than its pixels, or were blurred over frames, are shaded by the normals of the other
-// picture.
+// 2001). So where the picture has the layer light_normal, means of normals made with the same weights as means
+// over frames of light (gi/filter/temporal.h), light is fitted as a linear function of them around each pixel, and
+// folds and reliefs that are finer than its pixels, or were blurred over frames, are shaded by the normals of the
+// other picture.
 
 #include "gi/image_io/picture.h"
 #include "gi/scene/model/projection.h"

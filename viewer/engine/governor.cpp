@@ -15,7 +15,7 @@ constexpr double kMargin = 0.85; // of the time between frames
 struct LightSize {
     double scale, rate;
 };
-constexpr LightSize kLightSizes[] = {{1, 1}, {0.75, 1}, {0.5, 1}, {0.375, 0.45}, {0.25, 0}};
+constexpr LightSize kLightSizes[] = {{1, 1}, {0.75, 1}, {0.5, 1}, {0.375, 0.5}, {0.25, 0}};
 constexpr double kSurfaceScales[] = {1, 0.75, 0.5};
 constexpr int kMostPaths = 256;
 constexpr double kLeast = 0.05; // of a frame's work that the next one gets

@@ -24,6 +24,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <map>
+#include <mutex>
 
 namespace {
 
@@ -55,7 +56,9 @@ void run(Options const& o)
     std::map<std::string, double> stages_s;
     double light_scale = 0, surfaces = 0, paths = 0;
     LiveRenderer::Hooks hooks;
+    std::mutex counting; // of what the rendering thread counts
     hooks.finished = [&](LiveFrame const& f) {
+        std::lock_guard const lock(counting);
         done_s.push_back(f.done_s);
         for (auto const& [stage, s] : f.result.stages_s) stages_s[stage] += s;
         light_scale += f.budget.scale;
@@ -92,9 +95,12 @@ void run(Options const& o)
         std::shared_ptr<LiveFrame const> shown;
         begun = clock.now_s();
         walk.begin(begun);
-        first_frame = done_s.size();
-        std::map<std::string, double>().swap(stages_s);
-        light_scale = surfaces = paths = 0;
+        {
+            std::lock_guard const lock(counting);
+            first_frame = done_s.size();
+            stages_s.clear();
+            light_scale = surfaces = paths = 0;
+        }
         double last = 0;
         for (int k = 0; k < o.scored;) {
             double const now = clock.now_s() - begun;
@@ -139,6 +145,7 @@ void run(Options const& o)
     std::vector<double> gaps;
     for (std::size_t k = std::max<std::size_t>(1, first_frame); k < done_s.size(); ++k)
         gaps.push_back(1e3 * (done_s[k] - done_s[k - 1]));
+    if (gaps.empty()) throw gi::InputError("no two frames while the head moved", "the scene is too slow", "");
     std::ranges::sort(gaps);
     double const frames = double(std::max<std::size_t>(1, gaps.size()));
     fmt::print(

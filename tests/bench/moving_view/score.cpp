@@ -57,8 +57,11 @@ double rivalry(Seen const& s, std::vector<gi::Picture> const& truth,
 
 void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> const& seen, gi::dvec3 origin)
 {
-    if (o.truth.empty()) return;
+    if (o.truth.empty() || seen.empty()) return;
     fs::create_directories(o.truth);
+    std::string asked = o.scene + '\n' + o.head + '\n' + o.avatar;
+    for (Change const& c : o.settings) asked += '\n' + c.key + '=' + c.value.dump();
+    std::size_t const question = std::hash<std::string>()(asked);
     gi::Report truth_report;
     std::unique_ptr<RenderSession> exact;
     double flip_sum = 0, flip_most = 0, rivalry_sum = 0;
@@ -88,8 +91,8 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
             command.views[0].partner = -1;
             command.paths = o.truth_paths;
             fs::path const kept =
-                o.truth / fmt::format("{}_{}_{}x{}_{}_{}_{}_{:.4f}_{}.exr", fs::path(o.scene).stem().string(),
-                                      fs::path(o.head).stem().string(), o.width, o.height, o.fov_deg,
+                o.truth / fmt::format("{}_{:x}_{}_{}x{}_{}_{}_{}_{:.4f}_{}.exr", fs::path(o.scene).stem().string(),
+                                      question, fs::path(o.head).stem().string(), o.width, o.height, o.fov_deg,
                                       o.truth_paths, o.truth_filter, seen[k].scene_s, e);
             if (o.offline_hz > 0 && fs::exists(kept)) {
                 truth.push_back(gi::read_exr(kept));
