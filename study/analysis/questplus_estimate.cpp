@@ -14,19 +14,23 @@ struct LevelShare {
     double at = 0, probability = 0;
 };
 
-/// Where a proportion of the posterior lies below; between cells in the order of `at`.
+/// Where a proportion of the posterior lies below, between the middles of cells in the order of `at`; infinite
+/// within the part that is infinite.
 double quantile_of(std::vector<LevelShare> const& cells, double proportion)
 {
     double below = 0, last = -INFINITY, at_last = 0;
     for (LevelShare const& c : cells) {
+        if (c.at == INFINITY) return proportion < below ? last : c.at;
         double const middle = below + c.probability / 2;
+        below += c.probability;
+        if (std::isinf(c.at)) {
+            if (proportion <= below) return c.at;
+            continue;
+        }
         if (middle >= proportion)
-            return std::isfinite(last) && std::isfinite(c.at)
-                       ? std::lerp(last, c.at, (proportion - at_last) / (middle - at_last))
-                       : c.at;
+            return std::isinf(last) ? c.at : std::lerp(last, c.at, (proportion - at_last) / (middle - at_last));
         last = c.at;
         at_last = middle;
-        below += c.probability;
     }
     return last;
 }
@@ -68,11 +72,13 @@ ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& b, Pr
                        proportion;
             };
             double const at_low = above(low), at_high = above(high);
-            double const sign = at_low < at_high ? 1 : -1;
+            // Flat functions, and formulas that rise far beyond the levels, go the way of the design.
+            bool const rises = at_low == at_high ? !c.harder_up : at_low < at_high;
+            double const sign = rises ? 1 : -1;
             // Functions that never reach the proportion have their threshold beyond the last level.
-            double const at = at_low * at_high < 0 ? bisect([&](double x) { return sign * above(x); }, low, high)
-                              : (at_low > 0) == (sign > 0) ? -INFINITY
-                                                           : INFINITY;
+            double const at = sign * at_low >= 0    ? -INFINITY
+                              : sign * at_high <= 0 ? INFINITY
+                                                    : bisect([&](double x) { return sign * above(x); }, low, high);
             cells.push_back({at, probability});
         }
         std::sort(cells.begin(), cells.end(),
@@ -82,9 +88,10 @@ ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& b, Pr
             return std::isfinite(at) ? from_scale(c.scale, at) : kUnknown;
         };
         double const tail = (1 - settings.confidence) / 2;
-        if (double const median = level(0.5); std::isfinite(median))
+        if (double const median = level(0.5); std::isfinite(median)) {
             e.level = {median, {level(tail), level(1 - tail)}, 1};
-        else
+            e.note = note_of_open_ends(e.level.interval, tail);
+        } else
             e.note = "most functions of the posterior never reach this proportion";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();

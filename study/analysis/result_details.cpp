@@ -98,8 +98,7 @@ ResultTable runs(Analysis const& a)
     ResultTable t{"runs",
                   "Thresholds of single runs",
                   "From the trials of the run. likelihood: with the scale and lapse rate of all observers, or "
-                  "weak priors if "
-                  "there are fewer than three.",
+                  "weak priors if there are fewer than three.",
                   true,
                   {}};
     t.table.columns = with_interval({{"block", "Block"},
@@ -225,9 +224,10 @@ ResultTable population(Analysis const& a)
         "Hierarchical models of the population",
         "Bayesian: every observer has d', criterion or threshold, scale and lapse rate of his or her own. "
         "Posterior means and intervals; sd: between observers, of thresholds in units of the scale. Where "
-        "observers "
-        "hardly differ, 95 % intervals of means hold in 98 to 99 %: for a test of d' = 0 take mean and p of the "
-        "table of correct answers. R-hat up to 1.01, effective draws from 400 and no divergences are wanted.",
+        "observers hardly differ, 95 % intervals of means hold in 98 to 99 %: for a test of d' = 0 take mean and "
+        "p "
+        "of the table of correct answers. R-hat up to 1.01, effective draws from 400 and no divergences are "
+        "wanted.",
         false,
         {}};
     auto& columns = t.table.columns;

@@ -152,6 +152,18 @@ RateCount false_alarms(std::vector<TrialRow> const& trials)
     return noise;
 }
 
+std::string note_of_open_ends(Interval const& interval, double tail)
+{
+    bool const below = !std::isfinite(interval.low), above = !std::isfinite(interval.high);
+    if (!below && !above) return "";
+    return fmt::format("the interval is open {}: more than {:.3g} % of the posterior's functions reach this "
+                       "proportion beyond all levels or never",
+                       below && above ? "below and above"
+                       : below        ? "below"
+                                      : "above",
+                       100 * tail);
+}
+
 ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, PsychometricChoice const& function,
                                       std::optional<double> guess, double proportion,
                                       std::optional<GroupCurve> const& group, AnalysisSettings const& settings)
@@ -175,17 +187,21 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
             s.high = b.compare->high;
             level = posterior_level(psychometric_posterior(counts, s), proportion, settings.confidence);
         }
+        bool const falls = shape.direction == Direction::falling;
         auto const back = [&](double u) {
-            double const x = shape.direction == Direction::falling ? -u : u;
-            return shape.axis == Axis::log10 ? std::pow(10.0, x) : x;
+            double const x = falls ? -u : u;
+            return !std::isfinite(u) ? kUnknown : shape.axis == Axis::log10 ? std::pow(10.0, x) : x;
         };
         if (std::isnan(level.centre)) {
             e.note = "the function never reaches this proportion";
             return e;
         }
-        double const low = back(level.low), high = back(level.high);
-        e.level = {back(level.centre), {std::min(low, high), std::max(low, high)}, 1};
-        if (!guess) e.note = "no trials without a signal: the false alarm rate is that of the fit";
+        e.level = {
+            back(level.centre), {back(falls ? level.high : level.low), back(falls ? level.low : level.high)}, 1};
+        e.note = note_of_open_ends(e.level.interval, (1 - settings.confidence) / 2);
+        if (!guess)
+            e.note = "no trials without a signal: the false alarm rate is that of the fit" +
+                     (e.note.empty() ? "" : "; " + e.note);
         int const right = int(std::count(run.correct.begin(), run.correct.end(), 1));
         if (right == int(run.correct.size()))
             e.note = "nothing but correct responses: there is no threshold among these levels";

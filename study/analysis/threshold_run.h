@@ -30,6 +30,9 @@ struct GroupCurve {
 /// the group's function; the interval holds the thresholds at which such runs give this mean by chance.
 ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
                                     std::optional<GroupCurve> const& group, AnalysisSettings const& settings);
+/// What to say of a posterior's interval with unknown ends; empty if there are none. @param tail  the probability
+/// beyond each end
+std::string note_of_open_ends(Interval const& interval, double tail);
 /// The threshold by the run's own trials: with the group's scale and lapse rate if there are three observers or
 /// more, otherwise with weak priors of both (psychometric_posterior.h).
 ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& block,

@@ -17,6 +17,8 @@ namespace {
 constexpr double kFarThreshold = 2; ///< in ranges from the centre: infinite beyond
 
 class ThresholdFit {
+    using enum ThresholdPart::Index;
+
 public:
     ThresholdFit(std::span<ObserverLevels const> observers, GroupThresholdSettings const& s)
         : marginal_(observers, s)
@@ -108,8 +110,8 @@ public:
 private:
     double maximise(Thresholds& at, std::vector<int> const& free)
     {
-        static constexpr Bounds<kThresholdParts> kBounds{{-kFarThreshold - 0.5, -9, -6, -9, -7, -7},
-                                                         {kFarThreshold + 0.5, 1, 2, -0.5, 0, 1}};
+        static constexpr Bounds<kCount> kBounds{{-kFarThreshold - 0.5, -9, -6, -9, -7, -7},
+                                                {kFarThreshold + 0.5, 1, 2, -0.5, 0, 1}};
         return maximise_within(kBounds, at, free, 80, 0.05 / double(marginal_.people().size()),
                                [&](Thresholds const& p, Thresholds& gradient) { return marginal_(p, gradient); });
     }
@@ -125,8 +127,10 @@ std::string note_of(ThresholdFit const& fit)
     ThresholdMarginal const& m = fit.marginal();
     if (m.is_all(true)) return "nothing but correct responses: there is no threshold among these levels";
     if (m.is_all(false)) return "no correct response at all: there is no threshold among these levels";
-    if (std::abs(fit.best()[kMean]) > 0.5) return "the mean threshold lies outside the range of levels";
-    if (fit.best()[kScale] > 0) return "responses hardly change with level: the scale is wider than the range";
+    if (std::abs(fit.best()[ThresholdPart::kMean]) > 0.5)
+        return "the mean threshold lies outside the range of levels";
+    if (fit.best()[ThresholdPart::kScale] > 0)
+        return "responses hardly change with level: the scale is wider than the range";
     return "";
 }
 
@@ -136,13 +140,13 @@ GroupThreshold described(ThresholdFit const& fit, GroupThresholdSettings const& 
     Thresholds const& best = fit.best();
     GroupThreshold g;
     g.observers = int(m.people().size());
-    g.mean = m.centre() + m.range() * best[kMean];
-    g.deviation = g.observers > 1 ? m.range() * spread_of(best[kSpread]) : 0;
+    g.mean = m.centre() + m.range() * best[ThresholdPart::kMean];
+    g.deviation = g.observers > 1 ? m.range() * spread_of(best[ThresholdPart::kSpread]) : 0;
     double guess = 0;
     for (ThresholdPerson const& p : m.people()) guess += p.guess / g.observers;
-    g.shared = {g.mean, m.range() * std::exp(best[kScale]),
-                settings.fits_guess ? inverse_logit(best[kGuess]) : guess, m.lapse_of(best)};
-    g.eta = m.is_repeated() ? inverse_logit(best[kEta]) : 0;
+    g.shared = {g.mean, m.range() * std::exp(best[ThresholdPart::kScale]),
+                settings.fits_guess ? inverse_logit(best[ThresholdPart::kGuess]) : guess, m.lapse_of(best)};
+    g.eta = m.is_repeated() ? inverse_logit(best[ThresholdPart::kEta]) : 0;
     g.note = note_of(fit);
     return g;
 }
@@ -163,15 +167,15 @@ GroupThreshold group_threshold(std::span<ObserverLevels const> observers, GroupT
     auto const n = double(g.observers);
     double information = 0;
     for (ThresholdPerson const& p : m.people()) information += p.information / n;
-    double const sd = spread_of(fit.best()[kSpread]);
+    double const sd = spread_of(fit.best()[ThresholdPart::kSpread]);
     auto const errors = fit.errors();
     g.scale_error = errors.scale;
     double const limit = profile_limit(settings.confidence, n, errors.variance_ratio);
     auto const end = [&](double direction) {
         fit.start_over();
         double const step = 1.5 * std::sqrt((sd * sd + 1 / (information + 1)) / n);
-        ProfileSearch const search{fit.best()[kMean],         limit, direction,
-                                   direction * kFarThreshold, step,  0.01 * step};
+        ProfileSearch const search{fit.best()[ThresholdPart::kMean], limit, direction,
+                                   direction * kFarThreshold,        step,  0.01 * step};
         double const x = profile_end(search, [&](double mean) { return fit.loss(mean); });
         return std::isinf(x) ? x : m.centre() + m.range() * x;
     };

@@ -42,7 +42,7 @@ double ThresholdMarginal::operator()(Thresholds const& at, Thresholds& gradient)
         auto const curve = curve_of(at, s_.fits_guess ? inverse_logit(at[kGuess]) : p.guess);
         if (!curve) return -kInfinity;
         sum += integrate(p, at, *curve);
-        for (std::size_t i = 0; i < kThresholdParts; ++i) gradient[i] += p.score[i];
+        for (std::size_t i = 0; i < kCount; ++i) gradient[i] += p.score[i];
     }
     double const lapse = lapse_of(at), eta = inverse_logit(at[kEta]), from_usual = at[kScale] - std::log(0.125);
     sum -= 0.5 * from_usual * from_usual;
@@ -101,12 +101,12 @@ double ThresholdMarginal::integrate(ThresholdPerson& p, Thresholds const& at, Le
         bool gained = false;
         for (; std::abs(step) > 1e-7 && !gained; step /= 2) {
             LevelLikelihood const there = level_likelihood(p.levels, c, t + step, false);
-            gained = joint(t + step, there) > here;
+            double const value = joint(t + step, there);
+            gained = value > here;
             if (!gained) continue;
             t += step;
             s = there;
-            here = joint(t, s);
-            break;
+            here = value;
         }
         if (!gained) break;
     }

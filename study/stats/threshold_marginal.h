@@ -18,8 +18,10 @@ constexpr double kLeastThresholdSd = 0.002; ///< between observers, in ranges
 
 /// All in units of the range from its centre: mean and log deviation of thresholds, log scale, logits of lapse,
 /// eta, guess.
-enum ThresholdPart { kMean, kSpread, kScale, kLapse, kEta, kGuess, kThresholdParts };
-using Thresholds = std::array<double, kThresholdParts>;
+struct ThresholdPart {
+    enum Index { kMean, kSpread, kScale, kLapse, kEta, kGuess, kCount };
+};
+using Thresholds = std::array<double, ThresholdPart::kCount>;
 
 inline double spread_of(double parameter) { return kLeastThresholdSd + std::exp(parameter); }
 
@@ -33,6 +35,8 @@ struct ThresholdPerson {
 };
 
 class ThresholdMarginal {
+    using enum ThresholdPart::Index;
+
 public:
     ThresholdMarginal(std::span<ObserverLevels const> observers, GroupThresholdSettings const& s);
 
@@ -60,7 +64,7 @@ private:
     /// observer.
     double integrate(ThresholdPerson& p, Thresholds const& at, LevelCurve const& c) const;
 
-    GroupThresholdSettings const& s_;
+    GroupThresholdSettings s_;
     double centre_ = 0, range_ = 1;
     std::vector<ThresholdPerson> people_;
     bool is_repeated_ = false;

@@ -1,0 +1,140 @@
+// The threshold of a run by QUEST+'s posterior. Runs without trials have the prior, which is uniform over the
+// grids.
+
+#include "study/analysis/result_tables.h"
+#include "study/analysis/threshold_run.h"
+#include "study/script/procedure_settings.h"
+#include "study/script/script_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace study::test {
+namespace {
+
+/// Yes or no at levels 1 to 100.
+Script script_of(std::string const& harder, std::string const& procedure)
+{
+    return parse_script(R"(schema: study/1
+id: s
+seed: 1
+participants: {count: 1}
+factors: {scene: [hall]}
+reference: {scene: hall}
+defaults: {stimulus_ms: 2000}
+sequence: [find]
+blocks:
+  find:
+    task: yes_no
+    cross: [scene]
+    compare: {vary: points, scale: log10, range: [1, 100], harder: )" +
+                            harder + "}\n    procedure: {" + procedure + "}\n",
+                        "s.yaml");
+}
+
+/// The level of 55 % by a run without trials, whose posterior is the prior: uniform over the grids.
+ThresholdEstimate prior_estimate(std::string const& settings, std::string const& harder = "down",
+                                 double confidence = 0.95)
+{
+    Script const s =
+        script_of(harder, "method: questplus, levels: 1..100/5, " + settings + ", stop: {trials: 40}");
+    AnalysisSettings a;
+    a.confidence = confidence;
+    Block const& b = s.blocks.at(0);
+    return questplus_estimate({}, b, b.procedures.at(0), 0.55, a);
+}
+
+TEST(QuestPlusEstimate, SaysWhereItsIntervalIsOpen)
+{
+    // A quarter of the functions starts above 55 %, or ends below it.
+    std::string const starts = "threshold: 5..20/9, slope: 2, guess: [0.1, 0.15, 0.2, 0.6], lapse: 0.02";
+    std::string const ends = "threshold: 5..20/9, slope: 2, guess: 0.2, lapse: [0, 0.02, 0.04, 0.5]";
+    std::string const why =
+        ": more than 2.5 % of the posterior's functions reach this proportion beyond all levels or never";
+    ThresholdEstimate const low = prior_estimate(starts), high = prior_estimate(ends);
+    for (ThresholdEstimate const& e : {low, high}) {
+        EXPECT_GT(e.level.value, 3);
+        EXPECT_LT(e.level.value, 20);
+    }
+    EXPECT_TRUE(std::isnan(low.level.interval.low));
+    EXPECT_TRUE(std::isfinite(low.level.interval.high));
+    EXPECT_EQ(low.note, "the interval is open below" + why);
+    EXPECT_TRUE(std::isfinite(high.level.interval.low));
+    EXPECT_TRUE(std::isnan(high.level.interval.high));
+    EXPECT_EQ(high.note, "the interval is open above" + why);
+    // Where higher levels are harder, functions that start above 55 % go below it above all levels.
+    EXPECT_EQ(prior_estimate(starts, "up").note, "the interval is open above" + why);
+    EXPECT_EQ(prior_estimate("threshold: 5..20/9, slope: 2, guess: [0.1, 0.15, 0.2], lapse: 0.02").note, "");
+}
+
+TEST(QuestPlusEstimate, IsInfiniteForThePartThatIs)
+{
+    // A third of the functions starts above 55 %; quantiles of 0.3 and 0.35.
+    std::string const starts = "threshold: [8, 12], slope: 2, guess: [0.1, 0.2, 0.6], lapse: 0.02";
+    EXPECT_TRUE(std::isnan(prior_estimate(starts, "down", 0.4).level.interval.low));
+    EXPECT_TRUE(std::isfinite(prior_estimate(starts, "down", 0.3).level.interval.low));
+    // The same above; quantiles of 0.7 and 0.65.
+    std::string const ends = "threshold: [8, 12], slope: 2, guess: 0.2, lapse: [0, 0.02, 0.5]";
+    EXPECT_TRUE(std::isnan(prior_estimate(ends, "down", 0.4).level.interval.high));
+    EXPECT_TRUE(std::isfinite(prior_estimate(ends, "down", 0.3).level.interval.high));
+}
+
+TEST(QuestPlusEstimate, KnowsOnWhichSideAFlatFunctionLies)
+{
+    // Steep functions that rise, or fall, far beyond the levels are equal at both ends of the search.
+    for (std::string const harder : {"down", "up"}) {
+        auto const note = [&](std::string const& place) {
+            return prior_estimate("psychometric: 'guess + (1 - guess - lapse) * normal(slope * log10(" + place +
+                                      "))', threshold: [1.5, 1.6, 1.7, 100], slope: 60, guess: 0.2, lapse: 0.02",
+                                  harder)
+                .note;
+        };
+        bool const rises = harder == "down"; // thresholds are at 5, 6.6, 8.4 and 1e8, then at 10, 7.6, 6 and 5e-7
+        EXPECT_TRUE(
+            note(rises ? "x / threshold^4" : "threshold^4 / x").starts_with("the interval is open above:"));
+        EXPECT_TRUE(note(rises ? "x * threshold^4 / 50" : "50 / (x * threshold^4)")
+                        .starts_with("the interval is open below:"));
+    }
+}
+
+TEST(LikelihoodEstimate, SaysWhereItsIntervalIsOpen)
+{
+    // Without trials that have no signal the false alarm rate may be above a half.
+    auto const estimate = [](std::string const& harder) {
+        Script const s = script_of(harder, "method: constant, levels: 1..100/5, trials_per_level: 2");
+        Block const& b = s.blocks.at(0);
+        ThresholdRun run;
+        run.levels = {1, 3.16227766, 10, 31.6227766, 100};
+        run.correct = {0, 0, 1, 1, 1};
+        if (harder == "up") std::reverse(run.correct.begin(), run.correct.end());
+        return likelihood_estimate(run, b, fitted_function(b.procedures, b.compare->scale), {}, 0.5, {}, {});
+    };
+    std::string const why =
+        "no trials without a signal: the false alarm rate is that of the fit; the interval is open ";
+    ThresholdEstimate const rising = estimate("down"), falling = estimate("up");
+    EXPECT_TRUE(std::isnan(rising.level.interval.low));
+    EXPECT_GT(rising.level.interval.high, rising.level.value);
+    EXPECT_TRUE(rising.note.starts_with(why + "below:")) << rising.note;
+    EXPECT_LT(falling.level.interval.low, falling.level.value);
+    EXPECT_TRUE(std::isnan(falling.level.interval.high));
+    EXPECT_TRUE(falling.note.starts_with(why + "above:")) << falling.note;
+}
+
+TEST(RunsTable, HasNullsForOpenEndsAndARemark)
+{
+    Analysis a;
+    ThresholdRun run;
+    run.estimates = {prior_estimate("threshold: 5..20/9, slope: 2, guess: [0.1, 0.15, 0.2, 0.6], lapse: 0.02")};
+    a.blocks.emplace_back();
+    a.blocks[0].runs = {run};
+    auto const row = nlohmann::json::parse(to_json(a)).at("tables").at("runs").at(0);
+    EXPECT_TRUE(row.at("low").is_null());
+    EXPECT_TRUE(row.at("high").is_number());
+    EXPECT_EQ(row.at("remark"), run.estimates[0].note);
+}
+
+} // namespace
+} // namespace study::test
