@@ -195,6 +195,19 @@ bool recover(Store const& store, std::string const& key)
     return true;
 }
 
+/// @return why it could not be published
+std::string settle(Store const& store, std::string const& key)
+try {
+    Claim claim(store.claims(), key);
+    if (!claim.take()) return {};
+    std::error_code none;
+    bool const is_done = store.result(key) || recover(store, key);
+    if (is_done) fs::remove_all(store.work(key), none);
+    return {};
+} catch (gi::InputError const& e) {
+    return e.what();
+}
+
 } // namespace
 
 WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
@@ -244,14 +257,8 @@ std::vector<std::string> settle_leftovers(Store const& store)
     std::set<std::string> keys;
     for (auto const& entry : fs::directory_iterator(store.work("").parent_path(), none))
         if (std::string const key = entry.path().stem().string(); is_key(key)) keys.insert(key);
-    for (std::string const& key : keys) try {
-            Claim claim(store.claims(), key);
-            if (!claim.take()) continue;
-            bool const is_done = store.result(key) || recover(store, key);
-            if (is_done) fs::remove_all(store.work(key), none);
-        } catch (gi::InputError const& e) {
-            failures.emplace_back(e.what());
-        }
+    for (std::string const& key : keys)
+        if (std::string const why = settle(store, key); !why.empty()) failures.push_back(why);
     return failures;
 }
 
