@@ -20,11 +20,16 @@ public:
     void write(char const bytes[], int n) override;
     std::uint64_t tellp() override { return at_ + waiting_.size(); }
     void seekp(std::uint64_t to) override;
-    /// Writes what is left; call it last.
+    /// Writes what is left and closes the file; call it last. Throws the first error of all that were written, as
+    /// OpenEXR's destructors keep theirs to themselves.
     void finish();
 
 private:
+    void flush();
+    [[noreturn]] void fail(int error);
+
     int fd_;
+    int error_ = 0;        ///< the first one
     std::uint64_t at_ = 0; ///< place of the first byte that waits
     std::vector<char> waiting_;
 };

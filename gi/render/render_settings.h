@@ -260,6 +260,8 @@ struct RenderResult {
     bool resumable = false; ///< settings.checkpoint holds the state needed to continue
     /// With RenderSettings::by_rows, where the state is not saved yet: saves it, on any thread, also while `rows`
     /// is read. Throws InputError. By then the memory of the method is free, and the picture need not wait for it.
+    /// The state is of the sums after PathShare::merge: of all shares, so that no single one could go on from it.
+    /// The command line has no checkpoint where several processes share a picture.
     std::function<void()> save_state;
     double rays = 0; ///< closest-hit and shadow rays, or look-ups
     /// For a view with a partner: per pixel, the partner's pixel (to half a pixel) if all its paths took its

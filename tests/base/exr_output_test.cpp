@@ -46,6 +46,32 @@ TEST(ExrOutput, TellsOfAFullDisk)
     EXPECT_THROW(ExrOutput("/no folder/a"), std::system_error);
 }
 
+/// OpenEXR's destructor writes where the blocks are, and swallows what that throws.
+TEST(ExrOutput, FirstErrorIsToldAtTheEnd)
+{
+    fs::path const file = fs::temp_directory_path() / ("lightwell_exr_error_" + std::to_string(getpid()));
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    auto const signal_before = std::signal(SIGXFSZ, SIG_IGN);
+    rlimit const few{4096, before.rlim_max};
+    ExrOutput out(file);
+    std::string const part(8192, 'x');
+    out.write(part.data(), int(part.size()));
+    setrlimit(RLIMIT_FSIZE, &few);
+    EXPECT_THROW(out.seekp(0), std::system_error);
+    setrlimit(RLIMIT_FSIZE, &before); // as if others had freed some space
+    std::signal(SIGXFSZ, signal_before);
+    errno = 0;
+    try {
+        out.finish();
+        ADD_FAILURE() << "it is told";
+    } catch (std::system_error const& e) {
+        EXPECT_EQ(e.code().value(), EFBIG);
+        EXPECT_EQ(errno, EFBIG);
+    }
+    fs::remove(file);
+}
+
 /// The picture before stays, and no part of the new one.
 TEST(ExrOutput, PictureThatTheDiskCannotHoldIsRefused)
 {

@@ -289,6 +289,27 @@ TEST(BatchRun, OneFolderThatCannotBeMadeDoesNotKeepTheOthersOfItsProcessFromRunn
     EXPECT_TRUE(wait_until([&] { return store.result(tasks[1].key) && store.result(tasks[2].key); }));
 }
 
+TEST(BatchRun, FailedPublicationIsToldAndNotMadeUpForInSecret)
+{
+    FakePrograms const p;
+    p.sweep(1, 0);
+    EXPECT_EQ(p.run("batch m.yaml").code, 0);
+    batch::Store const store = batch::Store::open(p / "m.batch");
+    std::string const key = store.batch(store.batches().front()).tasks[0].key;
+    fs::path const results = p / "m.batch/results" / key.substr(0, 2);
+    fs::remove_all(results);
+    fs::remove_all(p / "m.batch/objects");
+    p.write("m.batch/results/" + key.substr(0, 2), "a file");
+    Outcome const o = p.run("batch m.yaml");
+    EXPECT_EQ(o.code, 1);
+    EXPECT_NE(o.out.find("0 of 1 tasks done, 1 failed"), std::string::npos) << o.out << o.err;
+    EXPECT_NE(o.err.find("failed: s n=1"), std::string::npos) << o.err;
+    EXPECT_TRUE(fs::is_empty(p / "m.batch/work"));
+    fs::remove(results);
+    EXPECT_EQ(p.run("batch resume m.batch").code, 0);
+    EXPECT_EQ(p.starts().at(1), 3);
+}
+
 TEST(BatchRun, ProgramThatIsMissingLeavesNothingOpen)
 {
     TemporaryFolder const folder;

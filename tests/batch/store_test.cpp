@@ -8,7 +8,6 @@
 #include "viewer/batch/file_hash.h"
 #include "viewer/batch/gather.h"
 #include "viewer/batch/journal.h"
-#include "viewer/batch/machine.h"
 #include "viewer/batch/merge.h"
 #include "viewer/batch/state.h"
 #include "viewer/batch/work.h"
@@ -118,7 +117,56 @@ TEST_F(StoreTest, WhatWasPreparedIsPublishedLaterIfItIsWhole)
     ASSERT_EQ(events.size(), 1u);
     EXPECT_EQ(events[0].task, whole);
     EXPECT_EQ(events[0].kind, EventKind::finished);
+
+    publish(batch.tasks[1], "a.txt", "text of " + damaged); // as the next attempt does
+    EXPECT_TRUE(store.result(damaged));
+    EXPECT_EQ(test::file_text(object), "text of " + damaged);
 }
+
+TEST_F(StoreTest, WhatCannotBePublishedIsLeftAndKeepsNothingElseBack)
+{
+    for (Task const& task : batch.tasks) publish(task, "a.txt", "text of " + task.key, End::killed_before);
+    std::string const key = batch.tasks[0].key;
+    fs::path const in_the_way = store.folder() / "results" / key.substr(0, 2);
+    gi::write_text(in_the_way, "");
+    gi::write_text(store.folder() / "work" / std::string(64, 'z'), "no task");
+    auto const failures = settle_leftovers(store);
+    ASSERT_EQ(failures.size(), 1u);
+    EXPECT_NE(failures[0].find("cannot keep"), std::string::npos) << failures[0];
+    EXPECT_FALSE(store.result(key));
+    EXPECT_TRUE(store.result(batch.tasks[1].key));
+    EXPECT_TRUE(store.result(batch.tasks[2].key));
+
+    EXPECT_THROW(work_on(store, batch, batch.tasks[0], {}, gi::StopRequest()), gi::InputError);
+    std::vector<Event> failed = JournalReader(store.journal()).read();
+    std::erase_if(failed, [](Event const& e) { return e.kind != EventKind::failed; });
+    ASSERT_EQ(failed.size(), 1u);
+    EXPECT_EQ(failed[0].task, key);
+    EXPECT_NE(failed[0].why.find("cannot keep"), std::string::npos) << failed[0].why;
+
+    fs::remove(in_the_way);
+    EXPECT_TRUE(settle_leftovers(store).empty());
+    EXPECT_TRUE(store.result(key));
+}
+
+TEST_F(StoreTest, WithdrawnResultTakesItsNewObjectsAlong)
+{
+    publish(batch.tasks[0], "a.txt", "old");
+    Task const& task = batch.tasks[1];
+    fs::create_directories(store.work(task.key));
+    gi::write_text(store.work(task.key) / "old.txt", "old");
+    gi::write_text(store.work(task.key) / "new.txt", "new");
+    Result r;
+    r.task = task.key;
+    r.outputs = {{"old.txt", "", 0}, {"new.txt", "", 0}};
+    store.prepare(r);
+    store.withdraw(r);
+    EXPECT_TRUE(settle_leftovers(store).empty());
+    EXPECT_FALSE(store.result(task.key));
+    EXPECT_FALSE(fs::exists(store.object(gi::sha256("new"))));
+    EXPECT_TRUE(store.result(batch.tasks[0].key)) << "it has the other one, too";
+}
+
 TEST_F(StoreTest, WhatAnotherProcessIsAboutToPublishIsLeftToIt)
 {
     publish(batch.tasks[0], "a.txt", "hello", End::killed_before);
@@ -328,43 +376,6 @@ TEST(MergedTable, JsonBecomesLines)
     EXPECT_EQ(table.text(),
               "{\"n\":\"1\",\"x\":[1,2],\"result_n\":5}\n{\"n\":\"1\",\"x\":1}\n{\"n\":\"1\",\"x\":2}\n");
     EXPECT_THROW(table.add(t, "a.json", "[1]"), gi::InputError);
-}
-
-TEST(MachineParts, ProcessesOnOneMachineShareIt)
-{
-    Machine const all{{0, 1, 2, 3, 4}, {0, 1}, 9000};
-    Machine const first = part_of(all, 0, 3), last = part_of(all, 2, 3);
-    EXPECT_EQ(first.cores, (std::vector<int>{0, 3}));
-    EXPECT_EQ(first.gpus, std::vector<int>{0});
-    EXPECT_EQ(last.cores, std::vector<int>{2});
-    EXPECT_TRUE(last.gpus.empty());
-    EXPECT_EQ(last.memory_bytes, 3000u);
-    EXPECT_EQ(part_of({{7}, {}, 1}, 2, 3).cores, std::vector<int>{7});
-    Machine more = all;
-    set_cores(more, 7);
-    EXPECT_EQ(more.cores, (std::vector<int>{0, 1, 2, 3, 4, 0, 1}));
-    set_cores(more, 1);
-    EXPECT_EQ(more.cores, std::vector<int>{0});
-}
-
-TEST(MachineParts, AreGivenOnceAndComeBack)
-{
-    Allocator a({{0, 1, 2, 3}, {0, 1}, 8000});
-    EXPECT_EQ(a.refusal({99, 0, 0}), "") << "it gets the whole machine";
-    EXPECT_NE(a.refusal({1, 3, 0}), "");
-    EXPECT_NE(a.refusal({1, 0, 8001}), "");
-    auto const one = a.take({3, 1, 5000});
-    ASSERT_TRUE(one);
-    EXPECT_EQ(one->cores, (std::vector<int>{0, 1, 2}));
-    EXPECT_FALSE(a.take({2, 0, 0}));
-    EXPECT_FALSE(a.take({Resources::kAllCores, 0, 0}));
-    EXPECT_FALSE(a.take({1, 0, 4000}));
-    auto const two = a.take({1, 1, 0});
-    ASSERT_TRUE(two);
-    EXPECT_EQ(two->gpus, std::vector<int>{1});
-    a.give_back(*one);
-    a.give_back(*two);
-    EXPECT_EQ(a.take({99, 0, 0})->cores.size(), 4u);
 }
 
 } // namespace

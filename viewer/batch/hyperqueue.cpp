@@ -116,7 +116,8 @@ private:
         return missing;
     }
 
-    /// Tasks that HyperQueue took for done when their processes had computed. @return those that nobody publishes
+    /// Tasks that HyperQueue took for done when their results were written, as copies of their processes publish
+    /// them. @return those that nobody publishes
     std::vector<std::size_t> wait_for_publishing(std::vector<std::size_t> missing)
     {
         auto const is_published_now = [&](std::size_t i) {

@@ -70,6 +70,13 @@ bool has_size(fs::path const& file, std::uint64_t bytes)
     return fs::file_size(file, failed) == bytes && !failed;
 }
 
+bool is_whole(fs::path const& file, Output const& output)
+try {
+    return has_size(file, output.bytes) && file_sha256(file) == output.sha256;
+} catch (gi::InputError const&) { // it cannot be read
+    return false;
+}
+
 gi::InputError cannot_keep(fs::path const& file, std::string const& why)
 {
     return {"cannot keep '" + file.string() + "'", why, "free some space, or check the permissions of the store"};
@@ -175,15 +182,16 @@ void Store::prepare(Result& result) const
     std::vector<Output> outputs;
     try {
         for (std::string const& name : files_of(result.outputs, made)) {
-            Output const output{name, file_sha256(made / name), fs::file_size(made / name)};
+            Output output{name, file_sha256(made / name), fs::file_size(made / name)};
             fs::path const to = object(output.sha256);
-            if (!has_size(to, output.bytes)) {
+            output.is_new = !has_size(to, output.bytes);
+            if (output.is_new) {
                 fs::create_directories(to.parent_path());
                 fs::permissions(made / name,
                                 fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
                 fs::rename(made / name, to);
             }
-            outputs.push_back(output);
+            outputs.push_back(std::move(output));
         }
         result.outputs = std::move(outputs);
         result.host = gi::host_name();
@@ -205,17 +213,28 @@ void Store::publish(std::string const& key) const
     }
 }
 
+void Store::withdraw(Result const& prepared) const
+{
+    std::error_code none;
+    fs::remove(prepared_file(prepared.task), none);
+    for (Output const& o : prepared.outputs)
+        if (o.is_new) fs::remove(object(o.sha256), none);
+}
+
 std::optional<Result> Store::recover(std::string const& key) const
 {
     fs::path const prepared = prepared_file(key);
     std::error_code none;
     if (!fs::exists(prepared, none)) return std::nullopt;
     auto found = read_result(prepared, key);
-    bool const is_whole =
-        found && std::ranges::all_of(found->outputs, [&](Output const& o) {
-            return has_size(object(o.sha256), o.bytes) && file_sha256(object(o.sha256)) == o.sha256;
-        });
-    if (is_whole) {
+    bool can_publish = found.has_value();
+    if (found)
+        for (Output const& o : found->outputs)
+            if (!is_whole(object(o.sha256), o)) {
+                can_publish = false;
+                fs::remove(object(o.sha256), none);
+            }
+    if (can_publish) {
         publish(key);
         return found;
     }

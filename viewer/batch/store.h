@@ -24,6 +24,7 @@ struct Output {
     std::string name; ///< relative to the task's folder
     std::string sha256;
     std::uint64_t bytes = 0;
+    bool is_new = false; ///< no task had made this content before; not kept
 };
 
 struct Result {
@@ -55,8 +56,11 @@ public:
     void prepare(Result& result) const;
     /// Makes a prepared task finished: hands its outputs and the journal to the disk, and lets the result appear.
     void publish(std::string const& key) const;
-    /// Publishes what a process prepared before it was killed, if every byte of it is there, and removes it if
-    /// not. For holders of the task's claim. @return the result
+    /// Removes what could not be published, and its new objects: nobody knows what of them reached the disk.
+    void withdraw(Result const& prepared) const;
+    /// Publishes what a process prepared before it was killed, if every byte of it is there. If not, it is removed
+    /// with its damaged objects, which the next attempt would take for its own. For holders of the task's claim.
+    /// @return the result @throws InputError it cannot be published
     std::optional<Result> recover(std::string const& key) const;
     /// Forgets a result, one of whose objects is damaged, and that object.
     void forget(std::string const& key, std::string const& object_sha256) const;

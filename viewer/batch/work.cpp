@@ -93,6 +93,7 @@ private:
             if (settings_.prepared && settings_.prepared() == Publish::elsewhere) return WorkEnd::passed_on;
             store_.publish(task_.key);
         } catch (gi::InputError const& e) {
+            store_.withdraw(result); // what is told as failed is not published later
             event.kind = EventKind::failed;
             event.why = e.what();
         }
@@ -166,6 +167,20 @@ private:
     Journal journal_;
 };
 
+void tell_failure(Store const& store, std::string const& key, std::string const& why)
+{
+    Event event;
+    event.kind = EventKind::failed;
+    event.task = key;
+    event.why = why;
+    Journal(store.journal()).append(event);
+}
+
+bool is_key(std::string const& name)
+{
+    return name.size() == kKeyLength && name.find_first_not_of("0123456789abcdef") == name.npos;
+}
+
 /// Publishes what was prepared before its process was killed. The journal tells of the end that it had.
 bool recover(Store const& store, std::string const& key)
 {
@@ -180,6 +195,19 @@ bool recover(Store const& store, std::string const& key)
     return true;
 }
 
+/// @return why it could not be published
+std::string settle(Store const& store, std::string const& key)
+try {
+    Claim claim(store.claims(), key);
+    if (!claim.take()) return {};
+    std::error_code none;
+    bool const is_done = store.result(key) || recover(store, key);
+    if (is_done) fs::remove_all(store.work(key), none);
+    return {};
+} catch (gi::InputError const& e) {
+    return e.what();
+}
+
 } // namespace
 
 WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSettings const& settings,
@@ -191,8 +219,14 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
         if (stop.requested()) return WorkEnd::interrupted;
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    bool const is_done = store.result(task.key) || recover(store, task.key);
-    WorkEnd const end = is_done ? WorkEnd::was_done : Run(store, batch, task, settings, stop).run();
+    WorkEnd end = WorkEnd::failed;
+    try {
+        bool const is_done = store.result(task.key) || recover(store, task.key);
+        end = is_done ? WorkEnd::was_done : Run(store, batch, task, settings, stop).run();
+    } catch (gi::InputError const& e) {
+        tell_failure(store, task.key, e.what());
+        throw;
+    }
     if (end == WorkEnd::passed_on) return end;
     std::error_code none;
     if (!fs::remove(store.work(task.key), none)) fs::remove_all(store.work(task.key), none);
@@ -216,18 +250,16 @@ int exit_code_of(WorkEnd end)
     return kWorkFailed;
 }
 
-void settle_leftovers(Store const& store)
+std::vector<std::string> settle_leftovers(Store const& store)
 {
+    std::vector<std::string> failures;
     std::error_code none;
     std::set<std::string> keys;
     for (auto const& entry : fs::directory_iterator(store.work("").parent_path(), none))
-        if (std::string const key = entry.path().stem().string(); key.size() == kKeyLength) keys.insert(key);
-    for (std::string const& key : keys) {
-        Claim claim(store.claims(), key);
-        if (!claim.take()) continue;
-        bool const is_done = store.result(key) || recover(store, key);
-        if (is_done) fs::remove_all(store.work(key), none);
-    }
+        if (std::string const key = entry.path().stem().string(); is_key(key)) keys.insert(key);
+    for (std::string const& key : keys)
+        if (std::string const why = settle(store, key); !why.empty()) failures.push_back(why);
+    return failures;
 }
 
 } // namespace viewer::batch

@@ -42,6 +42,7 @@ int exit_code_of(WorkEnd end);
 inline constexpr int kMostLost = 10;
 
 /// Publishes what killed processes had prepared, and removes the folders of tasks that are done.
-void settle_leftovers(Store const& store);
+/// @return why results could not be published; they are left for the next time
+std::vector<std::string> settle_leftovers(Store const& store);
 
 } // namespace viewer::batch

@@ -19,6 +19,7 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <memory>
+#include <set>
 
 namespace viewer {
 namespace {
@@ -67,6 +68,15 @@ int number_of(char const* variable, int otherwise)
     return text == nullptr ? otherwise : std::max(0, std::atoi(text));
 }
 
+/// @param told before: each failure is told once
+void settle(batch::Store const& store, std::set<std::string>& told)
+{
+    for (std::string const& failure : settle_leftovers(store))
+        if (told.insert(failure).second)
+            std::fputs(fmt::format("lightwell: a finished task is not published yet: {}\n", failure).c_str(),
+                       stderr);
+}
+
 /// Runs what is missing. Under mpirun each process takes tasks that no other has.
 int run_batch(BatchOptions const& o, batch::Store const& store, std::string const& id, batch::Batch const& b)
 {
@@ -81,7 +91,8 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
               ranks = std::max(1, number_of("OMPI_COMM_WORLD_SIZE", 1));
     batch::Machine machine = batch::this_machine();
     batch::RunOutcome outcome;
-    settle_leftovers(store); // so that nothing is done again that need not be
+    std::set<std::string> told;
+    settle(store, told); // so that nothing is done again that need not be
     if (o.on == "hyperqueue") {
         if (ranks > 1)
             throw gi::InputError("--on hyperqueue under mpirun", "HyperQueue has workers of its own",
@@ -96,7 +107,7 @@ int run_batch(BatchOptions const& o, batch::Store const& store, std::string cons
         if (o.cores > 0) set_cores(machine, o.cores);
         outcome = run_locally(store, b, {folder / "lightwell", machine, !o.quiet && rank == 0, rank, ranks}, stop);
     }
-    settle_leftovers(store); // of processes that were killed meanwhile
+    settle(store, told); // of processes that were killed meanwhile
     if (rank == 0) print_run(store, id, b, outcome, o.json);
     return outcome.is_interrupted ? interrupted_code() : outcome.counts.failed > 0 ? 1 : 0;
 }

@@ -16,12 +16,11 @@
 #include "viewer/offline/rank_work.h"
 #include "viewer/offline/render_picture.h"
 #include "viewer/offline/render_record.h"
+#include "viewer/offline/state_saving.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fmt/format.h>
-#include <future>
-#include <malloc.h>
 #include <memory>
 #include <utility>
 
@@ -59,25 +58,6 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
     kept.metadata = make_metadata(o, settings, result);
     bool const is_left = result.end == gi::RenderEnd::interrupted; // compressing takes longer than all else then
     save_exr(o, o.out, kept, report, is_left ? gi::ExrCompression::none : gi::ExrCompression::zip);
-}
-
-/// Saves picture and state, if there is one, at the same time.
-void save_all(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result,
-              gi::Report& report)
-{
-    std::future<void> state;
-    if (result.save_state) {
-        malloc_trim(0); // the system takes such pages for the files: they are faster than untouched ones
-        state = std::async(std::launch::async, std::exchange(result.save_state, nullptr));
-    }
-    save(o, settings, result, report);
-    if (!state.valid()) return;
-    try {
-        state.get();
-        result.resumable = true;
-    } catch (gi::InputError const& e) {
-        report.lose("checkpoints that could not be written", 1, e.what());
-    }
 }
 
 struct Shot {
@@ -215,13 +195,15 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
         work.finish();
         return 0;
     }
+    StateSaving saving(result); // before the denoiser, which may take long, or fail
     if (denoise_settings.denoiser != gi::Denoiser::none && result.rows) {
         result.picture = result.rows.whole();
         result.rows = {};
     }
     std::string const remark = denoise(result.picture, denoise_settings, report);
     if (!remark.empty()) say(remark);
-    save_all(o, settings, result, report);
+    save(o, settings, result, report);
+    result.resumable |= saving.join(report);
     if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
 
     nlohmann::ordered_json const stats = make_stats(o, settings, plan, result, report);

@@ -1,0 +1,35 @@
+#pragma once
+// Saves the state of an interrupted render beside what is still made of its picture.
+
+#include "gi/core/report.h"
+#include "gi/render/render_settings.h"
+
+#include <functional>
+#include <future>
+#include <string>
+
+namespace viewer {
+
+/// Begins at once, on a thread of its own, or where none can be started before the constructor returns. Whoever
+/// leaves early, by an exception, waits for it: the state is saved whatever becomes of the picture.
+class StateSaving {
+public:
+    /// Takes RenderResult::save_state, which may be empty.
+    explicit StateSaving(gi::RenderResult& result);
+    StateSaving(StateSaving const&) = delete;
+    StateSaving& operator=(StateSaving const&) = delete;
+
+    /// Waits for it; its time and what kept it from being saved go to the report. @return whether it is saved
+    bool join(gi::Report& report);
+
+private:
+    void save();
+
+    std::function<void()> save_;
+    bool const has_state_;
+    double seconds_ = 0;
+    std::string error_;         ///< why it could not be saved
+    std::future<void> running_; ///< the last member: waits before the others go
+};
+
+} // namespace viewer
