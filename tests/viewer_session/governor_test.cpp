@@ -39,13 +39,17 @@ TEST(Governor, HoldsTheRate)
         }
 }
 
-/// Light at three eighths of the size, at half the rate, before light at a quarter.
+/// The largest light with which half of the rate holds, before light at a quarter of the size.
 TEST(Governor, LightIsNotTooCoarseWhereTheRateMayFall)
 {
     double const rate = 20;
     double const fits = 0.05 / seconds_of({1, 1}, 1); // pixels of one path in the time of a frame
-    for (auto const& [pixels, scale] : std::vector<std::pair<double, double>>{
-             {0.7 * fits, 1}, {2.5 * fits, 0.5}, {5 * fits, 0.375}, {10 * fits, 0.375}, {15 * fits, 0.25}}) {
+    for (auto const& [pixels, scale] : std::vector<std::pair<double, double>>{{0.7 * fits, 1},
+                                                                              {2.5 * fits, 0.5},
+                                                                              {5 * fits, 0.4375},
+                                                                              {10 * fits, 0.35},
+                                                                              {15 * fits, 0.3125},
+                                                                              {25 * fits, 0.25}}) {
         Governor g;
         settle(g, rate, pixels, false);
         EXPECT_EQ(g.next(pixels, false).scale, scale) << pixels / fits;
