@@ -226,10 +226,13 @@ def quest():
             different += abs(q.next_stim["intensity"] - shown) > 1e-6
             right = str(correct).lower() == "true"
             q.update(stim={"intensity": shown}, outcome={"response": "yes" if right else "no"})
-        mean = q.param_estimate
-        # Where the function of the posterior's mean is 75 %.
-        share = 0.25 / (0.5 - mean["lapse_rate"])
-        peer.append(10 ** (mean["threshold"] / 20) * (-math.log(1 - share)) ** (1 / mean["slope"]))
+        # The median, over its posterior, of the level (dB) at which 75 % are right.
+        cells = q.posterior.stack(cell=[...])
+        share = 0.25 / (0.5 - cells["lapse_rate"].values)
+        at = cells["threshold"].values + 20 * np.log10(-np.log(1 - share)) / cells["slope"].values
+        order = np.argsort(at)
+        middle = np.cumsum(cells.values[order]) - cells.values[order] / 2
+        peer.append(10 ** (np.interp(0.5, middle, at[order]) / 20))
         ours.append(next(r for r in t["runs"] if r["participant"] == who and r["method"] == "QUEST+ posterior")["level"])
     compare(f"questplus: levels that differ, of {len(data)} choices", different, 0, 0.5)
     compare("questplus: thresholds of 3 runs (75 %)", ours, peer, 1e-6, relative=True)
