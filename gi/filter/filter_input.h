@@ -65,4 +65,20 @@ inline vec3 over_albedo(vec3 value, vec3 albedo)
             albedo.z < kDarkest ? 0 : value.z / albedo.z};
 }
 
+/// Light over albedo; channels that are too dark keep their values.
+inline vec3 light_over(vec3 light, vec3 albedo)
+{
+    for (int c = 0; c < 3; ++c)
+        if (albedo[c] >= kDarkest) light[c] /= albedo[c];
+    return light;
+}
+
+/// The reverse of light_over().
+inline vec3 light_times(vec3 light, vec3 albedo)
+{
+    for (int c = 0; c < 3; ++c)
+        if (albedo[c] >= kDarkest) light[c] *= albedo[c];
+    return light;
+}
+
 } // namespace gi

@@ -8,13 +8,6 @@
 
 namespace gi {
 
-vec3 light_over(vec3 light, vec3 albedo)
-{
-    for (int c = 0; c < 3; ++c)
-        if (albedo[c] >= kDarkest) light[c] /= albedo[c];
-    return light;
-}
-
 Neighbourhoods::Neighbourhoods(Layer const& l1, Layer const& albedo, int width, int height, bool few,
                                TemporalSettings const& settings)
     : l1_(l1),

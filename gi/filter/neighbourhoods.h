@@ -7,9 +7,6 @@
 
 namespace gi {
 
-/// Light over albedo; channels that are too dark are not divided.
-vec3 light_over(vec3 light, vec3 albedo);
-
 /// Statistics of direct light over albedo in windows around pixels: computed for all pixels at once, or pixel by
 /// pixel if only few are needed.
 class Neighbourhoods {

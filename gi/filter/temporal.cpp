@@ -26,14 +26,6 @@ Layer const& layer_of(Picture const& picture, char const* name)
                      "render frames with a method that provides it");
 }
 
-/// The reverse of light_over().
-vec3 times(vec3 light, vec3 albedo)
-{
-    for (int c = 0; c < 3; ++c)
-        if (albedo[c] >= kDarkest) light[c] *= albedo[c];
-    return light;
-}
-
 /// True if both albedos are usable, or both too dark, in each channel, so that light over albedo is comparable.
 bool same_dark(vec3 a, vec3 b)
 {
@@ -327,8 +319,8 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
                                   surplus * std::max(0.0f, 1 - n / most),
                         share = first ? 1 : earlier / (earlier + n);
             vec3 const e0 = glm::mix(mean[0], light.l0, share),
-                       e1 = glm::mix(mean[1], times(light.all.direct, light.albedo), share),
-                       e2 = glm::mix(mean[2], times(light.all.indirect, light.albedo), share);
+                       e1 = glm::mix(mean[1], light_times(light.all.direct, light.albedo), share),
+                       e2 = glm::mix(mean[2], light_times(light.all.indirect, light.albedo), share);
             for (int c = 0; c < 3; ++c) {
                 std::size_t const k = 3 * i + std::size_t(c);
                 l0.data[k] = e0[c];

@@ -225,8 +225,7 @@ ResultTable population(Analysis const& a)
         "Bayesian: every observer has d', criterion or threshold, scale and lapse rate of his or her own. "
         "Posterior means and intervals; sd: between observers, of thresholds in units of the scale. Where "
         "observers hardly differ, 95 % intervals of means hold in 98 to 99 %: for a test of d' = 0 take mean and "
-        "p "
-        "of the table of correct answers. R-hat up to 1.01, effective draws from 400 and no divergences are "
+        "p of the table of correct answers. R-hat up to 1.01, effective draws from 400 and no divergences are "
         "wanted.",
         false,
         {}};

@@ -1,12 +1,10 @@
 // Batches as they run: real processes, a script as the program of their tasks.
 
 #include "tests/batch/fake_programs.h"
+#include "tests/support/refused_calls.h"
 #include "viewer/batch/child.h"
 #include "viewer/batch/store.h"
 
-#include <linux/filter.h>
-#include <linux/seccomp.h>
-#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -325,26 +323,12 @@ TEST(BatchRun, ProgramThatIsMissingLeavesNothingOpen)
     EXPECT_EQ(open(), before);
 }
 
-/// From now on a system call fails in this process.
-bool refuse(long system_call)
-{
-    sock_filter code[]{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
-                       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, unsigned(system_call), 0, 1),
-                       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS),
-                       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
-    sock_fprog const program{std::size(code), code};
-    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
-           prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
-}
-
 /// On a kernel before 5.3, or where a container forbids it.
 TEST(BatchRun, TaskWhoseEndCannotBeWaitedForIsEndedAtOnce)
 {
     TemporaryFolder const folder;
-    pid_t const child = fork(); // the refusal stays
-    if (child == 0) {
+    int const code = gi::test::in_child_without({SYS_pidfd_open}, ENOSYS, [&] {
         alarm(20);
-        if (!refuse(SYS_pidfd_open)) _exit(8);
         batch::ChildCall const call{.program = "/bin/sleep",
                                     .arguments = {"100"},
                                     .folder = folder.path(),
@@ -352,15 +336,12 @@ TEST(BatchRun, TaskWhoseEndCannotBeWaitedForIsEndedAtOnce)
         try {
             batch::run_child(call, gi::StopRequest());
         } catch (gi::InputError const&) {
-            _exit(::waitpid(-1, nullptr, 0) < 0 && errno == ECHILD ? 7 : 6);
+            return ::waitpid(-1, nullptr, 0) < 0 && errno == ECHILD ? 7 : 6;
         }
-        _exit(1);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFEXITED(status));
-    if (WEXITSTATUS(status) == 8) GTEST_SKIP() << "seccomp is not permitted";
-    EXPECT_EQ(WEXITSTATUS(status), 7);
+        return 1;
+    });
+    if (code == gi::test::kNotPermitted) GTEST_SKIP() << "seccomp is not permitted";
+    EXPECT_EQ(code, 7);
 }
 
 } // namespace

@@ -205,21 +205,7 @@ blocks:
 /// Yes or no at levels 1 to 100, `harder: down`; false alarms in a fifth of 50 trials without a signal.
 BlockResult yes_no_block(std::string const& procedure)
 {
-    Script const s = parse_script(R"(schema: study/1
-id: s
-seed: 1
-participants: {count: 1}
-factors: {scene: [hall]}
-reference: {scene: hall}
-defaults: {stimulus_ms: 2000}
-sequence: [find]
-blocks:
-  find:
-    task: yes_no
-    cross: [scene]
-    compare: {vary: points, scale: log10, range: [1, 100], harder: down}
-    procedure: )" + procedure + "\n",
-                                  "s.yaml");
+    Script const s = yes_no_script("down", procedure);
     MadeSession made(s, "P001");
     auto const add = [&](double level, bool says_yes, bool is_noise) {
         TrialDone& t = made.add(0, {{0}, {0}}, says_yes ? "yes" : "no");

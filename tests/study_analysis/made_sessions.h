@@ -9,6 +9,26 @@
 
 namespace study::test {
 
+/// Yes or no at levels 1 to 100.
+inline Script yes_no_script(std::string const& harder, std::string const& procedure)
+{
+    return parse_script(R"(schema: study/1
+id: s
+seed: 1
+participants: {count: 1}
+factors: {scene: [hall]}
+reference: {scene: hall}
+defaults: {stimulus_ms: 2000}
+sequence: [find]
+blocks:
+  find:
+    task: yes_no
+    cross: [scene]
+    compare: {vary: points, scale: log10, range: [1, 100], harder: )" +
+                            harder + "}\n    procedure: " + procedure + "\n",
+                        "s.yaml");
+}
+
 class MadeSession {
 public:
     MadeSession(Script const& script, std::string const& participant_id) : script_(script)

@@ -4,7 +4,7 @@
 #include "study/analysis/result_tables.h"
 #include "study/analysis/threshold_run.h"
 #include "study/script/procedure_settings.h"
-#include "study/script/script_file.h"
+#include "tests/study_analysis/made_sessions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,32 +15,12 @@
 namespace study::test {
 namespace {
 
-/// Yes or no at levels 1 to 100.
-Script script_of(std::string const& harder, std::string const& procedure)
-{
-    return parse_script(R"(schema: study/1
-id: s
-seed: 1
-participants: {count: 1}
-factors: {scene: [hall]}
-reference: {scene: hall}
-defaults: {stimulus_ms: 2000}
-sequence: [find]
-blocks:
-  find:
-    task: yes_no
-    cross: [scene]
-    compare: {vary: points, scale: log10, range: [1, 100], harder: )" +
-                            harder + "}\n    procedure: {" + procedure + "}\n",
-                        "s.yaml");
-}
-
 /// The level of 55 % by a run without trials, whose posterior is the prior: uniform over the grids.
 ThresholdEstimate prior_estimate(std::string const& settings, std::string const& harder = "down",
                                  double confidence = 0.95)
 {
     Script const s =
-        script_of(harder, "method: questplus, levels: 1..100/5, " + settings + ", stop: {trials: 40}");
+        yes_no_script(harder, "{method: questplus, levels: 1..100/5, " + settings + ", stop: {trials: 40}}");
     AnalysisSettings a;
     a.confidence = confidence;
     Block const& b = s.blocks.at(0);
@@ -104,7 +84,7 @@ TEST(LikelihoodEstimate, SaysWhereItsIntervalIsOpen)
 {
     // Without trials that have no signal the false alarm rate may be above a half.
     auto const estimate = [](std::string const& harder) {
-        Script const s = script_of(harder, "method: constant, levels: 1..100/5, trials_per_level: 2");
+        Script const s = yes_no_script(harder, "{method: constant, levels: 1..100/5, trials_per_level: 2}");
         Block const& b = s.blocks.at(0);
         ThresholdRun run;
         run.levels = {1, 3.16227766, 10, 31.6227766, 100};

@@ -3,18 +3,13 @@
 #include "viewer/offline/state_saving.h"
 
 #include "gi/core/error.h"
+#include "tests/support/refused_calls.h"
 
 #include <cerrno>
-#include <cstddef>
 #include <gtest/gtest.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
 #include <stdexcept>
-#include <sys/prctl.h>
 #include <sys/syscall.h>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
 
 namespace viewer::test {
 namespace {
@@ -76,39 +71,21 @@ TEST(StateSaving, AnyErrorOfTheStateIsReported)
     EXPECT_EQ(report.losses().at("checkpoints that could not be written").count, 2u);
 }
 
-/// From now on no thread can be started in this process.
-bool refuse_threads()
-{
-    sock_filter code[]{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
-                       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_clone, 1, 0),
-                       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 0, 1),
-                       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EAGAIN),
-                       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
-    sock_fprog const program{std::size(code), code};
-    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
-           prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
-}
-
 TEST(StateSaving, NeedsNoThread)
 {
-    pid_t const child = fork(); // the refusal stays
-    if (child == 0) {
-        if (!refuse_threads()) _exit(8);
+    int const code = gi::test::in_child_without({SYS_clone, SYS_clone3}, EAGAIN, [] {
         bool is_saved = false;
         gi::RenderResult result;
         result.save_state = [&] { is_saved = true; };
         gi::Report report;
         try {
-            _exit(StateSaving(result).join(report) && is_saved ? 7 : 6);
+            return StateSaving(result).join(report) && is_saved ? 7 : 6;
         } catch (std::exception const&) {
-            _exit(5);
+            return 5;
         }
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFEXITED(status));
-    if (WEXITSTATUS(status) == 8) GTEST_SKIP() << "seccomp is not permitted";
-    EXPECT_EQ(WEXITSTATUS(status), 7);
+    });
+    if (code == gi::test::kNotPermitted) GTEST_SKIP() << "seccomp is not permitted";
+    EXPECT_EQ(code, 7);
 }
 
 } // namespace
