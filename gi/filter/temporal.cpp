@@ -49,6 +49,7 @@ void TemporalReuse::Light::add_to(Light const& before, TemporalSettings const& s
 {
     frames = std::min(before.frames + 1, float(std::max(settings.most_frames, settings.most_unchanged)));
     float const share = 1 / frames;
+    place = (1 - share) * before.place;
     Means const now = all;
     vec2 const step{luminance(now.direct - before.all.direct), luminance(now.indirect - before.all.indirect)};
     variance = (1 - share) * (before.variance + share * step * step);
@@ -118,36 +119,59 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
     total.renewed += renewed.combine(std::plus<>());
 }
 
-/// Replaces bilinear means of the last frame's light by Catmull and Rom's cubics over those of 4 x 4 pixels that
-/// showed the surface: bilinear means would blur it in every frame.
-/// @param place  in the last frame, from the middle of its first pixel   @param shows  of a Surface
+/// Interpolates the last frame's light by Catmull and Rom's cubics if all of 4 x 4 pixels showed the surface:
+/// bilinear means would blur it in every frame. Returns false if not.
+/// @param at  in the last frame, from the middle of its first pixel   @param shows  of a Surface
 template <class Shows>
-void TemporalReuse::sharpen(vec2 place, int width, int height, Shows const& shows, Light& light) const
+bool TemporalReuse::interpolate(vec2 at, int width, int height, Shows const& shows, Light& light) const
 {
-    constexpr float kMostly = 0.8f; // least sum of the weights of such pixels
-    vec2 const first = glm::floor(place) - 1.0f;
-    if (first.x < 0 || first.y < 0 || first.x + 4 > float(width) || first.y + 4 > float(height)) return;
-    std::array<float, 4> const across = catmull_rom(place.x - first.x - 1),
-                               down = catmull_rom(place.y - first.y - 1);
-    Means all{}, recent{};
-    float weights = 0;
+    vec2 const first = glm::floor(at) - 1.0f, t = at - first - 1.0f;
+    if (first.x < 0 || first.y < 0 || first.x + 4 > float(width) || first.y + 4 > float(height)) return false;
+    std::size_t const begin = std::size_t(first.y) * std::size_t(width) + std::size_t(first.x);
+    auto const pixel = [&](std::size_t j, std::size_t k) { return begin + j * std::size_t(width) + k; };
+    for (std::size_t j = 0; j < 4; ++j)
+        for (std::size_t k = 0; k < 4; ++k)
+            if (!shows(last_surfaces_[pixel(j, k)])) return false;
+    std::array<float, 4> const across = catmull_rom(t.x), down = catmull_rom(t.y);
+    light = {};
     for (std::size_t j = 0; j < 4; ++j)
         for (std::size_t k = 0; k < 4; ++k) {
-            std::size_t const t = (std::size_t(first.y) + j) * std::size_t(width) + std::size_t(first.x) + k;
-            if (!shows(last_surfaces_[t])) continue;
-            float const w = across[k] * down[j];
-            all.add(w, last_lights_[t].all);
-            recent.add(w, last_lights_[t].recent);
-            weights += w;
+            Light const& l = last_lights_[pixel(j, k)];
+            light.all.add(across[k] * down[j], l.all);
+            light.recent.add(across[k] * down[j], l.recent);
         }
-    if (weights < kMostly) return;
-    for (Means* const m : {&all, &recent}) {
-        m->scale(1 / weights);
+    for (std::size_t k = 0; k < 4; ++k) {
+        Light const& l = last_lights_[pixel(1 + k / 2, 1 + k % 2)];
+        float const w = (k % 2 ? t.x : 1 - t.x) * (k / 2 ? t.y : 1 - t.y);
+        light.frames += w * l.frames;
+        light.variance += w * l.variance;
+    }
+    for (Means* const m : {&light.all, &light.recent}) {
         m->direct = glm::max(m->direct, vec3{0});
         m->indirect = glm::max(m->indirect, vec3{0});
     }
-    light.all = all;
-    light.recent = recent;
+    return true;
+}
+
+/// Takes the light that came from nearest to a place, of the last frame's 3 x 3 pixels there that showed the
+/// surface. Returns false if none did.
+template <class Shows>
+bool TemporalReuse::take_nearest(vec2 at, int width, int height, Shows const& shows, Light& light) const
+{
+    int const x = int(std::floor(at.x + 0.5f)), y = int(std::floor(at.y + 0.5f));
+    constexpr float kNear2 = 1; // squared distance, px, from which on it would be light of elsewhere
+    float least = kNear2;
+    for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+            std::size_t const k = std::size_t(v) * std::size_t(width) + std::size_t(u);
+            vec2 const away = vec2{float(u), float(v)} + last_lights_[k].place - at;
+            float const distance2 = glm::dot(away, away);
+            if (!(distance2 < least) || !shows(last_surfaces_[k])) continue;
+            least = distance2;
+            light = last_lights_[k];
+            light.place = away;
+        }
+    return least < kNear2;
 }
 
 /// Averages the light of this frame with the surface's earlier light.
@@ -178,6 +202,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                 light.frames = 1;
                 light.variance = vec2{0};
             }
+            light.place = vec2{0};
             light.l0 = rgb(l0, i);
             light.albedo = a;
             light.still_frames = 1;
@@ -236,40 +261,24 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                        glm::dot(there.normal, here.normal) >= kCosine;
             };
             Light before{};
-            float weight = 0;
-            if (finite(was) && std::abs(was.x) < 1e6f && std::abs(was.y) < 1e6f) {
-                float const u = float(x) + was.x, v = float(y) + was.y, left = std::floor(u), top = std::floor(v);
-                for (int k = 0; k < 4; ++k) {
-                    int const tx = int(left) + (k & 1), ty = int(top) + (k >> 1);
-                    float const w = (1 - std::abs(u - float(tx))) * (1 - std::abs(v - float(ty)));
-                    if (tx < 0 || ty < 0 || tx >= width || ty >= height || !(w > 0)) continue;
-                    std::size_t const t = std::size_t(ty) * std::size_t(width) + std::size_t(tx);
-                    Surface const& there = last_surfaces_[t];
-                    if (!shows(there, slope) && !(resting && is_beside(there, x, y))) continue;
-                    Light const& l = last_lights_[t];
-                    before.all.add(w, l.all);
-                    before.recent.add(w, l.recent);
-                    before.frames += w * l.frames;
-                    before.variance += w * l.variance;
-                    weight += w;
-                }
+            bool known = false;
+            if (still) {
+                before = last_lights_[i];
+                known = shows(last_surfaces_[i], slope) || (resting && is_beside(last_surfaces_[i], x, y));
+            } else if (finite(was) && std::abs(was.x) < 1e6f && std::abs(was.y) < 1e6f) {
+                vec2 const at = vec2{float(x), float(y)} + vec2(was);
+                known = interpolate(
+                            at, width, height, [&](Surface const& there) { return shows(there, 2 * slope); },
+                            before) ||
+                        take_nearest(
+                            at, width, height, [&](Surface const& there) { return shows(there, slope); }, before);
             }
-            // A smaller sum of weights is negligible and only adds noise.
-            constexpr float kLeast = 0.05f;
-            if (!(weight > kLeast)) {
+            if (!known) {
                 local.started += !taken;
                 continue;
             }
-            before.all.scale(1 / weight);
-            before.recent.scale(1 / weight);
-            before.frames /= weight;
-            before.variance /= weight;
-            if (!still)
-                sharpen(
-                    vec2{float(x), float(y)} + vec2(was), width, height,
-                    [&](Surface const& there) { return shows(there, 2 * slope); }, before);
             Light& now = lights_[i];
-            if (Light const& last = last_lights_[i]; still && weight > 1 - kStill) {
+            if (Light const& last = last_lights_[i]; still) {
                 now.still_frames = std::min(last.still_frames + 1, float(settings_.most_frames));
                 now.l0 = glm::mix(last.l0, now.l0, 1 / now.still_frames);
                 now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);

@@ -3,15 +3,17 @@
 // found through each pixel's motion vector. Works with every method that provides the layer "motion".
 //
 // Two means are kept. While anything moves (camera, triangles), L1 and L2 over the albedo follow their surfaces:
-// they are interpolated from four pixels of the previous frame, using those whose depth and normal fit. This mean
-// covers at most `most_frames` frames, and L1 is clamped to the range of its current neighbourhood, because
-// shadows move faster than the mean adapts (Yang, Liu and Salvi 2020, sec. 4.2). Where the light has not changed,
-// it covers up to `most_unchanged` frames: it is compared with a second mean of the latest `most_frames`, and
-// where the two differ by more than their noise in the pixels around, the shorter one replaces it. Where the image
-// is static, albedo and L0 are averaged too, so that edges and textures are antialiased. While nothing moves at
-// all, the pictures themselves are averaged over all frames since the last motion, so that a static picture
-// converges to the method's result. After a change of lights, materials or environment, all earlier frames are
-// discarded: the lag is zero frames.
+// they are interpolated between pixels of the previous frame where all of these show the surface (depth and normal
+// fit). At its borders those of the nearest such pixel are taken as they are, and where they come from is kept
+// with them: interpolated from one side, light of the inside would move to the border, frame by frame, and small
+// shadows beside what throws them would vanish. This mean covers at most `most_frames` frames, and L1 is clamped
+// to the range of its current neighbourhood, because shadows move faster than the mean adapts (Yang, Liu and Salvi
+// 2020, sec. 4.2). Where the light has not changed, it covers up to `most_unchanged` frames: it is compared with a
+// second mean of the latest `most_frames`, and where the two differ by more than their noise in the pixels around,
+// the shorter one replaces it. Where the image is static, albedo and L0 are averaged too, so that edges and
+// textures are antialiased. While nothing moves at all, the pictures themselves are averaged over all frames since
+// the last motion, so that a static picture converges to the method's result. After a change of lights, materials
+// or environment, all earlier frames are discarded: the lag is zero frames.
 //
 // Where a second eye reuses the first one's light, it takes the first one's temporal mean with it instead of
 // reading its own previous frame.
@@ -100,6 +102,7 @@ private:
         Means all, recent; ///< recent: of the latest most_frames
         float frames;      ///< number of frames in `all`
         vec2 variance;     ///< of its luminances, over those frames
+        vec2 place;        ///< where in the pixel its surface points lie, their mean, px from the middle
         vec3 l0, albedo;
         float still_frames; ///< number of frames in l0 and albedo
         bool still;         ///< true if its surface did not move in the image
@@ -110,7 +113,9 @@ private:
     void follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                 TemporalCounts& counts);
     template <class Shows>
-    void sharpen(vec2 place, int width, int height, Shows const& shows, Light& light) const;
+    bool interpolate(vec2 at, int width, int height, Shows const& shows, Light& light) const;
+    template <class Shows>
+    bool take_nearest(vec2 at, int width, int height, Shows const& shows, Light& light) const;
     /// Where the light has changed, replaces means by those of the latest frames.
     void renew_changed(int width, int height, TemporalCounts& counts);
     void rest(Picture& frame, TemporalCounts& counts);

@@ -7,6 +7,7 @@
 #include "gi/scene/motion/moving_world.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace gi {
@@ -29,6 +30,8 @@ struct FrameView {
     /// Hidden pixels are black and have no surface. The method slhb traces nothing for them; other methods render
     /// and then hide them.
     std::span<std::uint8_t const> hidden{};
+    /// Instead of the settings' filter; only the method slhb heeds it.
+    std::optional<PixelFilter> filter{};
 };
 
 /// How indirect light at a path's last vertex is shared between paths.

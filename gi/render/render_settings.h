@@ -16,7 +16,11 @@
 
 namespace gi {
 
-enum class PixelFilter : std::uint8_t { box, tent };
+enum class PixelFilter : std::uint8_t {
+    box,
+    tent,  ///< a radius of one pixel
+    centre ///< none: all paths pass the middle of their pixel
+};
 
 /// Where the axes of a pass come from.
 enum class Schedule : std::uint8_t {
@@ -207,8 +211,7 @@ struct RenderSettings {
     int bounces = 64;        ///< indirect bounces: 0 = emitted and direct light only
     std::uint64_t seed = 0;
     int threads = 0;                       ///< 0 = all
-    PixelFilter filter = PixelFilter::box; ///< sampled by filter importance sampling; tent has a radius of one
-                                           ///< pixel
+    PixelFilter filter = PixelFilter::box; ///< sampled by filter importance sampling
     std::filesystem::path checkpoint{};    ///< file for the exact state of an unfinished render, or of a resuming
                                            ///< one that stops early; empty = none. The caller deletes it after
                                            ///< saving the picture unless RenderResult::resumable

@@ -20,6 +20,7 @@ GI_FN inline float power_heuristic(float pdf, float other)
 GI_FN inline vec2 filter_offset(PixelFilter filter, vec2 u)
 {
     if (filter == PixelFilter::box) return u - 0.5f;
+    if (filter == PixelFilter::centre) return vec2{0};
     auto const tent = [](float v) {
         return v < 0.5f ? std::sqrt(2 * v) - 1 : 1 - std::sqrt(std::max(0.0f, 2 - 2 * v));
     };

@@ -240,6 +240,29 @@ TEST(Temporal, LightFollowsItsSurface)
     }
 }
 
+/// A shadow two pixels wide on a floor that begins behind a wall, while both move in the picture.
+TEST(Temporal, SmallShadowsBesideAnEdgeStay)
+{
+    constexpr float kMotion = 0.3f, kEdge = 22, kShadow = 2;
+    constexpr int kFrames = 50;
+    TemporalReuse reuse({.most_frames = 8, .most_unchanged = 64, .window = 17, .spread = 2});
+    auto const behind_edge = [&](int x, int frame) { return float(x) + kMotion * float(frame) - kEdge; };
+    Picture p;
+    for (int frame = 0; frame < kFrames; ++frame) {
+        p = picture([&](int x, int) {
+            float const at = behind_edge(x, frame), depth = at < 0 ? 1.0f : 2.0f;
+            return Values{
+                .l1 = vec3{at >= 0 && at < kShadow ? 0.0f : 1.0f}, .motion = {kMotion, 0, depth}, .depth = depth};
+        });
+        reuse.add(p, SceneChange::motion);
+    }
+    for (int x = 0; x < kWidth - 16; ++x) {
+        float const at = behind_edge(x, kFrames - 1), edge = std::min(std::abs(at), std::abs(at - kShadow));
+        if (at < 0 || edge < 0.5f) continue;
+        EXPECT_NEAR(value(p, "L1", x, kHeight / 2), at < kShadow ? 0 : 1, 0.15f) << at;
+    }
+}
+
 TEST(Temporal, NothingOfBeforeALightChangedIsUsed)
 {
     TemporalReuse reuse({});

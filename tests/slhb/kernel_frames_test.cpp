@@ -268,6 +268,7 @@ void check_views()
     std::vector<FrameView> views{{frame_eye(), kFrameSize, kFrameSize},
                                  {frame_eye(0.3), 24, 20},
                                  {frame_eye(0.06), kFrameSize, kFrameSize}};
+    views[1].filter = PixelFilter::centre;
     auto const whole = both.next({}, views, "three views");
     Both<S> alone(settings_of(Schedule::stored));
     for (std::size_t k = 0; k < 3; ++k) { // none of the others counts, nor of a partner

@@ -54,6 +54,23 @@ TEST(Views, AreThePicturesThatTheyWouldBeAlone)
     }
 }
 
+TEST(Views, CanBeSampledAtTheMiddlesOfPixels)
+{
+    Report report;
+    MovingWorld const world(view_room(), 0, report);
+    std::vector<FrameView> views{{view_eye(), 64, 64}};
+    auto const depth_moves = [&] {
+        auto const frames = start_slhb_frames(world, view_eye(), settings_of_views(0), report);
+        std::vector<float> const
+            first = frames->views(views, 1, VertexSharing::exact, {})[0].picture.find("depth")->data,
+            second = frames->views(views, 1, VertexSharing::exact, {})[0].picture.find("depth")->data;
+        return first != second;
+    };
+    EXPECT_TRUE(depth_moves());
+    views[0].filter = PixelFilter::centre;
+    EXPECT_FALSE(depth_moves());
+}
+
 /// The first view does not depend on what others take from it, and what they take is right: the mean of many
 /// passes is that of paths of their own, but for half a pixel.
 TEST(Views, LightTakenFromAPartnerIsTheLightThere)

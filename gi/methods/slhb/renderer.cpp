@@ -173,6 +173,7 @@ void SlhbRenderer::see(std::span<FrameView const> views)
         v.height = now.height;
         v.partner = now.partner;
         v.hidden = now.hidden;
+        v.filter = now.filter.value_or(settings_.filter);
         v.hidden_pixels = now.hidden.size() - std::size_t(std::ranges::count(now.hidden, 0));
         v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
         v.first = first;
@@ -182,6 +183,7 @@ void SlhbRenderer::see(std::span<FrameView const> views)
             v.primary.reset();
         else if (!known || !v.primary)
             v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
+        if (v.primary) v.primary->set_filter(v.filter);
     }
     if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
 }

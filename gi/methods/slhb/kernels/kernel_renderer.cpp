@@ -158,6 +158,7 @@ void KernelRenderer<S>::see(std::span<FrameView const> views)
         v.width = now.width;
         v.height = now.height;
         v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
+        v.filter = now.filter.value_or(settings_.filter);
         if (!known) v.earlier = v.rays;
         if (std::ranges::equal(v.hides, now.hidden)) continue;
         v.hides.assign(now.hidden.begin(), now.hidden.end());
@@ -178,9 +179,8 @@ void KernelRenderer<S>::prepare(std::uint32_t index)
     for (View& v : views_) {
         v.eye = eye_of_pass(v.rays, settings_.seed, index);
         v.index = index;
-        PerspectiveGrid const grid =
-            camera_grid(v.eye, v.width, v.height, place_in_pixel(settings_.filter, settings_.seed, index),
-                        near_plane(world_.bounds));
+        PerspectiveGrid const grid = camera_grid(
+            v.eye, v.width, v.height, place_in_pixel(v.filter, settings_.seed, index), near_plane(world_.bounds));
         v.primary = scene_.draw(grid, std::uint32_t(mix_bits(settings_.seed) + index));
     }
 }
@@ -199,7 +199,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, V
         paths.camera = v.eye;
         paths.primary = v.primary.view();
         paths.hidden = v.hidden.view();
-        paths.place = place_in_pixel(settings_.filter, settings_.seed, index);
+        paths.place = place_in_pixel(v.filter, settings_.seed, index);
         paths.width = std::uint32_t(v.width);
         paths.bounces = settings_.bounces;
         paths.smooth = smooth;

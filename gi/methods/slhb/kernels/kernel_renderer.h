@@ -53,6 +53,7 @@ private:
         std::vector<std::uint8_t> hides; ///< the pixels that `hidden` was made from
         Buffer<std::uint8_t, S> hidden;  ///< as in FrameView
         std::size_t hidden_pixels = 0;
+        PixelFilter filter = PixelFilter::box;
         CameraRays eye{}; ///< of the last pass
         std::uint32_t index = 0;
         Buffer<NearestTexel, S> primary; ///< of the last pass

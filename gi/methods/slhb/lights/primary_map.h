@@ -20,6 +20,7 @@ class PrimaryMap {
 public:
     PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings, int width,
                int height);
+    void set_filter(PixelFilter filter) { filter_ = filter; } ///< instead of the settings'
 
     /// Rasterises the view of a pass. @param camera  without a lens  @param near_m  distance of the near plane
     void refresh(CameraRays const& camera, float near_m, std::uint32_t pass);

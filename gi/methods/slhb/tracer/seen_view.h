@@ -15,6 +15,7 @@ struct SeenView {
     int width = 0, height = 0, partner = -1;
     std::span<std::uint8_t const> hidden; ///< as in FrameView
     std::size_t hidden_pixels = 0;
+    PixelFilter filter = PixelFilter::box;
     std::optional<PrimaryMap> primary; ///< none for orthographic cameras
     std::size_t first = 0;             ///< index of its first pixel among the pixels of all views
     std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }

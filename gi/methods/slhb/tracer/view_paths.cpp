@@ -32,7 +32,7 @@ void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettin
     for (std::size_t p = first; p < last; ++p) {
         RqmcStream const stream = pixel_stream(random_key(s.seed), std::uint32_t(p), width, pass.index);
         vec2 const place =
-            vec2{float(p % width) + 0.5f, float(p / width) + 0.5f} + filter_offset(s.filter, stream.sample2(0));
+            vec2{float(p % width) + 0.5f, float(p / width) + 0.5f} + filter_offset(view.filter, stream.sample2(0));
         Ray const ray = camera_ray(view.rays, place, [&] { return stream.sample2(kLens); });
         out.push_back({std::uint32_t(p), kNoPrimitive, ray});
         rays.push_back(
