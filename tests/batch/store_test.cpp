@@ -43,7 +43,7 @@ struct StoreTest : testing::Test {
     enum class End { published, killed_before };
 
     /// Publishes out/NAME with a text as the output of a task, or is killed before.
-    void publish(Task const& task, std::string const& name, std::string const& text, End how = End::published)
+    Result publish(Task const& task, std::string const& name, std::string const& text, End how = End::published)
     {
         fs::create_directories(store.work(task.key) / "out");
         gi::write_text(store.work(task.key) / "out" / name, text);
@@ -53,6 +53,7 @@ struct StoreTest : testing::Test {
         r.seconds = 2;
         store.prepare(r);
         if (how == End::published) store.publish(task.key);
+        return r;
     }
 
     TemporaryFolder folder;
@@ -165,6 +166,23 @@ TEST_F(StoreTest, WithdrawnResultTakesItsNewObjectsAlong)
     EXPECT_FALSE(store.result(task.key));
     EXPECT_FALSE(fs::exists(store.object(gi::sha256("new"))));
     EXPECT_TRUE(store.result(batch.tasks[0].key)) << "it has the other one, too";
+}
+
+/// Nobody knows whether the disk has the content of a result that could not be published: others that have it too
+/// count as not done, and make it anew.
+TEST_F(StoreTest, ContentOfAWithdrawnResultIsMadeAnewByOthersThatHaveIt)
+{
+    Task const &first = batch.tasks[0], &second = batch.tasks[1];
+    for (bool const is_published_before : {true, false}) {
+        Result const brought = publish(first, "a", "new", End::killed_before);
+        publish(second, "b", "new", is_published_before ? End::published : End::killed_before);
+        store.withdraw(brought);
+        if (!is_published_before) store.publish(second.key);
+        EXPECT_FALSE(store.result(second.key)) << "its content is gone";
+        publish(second, "b", "new"); // the next attempt
+        EXPECT_TRUE(store.result(second.key));
+        store.forget(second.key, gi::sha256("new"));
+    }
 }
 
 TEST_F(StoreTest, WhatAnotherProcessIsAboutToPublishIsLeftToIt)

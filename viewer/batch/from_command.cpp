@@ -3,11 +3,11 @@
 #include "gi/core/error.h"
 #include "gi/core/text.h"
 #include "viewer/base/frame_range.h"
+#include "viewer/batch/command_words.h"
 #include "viewer/batch/manifest.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <optional>
 #include <set>
 #include <span>
 
@@ -15,41 +15,6 @@ namespace viewer::batch {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A command line in which options are found and replaced.
-class Words {
-public:
-    explicit Words(std::vector<std::string> words) : words_(std::move(words))
-    {
-        std::ranges::replace(words_, "-o", "--out");
-    }
-
-    /// The value of `--name value` or `--name=value`.
-    std::optional<std::string> value(std::string const& option) const
-    {
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            if (words_[i] == option && i + 1 < words_.size()) return words_[i + 1];
-            if (words_[i].starts_with(option + "=")) return words_[i].substr(option.size() + 1);
-        }
-        return std::nullopt;
-    }
-    bool has(std::string const& option) const
-    {
-        return std::ranges::any_of(
-            words_, [&](std::string const& w) { return w == option || w.starts_with(option + "="); });
-    }
-    void set(std::string const& option, std::string const& to)
-    {
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            if (words_[i] == option && i + 1 < words_.size()) words_[i + 1] = to;
-            if (words_[i].starts_with(option + "=")) words_[i] = option + "=" + to;
-        }
-    }
-    std::vector<std::string>& all() { return words_; }
-
-private:
-    std::vector<std::string> words_;
-};
 
 bool stands_alone(fs::path const& file)
 {
@@ -60,7 +25,7 @@ bool stands_alone(fs::path const& file)
 
 /// Makes the files that the words name inputs, by their whole paths: those of a scene too that refers to others.
 /// @param names  number of words that name the command, not files
-std::vector<int> find_inputs(Words& words, std::ptrdiff_t names, std::set<std::string> const& outputs,
+std::vector<int> find_inputs(CommandWords& words, std::ptrdiff_t names, std::set<std::string> const& outputs,
                              Batch& batch)
 {
     InputFinder finder(batch, fs::current_path());
@@ -80,7 +45,7 @@ std::vector<int> find_inputs(Words& words, std::ptrdiff_t names, std::set<std::s
     return {found.begin(), found.end()};
 }
 
-void refuse(Words const& words, char const* option, char const* why, char const* suggestion)
+void refuse(CommandWords const& words, char const* option, char const* why, char const* suggestion)
 {
     if (words.has(option)) throw gi::InputError(std::string(option) + " in a batch", why, suggestion);
 }
@@ -92,7 +57,7 @@ std::string stem_of(std::string const& scene) { return fs::path(scene).stem().st
 
 Batch batch_of_render(std::vector<std::string> const& given, int frames_per_task)
 {
-    Words words(given);
+    CommandWords words(given);
     auto const frames = words.value("--frames");
     if (!frames)
         throw gi::InputError("render without --frames in a batch", "one picture is one task",
@@ -136,7 +101,7 @@ Batch batch_of_render(std::vector<std::string> const& given, int frames_per_task
 
 Batch batch_of_bench(std::vector<std::string> const& given)
 {
-    Words words(given);
+    CommandWords words(given);
     std::string const what = given.size() > 1 ? given[1] : "";
     if (what != "sweep" && what != "pictures")
         throw gi::InputError("bench " + what + " in a batch", "it is one measurement on one machine",
@@ -153,7 +118,7 @@ Batch batch_of_bench(std::vector<std::string> const& given)
     batch.merges = {{"bench", what + ".csv"}};
     for (std::string_view const part : gi::split_at_commas(*scenes)) {
         std::string const scene(part);
-        Words one = words;
+        CommandWords one = words;
         one.set(option, scene);
         one.set("--out", stem_of(scene));
         Task task;

@@ -5,7 +5,9 @@
 #include "viewer/batch/claim.h"
 #include "viewer/batch/file_hash.h"
 #include "viewer/batch/journal.h"
+#include "viewer/batch/resume.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <set>
 #include <thread>
@@ -35,6 +37,13 @@ std::string change_of(InputFile const& file)
                : "the input '" + file.path.string() +
                      "' has changed since the batch was planned: call lightwell batch "
                      "with the manifest again";
+}
+
+bool has_resumable(fs::path const& folder, Task const& task)
+{
+    std::error_code none;
+    return std::ranges::any_of(resumable_files(task),
+                               [&](std::string const& name) { return fs::exists(folder / name, none); });
 }
 
 class Run {
@@ -107,12 +116,19 @@ private:
         journal_.append(std::move(event));
     }
 
-    /// An empty folder with links to the inputs, and folders for outputs.
-    void make_folder()
+    /// A folder with links to the inputs, folders for outputs, and what an attempt that was cut has left to go on
+    /// from.
+    /// @return whether there is something of that
+    bool make_folder()
     {
+        bool const goes_on = has_resumable(folder(), task_);
         if (!fs::create_directories(folder())) { // one that a killed process left
-            fs::remove_all(folder());
-            fs::create_directory(folder());
+            if (goes_on) {
+                remove_other_files();
+            } else {
+                fs::remove_all(folder());
+                fs::create_directory(folder());
+            }
         }
         for (int const i : task_.inputs) {
             InputFile const& file = batch_.files[std::size_t(i)];
@@ -122,18 +138,33 @@ private:
         }
         for (std::string const& output : task_.outputs) // the folder of a folder: the program makes that itself
             fs::create_directories((folder() / output.substr(0, output.find_last_not_of('/') + 1)).parent_path());
+        return goes_on;
+    }
+
+    void remove_other_files()
+    {
+        std::vector<std::string> const kept = resumable_files(task_);
+        std::vector<fs::path> others;
+        for (auto const& entry : fs::recursive_directory_iterator(folder()))
+            if (!fs::is_directory(entry.symlink_status()) &&
+                std::ranges::count(kept, entry.path().lexically_relative(folder()).string()) == 0)
+                others.push_back(entry.path());
+        for (fs::path const& file : others) fs::remove(file);
     }
 
     Attempt try_once()
     {
+        bool goes_on = false;
         try {
-            make_folder();
+            goes_on = make_folder();
         } catch (fs::filesystem_error const& e) {
             throw gi::InputError("cannot make the folder of a task '" + folder().string() + "'",
                                  e.code().message(), "free some space, or make the store writable");
         }
+        std::vector<std::string> command = task_.command;
+        if (goes_on) command.emplace_back("--resume");
         ChildCall const call{.program = settings_.program,
-                             .arguments = task_.command,
+                             .arguments = command,
                              .folder = folder(),
                              .standard_output = task_.standard_output.empty() ? fs::path("/dev/null")
                                                                               : folder() / task_.standard_output,
@@ -141,6 +172,10 @@ private:
                              .memory_bytes = task_.resources.memory_bytes};
         Attempt a;
         a.end = run_child(call, stop_);
+        if (goes_on && a.end.reason == ChildEnd::Reason::exited && a.end.code != 0 && a.end.code < 128) {
+            fs::remove_all(folder());
+            return try_once();
+        }
         if (!a.end.is_good()) {
             a.why = text_of(a.end, call);
             a.may_pass = a.end.reason != ChildEnd::Reason::exited || a.end.code != 2;
@@ -229,6 +264,7 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
     }
     if (end == WorkEnd::passed_on) return end;
     std::error_code none;
+    if (end == WorkEnd::interrupted && has_resumable(store.work(task.key), task)) return end;
     if (!fs::remove(store.work(task.key), none)) fs::remove_all(store.work(task.key), none);
     return end;
 }

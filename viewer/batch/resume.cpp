@@ -1,0 +1,41 @@
+#include "viewer/batch/resume.h"
+
+#include "viewer/batch/command_words.h"
+
+#include <set>
+
+namespace viewer::batch {
+namespace {
+
+/// The light of the other methods, and of a radiance cache, starts anew when a picture is resumed.
+bool resumes_exactly(CommandWords const& words)
+{
+    static std::set<std::string> const kMethods{"reference", "slhb", "whitted"};
+    std::string const method = words.value("--method").value_or("reference");
+    return (kMethods.contains(method) || method.starts_with("vpl_")) &&
+           words.value("--radiance-cache").value_or("off") == "off";
+}
+
+} // namespace
+
+std::vector<std::string> resumable_files(Task const& task)
+{
+    CommandWords const words(task.command);
+    if (task.command.empty() || task.command.front() != "render") return {};
+    // A budget counts for each call, motion blur is rendered in one go, and frames of a chain differ in their
+    // noise.
+    for (char const* const option : {"--resume", "--budget", "--shutter", "--reuse", "--video"})
+        if (words.has(option)) return {};
+    auto const out = words.value("--out"), png = words.value("--png"), state = words.value("--state");
+    std::vector<std::string> files;
+    if (words.has("--frames")) {
+        for (std::string const& output : task.outputs)
+            if (out && output.ends_with(".exr")) files.push_back(output);
+    } else if (resumes_exactly(words) && (state || out || png)) {
+        files.push_back(state ? *state : (out ? *out : *png) + ".state");
+    }
+    for (std::string& file : files) file = std::filesystem::path(file).lexically_normal().string();
+    return files;
+}
+
+} // namespace viewer::batch
