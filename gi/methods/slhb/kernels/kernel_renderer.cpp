@@ -225,6 +225,7 @@ void KernelRenderer<S>::add_motion(std::size_t view, Picture& picture) const
 {
     View const& v = views_[view];
     PrimaryMap map(soup_, cut_outs_, settings_, v.width, v.height);
+    map.set_filter(v.filter);
     map.take(v.eye, v.index, download(v.primary));
     gi::add_motion(map, soup_, v.rays, v.earlier, earlier_, picture);
 }
