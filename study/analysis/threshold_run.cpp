@@ -152,16 +152,21 @@ RateCount false_alarms(std::vector<TrialRow> const& trials)
     return noise;
 }
 
-std::string note_of_open_ends(Interval const& interval, double tail)
+std::string open_ends(Interval const& interval)
 {
     bool const below = !std::isfinite(interval.low), above = !std::isfinite(interval.high);
     if (!below && !above) return "";
-    return fmt::format("the interval is open {}: more than {:.3g} % of the posterior's functions reach this "
-                       "proportion beyond all levels or never",
-                       below && above ? "below and above"
-                       : below        ? "below"
-                                      : "above",
-                       100 * tail);
+    return std::string("the interval is open ") + (below && above ? "below and above" : below ? "below" : "above");
+}
+
+std::string note_of_open_ends(Interval const& interval, double tail)
+{
+    std::string const open = open_ends(interval);
+    if (open.empty()) return "";
+    return fmt::format(
+        "{}: more than {:.3g} % of the posterior's functions reach this proportion beyond all levels "
+        "or never",
+        open, 100 * tail);
 }
 
 ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, PsychometricChoice const& function,

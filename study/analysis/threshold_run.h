@@ -30,6 +30,8 @@ struct GroupCurve {
 /// the group's function; the interval holds the thresholds at which such runs give this mean by chance.
 ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
                                     std::optional<GroupCurve> const& group, AnalysisSettings const& settings);
+/// "the interval is open above", say, of an interval with unknown ends; empty if there are none.
+std::string open_ends(Interval const& interval);
 /// What to say of a posterior's interval with unknown ends; empty if there are none. @param tail  the probability
 /// beyond each end
 std::string note_of_open_ends(Interval const& interval, double tail);

@@ -167,6 +167,9 @@ std::optional<GroupCurve> group_curve(Compare const& c, PsychometricChoice const
     g.settings.fits_guess = data.fits_guess;
     try {
         g.threshold = group_threshold(data.observers, g.settings);
+        Interval const interval = level_of(g.settings.shape, g.threshold.mean, g.threshold.interval, 0).interval;
+        if (std::string const open = open_ends(interval); !open.empty())
+            append(g.threshold.note, open + ": the answers do not exclude means far beyond all levels");
         append(note, g.threshold.note);
         append(note, data.note);
         return g;

@@ -103,6 +103,45 @@ TEST(LikelihoodEstimate, SaysWhereItsIntervalIsOpen)
     EXPECT_TRUE(falling.note.starts_with(why + "above:")) << falling.note;
 }
 
+TEST(GroupThresholds, SayWhereTheirIntervalIsOpen)
+{
+    // Three observers who detect the easiest level, four times of five: some thresholds may lie far above.
+    auto const block = [](std::string const& harder, int right_of_five) {
+        Script const s = yes_no_script(harder, "{method: constant, levels: 1..100/5, trials_per_level: 5}");
+        std::vector<RecordedSession> sessions;
+        for (int p = 1; p <= 3; ++p) {
+            MadeSession made(s, "P00" + std::to_string(p));
+            auto const add = [&](double level, bool says_yes, bool is_noise) {
+                TrialDone& t = made.add(0, {{0}, {0}}, says_yes ? "yes" : "no");
+                t.level = level;
+                t.is_correct = says_yes != is_noise;
+                made.last_step().trial.procedure = 0;
+                made.last_step().trial.is_noise = is_noise;
+            };
+            for (int k = 0; k < 5; ++k)
+                for (int i = 0; i < 5; ++i) {
+                    double const level = std::pow(10.0, harder == "down" ? 0.5 * k : 2 - 0.5 * k);
+                    add(level, i < (k == 4 ? right_of_five : k == 3 && right_of_five == 5 ? 4 : 0), false);
+                    add(level, i == 0, true);
+                }
+            sessions.push_back(made.finished());
+        }
+        return analyze(s, sessions).blocks.at(0);
+    };
+    for (std::string const harder : {"down", "up"}) {
+        std::string const side = harder == "down" ? "above" : "below";
+        BlockResult const b = block(harder, 4), known = block(harder, 5);
+        Interval const& interval = b.thresholds.at(0).level.interval;
+        EXPECT_EQ(std::isnan(interval.low), harder == "up");
+        EXPECT_EQ(std::isnan(interval.high), harder == "down");
+        std::string const note =
+            "the interval is open " + side + ": the answers do not exclude means far beyond all levels";
+        EXPECT_NE(b.thresholds.at(0).note.find(note), std::string::npos) << b.thresholds.at(0).note;
+        EXPECT_NE(b.curves.at(0).note.find(note), std::string::npos) << b.curves.at(0).note;
+        EXPECT_EQ(known.thresholds.at(0).note.find("open"), std::string::npos) << known.thresholds.at(0).note;
+    }
+}
+
 TEST(RunsTable, HasNullsForOpenEndsAndARemark)
 {
     Analysis a;
