@@ -2,6 +2,7 @@
 
 #include "study/stats/bootstrap.h"
 #include "study/stats/error.h"
+#include "study/stats/observer_components.h"
 #include "study/stats/pair_likelihood.h"
 #include "study/stats/special.h"
 
@@ -28,27 +29,24 @@ Eigen::MatrixXd power(Eigen::MatrixXd const& a, double exponent, double least)
     return solved.eigenvectors() * d.asDiagonal() * solved.eigenvectors().transpose();
 }
 
-/// The possible answers to each pair. @param influence  scores by gradients
-std::vector<std::vector<PairOutcome>> outcomes_of(std::vector<PairCount> const& pairs, PairModel model,
-                                                  PairParameters const& layout, std::span<double const> at,
-                                                  Eigen::MatrixXd const& influence)
+/// The possible answers to each pair.
+std::vector<PairAnswers> answers_of(std::vector<PairCount> const& pairs, PairModel model,
+                                    PairParameters const& layout, std::span<double const> at)
 {
-    std::vector<std::vector<PairOutcome>> all;
+    std::vector<PairAnswers> all;
     for (PairCount const& p : pairs) {
         std::vector<PairCount> answers{{p.first, p.second, 1, 0, 0}, {p.first, p.second, 0, 1, 0}};
         if (layout.has_threshold) answers.push_back({p.first, p.second, 0, 0, 1});
-        std::vector<PairOutcome> outcomes;
+        PairAnswers a;
+        a.trials = p.first_wins + p.second_wins + p.ties;
         for (PairCount const& one : answers) {
             Likelihood l;
             l.clear(layout.count());
             add_pair(model, layout, one, at, l);
-            Eigen::VectorXd const moved =
-                influence * Eigen::VectorXd::Map(l.gradient.data(), Eigen::Index(layout.count()));
-            outcomes.push_back({p.first_wins + p.second_wins + p.ties,
-                                std::exp(l.log_likelihood),
-                                {moved.data(), moved.data() + moved.size()}});
+            a.probability.push_back(std::exp(l.log_likelihood));
+            a.gradient.push_back(Eigen::VectorXd::Map(l.gradient.data(), Eigen::Index(layout.count())));
         }
-        all.push_back(std::move(outcomes));
+        all.push_back(std::move(a));
     }
     return all;
 }
@@ -59,31 +57,6 @@ Matrix kept(Eigen::MatrixXd const& m)
     for (Eigen::Index r = 0; r < m.rows(); ++r)
         for (Eigen::Index c = 0; c < m.cols(); ++c) out(std::size_t(r), std::size_t(c)) = m(r, c);
     return out;
-}
-
-/// How observers differ, as covariance of their own parameters: items one by one, and units.
-/// @param at  parameters; the first `scores` of them are scores relative to the first item
-Eigen::MatrixXd observers_covariance(std::vector<Eigen::VectorXd> const& gradient,
-                                     std::vector<Eigen::MatrixXd> const& information, Eigen::VectorXd const& at,
-                                     Eigen::Index scores)
-{
-    Eigen::Index const n = at.size();
-    std::array<Eigen::MatrixXd, 2> parts{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
-    parts[0].topLeftCorner(scores, scores) =
-        Eigen::MatrixXd::Identity(scores, scores) + Eigen::MatrixXd::Ones(scores, scores);
-    parts[1].topLeftCorner(scores, scores) = at.head(scores) * at.head(scores).transpose();
-    Eigen::Matrix2d expected = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d excess = Eigen::Vector2d::Zero();
-    for (std::size_t o = 0; o < gradient.size(); ++o) {
-        std::array<Eigen::MatrixXd, 2> const moved{information[o] * parts[0], information[o] * parts[1]};
-        for (int k = 0; k < 2; ++k) {
-            excess[k] += gradient[o].dot(parts[k] * gradient[o]) - moved[k].trace();
-            for (int l = 0; l < 2; ++l) expected(k, l) += (moved[k] * moved[l]).trace();
-        }
-    }
-    // Of two items, or of equal ones, units are no other differences than those of items.
-    Eigen::Vector2d const share = expected.completeOrthogonalDecomposition().solve(excess);
-    return share[0] * parts[0] + share[1] * parts[1];
 }
 
 double weighted(std::span<double const> weights, std::vector<double> const& values)
@@ -101,18 +74,23 @@ double weighted_variance(std::span<double const> weights, Matrix const& covarian
     return sum;
 }
 
-/// Sum over trials of the fourth cumulant of their contributions.
-double fourth_cumulant(std::vector<std::vector<PairOutcome>> const& pairs, std::span<double const> weights)
+/// Sums over trials of cumulants of their contributions.
+struct Cumulants {
+    double third = 0, fourth = 0;
+};
+Cumulants cumulants(std::vector<std::vector<PairOutcome>> const& pairs, std::span<double const> weights)
 {
-    double sum = 0;
+    Cumulants sum;
     for (auto const& outcomes : pairs) {
-        double second = 0, fourth = 0;
+        double second = 0, third = 0, fourth = 0;
         for (PairOutcome const& o : outcomes) {
-            double const square = std::pow(weighted(weights, o.influence), 2);
+            double const moved = weighted(weights, o.influence), square = moved * moved;
             second += o.probability * square;
+            third += o.probability * square * moved;
             fourth += o.probability * square * square;
         }
-        sum += outcomes.front().trials * (fourth - 3 * second * second);
+        sum.third += outcomes.front().trials * third;
+        sum.fourth += outcomes.front().trials * (fourth - 3 * second * second);
     }
     return sum;
 }
@@ -171,13 +149,34 @@ ObserverScale scale_observers(std::vector<std::vector<PairCount>> const& observe
         s.expected.push_back(kept(centre * root * leverage * root * centre.transpose()));
     }
     s.dispersion = n > 0 ? std::max(0.5, squares / double(n)) : 1;
-    Eigen::MatrixXd const own =
-        observers_covariance(gradient, information, Eigen::VectorXd::Map(at.data(), n), items - 1);
-    Eigen::MatrixXd variances = all;
-    for (Eigen::MatrixXd const& i : information) variances += i * own * i;
+    std::vector<PairAnswers> const answers = answers_of(pooled, settings.model, layout, at);
+    ObserverComponents const differ =
+        observer_components(gradient, information, Eigen::VectorXd::Map(at.data(), n), items - 1, answers);
     Eigen::MatrixXd const to_scores = centre * root * root;
-    s.modelled = kept(to_scores * variances * to_scores.transpose());
-    s.outcomes = outcomes_of(pooled, settings.model, layout, at, to_scores);
+    auto const of_scores = [&](Eigen::MatrixXd const& m) {
+        return Eigen::MatrixXd(to_scores * m * to_scores.transpose());
+    };
+    Eigen::MatrixXd modelled = of_scores(all);
+    for (std::size_t k = 0; k < 2; ++k) {
+        Eigen::MatrixXd differences = Eigen::MatrixXd::Zero(n, n);
+        for (Eigen::MatrixXd const& i : information) differences += i * differ.part[k] * i;
+        modelled += differ.value[Eigen::Index(k)] * of_scores(differences);
+        Eigen::VectorXd const with_score = to_scores * differ.with_gradient[k];
+        s.components[k] = {kept(of_scores(differences)),
+                           kept(of_scores(differ.with_squares[k])),
+                           {with_score.data(), with_score.data() + with_score.size()},
+                           {differ.covariance(Eigen::Index(k), 0), differ.covariance(Eigen::Index(k), 1)}};
+    }
+    s.modelled = kept(modelled);
+    for (Eigen::MatrixXd const& covariance : differ.observer) s.observer.push_back(kept(of_scores(covariance)));
+    for (PairAnswers const& a : answers) {
+        std::vector<PairOutcome> outcomes;
+        for (std::size_t j = 0; j < a.gradient.size(); ++j) {
+            Eigen::VectorXd const moved = to_scores * a.gradient[j];
+            outcomes.push_back({a.trials, a.probability[j], {moved.data(), moved.data() + moved.size()}});
+        }
+        s.outcomes.push_back(std::move(outcomes));
+    }
     return s;
 }
 
@@ -189,21 +188,39 @@ Contrast contrast(ObserverScale const& s, std::span<double const> weights, doubl
     Contrast c;
     c.value = weighted(weights, s.fit.score);
     c.reduced = weighted(weights, s.reduced.score);
-    double over_observers = 0, model = 0, squares = 0;
+    double over_observers = 0, independent = 0, squares = 0, of_sum = 0, scatter = 0;
     for (std::size_t o = 0; o < s.influence.size(); ++o) {
         over_observers += std::pow(weighted(weights, s.influence[o]), 2);
-        double const expected = weighted_variance(weights, s.expected[o]);
-        model += expected;
-        squares += expected * expected;
+        double const trials = weighted_variance(weights, s.expected[o]);
+        independent += trials;
+        squares += trials * trials;
+        double const modelled = weighted_variance(weights, s.observer[o]);
+        of_sum += modelled;
+        scatter += 2 * modelled * modelled;
     }
-    if (!(model > 0)) return c;
+    if (!(independent > 0)) return c;
     // The variance of the variance: 2 s^4 and the fourth cumulant for each observer.
-    double const noise = squares + fourth_cumulant(s.outcomes, weights) / 2;
-    double const d = std::max(1.0, model * model / std::max(noise, 1e-12 * model * model) - 1);
-    double const d0 = 2 * double(weights.size() - 1);
-    c.degrees_of_freedom = d + d0;
-    double const modelled = std::max(weighted_variance(weights, s.modelled), 0.5 * model);
-    c.standard_error = std::sqrt((d * over_observers + d0 * modelled) / (d + d0));
+    Cumulants const trials = cumulants(s.outcomes, weights);
+    double const noise = squares + trials.fourth / 2, square = independent * independent;
+    double const d = std::max(1.0, square / std::max(noise, 1e-12 * square) - 1);
+    constexpr double kOfModel = 4;
+    double const share = d / (d + kOfModel);
+    double const modelled = std::max(weighted_variance(weights, s.modelled), 0.5 * independent);
+    double const variance = share * over_observers + (1 - share) * modelled;
+    // Satterthwaite's degrees of freedom: the variance of the two together.
+    double both = 0, of_model = 0, with_score = share * trials.third;
+    std::array<double, 2> const by_unit{weighted_variance(weights, s.components[0].variance),
+                                        weighted_variance(weights, s.components[1].variance)};
+    for (std::size_t k = 0; k < 2; ++k) {
+        both += by_unit[k] * weighted_variance(weights, s.components[k].with_squares);
+        with_score += (1 - share) * by_unit[k] * weighted(weights, s.components[k].with_score);
+        for (std::size_t l = 0; l < 2; ++l) of_model += by_unit[k] * by_unit[l] * s.components[k].covariance[l];
+    }
+    scatter = share * share * (scatter + trials.fourth) + 2 * share * (1 - share) * both +
+              (1 - share) * (1 - share) * of_model;
+    double const own = scatter - with_score * with_score / std::max(of_sum, variance);
+    c.degrees_of_freedom = std::max(1.0, 2 * of_sum * of_sum / std::max(own, 0.1 * scatter));
+    c.standard_error = std::sqrt(variance);
     double const half = student_quantile((1 + confidence) / 2, c.degrees_of_freedom) * c.standard_error;
     c.interval = {c.reduced - half, c.reduced + half};
     if (c.standard_error > 0) c.p = 2 * student_cdf(-std::abs(c.reduced) / c.standard_error, c.degrees_of_freedom);

@@ -4,10 +4,16 @@
 // Variances are those of the sandwich estimator by observers (Huber 1967; Liang & Zeger 1986, Biometrika 73:13)
 // with the correction of Kauermann & Carroll (2001, JASA 96:1387) for few observers, whose own choices pull the
 // fit towards themselves. With d degrees of freedom (Fay & Graubard 2001, Biometrics 57:1198; here with the
-// kurtosis of choices, which matters if nearly all agree) they are moderated by those of a model, with d0 degrees
-// (Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3:3): V = (d V_observers + d0 V_model) / (d + d0). d0 is twice the
-// number of free scores. Intervals have Student's distribution with d + d0 degrees around scores with Jeffreys'
-// prior, because those of maximum likelihood are too far apart on average.
+// kurtosis of choices, which matters if nearly all agree) they are moderated by those of a model, with 4 degrees
+// (as Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3:3): V = (d V_observers + 4 V_model) / (d + 4). They are not more
+// for more items, since these do not make the model truer of any one of them. Intervals are around scores with
+// Jeffreys' prior, because those of maximum likelihood are too far apart on average.
+//
+// Degrees of freedom of V are Satterthwaite's (1946, Biometrics Bull. 2:110): V is a quadratic form of observers'
+// gradients, whose variance under the model follows from their covariances and the cumulants of choices. What V
+// varies by together with the score, cov(V, score)^2 / var(score), does not count: towards unanimous choices
+// errors grow with the score, and intervals grow where it is far out by chance. Of estimates from exponential
+// families, which are skewed twice as much, this is right to the second order (statistics.md).
 //
 // In the model observer o has scores s + e_o with covariance C = a I + b s s^T: differences of single items, and a
 // unit of his or her own, which stretches the scale and so moves its ends most. A gradient has then covariance
@@ -18,6 +24,7 @@
 #include "study/stats/binomial.h"
 #include "study/stats/pair_scale.h"
 
+#include <array>
 #include <span>
 
 namespace study {
@@ -26,6 +33,14 @@ namespace study {
 struct PairOutcome {
     double trials = 0, probability = 0;
     std::vector<double> influence;
+};
+
+/// One of the two components of how observers differ, as it enters variances of scores.
+struct ScoreComponent {
+    Matrix variance;                  ///< of the scores by one unit of the component
+    Matrix with_squares;              ///< its covariance with the sum of observers' squares
+    std::vector<double> with_score;   ///< its covariance with scores
+    std::array<double, 2> covariance; ///< with both components
 };
 
 struct ObserverScale {
@@ -38,6 +53,8 @@ struct ObserverScale {
         influence;                ///< by observer: change of each score by his or her choices, unit of F
     std::vector<Matrix> expected; ///< by observer: covariance of that for independent trials
     Matrix modelled;              ///< covariance of the scores by the model of how observers differ
+    std::vector<Matrix> observer; ///< by observer: its part of that, with no component below 0
+    std::array<ScoreComponent, 2> components;
     std::vector<std::vector<PairOutcome>> outcomes; ///< by pair
 };
 

@@ -25,13 +25,17 @@ struct PairExperiment {
     double tie = 0;     ///< smaller differences are ties
     double unit_sd = 0; ///< of the logarithm of an observer's unit
     double missing = 0; ///< share of pairs that an observer does not judge
+    int disputed = -1;  ///< an item of which the spread is 1
+
+    double spread(std::size_t item) const { return int(item) == disputed ? 1 : between; }
 };
 
 std::vector<PairCount> choices_of(PairExperiment const& e, Random& random)
 {
     double const unit = std::exp(e.unit_sd * random.normal());
     std::vector<double> own;
-    for (double const t : e.truth) own.push_back(unit * t + e.between * random.normal());
+    for (std::size_t i = 0; i < e.truth.size(); ++i)
+        own.push_back(unit * e.truth[i] + e.spread(i) * random.normal());
     std::vector<PairCount> pairs;
     for (int i = 0; i < int(own.size()); ++i)
         for (int j = i + 1; j < int(own.size()); ++j) {
@@ -49,12 +53,12 @@ std::vector<PairCount> choices_of(PairExperiment const& e, Random& random)
 /// The scores that an infinite number of observers gives: variances of people add to those of trials.
 std::vector<double> scores_of_all(PairExperiment const& e, PairSettings const& settings)
 {
-    double const shrunk = 1 / std::sqrt(1 + 2 * e.between * e.between);
     int const units = e.unit_sd > 0 ? 2000 : 1;
     std::vector<PairCount> pairs;
     for (int i = 0; i < int(e.truth.size()); ++i)
         for (int j = i + 1; j < int(e.truth.size()); ++j) {
             PairCount p{i, j};
+            double const shrunk = 1 / std::hypot(1, e.spread(std::size_t(i)), e.spread(std::size_t(j)));
             for (int u = 0; u < units; ++u) {
                 double const unit = e.unit_sd > 0 ? std::exp(e.unit_sd * normal_quantile((u + 0.5) / units)) : 1;
                 double const d = unit * (e.truth[std::size_t(i)] - e.truth[std::size_t(j)]);
@@ -70,7 +74,7 @@ std::vector<double> scores_of_all(PairExperiment const& e, PairSettings const& s
 TEST(Coverage, OfScoresOfPairsIs93To97PerCentInManyKindsOfExperiments)
 {
     std::vector<double> const mid{-0.9, -0.1, 0.3, 0.7}, wide{-2.2, -1, 0.2, 1, 2},
-        seven{-1.5, -1, -.4, 0, .4, 1, 1.5};
+        seven{-1.5, -1, -.4, 0, .4, 1, 1.5}, twelve{-1.6, -1.3, -1, -.7, -.4, -.1, .2, .5, .8, 1.1, 1.4, 1.1};
     std::vector<PairExperiment> const all{{"few", mid, 8, 3, 0.5},
                                           {"usual", mid, 24, 3, 0.5},
                                           {"many, one trial each", mid, 60, 1, 0.3},
@@ -85,6 +89,7 @@ TEST(Coverage, OfScoresOfPairsIs93To97PerCentInManyKindsOfExperiments)
                                           {"gaps", mid, 16, 2, 0.4, 0, 0, 0.4},
                                           {"seven items", seven, 30, 1, 0.7},
                                           {"very different people", mid, 20, 6, 0.8},
+                                          {"one disputed of twelve", twelve, 24, 1, 0.2, 0, 0, 0, 6},
                                           {"no differences", {0, 0, 0, 0, 0}, 20, 2, 0.3}};
     int const simulations = 5000;
     for (PairExperiment const& e : all) {

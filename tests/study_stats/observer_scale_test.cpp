@@ -106,6 +106,38 @@ TEST(ObserverScale, OfAScoreThatOneObserverDeterminesHasFewDegreesOfFreedom)
     EXPECT_GT(difference_of(s, 0, 1).degrees_of_freedom, 25);
 }
 
+TEST(ObserverScale, OfManyItemsLetsOneBeDisputed)
+{
+    double share = 0;
+    int const experiments = 40;
+    for (int e = 0; e < experiments; ++e) {
+        Random random(100 + std::uint64_t(e));
+        std::vector<std::vector<PairCount>> data;
+        for (std::uint64_t o = 0; o < 24; ++o) {
+            std::vector<double> own;
+            for (int i = 0; i < 12; ++i) own.push_back(0.25 * i - 1.5);
+            own[6] += random.normal();
+            data.push_back(simulated(1, 1, own, 0, 0, 1000 * std::uint64_t(e) + o).front());
+        }
+        ObserverScale const s = scale_observers(data, 12);
+        double observed = 0;
+        for (auto const& moved : s.influence) observed += moved[6] * moved[6];
+        share += std::pow(score_of(s, 6).standard_error, 2) / observed / experiments;
+    }
+    EXPECT_GT(share, 0.85);
+}
+
+TEST(ObserverScale, KnowsAnErrorThatFollowsFromTheScore)
+{
+    // One choice of each: how many choose the first is all there is to know.
+    std::vector<std::vector<PairCount>> data(30, {{0, 1, 1, 0}});
+    for (std::size_t o = 0; o < 9; ++o) data[o] = {{0, 1, 0, 1}};
+    EXPECT_GT(score_of(scale_observers(data, 2), 0).degrees_of_freedom, 100);
+    // With more choices of each, how much observers differ is to be estimated.
+    for (auto& own : data) own.front() = {0, 1, 10 * own.front().first_wins + 2, 10 * own.front().second_wins + 2};
+    EXPECT_NEAR(score_of(scale_observers(data, 2), 0).degrees_of_freedom, 29, 8);
+}
+
 TEST(ObserverScale, RefusesOneObserverAndWrongWeights)
 {
     EXPECT_THROW(scale_observers({{{0, 1, 1, 1}}}, 2), std::invalid_argument);
