@@ -105,8 +105,8 @@ TEST(LikelihoodEstimate, SaysWhereItsIntervalIsOpen)
 
 TEST(GroupThresholds, SayWhereTheirIntervalIsOpen)
 {
-    // Three observers who detect the easiest level, four times of five: some thresholds may lie far above.
-    auto const block = [](std::string const& harder, int right_of_five) {
+    // Three observers who hardly detect the easiest level, whose thresholds may lie far beyond it, or all of them.
+    auto const block = [](std::string const& harder, bool detect) {
         Script const s = yes_no_script(harder, "{method: constant, levels: 1..100/5, trials_per_level: 5}");
         std::vector<RecordedSession> sessions;
         for (int p = 1; p <= 3; ++p) {
@@ -121,16 +121,19 @@ TEST(GroupThresholds, SayWhereTheirIntervalIsOpen)
             for (int k = 0; k < 5; ++k)
                 for (int i = 0; i < 5; ++i) {
                     double const level = std::pow(10.0, harder == "down" ? 0.5 * k : 2 - 0.5 * k);
-                    add(level, i < (k == 4 ? right_of_five : k == 3 && right_of_five == 5 ? 4 : 0), false);
+                    int const right = detect ? 2 * k - 2 + (p == 2) : k == 4 ? 1 + (p == 2) : 0;
+                    add(level, i < right, false);
                     add(level, i == 0, true);
                 }
             sessions.push_back(made.finished());
         }
-        return analyze(s, sessions).blocks.at(0);
+        AnalysisSettings settings;
+        settings.draws = 0;
+        return analyze(s, sessions, settings).blocks.at(0);
     };
     for (std::string const harder : {"down", "up"}) {
         std::string const side = harder == "down" ? "above" : "below";
-        BlockResult const b = block(harder, 4), known = block(harder, 5);
+        BlockResult const b = block(harder, false), known = block(harder, true);
         Interval const& interval = b.thresholds.at(0).level.interval;
         EXPECT_EQ(std::isnan(interval.low), harder == "up");
         EXPECT_EQ(std::isnan(interval.high), harder == "down");
