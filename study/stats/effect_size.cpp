@@ -5,6 +5,7 @@
 #include "study/stats/special.h"
 #include "study/stats/summary.h"
 
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/non_central_f.hpp>
 #include <boost/math/distributions/non_central_t.hpp>
@@ -36,13 +37,21 @@ double f_tail(double f, double df1, double df2)
 Interval eta2_interval(double f, double df1, double df2, double confidence)
 {
     if (!std::isfinite(f) || f < 0) return {std::nan(""), std::nan("")};
+    double const tail = (1 - confidence) / 2;
+    auto const eta2 = [&](double lambda) { return lambda / (lambda + df1 + df2 + 1); };
+    // Beyond, as where all observers give the same answer, only the denominator's chi squared varies in
+    // comparison.
+    constexpr double kLarge = 1e6;
+    if (f * df1 > kLarge) {
+        bm::chi_squared const below(df2);
+        auto const lambda = [&](double share) { return f * df1 * (bm::quantile(below, share) / df2); };
+        return {eta2(lambda(tail)), eta2(lambda(1 - tail))};
+    }
     auto const cdf = [&](double lambda) {
         return lambda > 0 ? bm::cdf(bm::non_central_f(df1, df2, lambda), f) : 1 - f_tail(f, df1, df2);
     };
     double high = 10 + 4 * f * df1;
-    double const tail = (1 - confidence) / 2;
     while (cdf(high) > tail && high < 1e6) high *= 2;
-    auto const eta2 = [&](double lambda) { return lambda / (lambda + df1 + df2 + 1); };
     return {eta2(noncentrality(cdf, 1 - tail, 0, high)), eta2(noncentrality(cdf, tail, 0, high))};
 }
 

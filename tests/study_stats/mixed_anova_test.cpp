@@ -109,6 +109,19 @@ TEST(MixedAnova, RefusesWhatItCannotSeparate)
     EXPECT_THROW(mixed_anova(Matrix(8, 2, 1), {{{"c", 2}}, {}}), std::invalid_argument);
 }
 
+/// As where all observers give the same answer, but for rounding.
+TEST(EffectSize, OfHugeRatiosGoesOnAsThatOfLargeOnes)
+{
+    for (bool const high : {false, true}) {
+        auto const rest = [&](double f) {
+            Interval const i = eta2_interval(f, 2, 20);
+            return 1 - (high ? i.high : i.low);
+        };
+        EXPECT_NEAR(rest(4.9e5) / rest(5.1e5), 5.1 / 4.9, 0.01);
+    }
+    EXPECT_NEAR(eta2_interval(1e300, 2, 20).low, 1, 1e-12);
+}
+
 TEST(EffectSize, HasScipysIntervals)
 {
     EXPECT_EQ(eta2_interval(3.5, 2, 20).low, 0);
