@@ -130,9 +130,6 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     }
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
-    bool const takes_light = settings.share_eyes && std::ranges::any_of(command.views, [](ViewCommand const& v) {
-                                 return v.partner >= 0;
-                             });
     std::vector<gi::FrameView> views;
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& v = command.views[k];
@@ -140,9 +137,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
             {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
         if (hidden[k]) views.back().hidden = *hidden[k];
         // Kept light: surfaces are antialiased by themselves, and pixels at outlines show the same one for longer.
-        // Where an eye takes light of the other's pixels, they are up to half a pixel away: other places in each
-        // frame average that.
-        if (small && !takes_light) views.back().filter = gi::PixelFilter::centre;
+        if (small) views.back().filter = gi::PixelFilter::centre;
     }
     // Its blur would stay in the mean of a still picture.
     gi::RadianceCaching const cache = settings.render.slhb.cache;
