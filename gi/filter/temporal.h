@@ -5,7 +5,7 @@
 // Two means are kept. While anything moves (camera, triangles), L1 and L2 over the albedo follow their surfaces:
 // they are interpolated between pixels of the previous frame where all of these show the surface (depth and normal
 // fit). At its borders those of the nearest such pixel are taken as they are, and where they come from is kept
-// with them: interpolated from one side, light of the inside would move to the border, frame by frame, and small
+// with them until they are interpolated: interpolated from one side, light of the inside would move to the border, frame by frame, and small
 // shadows beside what throws them would vanish. This mean covers at most `most_frames` frames, and L1 is clamped
 // to the range of its current neighbourhood, because shadows move faster than the mean adapts (Yang, Liu and Salvi
 // 2020, sec. 4.2). Where the light has not changed, it covers up to `most_unchanged` frames: it is compared with a
@@ -89,12 +89,6 @@ private:
             direct += weight * other.direct;
             indirect += weight * other.indirect;
             normal += weight * other.normal;
-        }
-        void scale(float by)
-        {
-            direct *= by;
-            indirect *= by;
-            normal *= by;
         }
         void approach(Means const& other, float share);
     };

@@ -5,7 +5,6 @@
 #include "study/stats/special.h"
 #include "study/stats/summary.h"
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/non_central_f.hpp>
 #include <boost/math/distributions/non_central_t.hpp>
@@ -43,8 +42,7 @@ Interval eta2_interval(double f, double df1, double df2, double confidence)
     // comparison.
     constexpr double kLarge = 1e6;
     if (f * df1 > kLarge) {
-        bm::chi_squared const below(df2);
-        auto const lambda = [&](double share) { return f * df1 * (bm::quantile(below, share) / df2); };
+        auto const lambda = [&](double share) { return f * df1 * (chi_square_quantile(share, df2) / df2); };
         return {eta2(lambda(tail)), eta2(lambda(1 - tail))};
     }
     auto const cdf = [&](double lambda) {
@@ -82,8 +80,15 @@ WelchTest welch_test(std::span<double const> a, std::span<double const> b, doubl
     double const correction = std::exp(std::lgamma(df / 2) - std::lgamma((df - 1) / 2)) / std::sqrt(df / 2);
     w.hedges_g = correction * w.difference / pooled;
     double const scale = std::sqrt(1 / n_a + 1 / n_b), t = w.difference / (pooled * scale);
+    double const tail = (1 - confidence) / 2;
+    if (constexpr double kLarge = 1e3; std::abs(t) > kLarge) { // as in eta2_interval()
+        auto const delta = [&](double share) { return t * std::sqrt(chi_square_quantile(share, df) / df); };
+        double const nearer = correction * scale * delta(tail), farther = correction * scale * delta(1 - tail);
+        w.g = {std::min(nearer, farther), std::max(nearer, farther)};
+        return w;
+    }
     auto const cdf = [&](double delta) { return bm::cdf(bm::non_central_t(df, delta), t); };
-    double const tail = (1 - confidence) / 2, reach = 12 + std::abs(t);
+    double const reach = 12 + std::abs(t);
     w.g = {correction * scale * noncentrality(cdf, 1 - tail, t - reach, t + reach),
            correction * scale * noncentrality(cdf, tail, t - reach, t + reach)};
     return w;

@@ -29,7 +29,9 @@ TEST(BatchResume, OnlyExactStatesAreGoneOnFrom)
          {"render a --out a.exr --resume", "render a --out a.exr --budget 2s", "render a --out a.exr --shutter 1",
           "render a --out a.exr --method lpv", "render a --out a.exr --method slhb --radiance-cache on",
           "render a --frames 0:2@8 --reuse 4 --out f_%d.exr", "render a --frames 0:2@8 --png f_%d.png",
-          "bench sweep --out a", ""})
+          "render a --frames 0:2@8 --out f_%d.exr --stats s",
+          "render a --frames 0:2@8 --out f_%d.exr --half --png f_%d.png", "render a --out a.exr --state /s",
+          "render a --out b/../../a.exr", "bench sweep --out a", ""})
         EXPECT_EQ(resumable(other, frames), Files{}) << other;
 }
 
@@ -41,6 +43,7 @@ case "$*" in
     if [ -e extra ]; then exit 2; fi
     case "$HOW" in
       damaged) exit 2 ;;
+      cut) kill -KILL $$ ;;
       *) cat out-$2.txt.state > out-$2.txt; echo "resumed" >> out-$2.txt ;;
     esac ;;
   *)
@@ -86,7 +89,19 @@ TEST_F(ResumeTest, WhatIsOfNoUseIsLeftOutAndCostsNoRetry)
     Outcome const o = p.run("batch m.yaml --json");
     EXPECT_EQ(o.code, 0) << o.err;
     EXPECT_EQ(output(), "anew\n");
+    EXPECT_NE(p.run("batch status m.batch --messages").out.find("begun anew"), std::string::npos);
     EXPECT_EQ(p.starts().at(7), 3);
+}
+
+TEST_F(ResumeTest, TaskThatWasCutTooOftenGoesOnWhenTheBatchIsResumed)
+{
+    setenv("HOW", "cut", 1);
+    EXPECT_NE(p.run("batch m.yaml --json").code, 0);
+    EXPECT_EQ(p.starts().at(7), 2);
+    setenv("HOW", "kill", 1);
+    EXPECT_EQ(p.run("batch resume m.batch").code, 0);
+    EXPECT_EQ(output(), "half\nresumed\n");
+    EXPECT_TRUE(fs::is_empty(p / "m.batch/work"));
 }
 
 TEST_F(ResumeTest, InterruptedBatchKeepsStates)

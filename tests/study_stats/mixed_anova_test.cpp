@@ -120,6 +120,16 @@ TEST(EffectSize, OfHugeRatiosGoesOnAsThatOfLargeOnes)
         EXPECT_NEAR(rest(4.9e5) / rest(5.1e5), 5.1 / 4.9, 0.01);
     }
     EXPECT_NEAR(eta2_interval(1e300, 2, 20).low, 1, 1e-12);
+    auto const gap = [](double of) {
+        std::vector<double> const a{of, of + 1, of + 2, of + 3}, b{0, 1, 2, 3.1};
+        return welch_test(a, b).g;
+    };
+    for (double const sign : {-1.0, 1.0}) { // t of 1000 at 920
+        Interval const below = gap(900 * sign), above = gap(940 * sign);
+        EXPECT_NEAR(above.low / below.low, 94.0 / 90, 0.003);
+        EXPECT_NEAR(above.high / below.high, 94.0 / 90, 0.003);
+    }
+    EXPECT_TRUE(std::isfinite(gap(1e14).high));
 }
 
 TEST(EffectSize, HasScipysIntervals)

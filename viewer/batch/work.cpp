@@ -85,6 +85,8 @@ public:
     }
 
 private:
+    enum class Begin : std::uint8_t { from_what_is_left, anew };
+
     fs::path folder() const { return store_.work(task_.key); }
 
     WorkEnd publish(Attempt const& a, Event event)
@@ -119,9 +121,9 @@ private:
     /// A folder with links to the inputs, folders for outputs, and what an attempt that was cut has left to go on
     /// from.
     /// @return whether there is something of that
-    bool make_folder()
+    bool make_folder(Begin begin)
     {
-        bool const goes_on = has_resumable(folder(), task_);
+        bool const goes_on = begin == Begin::from_what_is_left && has_resumable(folder(), task_);
         if (!fs::create_directories(folder())) { // one that a killed process left
             if (goes_on) {
                 remove_other_files();
@@ -152,11 +154,11 @@ private:
         for (fs::path const& file : others) fs::remove(file);
     }
 
-    Attempt try_once()
+    Attempt try_once(Begin begin = Begin::from_what_is_left)
     {
         bool goes_on = false;
         try {
-            goes_on = make_folder();
+            goes_on = make_folder(begin);
         } catch (fs::filesystem_error const& e) {
             throw gi::InputError("cannot make the folder of a task '" + folder().string() + "'",
                                  e.code().message(), "free some space, or make the store writable");
@@ -173,8 +175,9 @@ private:
         Attempt a;
         a.end = run_child(call, stop_);
         if (goes_on && a.end.reason == ChildEnd::Reason::exited && a.end.code != 0 && a.end.code < 128) {
-            fs::remove_all(folder());
-            return try_once();
+            Attempt anew = try_once(Begin::anew);
+            anew.end.messages.insert(0, "what was kept is of no use (" + text_of(a.end, call) + "); begun anew\n");
+            return anew;
         }
         if (!a.end.is_good()) {
             a.why = text_of(a.end, call);
@@ -264,7 +267,8 @@ WorkEnd work_on(Store const& store, Batch const& batch, Task const& task, WorkSe
     }
     if (end == WorkEnd::passed_on) return end;
     std::error_code none;
-    if (end == WorkEnd::interrupted && has_resumable(store.work(task.key), task)) return end;
+    if ((end == WorkEnd::interrupted || end == WorkEnd::failed) && has_resumable(store.work(task.key), task))
+        return end;
     if (!fs::remove(store.work(task.key), none)) fs::remove_all(store.work(task.key), none);
     return end;
 }

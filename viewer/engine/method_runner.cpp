@@ -136,7 +136,8 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         views.push_back(
             {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
         if (hidden[k]) views.back().hidden = *hidden[k];
-        // Kept light: surfaces are antialiased by themselves, and pixels at outlines show the same one for longer.
+        // A smaller picture is of light only: nobody sees its outlines, and their pixels show one surface for
+        // longer.
         if (small) views.back().filter = gi::PixelFilter::centre;
     }
     // Its blur would stay in the mean of a still picture.
