@@ -5,15 +5,15 @@
 // Two means are kept. While anything moves (camera, triangles), L1 and L2 over the albedo follow their surfaces:
 // they are interpolated between pixels of the previous frame where all of these show the surface (depth and normal
 // fit). At its borders those of the nearest such pixel are taken as they are, and where they come from is kept
-// with them until they are interpolated: interpolated from one side, light of the inside would move to the border, frame by frame, and small
-// shadows beside what throws them would vanish. This mean covers at most `most_frames` frames, and L1 is clamped
-// to the range of its current neighbourhood, because shadows move faster than the mean adapts (Yang, Liu and Salvi
-// 2020, sec. 4.2). Where the light has not changed, it covers up to `most_unchanged` frames: it is compared with a
-// second mean of the latest `most_frames`, and where the two differ by more than their noise in the pixels around,
-// the shorter one replaces it. Where the image is static, albedo and L0 are averaged too, so that edges and
-// textures are antialiased. While nothing moves at all, the pictures themselves are averaged over all frames since
-// the last motion, so that a static picture converges to the method's result. After a change of lights, materials
-// or environment, all earlier frames are discarded: the lag is zero frames.
+// with them until they are interpolated: interpolated from one side, light of the inside would move to the border,
+// frame by frame, and small shadows beside what throws them would vanish. This mean covers at most `most_frames`
+// frames, and L1 is clamped to the range of its current neighbourhood, because shadows move faster than the mean
+// adapts (Yang, Liu and Salvi 2020, sec. 4.2). Where the light has not changed, it covers up to `most_unchanged`
+// frames: it is compared with a second mean of the latest `most_frames`, and where the two differ by more than
+// their noise in the pixels around, the shorter one replaces it. Where the image is static, albedo and L0 are
+// averaged too, so that edges and textures are antialiased. While nothing moves at all, the pictures themselves
+// are averaged over all frames since the last motion, so that a static picture converges to the method's result.
+// After a change of lights, materials or environment, all earlier frames are discarded: the lag is zero frames.
 //
 // Where a second eye reuses the first one's light, it takes the first one's temporal mean with it instead of
 // reading its own previous frame.
