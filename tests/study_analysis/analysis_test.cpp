@@ -207,19 +207,12 @@ BlockResult yes_no_block(std::string const& procedure)
 {
     Script const s = yes_no_script("down", procedure);
     MadeSession made(s, "P001");
-    auto const add = [&](double level, bool says_yes, bool is_noise) {
-        TrialDone& t = made.add(0, {{0}, {0}}, says_yes ? "yes" : "no");
-        t.level = level;
-        t.is_correct = says_yes != is_noise;
-        made.last_step().trial.procedure = 0;
-        made.last_step().trial.is_noise = is_noise;
-    };
     for (double const level : {1.0, 3.16227766, 10.0, 31.6227766, 100.0})
         for (int i = 0; i < 50; ++i) {
             double const share = 0.2 + 0.78 * (1 - std::exp(-std::pow(level / 10, 1.5)));
-            add(level, i < 50 * share, false);
+            made.add_yes_no(level, i < 50 * share, false);
         }
-    for (int i = 0; i < 50; ++i) add(1, i % 5 == 0, true);
+    for (int i = 0; i < 50; ++i) made.add_yes_no(1, i % 5 == 0, true);
     return analyze(s, {made.finished()}).blocks.at(0);
 }
 

@@ -56,6 +56,15 @@ public:
         session_.record.entries.emplace_back(std::move(done));
         return std::get<TrialDone>(session_.record.entries.back());
     }
+    /// A trial of yes_no_script().
+    void add_yes_no(double level, bool says_yes, bool is_noise)
+    {
+        TrialDone& t = add(0, {{0}, {0}}, says_yes ? "yes" : "no");
+        t.level = level;
+        t.is_correct = says_yes != is_noise;
+        last_step().trial.procedure = 0;
+        last_step().trial.is_noise = is_noise;
+    }
     PlanStep& last_step() { return session_.plan.steps.back(); }
 
     RecordedSession finished()

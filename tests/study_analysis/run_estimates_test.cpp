@@ -111,19 +111,12 @@ TEST(GroupThresholds, SayWhereTheirIntervalIsOpen)
         std::vector<RecordedSession> sessions;
         for (int p = 1; p <= 3; ++p) {
             MadeSession made(s, "P00" + std::to_string(p));
-            auto const add = [&](double level, bool says_yes, bool is_noise) {
-                TrialDone& t = made.add(0, {{0}, {0}}, says_yes ? "yes" : "no");
-                t.level = level;
-                t.is_correct = says_yes != is_noise;
-                made.last_step().trial.procedure = 0;
-                made.last_step().trial.is_noise = is_noise;
-            };
             for (int k = 0; k < 5; ++k)
                 for (int i = 0; i < 5; ++i) {
                     double const level = std::pow(10.0, harder == "down" ? 0.5 * k : 2 - 0.5 * k);
                     int const right = detect ? 2 * k - 2 + (p == 2) : k == 4 ? 1 + (p == 2) : 0;
-                    add(level, i < right, false);
-                    add(level, i == 0, true);
+                    made.add_yes_no(level, i < right, false);
+                    made.add_yes_no(level, i == 0, true);
                 }
             sessions.push_back(made.finished());
         }
