@@ -14,7 +14,7 @@ void put(Layer& layer, std::size_t pixel, vec3 v)
 } // namespace
 
 Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
-                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before)
+                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before, vec2 margin)
 {
     Picture picture{width, height, {}, {}};
     picture.add("color", 3);
@@ -24,7 +24,7 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
     Layer* const motion = before ? &picture.add("motion", 3) : nullptr;
     if (motion) std::ranges::fill(motion->data, std::numeric_limits<float>::quiet_NaN());
     std::optional<Projection> const project_before = before ? std::optional<Projection>(*before) : std::nullopt;
-    vec2 const smaller{float(light.width()) / float(width), float(light.height()) / float(height)};
+    vec2 const of_light{light.width(), light.height()}, smaller = of_light / (vec2{width, height} - 2.0f * margin);
     tbb::combinable<LitCounts> sums;
     tbb::parallel_for(0, height, [&](int y) {
         thread_local std::vector<SeenSurface> row;
@@ -38,7 +38,8 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
             vec3 radiance = s.emitted + s.direct;
             vec2 const place = vec2{float(x), float(y)} + seen.at();
             if (s.depth > 0) {
-                FoundLight const found = light.find(s.position, s.normal, smaller * place);
+                vec2 const at = glm::clamp(smaller * (place - margin), vec2{0.5f}, of_light - 0.5f);
+                FoundLight const found = light.find(s.position, s.normal, at);
                 radiance += s.albedo * (found.direct + found.indirect);
                 ++local.surfaces;
                 local.unlike += found.likeness < KeptLight::kUnlike;

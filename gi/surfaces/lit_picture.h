@@ -15,8 +15,10 @@ struct LitCounts {
 /// Layers color and depth (of what mirrors show, as an image behind them) of the last view of `seen`.
 /// @param hidden  1 for each pixel that stays black and without a surface; empty = none
 /// @param before  of the previous frame: adds the layer "motion" for Antialiasing::add; null = none
+/// @param margin  pixels on each side that lie beyond the picture of light, whose edge they take it from
 Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
-                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before = nullptr);
+                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before = nullptr,
+                    vec2 margin = vec2{0});
 
 /// What a method's picture says of pixels that show a mirror or a pane.
 struct MirrorLayers {

@@ -64,8 +64,8 @@ float ramp(vec2 at) { return 1 + 0.1f * at.x + 0.3f * at.y; }
 /// Interpolated at the middles of pixels, away from the borders.
 void expect_ramp(Picture const& p)
 {
-    for (int y = 1; y + 1 < kSize; ++y)
-        for (int x = 1; x + 1 < kSize; ++x)
+    for (int y = 2; y + 2 < kSize; ++y)
+        for (int x = 2; x + 2 < kSize; ++x)
             ASSERT_NEAR(shown(p, x, y), ramp({float(x) + 0.5f, float(y) + 0.5f}), 1e-5f);
 }
 
@@ -155,6 +155,24 @@ TEST(Antialiasing, ConstantColoursStayAlsoWhenTheSizeChanges)
                             a.sample(), size);
         p = add(a, p);
         for (float const v : p.find("color")->data) ASSERT_NEAR(v, 0.7f, 1e-5f) << size;
+    }
+}
+
+/// A soft edge gets steeper, and neither darker nor brighter than what lies on its two sides.
+TEST(Antialiasing, EdgesAreSharpenedWithoutHalos)
+{
+    auto const soft = [](vec2 at) {
+        int const x = int(at.x);
+        return x < 10 ? 0.2f : x == 10 ? 0.4f : x == 11 ? 0.8f : 1.0f;
+    };
+    Antialiasing a;
+    Picture p;
+    for (int frame = 0; frame < 8; ++frame) p = add(a, sampled(soft, still, a.sample()));
+    EXPECT_LT(shown(p, 10, 12), 0.36f);
+    EXPECT_GT(shown(p, 11, 12), 0.84f);
+    for (int x = 1; x < kSize - 1; ++x) {
+        EXPECT_GE(shown(p, x, 12), 0.2f - 1e-5f) << x;
+        EXPECT_LE(shown(p, x, 12), 1.0f + 1e-5f) << x;
     }
 }
 

@@ -110,7 +110,7 @@ TEST(FrameCommand, LightMayBeSmaller)
         EXPECT_NE(why.find("of the size of the views"), std::string::npos) << wrong << why;
     }
     std::vector<std::uint8_t> unknown = full;
-    for (std::uint8_t const version : {std::uint8_t(0), std::uint8_t(4), std::uint8_t(255)}) {
+    for (std::uint8_t const version : {std::uint8_t(0), std::uint8_t(5), std::uint8_t(255)}) {
         unknown[0] = version;
         EXPECT_THROW(command_from_bytes(unknown), gi::InputError) << int(version);
     }
@@ -131,6 +131,27 @@ TEST(FrameCommand, SurfacesMayBeSmaller)
         o.surface_scale = wrong;
         EXPECT_NE(why_refused(o).find("surfaces at"), std::string::npos) << wrong;
     }
+}
+
+/// The fourth version has margins, too.
+TEST(FrameCommand, PicturesMayHaveMargins)
+{
+    FrameCommand o = cave_order();
+    o.light_scale = 0.375;
+    std::size_t const bytes = to_bytes(o).size();
+    o.views[0].margin_x = 12;
+    o.views[0].margin_y = 200;
+    std::vector<std::uint8_t> const wide = to_bytes(o);
+    EXPECT_EQ(wide[0], 4);
+    EXPECT_EQ(wide.size(), bytes + 8 + 2 * o.views.size() + 1);
+    EXPECT_EQ(command_from_bytes(wide), o);
+    for (int const wrong : {-1, o.views[0].width + 1}) {
+        o.views[0].margin_x = wrong;
+        EXPECT_NE(why_refused(o).find("a margin of"), std::string::npos) << wrong;
+    }
+    o.views[0].margin_x = 12;
+    o.light_scale = 1;
+    EXPECT_NE(why_refused(o).find("whose light has its size"), std::string::npos);
 }
 
 TEST(FrameCommand, RandomNumbersComeBackExactly)
@@ -175,12 +196,12 @@ TEST(FrameCommand, EveryCutAndEveryFlippedByteIsAnOrderOrAnInputError)
     longer.push_back(0);
     EXPECT_THROW(command_from_bytes(longer), gi::InputError);
     longer = whole;
-    longer[0] = 4;
+    longer[0] = 5;
     try {
         command_from_bytes(longer);
         FAIL();
     } catch (gi::InputError const& e) {
-        EXPECT_NE(std::string(e.what()).find("version 4"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("version 5"), std::string::npos) << e.what();
     }
 }
 

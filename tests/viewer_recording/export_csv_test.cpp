@@ -73,6 +73,8 @@ TEST(ExportCsv, HoldsEveryFrameExactly)
         EXPECT_EQ(std::stoull(row["pixel_hash"], nullptr, 16), *f.pixel_hash);
         EXPECT_EQ(row["render_ms"], n % 2 == 0 ? "11.25" : "");
         EXPECT_EQ(row["view0_name"], "wall, 0");
+        EXPECT_EQ(row["view0_margin_x_px"], n % 16 == 7 ? "20" : "0");
+        EXPECT_EQ(row["view0_margin_y_px"], "0");
         EXPECT_NEAR(std::stod(row["view0_top"]), std::tan(std::acos(-1.0) / 6), 1e-12);
         EXPECT_NEAR(std::stod(row["view0_right"]), std::tan(std::acos(-1.0) / 6) * 4 / 3, 1e-12);
         EXPECT_EQ(row["view1_left"], n % 2 == 1 ? "-1" : "");

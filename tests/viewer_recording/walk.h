@@ -37,6 +37,7 @@ inline RecordedFrame walk_frame(std::uint64_t n)
     }
     if (n % 4 == 3) o.light_scale = 0.375;
     if (n % 8 == 7) o.surface_scale = 0.5;
+    if (n % 16 == 7) o.views[0].margin_x = 20;
     f.pixel_hash = 0x9E3779B185EBCA87u * (n + 1);
     if (n % 2 == 0) {
         f.times.emplace();

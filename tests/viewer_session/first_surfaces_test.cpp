@@ -4,6 +4,7 @@
 #include "gi/metrics/metrics.h"
 #include "gi/scene/generate/generate.h"
 #include "tests/support/scenes.h"
+#include "viewer/engine/picture_margin.h"
 #include "viewer/engine/render_session.h"
 #include "viewer/protocol/hidden_mask.h"
 
@@ -93,6 +94,32 @@ TEST(FirstSurfaces, ViewsHaveTheirFullSizeAndAreNearThoseOfFullLight)
         EXPECT_NEAR(mean(color(a)) / mean(color(b)), 1, 0.06) << scene;
         EXPECT_LT(relmse(color(a), color(b)), 0.05) << scene;
         for (float const v : color(a)) ASSERT_TRUE(std::isfinite(v) && v >= 0);
+    }
+}
+
+/// A picture with a margin shows the same surfaces within the view, and others beyond it, all of them lit.
+TEST(FirstSurfaces, MayBeDrawnBeyondTheView)
+{
+    gi::Report report;
+    RenderSession with = started(report), without = started(report);
+    for (std::uint64_t f = 0; f < 4; ++f) {
+        FrameCommand o = command(f, 0.25, false, 0.5), wide = o;
+        wide.views[0].margin_x = f == 2 ? 8 : 4;
+        wide.views[0].margin_y = 4;
+        SessionFrame const a = without.render(o, {}), b = with.render(wide, {});
+        glm::ivec2 const margin = b.views[0].margin_px;
+        ASSERT_EQ(margin, glm::ivec2(wide.views[0].margin_x, 4));
+        EXPECT_EQ(a.views[0].margin_px, glm::ivec2(0));
+        ASSERT_EQ(b.views[0].picture.width, 80 + 2 * margin.x);
+        ASSERT_EQ(b.views[0].picture.height, 60 + 2 * margin.y);
+        gi::Picture const inner = without_margin(b.views[0].picture, margin);
+        std::vector<float> const &depths = a.views[0].picture.find("depth")->data,
+                                 &same = inner.find("depth")->data;
+        std::size_t others = 0; // where two samples are equally near, rounding decides
+        for (std::size_t i = 0; i < depths.size(); ++i) others += std::abs(same[i] - depths[i]) > 1e-4f * depths[i];
+        EXPECT_LT(others, depths.size() / 20) << f;
+        EXPECT_LT(relmse(inner.find("color")->data, color(a)), 2e-3);
+        for (std::size_t i = 0; i < color(b).size(); i += 3) ASSERT_GT(color(b)[i], 0) << i / 3;
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "gi/surfaces/lit_picture.h"
 #include "viewer/app/fill_hidden.h"
+#include "viewer/engine/picture_margin.h"
 
 #include <cstdlib>
 
@@ -50,11 +51,14 @@ void HmdEyes::draw(LiveFrame const& frame, std::array<gi::Camera, 2> const& now,
 {
     make_targets(sizes_px);
     for (std::size_t eye = 0; eye < 2; ++eye) {
-        gi::Camera const& rendered = frame.command.views[eye].camera;
+        gi::Camera const &rendered = frame.command.views[eye].camera, &to = reproject ? now[eye] : rendered;
+        glm::ivec2 const margin = frame.result.views[eye].margin_px;
         EyeView view;
-        view.picture = reproject && !(rendered == now[eye])
-                           ? reprojections_[eye].draw(pictures_[eye], rendered, now[eye], sizes_px[eye])
-                           : pictures_[eye].shown();
+        view.picture = pictures_[eye].shown();
+        if (!(rendered == to) || margin != glm::ivec2(0))
+            view.picture = reprojections_[eye].draw(
+                pictures_[eye], with_margin(rendered, view.picture.size_px - 2 * margin, margin), to,
+                sizes_px[eye]);
         DisplaySettings settings;
         settings.tone = tone;
         pass_.draw(targets_[eye]->target(), view, view, settings);

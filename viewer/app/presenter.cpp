@@ -2,6 +2,7 @@
 
 #include "gi/surfaces/lit_picture.h"
 #include "viewer/displays/compose.h"
+#include "viewer/engine/picture_margin.h"
 
 #include <epoxy/gl.h>
 
@@ -65,12 +66,15 @@ EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
     ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
     if (!s.fresh) return {};
     EyeView e{s.picture.shown(), s.has_other ? s.other.shown() : s.picture.shown()};
+    glm::ivec2 const margin = frame_->result.views[std::size_t(view)].margin_px,
+                     size = e.picture.size_px - 2 * margin;
     bool const moved = std::size_t(view) < now.size() && !rendered.camera.orthographic &&
                        !(now[std::size_t(view)] == rendered.camera);
-    if (!moved) return e;
-    gi::Camera const& to = now[std::size_t(view)];
-    e.picture = e.other = s.reprojection.draw(s.picture, rendered.camera, to, e.picture.size_px);
-    if (s.has_other) e.other = s.other_reprojection.draw(s.other, rendered.camera, to, e.other.size_px);
+    if (!moved && margin == glm::ivec2(0)) return e;
+    gi::Camera const from = with_margin(rendered.camera, size, margin),
+                     &to = moved ? now[std::size_t(view)] : rendered.camera;
+    e.picture = e.other = s.reprojection.draw(s.picture, from, to, size);
+    if (s.has_other) e.other = s.other_reprojection.draw(s.other, from, to, size);
     return e;
 }
 

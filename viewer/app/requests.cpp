@@ -3,6 +3,7 @@
 #include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
+#include "viewer/engine/picture_margin.h"
 
 #include <algorithm>
 #include <array>
@@ -249,7 +250,7 @@ void write(std::string const& file, int view, LiveFrame const& f, Snapshot const
     if (k >= f.result.views.size())
         throw gi::InputError(fmt::format("view {}", k), fmt::format("there are {}", f.result.views.size()),
                              "count from 0");
-    gi::Picture const& picture = f.result.views[k].picture;
+    gi::Picture const picture = without_margin(f.result.views[k].picture, f.result.views[k].margin_px);
     if (exr) return gi::write_exr(file, picture, gi::PixelType::single, report);
     gi::write_png(file, picture.width, picture.height,
                   gi::tone_map_bytes(*picture.find("color"), tone_settings(f.settings)));

@@ -4,6 +4,7 @@
 #include "gi/image_io/picture_file.h"
 #include "viewer/app/frame_hash.h"
 #include "viewer/displays/views.h"
+#include "viewer/engine/picture_margin.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -364,8 +365,8 @@ void ViewCore::save_screenshot(Snapshot shown)
         try {
             gi::write_png(base + ".png", shown.size_px.x, shown.size_px.y, shown.bytes);
             for (std::size_t k = 0; k < views.size(); ++k)
-                gi::write_exr(k == 0 ? base + ".exr" : fmt::format("{}_{}.exr", base, k), views[k].picture,
-                              gi::PixelType::single, report);
+                gi::write_exr(k == 0 ? base + ".exr" : fmt::format("{}_{}.exr", base, k),
+                              without_margin(views[k].picture, views[k].margin_px), gi::PixelType::single, report);
         } catch (gi::InputError const& e) {
             told = e.what();
         }

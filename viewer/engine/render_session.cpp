@@ -4,6 +4,7 @@
 #include "gi/filter/filter_names.h"
 #include "gi/kernel/device.h"
 #include "gi/scene/motion/animation.h"
+#include "viewer/engine/picture_margin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -205,8 +206,16 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
     smoothed_.resize(command.views.size());
     smoothed_compared_.resize(command.views.size());
     for (std::size_t k = 0; k < command.views.size(); ++k) {
-        ViewCommand const &shown = command.views[k], v = scaled(shown, command.surface_scale);
-        HiddenPixels const hidden = hidden_surfaces_.pixels(v);
+        ViewCommand const& view = command.views[k];
+        HiddenPixels const hidden = hidden_surfaces_.pixels(scaled(view, command.surface_scale));
+        // Beyond the edges of a view with hidden pixels, more are hidden.
+        glm::ivec2 const margin = hidden ? glm::ivec2(0) : glm::ivec2(view.margin_x, view.margin_y);
+        ViewCommand whole_view = view;
+        whole_view.camera = with_margin(view.camera, {view.width, view.height}, margin);
+        whole_view.width += 2 * margin.x;
+        whole_view.height += 2 * margin.y;
+        ViewCommand const v = scaled(whole_view, command.surface_scale);
+        frame.views[k].margin_px = margin;
         auto const draw = [&](MethodRunner const& runner, SmoothedView& smoothed) {
             auto const lights =
                 runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
@@ -216,14 +225,14 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
             before.step_x *= float(smoothed.width) / float(v.width);
             before.step_y *= float(smoothed.height) / float(v.height);
             seen_->look(rays, v.width, v.height, lights, smoothed.antialiasing.sample());
-            gi::Picture const picture =
-                gi::lit_picture(*seen_, v.width, v.height, *runner.light(k),
-                                hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(),
-                                counts, &before);
+            gi::Picture const picture = gi::lit_picture(
+                *seen_, v.width, v.height, *runner.light(k),
+                hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(), counts, &before,
+                gi::vec2(margin) * gi::vec2(v.width, v.height) / gi::vec2(whole_view.width, whole_view.height));
             smoothed.rays = rays;
             smoothed.width = v.width;
             smoothed.height = v.height;
-            gi::Picture whole = smoothed.antialiasing.add(picture, shown.width, shown.height);
+            gi::Picture whole = smoothed.antialiasing.add(picture, whole_view.width, whole_view.height);
             if (frame.views[k].hidden) blacken(whole, *frame.views[k].hidden);
             return whole;
         };

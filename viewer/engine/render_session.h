@@ -35,6 +35,7 @@ struct ViewPicture {
     gi::Picture picture;
     std::optional<gi::Picture> compared; ///< of the second method, if any
     HiddenPixels hidden{};               ///< pixels that were not rendered
+    glm::ivec2 margin_px{0}; ///< of the pictures: on each side beyond the view, see viewer/engine/picture_margin.h
 };
 
 struct SessionFrame {

@@ -1,5 +1,6 @@
 // What a trial measures of its stimuli and of the participant's gaze, and what others are told of it.
 
+#include "viewer/engine/picture_margin.h"
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/stimuli/physical.h"
 #include "viewer/experiment/trial.h"
@@ -15,8 +16,11 @@ void TrialPresenter::Trial::calibrate_light(LoadedStimulus& k, bool counts)
 {
     if (!p_.table_light_) return;
     auto const frame = k.source->newest();
-    gi::Layer const* const color =
-        frame && !frame->result.views.empty() ? frame->result.views[0].picture.find("color") : nullptr;
+    gi::Picture const shown =
+        frame && !frame->result.views.empty()
+            ? without_margin(frame->result.views[0].picture, frame->result.views[0].margin_px)
+            : gi::Picture{};
+    gi::Layer const* const color = shown.find("color");
     gi::ToneMapSettings const tone = frame ? tone_settings(frame->settings) : gi::ToneMapSettings{};
     study::DisplayLuminance const& display = *p_.model()->luminance;
     k.light = light_of(k.settings.physical, display, p_.table_light_, color, tone);

@@ -10,9 +10,9 @@
 namespace viewer {
 namespace {
 
-/// The second version has a light scale, the third also a surface scale. They are written only where these are not
-/// 1.
-constexpr std::uint8_t kVersion = 3;
+/// The second version has a light scale, the third also a surface scale, the fourth also margins. They are written
+/// only where these are not 1, and not 0.
+constexpr std::uint8_t kVersion = 4;
 
 gi::dmat4 const kIdentity{1};
 std::array<double, 7> constexpr kNoPose{0, 0, 0, 0, 0, 0, 1};
@@ -153,6 +153,8 @@ FrameCommand get_order(ByteReader& from)
         v.width = int(from.count(CommandLimits::size_px));
         v.height = int(from.count(CommandLimits::size_px));
         v.partner = int(from.count(CommandLimits::views)) - 1;
+        if (version > 3) v.margin_x = int(from.count(CommandLimits::size_px));
+        if (version > 3) v.margin_y = int(from.count(CommandLimits::size_px));
         o.views.push_back(std::move(v));
     }
     if (from.left() > 0) throw BadBytes(fmt::format("{} bytes follow it", from.left()));
@@ -165,8 +167,11 @@ std::vector<std::uint8_t> to_bytes(FrameCommand const& o)
 {
     check_command(o);
     ByteWriter to;
-    bool const small_surfaces = o.surface_scale != 1, small_light = small_surfaces || o.light_scale != 1;
-    to.put_byte(small_surfaces ? kVersion : small_light ? 2 : 1);
+    bool const margins = std::ranges::any_of(o.views,
+                                             [](ViewCommand const&v) { return v.margin_x > 0 || v.margin_y > 0; }),
+               small_surfaces = margins || o.surface_scale != 1,
+               small_light = small_surfaces || o.light_scale != 1;
+    to.put_byte(margins ? kVersion : small_surfaces ? 3 : small_light ? 2 : 1);
     to.put_count(o.frame);
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) to.put_number(t);
     to.put_count(std::uint64_t(o.paths));
@@ -187,6 +192,9 @@ std::vector<std::uint8_t> to_bytes(FrameCommand const& o)
         to.put_count(std::uint64_t(v.width));
         to.put_count(std::uint64_t(v.height));
         to.put_count(std::uint64_t(v.partner + 1));
+        if (!margins) continue;
+        to.put_count(std::uint64_t(v.margin_x));
+        to.put_count(std::uint64_t(v.margin_y));
     }
     if (to.bytes().size() > CommandLimits::bytes)
         throw gi::InputError(

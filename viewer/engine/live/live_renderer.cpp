@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "viewer/engine/live/background_priority.h"
+#include "viewer/engine/picture_margin.h"
 
 #include <algorithm>
 #include <malloc.h>
@@ -231,6 +232,17 @@ void LiveRenderer::choose_updated_axes(bool may_move)
 /// How long after its beginning a frame will have been seen for half of its time, s.
 double LiveRenderer::seen_after_s() const { return std::min(1.5 * frame_s_, Anticipation::kFarthest_s); }
 
+/// Lets pictures show what their viewers turn to. @param last  where they will be when the next picture comes
+void LiveRenderer::add_margins(FrameCommand& command, Viewpoint const& last) const
+{
+    if (!(command.light_scale < 1) || last.views.size() != command.views.size()) return;
+    for (std::size_t k = 0; k < command.views.size(); ++k) {
+        glm::ivec2 const margin = margin_for(command.views[k], last.views[k].camera);
+        command.views[k].margin_x = margin.x;
+        command.views[k].margin_y = margin.y;
+    }
+}
+
 FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameBudget& budget)
 {
     Settings const& s = session_.settings();
@@ -261,15 +273,17 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
 void LiveRenderer::run_leading()
 {
     while (!quit_) {
-        Viewpoint now, ahead;
+        Viewpoint now, ahead, last; // last: when the picture is replaced
         bool looked = false;
         {
             std::lock_guard const lock(mutex_);
             now = viewpoint_;
-            if (session_.settings().predict && link_ == nullptr)
-                ahead = anticipation_.at(clock_.now_s(), clock_.now_s() + seen_after_s());
-            else
-                ahead = now;
+            ahead = last = now;
+            if (session_.settings().predict && link_ == nullptr) {
+                double const now_s = clock_.now_s();
+                ahead = anticipation_.at(now_s, now_s + seen_after_s());
+                last = anticipation_.at(now_s, now_s + 2 * frame_s_);
+            }
             looked = looked_.exchange(false);
             if (looked || !jobs_.empty()) resting_ = false;
         }
@@ -307,6 +321,7 @@ void LiveRenderer::run_leading()
         choose_updated_axes(scene_may_move(now));
         FrameBudget budget;
         FrameCommand command = make_command(still ? now : ahead, still, budget);
+        if (!still) add_margins(command, last);
         last_look_ = std::move(now);
         if (link_ != nullptr) link_->send(command);
         {

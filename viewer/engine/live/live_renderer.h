@@ -134,6 +134,7 @@ private:
     void measure(FrameWork const& work, FrameBudget const& budget);
     FrameCommand make_command(Viewpoint const& now, bool still, FrameBudget& budget);
     double seen_after_s() const;
+    void add_margins(FrameCommand& command, Viewpoint const& last) const;
     bool render(FrameCommand command, FrameBudget const& budget, double ahead_s = 0);
     void wait_until(double time_s);
 

@@ -66,6 +66,8 @@ std::vector<CsvColumn> columns(Most const& most)
         c.push_back({view + "name", of + ": name"});
         c.push_back({view + "width_px", of + ": pixels"});
         c.push_back({view + "height_px", of + ": pixels"});
+        for (char const* side : {"x", "y"})
+            c.push_back({view + "margin_" + side + "_px", of + ": pixels rendered beyond each edge"});
         add_place(c, view, of + ", pose of its camera in the world; the camera looks along -Z");
         c.push_back({view + "projection", of + ": perspective or orthographic"});
         for (char const* edge : {"left", "right", "bottom", "top"})
@@ -103,6 +105,8 @@ void add_view(Row& row, ViewCommand const& v)
     row.add(v.name);
     row.add(v.width);
     row.add(v.height);
+    row.add(v.margin_x);
+    row.add(v.margin_y);
     Place const place = place_of(c.world_from_camera);
     row.add(place.position, place.rotation);
     row.add(std::string(c.orthographic ? "orthographic" : "perspective"));
@@ -141,7 +145,7 @@ std::string row_of(RecordedFrame const& f, Most const& most)
     add_tracked(row, o.tracked);
     for (std::size_t i = 0; i < most.others; ++i) add_tracked(row, i < o.others.size() ? o.others[i] : Tracked{});
     for (ViewCommand const& v : o.views) add_view(row, v);
-    row.add_empty(int(most.views - o.views.size()) * 15);
+    row.add_empty(int(most.views - o.views.size()) * 17);
     return row.text();
 }
 
