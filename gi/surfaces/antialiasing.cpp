@@ -19,7 +19,7 @@ constexpr float kMost = 4;
 /// Earlier colours are held within the mean +- so many standard deviations of 3 x 3 pixels.
 constexpr float kSpread = 2;
 /// Share of the difference from the four pixels around that is added again to what is shown.
-constexpr float kSharpness = 0.3f;
+constexpr float kSharpness = 0.2f;
 /// Relative difference of depths from which on a pixel showed another surface.
 constexpr float kDepth = 0.05f;
 

@@ -168,8 +168,8 @@ TEST(Antialiasing, EdgesAreSharpenedWithoutHalos)
     Antialiasing a;
     Picture p;
     for (int frame = 0; frame < 8; ++frame) p = add(a, sampled(soft, still, a.sample()));
-    EXPECT_LT(shown(p, 10, 12), 0.36f);
-    EXPECT_GT(shown(p, 11, 12), 0.84f);
+    EXPECT_LT(shown(p, 10, 12), 0.37f);
+    EXPECT_GT(shown(p, 11, 12), 0.83f);
     for (int x = 1; x < kSize - 1; ++x) {
         EXPECT_GE(shown(p, x, 12), 0.2f - 1e-5f) << x;
         EXPECT_LE(shown(p, x, 12), 1.0f + 1e-5f) << x;

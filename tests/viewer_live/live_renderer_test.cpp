@@ -76,6 +76,40 @@ private:
     std::optional<gi::DynamicUpdate> dynamic_update_;
 };
 
+/// While the head turns, pictures of smaller light show more than the view, unless there is time for the least
+/// only.
+TEST(LiveRenderer, PicturesHaveMarginsWhileTheHeadTurns)
+{
+    Live live;
+    double const begun_s = live.clock.now_s();
+    auto const look = [&](bool turns) {
+        Viewpoint at;
+        at.pose_s = live.clock.now_s();
+        gi::Camera camera = live.eye;
+        double const turn = turns ? 0.8 * (at.pose_s - begun_s) : 0;
+        camera.world_from_camera =
+            glm::rotate(live.eye.world_from_camera, turn - std::floor(turn / 0.5) * 0.5, gi::dvec3{0, 1, 0});
+        at.views = {{"window", camera, 640, 480, -1}};
+        live.renderer->look(at);
+    };
+    while (live.clock.now_s() < begun_s + 2.5) {
+        look(live.clock.now_s() < begun_s + 2);
+        std::this_thread::sleep_for(std::chrono::milliseconds(8));
+    }
+    live.renderer.reset();
+    ASSERT_FALSE(live.commands.empty());
+    std::size_t wide = 0, small = 0;
+    for (FrameCommand const& c : live.commands) {
+        bool const may = c.light_scale < 1 && c.light_scale > Governor::kLeastScale;
+        small += may;
+        wide += c.views[0].margin_x > 0;
+        EXPECT_TRUE(may || c.views[0].margin_x == 0) << c.frame;
+    }
+    RecordProperty("margins", std::to_string(wide) + " of " + std::to_string(small));
+    EXPECT_TRUE(small <= 20 || wide > small / 3) << wide << " of " << small;
+    EXPECT_EQ(live.commands.back().views[0].margin_x, 0); // it stands
+}
+
 /// Of all ranks the slowest decides what there is time for, whatever this one took for its share of the pixels.
 TEST(LiveRenderer, GoesByTheSlowestRank)
 {

@@ -16,8 +16,9 @@ struct LightSize {
     double scale, rate;
 };
 // Steps of a quarter of the work below half the size.
-constexpr LightSize kLightSizes[] = {{1, 1},      {0.75, 1},     {0.5, 1},    {0.4375, 0.5}, {0.390625, 0.5},
-                                     {0.35, 0.5}, {0.3125, 0.5}, {0.28, 0.5}, {0.25, 0}};
+constexpr LightSize kLightSizes[] = {{1, 1},        {0.75, 1},       {0.5, 1},
+                                     {0.4375, 0.5}, {0.390625, 0.5}, {0.35, 0.5},
+                                     {0.3125, 0.5}, {0.28, 0.5},     {Governor::kLeastScale, 0}};
 constexpr double kSurfaceScales[] = {1, 0.75, 0.5};
 constexpr int kMostPaths = 256;
 constexpr double kLeast = 0.05; // of a frame's work that the next one gets

@@ -20,6 +20,8 @@ struct FrameBudget {
 
 class Governor {
 public:
+    static constexpr double kLeastScale = 0.25; ///< of light
+
     /// Returns the budget of the next frame.
     /// @param pixels  of all views at full size
     /// @param still  nothing moves: full size whatever the rate, because the picture refines
@@ -34,11 +36,11 @@ private:
     double surfaces_scale() const;
 
     double work_ = 1e5; ///< of the next frame, in paths
-    double work_s_ = 0;   ///< per path, smoothed; 0 = unknown
+    double work_s_ = 0; ///< per path, smoothed; 0 = unknown
     double last_scale_ = 0;
-    double surface_s_ = 0; ///< per frame at the scale surfaces_, smoothed; 0 = unknown
+    double surface_s_ = 0;  ///< per frame at the scale surfaces_, smoothed; 0 = unknown
     double surfaces_ = 0.5; ///< scale of the last frame's; small until their time is known
-    int drawn_ = 0;        ///< frames with such surfaces
+    int drawn_ = 0;         ///< frames with such surfaces
     static constexpr int kFirstFrames = 3;
     int to_wait_ = 0, wait_ = kFirstWait; ///< frames until surfaces may grow; the same after they shrank next
     static constexpr int kFirstWait = 16, kLongestWait = 512;

@@ -232,10 +232,12 @@ void LiveRenderer::choose_updated_axes(bool may_move)
 /// How long after its beginning a frame will have been seen for half of its time, s.
 double LiveRenderer::seen_after_s() const { return std::min(1.5 * frame_s_, Anticipation::kFarthest_s); }
 
-/// Lets pictures show what their viewers turn to. @param last  where they will be when the next picture comes
+/// Lets pictures show what their viewers turn to, where there is time for it. @param last  where they will be when
+/// the next picture comes
 void LiveRenderer::add_margins(FrameCommand& command, Viewpoint const& last) const
 {
-    if (!(command.light_scale < 1) || last.views.size() != command.views.size()) return;
+    bool const has_time = command.light_scale > Governor::kLeastScale;
+    if (!(command.light_scale < 1) || !has_time || last.views.size() != command.views.size()) return;
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         glm::ivec2 const margin = margin_for(command.views[k], last.views[k].camera);
         command.views[k].margin_x = margin.x;
