@@ -43,16 +43,23 @@ public:
     char const* what() const noexcept override { return "interrupted"; }
 };
 
-/// Decides whether to abandon the preparation of a picture (BVHs, hit buffers) and its first pass, so that all of
-/// them together obey a stop request within 80 ms: what ends by then leaves a first picture to keep.
+/// Decides whether to abandon the preparation of a picture (BVHs, hit buffers) and its first pass after a stop
+/// request. What was begun less than 150 ms ago goes on, so that there is a first picture to keep, but all of it
+/// together only until 80 ms after the request.
 class BuildStop {
 public:
     /// @param stop  must outlive this object; null = never abandon
     explicit BuildStop(StopRequest const* stop) : stop_(stop) {}
-    bool given_up() const { return stop_ != nullptr && stop_->requested_before(std::chrono::milliseconds(80)); }
+    bool given_up() const
+    {
+        constexpr auto kBegun = std::chrono::milliseconds(150), kLeft = std::chrono::milliseconds(80);
+        return stop_ != nullptr && stop_->requested() &&
+               (stop_->requested_before(kLeft) || std::chrono::steady_clock::now() - start_ > kBegun);
+    }
 
 private:
     StopRequest const* stop_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// "8 s", "1 min 20 s", "2 h 5 min": rounded as estimates are.
