@@ -213,7 +213,7 @@ void put_pixel(std::uint32_t paths, dvec3 origin, PixelMeans const& p, std::size
     };
     bool const hit = p.hits > 0;
     put(to.color, p.color());
-    if (to.alpha != nullptr) to.alpha[i] = float(double(p.hits) / double(paths));
+    if (to.alpha != nullptr) to.alpha[i] = float(double(p.hits) / double(std::max(1u, paths)));
     to.depth[i] = hit ? p.depth : 0.0f;
     if (to.variance == nullptr) return;
     for (std::size_t k = 0; k < 3; ++k) put(to.parts[k], p.radiance[k]);
@@ -250,7 +250,7 @@ Picture Accumulator::rows(PictureShape const& shape, int first, int count) const
         Layer& layer = out.layers[k];
         layer.data.resize(out.pixels() * std::size_t(layer.channels));
     });
-    if (paths == 0) return out;
+    if (!has_paths()) return out;
     Targets const to(out);
     std::size_t const from = std::size_t(first) * std::size_t(width);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.pixels(), 4096), [&](auto const& range) {

@@ -66,7 +66,7 @@ PictureShape picture_shape(World const& world, PictureLayers layers = PictureLay
 struct Accumulator {
     int width = 0, height = 0;
     std::uint32_t paths = 0;                                   ///< per pixel
-    std::vector<PixelMeans, Uninitialised<PixelMeans>> pixels; ///< valid only if paths > 0
+    std::vector<PixelMeans, Uninitialised<PixelMeans>> pixels; ///< valid only if has_paths()
     std::vector<std::uint32_t> further; ///< per pixel, paths besides those, of a pass that was interrupted; empty
                                         ///< = none
     PathCounts counts;                  ///< of all paths so far
@@ -86,6 +86,7 @@ struct Accumulator {
         counts = {};
         seconds = 0;
     }
+    bool has_paths() const { return paths > 0 || !further.empty(); }
     std::uint32_t paths_of(std::size_t pixel) const { return paths + (further.empty() ? 0 : further[pixel]); }
     /// Adds one path of a pixel. @param before  number of paths already added to this pixel
     void add(std::size_t pixel, PathSample const& s, std::uint32_t before)

@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
@@ -57,7 +58,8 @@ void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, st
     write_durably(file, parts, wait);
 }
 
-bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint)
+bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint,
+                     StopRequest const* stop)
 {
     if (file.empty() || !std::filesystem::exists(file)) return false;
     auto const damaged = [&] {
@@ -79,7 +81,12 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
     if (header.pixel_bytes != sizeof(PixelMeans) || header.has_further > 1 ||
         std::filesystem::file_size(file) != checkpoint_bytes(a.width, a.height) + further_bytes(a.further))
         throw damaged();
-    in.read(reinterpret_cast<char*>(a.pixels.data()), std::streamsize(a.pixels.size() * sizeof(PixelMeans)));
+    constexpr std::size_t kTogether = 1 << 16; // pixels
+    for (std::size_t at = 0; in && at < a.pixels.size(); at += kTogether) {
+        if (stop != nullptr && stop->requested()) throw Interrupted();
+        in.read(reinterpret_cast<char*>(&a.pixels[at]),
+                std::streamsize(std::min(kTogether, a.pixels.size() - at) * sizeof(PixelMeans)));
+    }
     in.read(reinterpret_cast<char*>(a.further.data()), std::streamsize(further_bytes(a.further)));
     if (!in) throw damaged();
     a.paths = header.paths;

@@ -2,6 +2,7 @@
 // The exact state of an unfinished render as a file: sums over paths in the order of PixelMeans.
 
 #include "gi/core/durable_file.h"
+#include "gi/core/progress.h"
 #include "gi/render/accumulator.h"
 
 #include <filesystem>
@@ -15,6 +16,8 @@ std::uint64_t checkpoint_bytes(int width, int height);
 void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint,
                      DiskWait wait = DiskWait::yes);
 /// Returns false if the file does not exist. Throws InputError if it belongs to another render or is damaged.
-bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint);
+/// @param stop  once it is requested, throws Interrupted; null = never
+bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint,
+                     StopRequest const* stop = nullptr);
 
 } // namespace gi

@@ -67,7 +67,8 @@ bool PassLoop::is_checkpoint_due() const
 
 void PassLoop::resume(std::uint64_t print)
 {
-    if (settings_.resume && !std::exchange(is_resumed_, true)) load_checkpoint(settings_.checkpoint, sums_, print);
+    if (settings_.resume && !std::exchange(is_resumed_, true))
+        load_checkpoint(settings_.checkpoint, sums_, print, &stop_);
 }
 
 RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
@@ -76,7 +77,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 
     resume(print);
     std::uint32_t const resumed = sums_.paths;
-    bool is_saved = resumed > 0;
+    bool is_saved = sums_.has_paths();
     double const earlier = sums_.seconds;
     RenderResult result;
     auto const first_pass = Clock::now();
@@ -86,7 +87,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     double per_path = 0;
     while (true) {
         if (sums_.paths >= limit() && sums_.further.empty()) break;
-        if (sums_.paths > 0 && stop_.requested()) {
+        if (sums_.has_paths() && stop_.requested()) {
             result.end = RenderEnd::interrupted;
             break;
         }
@@ -102,7 +103,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
         try {
             on_threads(settings_.threads, [&] { pass(sums_, next_pass(per_path)); });
         } catch (Interrupted const&) {
-            if (sums_.paths == 0 || !stop_.requested()) throw;
+            if (!sums_.has_paths() || !stop_.requested()) throw;
             sums_.seconds = earlier + seconds_since(start_);
             continue;
         }

@@ -16,19 +16,25 @@ public:
 
     class Tile {
     public:
+        int index;
         int left, right, top, bottom; ///< px; right and bottom are behind the last ones
 
         /// Calls trace(k) for every path k of the pass, from 0, that the tile lacks, until the pass is given up.
+        /// Where trace() throws Interrupted, the tile lacks that path still.
         template <class F>
         void for_paths(F const& trace) const
         {
-            for (std::uint32_t& k = done_; k < paths_ && !stop_.given_up(); ++k) trace(k);
+            try {
+                for (std::uint32_t& k = done_; k < paths_ && !stop_.given_up(); ++k) trace(k);
+            } catch (Interrupted const&) {
+            }
         }
 
     private:
         friend TiledPass;
         Tile(TiledPass& pass, int t)
-            : left(t % pass.columns_ * kTile),
+            : index(t),
+              left(t % pass.columns_ * kTile),
               right(std::min(left + kTile, pass.sums_.width)),
               top(t / pass.columns_ * kTile),
               bottom(std::min(top + kTile, pass.sums_.height)),
@@ -73,7 +79,7 @@ public:
             sums_.paths += paths;
             return;
         }
-        if (sums_.paths > 0) keep();
+        keep();
         throw Interrupted();
     }
 
@@ -87,12 +93,16 @@ private:
     }
     void keep()
     {
+        if (sums_.paths == 0 && std::ranges::none_of(done_, [](std::uint32_t n) { return n > 0; })) return;
         sums_.further.resize(sums_.pixels.size());
         for (std::size_t t = 0; t < done_.size(); ++t) {
             Tile const tile(*this, int(t));
-            for (int y = tile.top; y < tile.bottom; ++y)
-                std::fill_n(sums_.further.begin() + std::ptrdiff_t(first_pixel(tile, y)), tile.right - tile.left,
-                            done_[t]);
+            for (int y = tile.top; y < tile.bottom; ++y) {
+                auto const at = std::ptrdiff_t(first_pixel(tile, y));
+                std::fill_n(sums_.further.begin() + at, tile.right - tile.left, done_[t]);
+                if (sums_.paths + done_[t] == 0)
+                    std::fill_n(sums_.pixels.begin() + at, tile.right - tile.left, PixelMeans{});
+            }
         }
     }
 

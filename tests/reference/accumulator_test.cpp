@@ -199,6 +199,11 @@ TEST(Accumulator, ACheckpointHoldsAll)
     EXPECT_EQ(b.counts.shadow_rays, 7u);
     EXPECT_EQ(b.seconds, 1.5);
     EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(PixelMeans)), 0);
+    StopRequest stop;
+    Accumulator c(16, 8);
+    ASSERT_TRUE(load_checkpoint(file, c, 99, &stop));
+    stop.request();
+    EXPECT_THROW(load_checkpoint(file, c, 99, &stop), Interrupted);
     std::filesystem::resize_file(file, checkpoint_bytes(16, 8) - 1);
     EXPECT_THROW(load_checkpoint(file, b, 99), InputError);
     std::filesystem::remove(file);

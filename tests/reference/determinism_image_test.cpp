@@ -145,6 +145,46 @@ TEST(Determinism, APassIsInterruptedBetweenItsTiles)
     std::filesystem::remove(state);
 }
 
+/// So is a first pass, however little it has.
+TEST(Determinism, AFirstPassIsInterruptedBetweenItsTiles)
+{
+    World const world = room();
+    std::filesystem::path const state =
+        std::filesystem::temp_directory_path() / ("lightwell_first_" + std::to_string(getpid()) + ".state");
+    RenderSettings s = settings();
+    s.width = 900;
+    s.height = 600;
+    s.paths = 2;
+    Picture const whole = render(world, s).picture;
+    s.checkpoint = state;
+    bool is_met = false;
+    for (int wait_ms = 20; !is_met && wait_ms < 10'000; wait_ms += wait_ms / 4) {
+        StopRequest stop;
+        std::jthread const later([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+            stop.request();
+        });
+        s.resume = false;
+        Report report;
+        RenderResult part;
+        try {
+            part = render_reference(world, eye(), s, stop, {}, report);
+        } catch (Interrupted const&) { // while the BVH was built
+            continue;
+        }
+        if (part.paths > 0) break;
+        is_met = true;
+        EXPECT_EQ(part.end, RenderEnd::interrupted);
+        ASSERT_TRUE(part.resumable);
+        for (Layer const& layer : part.picture.layers)
+            for (float const v : layer.data) ASSERT_TRUE(std::isfinite(v)) << layer.name;
+        s.resume = true;
+        expect_same_bits(whole, render(world, s).picture);
+    }
+    EXPECT_TRUE(is_met);
+    std::filesystem::remove(state);
+}
+
 TEST(Determinism, AStateThatCannotBeWrittenCostsNoPicture)
 {
     RenderSettings s = settings();
@@ -176,7 +216,10 @@ TEST(Determinism, StateOfAPictureByRowsIsSavedByItsReader)
     s.resume = true;
     RenderResult const rest = render(room(), s);
     EXPECT_TRUE(rest.save_state) << "its picture may not be saved";
-    expect_same_bits(whole, rest.rows.whole());
+    StopRequest stop;
+    expect_same_bits(whole, rest.rows.whole(&stop));
+    stop.request();
+    EXPECT_THROW(rest.rows.whole(&stop), Interrupted);
     std::filesystem::remove(state);
 
     s.checkpoint = std::filesystem::temp_directory_path() / "lightwell_no_folder" / "x.state";

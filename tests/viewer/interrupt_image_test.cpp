@@ -17,6 +17,9 @@ void interrupt_and_resume(int signal, int code)
     Outcome const o = program.wait();
     EXPECT_EQ(o.code, code) << o.err;
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
+    EXPECT_LT(o.err.find("interrupted: saving the state and the color"), o.err.find("--resume continues"))
+        << "what takes its time is said first\n"
+        << o.err;
     EXPECT_NE(o.err.find("--resume"), std::string::npos) << o.err;
     Outcome const again = run(kLongRender, folder.path());
     EXPECT_EQ(again.code, 2) << "would destroy what is unfinished";

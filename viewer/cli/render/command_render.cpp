@@ -77,7 +77,7 @@ void finish_picture(RenderOptions const& o, gi::RenderSettings const& settings, 
     gi::PictureRows picture = rows_of(result);
     gi::Picture filtered;
     if (filter.denoiser != gi::Denoiser::none) {
-        filtered = picture.whole();
+        filtered = picture.whole(&stop);
         std::string const remark = denoise(filtered, filter, report);
         if (!remark.empty()) say(remark);
         picture = gi::rows_of(filtered);
@@ -247,6 +247,9 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings, gi::Deno
         result.end = gi::RenderEnd::interrupted;
         result.resumable = !saving && std::filesystem::exists(settings.checkpoint); // an earlier one
     }
+    if (is_left)
+        say(std::string("interrupted: saving ") +
+            (saving || result.save_state ? "the state and the color of " : "") + "the picture so far");
     if (is_left && !saving) saving.emplace(result, gi::DiskWait::no);
     if (is_left)
         save_interrupted(o, settings, *saving, result, report);
