@@ -360,17 +360,8 @@ TEST(PhotonStops, BetweenPasses)
     for (PhotonMethod const& m : kPhotonMethods) {
         RenderSettings s = small_photon_picture(8, 65536);
         s.paths = 100000;
-        StopRequest stop;
-        Stopwatch asked;
-        std::thread asks([&] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-            asked = {};
-            stop.request();
-        });
-        Report report;
-        RenderResult const r = m.render(world, in_the_room(), s, stop, {}, report);
-        double const took = asked.until({});
-        asks.join();
+        RenderResult r;
+        double const took = stop_after_first_pass(m, world, in_the_room(), s, 1, r);
         fmt::print("{}: {} passes, stopped {:.3f} s after the request\n", m.name, r.paths, took);
         EXPECT_EQ(r.end, RenderEnd::interrupted);
         EXPECT_LT(took, 0.5) << m.name;

@@ -378,23 +378,6 @@ TEST(Frames, ControlCIsObeyedWithinTheFirstPass)
                          "0 of 9 frames are complete"));
 }
 
-TEST(Frames, ControlCIsObeyedWhileAFrameIsFilteredOrWritten)
-{
-    std::string const call =
-        "render cornell --size 1024x1024 --paths 1 --bounces 0 --denoise wide --out f_%d.exr --frames ";
-    TemporaryFolder const folder;
-    run_well(call + "0:1@8 --stats s.json", folder.path());
-    Json const stages = json_file(folder / "s.json").at("report").at("stages_s");
-    auto const of = [&](char const* stage) { return stages.at(stage).get<double>(); };
-    std::chrono::duration<double> const after(of("trace") + of("build (Embree BVH)") +
-                                              0.3 * (of("denoise") + of("save")));
-    bool is_obeyed = false;
-    for (int i = 0; i < 3 && !is_obeyed; ++i) // the machine may have been busier before
-        is_obeyed =
-            contains(interrupt_within_the_first_frame(call + "0:9@8", after), "0 of 9 frames are complete");
-    EXPECT_TRUE(is_obeyed);
-}
-
 TEST(Frames, AKilledRenderResumesToo)
 {
     TemporaryFolder const folder;
