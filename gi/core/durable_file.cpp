@@ -59,7 +59,7 @@ int replace_by_nameless(fs::path const& file, int fd)
 
 void write_durably(fs::path const& file, std::string_view text) { write_durably(file, {&text, 1}); }
 
-void write_durably(fs::path const& file, std::span<std::string_view const> parts)
+void write_durably(fs::path const& file, std::span<std::string_view const> parts, DiskWait wait)
 {
     fs::path const folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     Descriptor out{::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666)};
@@ -71,10 +71,10 @@ void write_durably(fs::path const& file, std::span<std::string_view const> parts
     if (out.fd < 0) throw cannot("the file cannot be written", file, errno);
     int failure = 0;
     for (std::size_t k = 0; k < parts.size() && failure == 0; ++k) failure = write_all(out.fd, parts[k]);
-    if (failure == 0 && ::fsync(out.fd) != 0) failure = errno;
+    if (failure == 0 && wait == DiskWait::yes && ::fsync(out.fd) != 0) failure = errno;
     if (failure == 0) failure = named ? named->replace(file) : replace_by_nameless(file, out.fd);
     if (failure != 0) throw cannot("the file cannot be written", file, failure);
-    sync_folder(folder);
+    if (wait == DiskWait::yes) sync_folder(folder);
 }
 
 void sync_folder(fs::path const& folder)

@@ -1,6 +1,7 @@
 #include "gi/core/file.h"
 
 #include "gi/core/error.h"
+#include "gi/core/progress.h"
 #include "gi/core/temporary_file.h"
 
 #include <cerrno>
@@ -35,6 +36,8 @@ void write_by_rename(fs::path const& file, std::function<void(fs::path const&)> 
         if (int const failure = temporary.replace(file); failure != 0)
             throw std::system_error(errno = failure, std::generic_category());
     } catch (InputError const&) {
+        throw;
+    } catch (Interrupted const&) {
         throw;
     } catch (std::exception const& e) {
         if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EACCES || errno == EIO ||

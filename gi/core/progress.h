@@ -3,19 +3,38 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <string>
 
 namespace gi {
 
-/// Flag that stops a long computation at its next safe point. Set by the command line's signal handler.
+/// Stops a long computation at its next safe point. Set by the command line's signal handler.
 class StopRequest {
 public:
-    void request() { flag_.store(true, std::memory_order_relaxed); }
-    bool requested() const { return flag_.load(std::memory_order_relaxed); }
+    void request()
+    {
+        std::int64_t none = kNever;
+        at_.compare_exchange_strong(none, now(), std::memory_order_relaxed);
+    }
+    bool requested() const { return at_.load(std::memory_order_relaxed) != kNever; }
+    /// True some time after it was requested first.
+    bool requested_before(std::chrono::nanoseconds time) const
+    {
+        std::int64_t const at = at_.load(std::memory_order_relaxed);
+        return at != kNever && now() - at > time.count();
+    }
 
 private:
-    std::atomic<bool> flag_{false};
+    static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
+    static std::int64_t now()
+    {
+        return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+
+    std::atomic<std::int64_t> at_{kNever}; ///< ns of the steady clock
+    static_assert(std::atomic<std::int64_t>::is_always_lock_free, "signal handlers may set nothing else");
 };
 
 /// Thrown when a computation is stopped before it has a result worth keeping.
@@ -24,16 +43,18 @@ public:
     char const* what() const noexcept override { return "interrupted"; }
 };
 
-/// Decides whether to abandon the preparation of a picture (BVHs, hit buffers) after a stop request. Preparation
-/// that has taken less than 150 ms continues, so that there is a first picture to keep.
+/// Decides whether to abandon the preparation of a picture (BVHs, hit buffers) and its first pass after a stop
+/// request. What was begun less than 150 ms ago goes on, so that there is a first picture to keep, but all of it
+/// together only until 80 ms after the request.
 class BuildStop {
 public:
     /// @param stop  must outlive this object; null = never abandon
     explicit BuildStop(StopRequest const* stop) : stop_(stop) {}
     bool given_up() const
     {
-        constexpr auto kLong = std::chrono::milliseconds(150);
-        return stop_ != nullptr && stop_->requested() && std::chrono::steady_clock::now() - start_ > kLong;
+        constexpr auto kBegun = std::chrono::milliseconds(150), kLeft = std::chrono::milliseconds(80);
+        return stop_ != nullptr && stop_->requested() &&
+               (stop_->requested_before(kLeft) || std::chrono::steady_clock::now() - start_ > kBegun);
     }
 
 private:

@@ -1,11 +1,11 @@
 #include "gi/filter/atrous.h"
 
+#include "gi/filter/for_rows.h"
 #include "gi/filter/light_variance.h"
 #include "gi/filter/outlines.h"
 #include "gi/filter/surface_distance.h"
 
 #include <array>
-#include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
@@ -137,7 +137,7 @@ Planes filter_atrous(FilterInput& input, int iterations, FilteredLight const& kn
     Planes other(light::count, input.light.width(), height);
     Planes const& where_known = known.light ? *known.light : input.light;
     auto const lay_in = [&](Planes& out) {
-        tbb::parallel_for(0, height, [&](int y) { lay(known, where_known, y, out); });
+        for_rows(height, input.stop, [&](int y) { lay(known, where_known, y, out); });
     };
     lay_in(other);
     for (int i = 0; i < iterations; ++i) {
@@ -149,7 +149,7 @@ Planes filter_atrous(FilterInput& input, int iterations, FilteredLight const& kn
                            plane_scale(step),
                            square(i == 0 ? kDirectFirst : kDirect),
                            square(i == 0 ? kIndirectFirst : kIndirect)};
-        tbb::parallel_for(0, height, [&](int y) { filter_row(it, known.area.wanted[std::size_t(y)], y); });
+        for_rows(height, input.stop, [&](int y) { filter_row(it, known.area.wanted[std::size_t(y)], y); });
         if (i == 0) lay_in(input.light); // the first iteration used the picture's own light
         std::swap(input.light, other);
     }

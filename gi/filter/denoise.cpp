@@ -60,13 +60,14 @@ DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, ReusedL
 {
     if (settings.denoiser == Denoiser::none) return {};
     check(picture, settings);
-    if (settings.denoiser == Denoiser::oidn) return filter_oidn(picture, settings.oidn_quality, settings.threads);
+    if (settings.denoiser == Denoiser::oidn)
+        return filter_oidn(picture, settings.oidn_quality, settings.threads, settings.stop);
     DenoiseReport report;
     on_threads(settings.threads, [&] {
         bool const atrous = settings.denoiser == Denoiser::atrous;
         FilteredLight known{taken.partner ? own_area(picture, taken, reach_of(settings)) : whole_area(picture),
                             {}};
-        FilterInput input = make_filter_input(picture, atrous, known.area);
+        FilterInput input = make_filter_input(picture, atrous, known.area, settings.stop);
         if (taken.partner) known.light = take_filtered(picture, taken, known.area, input.report);
         store(input.guides,
               atrous ? filter_atrous(input, settings.iterations, known)

@@ -2,6 +2,7 @@
 // Filters for noisy pictures of any light-transport method. They average illumination (L1 and L2 divided by the
 // albedo) over neighbours on the same surface, so that textures and outlines stay sharp.
 
+#include "gi/core/progress.h"
 #include "gi/filter/reused_light.h"
 
 namespace gi {
@@ -26,6 +27,7 @@ struct DenoiseSettings {
                         ///< kMaxReach
     int threads = 0;    ///< 0 = all
     OidnQuality oidn_quality = OidnQuality::fast;
+    StopRequest const* stop = nullptr; ///< once it is requested, denoise() throws Interrupted
 };
 
 /// Pixels left unfiltered for lack of valid data. If the picture takes light from a partner, this counts only
@@ -39,7 +41,7 @@ struct DenoiseReport {
 /// Replaces L1, L2 and color = L0 + L1 + L2. Needs the layers color, L0, L1, L2, albedo, normal and position (not
 /// position for oidn); a-trous also needs variance, or the variances measured by temporal reuse. Throws
 /// InputError if one is missing. `variance` keeps the variance of the unfiltered picture. The result does not
-/// depend on the number of threads.
+/// depend on the number of threads. After an exception the picture may be half filtered.
 /// @param taken  light of a partner that has been filtered: its light over albedo is taken unchanged, and only
 ///   the other pixels are filtered. oidn filters the whole picture instead
 DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, ReusedLight const& taken = {});

@@ -1,13 +1,13 @@
 #include "gi/filter/discontinuity.h"
 
-#include <tbb/parallel_for.h>
+#include "gi/filter/for_rows.h"
 
 namespace gi {
 namespace {
 
 constexpr float kCosineStep = 0.95f; // 18 degrees
 constexpr float kAlbedoStep = 1;     // larger differences occur only if other channels are too dark
-constexpr float kPlaneDistance = 1; // in units of the distance between neighbouring pixels
+constexpr float kPlaneDistance = 1;  // in units of the distance between neighbouring pixels
 
 /// Planes of the sums: direct and indirect light as in namespace light, then the weights.
 constexpr int kWeight = 6;
@@ -84,10 +84,10 @@ Planes filter_discontinuity(FilterInput const& input, int window, int reach, Fil
 {
     Planes out(kWeight + 1, input.light.width(), input.light.height());
     auto const in_rows = [&](auto const& work) {
-        tbb::parallel_for(0, out.height(), [&](int y) { work(Spans(known.area.wanted[std::size_t(y)]), y); });
+        for_rows(out.height(), input.stop, [&](int y) { work(Spans(known.area.wanted[std::size_t(y)]), y); });
     };
     Planes const& where_known = known.light ? *known.light : input.light;
-    tbb::parallel_for(0, out.height(), [&](int y) {
+    for_rows(out.height(), input.stop, [&](int y) {
         known.area.for_known(y, [&](Span span) { start_sums(where_known, light::direct, span, y, out); });
     });
     in_rows([&](Spans spans, int y) { filter_row(input, window, spans, y, out); });

@@ -1,10 +1,10 @@
 #include "gi/filter/filter_input.h"
 
 #include "gi/core/error.h"
+#include "gi/filter/for_rows.h"
 
 #include <array>
 #include <atomic>
-#include <tbb/parallel_for.h>
 #include <utility>
 
 namespace gi {
@@ -121,7 +121,8 @@ Layer& needed_layer(Picture& picture, char const* name)
     return const_cast<Layer&>(needed_layer(std::as_const(picture), name));
 }
 
-FilterInput make_filter_input(Picture const& picture, bool with_variance, FilterArea const& area)
+FilterInput make_filter_input(Picture const& picture, bool with_variance, FilterArea const& area,
+                              StopRequest const* stop)
 {
     std::array<Layer const*, 2> const measured{picture.find("variance_direct"), picture.find("variance_indirect")};
     bool const is_measured = with_variance && measured[0] != nullptr && measured[1] != nullptr;
@@ -135,11 +136,12 @@ FilterInput make_filter_input(Picture const& picture, bool with_variance, Filter
     FilterInput in{{guide::count, picture.width, picture.height},
                    {light::count, picture.width, picture.height},
                    is_measured,
-                   {}};
+                   {},
+                   stop};
     vec3 const origin = first_position(layers, picture.pixels());
     std::atomic<std::size_t> without_surface = 0, not_finite = 0;
     std::atomic<bool> no_variance = true;
-    tbb::parallel_for(0, picture.height, [&](int y) {
+    for_rows(picture.height, stop, [&](int y) {
         DenoiseReport row{0, 0, true}, known{0, 0, true};
         for (Span const& s : area.wanted[std::size_t(y)]) fill(layers, origin, s, y, in, row);
         area.for_known(y, [&](Span s) { fill(layers, origin, s, y, in, area.takes ? known : row); });
@@ -147,7 +149,7 @@ FilterInput make_filter_input(Picture const& picture, bool with_variance, Filter
         not_finite += row.not_finite;
         if (!row.no_variance || !known.no_variance) no_variance = false;
     });
-    tbb::parallel_for(0, picture.height, [&](int y) {
+    for_rows(picture.height, stop, [&](int y) {
         RowSpans const& rows = is_measured ? area.near : area.wanted;
         for (Span const& s : rows[std::size_t(y)]) measure_footprints(*layers.position, s, y, in.guides);
     });

@@ -37,6 +37,7 @@ struct FilterInput {
     Planes guides, light;  ///< the variance of the light is filled in only if it was measured
     bool measured = false; ///< by temporal reuse: light::variance holds each pixel's variance, negative = unknown
     DenoiseReport report;
+    StopRequest const* stop = nullptr; ///< of the settings
 };
 
 /// Returns a layer of three channels. Throws InputError if it is missing.
@@ -45,7 +46,8 @@ Layer& needed_layer(Picture& picture, char const* name);
 
 /// Fills in all near pixels and makes the report for the wanted ones. Footprints are set for wanted pixels, or
 /// for all near pixels if variances were measured. Throws InputError if a layer is missing.
-FilterInput make_filter_input(Picture const& picture, bool with_variance, FilterArea const& area);
+FilterInput make_filter_input(Picture const& picture, bool with_variance, FilterArea const& area,
+                              StopRequest const* stop = nullptr);
 
 inline constexpr float kLargest = 1e18f; ///< its square is still finite
 /// False if a value is NaN or too large.

@@ -1,9 +1,9 @@
 #include "gi/filter/light_variance.h"
 
+#include "gi/filter/for_rows.h"
 #include "gi/filter/surface_distance.h"
 
 #include <algorithm>
-#include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
@@ -50,10 +50,10 @@ void split_variance(FilterInput& in)
 {
     int const width = in.light.width(), height = in.light.height();
     Planes noise(2, width, height);
-    tbb::parallel_for(0, height, [&](int y) {
+    for_rows(height, in.stop, [&](int y) {
         for (int k = 0; k < 2; ++k) measure_noise(in, k, y, noise.row(k, y));
     });
-    tbb::parallel_for(0, height, [&](int y) {
+    for_rows(height, in.stop, [&](int y) {
         Planes sums(4, width, 1);
         auto const row_of = [&](int k, int j) {
             return k < 2 ? noise.row(k, j) : in.guides.row(k == 2 ? guide::variance : guide::surface, j);
@@ -100,7 +100,7 @@ void pool_variance(FilterInput& in)
 {
     int const width = in.light.width(), height = in.light.height();
     Planes known(3, width, height); // known variances, and a mask of where they are known
-    tbb::parallel_for(0, height, [&](int y) {
+    for_rows(height, in.stop, [&](int y) {
         float const *direct = in.light.row(light::variance, y), *indirect = in.light.row(light::variance + 1, y);
         for (int x = 0; x < width; ++x) {
             bool const is = direct[x] >= 0 && indirect[x] >= 0;
@@ -109,7 +109,7 @@ void pool_variance(FilterInput& in)
             known.row(2, y)[x] = is;
         }
     });
-    tbb::parallel_for(0, height, [&](int y) {
+    for_rows(height, in.stop, [&](int y) {
         constexpr float kFew = 5; // of 25
         Planes sums(3, width, 1);
         sum_windows(

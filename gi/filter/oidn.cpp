@@ -57,9 +57,22 @@ public:
     OidnFilter(OidnFilter const&) = delete;
     OidnFilter& operator=(OidnFilter const&) = delete;
 
-    void run()
+    /// @param stop  null = none
+    void run(StopRequest const* stop)
     {
+        lib_.set_filter_progress_monitor(
+            filter_,
+            [](void* user, double) {
+                auto const* const asked = static_cast<StopRequest const*>(user);
+                return asked == nullptr || !asked->requested();
+            },
+            const_cast<StopRequest*>(stop));
         lib_.execute_filter(filter_);
+        if (stop != nullptr && stop->requested()) {
+            char const* cancelled = nullptr;
+            lib_.device_error(device_, &cancelled); // the next filter does not find it
+            throw Interrupted();
+        }
         check("filter");
     }
 
@@ -188,7 +201,7 @@ void check_oidn()
     static_cast<void>(starts);
 }
 
-DenoiseReport filter_oidn(Picture& picture, OidnQuality quality, int threads)
+DenoiseReport filter_oidn(Picture& picture, OidnQuality quality, int threads, StopRequest const* stop)
 {
     OidnLayers const layers(picture);
     DenoiseReport report;
@@ -209,7 +222,7 @@ DenoiseReport filter_oidn(Picture& picture, OidnQuality quality, int threads)
             load(layers.normal, kinds, f, f.normal);
             for (Layer* const layer : {&layers.l1, &layers.l2}) {
                 load(*layer, kinds, f, f.light);
-                f.run();
+                f.run(stop);
                 store(f, kinds, *layer);
             }
             tbb::parallel_for(std::size_t(0), kinds.size(), [&](std::size_t i) {

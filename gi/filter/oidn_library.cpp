@@ -96,6 +96,7 @@ Loaded load()
     bind(module, "oidnSetSharedFilterImage", f.set_filter_image, l.why);
     bind(module, "oidnSetFilterBool", f.set_filter_bool, l.why);
     bind(module, "oidnSetFilterInt", f.set_filter_int, l.why);
+    bind(module, "oidnSetFilterProgressMonitorFunction", f.set_filter_progress_monitor, l.why);
     bind(module, "oidnCommitFilter", f.commit_filter, l.why);
     bind(module, "oidnExecuteFilter", f.execute_filter, l.why);
     bind(module, "oidnReleaseFilter", f.release_filter, l.why);

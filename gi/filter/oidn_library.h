@@ -28,6 +28,8 @@ struct OidnLibrary {
                              std::size_t row_stride); ///< strides of 0: densely packed
     void (*set_filter_bool)(void* filter, char const* name, bool value);
     void (*set_filter_int)(void* filter, char const* name, int value);
+    /// @param goes_on  called again and again while the filter runs; false cancels it
+    void (*set_filter_progress_monitor)(void* filter, bool (*goes_on)(void* user, double done), void* user);
     void (*commit_filter)(void* filter);
     void (*execute_filter)(void* filter);
     void (*release_filter)(void* filter);

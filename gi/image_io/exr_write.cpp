@@ -158,8 +158,10 @@ void write_exr(std::filesystem::path const& file, PictureRows const& picture, Pi
             parts.push_back({Imf::OutputPart(*out, int(l)), is_single(rows.layers[l])});
         for (int y = 0; y < picture.height; y += kRowsAtOnce) {
             if (y > 0) rows = picture.read(y, count_from(y));
-            for (std::size_t l = 0; l < parts.size(); ++l)
+            for (std::size_t l = 0; l < parts.size(); ++l) {
+                if (attributes.stop != nullptr && attributes.stop->requested()) throw Interrupted();
                 parts[l].write(rows.layers[l], picture.width, y, count_from(y));
+            }
         }
         out.reset(); // writes where the blocks are
         stream.finish();

@@ -23,6 +23,27 @@ Layer& Picture::add(std::string const& name, int channels)
     return layers.back();
 }
 
+Picture PictureRows::whole(StopRequest const* stop) const
+{
+    Picture all;
+    for (int y = 0; y < height; y += kRowsAtOnce) {
+        if (stop != nullptr && stop->requested()) throw Interrupted();
+        Picture const some = read(y, std::min(kRowsAtOnce, height - y));
+        for (std::size_t k = 0; k < some.layers.size(); ++k) {
+            Layer const& from = some.layers[k];
+            if (y == 0) {
+                all.layers.push_back({from.name, from.channels, {}});
+                all.layers[k].data.reserve(std::size_t(width) * std::size_t(height) * std::size_t(from.channels));
+            }
+            all.layers[k].data.insert(all.layers[k].data.end(), from.data.begin(), from.data.end());
+        }
+    }
+    all.width = width;
+    all.height = height;
+    all.metadata = metadata;
+    return all;
+}
+
 PictureRows rows_of(Picture const& picture)
 {
     auto const read = [&picture](int first, int count) {

@@ -2,6 +2,7 @@
 // Picture files. Every writer writes to a temporary file beside the target and renames it when complete, so a
 // reader never sees half a picture.
 
+#include "gi/core/progress.h"
 #include "gi/core/report.h"
 #include "gi/image_io/picture_rows.h"
 
@@ -29,6 +30,7 @@ struct ExrAttributes {
     /// Points of the world to those of a camera that looks along -z with y up, and to its picture, -1..1 each way.
     std::optional<dmat4> world_to_camera = {}, world_to_ndc = {};
     ExrCompression compression = ExrCompression::zip;
+    StopRequest const* stop = nullptr; ///< once it is requested, writing throws Interrupted and leaves no file
 };
 
 /// SMPTE time code of a frame; drop-frame counting is not used: at 29.97 Hz the code runs as at 30. Nothing above

@@ -2,6 +2,7 @@
 // A picture that is made while it is read, some rows at a time, so that large ones need not be in memory as a
 // whole.
 
+#include "gi/core/progress.h"
 #include "gi/image_io/picture.h"
 
 #include <functional>
@@ -18,12 +19,8 @@ struct PictureRows {
     std::map<std::string, std::string> metadata = {};
 
     explicit operator bool() const { return bool(read); }
-    Picture whole() const
-    {
-        Picture all = read(0, height);
-        all.metadata = metadata;
-        return all;
-    }
+    /// @param stop  once it is requested, throws Interrupted; null = never
+    Picture whole(StopRequest const* stop = nullptr) const;
 };
 
 /// The rows of a picture, which must outlive them.

@@ -103,7 +103,7 @@ void Accumulator::add(Accumulator const& other)
     seconds = std::max(seconds, other.seconds); // the two were rendered in parallel
 }
 
-dvec3 Accumulator::variance_of_mean(PixelMeans const& p) const
+dvec3 Accumulator::variance_of_mean(PixelMeans const& p, std::uint32_t paths)
 {
     if (paths < 2) return dvec3{0};
     dvec3 const d(p.deviation);
@@ -163,13 +163,13 @@ double Accumulator::relative_mse() const
 {
     constexpr int kReach = 2, kRows = 16;
     if (paths < 2) return 0;
+    auto const variance_at = [&](std::size_t p) { return variance_of_mean(pixels[p], paths_of(p)); };
     auto const sum_of = [&](tbb::blocked_range<int> const& range, double sum) {
         WindowMeans windows(*this, kReach);
         for (int y = range.begin(); y != range.end(); ++y) {
             std::vector<vec3> const& means = windows.of_row(y);
             for (std::size_t x = 0; x < means.size(); ++x) {
-                dvec3 const m(means[x]),
-                    v = variance_of_mean(pixels[std::size_t(y) * means.size() + x]) / (m * m + 0.01);
+                dvec3 const m(means[x]), v = variance_at(std::size_t(y) * means.size() + x) / (m * m + 0.01);
                 sum += v.x + v.y + v.z;
             }
         }
@@ -206,18 +206,18 @@ struct Targets {
 };
 
 /// Writes pixel i. Surface layers are averages over the paths that hit a surface, and 0 if none did.
-void put_pixel(Accumulator const& a, dvec3 origin, PixelMeans const& p, std::size_t i, Targets const& to)
+void put_pixel(std::uint32_t paths, dvec3 origin, PixelMeans const& p, std::size_t i, Targets const& to)
 {
     auto const put = [i](float* layer, dvec3 v) {
         for (int c = 0; c < 3; ++c) layer[3 * i + std::size_t(c)] = float(v[c]);
     };
     bool const hit = p.hits > 0;
     put(to.color, p.color());
-    if (to.alpha != nullptr) to.alpha[i] = float(double(p.hits) / double(a.paths));
+    if (to.alpha != nullptr) to.alpha[i] = float(double(p.hits) / double(std::max(1u, paths)));
     to.depth[i] = hit ? p.depth : 0.0f;
     if (to.variance == nullptr) return;
     for (std::size_t k = 0; k < 3; ++k) put(to.parts[k], p.radiance[k]);
-    put(to.variance, a.variance_of_mean(p));
+    put(to.variance, Accumulator::variance_of_mean(p, paths));
     double const length = glm::length(dvec3(p.normal));
     put(to.albedo, hit ? dvec3(p.albedo) : dvec3{0});
     put(to.normal, hit && length > 0 ? dvec3(p.normal) / length : dvec3{0});
@@ -250,12 +250,12 @@ Picture Accumulator::rows(PictureShape const& shape, int first, int count) const
         Layer& layer = out.layers[k];
         layer.data.resize(out.pixels() * std::size_t(layer.channels));
     });
-    if (paths == 0) return out;
+    if (!has_paths()) return out;
     Targets const to(out);
-    std::span<PixelMeans const> const from =
-        std::span(pixels).subspan(std::size_t(first) * std::size_t(width), out.pixels());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, from.size(), 4096), [&](auto const& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) put_pixel(*this, shape.origin, from[i], i, to);
+    std::size_t const from = std::size_t(first) * std::size_t(width);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.pixels(), 4096), [&](auto const& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            put_pixel(paths_of(from + i), shape.origin, pixels[from + i], i, to);
     });
     return out;
 }
@@ -266,7 +266,7 @@ void Accumulator::put(World const& world, std::span<std::uint32_t const> at, std
     Targets const to(picture);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, at.size(), 4096), [&](auto const& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i)
-            put_pixel(*this, world.origin, means[i], at[i], to);
+            put_pixel(paths, world.origin, means[i], at[i], to);
     });
 }
 

@@ -66,9 +66,11 @@ PictureShape picture_shape(World const& world, PictureLayers layers = PictureLay
 struct Accumulator {
     int width = 0, height = 0;
     std::uint32_t paths = 0;                                   ///< per pixel
-    std::vector<PixelMeans, Uninitialised<PixelMeans>> pixels; ///< valid only if paths > 0
-    PathCounts counts;                                         ///< of all paths so far
-    double seconds = 0;                                        ///< spent on these paths
+    std::vector<PixelMeans, Uninitialised<PixelMeans>> pixels; ///< valid only if has_paths()
+    std::vector<std::uint32_t> further; ///< per pixel, paths besides those, of a pass that was interrupted; empty
+                                        ///< = none
+    PathCounts counts;                  ///< of all paths so far
+    double seconds = 0;                 ///< spent on these paths
 
     Accumulator() = default;
     Accumulator(int w, int h) { start(w, h); }
@@ -79,21 +81,24 @@ struct Accumulator {
         height = h;
         pixels.clear(); // so that resizing copies nothing
         resize_on_huge_pages(pixels, std::size_t(w) * std::size_t(h));
+        further.clear();
         paths = 0;
         counts = {};
         seconds = 0;
     }
+    bool has_paths() const { return paths > 0 || !further.empty(); }
+    std::uint32_t paths_of(std::size_t pixel) const { return paths + (further.empty() ? 0 : further[pixel]); }
     /// Adds one path of a pixel. @param before  number of paths already added to this pixel
     void add(std::size_t pixel, PathSample const& s, std::uint32_t before)
     {
         if (before == 0) pixels[pixel] = PixelMeans{};
         pixels[pixel].add(s, before + 1);
     }
-    /// Adds all paths of an accumulator of the same size. As with any floating-point sum, the order of additions
-    /// decides the last bits.
+    /// Adds all paths of an accumulator of the same size, neither of them with further paths. As with any
+    /// floating-point sum, the order of additions decides the last bits.
     void add(Accumulator const& other);
     /// Variance of the mean per channel; 0 with fewer than two paths.
-    dvec3 variance_of_mean(PixelMeans const& p) const;
+    static dvec3 variance_of_mean(PixelMeans const& p, std::uint32_t paths);
     /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (m^2 + 0.01), where m is the
     /// mean of 5 x 5 pixels. (With the noisy value of a single pixel as m, pixels that happen to be dark would
     /// dominate.)

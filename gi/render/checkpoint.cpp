@@ -1,8 +1,8 @@
 #include "gi/render/checkpoint.h"
 
-#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
@@ -11,14 +11,20 @@ namespace gi {
 namespace {
 
 struct CheckpointHeader {
-    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '3'};
+    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '4'};
     std::uint64_t fingerprint = 0;
     std::int32_t width = 0, height = 0;
     std::uint32_t paths = 0, pixel_bytes = sizeof(PixelMeans);
     PathCounts counts;
     double seconds = 0;
+    std::uint64_t has_further = 0; ///< Accumulator::further follows the means
 };
 static_assert(std::is_trivially_copyable_v<CheckpointHeader> && std::is_trivially_copyable_v<PixelMeans>);
+
+std::uint64_t further_bytes(std::vector<std::uint32_t> const& further)
+{
+    return further.size() * sizeof(std::uint32_t);
+}
 
 } // namespace
 
@@ -27,9 +33,10 @@ std::uint64_t checkpoint_bytes(int width, int height)
     return sizeof(CheckpointHeader) + std::uint64_t(width) * std::uint64_t(height) * sizeof(PixelMeans);
 }
 
-void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint)
+void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint,
+                     DiskWait wait)
 {
-    std::uint64_t const bytes = checkpoint_bytes(a.width, a.height);
+    std::uint64_t const bytes = checkpoint_bytes(a.width, a.height) + further_bytes(a.further);
     std::error_code unknown;
     auto const disk = std::filesystem::space(file.has_parent_path() ? file.parent_path() : ".", unknown);
     if (!unknown && disk.available < bytes + bytes / 10)
@@ -43,13 +50,16 @@ void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, st
     header.paths = a.paths;
     header.counts = a.counts;
     header.seconds = a.seconds;
+    header.has_further = a.further.empty() ? 0 : 1;
     std::string_view const parts[]{
         {reinterpret_cast<char const*>(&header), sizeof header},
-        {reinterpret_cast<char const*>(a.pixels.data()), a.pixels.size() * sizeof(PixelMeans)}};
-    write_durably(file, parts);
+        {reinterpret_cast<char const*>(a.pixels.data()), a.pixels.size() * sizeof(PixelMeans)},
+        {reinterpret_cast<char const*>(a.further.data()), further_bytes(a.further)}};
+    write_durably(file, parts, wait);
 }
 
-bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint)
+bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint,
+                     StopRequest const* stop)
 {
     if (file.empty() || !std::filesystem::exists(file)) return false;
     auto const damaged = [&] {
@@ -67,10 +77,17 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
         throw InputError("'" + file.string() + "' belongs to another render",
                          "scene, camera or settings differ from when it was written",
                          "delete it or drop --resume to start afresh");
-    if (header.pixel_bytes != sizeof(PixelMeans) ||
-        std::filesystem::file_size(file) != checkpoint_bytes(a.width, a.height))
+    a.further.assign(header.has_further == 1 ? a.pixels.size() : 0, 0);
+    if (header.pixel_bytes != sizeof(PixelMeans) || header.has_further > 1 ||
+        std::filesystem::file_size(file) != checkpoint_bytes(a.width, a.height) + further_bytes(a.further))
         throw damaged();
-    in.read(reinterpret_cast<char*>(a.pixels.data()), std::streamsize(a.pixels.size() * sizeof(PixelMeans)));
+    constexpr std::size_t kTogether = 1 << 16; // pixels
+    for (std::size_t at = 0; in && at < a.pixels.size(); at += kTogether) {
+        if (stop != nullptr && stop->requested()) throw Interrupted();
+        in.read(reinterpret_cast<char*>(&a.pixels[at]),
+                std::streamsize(std::min(kTogether, a.pixels.size() - at) * sizeof(PixelMeans)));
+    }
+    in.read(reinterpret_cast<char*>(a.further.data()), std::streamsize(further_bytes(a.further)));
     if (!in) throw damaged();
     a.paths = header.paths;
     a.counts = header.counts;

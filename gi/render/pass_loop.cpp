@@ -29,7 +29,8 @@ std::uint32_t PassLoop::next_pass(double seconds_per_path) const
     if (settings_.budget_s > 0 && seconds_per_path > 0)
         paths = std::min(paths, (settings_.budget_s - seconds_since(start_)) / seconds_per_path);
     if (settings_.until_relmse > 0) paths = std::min(paths, std::max(16.0, 0.25 * double(sums_.paths)));
-    return std::uint32_t(std::clamp(paths, 1.0, double(limit() - sums_.paths)));
+    auto const next = std::uint32_t(std::clamp(paths, 1.0, std::max(1.0, double(limit()) - double(sums_.paths))));
+    return sums_.further.empty() ? next : std::max(next, *std::ranges::max_element(sums_.further));
 }
 
 void PassLoop::announce_state()
@@ -66,7 +67,8 @@ bool PassLoop::is_checkpoint_due() const
 
 void PassLoop::resume(std::uint64_t print)
 {
-    if (settings_.resume && !std::exchange(is_resumed_, true)) load_checkpoint(settings_.checkpoint, sums_, print);
+    if (settings_.resume && !std::exchange(is_resumed_, true))
+        load_checkpoint(settings_.checkpoint, sums_, print, &stop_);
 }
 
 RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
@@ -75,16 +77,17 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 
     resume(print);
     std::uint32_t const resumed = sums_.paths;
-    bool is_saved = resumed > 0;
+    bool is_saved = sums_.has_paths();
     double const earlier = sums_.seconds;
     RenderResult result;
     auto const first_pass = Clock::now();
     saved_ = first_pass;
-    double relmse = resumed > 0 ? sums_.relative_mse() : 0;
+    bool const watches = settings_.until_relmse > 0 || bool(progress_);
+    double relmse = resumed > 0 && watches ? sums_.relative_mse() : 0;
     double per_path = 0;
     while (true) {
-        if (sums_.paths >= limit()) break;
-        if (sums_.paths > 0 && stop_.requested()) {
+        if (sums_.paths >= limit() && sums_.further.empty()) break;
+        if (sums_.has_paths() && stop_.requested()) {
             result.end = RenderEnd::interrupted;
             break;
         }
@@ -100,14 +103,14 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
         try {
             on_threads(settings_.threads, [&] { pass(sums_, next_pass(per_path)); });
         } catch (Interrupted const&) {
-            if (sums_.paths == 0 || !stop_.requested()) throw;
+            if (!sums_.has_paths() || !stop_.requested()) throw;
             sums_.seconds = earlier + seconds_since(start_);
             continue;
         }
         double const now = seconds_since(start_);
         sums_.seconds = earlier + now;
         per_path = (seconds_since(first_pass) - checkpoints_s_) / double(sums_.paths - resumed);
-        if (settings_.until_relmse > 0 || progress_) relmse = sums_.relative_mse();
+        if (watches) relmse = sums_.relative_mse();
         if (progress_) {
             double fraction = double(sums_.paths) / double(limit());
             if (settings_.budget_s > 0) fraction = std::max(fraction, now / settings_.budget_s);
@@ -119,13 +122,8 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     }
     bool const may_go_on = keeps_state() && (result.end == RenderEnd::interrupted ||
                                              (settings_.resume && result.end != RenderEnd::paths));
-    if (may_go_on && settings_.by_rows) {
-        announce_state();
-        unsaved_ = print;
-        result.resumable = is_saved;
-    } else if (may_go_on) {
-        result.resumable = save(print) || is_saved;
-    }
+    print_ = print;
+    if (may_go_on) result.resumable = (!settings_.by_rows && save(print)) || is_saved;
     if (settings_.share.merge) settings_.share.merge(sums_);
     report_.add_time("trace", seconds_since(first_pass) - checkpoints_s_);
     if (is_announced_) report_.add_time("checkpoints", checkpoints_s_);
@@ -133,7 +131,8 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     report_.lose("path terms that were not finite, dropped", sums_.counts.invalid_paths);
     result.seconds = sums_.seconds;
     result.paths = sums_.paths;
-    result.relmse = sums_.relative_mse();
+    // Of complete passes, as the number of paths.
+    result.relmse = watches && !settings_.share.merge ? relmse : sums_.relative_mse();
     return result;
 }
 
@@ -145,10 +144,13 @@ void PassLoop::deliver(World const& world, RenderResult& result)
     }
     auto const sums = std::make_shared<Accumulator const>(std::move(sums_));
     result.rows = picture_rows(sums, picture_shape(world));
-    if (unsaved_)
-        result.save_state = [file = settings_.checkpoint, sums, print = *unsaved_] {
-            save_checkpoint(file, *sums, print);
-        };
+    result.color_rows = picture_rows(sums, picture_shape(world, PictureLayers::color_and_depth));
+    if (!keeps_state()) return;
+    auto const announce = is_announced_ ? nullptr : settings_.before_checkpoint;
+    result.save_state = [file = settings_.checkpoint, sums, print = print_, announce](DiskWait wait) {
+        if (announce) announce(checkpoint_bytes(sums->width, sums->height));
+        save_checkpoint(file, *sums, print, wait);
+    };
 }
 
 } // namespace gi

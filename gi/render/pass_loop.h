@@ -28,7 +28,8 @@ public:
 
     /// Callback that traces `paths` more paths for every pixel and adds them to the sums. The first of them has
     /// the number first_path() plus the number of paths already in the sums. If it throws Interrupted after a stop
-    /// request, what it added before is kept, and the render ends; where there is nothing, run() throws it.
+    /// request, what it added before is kept (also by TiledPass), and the render ends; where there is nothing,
+    /// run() throws it.
     using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;
 
     /// Runs the passes in an arena of settings.threads and fills in all of the result except picture and rays.
@@ -38,7 +39,7 @@ public:
     bool keeps_state() const { return !settings_.checkpoint.empty(); }
     Accumulator const& sums() const { return sums_; }
     /// Puts the picture into the result: its layers, or with RenderSettings::by_rows the sums that they are made
-    /// of, and the state of an unfinished render. Call it last.
+    /// of, and what saves their state. Call it last.
     void deliver(World const& world, RenderResult& result);
     std::uint32_t first_path() const { return settings_.share.first; }
 
@@ -63,8 +64,8 @@ private:
     Clock::time_point start_, saved_{}; ///< saved_: end of the last checkpoint, or the start of the passes
     double checkpoints_s_ = 0, last_checkpoint_s_ = 0; ///< time taken by all and by the last
     bool is_announced_ = false;
-    std::optional<std::uint64_t> unsaved_; ///< print of a state that deliver() leaves to be saved
-    bool is_resumed_ = false;              ///< resume() was called
+    std::uint64_t print_ = 0; ///< of the state that deliver() leaves to be saved
+    bool is_resumed_ = false; ///< resume() was called
 };
 
 } // namespace gi

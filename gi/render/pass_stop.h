@@ -5,11 +5,12 @@
 
 namespace gi {
 
-/// After a stop request, the first pass goes on if it has taken less than 150 ms, so that there is a picture to
-/// keep; a later one ends at once. Once given up, it stays so.
+/// After a stop request, the first pass goes on as BuildStop says, so that there is a picture to keep; a later one
+/// ends at once. Once given up, it stays so.
 class PassStop {
 public:
     enum class Pass : bool { first, later };
+    static Pass of(std::uint32_t paths) { return paths > 0 ? Pass::later : Pass::first; }
     /// @param stop  must outlive this object; null = never abandon
     explicit PassStop(StopRequest const* stop, Pass pass = Pass::first) : stop_(stop), first_(stop), pass_(pass) {}
     bool given_up() const

@@ -1,6 +1,7 @@
 #pragma once
 // Settings and results common to all light-transport methods.
 
+#include "gi/core/durable_file.h"
 #include "gi/core/progress.h"
 #include "gi/core/report.h"
 #include "gi/image_io/picture_rows.h"
@@ -254,18 +255,20 @@ enum class RenderEnd : std::uint8_t { paths, budget, error_target, interrupted }
 /// channel); alpha, one channel, where the background is transparent.
 struct RenderResult {
     Picture picture;
-    PictureRows rows; ///< instead of `picture`, with RenderSettings::by_rows
+    PictureRows rows;       ///< instead of `picture`, with RenderSettings::by_rows
+    PictureRows color_rows; ///< only color, alpha and depth of it, in less time
     RenderEnd end = RenderEnd::paths;
     std::uint32_t paths = 0;
     double seconds = 0; ///< for all paths, including those before an interruption
     double relmse = 0;
     std::string options;    ///< settings chosen by the method, as command-line options
     bool resumable = false; ///< settings.checkpoint holds the state needed to continue
-    /// With RenderSettings::by_rows, where the state is not saved yet: saves it, on any thread, also while `rows`
-    /// is read. Throws InputError. By then the memory of the method is free, and the picture need not wait for it.
-    /// The state is of the sums after PathShare::merge: of all shares, so that no single one could go on from it.
-    /// The command line has no checkpoint where several processes share a picture.
-    std::function<void()> save_state;
+    /// With RenderSettings::by_rows and a checkpoint: saves the state, on any thread, also while `rows` are read.
+    /// It is for the caller to do so where the render is unfinished, or its picture cannot be saved. Throws
+    /// InputError. By then the memory of the method is free, and the picture need not wait for it. The state is of
+    /// the sums after PathShare::merge: of all shares, so that no single one could go on from it. The command line
+    /// has no checkpoint where several processes share a picture.
+    std::function<void(DiskWait)> save_state;
     double rays = 0; ///< closest-hit and shadow rays, or look-ups
     /// For a view with a partner: per pixel, the partner's pixel (to half a pixel) if all its paths took its
     /// light from there, else kOwnLight (gi/filter/reused_light.h). Empty without a partner.

@@ -1,6 +1,8 @@
 #include "gi/core/progress.h"
 
+#include <chrono>
 #include <gtest/gtest.h>
+#include <thread>
 
 namespace gi::test {
 namespace {
@@ -21,6 +23,25 @@ TEST(Estimates, AreSaidOnlyOfWhatTakesLong)
     say_estimate("synthesize", 80, "60 pictures");
     say_estimate("synthesize", 2, "1 picture");
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "synthesize: about 1 min 20 s (60 pictures)\n");
+}
+
+TEST(BuildStop, EndsWhatWasBegunLongAgoAtOnce)
+{
+    StopRequest stop;
+    BuildStop const begun(&stop);
+    std::this_thread::sleep_for(std::chrono::milliseconds(170));
+    EXPECT_FALSE(begun.given_up());
+    stop.request();
+    EXPECT_TRUE(begun.given_up());
+}
+
+/// Stages that follow each other have one grace together, not one each.
+TEST(BuildStop, LetsNothingGoOnForLong)
+{
+    StopRequest stop;
+    stop.request();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_TRUE(BuildStop(&stop).given_up());
 }
 
 } // namespace

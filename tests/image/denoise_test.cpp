@@ -83,6 +83,17 @@ INSTANTIATE_TEST_SUITE_P(Denoise, AllFilters, testing::Values(kAtrous, kDisconti
                                                                                 : "Discontinuity";
                          });
 
+TEST_P(AllFilters, EndWhereAStopIsRequested)
+{
+    Picture p = wall(70, 50);
+    StopRequest stop;
+    DenoiseSettings settings = GetParam();
+    settings.stop = &stop;
+    EXPECT_NO_THROW(denoise(p, settings));
+    stop.request();
+    EXPECT_THROW(denoise(p, settings), Interrupted);
+}
+
 TEST_P(AllFilters, KeepATextureUnderConstantLight)
 {
     Picture p = wall(70, 50);

@@ -88,6 +88,20 @@ void expect_layers_add_up(Picture const& p)
                         p.find("L0")->data[k] + p.find("L1")->data[k] + p.find("L2")->data[k]);
 }
 
+TEST_F(Oidn, EndsWhereAStopIsRequestedAndWorksAgain)
+{
+    Picture const noisy = even_wall(64, 48);
+    Picture first = noisy, again = noisy, stopped = noisy;
+    denoise(first, kOidn);
+    StopRequest stop;
+    stop.request();
+    DenoiseSettings settings = kOidn;
+    settings.stop = &stop;
+    EXPECT_THROW(denoise(stopped, settings), Interrupted);
+    denoise(again, kOidn);
+    EXPECT_EQ(first.find("color")->data, again.find("color")->data);
+}
+
 TEST_F(Oidn, KeepsAnEvenWall)
 {
     for (auto const& [width, height] : {std::pair{64, 48}, {1, 1}, {3, 2}, {1, 9}, {17, 1}}) {

@@ -68,7 +68,7 @@ std::pair<double, double> errors(Accumulator const& a, DoubleSums const& s)
     most = std::max({most, off(dvec3(p.albedo), s.albedo / s.hits), off(dvec3(p.normal), s.normal / s.hits),
                      off(dvec3(p.position), s.position / s.hits), std::abs(p.depth / (s.depth / s.hits) - 1)});
     EXPECT_EQ(double(p.hits), s.hits);
-    return {most, off(a.variance_of_mean(p), s.variance_of_mean(n))};
+    return {most, off(a.variance_of_mean(p, a.paths), s.variance_of_mean(n))};
 }
 
 void add(Accumulator& a, PathSample const& s)
@@ -105,7 +105,7 @@ TEST(PixelMeans, EqualPathsAreExact)
     for (int k = 0; k < 70'000; ++k) add(a, s);
     EXPECT_EQ(a.pixels[0].radiance, s.radiance);
     EXPECT_EQ(a.pixels[0].position, s.hit ? s.position : vec3{0});
-    EXPECT_EQ(a.variance_of_mean(a.pixels[0]), dvec3{0});
+    EXPECT_EQ(a.variance_of_mean(a.pixels[0], a.paths), dvec3{0});
 }
 
 TEST(PixelMeans, PartsMakeTheWhole)
@@ -161,7 +161,8 @@ TEST(Accumulator, RelativeErrorIsThatOfWindows)
                 for (int u = std::max(0, x - 2); u <= std::min(a.width - 1, x + 2); ++u, ++count)
                     mean += a.pixels[std::size_t(v * a.width + u)].color();
             mean /= count;
-            dvec3 const e = a.variance_of_mean(a.pixels[std::size_t(y * a.width + x)]) / (mean * mean + 0.01);
+            dvec3 const e =
+                a.variance_of_mean(a.pixels[std::size_t(y * a.width + x)], a.paths) / (mean * mean + 0.01);
             sum += e.x + e.y + e.z;
         }
     double const expected = sum / (3.0 * double(a.pixels.size()));
@@ -198,6 +199,11 @@ TEST(Accumulator, ACheckpointHoldsAll)
     EXPECT_EQ(b.counts.shadow_rays, 7u);
     EXPECT_EQ(b.seconds, 1.5);
     EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(PixelMeans)), 0);
+    StopRequest stop;
+    Accumulator c(16, 8);
+    ASSERT_TRUE(load_checkpoint(file, c, 99, &stop));
+    stop.request();
+    EXPECT_THROW(load_checkpoint(file, c, 99, &stop), Interrupted);
     std::filesystem::resize_file(file, checkpoint_bytes(16, 8) - 1);
     EXPECT_THROW(load_checkpoint(file, b, 99), InputError);
     std::filesystem::remove(file);

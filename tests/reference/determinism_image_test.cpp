@@ -3,12 +3,14 @@
 
 #include "gi/core/error.h"
 #include "gi/methods/reference/reference.h"
+#include "gi/render/checkpoint.h"
 #include "tests/support/scenes.h"
 
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <thread>
 
 namespace gi::test {
 namespace {
@@ -35,10 +37,23 @@ RenderSettings settings()
 
 Camera eye() { return look_at({0, 0, 0.95}, {0, -0.2, 0}, 80); }
 
-RenderResult render(World const& world, RenderSettings const& s, StopRequest const& stop = {})
+RenderResult render(World const& world, RenderSettings const& s)
 {
     Report report;
-    return render_reference(world, eye(), s, stop, {}, report);
+    return render_reference(world, eye(), s, {}, {}, report);
+}
+
+/// Interrupted after the first pass.
+RenderResult begin(World const& world, RenderSettings const& s, Report& report)
+{
+    StopRequest stop;
+    return render_reference(
+        world, eye(), s, stop, [&](RenderStatus const&) { stop.request(); }, report);
+}
+RenderResult begin(World const& world, RenderSettings const& s)
+{
+    Report report;
+    return begin(world, s, report);
 }
 
 void expect_same_bits(Picture const& a, Picture const& b)
@@ -71,9 +86,7 @@ TEST(Determinism, ResumedEqualsUninterrupted)
     Picture const whole = render(world, s).picture;
 
     s.checkpoint = state;
-    StopRequest stop;
-    stop.request();
-    RenderResult const part = render(world, s, stop);
+    RenderResult const part = begin(world, s);
     EXPECT_EQ(part.end, RenderEnd::interrupted);
     EXPECT_LT(part.paths, s.paths);
     ASSERT_TRUE(std::filesystem::exists(state));
@@ -93,14 +106,91 @@ TEST(Determinism, ResumedEqualsUninterrupted)
     std::filesystem::remove(state);
 }
 
+/// A pass may take longer than a person waits. What its tiles have is kept.
+TEST(Determinism, APassIsInterruptedBetweenItsTiles)
+{
+    World const world = room();
+    std::filesystem::path const state =
+        std::filesystem::temp_directory_path() / ("lightwell_tiles_" + std::to_string(getpid()) + ".state");
+    RenderSettings s = settings();
+    s.width = 333; // the last tiles are cut
+    s.height = 205;
+    s.paths = 12;
+    Picture const whole = render(world, s).picture;
+    s.checkpoint = state;
+    bool is_met = false;
+    for (int wait_ms = 1; !is_met && wait_ms < 1000; wait_ms *= 2) {
+        StopRequest stop;
+        std::jthread later;
+        auto const in_the_next_pass = [&](RenderStatus const&) {
+            if (!later.joinable())
+                later = std::jthread([&] {
+                    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+                    stop.request();
+                });
+        };
+        Report report;
+        s.resume = false;
+        if (render_reference(world, eye(), s, stop, in_the_next_pass, report).end != RenderEnd::interrupted) break;
+        is_met = std::filesystem::file_size(state) > checkpoint_bytes(s.width, s.height);
+        s.resume = true;
+        RenderResult const rest = render(world, s);
+        expect_same_bits(whole, rest.picture);
+        EXPECT_EQ(rest.paths, s.paths);
+        s.paths = 1; // less than the state has: its pass is ended all the same
+        EXPECT_GE(render(world, s).paths, 1u);
+        s.paths = 12;
+    }
+    EXPECT_TRUE(is_met);
+    std::filesystem::remove(state);
+}
+
+/// So is a first pass, however little it has.
+TEST(Determinism, AFirstPassIsInterruptedBetweenItsTiles)
+{
+    World const world = room();
+    std::filesystem::path const state =
+        std::filesystem::temp_directory_path() / ("lightwell_first_" + std::to_string(getpid()) + ".state");
+    RenderSettings s = settings();
+    s.width = 900;
+    s.height = 600;
+    s.paths = 2;
+    Picture const whole = render(world, s).picture;
+    s.checkpoint = state;
+    bool is_met = false;
+    for (int wait_ms = 20; !is_met && wait_ms < 10'000; wait_ms += wait_ms / 4) {
+        StopRequest stop;
+        std::jthread const later([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+            stop.request();
+        });
+        s.resume = false;
+        Report report;
+        RenderResult part;
+        try {
+            part = render_reference(world, eye(), s, stop, {}, report);
+        } catch (Interrupted const&) { // while the BVH was built
+            continue;
+        }
+        if (part.paths > 0) break;
+        is_met = true;
+        EXPECT_EQ(part.end, RenderEnd::interrupted);
+        ASSERT_TRUE(part.resumable);
+        for (Layer const& layer : part.picture.layers)
+            for (float const v : layer.data) ASSERT_TRUE(std::isfinite(v)) << layer.name;
+        s.resume = true;
+        expect_same_bits(whole, render(world, s).picture);
+    }
+    EXPECT_TRUE(is_met);
+    std::filesystem::remove(state);
+}
+
 TEST(Determinism, AStateThatCannotBeWrittenCostsNoPicture)
 {
     RenderSettings s = settings();
     s.checkpoint = std::filesystem::temp_directory_path() / "lightwell_no_folder" / "x.state";
-    StopRequest stop;
-    stop.request();
     Report report;
-    RenderResult const part = render_reference(room(), look_at({0, 0.2, 2.5}, {0, 0, 0}, 50), s, stop, {}, report);
+    RenderResult const part = begin(room(), s, report);
     EXPECT_EQ(part.end, RenderEnd::interrupted);
     EXPECT_FALSE(part.resumable);
     EXPECT_GT(part.paths, 0u);
@@ -117,22 +207,23 @@ TEST(Determinism, StateOfAPictureByRowsIsSavedByItsReader)
     Picture const whole = render(room(), s).picture;
     s.checkpoint = state;
     s.by_rows = true;
-    StopRequest stop;
-    stop.request();
-    RenderResult const part = render(room(), s, stop);
+    RenderResult const part = begin(room(), s);
     EXPECT_FALSE(part.resumable);
     EXPECT_FALSE(std::filesystem::exists(state));
     ASSERT_TRUE(part.save_state);
-    part.save_state();
+    part.save_state(DiskWait::no);
     EXPECT_TRUE(part.rows);
     s.resume = true;
     RenderResult const rest = render(room(), s);
-    EXPECT_FALSE(rest.save_state);
-    expect_same_bits(whole, rest.rows.whole());
+    EXPECT_TRUE(rest.save_state) << "its picture may not be saved";
+    StopRequest stop;
+    expect_same_bits(whole, rest.rows.whole(&stop));
+    stop.request();
+    EXPECT_THROW(rest.rows.whole(&stop), Interrupted);
     std::filesystem::remove(state);
 
     s.checkpoint = std::filesystem::temp_directory_path() / "lightwell_no_folder" / "x.state";
-    EXPECT_THROW(render(room(), s, stop).save_state(), InputError);
+    EXPECT_THROW(begin(room(), s).save_state(DiskWait::yes), InputError);
 }
 
 /// Whatever changes the picture makes a state unusable.
@@ -150,9 +241,7 @@ TEST(Determinism, StatesOfOtherScenesAreRefused)
         std::filesystem::temp_directory_path() / ("lightwell_other_" + std::to_string(getpid()) + ".state");
     RenderSettings s = settings();
     s.checkpoint = state;
-    StopRequest stop;
-    stop.request();
-    ASSERT_TRUE(render(scene({1, 0, 0}, {0, 0}), s, stop).resumable);
+    ASSERT_TRUE(begin(scene({1, 0, 0}, {0, 0}), s).resumable);
     s.resume = true;
     EXPECT_THROW(render(scene({0, 1, 0}, {0, 0}), s), InputError);
     EXPECT_THROW(render(scene({1, 0, 0}, {0.5f, 0}), s), InputError);
@@ -187,10 +276,8 @@ TEST(Determinism, AResumedRenderKnowsItsErrorBeforeItStops)
     s.until_relmse = 1e-3;
     s.checkpoint =
         std::filesystem::temp_directory_path() / ("lightwell_until_" + std::to_string(getpid()) + ".state");
-    StopRequest stop;
-    stop.request();
     s.budget_s = 0;
-    ASSERT_EQ(render(world, s, stop).end, RenderEnd::interrupted);
+    ASSERT_EQ(begin(world, s).end, RenderEnd::interrupted);
     s.resume = true;
     RenderResult const r = render(world, s);
     EXPECT_EQ(r.end, RenderEnd::error_target);

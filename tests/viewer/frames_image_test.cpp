@@ -356,6 +356,28 @@ TEST(Frames, ControlCKeepsWhatIsCompleteAndResumeGoesOn)
     expect_whole(folder);
 }
 
+/// Interrupts a render after its first frame was begun. @return what it says of complete frames
+std::string interrupt_within_the_first_frame(std::string const& call, std::chrono::duration<double> after)
+{
+    TemporaryFolder const folder;
+    Program program(words(call), folder.path());
+    while (program.runs() && !std::filesystem::exists(folder / "f_0-8.exr.state"))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(after);
+    program.send(SIGINT);
+    Outcome const o = program.wait();
+    EXPECT_EQ(o.code, 130) << o.err;
+    return o.err;
+}
+
+TEST(Frames, ControlCIsObeyedWithinTheFirstPass)
+{
+    EXPECT_TRUE(contains(interrupt_within_the_first_frame("render cornell --size 2048x2048 --threads 1 --paths 1 "
+                                                          "--frames 0:9@8 --out f_%d.exr",
+                                                          std::chrono::seconds(1)),
+                         "0 of 9 frames are complete"));
+}
+
 TEST(Frames, AKilledRenderResumesToo)
 {
     TemporaryFolder const folder;

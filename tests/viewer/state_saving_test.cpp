@@ -28,7 +28,7 @@ TEST(StateSaving, GoesOnBesideThePictureAndIsTimed)
     auto const here = std::this_thread::get_id();
     std::thread::id there = here;
     gi::RenderResult result;
-    result.save_state = [&] {
+    result.save_state = [&](gi::DiskWait) {
         std::this_thread::sleep_for(kTime);
         there = std::this_thread::get_id();
     };
@@ -47,7 +47,7 @@ TEST(StateSaving, ErrorOfThePictureCostsNoState)
 {
     bool is_saved = false;
     gi::RenderResult result;
-    result.save_state = [&] {
+    result.save_state = [&](gi::DiskWait) {
         std::this_thread::sleep_for(kTime);
         is_saved = true;
     };
@@ -64,9 +64,9 @@ TEST(StateSaving, AnyErrorOfTheStateIsReported)
 {
     gi::RenderResult result;
     gi::Report report;
-    result.save_state = [] { throw gi::InputError("a", "b", "c"); };
+    result.save_state = [](gi::DiskWait) { throw gi::InputError("a", "b", "c"); };
     EXPECT_FALSE(StateSaving(result).join(report));
-    result.save_state = [] { throw std::runtime_error("d"); };
+    result.save_state = [](gi::DiskWait) { throw std::runtime_error("d"); };
     EXPECT_FALSE(StateSaving(result).join(report));
     EXPECT_EQ(report.losses().at("checkpoints that could not be written").count, 2u);
 }
@@ -76,7 +76,7 @@ TEST(StateSaving, NeedsNoThread)
     int const code = gi::test::in_child_without({SYS_clone, SYS_clone3}, EAGAIN, [] {
         bool is_saved = false;
         gi::RenderResult result;
-        result.save_state = [&] { is_saved = true; };
+        result.save_state = [&](gi::DiskWait) { is_saved = true; };
         gi::Report report;
         try {
             return StateSaving(result).join(report) && is_saved ? 7 : 6;

@@ -1,9 +1,11 @@
 // Inputs that have broken renderers: every method vpl_* ends, with finite pictures and with what it lost counted.
 
 #include "gi/core/error.h"
+#include "gi/render/checkpoint.h"
 #include "tests/visibility/visibility_render.h"
 
 #include <numeric>
+#include <thread>
 #include <unistd.h>
 
 namespace gi::test {
@@ -73,6 +75,45 @@ TEST(VisibilityHardCases, ResumedRendersHaveTheBitsOfUninterruptedOnes)
             render_with_virtual_lights(kind, world, in_the_box(), s, stop, after_the_first_pass, report);
         ASSERT_TRUE(part.resumable) << int(kind);
         EXPECT_LT(part.paths, s.paths);
+        s.resume = true;
+        RenderResult const resumed = render_visibility(kind, world, in_the_box(), s).result;
+        EXPECT_EQ(resumed.paths, s.paths);
+        for (Layer const& layer : whole.layers)
+            EXPECT_EQ(resumed.picture.find(layer.name)->data, layer.data) << int(kind) << " " << layer.name;
+        std::filesystem::remove(state);
+    }
+}
+
+/// A pass may take longer than a person waits: what its tiles have is kept.
+TEST(VisibilityHardCases, APassIsInterruptedBetweenItsTiles)
+{
+    World const world = world_of(box_with_block());
+    std::filesystem::path const state =
+        std::filesystem::temp_directory_path() / ("lightwell_vpl_tiles_" + std::to_string(getpid()) + ".state");
+    for (VisibilityKind const kind : kKinds) {
+        RenderSettings s = small_picture(100, 2, 3);
+        s.vpl.light_paths = 512;
+        Picture const whole = render_visibility(kind, world, in_the_box(), s).result.picture;
+        s.checkpoint = state;
+        bool is_met = false;
+        for (int wait_ms = 1; !is_met && wait_ms < 10'000; wait_ms += 1 + wait_ms / 4) {
+            StopRequest stop;
+            std::jthread later;
+            auto const in_the_next_pass = [&](RenderStatus const&) {
+                if (!later.joinable())
+                    later = std::jthread([&] {
+                        std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+                        stop.request();
+                    });
+            };
+            Report report;
+            s.resume = false;
+            RenderResult const part =
+                render_with_virtual_lights(kind, world, in_the_box(), s, stop, in_the_next_pass, report);
+            if (part.end != RenderEnd::interrupted) break;
+            is_met = std::filesystem::file_size(state) > checkpoint_bytes(s.width, s.height);
+        }
+        ASSERT_TRUE(is_met) << int(kind);
         s.resume = true;
         RenderResult const resumed = render_visibility(kind, world, in_the_box(), s).result;
         EXPECT_EQ(resumed.paths, s.paths);

@@ -40,6 +40,7 @@ public:
              gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
         : o_(o), settings_(settings), denoise_(denoise_settings), f_(make_frame_settings(o, settings)), work_(work)
     {
+        denoise_.stop = &stop_;
         if (work.leads()) refuse_to_replace();
         if (!f_.video.empty() && work.leads())
             video_ = std::make_unique<VideoWriter>(f_.video, settings.width, settings.height, f_.range.fps());
@@ -91,8 +92,12 @@ private:
         for (int k = f_.range.first; k < f_.range.end && !stop_.requested(); ++k) {
             if (!is_mine(k)) continue;
             bool const kept = there[std::size_t(k - f_.range.first)] != 0;
-            if (kept && is_history(there, k) && !remember(k)) break;
-            if (kept ? !reuse(k) : !render(k)) break;
+            try {
+                if (kept && is_history(there, k) && !remember(k)) break;
+                if (kept ? !reuse(k) : !render(k)) break;
+            } catch (gi::Interrupted const&) { // this frame is not complete
+                break;
+            }
         }
     }
 
@@ -248,7 +253,7 @@ private:
         return true;
     }
 
-    /// Renders a missing frame. @return false if it was interrupted
+    /// Renders a missing frame. @return false if it was interrupted; it may also throw Interrupted
     bool render(int frame)
     {
         auto const start = std::chrono::steady_clock::now();
@@ -286,9 +291,9 @@ private:
         picture.metadata = metadata(frame, world, camera, result, moving ? &*moving : nullptr);
         {
             gi::StageTimer const timer(report, "save");
-            show_picture(frame, picture);
             keep_layers(o_, picture);
-            if (f_.exr) save_exr(o_, f_.exr->of(frame), rows_of(picture), report);
+            if (f_.exr) save_exr(o_, f_.exr->of(frame), rows_of(picture), report, {.stop = &stop_});
+            show_picture(frame, picture); // once it is complete
         }
         record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         result.picture = {};
@@ -419,7 +424,7 @@ private:
 
     RenderOptions const& o_;
     gi::RenderSettings const& settings_;
-    gi::DenoiseSettings const& denoise_;
+    gi::DenoiseSettings denoise_;
     FrameSettings f_;
     RankWork& work_;
     gi::StopRequest& stop_ = work_.stop();

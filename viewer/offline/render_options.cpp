@@ -292,9 +292,10 @@ relmse_estimate, rays, rays_per_s), plan (name, what, build, reason, numbers), r
 peak_memory_bytes); for --frames, instead of result, one record per frame (frame, time_s, outputs, reused, seconds,
 trace_s, paths_per_pixel, rays, relmse_estimate, end, losses) and frame_seconds (median, p95, p99, most, total).
 
-Ctrl-C, SIGTERM and a closed terminal save the picture so far and its state, and exit with 130, 143 and 129; a second
-Ctrl-C ends at once. With --resume, the same command then gives the picture of an uninterrupted one, bit for bit, if
---paths ends it; with --budget or --until, the number of paths depends on the time, and a budget counts for each call.
+Ctrl-C, SIGTERM and a closed terminal save the color of the picture so far, not denoised, and its state, and exit with
+130, 143 and 129; a second Ctrl-C ends at once. With --resume, the same command then gives the picture of an
+uninterrupted one, bit for bit, if --paths ends it; with --budget or --until, the number of paths depends on the time,
+and a budget counts for each call.
 (Except with --radiance-cache on, sh_grid and the methods of photons, whose light starts anew.)
 With --frames, complete frames and the video so far are kept.)");
 }

@@ -72,10 +72,9 @@ void keep_layers(RenderOptions const& o, gi::Picture& picture)
 }
 
 void save_exr(RenderOptions const& o, std::string const& file, gi::PictureRows const& picture, gi::Report& report,
-              gi::ExrCompression compression)
+              gi::ExrAttributes const& attributes)
 {
-    gi::write_exr(file, picture, o.half ? gi::PixelType::half : gi::PixelType::single, report,
-                  {.compression = compression});
+    gi::write_exr(file, picture, o.half ? gi::PixelType::half : gi::PixelType::single, report, attributes);
 }
 
 std::vector<unsigned char> display_bytes(RenderOptions const& o, gi::Picture const& picture)

@@ -19,7 +19,7 @@ std::string denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, g
 /// Keeps only color (with alpha, if any) and the requested layers.
 void keep_layers(RenderOptions const& options, gi::Picture& picture);
 void save_exr(RenderOptions const& options, std::string const& file, gi::PictureRows const& picture,
-              gi::Report& report, gi::ExrCompression compression = gi::ExrCompression::zip);
+              gi::Report& report, gi::ExrAttributes const& attributes = {});
 /// Layer "color", tone-mapped by --exposure and --tone: 8 bits of red, green, blue and, if present, alpha.
 std::vector<unsigned char> display_bytes(RenderOptions const& options, gi::Picture const& picture);
 

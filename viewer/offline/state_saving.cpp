@@ -7,8 +7,8 @@
 
 namespace viewer {
 
-StateSaving::StateSaving(gi::RenderResult& result)
-    : save_(std::exchange(result.save_state, nullptr)), has_state_(save_ != nullptr)
+StateSaving::StateSaving(gi::RenderResult& result, gi::DiskWait wait)
+    : save_(std::exchange(result.save_state, nullptr)), wait_(wait), has_state_(save_ != nullptr)
 {
     if (!has_state_) return;
     // The files need memory as large as they are for what waits for the disk. The system gives it faster from what
@@ -26,7 +26,7 @@ void StateSaving::save()
 {
     auto const begun = std::chrono::steady_clock::now();
     try {
-        std::exchange(save_, nullptr)(); // its sums are freed with it
+        std::exchange(save_, nullptr)(wait_); // its sums are freed with it
     } catch (std::exception const& e) {
         error_ = e.what();
     }

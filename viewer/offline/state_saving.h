@@ -1,5 +1,5 @@
 #pragma once
-// Saves the state of an interrupted render beside what is still made of its picture.
+// Saves the state of an unfinished render beside what is still made of its picture.
 
 #include "gi/core/report.h"
 #include "gi/render/render_settings.h"
@@ -15,17 +15,19 @@ namespace viewer {
 class StateSaving {
 public:
     /// Takes RenderResult::save_state, which may be empty.
-    explicit StateSaving(gi::RenderResult& result);
+    explicit StateSaving(gi::RenderResult& result, gi::DiskWait wait = gi::DiskWait::yes);
     StateSaving(StateSaving const&) = delete;
     StateSaving& operator=(StateSaving const&) = delete;
 
+    bool has_state() const { return has_state_; }
     /// Waits for it; its time and what kept it from being saved go to the report. @return whether it is saved
     bool join(gi::Report& report);
 
 private:
     void save();
 
-    std::function<void()> save_;
+    std::function<void(gi::DiskWait)> save_;
+    gi::DiskWait const wait_;
     bool const has_state_;
     double seconds_ = 0;
     std::string error_;         ///< why it could not be saved

@@ -5,18 +5,14 @@
 #include "gi/render/exact_visibility.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/render_settings.h"
+#include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/motion/moving_world.h"
 
-#include <algorithm>
 #include <memory>
 #include <tbb/combinable.h>
-#include <tbb/parallel_for.h>
 
 namespace gi {
-
-/// Size of the tiles whose paths advance together, px.
-inline constexpr int kTile = 16;
 
 class EmbreePaths {
 public:
@@ -47,38 +43,36 @@ public:
         return view(world_);
     }
 
-    /// Traces some paths of every pixel.
+    /// Traces some paths of every pixel; those of a tile advance together.
     /// @param first_path  number of the first of them
     /// @param first_hits  per pixel, set by the last path; empty = not needed
     /// @param use  (pixel, number of the path from 0, PathSample), from several threads; the paths of a pixel in
     ///   order, by one thread
     template <class Use>
-    PathCounts trace(PathSteps const& steps, int height, std::uint32_t first_path, std::uint32_t paths,
+    PathCounts trace(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                      std::span<FirstHit> first_hits, Use const& use) const
     {
         PathTracer<ExactVisibility> const tracer{steps, *visibility_};
         tbb::combinable<PathCounts> counts;
-        int const columns = (steps.width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
-        tbb::parallel_for(0, columns * rows, [&](int tile) {
+        pass.run([&](TiledPass::Tile const& tile) {
             FlushDenormals const guard;
             PathCounts& local = counts.local();
-            int const left = tile % columns * kTile, right = std::min(left + kTile, steps.width);
-            int const top = tile / columns * kTile, bottom = std::min(top + kTile, height);
             std::vector<Path> batch;
-            for (std::uint32_t i = 0; i < paths; ++i) {
+            tile.for_paths([&](std::uint32_t i) {
                 batch.clear();
-                for (int y = top; y < bottom; ++y)
-                    for (int x = left; x < right; ++x) batch.push_back(steps.start(x, y, first_path + i));
+                for (int y = tile.top; y < tile.bottom; ++y)
+                    for (int x = tile.left; x < tile.right; ++x)
+                        batch.push_back(steps.start(x, y, first_path + i));
                 tracer.trace(batch, local);
                 auto next = batch.begin();
-                bool const last = i + 1 == paths && !first_hits.empty();
-                for (int y = top; y < bottom; ++y)
-                    for (int x = left; x < right; ++x, ++next) {
+                bool const last = i + 1 == pass.paths && !first_hits.empty();
+                for (int y = tile.top; y < tile.bottom; ++y)
+                    for (int x = tile.left; x < tile.right; ++x, ++next) {
                         std::size_t const pixel = std::size_t(y) * std::size_t(steps.width) + std::size_t(x);
                         use(pixel, i, next->sample);
                         if (last) first_hits[pixel] = next->first;
                     }
-            }
+            });
         });
         return counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
     }

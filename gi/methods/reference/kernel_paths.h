@@ -5,6 +5,7 @@
 #include "gi/kernel/launch.h"
 #include "gi/methods/reference/path_kernel.h"
 #include "gi/render/render_settings.h"
+#include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/model/world_on.h"
 
@@ -42,11 +43,12 @@ public:
     }
 
     template <class Use>
-    PathCounts trace(PathSteps const& steps, int height, std::uint32_t first_path, std::uint32_t paths,
+    PathCounts trace(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                      std::span<FirstHit> first_hits, Use const& use)
     {
         constexpr std::size_t kMostItems = std::size_t(1) << 20; // of a launch; limits the memory of samples
-        std::size_t const pixels = std::size_t(steps.width) * std::size_t(height);
+        std::size_t const pixels = pass.pixels();
+        std::uint32_t const paths = pass.paths;
         auto const together = std::uint32_t(std::max<std::size_t>(1, kMostItems / pixels));
         Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(1));
         Buffer<FirstHit, S> hits(first_hits.empty() ? 0 : pixels);
@@ -63,6 +65,7 @@ public:
             });
             done += now;
         }
+        pass.all_done();
         if (!first_hits.empty()) std::ranges::copy(download(hits), first_hits.begin());
         return download(counts)[0];
     }

@@ -20,17 +20,20 @@ double rays_of(PathCounts const& c) { return double(c.nearest_rays + c.shadow_ra
 /// @tparam Paths  EmbreePaths, or KernelPaths of a space
 /// @param first_hits  one per pixel, set by its last path; empty = not needed
 /// @param memory  buffer for interleaved passes, in which pixels take indirect light from those in turn
+/// @param stop  throws Interrupted; what was traced is kept. Null = never
 template <class Paths>
 void trace_pass(Paths& tracing, PathSteps const& steps, Accumulator& sums, std::uint32_t first_path,
                 std::uint32_t paths, std::span<FirstHit> first_hits = {},
-                std::vector<PathSample>* memory = nullptr)
+                std::vector<PathSample>* memory = nullptr, StopRequest const* stop = nullptr)
 {
     std::uint32_t const first = first_path + sums.paths;
+    PassStop const given_up(stop, PassStop::of(sums.paths));
+    TiledPass pass(sums, paths, given_up);
     if (steps.interleaving.n > 1) {
         memory->resize(sums.pixels.size());
         std::span<PathSample> const waiting = *memory;
         auto const keep = [&](std::size_t pixel, std::uint32_t, PathSample const& s) { waiting[pixel] = s; };
-        sums.counts += tracing.trace(steps, sums.height, first, paths, first_hits, keep);
+        sums.counts += tracing.trace(steps, pass, first, first_hits, keep);
         spread_indirect(waiting, sums.width, steps.interleaving, first);
         tbb::parallel_for(std::size_t(0), waiting.size(),
                           [&](std::size_t p) { sums.add(p, waiting[p], sums.paths); });
@@ -38,9 +41,9 @@ void trace_pass(Paths& tracing, PathSteps const& steps, Accumulator& sums, std::
         auto const add = [&](std::size_t pixel, std::uint32_t k, PathSample const& s) {
             sums.add(pixel, s, sums.paths + k);
         };
-        sums.counts += tracing.trace(steps, sums.height, first, paths, first_hits, add);
+        sums.counts += tracing.trace(steps, pass, first, first_hits, add);
     }
-    sums.paths += paths;
+    pass.end();
 }
 
 /// Builds what is missing for tracing.
@@ -181,7 +184,7 @@ RenderResult render_picture(char const* name, World const& world, Camera const& 
     PathSteps const steps = start_steps(tracing, world, camera, settings);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
     auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
-        trace_pass(tracing, steps, sums, loop.first_path(), paths);
+        trace_pass(tracing, steps, sums, loop.first_path(), paths, {}, nullptr, &stop);
     };
     return trace_all(loop, print, pass, world, settings, report);
 }

@@ -239,7 +239,7 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached, PassSto
 
 void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing)
 {
-    PassStop const stop(stop_, sums[0].paths > 0 ? PassStop::Pass::later : PassStop::Pass::first);
+    PassStop const stop(stop_, PassStop::of(sums[0].paths));
     prepare(index, Sides::one, stop);
     StageTimer const timer(report_, "paths");
     paths_.trace(tracing(index, sharing == VertexSharing::cached, stop), views_, sharing, sums);

@@ -81,7 +81,7 @@ struct Waiting {
 } // namespace
 
 void gather(ReceiverTile const& tile, std::span<LightVertex const> lights, VisibilityTerm const& term, float bound,
-            std::span<vec3> radiance, PathCounts& paths, GatherCounts& counts)
+            PassStop const& stop, std::span<vec3> radiance, PathCounts& paths, GatherCounts& counts)
 {
     if (lights.empty() || tile.receivers.empty()) return;
     thread_local Waiting waiting;
@@ -90,6 +90,8 @@ void gather(ReceiverTile const& tile, std::span<LightVertex const> lights, Visib
     thread_local Lanes lanes;
     std::size_t const all = tile.receivers.size();
     sums.assign(all, vec3{0});
+    waiting.connections.clear(); // of a tile that was given up
+    waiting.light.clear();
     for (std::size_t first = 0; first < all; first += Lanes::kMost) {
         std::size_t const count = std::min(Lanes::kMost, all - first);
         for (std::size_t k = 0; k < count; ++k) lanes.set(k, tile.receivers[first + k]);
@@ -112,6 +114,7 @@ void gather(ReceiverTile const& tile, std::span<LightVertex const> lights, Visib
                 waiting.light.push_back(f * at_light(light, direction) * light.power * geometry);
             }
             if (waiting.connections.size() < kTogether) continue;
+            stop.check();
             counts.connections += waiting.connections.size();
             waiting.flush(tile, term, sums, paths);
         }

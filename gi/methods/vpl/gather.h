@@ -18,8 +18,8 @@ struct GatherCounts {
 };
 
 /// Adds the light from virtual lights to radiance[k], for receiver k (fractions: see camera_paths.h).
-/// @param bound  1/m^2  @param radiance  one per receiver
+/// @param bound  1/m^2  @param radiance  one per receiver. Throws Interrupted before any is set.
 void gather(ReceiverTile const& tile, std::span<LightVertex const> lights, VisibilityTerm const& term, float bound,
-            std::span<vec3> radiance, PathCounts& paths, GatherCounts& counts);
+            PassStop const& stop, std::span<vec3> radiance, PathCounts& paths, GatherCounts& counts);
 
 } // namespace gi

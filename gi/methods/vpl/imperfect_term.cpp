@@ -37,7 +37,7 @@ ImperfectTerm::ImperfectTerm(TermSource const& source)
 
 void ImperfectTerm::world_changed() { cloud_ = make_point_cloud(world_, seed_); }
 
-void ImperfectTerm::prepare(std::span<LightVertex const> lights, std::uint32_t pass)
+void ImperfectTerm::prepare(std::span<LightVertex const> lights, std::uint32_t pass, PassStop const& stop)
 {
     lights_.resize(lights.size());
     std::size_t const texels = std::size_t(grid_.size) * grid_.size;
@@ -46,6 +46,7 @@ void ImperfectTerm::prepare(std::span<LightVertex const> lights, std::uint32_t p
     // Subsets start at multiples of a power of two, so that each is evenly distributed.
     std::uint32_t const step = std::bit_ceil(count), subsets = std::max(1u, PointCloud::kCount / step);
     tbb::parallel_for(std::size_t(0), lights.size(), [&](std::size_t k) {
+        stop.check();
         thread_local std::vector<float> scratch;
         std::uint32_t const first = hash_words(std::uint32_t(k), pass) % subsets * step;
         lights_[k] = {lights[k].position, Frame::about(lights[k].normal), maps_.data() + k * texels};

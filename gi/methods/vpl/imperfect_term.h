@@ -12,7 +12,7 @@ public:
     explicit ImperfectTerm(TermSource const& source);
 
     /// Draws the maps: each light uses a different subset of the points.
-    void prepare(std::span<LightVertex const> lights, std::uint32_t pass) override;
+    void prepare(std::span<LightVertex const> lights, std::uint32_t pass, PassStop const& stop) override;
     void world_changed() override;
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
                         PathCounts& counts) const override;

@@ -33,7 +33,8 @@ struct LayerTerm::Walks {
 };
 
 LayerTerm::LayerTerm(TermSource const& source)
-    : world_(source.world), axes_(source.world, source.settings.slhb, source.settings.seed, source.first_moving)
+    : world_(source.world),
+      axes_(source.world, source.settings.slhb, source.settings.seed, source.first_moving, source.stop)
 {
 }
 

@@ -22,7 +22,10 @@ public:
     /// directions.
     explicit LayerTerm(TermSource const& source);
 
-    void prepare(std::span<LightVertex const> lights, std::uint32_t) override { lights_ = lights; }
+    void prepare(std::span<LightVertex const> lights, std::uint32_t, PassStop const&) override
+    {
+        lights_ = lights;
+    }
     void world_changed() override { axes_.moved(); }
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
                         PathCounts& counts) const override;

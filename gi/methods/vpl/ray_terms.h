@@ -14,7 +14,10 @@ public:
     RayTerm(ExactVisibility const& visibility, float radius_m) : visibility_(visibility), radius_m_(radius_m) {}
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
                         PathCounts& counts) const override;
-    void prepare(std::span<LightVertex const> lights, std::uint32_t) override { lights_ = lights; }
+    void prepare(std::span<LightVertex const> lights, std::uint32_t, PassStop const&) override
+    {
+        lights_ = lights;
+    }
 
 private:
     ExactVisibility const& visibility_;

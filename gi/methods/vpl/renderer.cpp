@@ -2,15 +2,11 @@
 
 #include "gi/core/rqmc.h"
 #include "gi/render/flush_denormals.h"
+#include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
-
-#include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
-
-/// Size of the tiles whose paths advance together, px.
-constexpr int kTile = 16;
 
 /// Default distance within which virtual lights are bounded, relative to the scene's radius.
 constexpr float kNear = 0.02f;
@@ -25,8 +21,8 @@ float bound_of(World const& world, VirtualLightSettings const& s)
 } // namespace
 
 VirtualLightRenderer::VirtualLightRenderer(VisibilityKind kind, World const& world, RenderSettings const& settings,
-                                           std::size_t first_moving, Report& report)
-    : kind_(kind), world_(world), settings_(settings), first_moving_(first_moving), report_(report)
+                                           std::size_t first_moving, Report& report, StopRequest const* stop)
+    : kind_(kind), world_(world), settings_(settings), first_moving_(first_moving), report_(report), stop_(stop)
 {
     build();
 }
@@ -40,7 +36,7 @@ void VirtualLightRenderer::build()
                                                         first_moving_);
     }
     StageTimer const timer(report_, "build (visibility)");
-    term_ = make_term(kind_, {world_, *visibility_, settings_, first_moving_, report_});
+    term_ = make_term(kind_, {world_, *visibility_, settings_, first_moving_, report_, stop_});
 }
 
 void VirtualLightRenderer::changed(Changes const& changes)
@@ -55,15 +51,18 @@ void VirtualLightRenderer::changed(Changes const& changes)
 void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
                                 MotionVectors* motion)
 {
+    PassStop const stop(stop_, PassStop::of(sums[0].paths));
     PathCounts counts;
     std::vector<LightVertex> lights;
     {
+        BuildStop const tracing(stop_);
         StageTimer const timer(report_, "virtual lights");
         lights = trace_light_paths(view(world_), world_.bounds, ExactPathRays(*visibility_),
                                    {.count = std::uint32_t(settings_.vpl.light_paths),
                                     .bounces = settings_.bounces,
                                     .seed = settings_.seed,
-                                    .pass = index},
+                                    .pass = index,
+                                    .stop = &tracing},
                                    counts);
     }
     lights_ += lights.size();
@@ -71,7 +70,7 @@ void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> 
     rays_ += double(counts.nearest_rays);
     {
         StageTimer const timer(report_, "visibility of a pass");
-        term_->prepare(lights, index);
+        term_->prepare(lights, index, stop);
     }
     StageTimer const timer(report_, "paths");
     for (std::size_t k = 0; k < views.size(); ++k)
@@ -91,34 +90,35 @@ void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index, s
                             .width = v.width,
                             .bound = bound_of(world_, settings_.vpl)};
     tbb::combinable<Counts> counts;
-    int const columns = (v.width + kTile - 1) / kTile, rows = (v.height + kTile - 1) / kTile;
-    tbb::parallel_for(0, columns * rows, [&](int tile) {
-        FlushDenormals const guard;
-        Counts& local = counts.local();
-        int const left = tile % columns * kTile, right = std::min(left + kTile, v.width);
-        int const top = tile / columns * kTile, bottom = std::min(top + kTile, v.height);
+    PassStop const stop(stop_, PassStop::of(sums.paths));
+    TiledPass pass(sums, 1, stop);
+    auto const trace_tile = [&](TiledPass::Tile const& tile, Counts& local) { // its paths advance together
         thread_local std::vector<CameraSubpath> batch;
         thread_local std::vector<Receiver> receivers;
         thread_local std::vector<vec3> gathered;
         batch.clear();
         receivers.clear();
-        for (int y = top; y < bottom; ++y)
-            for (int x = left; x < right; ++x) batch.push_back(paths.start(x, y, index));
+        for (int y = tile.top; y < tile.bottom; ++y)
+            for (int x = tile.left; x < tile.right; ++x) batch.push_back(paths.start(x, y, index));
         paths.trace(batch, receivers, local.paths);
         gathered.assign(receivers.size(), vec3{0});
-        gather({receivers, hash_words(hash_words(std::uint32_t(settings_.seed), std::uint32_t(tile)), index)},
-               lights, *term_, paths.bound, gathered, local.paths, local.gather);
+        std::uint32_t const seed =
+            hash_words(hash_words(std::uint32_t(settings_.seed), std::uint32_t(tile.index)), index);
+        gather({receivers, seed}, lights, *term_, paths.bound, stop, gathered, local.paths, local.gather);
         for (std::size_t k = 0; k < receivers.size(); ++k)
             layer_of(batch[receivers[k].path].sample, 2) += gathered[k];
         auto next = batch.begin();
-        for (int y = top; y < bottom; ++y)
-            for (int x = left; x < right; ++x, ++next) {
+        for (int y = tile.top; y < tile.bottom; ++y)
+            for (int x = tile.left; x < tile.right; ++x, ++next) {
                 std::size_t const pixel = std::size_t(y) * std::size_t(v.width) + std::size_t(x);
                 sums.add(pixel, next->sample, sums.paths);
                 if (!first_hits.empty()) first_hits[pixel] = next->first;
             }
+    };
+    pass.run([&](TiledPass::Tile const& tile) {
+        FlushDenormals const guard;
+        tile.for_paths([&](std::uint32_t) { trace_tile(tile, counts.local()); });
     });
-    ++sums.paths;
     Counts const all = counts.combine([](Counts a, Counts const& b) {
         a.paths += b.paths;
         a.gather += b.gather;
@@ -127,6 +127,7 @@ void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index, s
     sums.counts += all.paths;
     gathered_ += all.gather;
     rays_ += double(all.paths.nearest_rays + all.paths.shadow_rays);
+    pass.end();
 }
 
 void VirtualLightRenderer::report_work()

@@ -11,8 +11,9 @@ namespace gi {
 class VirtualLightRenderer : public PassRenderer {
 public:
     /// `world`, `settings` and `report` must outlive this object, and the world's arrays must not be reallocated.
+    /// @param stop  of structures and of passes, which throw Interrupted; null = never
     VirtualLightRenderer(VisibilityKind kind, World const& world, RenderSettings const& settings,
-                         std::size_t first_moving, Report& report);
+                         std::size_t first_moving, Report& report, StopRequest const* stop = nullptr);
 
     void changed(Changes const& changes) override;
     /// All views are lit by the virtual lights of this pass.
@@ -36,6 +37,7 @@ private:
     RenderSettings const& settings_;
     std::size_t first_moving_;
     Report& report_;
+    StopRequest const* stop_;
     std::unique_ptr<ExactVisibility> visibility_;
     std::unique_ptr<VisibilityTerm> term_;
     GatherCounts gathered_;

@@ -38,8 +38,8 @@ RenderSettings chosen(RenderSettings settings)
 StartPasses passes(VisibilityKind kind)
 {
     return [kind](World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
-                  StopRequest const*) {
-        return std::make_unique<VirtualLightRenderer>(kind, world, settings, first_moving, report);
+                  StopRequest const* stop) {
+        return std::make_unique<VirtualLightRenderer>(kind, world, settings, first_moving, report, stop);
     };
 }
 

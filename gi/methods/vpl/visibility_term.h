@@ -5,6 +5,7 @@
 #include "gi/core/report.h"
 #include "gi/light_paths/light_paths.h"
 #include "gi/methods/vpl/camera_paths.h"
+#include "gi/render/pass_stop.h"
 #include "gi/render/render_settings.h"
 
 #include <algorithm>
@@ -39,8 +40,8 @@ struct Connection {
 class VisibilityTerm {
 public:
     virtual ~VisibilityTerm() = default;
-    /// Called before a pass. The span of lights stays valid during the pass.
-    virtual void prepare(std::span<LightVertex const> /*lights*/, std::uint32_t /*pass*/) {}
+    /// Called before a pass. The span of lights stays valid during the pass. Throws Interrupted.
+    virtual void prepare(std::span<LightVertex const> /*lights*/, std::uint32_t /*pass*/, PassStop const&) {}
     /// Called after dynamic triangles have moved.
     virtual void world_changed() {}
     virtual void of_receivers(ReceiverTile const&, std::span<float> shares, PathCounts&) const
@@ -63,6 +64,7 @@ struct TermSource {
     RenderSettings const& settings;
     std::size_t first_moving; ///< index of the first dynamic triangle
     Report& report;
+    StopRequest const* stop; ///< of building: throws Interrupted; null = never
 };
 
 std::unique_ptr<VisibilityTerm> make_term(VisibilityKind kind, TermSource const& source);

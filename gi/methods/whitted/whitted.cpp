@@ -1,17 +1,16 @@
 #include "gi/methods/whitted/whitted.h"
 
 #include "gi/render/flush_denormals.h"
+#include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
 
-#include <algorithm>
 #include <tbb/combinable.h>
-#include <tbb/parallel_for.h>
 
 namespace gi {
 
 TreeRenderer::TreeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                            Report& report, StopRequest const* stop)
-    : world_(world), settings_(settings), first_moving_(first_moving), report_(report)
+    : world_(world), settings_(settings), first_moving_(first_moving), report_(report), pass_stop_(stop)
 {
     build(stop);
 }
@@ -52,7 +51,6 @@ void TreeRenderer::pass(std::uint32_t index, std::span<FrameView const> views, s
 void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLight const* light,
                               Accumulator& sums, std::span<FirstHit> first_hits)
 {
-    constexpr int kTile = 16; // px; trees of a tile advance together
     TreeTracer const tracer{.world = view(world_),
                             .visibility = *visibility_,
                             .camera = camera_rays(v.camera, v.width, v.height, world_.origin),
@@ -63,24 +61,25 @@ void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLi
                             .bounces = settings_.bounces,
                             .light = light};
     tbb::combinable<TreeCounts> counts;
-    int const columns = (v.width + kTile - 1) / kTile, rows = (v.height + kTile - 1) / kTile;
-    tbb::parallel_for(0, columns * rows, [&](int tile) {
+    PassStop const stop(pass_stop_, PassStop::of(sums.paths));
+    TiledPass pass(sums, 1, stop);
+    pass.run([&](TiledPass::Tile const& tile) { // whose trees advance together
         FlushDenormals const guard;
-        int const left = tile % columns * kTile, right = std::min(left + kTile, v.width);
-        int const top = tile / columns * kTile, bottom = std::min(top + kTile, v.height);
-        std::vector<glm::ivec2> pixels;
-        for (int y = top; y < bottom; ++y)
-            for (int x = left; x < right; ++x) pixels.emplace_back(x, y);
-        std::vector<PathSample> samples(pixels.size());
-        std::vector<FirstHit> first(pixels.size());
-        tracer.trace(pixels, index, samples, first, counts.local());
-        for (std::size_t k = 0; k < pixels.size(); ++k) {
-            std::size_t const pixel = std::size_t(pixels[k].y) * std::size_t(v.width) + std::size_t(pixels[k].x);
-            sums.add(pixel, samples[k], sums.paths);
-            if (!first_hits.empty()) first_hits[pixel] = first[k];
-        }
+        tile.for_paths([&](std::uint32_t) {
+            std::vector<glm::ivec2> pixels;
+            for (int y = tile.top; y < tile.bottom; ++y)
+                for (int x = tile.left; x < tile.right; ++x) pixels.emplace_back(x, y);
+            std::vector<PathSample> samples(pixels.size());
+            std::vector<FirstHit> first(pixels.size());
+            tracer.trace(pixels, index, samples, first, counts.local());
+            for (std::size_t k = 0; k < pixels.size(); ++k) {
+                std::size_t const pixel =
+                    std::size_t(pixels[k].y) * std::size_t(v.width) + std::size_t(pixels[k].x);
+                sums.add(pixel, samples[k], sums.paths);
+                if (!first_hits.empty()) first_hits[pixel] = first[k];
+            }
+        });
     });
-    ++sums.paths;
     trees_ += double(v.width) * double(v.height);
     counts.combine_each([&](TreeCounts const& c) {
         sums.counts += c.paths;
@@ -89,6 +88,7 @@ void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLi
         work_.paths += c.paths;
         rays_ += double(c.paths.nearest_rays + c.paths.shadow_rays);
     });
+    pass.end();
 }
 
 void TreeRenderer::report_work()

@@ -47,6 +47,7 @@ private:
     std::optional<std::uint32_t> prepared_;
     SurfaceLight const* light_of_prepared_ = nullptr;
     double trees_ = 0; ///< since the last report
+    StopRequest const* pass_stop_;
 };
 
 /// --recursion, --cutoff, --shadow-rays.

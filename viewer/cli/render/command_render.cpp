@@ -22,6 +22,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace viewer {
@@ -42,22 +43,63 @@ trace(RenderOptions const& o, RankWork& work, std::unique_ptr<InterruptGuard>& g
 }
 
 /// Makes the picture while it writes it, as that takes half of the memory.
-void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result, gi::Report& report)
+/// @param stop  throws Interrupted; null = never, and the picture is not compressed, which would take longer than
+///   all else
+void write_files(RenderOptions const& o, gi::PictureRows const& picture, gi::StopRequest const* stop,
+                 gi::Report& report)
 {
     gi::StageTimer const timer(report, "save");
-    gi::PictureRows picture = result.rows ? std::move(result.rows) : rows_of(result.picture);
     if (!o.png.empty())
-        gi::write_png(o.png, picture.width, picture.height,
-                      [&](int first, int count) { return display_bytes(o, picture.read(first, count)); });
+        gi::write_png(o.png, picture.width, picture.height, [&](int first, int count) {
+            if (stop != nullptr && stop->requested()) throw gi::Interrupted();
+            return display_bytes(o, picture.read(first, count));
+        });
     if (o.out.empty()) return;
-    gi::PictureRows kept{picture.width, picture.height, [&](int first, int count) {
-                             gi::Picture rows = picture.read(first, count);
-                             keep_layers(o, rows);
-                             return rows;
-                         }};
-    kept.metadata = make_metadata(o, settings, result);
-    bool const is_left = result.end == gi::RenderEnd::interrupted; // compressing takes longer than all else then
-    save_exr(o, o.out, kept, report, is_left ? gi::ExrCompression::none : gi::ExrCompression::zip);
+    gi::PictureRows kept = picture;
+    kept.read = [&](int first, int count) {
+        gi::Picture rows = picture.read(first, count);
+        keep_layers(o, rows);
+        return rows;
+    };
+    save_exr(o, o.out, kept, report,
+             {.compression = stop != nullptr ? gi::ExrCompression::zip : gi::ExrCompression::none, .stop = stop});
+}
+
+gi::PictureRows rows_of(gi::RenderResult const& result)
+{
+    return result.rows ? result.rows : gi::rows_of(result.picture);
+}
+
+/// The end of a complete render. Throws Interrupted; the result is as before then.
+void finish_picture(RenderOptions const& o, gi::RenderSettings const& settings, gi::DenoiseSettings const& filter,
+                    gi::RenderResult const& result, gi::StopRequest const& stop, gi::Report& report)
+{
+    gi::PictureRows picture = rows_of(result);
+    gi::Picture filtered;
+    if (filter.denoiser != gi::Denoiser::none) {
+        filtered = picture.whole(&stop);
+        std::string const remark = denoise(filtered, filter, report);
+        if (!remark.empty()) say(remark);
+        picture = gi::rows_of(filtered);
+    }
+    picture.metadata = make_metadata(o, settings, result);
+    write_files(o, picture, &stop, report);
+}
+
+/// Saves what an interrupted render has, quickly: its state, and the picture, not filtered; where the state has
+/// all of it, only its color.
+void save_interrupted(RenderOptions o, gi::RenderSettings const& settings, StateSaving& state,
+                      gi::RenderResult& result, gi::Report& report)
+{
+    gi::PictureRows all = rows_of(result), color = state.has_state() ? result.color_rows : all;
+    o.denoise = "none";
+    all.metadata = color.metadata = make_metadata(o, settings, result);
+    RenderOptions less = o;
+    if (state.has_state()) less.layers = {"color"};
+    write_files(less, color, nullptr, report);
+    bool const is_saved = state.join(report);
+    if (state.has_state() && !is_saved) write_files(o, all, nullptr, report);
+    result.resumable |= is_saved;
 }
 
 struct Shot {
@@ -161,9 +203,10 @@ void check_ranks(RenderOptions const& o, gi::RenderSettings const& s)
                      "add --out F_%04d.exr on a disk that all of them share");
 }
 
-int render_picture(RenderOptions const& o, gi::RenderSettings settings,
-                   gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
+int render_picture(RenderOptions const& o, gi::RenderSettings settings, gi::DenoiseSettings filter,
+                   CameraChoice const& choice, RankWork& work)
 {
+    filter.stop = &work.stop();
     CameraMotion const motion = make_motion(o);
     check_outputs(outputs_of(o, settings), {o.scene, o.environment, o.camera_path});
     std::string const state = settings.checkpoint.string(); // may exist although several processes write none
@@ -188,22 +231,30 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
 
     gi::Report report;
     auto [plan, result, loaded, guard] = shoot(o, settings, choice, motion, work, report);
-    // What was interrupted is saved under the guard, as a closed terminal sends SIGHUP twice.
-    if (result.end != gi::RenderEnd::interrupted) guard.reset();
     work.gather(result, report, loaded);
     if (!work.leads()) {
         work.finish();
         return 0;
     }
-    StateSaving saving(result); // before the denoiser, which may take long, or fail
-    if (denoise_settings.denoiser != gi::Denoiser::none && result.rows) {
-        result.picture = result.rows.whole();
-        result.rows = {};
+    std::optional<StateSaving> saving;
+    bool is_left = result.end == gi::RenderEnd::interrupted;
+    if (!is_left && settings.resume && result.end != gi::RenderEnd::paths)
+        saving.emplace(result); // before the denoiser, which may take long, or fail
+    try {
+        if (!is_left) finish_picture(o, settings, filter, result, work.stop(), report);
+    } catch (gi::Interrupted const&) {
+        is_left = true;
+        result.end = gi::RenderEnd::interrupted;
+        result.resumable = !saving && std::filesystem::exists(settings.checkpoint); // an earlier one
     }
-    std::string const remark = denoise(result.picture, denoise_settings, report);
-    if (!remark.empty()) say(remark);
-    save(o, settings, result, report);
-    result.resumable |= saving.join(report);
+    if (is_left)
+        say(std::string("interrupted: saving ") +
+            (saving || result.save_state ? "the state and the color of " : "") + "the picture so far");
+    if (is_left && !saving) saving.emplace(result, gi::DiskWait::no);
+    if (is_left)
+        save_interrupted(o, settings, *saving, result, report);
+    else if (saving)
+        result.resumable |= saving->join(report);
     if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
 
     nlohmann::ordered_json const stats = make_stats(o, settings, plan, result, report);
@@ -219,7 +270,9 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     print_losses(report);
     work.finish();
     if (result.end != gi::RenderEnd::interrupted) return 0;
-    say(std::string("interrupted: the picture so far is saved") +
+    say(std::string(result.resumable ? "interrupted: the color of the picture so far is saved"
+                                     : "interrupted: the picture so far is saved") +
+        (filter.denoiser != gi::Denoiser::none ? ", not denoised" : "") +
         (o.shutter_s > 0               ? "; with --shutter it cannot be resumed"
          : settings.checkpoint.empty() ? "; it cannot be resumed"
          : !result.resumable           ? "; its state could not be written, so it cannot be resumed"
