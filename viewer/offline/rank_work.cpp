@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <fmt/format.h>
+#include <span>
 
 namespace viewer {
 namespace {
@@ -13,22 +14,49 @@ constexpr std::size_t kPieceBytes = std::size_t(4) << 20;
 
 /// Sent before the pixels.
 struct SumsHeader {
-    std::uint32_t paths = 0;
+    std::uint32_t paths = 0, has_further = 0; ///< see Accumulator
     gi::PathCounts counts;
     double seconds = 0;
 };
 static_assert(std::is_trivially_copyable_v<SumsHeader>);
 
+void give_bytes(Cluster& cluster, std::span<std::uint8_t const> bytes)
+{
+    for (std::size_t from = 0; from < bytes.size(); from += kPieceBytes) {
+        auto const piece = bytes.subspan(from, std::min(kPieceBytes, bytes.size() - from));
+        cluster.give({piece.begin(), piece.end()});
+    }
+}
+
+/// Returns false if the rank is lost before everything is received.
+bool take_bytes(Cluster& cluster, int from, std::span<std::uint8_t> bytes)
+{
+    for (std::size_t at = 0; at < bytes.size();) {
+        auto const piece = cluster.take(from);
+        if (!piece) return false;
+        if (piece->empty() || piece->size() > bytes.size() - at)
+            throw std::runtime_error("sums of another rank have a different size");
+        std::memcpy(bytes.data() + at, piece->data(), piece->size());
+        at += piece->size();
+    }
+    return true;
+}
+
+template <class T>
+auto bytes_of(T& items)
+{
+    using Byte = std::conditional_t<std::is_const_v<T>, std::uint8_t const, std::uint8_t>;
+    return std::span<Byte>(reinterpret_cast<Byte*>(items.data()), items.size() * sizeof(items[0]));
+}
+
 void give_sums(Cluster& cluster, gi::Accumulator const& sums)
 {
-    SumsHeader const header{sums.paths, sums.counts, sums.seconds};
+    SumsHeader const header{sums.paths, sums.further.empty() ? 0u : 1u, sums.counts, sums.seconds};
     auto const* const at = reinterpret_cast<std::uint8_t const*>(&header);
     cluster.give({at, at + sizeof header});
-    if (sums.paths == 0) return;
-    auto const* const pixels = reinterpret_cast<std::uint8_t const*>(sums.pixels.data());
-    std::size_t const bytes = sums.pixels.size() * sizeof(gi::PixelMeans);
-    for (std::size_t from = 0; from < bytes; from += kPieceBytes)
-        cluster.give({pixels + from, pixels + std::min(bytes, from + kPieceBytes)});
+    if (!sums.has_paths()) return;
+    give_bytes(cluster, bytes_of(sums.pixels));
+    give_bytes(cluster, bytes_of(sums.further));
 }
 
 /// Returns false if the rank is lost before everything is received.
@@ -41,18 +69,12 @@ bool take_sums(Cluster& cluster, int from, gi::Accumulator& sums)
     std::memcpy(&header, head->data(), sizeof header);
     sums.counts = header.counts;
     sums.seconds = header.seconds;
-    if (header.paths == 0) return true;
-    auto* const pixels = reinterpret_cast<std::uint8_t*>(sums.pixels.data());
-    std::size_t const bytes = sums.pixels.size() * sizeof(gi::PixelMeans);
-    for (std::size_t at = 0; at < bytes;) {
-        auto const piece = cluster.take(from);
-        if (!piece) return false;
-        if (piece->empty() || piece->size() > bytes - at)
-            throw std::runtime_error("sums of another rank have a different size");
-        std::memcpy(pixels + at, piece->data(), piece->size());
-        at += piece->size();
-    }
+    std::vector<std::uint32_t> further(header.has_further != 0 ? sums.pixels.size() : 0);
+    if (header.paths == 0 && further.empty()) return true;
+    if (!take_bytes(cluster, from, bytes_of(sums.pixels)) || !take_bytes(cluster, from, bytes_of(further)))
+        return false;
     sums.paths = header.paths;
+    sums.further = std::move(further);
     return true;
 }
 
