@@ -2,6 +2,7 @@
 
 #include "study/stats/bootstrap.h"
 #include "study/stats/error.h"
+#include "study/stats/left_out.h"
 #include "study/stats/observer_components.h"
 #include "study/stats/pair_likelihood.h"
 #include "study/stats/special.h"
@@ -136,16 +137,24 @@ ObserverScale scale_observers(std::vector<std::vector<PairCount>> const& observe
 
     double const least = n > 0 ? 1e-12 * std::max(1e-300, all.diagonal().cwiseAbs().maxCoeff()) : 0;
     Eigen::MatrixXd const root = n > 0 ? power(all, -0.5, least) : all;
+    Eigen::MatrixXd const back = n > 0 ? power(all, 0.5, least) : all;
     double squares = 0;
     for (std::size_t o = 0; o < observers.size(); ++o) {
         Eigen::MatrixXd const leverage = root * information[o] * root;
         // An observer who alone determines a score leaves no residual of it: the correction is bounded.
-        Eigen::MatrixXd const lifted =
-            n > 0 ? power(Eigen::MatrixXd::Identity(n, n) - leverage, -0.5, 0.05) : leverage;
-        Eigen::VectorXd const standard = lifted * (root * gradient[o]), moved = centre * (root * standard);
+        constexpr double kLeast = 0.05;
+        Eigen::MatrixXd const rest = Eigen::MatrixXd::Identity(n, n) - leverage;
+        Eigen::MatrixXd const lifted = n > 0 ? power(rest, -0.5, kLeast) : leverage;
+        Eigen::VectorXd const standard = lifted * (root * gradient[o]);
+        Eigen::VectorXd moved = centre * (root * standard);
         gradient[o] = all * root * standard;
         squares += standard.squaredNorm();
         s.influence.emplace_back(moved.data(), moved.data() + moved.size());
+        if (n > 0 && rest.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() > kLeast) {
+            Eigen::VectorXd const change = change_without(pooled, observers[o], settings.model, layout, at);
+            moved = centre * (root * (power(rest, 0.5, kLeast) * (back * change)));
+        }
+        s.left_out.emplace_back(moved.data(), moved.data() + moved.size());
         s.expected.push_back(kept(centre * root * leverage * root * centre.transpose()));
     }
     s.dispersion = n > 0 ? std::max(0.5, squares / double(n)) : 1;
@@ -188,9 +197,10 @@ Contrast contrast(ObserverScale const& s, std::span<double const> weights, doubl
     Contrast c;
     c.value = weighted(weights, s.fit.score);
     c.reduced = weighted(weights, s.reduced.score);
-    double over_observers = 0, independent = 0, squares = 0, of_sum = 0, scatter = 0;
+    double over_observers = 0, left_out = 0, independent = 0, squares = 0, of_sum = 0, scatter = 0;
     for (std::size_t o = 0; o < s.influence.size(); ++o) {
         over_observers += std::pow(weighted(weights, s.influence[o]), 2);
+        left_out += std::pow(weighted(weights, s.left_out[o]), 2);
         double const trials = weighted_variance(weights, s.expected[o]);
         independent += trials;
         squares += trials * trials;
@@ -203,10 +213,12 @@ Contrast contrast(ObserverScale const& s, std::span<double const> weights, doubl
     Cumulants const trials = cumulants(s.outcomes, weights);
     double const noise = squares + trials.fourth / 2, square = independent * independent;
     double const d = std::max(1.0, square / std::max(noise, 1e-12 * square) - 1);
-    constexpr double kOfModel = 4;
+    constexpr double kOfModel = 2;
     double const share = d / (d + kOfModel);
     double const modelled = std::max(weighted_variance(weights, s.modelled), 0.5 * independent);
-    double const variance = share * over_observers + (1 - share) * modelled;
+    double variance = share * over_observers + (1 - share) * modelled;
+    double const of_trials = independent / std::max({of_sum, variance, independent});
+    variance += (1 - of_trials * of_trials) * std::max(0.0, left_out - over_observers);
     // Satterthwaite's degrees of freedom: the variance of the two together.
     double both = 0, of_model = 0, with_score = share * trials.third;
     std::array<double, 2> const by_unit{weighted_variance(weights, s.components[0].variance),

@@ -4,10 +4,16 @@
 // Variances are those of the sandwich estimator by observers (Huber 1967; Liang & Zeger 1986, Biometrika 73:13)
 // with the correction of Kauermann & Carroll (2001, JASA 96:1387) for few observers, whose own choices pull the
 // fit towards themselves. With d degrees of freedom (Fay & Graubard 2001, Biometrics 57:1198; here with the
-// kurtosis of choices, which matters if nearly all agree) they are moderated by those of a model, with 4 degrees
-// (as Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3:3): V = (d V_observers + 4 V_model) / (d + 4). They are not more
+// kurtosis of choices, which matters if nearly all agree) they are moderated by those of a model, with 2 degrees
+// (as Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3:3): V = (d V_observers + 2 V_model) / (d + 2). They are not more
 // for more items, since these do not make the model truer of any one of them. Intervals are around scores with
 // Jeffreys' prior, because those of maximum likelihood are too far apart on average.
+//
+// The sandwich takes scores as linear in choices. The jackknife does not (left_out.h): with changes by leaving out
+// observers, times (1 - leverage)^(1/2), so that it equals the sandwich if all is linear, V_left_out is larger
+// where far-off choices weigh more. Errors of trials alone need none of that, since V grows with the score
+// (below); those of differences between observers do: V rises by (1 - (V_trials / V)^2) (V_left_out -
+// V_observers), if above 0.
 //
 // Degrees of freedom of V are Satterthwaite's (1946, Biometrics Bull. 2:110): V is a quadratic form of observers'
 // gradients, whose variance under the model follows from their covariances and the cumulants of choices. What V
@@ -50,10 +56,11 @@ struct ObserverScale {
     double dispersion =
         1; ///< variance over observers by that of independent trials, mean over scores; at least 1/2
     std::vector<std::vector<double>>
-        influence;                ///< by observer: change of each score by his or her choices, unit of F
-    std::vector<Matrix> expected; ///< by observer: covariance of that for independent trials
-    Matrix modelled;              ///< covariance of the scores by the model of how observers differ
-    std::vector<Matrix> observer; ///< by observer: its part of that, with no component below 0
+        influence; ///< by observer: change of each score by his or her choices, unit of F
+    std::vector<std::vector<double>> left_out; ///< the same by fits without his or her choices
+    std::vector<Matrix> expected;              ///< by observer: covariance of that for independent trials
+    Matrix modelled;                           ///< covariance of the scores by the model of how observers differ
+    std::vector<Matrix> observer;              ///< by observer: its part of that, with no component below 0
     std::array<ScoreComponent, 2> components;
     std::vector<std::vector<PairOutcome>> outcomes; ///< by pair
 };

@@ -17,6 +17,8 @@ struct PairParameters {
     std::size_t count() const { return threshold_at() + has_threshold; }
 };
 
+inline constexpr double kLeastTieThreshold = 1e-3; ///< below, a tie has no probability
+
 /// Adds the choices of one pair to log-likelihood, gradient and expected information. Without a threshold ties
 /// count half for each item.
 void add_pair(PairModel model, PairParameters const& layout, PairCount const& pair, std::span<double const> at,

@@ -63,7 +63,7 @@ PairScale fit_pairs(std::span<PairCount const> pairs, int items, PairSettings co
     if (threshold) {
         start.back() = 0.3;
         bounds.assign(layout.count(), {});
-        bounds.back().low = 1e-3; // below, a tie has no probability
+        bounds.back().low = kLeastTieThreshold;
     }
 
     PairScale scale;

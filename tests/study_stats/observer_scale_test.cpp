@@ -127,6 +127,46 @@ TEST(ObserverScale, OfManyItemsLetsOneBeDisputed)
     EXPECT_GT(share, 0.85);
 }
 
+/// Ten observers whose units differ (0.5 in the logarithm) on a wide scale.
+std::vector<std::vector<PairCount>> of_unequal_units(std::uint64_t seed)
+{
+    std::vector<std::vector<PairCount>> data;
+    for (std::uint64_t o = 0; o < 10; ++o) {
+        Random random = Random::part(seed, o);
+        double const unit = std::exp(0.5 * random.normal());
+        data.push_back(
+            simulated(1, 2, {-2.2 * unit, -unit, 0.2 * unit, unit, 2 * unit}, 0.2, 0, 100 * seed + o).front());
+    }
+    return data;
+}
+
+TEST(ObserverScale, KnowsThatFarOffChoicesWeighMoreIfObserversDiffer)
+{
+    int const experiments = 300;
+    double variance = 0, sum = 0, squares = 0;
+    for (int e = 0; e < experiments; ++e) {
+        Contrast const c = score_of(scale_observers(of_unequal_units(1 + std::uint64_t(e)), 5), 0);
+        variance += c.standard_error * c.standard_error / experiments;
+        sum += c.reduced / experiments;
+        squares += c.reduced * c.reduced / experiments;
+    }
+    RecordProperty("ratio", std::to_string(variance / (squares - sum * sum)));
+    EXPECT_GT(variance / (squares - sum * sum), 0.9);
+    EXPECT_LT(variance / (squares - sum * sum), 1.3);
+}
+
+TEST(ObserverScale, ByLeavingOutIsTheSandwichWhereScoresAreLinear)
+{
+    auto const data = simulated(200, 3, {-0.5, 0, 0.5}, 0.3, 0, 8);
+    ObserverScale const s = scale_observers(data, 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        double linear = 0, left_out = 0;
+        for (auto const& moved : s.influence) linear += moved[i] * moved[i];
+        for (auto const& moved : s.left_out) left_out += moved[i] * moved[i];
+        EXPECT_NEAR(left_out / linear, 1, 0.01) << i;
+    }
+}
+
 TEST(ObserverScale, KnowsAnErrorThatFollowsFromTheScore)
 {
     // One choice of each: how many choose the first is all there is to know.
