@@ -47,12 +47,13 @@ double trace_all(PathTracer<Visibility> const& tracer, int size, std::uint32_t p
     PathCounts counts;
     double sum = 0;
     std::vector<Path> batch;
-    for (int top = 0; top < size; top += kTile)
-        for (int left = 0; left < size; left += kTile)
+    for (int top = 0; top < size; top += TiledPass::kTile)
+        for (int left = 0; left < size; left += TiledPass::kTile)
             for (std::uint32_t i = 0; i < paths; ++i) {
                 batch.clear();
-                for (int y = top; y < top + kTile; ++y)
-                    for (int x = left; x < left + kTile; ++x) batch.push_back(tracer.steps.start(x, y, i));
+                for (int y = top; y < top + TiledPass::kTile; ++y)
+                    for (int x = left; x < left + TiledPass::kTile; ++x)
+                        batch.push_back(tracer.steps.start(x, y, i));
                 tracer.trace(batch, counts);
                 for (Path const& p : batch)
                     sum += double(p.sample.radiance[0].x + p.sample.radiance[1].x + p.sample.radiance[2].x);
