@@ -96,7 +96,8 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
             result.end = RenderEnd::budget;
             break;
         }
-        if (settings_.until_relmse > 0 && sums_.paths >= kPathsForVariance && relmse < settings_.until_relmse) {
+        if (settings_.until_relmse > 0 && sums_.further.empty() && sums_.paths >= kPathsForVariance &&
+            relmse < settings_.until_relmse) {
             result.end = RenderEnd::error_target;
             break;
         }

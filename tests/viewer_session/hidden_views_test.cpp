@@ -106,6 +106,26 @@ bool is_black(std::vector<float> const& values)
     return std::ranges::all_of(values, [](float v) { return v == 0; });
 }
 
+/// A mask that hides pixels at full size, and none of a smaller picture of surfaces: no margin, as all else.
+TEST_F(HiddenViews, ViewsWithThinMasksHaveNoMargins)
+{
+    HiddenMask edge; // six pixels wide
+    float const right = float(kView.left + 6 * (kView.right - kView.left) / kWidth);
+    edge.points = {{-9, -9}, {right, -9}, {right, 9}, {-9, 9}};
+    edge.triangles = {0, 1, 2, 0, 2, 3};
+    for (char const* const name : {"left eye", "right eye"}) masked.apply(hidden_change(name, edge));
+    FrameCommand o = view_order(0);
+    o.light_scale = 0.3;
+    o.surface_scale = 0.5;
+    for (ViewCommand& v : o.views) v.margin_x = v.margin_y = 8;
+    SessionFrame const a = masked.render(o, {}), b = whole.render(o, {});
+    ASSERT_TRUE(a.views[0].hidden);
+    EXPECT_GT(share(*a.views[0].hidden), 0);
+    EXPECT_EQ(a.views[0].margin_px, glm::ivec2(0));
+    EXPECT_EQ(a.views[0].picture.width, kWidth);
+    EXPECT_EQ(b.views[0].margin_px, glm::ivec2(8));
+}
+
 /// Without bounces no endings are shared, so bits can be compared.
 TEST_F(HiddenViews, WithoutFilterWhatIsSeenIsTheSameInEveryBit)
 {

@@ -9,6 +9,13 @@ namespace {
 constexpr double kMiddle = 0.18, kMost_ev = 16, kAdapts_s = 0.4, kStarts_ev = 0.1, kRests_ev = 0.01;
 constexpr std::size_t kPixels = 4096; // of a view
 
+bool is_in_margin(ViewPicture const& v, std::size_t i)
+{
+    glm::ivec2 const at(int(i % std::size_t(v.picture.width)), int(i / std::size_t(v.picture.width))),
+        end = glm::ivec2(v.picture.width, v.picture.height) - v.margin_px;
+    return at.x < v.margin_px.x || at.y < v.margin_px.y || at.x >= end.x || at.y >= end.y;
+}
+
 } // namespace
 
 std::optional<double> metered_exposure_ev(std::vector<ViewPicture> const& views)
@@ -20,6 +27,7 @@ std::optional<double> metered_exposure_ev(std::vector<ViewPicture> const& views)
         std::size_t const pixels = color->data.size() / 3, step = std::max<std::size_t>(1, pixels / kPixels);
         for (std::size_t i = 0; i < pixels; i += step) {
             if (v.hidden && (*v.hidden)[i]) continue;
+            if (is_in_margin(v, i)) continue;
             float const* const c = color->data.data() + 3 * i;
             double const y = 0.2126 * double(c[0]) + 0.7152 * double(c[1]) + 0.0722 * double(c[2]);
             if (y > 1e-9 && std::isfinite(y)) logs.push_back(std::log2(y));

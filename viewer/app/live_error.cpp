@@ -2,6 +2,7 @@
 
 #include "gi/metrics/flip.h"
 #include "gi/metrics/metrics.h"
+#include "viewer/engine/picture_margin.h"
 
 #include <algorithm>
 #include <numeric>
@@ -22,9 +23,11 @@ std::vector<float> exposed(std::vector<float> const& radiance, double ev)
 LiveError measure(LiveFrame const& frame)
 {
     ViewPicture const& v = frame.result.views[0];
-    std::vector<float> const &a = v.picture.find("color")->data, &b = v.compared->find("color")->data;
+    gi::Picture const first = without_margin(v.picture, v.margin_px),
+                      other = without_margin(*v.compared, v.margin_px);
+    std::vector<float> const &a = first.find("color")->data, &b = other.find("color")->data;
     double const ev = frame.settings.exposure_ev;
-    std::vector<float> const flip = gi::flip(exposed(a, ev), exposed(b, ev), v.picture.width, v.picture.height);
+    std::vector<float> const flip = gi::flip(exposed(a, ev), exposed(b, ev), first.width, first.height);
     return {frame.command.frame, gi::measure_errors(a, b, 3).relmse,
             std::accumulate(flip.begin(), flip.end(), 0.0) / double(flip.size())};
 }

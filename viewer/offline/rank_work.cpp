@@ -5,7 +5,6 @@
 
 #include <cstring>
 #include <fmt/format.h>
-#include <span>
 
 namespace viewer {
 namespace {
@@ -14,49 +13,22 @@ constexpr std::size_t kPieceBytes = std::size_t(4) << 20;
 
 /// Sent before the pixels.
 struct SumsHeader {
-    std::uint32_t paths = 0, has_further = 0; ///< see Accumulator
+    std::uint32_t paths = 0;
     gi::PathCounts counts;
     double seconds = 0;
 };
 static_assert(std::is_trivially_copyable_v<SumsHeader>);
 
-void give_bytes(Cluster& cluster, std::span<std::uint8_t const> bytes)
-{
-    for (std::size_t from = 0; from < bytes.size(); from += kPieceBytes) {
-        auto const piece = bytes.subspan(from, std::min(kPieceBytes, bytes.size() - from));
-        cluster.give({piece.begin(), piece.end()});
-    }
-}
-
-/// Returns false if the rank is lost before everything is received.
-bool take_bytes(Cluster& cluster, int from, std::span<std::uint8_t> bytes)
-{
-    for (std::size_t at = 0; at < bytes.size();) {
-        auto const piece = cluster.take(from);
-        if (!piece) return false;
-        if (piece->empty() || piece->size() > bytes.size() - at)
-            throw std::runtime_error("sums of another rank have a different size");
-        std::memcpy(bytes.data() + at, piece->data(), piece->size());
-        at += piece->size();
-    }
-    return true;
-}
-
-template <class T>
-auto bytes_of(T& items)
-{
-    using Byte = std::conditional_t<std::is_const_v<T>, std::uint8_t const, std::uint8_t>;
-    return std::span<Byte>(reinterpret_cast<Byte*>(items.data()), items.size() * sizeof(items[0]));
-}
-
 void give_sums(Cluster& cluster, gi::Accumulator const& sums)
 {
-    SumsHeader const header{sums.paths, sums.further.empty() ? 0u : 1u, sums.counts, sums.seconds};
+    SumsHeader const header{sums.paths, sums.counts, sums.seconds};
     auto const* const at = reinterpret_cast<std::uint8_t const*>(&header);
     cluster.give({at, at + sizeof header});
-    if (!sums.has_paths()) return;
-    give_bytes(cluster, bytes_of(sums.pixels));
-    give_bytes(cluster, bytes_of(sums.further));
+    if (sums.paths == 0) return;
+    auto const* const pixels = reinterpret_cast<std::uint8_t const*>(sums.pixels.data());
+    std::size_t const bytes = sums.pixels.size() * sizeof(gi::PixelMeans);
+    for (std::size_t from = 0; from < bytes; from += kPieceBytes)
+        cluster.give({pixels + from, pixels + std::min(bytes, from + kPieceBytes)});
 }
 
 /// Returns false if the rank is lost before everything is received.
@@ -69,12 +41,18 @@ bool take_sums(Cluster& cluster, int from, gi::Accumulator& sums)
     std::memcpy(&header, head->data(), sizeof header);
     sums.counts = header.counts;
     sums.seconds = header.seconds;
-    std::vector<std::uint32_t> further(header.has_further != 0 ? sums.pixels.size() : 0);
-    if (header.paths == 0 && further.empty()) return true;
-    if (!take_bytes(cluster, from, bytes_of(sums.pixels)) || !take_bytes(cluster, from, bytes_of(further)))
-        return false;
+    if (header.paths == 0) return true;
+    auto* const pixels = reinterpret_cast<std::uint8_t*>(sums.pixels.data());
+    std::size_t const bytes = sums.pixels.size() * sizeof(gi::PixelMeans);
+    for (std::size_t at = 0; at < bytes;) {
+        auto const piece = cluster.take(from);
+        if (!piece) return false;
+        if (piece->empty() || piece->size() > bytes - at)
+            throw std::runtime_error("sums of another rank have a different size");
+        std::memcpy(pixels + at, piece->data(), piece->size());
+        at += piece->size();
+    }
     sums.paths = header.paths;
-    sums.further = std::move(further);
     return true;
 }
 
@@ -89,7 +67,7 @@ RankWork::RankWork(Cluster& cluster) : cluster_(cluster) { stay_alive(); }
 
 void RankWork::stay_alive()
 {
-    alive_.emplace(cluster_, [this] { stop_.request(); });
+    alive_.emplace(cluster_, needs_others_ ? std::function<void()>([this] { stop_.request(); }) : nullptr);
 }
 
 void RankWork::talk(std::function<void(Cluster&)> const& what)
@@ -97,7 +75,7 @@ void RankWork::talk(std::function<void(Cluster&)> const& what)
     if (alone()) return;
     alive_.reset();
     cluster_.check();
-    if (stop_.requested()) {
+    if (needs_others_ && stop_.requested()) {
         cluster_.leave("it was interrupted");
         throw RankInterrupted();
     }
@@ -153,6 +131,7 @@ void RankWork::gather(gi::RenderResult& result, gi::Report& report,
             add_other_losses(report, loaded, losses_of(theirs.at("loaded")), cluster.name(r));
         }
         report.lose("paths per pixel missing because ranks were lost", missing_paths_);
+        needs_others_ = false; // whoever is lost from here on, the picture can be finished
     });
 }
 

@@ -47,6 +47,7 @@ private:
     Cluster& cluster_;
     gi::StopRequest stop_;
     std::uint32_t missing_paths_ = 0, paths_ = 0;
+    bool needs_others_ = true; ///< false once the leader has what they contribute
     std::optional<KeepAlive> alive_;
 };
 

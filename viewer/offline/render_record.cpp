@@ -6,6 +6,7 @@
 #include "viewer/offline/plan_json.h"
 #include "viewer/report/machine.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -58,6 +59,9 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
 /// False with one path, from which no variance can be estimated.
 bool knows_error(gi::RenderResult const& r) { return r.paths >= 2; }
 
+/// A command that makes the picture; where that was interrupted in its first pass, one with more paths.
+std::string paths_option(gi::RenderResult const& r) { return fmt::format("--paths {}", std::max(1u, r.paths)); }
+
 double rays_per_second(gi::RenderResult const& r) { return r.seconds > 0 ? r.rays / r.seconds : 0; }
 
 } // namespace
@@ -91,7 +95,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
 {
     return {{"version", version_number()},
             {"git", git_hash()},
-            {"command", normalised_command(o, s, fmt::format("--paths {}", result.paths), result.options)},
+            {"command", normalised_command(o, s, paths_option(result), result.options)},
             {"scene", o.scene},
             {"method", o.method},
             {"size", fmt::format("{}x{}", s.width, s.height)},
@@ -163,7 +167,7 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
 Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePlan const& plan,
                 gi::RenderResult const& r, gi::Report const& report)
 {
-    Json j = describe_call(o, s, fmt::format("--paths {}", r.paths), r.options);
+    Json j = describe_call(o, s, paths_option(r), r.options);
     j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
                    {"seconds", r.seconds},   {"relmse_estimate", relmse_json(r)},
                    {"rays", r.rays},         {"rays_per_s", rays_per_second(r)}};
@@ -178,6 +182,7 @@ std::string summary_line(RenderOptions const& o, gi::RenderSettings const& s, gi
                        r.seconds, rays_per_second(r) * 1e-6,
                        knows_error(r) ? fmt::format("estimated relMSE {:.2g}{}", r.relmse,
                                                     o.denoise == "none" ? "" : " before the filter")
+                       : r.paths == 0 ? std::string("interrupted before all pixels had a path")
                                       : std::string("relMSE unknown from one path"));
 }
 

@@ -3,6 +3,7 @@
 #include "gi/image_io/picture_file.h"
 #include "viewer/app/frame_hash.h"
 #include "viewer/base/frame_range.h"
+#include "viewer/engine/picture_margin.h"
 #include "viewer/offline/video_writer.h"
 
 #include <algorithm>
@@ -107,7 +108,10 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
             if (!overridden.contains(current_key(c.key))) session.apply(c);
         if (o.paths > 0) command.paths = o.paths;
         for (ViewCommand& v : command.views)
-            if (o.size) std::tie(v.width, v.height) = *o.size;
+            if (o.size) {
+                std::tie(v.width, v.height) = *o.size;
+                v.margin_x = v.margin_y = 0;
+            }
         SessionFrame const result = session.render(command, {});
         ++summary.frames;
         bar.update(0, fmt::format("{} frames", summary.frames));
@@ -120,7 +124,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
         }
         if (result.views.empty()) continue;
         gi::ToneMapSettings const tone = tone_settings(session.settings());
-        gi::Picture const& picture = result.views[0].picture;
+        gi::Picture const picture = without_margin(result.views[0].picture, result.views[0].margin_px);
         if (!o.out.empty()) save(o.out, command.frame, picture, tone, report);
         if (video) video->show(picture, tone, command.display_s);
     }

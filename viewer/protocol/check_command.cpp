@@ -128,9 +128,9 @@ void check_command(FrameCommand const& o)
         if (std::min(v.width, v.height) < 1 || std::max(v.width, v.height) > CommandLimits::size_px)
             refuse(fmt::format("a view of {}x{} pixels", v.width, v.height),
                    fmt::format("1 to {} per side are possible", CommandLimits::size_px));
-        if (v.margin_x < 0 || v.margin_x > v.width || v.margin_y < 0 || v.margin_y > v.height)
+        if (v.margin_x < 0 || v.margin_x > v.width / 4 || v.margin_y < 0 || v.margin_y > v.height / 4)
             refuse(fmt::format("a margin of {} and {} pixels", v.margin_x, v.margin_y),
-                   fmt::format("0 to the size of its view, {}x{}, are possible", v.width, v.height));
+                   fmt::format("0 to a quarter of its view, {}x{}, are possible", v.width, v.height));
         if ((v.margin_x > 0 || v.margin_y > 0) && !(o.light_scale < 1))
             refuse("a margin of a picture whose light has its size", "only pictures of surfaces have margins");
         if (v.partner < -1 || v.partner >= int(i))

@@ -217,6 +217,7 @@ void dump(std::string const& file, World const& world, Asked const& asked, Truth
     for (Hit const& h : truth.nearest) write(h.triangle == kNoTriangle ? kInf : h.distance);
     for (std::uint8_t const b : truth.blocked) write(b);
     for (std::size_t i = 0; i < asked.rays.size(); ++i) write(any_reach);
+    out.close();
     if (!out) throw std::runtime_error(file + " could not be written");
 }
 

@@ -67,7 +67,7 @@ std::vector<CsvColumn> columns(Most const& most)
         c.push_back({view + "width_px", of + ": pixels"});
         c.push_back({view + "height_px", of + ": pixels"});
         for (char const* side : {"x", "y"})
-            c.push_back({view + "margin_" + side + "_px", of + ": pixels rendered beyond each edge"});
+            c.push_back({view + "margin_" + side + "_px", of + ": pixels asked for beyond each edge"});
         add_place(c, view, of + ", pose of its camera in the world; the camera looks along -Z");
         c.push_back({view + "projection", of + ": perspective or orthographic"});
         for (char const* edge : {"left", "right", "bottom", "top"})
