@@ -124,13 +124,22 @@ TEST(RayPlan, LongBuildingCanBeInterrupted)
 {
     World const world = world_of(box_with_block_and_lamp());
     Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
-    StopRequest stop;
-    stop.request();
     Report report;
     RenderSettings s = small_settings(8, 4, 2);
     s.slhb.schedule = Schedule::stored;
     s.slhb.resolution = 16; // takes no time: there is a picture
-    EXPECT_EQ(render_slhb(world, camera, s, stop, {}, report).paths, 1u);
+    std::uint32_t paths = 0;
+    for (int attempt = 0; attempt < 10 && paths == 0; ++attempt) { // unless the machine is busy for 80 ms
+        StopRequest at_once;
+        at_once.request();
+        try {
+            paths = render_slhb(world, camera, s, at_once, {}, report).paths;
+        } catch (Interrupted const&) {
+        }
+    }
+    EXPECT_EQ(paths, 1u);
+    StopRequest stop;
+    stop.request();
     s.slhb.resolution = 1024; // takes seconds
     EXPECT_THROW(render_slhb(world, camera, s, stop, {}, report), Interrupted);
 }
