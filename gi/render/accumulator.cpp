@@ -90,18 +90,14 @@ PictureShape picture_shape(World const& world, PictureLayers layers)
 
 void Accumulator::add(Accumulator const& other)
 {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, other.has_paths() ? pixels.size() : 0, 4096),
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, other.paths > 0 ? pixels.size() : 0, 4096),
                       [&](auto const& range) {
-                          for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                              std::uint32_t const mine = paths_of(i), theirs = other.paths_of(i);
-                              if (mine == 0)
+                          for (std::size_t i = range.begin(); i != range.end(); ++i)
+                              if (paths == 0)
                                   pixels[i] = other.pixels[i];
-                              else if (theirs > 0)
-                                  pixels[i].add(other.pixels[i], mine, theirs);
-                          }
+                              else
+                                  pixels[i].add(other.pixels[i], paths, other.paths);
                       });
-    if (further.empty()) further.resize(other.further.size());
-    for (std::size_t i = 0; i < other.further.size(); ++i) further[i] += other.further[i];
     paths += other.paths;
     counts += other.counts;
     seconds = std::max(seconds, other.seconds); // the two were rendered in parallel

@@ -94,8 +94,8 @@ struct Accumulator {
         if (before == 0) pixels[pixel] = PixelMeans{};
         pixels[pixel].add(s, before + 1);
     }
-    /// Adds all paths of an accumulator of the same size. As with any floating-point sum, the order of additions
-    /// decides the last bits.
+    /// Adds all paths of an accumulator of the same size, neither of them with further paths. As with any
+    /// floating-point sum, the order of additions decides the last bits.
     void add(Accumulator const& other);
     /// Variance of the mean per channel; 0 with fewer than two paths.
     static dvec3 variance_of_mean(PixelMeans const& p, std::uint32_t paths);

@@ -264,8 +264,7 @@ struct RenderResult {
     std::string options;    ///< settings chosen by the method, as command-line options
     bool resumable = false; ///< settings.checkpoint holds the state needed to continue
     /// With RenderSettings::by_rows and a checkpoint: saves the state, on any thread, also while `rows` are read.
-    /// It is for the caller to do so where the render is unfinished. Throws
-    /// InputError. By then the memory of the method is free, and the picture need not wait for it. The state is of
+    /// It is for the caller to do so where the render is unfinished. Throws InputError. By then the memory of the method is free, and the picture need not wait for it. The state is of
     /// the sums after PathShare::merge: of all shares, so that no single one could go on from it. The command line
     /// has no checkpoint where several processes share a picture.
     std::function<void(DiskWait)> save_state;

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <filesystem>
 #include <gtest/gtest.h>
-#include <numeric>
 #include <unistd.h>
 
 namespace gi::test {
@@ -168,40 +167,6 @@ TEST(Accumulator, RelativeErrorIsThatOfWindows)
         }
     double const expected = sum / (3.0 * double(a.pixels.size()));
     EXPECT_NEAR(a.relative_mse(), expected, 1e-6 * expected);
-}
-
-/// Also of passes that were interrupted, which left some pixels with more paths than others, or with none.
-TEST(Accumulator, PartsWithFurtherPathsMakeTheWhole)
-{
-    Pcg32 random(6, 0);
-    Accumulator a(3, 1), b(3, 1), none(3, 1);
-    std::array<std::vector<double>, 3> all;
-    auto const fill = [&](Accumulator& to, std::uint32_t paths, std::array<std::uint32_t, 3> const& further) {
-        to.paths = paths;
-        to.further.assign(further.begin(), further.end());
-        for (std::size_t pixel = 0; pixel < 3; ++pixel) {
-            to.pixels[pixel] = PixelMeans{};
-            for (std::uint32_t k = 0; k < to.paths_of(pixel); ++k) {
-                PathSample s;
-                s.radiance[0] = vec3{random.uniform()};
-                to.add(pixel, s, k);
-                all[pixel].push_back(double(s.radiance[0].x));
-            }
-        }
-    };
-    fill(a, 4, {0, 2, 2});
-    fill(b, 0, {3, 0, 1});
-    a.add(b);
-    a.add(none);
-    EXPECT_EQ(a.paths, 4u);
-    for (std::size_t pixel = 0; pixel < 3; ++pixel) {
-        EXPECT_EQ(a.paths_of(pixel), all[pixel].size());
-        double const mean = std::accumulate(all[pixel].begin(), all[pixel].end(), 0.0) / double(all[pixel].size());
-        EXPECT_NEAR(double(a.pixels[pixel].radiance[0].x), mean, 1e-6) << pixel;
-    }
-    none.add(b);
-    EXPECT_EQ(none.paths_of(0), 3u);
-    EXPECT_EQ(none.pixels[0].radiance[0], b.pixels[0].radiance[0]);
 }
 
 TEST(Accumulator, RowsMakeThePicture)

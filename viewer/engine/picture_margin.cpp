@@ -1,23 +1,16 @@
 #include "viewer/engine/picture_margin.h"
 
+#include "viewer/displays/off_axis.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace viewer {
-namespace {
-
-gi::ViewTangents edges_of(gi::Camera const& camera, glm::ivec2 size)
-{
-    double const y = std::tan(0.5 * camera.yfov_rad), x = y * size.x / size.y;
-    return camera.off_axis.value_or(gi::ViewTangents{-x, x, -y, y});
-}
-
-} // namespace
 
 gi::Camera with_margin(gi::Camera const& camera, glm::ivec2 size_px, glm::ivec2 margin_px)
 {
     if (margin_px == glm::ivec2(0)) return camera;
-    gi::ViewTangents e = edges_of(camera, size_px);
+    gi::ViewTangents e = view_tangents(camera, size_px.x, size_px.y);
     double const x = margin_px.x * (e.right - e.left) / size_px.x,
                  y = margin_px.y * (e.top - e.bottom) / size_px.y;
     gi::Camera wide = camera;
@@ -30,7 +23,8 @@ glm::ivec2 margin_for(ViewCommand const& view, gi::Camera const& later)
     constexpr int kStep = 4, kShare = 12;
     if (view.camera.orthographic || later.orthographic) return glm::ivec2(0);
     glm::ivec2 const size(view.width, view.height);
-    gi::ViewTangents const e = edges_of(view.camera, size), to = edges_of(later, size);
+    gi::ViewTangents const e = view_tangents(view.camera, size.x, size.y),
+                           to = view_tangents(later, size.x, size.y);
     glm::dmat3 const turn =
         glm::transpose(glm::dmat3(view.camera.world_from_camera)) * glm::dmat3(later.world_from_camera);
     glm::dvec2 beyond(0); // px
