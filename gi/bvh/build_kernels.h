@@ -350,18 +350,21 @@ struct RefitNodes {
             if (t != kNoLeafTriangle) box = joined(box, triangle_box(list, t));
         return box;
     }
+    GI_FN Box child_box(WideNode const& node, std::uint32_t k) const
+    {
+        std::uint32_t const at = node.child(k);
+        return node.is_leaf(k) ? box_of(leaves[at]) : boxes[at];
+    }
     GI_FN void operator()(std::size_t i) const
     {
         WideNode& node = nodes[first + i];
-        Box child[kBvhWidth], all;
-        for (std::uint32_t k = 0; k < node.children; ++k) {
-            std::uint32_t const at = node.child(k);
-            child[k] = node.is_leaf(k) ? box_of(leaves[at]) : boxes[at];
-            all = joined(all, child[k]);
-        }
+        Box all;
+        for (std::uint32_t k = 0; k < node.children; ++k) all = joined(all, child_box(node, k));
         boxes[first + i] = all;
         set_frame(node, all.empty() ? Box{vec3{0}, vec3{0}} : all);
-        for (int k = 0; k < kBvhWidth; ++k) set_child_box(node, k, child[k]);
+        // Found again, not kept in an array: nvcc 13.0 takes what one was initialised with for what it holds.
+        for (int k = 0; k < kBvhWidth; ++k)
+            set_child_box(node, k, k < node.children ? child_box(node, std::uint32_t(k)) : Box{});
     }
 };
 

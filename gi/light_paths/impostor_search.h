@@ -38,13 +38,15 @@ struct ImpostorHit {
 
 namespace impostor_detail {
 
-/// Difference volume of Fei and Wang, m^3: small if a point is near the ray and near its origin. @param v  the
+/// Difference volume of Fei and Wang, (|v| - along)^2 (|v| + along), m^3: small if a point is near the ray and
+/// near its origin. By the distance from the ray, because the difference cancels for points on it. @param v  the
 /// point from the ray's origin
 GI_FN inline float energy(vec3 v, vec3 direction, float least)
 {
     float const along = glm::dot(v, direction), length = glm::length(v);
     if (!(along > least)) return kInf;
-    float const volume = square(length - along) * (length + along);
+    vec3 const beside = glm::cross(v, direction);
+    float const volume = square(glm::dot(beside, beside)) / (length + along);
     return volume < kInf ? volume : kInf;
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <gtest/gtest.h>
 #include <limits>
 #include <tbb/global_control.h>
@@ -303,6 +304,30 @@ void traces_rays()
     }
 }
 LIGHTWELL_TEST_BOTH(BvhRays, FindWhatBruteForceFinds, traces_rays);
+
+/// The tree of either space is the same, bit by bit, built and refitted.
+template <Space S>
+void builds_the_same()
+{
+    auto const same = [](auto const& here, auto const& there) {
+        return here.size() == there.size() &&
+               std::memcmp(here.data(), there.data(), here.size() * sizeof(here[0])) == 0;
+    };
+    Pcg32 rng(10, 1);
+    Mesh const m = random_triangles(5000, 0.2f, 1, rng);
+    HostBvh const expected = build_bvh<Space::host>(m.list());
+    Buffer<uvec3, S> const triangles = upload<S>(m.triangles);
+    Buffer<vec3, S> const positions = upload<S>(m.positions);
+    TriangleList const list{positions.view(), triangles.view(), 0, std::uint32_t(m.triangles.size())};
+    Bvh<S> found = build_bvh<S>(list);
+    for (int k = 0; k < 2; ++k) {
+        EXPECT_TRUE(same(download(expected.nodes), download(found.nodes)));
+        EXPECT_TRUE(same(download(expected.leaves), download(found.leaves)));
+        EXPECT_TRUE(same(download(expected.boxes), download(found.boxes)));
+        refit(found, list);
+    }
+}
+LIGHTWELL_TEST_BOTH(BvhTree, IsTheSameInBothSpaces, builds_the_same);
 
 template <Space S>
 void sorts_pairs()
