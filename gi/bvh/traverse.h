@@ -6,6 +6,9 @@
 #include "gi/bvh/triangle_test.h"
 #include "gi/scene/model/camera.h"
 
+#include <bit>
+#include <cstring>
+
 namespace gi {
 
 inline constexpr std::uint32_t kNoBvhTriangle = 0xffffffffu;
@@ -37,38 +40,105 @@ struct BvhRay {
 
 /// A stack entry of traversal.
 struct BvhEntry {
-    std::uint32_t node;
-    float distance; ///< where the ray enters it
+    std::uint32_t at; ///< node, or leaf with kIsLeaf
+    float distance;   ///< where the ray enters it
 };
+inline constexpr std::uint32_t kIsLeaf = 0x80000000u;
 inline constexpr std::size_t kStackEntries = kDeepest * (kBvhWidth - 1) + 1;
 
 /// Factor of the distances where rays leave boxes: exceeds the rounding of boxes that are far away. Near ones are
 /// enlarged when they are built, see set_child_box.
 inline constexpr float kBoxSlack = 1 + 0x1p-20f;
 
-/// Tests the children's boxes. Returns a bit per child that the ray meets before `reach`; enters[k] = where.
-GI_FN inline std::uint32_t meet_children(WideNode const& node, BvhRay const& ray, float reach,
-                                         float enters[kBvhWidth])
+namespace bvh_detail {
+
+/// Four words that a device loads at once.
+struct Words {
+    std::uint32_t word[4];
+};
+
+GI_FN inline Words load_words(void const* from, std::size_t index)
 {
+#if defined(__CUDA_ARCH__)
+    uint4 const v = __ldg(static_cast<uint4 const*>(from) + index);
+    return {{v.x, v.y, v.z, v.w}};
+#else
+    Words w;
+    std::memcpy(&w, static_cast<char const*>(from) + index * sizeof(w), sizeof(w));
+    return w;
+#endif
+}
+
+/// glm::max and glm::min, by one instruction of a device.
+GI_FN inline float larger(float a, float b)
+{
+#if defined(__CUDA_ARCH__)
+    return fmaxf(a, b);
+#else
+    return glm::max(a, b);
+#endif
+}
+GI_FN inline float smaller(float a, float b)
+{
+#if defined(__CUDA_ARCH__)
+    return fminf(a, b);
+#else
+    return glm::min(a, b);
+#endif
+}
+
+} // namespace bvh_detail
+
+/// What a ray meets of a node's children.
+struct MetChildren {
+    std::uint32_t bits = 0; ///< of children
+    float enters[kBvhWidth];
+    std::uint32_t first_node, first_leaf, leaves; ///< as in the node
+
+    GI_FN std::uint32_t child(std::uint32_t k) const
+    {
+        return k < leaves ? kIsLeaf | (first_leaf + k) : first_node + k - leaves;
+    }
+};
+
+/// Tests the children's boxes. @param reach  farther ones are not met
+GI_FN inline MetChildren meet_children(WideNode const& node, BvhRay const& ray, float reach)
+{
+    using namespace bvh_detail;
+    Words const w0 = load_words(&node, 0), w1 = load_words(&node, 1), w2 = load_words(&node, 2),
+                w3 = load_words(&node, 3), w4 = load_words(&node, 4);
+    MetChildren met;
+    met.first_node = w1.word[0];
+    met.first_leaf = w1.word[1];
+    met.leaves = w1.word[2];
+    // Two words of bytes per axis, of the low and of the high planes.
+    std::uint32_t const low[3][2] = {{w2.word[0], w2.word[1]}, {w2.word[2], w2.word[3]}, {w3.word[0], w3.word[1]}},
+                        high[3][2] = {
+                            {w3.word[2], w3.word[3]}, {w4.word[0], w4.word[1]}, {w4.word[2], w4.word[3]}};
     float scale[3], from[3];
+    std::uint32_t near[3][2], far[3][2];
     for (int axis = 0; axis < 3; ++axis) {
-        scale[axis] = node.step(axis) * ray.inverse[axis];
-        from[axis] = (node.corner[axis] - ray.origin[axis]) * ray.inverse[axis];
-    }
-    std::uint32_t hit = 0;
-    for (int k = 0; k < kBvhWidth; ++k) {
-        float near = ray.start, far = reach;
-        for (int axis = 0; axis < 3; ++axis) {
-            bool const up = ray.inverse[axis] > 0;
-            float const first = float(up ? node.low[axis][k] : node.high[axis][k]),
-                        second = float(up ? node.high[axis][k] : node.low[axis][k]);
-            near = glm::max(near, std::fma(first, scale[axis], from[axis]));
-            far = glm::min(far, std::fma(second, scale[axis], from[axis]));
+        float const step = std::bit_cast<float>((w0.word[3] >> (8 * axis) & 0xffu) << 23);
+        scale[axis] = step * ray.inverse[axis];
+        from[axis] = (std::bit_cast<float>(w0.word[axis]) - ray.origin[axis]) * ray.inverse[axis];
+        bool const up = ray.inverse[axis] > 0;
+        for (int half = 0; half < 2; ++half) {
+            near[axis][half] = up ? low[axis][half] : high[axis][half];
+            far[axis][half] = up ? high[axis][half] : low[axis][half];
         }
-        enters[k] = near;
-        if (near <= far * kBoxSlack) hit |= 1u << k;
     }
-    return hit & ((1u << node.children) - 1);
+    for (int k = 0; k < kBvhWidth; ++k) {
+        float enters = ray.start, leaves = reach;
+        for (int axis = 0; axis < 3; ++axis) {
+            int const shift = 8 * (k % 4);
+            enters = larger(enters, std::fma(float(near[axis][k / 4] >> shift & 0xffu), scale[axis], from[axis]));
+            leaves = smaller(leaves, std::fma(float(far[axis][k / 4] >> shift & 0xffu), scale[axis], from[axis]));
+        }
+        met.enters[k] = enters;
+        if (enters <= leaves * kBoxSlack) met.bits |= 1u << k;
+    }
+    met.bits &= (1u << (w0.word[3] >> 24)) - 1; // their number
+    return met;
 }
 
 /// Tests a leaf's triangles and updates the hit. @param accepts  (triangle, weights) -> whether the ray hits it
@@ -76,45 +146,72 @@ GI_FN inline std::uint32_t meet_children(WideNode const& node, BvhRay const& ray
 template <class Accepts>
 GI_FN void meet_leaf(Leaf const& leaf, BvhRay const& ray, BvhHit& hit, Accepts const& accepts)
 {
+    using namespace bvh_detail;
+    RayShear const& s = ray.shear;
+    vec3 const origin{ray.origin[s.x], ray.origin[s.y], ray.origin[s.z]};
+    // Four corners' coordinates at a time, in the order x, y, z of the shear.
+    Words coordinate[9];
+    for (int corner = 0; corner < 3; ++corner) {
+        coordinate[3 * corner] = load_words(&leaf, std::size_t(3 * corner + s.x));
+        coordinate[3 * corner + 1] = load_words(&leaf, std::size_t(3 * corner + s.y));
+        coordinate[3 * corner + 2] = load_words(&leaf, std::size_t(3 * corner + s.z));
+    }
+    Words const triangles = load_words(&leaf, 9);
     for (int k = 0; k < kLeafTriangles; ++k) {
-        std::uint32_t const triangle = leaf.triangle[k];
+        std::uint32_t const triangle = triangles.word[k];
         if (triangle == kNoLeafTriangle) return;
         vec3 corner[3];
         for (int c = 0; c < 3; ++c)
-            for (int axis = 0; axis < 3; ++axis) corner[c][axis] = leaf.corner[3 * c + axis][k] - ray.origin[axis];
-        TriangleHit const t = meet_triangle(corner[0], corner[1], corner[2], ray.shear, ray.start, hit.distance);
+            for (int axis = 0; axis < 3; ++axis)
+                corner[c][axis] = std::bit_cast<float>(coordinate[3 * c + axis].word[k]) - origin[axis];
+        TriangleHit const t = meet_sheared(corner[0], corner[1], corner[2], s, ray.start, hit.distance);
         if (t.distance == kInf || (t.distance == hit.distance && triangle >= hit.triangle)) continue;
         if (accepts(triangle, t.weights)) hit = {triangle, t.distance, t.weights};
     }
 }
 
-/// Finds the nearest triangle, or with `any` some triangle, nearer than hit.distance.
+/// Finds the nearest triangle, or with `any` some triangle, nearer than hit.distance. The nearest child first, the
+/// others in no order: sorting them would cost a device more than it saves.
 template <bool any, class Accepts>
 GI_FN void trace_scalar(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts const& accepts)
 {
     if (bvh.nodes.empty()) return;
     BvhEntry stack[kStackEntries];
     int top = 0;
-    stack[top++] = {0, ray.start};
-    while (top > 0) {
-        BvhEntry const at = stack[--top];
-        if (at.distance > hit.distance) continue;
-        WideNode const& node = bvh.nodes[at.node];
-        float enters[kBvhWidth];
-        std::uint32_t const met = meet_children(node, ray, hit.distance, enters);
-        int const first = top; // the nearest on top
-        for (std::uint32_t k = 0; k < node.children; ++k) {
-            if ((met & (1u << k)) == 0) continue;
-            if (node.is_leaf(k)) {
-                meet_leaf(bvh.leaves[node.child(k)], ray, hit, accepts);
-                if (any && hit.triangle != kNoBvhTriangle) return;
-                continue;
+    std::uint32_t at = 0;
+    for (;;) {
+        std::uint32_t next = kNoBvhTriangle;
+        if ((at & kIsLeaf) == 0) {
+            MetChildren const met = meet_children(bvh.nodes[at], ray, hit.distance);
+            float nearest = kInf;
+            // Unrolled, so that arrays stay in registers.
+#pragma unroll
+            for (std::uint32_t k = 0; k < kBvhWidth; ++k) {
+                if ((met.bits >> k & 1) == 0) continue;
+                BvhEntry entry{met.child(k), met.enters[k]};
+                if (next == kNoBvhTriangle) {
+                    next = entry.at;
+                    nearest = entry.distance;
+                    continue;
+                }
+                if (!any && entry.distance < nearest) {
+                    BvhEntry const farther{next, nearest};
+                    next = entry.at;
+                    nearest = entry.distance;
+                    entry = farther;
+                }
+                stack[top++] = entry;
             }
-            BvhEntry const e{node.child(k), enters[k]};
-            int to = top++;
-            for (; to > first && stack[to - 1].distance < e.distance; --to) stack[to] = stack[to - 1];
-            stack[to] = e;
+        } else {
+            meet_leaf(bvh.leaves[at & ~kIsLeaf], ray, hit, accepts);
+            if (any && hit.triangle != kNoBvhTriangle) return;
         }
+        while (next == kNoBvhTriangle) {
+            if (top == 0) return;
+            BvhEntry const entry = stack[--top];
+            if (any || entry.distance <= hit.distance) next = entry.at;
+        }
+        at = next;
     }
 }
 

@@ -118,7 +118,6 @@ template <bool any, class Accepts>
 void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts const& accepts)
 {
     if (bvh.nodes.empty()) return;
-    constexpr std::uint32_t kIsLeaf = 0x80000000u;
     bvh_lanes::Lanes const lanes(ray);
     BvhEntry stack[kStackEntries];
     int top = 0;
@@ -153,7 +152,7 @@ void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts con
                     for (; to > first && stack[to - 1].distance < e.distance; --to) stack[to] = stack[to - 1];
                     stack[to] = e;
                 }
-                at = nearest.node;
+                at = nearest.at;
                 continue;
             }
         } else {
@@ -164,7 +163,7 @@ void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts con
             if (top == 0) return;
             --top;
         } while (!any && stack[top].distance > hit.distance);
-        at = stack[top].node;
+        at = stack[top].at;
     }
 }
 

@@ -38,22 +38,29 @@ struct TriangleHit {
     vec2 weights{0};       ///< of corners 1 and 2
 };
 
-/// @param a, b, c  corners relative to the ray's origin, m
+/// @param a, b, c  corners relative to the ray's origin, m, their coordinates in the order x, y, z of the shear
 /// @param start, reach  allowed distances, in lengths of the direction
-GI_FN inline TriangleHit meet_triangle(vec3 a, vec3 b, vec3 c, RayShear const& s, float start, float reach)
+GI_FN inline TriangleHit meet_sheared(vec3 a, vec3 b, vec3 c, RayShear const& s, float start, float reach)
 {
-    float const ax = std::fma(-s.shear_x, a[s.z], a[s.x]), ay = std::fma(-s.shear_y, a[s.z], a[s.y]);
-    float const bx = std::fma(-s.shear_x, b[s.z], b[s.x]), by = std::fma(-s.shear_y, b[s.z], b[s.y]);
-    float const cx = std::fma(-s.shear_x, c[s.z], c[s.x]), cy = std::fma(-s.shear_y, c[s.z], c[s.y]);
+    float const ax = std::fma(-s.shear_x, a.z, a.x), ay = std::fma(-s.shear_y, a.z, a.y);
+    float const bx = std::fma(-s.shear_x, b.z, b.x), by = std::fma(-s.shear_y, b.z, b.y);
+    float const cx = std::fma(-s.shear_x, c.z, c.x), cy = std::fma(-s.shear_y, c.z, c.y);
     float const u = difference_of_products(cx, by, cy, bx), v = difference_of_products(ax, cy, ay, cx),
                 w = difference_of_products(bx, ay, by, ax);
     if (glm::min(u, glm::min(v, w)) < 0 && glm::max(u, glm::max(v, w)) > 0) return {};
     float const sum = u + v + w;
     if (sum == 0) return {};
-    float const height = std::fma(u, a[s.z], std::fma(v, b[s.z], w * c[s.z]));
+    float const height = std::fma(u, a.z, std::fma(v, b.z, w * c.z));
     float const t = height * s.scale_z / sum;
     if (!(t >= start && t <= reach)) return {};
     return {t, {v / sum, w / sum}};
+}
+
+/// The same, coordinates in the order of the world.
+GI_FN inline TriangleHit meet_triangle(vec3 a, vec3 b, vec3 c, RayShear const& s, float start, float reach)
+{
+    auto const turned = [&](vec3 v) { return vec3{v[s.x], v[s.y], v[s.z]}; };
+    return meet_sheared(turned(a), turned(b), turned(c), s, start, reach);
 }
 
 } // namespace gi

@@ -12,15 +12,51 @@ bool device_present()
 }
 
 namespace device {
+namespace {
+
+/// Whether freed memory is kept for later buffers: a frame allocates hundreds, and without a pool each waits for
+/// the driver. What exceeds kKept goes back at the next launch.
+bool has_pool()
+{
+    static bool const pool = [] {
+        constexpr std::uint64_t kKept = std::uint64_t(1) << 30; // bytes
+        std::uint64_t kept = kKept;
+        int device = 0, supported = 0;
+        cudaMemPool_t of_device = nullptr;
+        return cudaGetDevice(&device) == cudaSuccess &&
+               cudaDeviceGetAttribute(&supported, cudaDevAttrMemoryPoolsSupported, device) == cudaSuccess &&
+               supported != 0 && cudaDeviceGetDefaultMemPool(&of_device, device) == cudaSuccess &&
+               cudaMemPoolSetAttribute(of_device, cudaMemPoolAttrReleaseThreshold, &kept) == cudaSuccess;
+    }();
+    return pool;
+}
+
+} // namespace
 
 void* allocate(std::size_t bytes)
 {
     void* pointer = nullptr;
-    check_cuda(cudaMalloc(&pointer, bytes), "allocate device memory");
+    check_cuda(has_pool() ? cudaMallocAsync(&pointer, bytes, nullptr) : cudaMalloc(&pointer, bytes),
+               "allocate device memory");
     return pointer;
 }
 
-void release(void* bytes) noexcept { cudaFree(bytes); }
+void release(void* bytes) noexcept
+{
+    if (has_pool())
+        cudaFreeAsync(bytes, nullptr);
+    else
+        cudaFree(bytes);
+}
+
+void* allocate_page_locked(std::size_t bytes)
+{
+    void* pointer = nullptr;
+    check_cuda(cudaMallocHost(&pointer, bytes), "allocate page-locked memory");
+    return pointer;
+}
+
+void release_page_locked(void* bytes) noexcept { cudaFreeHost(bytes); }
 
 void fill(void* bytes, unsigned char value, std::size_t count)
 {

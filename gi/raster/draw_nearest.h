@@ -1,8 +1,7 @@
 #pragma once
 // Draws a NearestMap with kernels, on host or device.
 
-#include "gi/kernel/launch.h"
-#include "gi/raster/raster_kernels.h"
+#include "gi/raster/raster_shares.h"
 
 namespace gi {
 
@@ -13,8 +12,8 @@ Buffer<NearestTexel, S> draw_nearest(SoupView const& soup, Grid const& grid, Kee
     std::size_t const texels = grid.texels();
     Buffer<std::uint64_t, S> best(texels);
     fill_bytes(S, best.view().data, 0, texels * sizeof(std::uint64_t));
-    std::uint32_t const shares = shares_for(soup.count);
-    launch(S, "draw nearest", soup.count * shares, DrawNearest<Grid, Keep>{soup, grid, keep, shares, best.view()});
+    RasterShares<S> const shares = raster_shares<S>(soup, grid);
+    launch(S, "draw nearest", shares.items, DrawNearest<Grid, Keep>{soup, grid, keep, shares.view(), best.view()});
     Buffer<NearestTexel, S> out(texels);
     launch(S, "unpack nearest", texels, UnpackNearest{std::as_const(best).view(), out.view()});
     return out;

@@ -5,6 +5,8 @@
 
 namespace gi {
 
+template void launch_device(char const*, std::size_t, CountShares<RasterGrid> const&);
+template void launch_device(char const*, std::size_t, CountShares<PerspectiveGrid> const&);
 template void launch_device(char const*, std::size_t, CountLayers const&);
 template void launch_device(char const*, std::size_t, FillLayers const&);
 template void launch_device(char const*, std::size_t, DrawNearest<RasterGrid, KeepAll> const&);

@@ -3,8 +3,9 @@
 // then filled in no particular order, or only the nearest one is kept. All decisions use integers and explicit
 // fused multiply-adds, so that host and device give the same layers, bit for bit.
 //
-// A launch has triangles * shares items. The rows of a large triangle are divided among its shares, since a scene
-// may have few triangles that fill the view; see shares_for.
+// A large triangle is divided into shares of its bounds, so that no item has much more to do than others: a device
+// waits for the longest. A launch has one item per triangle, for its first share, and then those of all further
+// shares; see raster_shares.h.
 
 #include "gi/kernel/atomics.h"
 #include "gi/raster/clip.h"
@@ -17,24 +18,37 @@
 
 namespace gi {
 
-/// Number of items per triangle that gives a device enough parallel work.
-inline std::uint32_t shares_for(std::size_t triangles)
-{
-    constexpr std::size_t kEnough = 1 << 17, kMost = 64;
-    return std::uint32_t(glm::clamp(kEnough / glm::max(triangles, std::size_t(1)), std::size_t(1), kMost));
-}
-
 namespace raster_detail {
 
-/// Calls `run` as scan() does, for the rows of one share.
+inline constexpr std::int32_t kShareColumns = 32, kShareRows = 4; ///< samples
+
+GI_FN inline std::uint32_t parts(SampleRange const& r, std::int32_t of)
+{
+    return std::uint32_t((r.last - r.first + of) / of);
+}
+
+/// A triangle's share of the work.
+struct Share {
+    std::size_t triangle;
+    std::uint32_t index, all;
+};
+
+/// Calls `run` as scan() does, for one share of the bounds.
 template <class Run>
-GI_FN void scan_share(TriangleScan s, std::uint32_t share, std::uint32_t shares, Run const& run)
+GI_FN void scan_share(TriangleScan s, Share const& share, Run const& run)
 {
     if (s.empty) return;
-    std::int64_t const rows = s.rows.last - s.rows.first + 1, top = s.rows.first;
-    s.rows = {std::int32_t(top + rows * share / shares), std::int32_t(top + rows * (share + 1) / shares - 1)};
-    constexpr std::int32_t kSmall = 4; // width in columns below which divisions would cost more than they save
-    scan(s, s.columns.last - s.columns.first < kSmall ? MacroPath::square_blocks : MacroPath::edge_table, run);
+    std::uint32_t const across = glm::min(share.all, parts(s.columns, kShareColumns)), down = share.all / across,
+                        row = share.index / across;
+    if (row >= down) return;
+    auto const part = [](SampleRange const& r, std::uint32_t k, std::uint32_t n) -> SampleRange {
+        std::int64_t const all = r.last - r.first + 1;
+        return {std::int32_t(r.first + all * k / n), std::int32_t(r.first + all * (k + 1) / n - 1)};
+    };
+    bool const small = s.columns.last - s.columns.first < 4; // columns; divisions would cost more than they save
+    s.columns = part(s.columns, share.index % across, across);
+    s.rows = part(s.rows, row, down);
+    scan(s, small ? MacroPath::square_blocks : MacroPath::edge_table, run);
 }
 
 /// Calls emit(SnappedTriangle, depths) for each projected (and possibly clipped) part of a triangle.
@@ -86,26 +100,73 @@ GI_FN inline float key_sign(PerspectiveGrid const&) { return 1; }
 
 } // namespace raster_detail
 
+/// The shares of all triangles.
+struct SharesView {
+    View<std::uint32_t const> before; ///< triangles + 1: further shares of the triangles before each
+
+    GI_FN raster_detail::Share share(std::size_t item) const
+    {
+        std::size_t const triangles = before.size() - 1;
+        std::size_t triangle = item;
+        std::uint32_t index = 0;
+        if (item >= triangles) { // the last triangle that has no more before it than there are before the item
+            auto const further = std::uint32_t(item - triangles);
+            std::size_t first = 0, last = triangles;
+            while (last - first > 1) {
+                std::size_t const middle = (first + last) / 2;
+                (before[middle] <= further ? first : last) = middle;
+            }
+            triangle = first;
+            index = 1 + further - before[first];
+        }
+        return {triangle, index, 1 + before[triangle + 1] - before[triangle]};
+    }
+};
+
+/// Item = triangle, and one more. How many shares it has besides the first.
+template <class Grid>
+struct CountShares {
+    SoupView soup;
+    Grid grid;
+    std::uint32_t most; ///< shares of a triangle, so that the sum has 32 bits
+    View<std::uint32_t> further;
+
+    GI_FN void operator()(std::size_t t) const
+    {
+        using namespace raster_detail;
+        if (t == soup.count) {
+            further[t] = 0;
+            return;
+        }
+        vec3 const p[3] = {soup.vertex(t, 0), soup.vertex(t, 1), soup.vertex(t, 2)};
+        std::uint32_t shares = 1;
+        project(grid, p, [&](SnappedTriangle const& part, vec3) {
+            TriangleScan const s = start_scan(part, std::int32_t(grid.subpixels), grid.width, grid.height);
+            if (!s.empty) shares = glm::max(shares, parts(s.columns, kShareColumns) * parts(s.rows, kShareRows));
+        });
+        further[t] = glm::min(shares, most) - 1;
+    }
+};
+
 /// Item = share of a triangle. Counts its layers under each texel.
 struct CountLayers {
     SoupView soup;
     RasterGrid grid;
-    std::uint32_t shares;
+    SharesView shares;
     View<std::uint32_t> count; ///< per texel
     View<std::uint64_t> total; ///< one number, sum over all texels in 64 bits because the 32-bit counts can wrap
 
     GI_FN void operator()(std::size_t i) const
     {
-        std::size_t const t = i / shares;
+        raster_detail::Share const share = shares.share(i);
+        std::size_t const t = share.triangle;
         SnappedTriangle const snapped = snap(grid, soup.vertex(t, 0), soup.vertex(t, 1), soup.vertex(t, 2));
         TriangleScan const s = start_scan(snapped, std::int32_t(grid.subpixels), grid.width, grid.height);
         std::uint64_t sum = 0;
-        raster_detail::scan_share(s, std::uint32_t(i % shares), shares,
-                                  [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
-                                      for (std::uint32_t c = first; c <= last; ++c)
-                                          atomic_add(count[std::size_t(row) * grid.width + c], 1);
-                                      sum += last - first + 1;
-                                  });
+        raster_detail::scan_share(s, share, [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
+            for (std::uint32_t c = first; c <= last; ++c) atomic_add(count[std::size_t(row) * grid.width + c], 1);
+            sum += last - first + 1;
+        });
         if (sum > 0) atomic_add(total[0], sum);
     }
 };
@@ -114,13 +175,14 @@ struct CountLayers {
 struct FillLayers {
     SoupView soup;
     RasterGrid grid;
-    std::uint32_t shares;
+    SharesView shares;
     View<std::uint32_t> next; ///< per texel: next free layer; after the launch, the end of its layers
     View<HitLayer> layers;
 
     GI_FN void operator()(std::size_t i) const
     {
-        std::size_t const t = i / shares;
+        raster_detail::Share const share = shares.share(i);
+        std::size_t const t = share.triangle;
         vec3 const a = soup.vertex(t, 0), b = soup.vertex(t, 1), c = soup.vertex(t, 2);
         SnappedTriangle const snapped = snap(grid, a, b, c);
         auto const subpixels = std::int32_t(grid.subpixels);
@@ -128,12 +190,10 @@ struct FillLayers {
         if (s.empty) return;
         DepthPlane const plane = depth_plane(snapped, subpixels, {grid.depth(a), grid.depth(b), grid.depth(c)});
         std::uint32_t const id = std::uint32_t(t) | (s.along ? kAlongAxis : 0);
-        raster_detail::scan_share(s, std::uint32_t(i % shares), shares,
-                                  [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
-                                      for (std::uint32_t column = first; column <= last; ++column)
-                                          layers[atomic_add(next[std::size_t(row) * grid.width + column], 1)] = {
-                                              plane.at(column, row), id};
-                                  });
+        raster_detail::scan_share(s, share, [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
+            for (std::uint32_t column = first; column <= last; ++column)
+                layers[atomic_add(next[std::size_t(row) * grid.width + column], 1)] = {plane.at(column, row), id};
+        });
     }
 };
 
@@ -153,12 +213,13 @@ struct DrawNearest {
     SoupView soup;
     Grid grid;
     Keep keep;
-    std::uint32_t shares;
+    SharesView shares;
     View<std::uint64_t> best; ///< per texel: key in the upper half, inverted triangle in the lower; 0 = none
 
     GI_FN void operator()(std::size_t i) const
     {
-        std::size_t const t = i / shares;
+        raster_detail::Share const share = shares.share(i);
+        std::size_t const t = share.triangle;
         vec3 const p[3] = {soup.vertex(t, 0), soup.vertex(t, 1), soup.vertex(t, 2)};
         auto const subpixels = std::int32_t(grid.subpixels);
         auto const id = std::uint32_t(t);
@@ -166,17 +227,15 @@ struct DrawNearest {
             TriangleScan const s = start_scan(part, subpixels, grid.width, grid.height);
             if (s.empty) return;
             DepthPlane const plane = depth_plane(part, subpixels, depths);
-            raster_detail::scan_share(s, std::uint32_t(i % shares), shares,
-                                      [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
-                                          for (std::uint32_t column = first; column <= last; ++column) {
-                                              std::uint32_t const texel = row * grid.width + column;
-                                              float const depth = plane.at(column, row);
-                                              if (!keep(grid, id, texel, depth)) continue;
-                                              std::uint64_t const key = raster_detail::ordered_bits(
-                                                  raster_detail::key_sign(grid) * depth);
-                                              atomic_max(best[texel], key << 32 | (~id & 0xffffffffu));
-                                          }
-                                      });
+            raster_detail::scan_share(s, share, [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
+                for (std::uint32_t column = first; column <= last; ++column) {
+                    std::uint32_t const texel = row * grid.width + column;
+                    float const depth = plane.at(column, row);
+                    if (!keep(grid, id, texel, depth)) continue;
+                    std::uint64_t const key = raster_detail::ordered_bits(raster_detail::key_sign(grid) * depth);
+                    atomic_max(best[texel], key << 32 | (~id & 0xffffffffu));
+                }
+            });
         });
     }
 };

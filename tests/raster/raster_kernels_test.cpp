@@ -14,19 +14,30 @@ namespace {
 
 using Fragment = std::tuple<std::uint32_t, std::uint32_t, float>; ///< texel, primitive, depth
 
+/// As many shares for every triangle.
+template <Space S>
+RasterShares<S> equal_shares(TriangleSoup const& soup, std::uint32_t each)
+{
+    std::vector<std::uint32_t> before;
+    for (std::uint32_t t = 0; t <= soup.count; ++t) before.push_back(t * (each - 1));
+    return {upload<S>(before), soup.count * each};
+}
+
 /// What CountLayers and FillLayers give.
 template <Space S>
-std::vector<Fragment> kernel_fragments(TriangleSoup const& soup, RasterGrid const& grid, std::uint32_t shares)
+std::vector<Fragment> kernel_fragments(SoupOn<S> const& there, RasterGrid const& grid,
+                                       RasterShares<S> const& shares)
 {
-    SoupOn<S> const there(soup);
-    std::size_t const texels = grid.texels(), items = soup.count * shares;
+    std::size_t const texels = grid.texels();
     Buffer<std::uint32_t, S> offset = upload<S>(std::vector<std::uint32_t>(texels + 1, 0)), next(texels + 1);
     Buffer<std::uint64_t, S> total = upload<S>(std::vector<std::uint64_t>{0});
-    launch(S, "count layers", items, CountLayers{there.view(), grid, shares, offset.view(), total.view()});
+    launch(S, "count layers", shares.items,
+           CountLayers{there.view(), grid, shares.view(), offset.view(), total.view()});
     exclusive_scan(S, std::as_const(offset).view(), offset.view());
     copy(offset, next);
     Buffer<HitLayer, S> layers = upload<S>(std::vector<HitLayer>(download(total)[0], HitLayer{NAN, 0xffffffffu}));
-    launch(S, "fill layers", items, FillLayers{there.view(), grid, shares, next.view(), layers.view()});
+    launch(S, "fill layers", shares.items,
+           FillLayers{there.view(), grid, shares.view(), next.view(), layers.view()});
 
     std::vector<std::uint32_t> const first = download(offset), end = download(next);
     std::vector<HitLayer> const filled = download(layers);
@@ -57,8 +68,11 @@ void check_layers()
         World const world = random_closed_mesh(rng, mesh % 4, 0.8f);
         TriangleSoup const soup = make_soup(world);
         RasterGrid const grid = random_grid(world, rng, 5u << (mesh % 7));
-        std::uint32_t const shares = mesh % 3 == 0 ? shares_for(soup.count) : 1 + std::uint32_t(mesh % 11);
-        auto const found = kernel_fragments<S>(soup, grid, shares);
+        SoupOn<S> const there(soup);
+        auto const found =
+            kernel_fragments<S>(there, grid,
+                                mesh % 3 == 0 ? raster_shares<S>(there.view(), grid)
+                                              : equal_shares<S>(soup, 1 + std::uint32_t(mesh % 11)));
         Fragments plain, vectors;
         rasterize_plain(soup, 0, soup.count, grid, MacroPath::linear_blocks, plain);
         ASSERT_EQ(found, sorted_layers(plain)); // bit for bit
@@ -80,8 +94,9 @@ void check_nothing()
     World const world = world_of(Scene{});
     TriangleSoup const soup = make_soup(world);
     RasterGrid const grid = make_grid(world.bounds, vec3{0, 1, 0}, 16, {0, 0}, 0);
-    EXPECT_TRUE(kernel_fragments<S>(soup, grid, shares_for(0)).empty());
-    std::vector<NearestTexel> const map = download(draw_nearest<S>(SoupOn<S>(soup).view(), grid));
+    SoupOn<S> const there(soup);
+    EXPECT_TRUE(kernel_fragments<S>(there, grid, raster_shares<S>(there.view(), grid)).empty());
+    std::vector<NearestTexel> const map = download(draw_nearest<S>(there.view(), grid));
     for (NearestTexel const& t : map) EXPECT_EQ(t.primitive, kNoPrimitive);
 }
 LIGHTWELL_TEST_BOTH(RasterKernels, NoTrianglesNoLayers, check_nothing);
@@ -97,12 +112,15 @@ void check_one_triangle()
     World const world = world_of(scene);
     TriangleSoup const soup = make_soup(world);
     RasterGrid const grid = make_grid(world.bounds, vec3{0, 0, 1}, 200, {0.2f, 0.7f}, 0.5f);
-    for (std::uint32_t const shares : {1u, 2u, 7u, 64u}) {
-        Fragments plain;
-        rasterize_plain(soup, 0, soup.count, grid, MacroPath::square_blocks, plain);
-        EXPECT_GT(plain.count, 1000u);
-        EXPECT_EQ(kernel_fragments<S>(soup, grid, shares), sorted_layers(plain));
-    }
+    SoupOn<S> const there(soup);
+    Fragments plain;
+    rasterize_plain(soup, 0, soup.count, grid, MacroPath::square_blocks, plain);
+    EXPECT_GT(plain.count, 1000u);
+    for (std::uint32_t const shares : {1u, 2u, 7u, 64u, 1000u})
+        EXPECT_EQ(kernel_fragments<S>(there, grid, equal_shares<S>(soup, shares)), sorted_layers(plain));
+    RasterShares<S> const chosen = raster_shares<S>(there.view(), grid);
+    EXPECT_GT(chosen.items, 100u); // so that none of them has many samples
+    EXPECT_EQ(kernel_fragments<S>(there, grid, chosen), sorted_layers(plain));
 }
 LIGHTWELL_TEST_BOTH(RasterKernels, OneTriangleInManyShares, check_one_triangle);
 

@@ -2,6 +2,7 @@
 // Where the reference traces its paths by kernels: the world and its BVH lie in a memory space, and only samples
 // of paths are copied back. Same functions as EmbreePaths.
 
+#include "gi/kernel/host_copy.h"
 #include "gi/kernel/launch.h"
 #include "gi/methods/reference/path_kernel.h"
 #include "gi/render/render_settings.h"
@@ -59,7 +60,7 @@ public:
             launch(S, "trace paths of the reference", items,
                    TraceReference{steps, bvh_->rays(), std::uint32_t(pixels), first_path + done, samples_.view(),
                                   hits.view(), counts.view()});
-            std::vector<PathSample> const found = download(samples_);
+            std::span<PathSample const> const found = on_host_.of(samples_);
             tbb::parallel_for(std::size_t(0), pixels, [&](std::size_t p) {
                 for (std::uint32_t k = 0; k < now; ++k) use(p, done + k, found[k * pixels + p]);
             });
@@ -78,6 +79,7 @@ private:
     StopRequest const* stop_;
     std::optional<WorldBvh<S>> bvh_;
     Buffer<PathSample, S> samples_;
+    HostCopy<PathSample, S> on_host_;
 };
 
 } // namespace gi

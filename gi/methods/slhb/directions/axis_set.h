@@ -34,17 +34,24 @@ struct FewAxes {
 
     GI_FN AxisSample sample(vec3 normal, float u) const
     {
-        alignas(64) std::array<float, kMost> weight;
+        auto const find = [&](std::size_t k) {
+            return share[k] * std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
+        };
+#if defined(__CUDA_ARCH__) // found twice, as an array would lie in a device's slow memory
+        auto const& weight = find;
+#else
+        alignas(64) std::array<float, kMost> weights;
+        for (std::size_t k = 0; k < count; ++k) weights[k] = find(k);
+        auto const weight = [&](std::size_t k) { return weights[k]; };
+#endif
         float total = 0;
-        for (std::size_t k = 0; k < count; ++k)
-            weight[k] = share[k] * std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
-        for (std::size_t k = 0; k < count; ++k) total += weight[k];
+        for (std::size_t k = 0; k < count; ++k) total += weight(k);
         // Finds the first axis at which the cumulative weight exceeds u times the total, without random branches.
         float const wanted = u * total;
         float sum = 0;
         std::uint32_t k = 0;
         for (std::size_t a = 0; a + 1 < count; ++a) {
-            sum += weight[a];
+            sum += weight(a);
             k += sum <= wanted ? 1 : 0;
         }
         vec3 const axis{x[k], y[k], z[k]};

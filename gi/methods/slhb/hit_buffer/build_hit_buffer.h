@@ -6,7 +6,7 @@
 #include "gi/kernel/launch.h"
 #include "gi/kernel/scan.h"
 #include "gi/methods/slhb/hit_buffer/layer_kernels.h"
-#include "gi/raster/raster_kernels.h"
+#include "gi/raster/raster_shares.h"
 
 namespace gi {
 
@@ -63,12 +63,12 @@ HitBufferOn<S> build_hit_buffer(SoupView const& soup, RasterGrid const& grid, st
 {
     using namespace build_detail;
     std::size_t const texels = grid.texels();
-    std::uint32_t const shares = shares_for(soup.count);
+    RasterShares<S> const shares = raster_shares<S>(soup, grid);
     HitBufferOn<S> b;
     b.grid = grid;
     b.offset = zeros<std::uint32_t, S>(texels + 1);
     auto total = zeros<std::uint64_t, S>(1);
-    launch(S, "count layers", soup.count * shares, CountLayers{soup, grid, shares, b.offset.view(), total.view()});
+    launch(S, "count layers", shares.items, CountLayers{soup, grid, shares.view(), b.offset.view(), total.view()});
     std::uint64_t const layers = download(total)[0];
     if (layers > 0x7fffffff)
         throw InputError("a hit buffer has more than 2^31 layers", "they are indexed with 32 bits",
@@ -77,7 +77,7 @@ HitBufferOn<S> build_hit_buffer(SoupView const& soup, RasterGrid const& grid, st
     Buffer<std::uint32_t, S> next(texels + 1);
     copy(b.offset, next);
     b.layers = Buffer<HitLayer, S>(std::size_t(layers));
-    launch(S, "fill layers", soup.count * shares, FillLayers{soup, grid, shares, next.view(), b.layers.view()});
+    launch(S, "fill layers", shares.items, FillLayers{soup, grid, shares.view(), next.view(), b.layers.view()});
     launch(S, "sort layers", texels, SortLayers{b.view().offset, b.layers.view()});
     if (most_layers > 0 || !std::is_same_v<Keep, KeepAll>) trim(keep, most_layers, b);
     return b;

@@ -206,7 +206,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, V
         paths.roulette = settings_.slhb.roulette;
         paths.seed = random_key(settings_.seed);
         paths.pass = index;
-        std::vector<PathSample> const samples = scene_.trace(paths);
+        std::span<PathSample const> const samples = scene_.trace(paths);
         tbb::parallel_for(std::size_t(0), samples.size(), [&](std::size_t p) { to.add(p, samples[p], to.paths); });
         ++to.paths;
         PathKernelCounts const& done = scene_.counts();

@@ -2,6 +2,7 @@
 // Data that the kernels of slhb read from a world and build from it: everything is in one space, and only path
 // samples and, on request, first surfaces are copied back.
 
+#include "gi/kernel/host_copy.h"
 #include "gi/methods/slhb/directions/axis_set.h"
 #include "gi/methods/slhb/hit_buffer/build_hit_buffer.h"
 #include "gi/methods/slhb/kernels/path_kernel.h"
@@ -112,8 +113,9 @@ public:
         chances_ = upload<S>(std::vector<AliasEntry>(chances.entries.begin(), chances.entries.end()));
     }
 
+    /// Returns samples, until the next call.
     /// @param paths  with the host's parameters and those of the view; this function fills in the rest
-    std::vector<PathSample> trace(PassOfPaths paths)
+    std::span<PathSample const> trace(PassOfPaths paths)
     {
         std::size_t const pixels = paths.primary.size();
         if (samples_.size() != pixels) samples_ = Buffer<PathSample, S>(pixels);
@@ -131,7 +133,7 @@ public:
         else
             launch(S, "trace paths", pixels, TracePaths<false>{paths});
         counts_ = download(counts)[0];
-        return download(samples_);
+        return on_host_.of(samples_);
     }
 
     PathKernelCounts const& counts() const { return counts_; } ///< of the last trace
@@ -161,6 +163,7 @@ private:
     std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per light point, its faces
     Buffer<LightPointView, S> light_points_;
     Buffer<PathSample, S> samples_;
+    HostCopy<PathSample, S> on_host_;
     PathKernelCounts counts_;
 };
 
