@@ -1,6 +1,6 @@
 #include "gi/render/accumulator.h"
 
-#include "gi/core/rng.h"
+#include "gi/render/add_samples.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,57 +12,9 @@
 
 namespace gi {
 
-namespace {
+using means_detail::root;
 
-/// Rounds numbers to single precision by chance, up or down, so that the error has mean 0: sums over many paths of
-/// small contributions keep them (Croci et al. 2022, "Stochastic rounding"). What is representable stays
-/// as it is. The chance is a hash of the path's number and first surface, so that the same paths give the same
-/// bits, in each layer whatever the others hold.
-class UnbiasedRounding {
-public:
-    UnbiasedRounding(PathSample const& s, std::uint32_t paths)
-        : state_(mix_bits(std::uint64_t(paths) << 32 ^ std::bit_cast<std::uint32_t>(s.position.x)))
-    {
-    }
-    float operator()(double value)
-    {
-        constexpr std::uint64_t kBeyondSingle = (std::uint64_t(1) << 29) - 1; // bits of a double's significand
-        state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-        std::uint64_t const bits = std::bit_cast<std::uint64_t>(value) + (state_ >> 35);
-        return float(std::bit_cast<double>(bits & ~kBeyondSingle));
-    }
-
-private:
-    std::uint64_t state_;
-};
-
-void move_to(vec3& mean, vec3 value, float weight) { mean += (value - mean) * weight; }
-
-double root(double squares) { return std::min(std::sqrt(squares), double(std::numeric_limits<float>::max())); }
-
-} // namespace
-
-void PixelMeans::add(PathSample const& s, std::uint32_t paths)
-{
-    UnbiasedRounding round(s, paths);
-    double const weight = 1 / double(paths);
-    dvec3 const of_path = dvec3(s.radiance[0]) + dvec3(s.radiance[1]) + dvec3(s.radiance[2]), before = color();
-    for (std::size_t i = 0; i < 3; ++i)
-        for (int c = 0; c < 3; ++c) {
-            double const mean = double(radiance[i][c]);
-            radiance[i][c] = round(mean + (double(s.radiance[i][c]) - mean) * weight);
-        }
-    dvec3 const after = color(), d(deviation);
-    for (int c = 0; c < 3; ++c)
-        deviation[c] =
-            round(root(d[c] * d[c] + std::max(0.0, (of_path[c] - before[c]) * (of_path[c] - after[c]))));
-    if (!s.hit) return;
-    float const of_hits = 1 / float(++hits);
-    move_to(albedo, s.albedo, of_hits);
-    move_to(normal, s.normal, of_hits);
-    move_to(position, s.position, of_hits);
-    depth += (s.depth - depth) * of_hits;
-}
+void PixelMeans::add(PathSample const& s, std::uint32_t paths) { add_path(*this, s, paths); }
 
 void PixelMeans::add(PixelMeans const& s, std::uint32_t mine, std::uint32_t theirs)
 {

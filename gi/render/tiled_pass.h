@@ -69,8 +69,11 @@ public:
         tbb::parallel_for(0, int(done_.size()), [&](int t) { trace(Tile(*this, t)); });
     }
 
-    /// Instead of run(), after all paths of all tiles were traced in another way.
-    void all_done() { std::ranges::fill(done_, paths); }
+    bool given_up() const { return stop_.given_up(); }
+    /// Paths that all tiles have.
+    std::uint32_t done() const { return *std::ranges::min_element(done_); }
+    /// Instead of run(), after so many paths of all tiles were traced in another way.
+    void set_done(std::uint32_t n) { std::ranges::fill(done_, n); }
     /// Call it last: counts the paths. Throws Interrupted if the pass was given up.
     void end()
     {

@@ -76,6 +76,14 @@ public:
         });
         return counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
     }
+    /// Adds them to the sums of the pass.
+    PathCounts add(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
+                   std::span<FirstHit> first_hits, Accumulator& sums) const
+    {
+        return trace(
+            steps, pass, first_path, first_hits,
+            [&](std::size_t pixel, std::uint32_t k, PathSample const& s) { sums.add(pixel, s, sums.paths + k); });
+    }
 
 private:
     World const& world_;

@@ -1,11 +1,13 @@
 #pragma once
-// Where the reference traces its paths by kernels: the world and its BVH lie in a memory space, and only samples
-// of paths are copied back. Same functions as EmbreePaths.
+// Where the reference traces its paths by kernels: the world, its BVH and the sums of a pass lie in a memory
+// space. Same functions as EmbreePaths.
 
 #include "gi/kernel/host_copy.h"
 #include "gi/kernel/launch.h"
 #include "gi/methods/reference/path_kernel.h"
+#include "gi/render/path_workers.h"
 #include "gi/render/render_settings.h"
+#include "gi/render/sums_on.h"
 #include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/model/world_on.h"
@@ -47,31 +49,56 @@ public:
     PathCounts trace(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                      std::span<FirstHit> first_hits, Use const& use)
     {
-        constexpr std::size_t kMostItems = std::size_t(1) << 20; // of a launch; limits the memory of samples
-        std::size_t const pixels = pass.pixels();
-        std::uint32_t const paths = pass.paths;
-        auto const together = std::uint32_t(std::max<std::size_t>(1, kMostItems / pixels));
-        Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(1));
-        Buffer<FirstHit, S> hits(first_hits.empty() ? 0 : pixels);
-        for (std::uint32_t done = 0; done < paths;) {
-            std::uint32_t const now = std::min(paths - done, together);
-            std::size_t const items = pixels * now;
-            if (samples_.size() != items) samples_ = Buffer<PathSample, S>(items);
-            launch(S, "trace paths of the reference", items,
-                   TraceReference{steps, bvh_->rays(), std::uint32_t(pixels), first_path + done, samples_.view(),
-                                  hits.view(), counts.view()});
+        return run(steps, pass, first_path, first_hits, [&](std::uint32_t done, std::uint32_t now) {
             std::span<PathSample const> const found = on_host_.of(samples_);
-            tbb::parallel_for(std::size_t(0), pixels, [&](std::size_t p) {
-                for (std::uint32_t k = 0; k < now; ++k) use(p, done + k, found[k * pixels + p]);
+            tbb::parallel_for(std::size_t(0), pass.pixels(), [&](std::size_t p) {
+                for (std::uint32_t k = 0; k < now; ++k) use(p, done + k, found[k * pass.pixels() + p]);
             });
-            done += now;
-        }
-        pass.all_done();
-        if (!first_hits.empty()) std::ranges::copy(download(hits), first_hits.begin());
-        return download(counts)[0];
+        });
+    }
+    PathCounts add(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
+                   std::span<FirstHit> first_hits, Accumulator& sums)
+    {
+        sums_.take(sums);
+        PathCounts const counts = run(steps, pass, first_path, first_hits, [&](std::uint32_t, std::uint32_t) {
+            sums_.add(std::as_const(samples_).view());
+        });
+        sums_.give(sums);
+        return counts;
     }
 
 private:
+    /// @param take  (paths of the pass before, paths), for samples_
+    template <class Take>
+    PathCounts run(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
+                   std::span<FirstHit> first_hits, Take const& take)
+    {
+        constexpr std::size_t kMostItems = std::size_t(1) << 21; // of a launch; limits the memory of samples
+        constexpr std::size_t kCounts = 1024; // threads that add to one number wait for each other
+        std::size_t const pixels = pass.pixels();
+        std::uint32_t const paths = pass.paths;
+        auto const together = std::uint32_t(std::max<std::size_t>(1, kMostItems / pixels));
+        Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(kCounts));
+        Buffer<FirstHit, S> hits(first_hits.empty() ? 0 : pixels);
+        std::uint32_t done = pass.done();
+        while (done < paths && !pass.given_up()) {
+            std::uint32_t const now = std::min(paths - done, together);
+            std::size_t const items = pixels * now;
+            if (samples_.size() != items) samples_ = Buffer<PathSample, S>(items);
+            std::size_t const workers = path_workers(items);
+            launch(S, "trace paths of the reference", workers,
+                   TraceReference{steps, bvh_->rays(), std::uint32_t(pixels), first_path + done, workers,
+                                  samples_.view(), hits.view(), counts.view()});
+            take(done, now);
+            done += now;
+            pass.set_done(done);
+        }
+        if (!first_hits.empty()) std::ranges::copy(download(hits), first_hits.begin());
+        PathCounts all;
+        for (PathCounts const& c : download(counts)) all += c;
+        return all;
+    }
+
     World const& world_;
     WorldOn<S> there_;
     std::size_t first_moving_;
@@ -80,6 +107,7 @@ private:
     std::optional<WorldBvh<S>> bvh_;
     Buffer<PathSample, S> samples_;
     HostCopy<PathSample, S> on_host_;
+    SumsOn<S> sums_;
 };
 
 } // namespace gi

@@ -1,6 +1,8 @@
 #pragma once
-// The path tracer as a kernel: one item traces one path of a pixel to its end, by exact rays through the project's
-// own BVH. Steps and random numbers are those of PathTracer, so that both trace the same paths up to rounding.
+// The path tracer as a kernel, by exact rays through the project's own BVH: one item, a worker, traces some paths
+// one after the other. Where a path ends the next one begins at once, so that the threads of a device that step
+// together do not wait for the longest path (Novak et al. 2010). Steps and random numbers are those of PathTracer,
+// so that both trace the same paths up to rounding.
 
 #include "gi/kernel/atomics.h"
 #include "gi/methods/reference/path_steps.h"
@@ -13,35 +15,54 @@ struct TraceReference {
     KernelRays rays;
     std::uint32_t pixels;      ///< of the picture, in rows of steps.width
     std::uint32_t first_path;  ///< of those traced now
+    std::size_t workers;       ///< number of items
     View<PathSample> samples;  ///< path by path, `pixels` each
     View<FirstHit> first_hits; ///< of the last path, per pixel; empty = not needed
-    View<PathCounts> counts;   ///< one
+    View<PathCounts> counts;   ///< to be added up
 
-    GI_FN void operator()(std::size_t i) const
+    GI_FN void operator()(std::size_t worker) const
     {
-        auto const pixel = int(i % pixels);
-        Path p = steps.start(pixel % steps.width, pixel / steps.width, first_path + std::uint32_t(i / pixels));
         PathCounts local;
-        for (int vertex = 0; !p.ended; ++vertex) {
-            Hit const hit = rays.nearest(steps.world, next_query(p, vertex));
-            ++local.nearest_rays;
-            if (hit.triangle != kNoTriangle && !steps.world.light_select.empty()) steps.choose_light(p);
-            p.shadow_radiance = vec3{0};
-            p.ended = !steps.advance(p, hit, vertex, local);
-            if (!needs_shadow_ray(p)) continue;
-            ++local.shadow_rays;
-            if (!rays.occluded(steps.world, p.shadow)) add_noted_light(p);
+        std::size_t i = worker;
+        Path p = start(i);
+        for (int vertex = 0;;) {
+            step(p, vertex, local);
+            if (!p.ended) {
+                ++vertex;
+                continue;
+            }
+            local.invalid_paths += discard_invalid(p.sample);
+            samples[i] = p.sample;
+            if (!first_hits.empty() && i + pixels >= samples.size()) first_hits[i % pixels] = p.first;
+            i += workers;
+            if (i >= samples.size()) break;
+            p = start(i);
+            vertex = 0;
         }
-        local.invalid_paths += discard_invalid(p.sample);
-        samples[i] = p.sample;
-        if (!first_hits.empty() && i + pixels >= samples.size()) first_hits[std::size_t(pixel)] = p.first;
-        add_counts(local);
+        add_counts(worker, local);
     }
 
 private:
-    GI_FN void add_counts(PathCounts const& local) const
+    GI_FN Path start(std::size_t i) const
     {
-        PathCounts& all = counts[0];
+        auto const pixel = int(i % pixels);
+        return steps.start(pixel % steps.width, pixel / steps.width, first_path + std::uint32_t(i / pixels));
+    }
+    /// From one surface to the next, and the light there.
+    GI_FN void step(Path& p, int vertex, PathCounts& local) const
+    {
+        Hit const hit = rays.nearest(steps.world, next_query(p, vertex));
+        ++local.nearest_rays;
+        if (hit.triangle != kNoTriangle && !steps.world.light_select.empty()) steps.choose_light(p);
+        p.shadow_radiance = vec3{0};
+        p.ended = !steps.advance(p, hit, vertex, local);
+        if (!needs_shadow_ray(p)) return;
+        ++local.shadow_rays;
+        if (!rays.occluded(steps.world, p.shadow)) add_noted_light(p);
+    }
+    GI_FN void add_counts(std::size_t item, PathCounts const& local) const
+    {
+        PathCounts& all = counts[item % counts.size()];
         atomic_add(all.nearest_rays, local.nearest_rays);
         if (local.shadow_rays > 0) atomic_add(all.shadow_rays, local.shadow_rays);
         if (local.cut_paths > 0) atomic_add(all.cut_paths, local.cut_paths);

@@ -38,10 +38,7 @@ void trace_pass(Paths& tracing, PathSteps const& steps, Accumulator& sums, std::
         tbb::parallel_for(std::size_t(0), waiting.size(),
                           [&](std::size_t p) { sums.add(p, waiting[p], sums.paths); });
     } else {
-        auto const add = [&](std::size_t pixel, std::uint32_t k, PathSample const& s) {
-            sums.add(pixel, s, sums.paths + k);
-        };
-        sums.counts += tracing.trace(steps, pass, first, first_hits, add);
+        sums.counts += tracing.add(steps, pass, first, first_hits, sums);
     }
     pass.end();
 }

@@ -21,7 +21,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     KernelRenderer<S> renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb by kernels") : 0;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
-        for (std::uint32_t i = 0; i < paths; ++i) renderer.pass(loop.first_path() + sums.paths, {&sums, 1});
+        renderer.passes(loop.next_path(), paths, {&sums, 1}, &stop);
     });
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());

@@ -6,7 +6,6 @@
 #include "gi/scene/model/plan.h"
 
 #include <algorithm>
-#include <tbb/parallel_for.h>
 
 namespace gi {
 
@@ -186,19 +185,29 @@ void KernelRenderer<S>::prepare(std::uint32_t index)
 }
 
 template <Space S>
-void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing)
+void KernelRenderer<S>::passes(std::uint32_t index, std::uint32_t count, std::span<Accumulator> sums,
+                               StopRequest const* stop)
+{
+    for (std::size_t k = 0; k < views_.size(); ++k) views_[k].sums.take(sums[k]);
+    for (std::uint32_t i = 0; i < count && !(i > 0 && stop && stop->requested()); ++i) add_pass(index + i, sums);
+    StageTimer const timer(report_, "paths");
+    for (std::size_t k = 0; k < views_.size(); ++k) views_[k].sums.give(sums[k]);
+}
+
+template <Space S>
+void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sums)
 {
     prepare(index);
     StageTimer const timer(report_, "paths");
     bool const smooth = smooth_somewhere(world_);
     scene_.start_pass(axes_.set(), light_points_->fixed() ? light_points_->chances() : AliasTableView{});
     for (std::size_t k = 0; k < views_.size(); ++k) {
-        View const& v = views_[k];
+        View& v = views_[k];
         Accumulator& to = sums[k];
         PassOfPaths paths{};
         paths.camera = v.eye;
-        paths.primary = v.primary.view();
-        paths.hidden = v.hidden.view();
+        paths.primary = std::as_const(v.primary).view();
+        paths.hidden = std::as_const(v.hidden).view();
         paths.place = place_in_pixel(v.filter, settings_.seed, index);
         paths.width = std::uint32_t(v.width);
         paths.bounces = settings_.bounces;
@@ -206,8 +215,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, V
         paths.roulette = settings_.slhb.roulette;
         paths.seed = random_key(settings_.seed);
         paths.pass = index;
-        std::span<PathSample const> const samples = scene_.trace(paths);
-        tbb::parallel_for(std::size_t(0), samples.size(), [&](std::size_t p) { to.add(p, samples[p], to.paths); });
+        v.sums.add(scene_.trace(paths));
         ++to.paths;
         PathKernelCounts const& done = scene_.counts();
         to.counts.cut_paths += done.cut_paths;

@@ -13,6 +13,7 @@
 #include "gi/methods/slhb/kernels/kernel_scene.h"
 #include "gi/render/accumulator.h"
 #include "gi/render/frame_renderer.h"
+#include "gi/render/sums_on.h"
 
 #include <optional>
 
@@ -37,8 +38,13 @@ public:
     DynamicUpdate dynamic_update() const { return axes_.dynamic_update(); }
     /// Throws InputError on orthographic cameras.
     void see(std::span<FrameView const> views);
-    /// @param sharing  ignored: paths do not share vertices
-    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::none);
+    /// VertexSharing is ignored: paths do not share vertices.
+    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing = VertexSharing::none)
+    {
+        passes(index, 1, sums, nullptr);
+    }
+    /// Several passes, while the sums stay in the space. @param stop  ends them after a pass; null = never
+    void passes(std::uint32_t index, std::uint32_t count, std::span<Accumulator> sums, StopRequest const* stop);
     void add_motion(std::size_t view, Picture& picture) const;
     /// Empty: no light is reused from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
@@ -57,6 +63,7 @@ private:
         CameraRays eye{}; ///< of the last pass
         std::uint32_t index = 0;
         Buffer<NearestTexel, S> primary; ///< of the last pass
+        SumsOn<S> sums;
         std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
     };
 
@@ -66,6 +73,7 @@ private:
     void make_axes();
     void make_light_points();
     void prepare(std::uint32_t index);
+    void add_pass(std::uint32_t index, std::span<Accumulator> sums);
 
     World const& world_;
     RenderSettings settings_;

@@ -1,13 +1,13 @@
 #pragma once
-// Data that the kernels of slhb read from a world and build from it: everything is in one space, and only path
-// samples and, on request, first surfaces are copied back.
+// Data that the kernels of slhb read from a world and build from it: everything is in one space, and only first
+// surfaces are copied back, on request.
 
-#include "gi/kernel/host_copy.h"
 #include "gi/methods/slhb/directions/axis_set.h"
 #include "gi/methods/slhb/hit_buffer/build_hit_buffer.h"
 #include "gi/methods/slhb/kernels/path_kernel.h"
 #include "gi/methods/slhb/lights/light_points.h"
 #include "gi/raster/draw_nearest.h"
+#include "gi/render/path_workers.h"
 #include "gi/scene/model/world_on.h"
 
 #include <array>
@@ -115,11 +115,12 @@ public:
 
     /// Returns samples, until the next call.
     /// @param paths  with the host's parameters and those of the view; this function fills in the rest
-    std::span<PathSample const> trace(PassOfPaths paths)
+    View<PathSample const> trace(PassOfPaths paths)
     {
         std::size_t const pixels = paths.primary.size();
         if (samples_.size() != pixels) samples_ = Buffer<PathSample, S>(pixels);
-        Buffer<PathKernelCounts, S> counts = upload<S>(std::vector<PathKernelCounts>(1));
+        constexpr std::size_t kCounts = 1024; // threads that add to one number wait for each other
+        Buffer<PathKernelCounts, S> counts = upload<S>(std::vector<PathKernelCounts>(kCounts));
         paths.world = world_.view();
         paths.axes = std::as_const(axis_views_).view();
         paths.choice = choice_;
@@ -128,12 +129,14 @@ public:
         paths.samples = samples_.view();
         paths.counts = counts.view();
         if (bvh_) paths.rays = bvh_->rays();
+        paths.workers = path_workers(pixels);
         if (bvh_)
-            launch(S, "trace paths with exact rays", pixels, TracePaths<true>{paths});
+            launch(S, "trace paths with exact rays", paths.workers, TracePaths<true>{paths});
         else
-            launch(S, "trace paths", pixels, TracePaths<false>{paths});
-        counts_ = download(counts)[0];
-        return on_host_.of(samples_);
+            launch(S, "trace paths", paths.workers, TracePaths<false>{paths});
+        counts_ = {};
+        for (PathKernelCounts const& c : download(counts)) counts_ += c;
+        return std::as_const(samples_).view();
     }
 
     PathKernelCounts const& counts() const { return counts_; } ///< of the last trace
@@ -163,7 +166,6 @@ private:
     std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per light point, its faces
     Buffer<LightPointView, S> light_points_;
     Buffer<PathSample, S> samples_;
-    HostCopy<PathSample, S> on_host_;
     PathKernelCounts counts_;
 };
 

@@ -1,7 +1,8 @@
 #pragma once
-// The paths of a pass as a kernel: one item traces the whole path of one pixel, with its state in registers.
-// Estimators and random numbers are those of SlhbTracer (tracer.h), so that both trace the same paths up to
-// rounding.
+// The paths of a pass as a kernel: one item, a worker, traces the paths of several pixels one after the other,
+// with their state in registers. Where a path ends the next one begins at once, so that the threads of a device
+// that step together do not wait for the longest path (Novak et al. 2010). Estimators and random numbers are those
+// of SlhbTracer (tracer.h), so that both trace the same paths up to rounding.
 //
 // Mirrors, glass and narrow lobes continue by exact rays through the project's own BVH. Cone, gathering,
 // interleaving and shared vertices are not supported.
@@ -25,6 +26,16 @@ struct LightPointView {
 struct PathKernelCounts {
     std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0;
     std::uint64_t cut_paths = 0, invalid_paths = 0;
+
+    PathKernelCounts& operator+=(PathKernelCounts const& o)
+    {
+        queries += o.queries;
+        exact_rays += o.exact_rays;
+        shadow_lookups += o.shadow_lookups;
+        cut_paths += o.cut_paths;
+        invalid_paths += o.invalid_paths;
+        return *this;
+    }
 };
 
 /// What the paths of a pass read and write.
@@ -44,8 +55,9 @@ struct PassOfPaths {
     float roulette; ///< see SlhbSettings
     bool smooth;    ///< the world contains a mirror or glass
     std::uint32_t seed, pass;
+    std::size_t workers;           ///< number of items
     View<PathSample> samples;      ///< per pixel
-    View<PathKernelCounts> counts; ///< one
+    View<PathKernelCounts> counts; ///< to be added up
 };
 
 /// @tparam by_rays  some lobes may be narrow; otherwise the kernel needs fewer registers and no stacks
@@ -70,6 +82,8 @@ private:
     };
 
     GI_FN State start(std::size_t pixel) const;
+    /// From one surface to the next. Returns false if the path ends.
+    GI_FN bool step(State& s, PathSample& out, PathKernelCounts& local) const;
     GI_FN vec3 sky(State const& s) const;
     GI_FN vec3 emission(State const& s, ShadingPoint const& at) const;
     GI_FN vec3 direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
@@ -91,7 +105,7 @@ private:
     {
         return s.scatterings == bounces && !narrow && !smooth;
     }
-    GI_FN void add_counts(PathKernelCounts const& local) const;
+    GI_FN void add_counts(std::size_t item, PathKernelCounts const& local) const;
 };
 
 } // namespace gi

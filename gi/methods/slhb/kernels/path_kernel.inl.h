@@ -124,9 +124,9 @@ GI_FN bool TracePaths<by_rays>::scatter(State& s, ShadingPoint const& at, vec3 w
 }
 
 template <bool by_rays>
-GI_FN void TracePaths<by_rays>::add_counts(PathKernelCounts const& local) const
+GI_FN void TracePaths<by_rays>::add_counts(std::size_t item, PathKernelCounts const& local) const
 {
-    PathKernelCounts& all = counts[0];
+    PathKernelCounts& all = counts[item % counts.size()];
     auto const more = [](std::uint64_t& sum, std::uint64_t n) {
         if (n > 0) atomic_add(sum, n);
     };
@@ -138,41 +138,49 @@ GI_FN void TracePaths<by_rays>::add_counts(PathKernelCounts const& local) const
 }
 
 template <bool by_rays>
-GI_FN void TracePaths<by_rays>::operator()(std::size_t i) const
+GI_FN bool TracePaths<by_rays>::step(State& s, PathSample& out, PathKernelCounts& local) const
 {
-    PathSample out;
-    if (!hidden.empty() && hidden[i] != 0) {
-        samples[i] = out;
-        return;
+    if (s.triangle == kNoPrimitive) {
+        layer_of(out, s.scatterings) += sky(s);
+        return false;
     }
+    Surface const& surface = world.surfaces[s.triangle];
+    if (s.has_position && (surface.is(Surface::kSmooth) || surface.is(Surface::kVaries)))
+        s.barycentric = barycentric_at(surface, s.position);
+    ShadingPoint at = shading_point(world, s.triangle, s.barycentric, s.direction);
+    if (s.has_position) at.position = s.position;
+    if (s.vertex == 0) see_first_surface(out, at, camera);
+    layer_of(out, s.scatterings) += emission(s, at);
+    if (!by_rays && is_last(s)) return false;
+    if (s.vertex == kLongestPath) {
+        ++local.cut_paths;
+        return false;
+    }
+    vec3 const wo = at.frame.to_local(-s.direction);
+    bool const narrow = by_rays && has_narrow_lobe(at.bsdf);
+    if (!is_last(s) && !light_points.empty() && !only_delta(at.bsdf))
+        layer_of(out, s.scatterings + 1) += direct(s, at, wo, narrow, local);
+    return scatter(s, at, wo, narrow, local);
+}
+
+template <bool by_rays>
+GI_FN void TracePaths<by_rays>::operator()(std::size_t worker) const
+{
     PathKernelCounts local;
+    std::size_t i = worker;
+    auto const is_hidden = [&] { return !hidden.empty() && hidden[i] != 0; };
+    PathSample out;
     State s = start(i);
     for (;;) {
-        if (s.triangle == kNoPrimitive) {
-            layer_of(out, s.scatterings) += sky(s);
-            break;
-        }
-        Surface const& surface = world.surfaces[s.triangle];
-        if (s.has_position && (surface.is(Surface::kSmooth) || surface.is(Surface::kVaries)))
-            s.barycentric = barycentric_at(surface, s.position);
-        ShadingPoint at = shading_point(world, s.triangle, s.barycentric, s.direction);
-        if (s.has_position) at.position = s.position;
-        if (s.vertex == 0) see_first_surface(out, at, camera);
-        layer_of(out, s.scatterings) += emission(s, at);
-        if (!by_rays && is_last(s)) break;
-        if (s.vertex == kLongestPath) {
-            ++local.cut_paths;
-            break;
-        }
-        vec3 const wo = at.frame.to_local(-s.direction);
-        bool const narrow = by_rays && has_narrow_lobe(at.bsdf);
-        if (!is_last(s) && !light_points.empty() && !only_delta(at.bsdf))
-            layer_of(out, s.scatterings + 1) += direct(s, at, wo, narrow, local);
-        if (!scatter(s, at, wo, narrow, local)) break;
+        if (!is_hidden() && step(s, out, local)) continue;
+        local.invalid_paths += discard_invalid(out);
+        samples[i] = out;
+        i += workers;
+        if (i >= samples.size()) break;
+        out = {};
+        s = start(i);
     }
-    local.invalid_paths += discard_invalid(out);
-    samples[i] = out;
-    add_counts(local);
+    add_counts(worker, local);
 }
 
 } // namespace gi
