@@ -179,39 +179,40 @@ GI_FN void trace_scalar(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Acce
     BvhEntry stack[kStackEntries];
     int top = 0;
     std::uint32_t at = 0;
+    auto const pop = [&] {
+        while (top > 0) {
+            BvhEntry const entry = stack[--top];
+            if (any || entry.distance <= hit.distance) return entry.at;
+        }
+        return kNoBvhTriangle;
+    };
+    // All nodes up to a leaf in a loop of their own: threads that step together then meet leaves together.
     for (;;) {
-        std::uint32_t next = kNoBvhTriangle;
-        if ((at & kIsLeaf) == 0) {
+        while ((at & kIsLeaf) == 0) {
             MetChildren const met = meet_children(bvh.nodes[at], ray, hit.distance);
-            float nearest = kInf;
+            BvhEntry nearest{kNoBvhTriangle, kInf};
             // Unrolled, so that arrays stay in registers.
 #pragma unroll
             for (std::uint32_t k = 0; k < kBvhWidth; ++k) {
                 if ((met.bits >> k & 1) == 0) continue;
                 BvhEntry entry{met.child(k), met.enters[k]};
-                if (next == kNoBvhTriangle) {
-                    next = entry.at;
-                    nearest = entry.distance;
-                    continue;
+                if (nearest.at != kNoBvhTriangle) {
+                    if (!any && entry.distance < nearest.distance) {
+                        BvhEntry const farther = nearest;
+                        nearest = entry;
+                        entry = farther;
+                    }
+                    stack[top++] = entry;
+                } else {
+                    nearest = entry;
                 }
-                if (!any && entry.distance < nearest) {
-                    BvhEntry const farther{next, nearest};
-                    next = entry.at;
-                    nearest = entry.distance;
-                    entry = farther;
-                }
-                stack[top++] = entry;
             }
-        } else {
-            meet_leaf(bvh.leaves[at & ~kIsLeaf], ray, hit, accepts);
-            if (any && hit.triangle != kNoBvhTriangle) return;
+            at = met.bits != 0 ? nearest.at : pop();
         }
-        while (next == kNoBvhTriangle) {
-            if (top == 0) return;
-            BvhEntry const entry = stack[--top];
-            if (any || entry.distance <= hit.distance) next = entry.at;
-        }
-        at = next;
+        if (at == kNoBvhTriangle) return;
+        meet_leaf(bvh.leaves[at & ~kIsLeaf], ray, hit, accepts);
+        if (any && hit.triangle != kNoBvhTriangle) return;
+        at = pop();
     }
 }
 

@@ -27,7 +27,7 @@ template <class Kernel>
 void launch_device(char const* name, std::size_t n, Kernel const& kernel)
 {
     if (n == 0) return;
-    constexpr std::size_t kBlock = 256, kMostBlocks = std::size_t(1) << 20;
+    constexpr std::size_t kBlock = 128, kMostBlocks = std::size_t(1) << 20;
     std::size_t const blocks = (n + kBlock - 1) / kBlock;
     run_kernel<<<unsigned(blocks < kMostBlocks ? blocks : kMostBlocks), unsigned(kBlock)>>>(n, kernel);
     check_cuda(cudaGetLastError(), name);

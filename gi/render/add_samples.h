@@ -72,16 +72,16 @@ GI_FN inline void add_path(PixelMeans& m, PathSample const& s, std::uint32_t pat
     m.depth += (s.depth - m.depth) * of_hits;
 }
 
-/// Item = pixel. Adds its paths in their order.
+/// Item = pixel. Adds a path.
 struct AddSamples {
-    View<PathSample const> samples; ///< path by path, one per pixel each
-    std::uint32_t paths, before;    ///< in `samples`; already in the means
-    View<PixelMeans> means;         ///< not read if there are none before
+    View<PathSample const> samples;
+    std::uint32_t before;   ///< paths in the means
+    View<PixelMeans> means; ///< not read if there are none before
 
     GI_FN void operator()(std::size_t i) const
     {
         PixelMeans m = before > 0 ? means[i] : PixelMeans{};
-        for (std::uint32_t k = 0; k < paths; ++k) add_path(m, samples[k * means.size() + i], before + k + 1);
+        add_path(m, samples[i], before + 1);
         means[i] = m;
     }
 };

@@ -18,18 +18,17 @@ public:
         if (paths_ > 0)
             copy_bytes(S, means_.view().data, Space::host, sums.pixels.data(), means_.size() * sizeof(PixelMeans));
     }
-    /// @param samples  of all pixels, path by path
+    /// Adds one path of every pixel.
     void add(View<PathSample const> samples)
     {
-        auto const paths = std::uint32_t(samples.size() / means_.size());
-        launch(S, "add samples", means_.size(), AddSamples{samples, paths, paths_, means_.view()});
-        paths_ += paths;
+        launch(S, "add samples", means_.size(), AddSamples{samples, paths_, means_.view()});
+        ++paths_;
     }
-    /// Copies the means back; the caller counts the paths.
+    View<PixelMeans> means() { return means_.view(); } ///< for kernels that add paths themselves
+    /// Copies the means back, if there were or are any paths; the caller counts them.
     void give(Accumulator& sums) const
     {
-        if (paths_ > 0)
-            copy_bytes(Space::host, sums.pixels.data(), S, means_.view().data, means_.size() * sizeof(PixelMeans));
+        copy_bytes(Space::host, sums.pixels.data(), S, means_.view().data, means_.size() * sizeof(PixelMeans));
     }
 
 private:

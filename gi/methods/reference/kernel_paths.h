@@ -49,47 +49,49 @@ public:
     PathCounts trace(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                      std::span<FirstHit> first_hits, Use const& use)
     {
-        return run(steps, pass, first_path, first_hits, [&](std::uint32_t done, std::uint32_t now) {
-            std::span<PathSample const> const found = on_host_.of(samples_);
-            tbb::parallel_for(std::size_t(0), pass.pixels(), [&](std::size_t p) {
-                for (std::uint32_t k = 0; k < now; ++k) use(p, done + k, found[k * pass.pixels() + p]);
+        Buffer<PathSample, S> samples(pass.pixels());
+        return run(
+            steps, pass, first_path, first_hits, 1, [&](std::uint32_t) { return KeepSamples{samples.view()}; },
+            [&](std::uint32_t path) {
+                std::span<PathSample const> const found = on_host_.of(samples);
+                tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t p) { use(p, path, found[p]); });
             });
-        });
     }
     PathCounts add(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                    std::span<FirstHit> first_hits, Accumulator& sums)
     {
+        // Many paths together, as a launch waits for the longest one, and so few that a stop is soon noticed.
+        constexpr std::size_t kMostPaths = std::size_t(1) << 25;
+        auto const together = std::uint32_t(std::max<std::size_t>(1, kMostPaths / pass.pixels()));
+        std::uint32_t const before = sums.paths;
         sums_.take(sums);
-        PathCounts const counts = run(steps, pass, first_path, first_hits, [&](std::uint32_t, std::uint32_t) {
-            sums_.add(std::as_const(samples_).view());
-        });
+        PathCounts const counts = run(
+            steps, pass, first_path, first_hits, together,
+            [&](std::uint32_t path) {
+                return AddToMeans{sums_.means(), before + path};
+            },
+            [](std::uint32_t) {});
         sums_.give(sums);
         return counts;
     }
 
 private:
-    /// @param take  (paths of the pass before, paths), for samples_
-    template <class Take>
+    /// @param together  paths of a launch
+    /// @param to  (number of its first path) -> where samples go  @param ended  called with that after the launch
+    template <class To, class Ended>
     PathCounts run(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
-                   std::span<FirstHit> first_hits, Take const& take)
+                   std::span<FirstHit> first_hits, std::uint32_t together, To const& to, Ended const& ended)
     {
-        constexpr std::size_t kMostItems = std::size_t(1) << 21; // of a launch; limits the memory of samples
         constexpr std::size_t kCounts = 1024; // threads that add to one number wait for each other
-        std::size_t const pixels = pass.pixels();
-        std::uint32_t const paths = pass.paths;
-        auto const together = std::uint32_t(std::max<std::size_t>(1, kMostItems / pixels));
+        std::size_t const pixels = pass.pixels(), workers = path_workers(pixels);
         Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(kCounts));
         Buffer<FirstHit, S> hits(first_hits.empty() ? 0 : pixels);
-        std::uint32_t done = pass.done();
-        while (done < paths && !pass.given_up()) {
-            std::uint32_t const now = std::min(paths - done, together);
-            std::size_t const items = pixels * now;
-            if (samples_.size() != items) samples_ = Buffer<PathSample, S>(items);
-            std::size_t const workers = path_workers(items);
+        for (std::uint32_t done = pass.done(); done < pass.paths && !pass.given_up();) {
+            std::uint32_t const now = std::min(pass.paths - done, together);
             launch(S, "trace paths of the reference", workers,
-                   TraceReference{steps, bvh_->rays(), std::uint32_t(pixels), first_path + done, workers,
-                                  samples_.view(), hits.view(), counts.view()});
-            take(done, now);
+                   TraceReference{steps, bvh_->rays(), std::uint32_t(pixels), first_path + done, now, workers,
+                                  to(done), hits.view(), counts.view()});
+            ended(done);
             done += now;
             pass.set_done(done);
         }
@@ -105,7 +107,6 @@ private:
     Report& report_;
     StopRequest const* stop_;
     std::optional<WorldBvh<S>> bvh_;
-    Buffer<PathSample, S> samples_;
     HostCopy<PathSample, S> on_host_;
     SumsOn<S> sums_;
 };

@@ -4,6 +4,7 @@
 
 namespace gi {
 
-template void launch_device(char const*, std::size_t, TraceReference const&);
+template void launch_device(char const*, std::size_t, TraceReference<AddToMeans> const&);
+template void launch_device(char const*, std::size_t, TraceReference<KeepSamples> const&);
 
 } // namespace gi

@@ -6,25 +6,49 @@
 
 #include "gi/kernel/atomics.h"
 #include "gi/methods/reference/path_steps.h"
+#include "gi/render/add_samples.h"
 #include "gi/render/world_bvh.h"
 
 namespace gi {
 
+/// Keeps samples, one per pixel: the last one.
+struct KeepSamples {
+    View<PathSample> samples;
+
+    GI_FN void add(std::size_t pixel, std::uint32_t, PathSample const& s) const { samples[pixel] = s; }
+};
+
+/// Adds samples to the means of pixels.
+struct AddToMeans {
+    View<PixelMeans> means; ///< not read if there are no paths before
+    std::uint32_t before;   ///< paths in the means
+
+    GI_FN void add(std::size_t pixel, std::uint32_t path, PathSample const& s) const
+    {
+        PixelMeans m = before + path > 0 ? means[pixel] : PixelMeans{};
+        add_path(m, s, before + path + 1);
+        means[pixel] = m;
+    }
+};
+
+template <class Samples>
 struct TraceReference {
     PathSteps steps;
     KernelRays rays;
-    std::uint32_t pixels;      ///< of the picture, in rows of steps.width
-    std::uint32_t first_path;  ///< of those traced now
-    std::size_t workers;       ///< number of items
-    View<PathSample> samples;  ///< path by path, `pixels` each
+    std::uint32_t pixels;     ///< of the picture, in rows of steps.width
+    std::uint32_t first_path; ///< of those traced now
+    std::uint32_t paths;      ///< of each pixel
+    std::size_t workers;      ///< number of items
+    Samples samples;
     View<FirstHit> first_hits; ///< of the last path, per pixel; empty = not needed
     View<PathCounts> counts;   ///< to be added up
 
     GI_FN void operator()(std::size_t worker) const
     {
         PathCounts local;
-        std::size_t i = worker;
-        Path p = start(i);
+        std::size_t pixel = worker;
+        std::uint32_t path = 0;
+        Path p = start(pixel, path);
         for (int vertex = 0;;) {
             step(p, vertex, local);
             if (!p.ended) {
@@ -32,21 +56,23 @@ struct TraceReference {
                 continue;
             }
             local.invalid_paths += discard_invalid(p.sample);
-            samples[i] = p.sample;
-            if (!first_hits.empty() && i + pixels >= samples.size()) first_hits[i % pixels] = p.first;
-            i += workers;
-            if (i >= samples.size()) break;
-            p = start(i);
+            samples.add(pixel, path, p.sample);
+            if (++path == paths) {
+                if (!first_hits.empty()) first_hits[pixel] = p.first;
+                path = 0;
+                pixel += workers;
+                if (pixel >= pixels) break;
+            }
+            p = start(pixel, path);
             vertex = 0;
         }
         add_counts(worker, local);
     }
 
 private:
-    GI_FN Path start(std::size_t i) const
+    GI_FN Path start(std::size_t pixel, std::uint32_t path) const
     {
-        auto const pixel = int(i % pixels);
-        return steps.start(pixel % steps.width, pixel / steps.width, first_path + std::uint32_t(i / pixels));
+        return steps.start(int(pixel) % steps.width, int(pixel) / steps.width, first_path + path);
     }
     /// From one surface to the next, and the light there.
     GI_FN void step(Path& p, int vertex, PathCounts& local) const
