@@ -128,14 +128,14 @@ GI_FN inline MetChildren meet_children(WideNode const& node, BvhRay const& ray, 
         }
     }
     for (int k = 0; k < kBvhWidth; ++k) {
-        float enters = ray.start, leaves = reach;
+        float enters = ray.start, exits = reach;
         for (int axis = 0; axis < 3; ++axis) {
             int const shift = 8 * (k % 4);
             enters = larger(enters, std::fma(float(near[axis][k / 4] >> shift & 0xffu), scale[axis], from[axis]));
-            leaves = smaller(leaves, std::fma(float(far[axis][k / 4] >> shift & 0xffu), scale[axis], from[axis]));
+            exits = smaller(exits, std::fma(float(far[axis][k / 4] >> shift & 0xffu), scale[axis], from[axis]));
         }
         met.enters[k] = enters;
-        if (enters <= leaves * kBoxSlack) met.bits |= 1u << k;
+        if (enters <= exits * kBoxSlack) met.bits |= 1u << k;
     }
     met.bits &= (1u << (w0.word[3] >> 24)) - 1; // their number
     return met;

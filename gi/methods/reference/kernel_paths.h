@@ -13,6 +13,7 @@
 #include "gi/scene/model/world_on.h"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <tbb/parallel_for.h>
 
@@ -60,13 +61,10 @@ public:
     PathCounts add(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                    std::span<FirstHit> first_hits, Accumulator& sums)
     {
-        // Many paths together, as a launch waits for the longest one, and so few that a stop is soon noticed.
-        constexpr std::size_t kMostPaths = std::size_t(1) << 25;
-        auto const together = std::uint32_t(std::max<std::size_t>(1, kMostPaths / pass.pixels()));
         std::uint32_t const before = sums.paths;
         sums_.take(sums);
         PathCounts const counts = run(
-            steps, pass, first_path, first_hits, together,
+            steps, pass, first_path, first_hits, pass.paths,
             [&](std::uint32_t path) {
                 return AddToMeans{sums_.means(), before + path};
             },
@@ -76,21 +74,26 @@ public:
     }
 
 private:
-    /// @param together  paths of a launch
+    /// @param most  paths of a launch: as many as take kLaunch_s, so that a stop is soon noticed
     /// @param to  (number of its first path) -> where samples go  @param ended  called with that after the launch
     template <class To, class Ended>
     PathCounts run(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
-                   std::span<FirstHit> first_hits, std::uint32_t together, To const& to, Ended const& ended)
+                   std::span<FirstHit> first_hits, std::uint32_t most, To const& to, Ended const& ended)
     {
+        constexpr double kLaunch_s = 0.1;
         constexpr std::size_t kCounts = 1024; // threads that add to one number wait for each other
         std::size_t const pixels = pass.pixels(), workers = path_workers(pixels);
         Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(kCounts));
         Buffer<FirstHit, S> hits(first_hits.empty() ? 0 : pixels);
+        std::uint32_t together = 1;
         for (std::uint32_t done = pass.done(); done < pass.paths && !pass.given_up();) {
             std::uint32_t const now = std::min(pass.paths - done, together);
+            auto const begun = std::chrono::steady_clock::now();
             launch(S, "trace paths of the reference", workers,
                    TraceReference{steps, bvh_->rays(), std::uint32_t(pixels), first_path + done, now, workers,
                                   to(done), hits.view(), counts.view()});
+            std::chrono::duration<double> const took = std::chrono::steady_clock::now() - begun;
+            together = std::uint32_t(std::clamp(now * kLaunch_s / took.count(), 1.0, double(most)));
             ended(done);
             done += now;
             pass.set_done(done);
