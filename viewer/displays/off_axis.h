@@ -8,7 +8,6 @@
 #include "gi/core/error.h"
 #include "gi/scene/model/camera.h"
 
-#include <cmath>
 #include <optional>
 
 namespace viewer {
@@ -62,12 +61,5 @@ char const* name_of(EyePlace place);
 EyePlace place_of(gi::dvec3 eye_m, WallFrame const& wall);
 /// The camera in the room. None unless place_of is EyePlace::before; the wall then stays dark for this eye.
 std::optional<gi::Camera> off_axis_camera(gi::dvec3 eye_m, WallFrame const& wall);
-
-/// The edges of a perspective camera's picture of width x height pixels.
-inline gi::ViewTangents view_tangents(gi::Camera const& camera, int width, int height)
-{
-    double const y = std::tan(0.5 * camera.yfov_rad), x = y * width / height;
-    return camera.off_axis.value_or(gi::ViewTangents{-x, x, -y, y});
-}
 
 } // namespace viewer

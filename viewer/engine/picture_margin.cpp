@@ -1,7 +1,5 @@
 #include "viewer/engine/picture_margin.h"
 
-#include "viewer/displays/off_axis.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +8,7 @@ namespace viewer {
 gi::Camera with_margin(gi::Camera const& camera, glm::ivec2 size_px, glm::ivec2 margin_px)
 {
     if (margin_px == glm::ivec2(0)) return camera;
-    gi::ViewTangents e = view_tangents(camera, size_px.x, size_px.y);
+    gi::ViewTangents e = gi::view_edges(camera, size_px.x, size_px.y);
     double const x = margin_px.x * (e.right - e.left) / size_px.x,
                  y = margin_px.y * (e.top - e.bottom) / size_px.y;
     gi::Camera wide = camera;
@@ -23,8 +21,8 @@ glm::ivec2 margin_for(ViewCommand const& view, gi::Camera const& later)
     constexpr int kStep = 4, kShare = 12;
     if (view.camera.orthographic || later.orthographic) return glm::ivec2(0);
     glm::ivec2 const size(view.width, view.height);
-    gi::ViewTangents const e = view_tangents(view.camera, size.x, size.y),
-                           to = view_tangents(later, size.x, size.y);
+    gi::ViewTangents const e = gi::view_edges(view.camera, size.x, size.y),
+                           to = gi::view_edges(later, size.x, size.y);
     glm::dmat3 const turn =
         glm::transpose(glm::dmat3(view.camera.world_from_camera)) * glm::dmat3(later.world_from_camera);
     glm::dvec2 beyond(0); // px

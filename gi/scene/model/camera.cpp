@@ -6,14 +6,17 @@
 
 namespace gi {
 
+ViewTangents view_edges(Camera const& camera, int width, int height)
+{
+    double const y = camera.orthographic ? camera.ymag_m : std::tan(0.5 * camera.yfov_rad), x = y * width / height;
+    return camera.off_axis.value_or(ViewTangents{-x, x, -y, y});
+}
+
 CameraRays camera_rays(Camera const& camera, int width, int height, dvec3 world_origin)
 {
     dmat4 const& m = camera.world_from_camera;
     dvec3 const right(m[0]), up(m[1]), back(m[2]), position(m[3]);
-    double const half_height = camera.orthographic ? camera.ymag_m : std::tan(0.5 * camera.yfov_rad);
-    double const half_width = half_height * width / height;
-    ViewTangents const edge =
-        camera.off_axis.value_or(ViewTangents{-half_width, half_width, -half_height, half_height});
+    ViewTangents const edge = view_edges(camera, width, height);
     CameraRays rays;
     rays.orthographic = camera.orthographic;
     rays.origin = vec3(position - world_origin);

@@ -72,6 +72,9 @@ struct CameraRays {
     }
 };
 
+/// The edges of a picture of width x height pixels: tangents, or m for an orthographic camera.
+ViewTangents view_edges(Camera const& camera, int width, int height);
+
 /// Prepares a camera. The vertical field of view is kept and the horizontal one follows from width / height; an
 /// off-axis view fixes both. Positions are relative to world_origin. Throws InputError as check_lens does.
 CameraRays camera_rays(Camera const& camera, int width, int height, dvec3 world_origin);

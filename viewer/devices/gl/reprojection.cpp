@@ -1,7 +1,7 @@
 #include "viewer/devices/gl/reprojection.h"
 
 #include "gi/core/error.h"
-#include "viewer/displays/off_axis.h"
+#include "gi/scene/model/camera.h"
 
 #include <cmath>
 #include <epoxy/gl.h>
@@ -17,7 +17,7 @@ gi::ViewTangents tangents_of(gi::Camera const& camera, glm::ivec2 size)
     if (camera.orthographic)
         throw gi::InputError("the orthographic camera '" + camera.name + "' cannot be reprojected",
                              "its rays do not share one origin", "show its pictures as they are");
-    return view_tangents(camera, size.x, size.y);
+    return gi::view_edges(camera, size.x, size.y);
 }
 
 /// (right, up, forward) of a point at depth 1 from its pixel.

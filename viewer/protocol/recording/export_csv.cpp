@@ -110,8 +110,7 @@ void add_view(Row& row, ViewCommand const& v)
     Place const place = place_of(c.world_from_camera);
     row.add(place.position, place.rotation);
     row.add(std::string(c.orthographic ? "orthographic" : "perspective"));
-    double const up = c.orthographic ? c.ymag_m : std::tan(0.5 * c.yfov_rad), aside = up * v.width / v.height;
-    gi::ViewTangents const edges = c.off_axis.value_or(gi::ViewTangents{-aside, aside, -up, up});
+    gi::ViewTangents const edges = gi::view_edges(c, v.width, v.height);
     for (double const e : {edges.left, edges.right, edges.bottom, edges.top}) row.add(e);
 }
 
