@@ -1,25 +1,45 @@
 #include "gi/render/checkpoint.h"
 
 #include "gi/core/error.h"
+#include "gi/core/xxhash.h"
 
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
+#include <span>
+#include <utility>
 
 namespace gi {
 namespace {
 
 struct CheckpointHeader {
-    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '4'};
+    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '5'};
     std::uint64_t fingerprint = 0;
     std::int32_t width = 0, height = 0;
     std::uint32_t paths = 0, pixel_bytes = sizeof(PixelMeans);
     PathCounts counts;
     double seconds = 0;
     std::uint64_t has_further = 0; ///< Accumulator::further follows the means
+    std::uint64_t hash = 0;        ///< of the whole file, with 0 here
 };
 static_assert(std::is_trivially_copyable_v<CheckpointHeader> && std::is_trivially_copyable_v<PixelMeans>);
+
+constexpr std::size_t kTogether = 1 << 16; ///< pixels hashed, and read, together
+
+template <class T>
+std::uint64_t hash_of(std::span<T const> some, std::uint64_t before = 0)
+{
+    return xxh64(std::as_bytes(some), before);
+}
+
+/// Of the means, chunk by chunk, as they are read.
+std::uint64_t hash_of_means(std::span<PixelMeans const> pixels, std::uint64_t hash)
+{
+    for (std::size_t at = 0; at < pixels.size(); at += kTogether)
+        hash = hash_of(pixels.subspan(at, std::min(kTogether, pixels.size() - at)), hash);
+    return hash;
+}
 
 std::uint64_t further_bytes(std::vector<std::uint32_t> const& further)
 {
@@ -51,6 +71,8 @@ void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, st
     header.counts = a.counts;
     header.seconds = a.seconds;
     header.has_further = a.further.empty() ? 0 : 1;
+    header.hash = hash_of<std::uint32_t>(
+        a.further, hash_of_means(a.pixels, hash_of(std::span<CheckpointHeader const>(&header, 1))));
     std::string_view const parts[]{
         {reinterpret_cast<char const*>(&header), sizeof header},
         {reinterpret_cast<char const*>(a.pixels.data()), a.pixels.size() * sizeof(PixelMeans)},
@@ -62,9 +84,8 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
                      StopRequest const* stop)
 {
     if (file.empty() || !std::filesystem::exists(file)) return false;
-    auto const damaged = [&] {
-        return InputError("'" + file.string() + "' is damaged", "its size does not fit its header",
-                          "delete it to start afresh");
+    auto const damaged = [&](char const* why) {
+        return InputError("'" + file.string() + "' is damaged", why, "delete it to start afresh");
     };
     std::ifstream in(file, std::ios::binary);
     CheckpointHeader header;
@@ -80,15 +101,18 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
     a.further.assign(header.has_further == 1 ? a.pixels.size() : 0, 0);
     if (header.pixel_bytes != sizeof(PixelMeans) || header.has_further > 1 ||
         std::filesystem::file_size(file) != checkpoint_bytes(a.width, a.height) + further_bytes(a.further))
-        throw damaged();
-    constexpr std::size_t kTogether = 1 << 16; // pixels
+        throw damaged("its size does not fit its header");
+    std::uint64_t const expected_hash = std::exchange(header.hash, 0);
+    std::uint64_t hash = hash_of(std::span<CheckpointHeader const>(&header, 1));
     for (std::size_t at = 0; in && at < a.pixels.size(); at += kTogether) {
         if (stop != nullptr && stop->requested()) throw Interrupted();
-        in.read(reinterpret_cast<char*>(&a.pixels[at]),
-                std::streamsize(std::min(kTogether, a.pixels.size() - at) * sizeof(PixelMeans)));
+        std::span<PixelMeans> const some(&a.pixels[at], std::min(kTogether, a.pixels.size() - at));
+        in.read(reinterpret_cast<char*>(some.data()), std::streamsize(some.size_bytes()));
+        hash = hash_of<PixelMeans>(some, hash);
     }
     in.read(reinterpret_cast<char*>(a.further.data()), std::streamsize(further_bytes(a.further)));
-    if (!in) throw damaged();
+    if (!in || hash_of<std::uint32_t>(a.further, hash) != expected_hash)
+        throw damaged("its checksum is not that of its contents");
     a.paths = header.paths;
     a.counts = header.counts;
     a.seconds = header.seconds;

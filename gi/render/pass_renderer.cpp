@@ -55,7 +55,7 @@ public:
         double const earlier = renderer_->rays();
         FrameView const whole{camera, settings_.width, settings_.height};
         motion_.see({&whole, 1});
-        if (!moments) renderer_->begin(passes_, {&whole, 1});
+        if (!moments) renderer_->begin(passes_, {&whole, 1}, &stop);
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             run_some(paths, stop, [&] {
                 FrameView eye = whole;
@@ -64,7 +64,7 @@ public:
                     changed(now.changes);
                     eye.camera = now.camera;
                 }
-                renderer_->pass(passes_++, {&eye, 1}, {&sums, 1}, &motion_);
+                renderer_->pass(passes_++, {&eye, 1}, {&sums, 1}, &motion_, &stop);
             });
         });
         finish(result, earlier);
@@ -82,7 +82,7 @@ public:
         std::vector<Accumulator> sums;
         for (FrameView const& v : views) sums.emplace_back(v.width, v.height);
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, views, sums, &motion_); });
+            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, views, sums, &motion_, nullptr); });
         std::vector<RenderResult> results(views.size());
         PathCounts lost;
         for (std::size_t k = 0; k < views.size(); ++k) {
@@ -130,9 +130,9 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
     FrameView const eye{camera, settings.width, settings.height};
     loop.resume(print);
-    on_threads(settings.threads, [&] { renderer->begin(loop.next_path(), {&eye, 1}); });
+    on_threads(settings.threads, [&] { renderer->begin(loop.next_path(), {&eye, 1}, &stop); });
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
-        run_some(paths, stop, [&] { renderer->pass(loop.next_path(), {&eye, 1}, {&sums, 1}, nullptr); });
+        run_some(paths, stop, [&] { renderer->pass(loop.next_path(), {&eye, 1}, {&sums, 1}, nullptr, &stop); });
     });
     renderer->report_work();
     result.rays = renderer->rays();

@@ -17,12 +17,15 @@ public:
     /// See Changes.
     virtual void changed(Changes const& changes) = 0;
     /// Does before the next pass what need not count as time of passes, from which the loop foretells their end.
-    /// @param index, views  of that pass. Throws Interrupted.
-    virtual void begin(std::uint32_t /*index*/, std::span<FrameView const> /*views*/) {}
+    /// @param index, views  of that pass  @param stop  as of pass()
+    virtual void begin(std::uint32_t /*index*/, std::span<FrameView const> /*views*/, StopRequest const* /*stop*/)
+    {
+    }
     /// Traces one more path for every pixel of all views. @param index  of the pass, over all frames
     /// @param sums  one per view  @param motion  gets the first hits of all views; null = not needed
+    /// @param stop  throws Interrupted, and the sums keep what they have (see TiledPass); null = never
     virtual void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
-                      MotionVectors* motion) = 0;
+                      MotionVectors* motion, StopRequest const* stop) = 0;
     /// Reports the work done since the last call.
     virtual void report_work() = 0;
     /// Number of closest-hit and shadow rays so far.
@@ -33,7 +36,8 @@ public:
 
 /// Makes the renderer of a world. All arguments must outlive it, and the world's arrays must not be reallocated.
 /// @param first_moving  index of the first triangle that may move
-/// @param stop  checked while structures are built before the first pass, which throws Interrupted; null = never
+/// @param stop  of the only picture: checked while structures are built before the first pass, which throws
+///   Interrupted; null = the passes belong to frames
 using StartPasses = std::function<std::unique_ptr<PassRenderer>(
     World const&, RenderSettings const&, std::size_t first_moving, Report&, StopRequest const* stop)>;
 

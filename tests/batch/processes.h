@@ -14,11 +14,15 @@ inline std::vector<int> processes_with(std::filesystem::path const& folder, std:
     for (auto const& entry : std::filesystem::directory_iterator("/proc")) {
         std::string const name = entry.path().filename().string();
         if (name.find_first_not_of("0123456789") != name.npos) continue;
-        std::ifstream in(entry.path() / "cmdline", std::ios::binary);
-        std::string line; // of a process that ends meanwhile: empty
-        std::getline(in, line, '\xff');
+        auto const read = [&](char const* file, char end) { // empty where the process ends meanwhile
+            std::ifstream in(entry.path() / file, std::ios::binary);
+            std::string text;
+            std::getline(in, text, end);
+            return text;
+        };
+        std::string const line = read("cmdline", '\xff');
         if (line.find(folder.string()) == line.npos) continue;
-        bool const is_worker = file_text(entry.path() / "comm") == std::string(batch::kWorkerName) + "\n";
+        bool const is_worker = read("comm", '\n') == batch::kWorkerName;
         if (is_worker != (which == Workers::only)) continue;
         if (std::ranges::all_of(parts, [&](std::string const& part) { return line.find(part) != line.npos; }))
             found.push_back(std::stoi(name));

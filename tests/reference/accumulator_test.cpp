@@ -210,5 +210,31 @@ TEST(Accumulator, ACheckpointHoldsAll)
     EXPECT_FALSE(load_checkpoint(file, b, 99));
 }
 
+TEST(Accumulator, AnyDamagedByteOfACheckpointIsNoticed)
+{
+    std::filesystem::path const file =
+        std::filesystem::temp_directory_path() / ("lightwell_damaged_" + std::to_string(getpid()) + ".state");
+    Accumulator a = noise(16, 2, 3), b(16, 2);
+    a.further.assign(a.pixels.size(), 1);
+    save_checkpoint(file, a, 99);
+    ASSERT_TRUE(load_checkpoint(file, b, 99));
+    EXPECT_EQ(b.further, a.further);
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    std::vector<std::streamoff> unnoticed;
+    for (std::streamoff at = 0; at < std::streamoff(std::filesystem::file_size(file)); ++at) {
+        char const right = char(bytes.seekg(at).get());
+        bytes.seekp(at).put(char(right ^ 0x40)).flush();
+        try {
+            load_checkpoint(file, b, 99);
+            unnoticed.push_back(at);
+        } catch (InputError const&) {
+        }
+        bytes.seekp(at).put(right).flush();
+    }
+    EXPECT_TRUE(unnoticed.empty()) << unnoticed.size() << " bytes, the first one " << unnoticed.front();
+    EXPECT_TRUE(load_checkpoint(file, b, 99));
+    std::filesystem::remove(file);
+}
+
 } // namespace
 } // namespace gi::test

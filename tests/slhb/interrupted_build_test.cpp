@@ -1,8 +1,10 @@
 // A stop while a pass builds or traces ends the render soon, and keeps the passes before, so that a resumed render
 // has the same bits as an undisturbed one.
 
+#include "gi/methods/registry.h"
 #include "gi/methods/slhb/slhb.h"
 #include "gi/scene/generate/generate.h"
+#include "gi/scene/motion/moving_world.h"
 #include "tests/support/scenes.h"
 
 #include <chrono>
@@ -100,6 +102,32 @@ TEST(InterruptedPass, ALaterOneLeavesNoTrace)
     for (std::size_t k = 0; k < whole.picture.layers.size(); ++k)
         EXPECT_TRUE(resumed.picture.layers[k].data == whole.picture.layers[k].data)
             << whole.picture.layers[k].name;
+}
+
+/// Of --reuse and --shutter: a frame whose pass a stop meets is not one.
+TEST(InterruptedPass, OfAFrameIsGivenUpByEveryMethod)
+{
+    Camera const camera = look_at({0, 0, 3}, {0, 0, 0}, 50);
+    RenderSettings s;
+    s.width = s.height = 1024; // some tenths of a second, and a first pass goes on for 0.08 s
+    s.paths = 1;
+    s.slhb.look_ups = LookUps::all;
+    s.slhb.resolution = 64;
+    Moments const moments = [&](std::uint32_t) { return Moment{.changes = {}, .camera = camera}; };
+    for (Method const& m : methods())
+        for (bool const blurs : {false, true}) {
+            Report report;
+            MovingWorld const world(std::make_shared<Scene const>(generate_boxes(2000, 1)), 0, report);
+            auto const frames = m.frames(world, camera, s, report);
+            StopRequest stop;
+            stop.request();
+            try {
+                RenderResult const r = frames->frame(camera, stop, {}, blurs ? moments : Moments{});
+                EXPECT_EQ(r.end, RenderEnd::interrupted) << m.name;
+                EXPECT_EQ(r.paths, 0u) << m.name;
+            } catch (Interrupted const&) { // it has nothing at all
+            }
+        }
 }
 
 } // namespace

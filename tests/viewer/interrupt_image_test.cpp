@@ -95,6 +95,43 @@ TEST(Interrupt, WhileTheCompletePictureIsWritten)
     EXPECT_TRUE(file_text(folder / "a.exr") == file_text(undisturbed / "a.exr"));
 }
 
+/// Removes the folder of `--out gone/a.exr` while `call` renders. Returns what the program says then.
+Outcome render_without_folder(std::string const& call, TemporaryFolder const& folder)
+{
+    std::filesystem::create_directory(folder / "gone");
+    Program program(words(call), folder.path());
+    EXPECT_TRUE(program.wait_until_catches(SIGINT, true));
+    std::filesystem::remove_all(folder / "gone");
+    return program.wait();
+}
+
+TEST(Interrupt, PathsOfAPictureThatCannotBeWrittenAreKept)
+{
+    TemporaryFolder const folder;
+    std::string const call = "render cornell --size 96x96 --paths 40 --quiet --out gone/a.exr";
+    Outcome const o = render_without_folder(call + " --state a.state", folder);
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_NE(o.err.find("all paths are kept in 'a.state'"), std::string::npos) << o.err;
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"a.state"});
+    std::filesystem::create_directory(folder / "gone");
+    run_well(call + " --state a.state --resume", folder.path());
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"gone"});
+    std::string const resumed = file_text(folder / "gone" / "a.exr");
+    run_well(call, folder.path());
+    EXPECT_TRUE(resumed == file_text(folder / "gone" / "a.exr")) << "kept and undisturbed pictures differ";
+}
+
+TEST(Interrupt, NeitherPictureNorStateCanBeWritten)
+{
+    TemporaryFolder const folder;
+    Outcome const o =
+        render_without_folder("render cornell --size 96x96 --paths 40 --quiet --out gone/a.exr", folder);
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_NE(o.err.find("checkpoints that could not be written"), std::string::npos) << o.err;
+    EXPECT_EQ(o.err.find("are kept"), std::string::npos) << o.err;
+    EXPECT_TRUE(folder.files().empty());
+}
+
 TEST(Interrupt, DenoisingIsLeftToTheResumedRender)
 {
     TemporaryFolder const folder, undisturbed;

@@ -1,8 +1,8 @@
 #include "gi/core/crc32.h"
 #include "gi/core/error.h"
+#include "gi/core/xxhash.h"
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"
-#include "viewer/protocol/recording/pixel_hash.h"
 
 #include <sys/resource.h>
 
@@ -39,7 +39,7 @@ TEST(Checksums, AreThePublishedOnes)
 {
     EXPECT_EQ(gi::crc32(bytes_of("123456789")), 0xCBF43926u);
     EXPECT_EQ(gi::crc32(bytes_of("6789"), gi::crc32(bytes_of("12345"))), 0xCBF43926u);
-    auto const hash = [](std::string_view text) { return pixel_hash(std::as_bytes(std::span(text))); };
+    auto const hash = [](std::string_view text) { return gi::xxh64(std::as_bytes(std::span(text))); };
     EXPECT_EQ(hash(""), 0xEF46DB3751D8E999u);
     EXPECT_EQ(hash("a"), 0xD24EC4F1A98C6E5Bu);
     EXPECT_EQ(hash("abc"), 0x44BC2CF5AD770999u);

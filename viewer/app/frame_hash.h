@@ -1,6 +1,6 @@
 #pragma once
+#include "gi/core/xxhash.h"
 #include "viewer/engine/render_session.h"
-#include "viewer/protocol/recording/pixel_hash.h"
 
 namespace viewer {
 
@@ -9,7 +9,7 @@ inline std::uint64_t frame_hash(SessionFrame const& frame)
 {
     std::uint64_t hash = 0;
     for (ViewPicture const& v : frame.views)
-        hash = pixel_hash(std::as_bytes(std::span(v.picture.find("color")->data)), hash);
+        hash = gi::xxh64(std::as_bytes(std::span(v.picture.find("color")->data)), hash);
     return hash;
 }
 

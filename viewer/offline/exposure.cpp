@@ -6,6 +6,7 @@
 #include "gi/render/pass_samples.h"
 #include "gi/scene/motion/motion.h"
 #include "viewer/engine/flat_triangles.h"
+#include "viewer/offline/start_frames.h"
 
 #include <algorithm>
 #include <bit>
@@ -51,7 +52,7 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
     bool const moves = !exposure.still && world.world().static_triangles < world.world().triangles.size();
     gi::RenderSettings const asked =
         with_budget(moves ? with_moving_triangles(settings) : settings, method, world.world(), first);
-    auto const renderer = method.frames(world, first, asked, report);
+    auto const renderer = start_frames(method, world, first, asked, report, stop);
     FlatTriangles flat(exposure.still ? gi::Changes{} : world.advance(exposure.from_s));
     auto const moments = [&](std::uint32_t pass) {
         double const after_s = exposure.shutter_s * gi::moment_of_pass(settings.seed, pass);

@@ -1,6 +1,7 @@
 #include "viewer/offline/frame_follower.h"
 
 #include "gi/core/error.h"
+#include "viewer/offline/start_frames.h"
 
 namespace viewer {
 
@@ -30,7 +31,7 @@ FrameFollower::Frame FrameFollower::render(gi::Camera const& camera, gi::StopReq
                              "leave out --reuse, or choose a perspective camera");
     bool const first = renderer_ == nullptr;
     if (first)
-        renderer_ = method_.frames(world_, camera, settings_, report_);
+        renderer_ = start_frames(method_, world_, camera, settings_, report_, stop);
     else
         renderer_->changed(changes_);
     Frame frame;

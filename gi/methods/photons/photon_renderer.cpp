@@ -26,7 +26,7 @@ bool same_pictures(std::span<FrameView const> a, std::span<FrameView const> b)
 PhotonRenderer::PhotonRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                                Report& report, StopRequest const* stop)
     : TreeRenderer(world, settings, first_moving, report, stop),
-      stop_(stop),
+      frames_(stop == nullptr),
       caustics_(world, settings, report),
       light_rays_(world, settings, first_moving, report, stop),
       paths_(std::uint32_t(settings.photons.paths))
@@ -44,22 +44,23 @@ void PhotonRenderer::changed(Changes const& c)
     light_changed_ = light_changed_ || c.lights || c.emitters || c.environment;
 }
 
-SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<FrameView const> views)
+SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<FrameView const> views,
+                                            StopRequest const* stop)
 {
     PathCounts counts;
     if (!first_index_) first_index_ = index;
     bool const any = !world_.light_select.empty() && !world_.bounds.empty(),
                frozen = settings_.photons.frozen == Switch::on;
     if (any && !(frozen && has_light_)) find_focus(views);
-    if (any && settings_.bounces > 0) update(index, views, BuildStop(stop_), counts);
-    BuildStop const stop(stop_);
+    if (any && settings_.bounces > 0) update(index, views, BuildStop(stop), counts);
+    BuildStop const given_up(stop);
     if (any && has_caustics() && !(frozen && caustics_known_)) {
-        caustics_.prepare(*visibility_, index, views, focus_, share(), stop, counts);
+        caustics_.prepare(*visibility_, index, views, focus_, share(), given_up, counts);
         caustics_known_ = true;
     }
     rays_ += double(counts.nearest_rays + counts.shadow_rays);
     work_.paths += counts;
-    return any || (frozen && has_light_) ? light(views, caustics_.map(), stop) : nullptr;
+    return any || (frozen && has_light_) ? light(views, caustics_.map(), given_up) : nullptr;
 }
 
 /// A room in a large world gets half of the light from afar. Stays while it holds most of what cameras show, as a
@@ -112,7 +113,7 @@ void PhotonRenderer::update(std::uint32_t index, std::span<FrameView const> view
             trace_set(views, stop, counts);
     } catch (Interrupted const&) {
         // A first pass goes on with the light of the small sets that a budget begins with.
-        if (!has_light_ || index != *first_index_) throw;
+        if (!has_light_ || frames() || index != *first_index_) throw;
     }
 }
 

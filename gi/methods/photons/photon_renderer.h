@@ -71,14 +71,15 @@ protected:
     /// Reports what is specific to the method.
     virtual void report_light(Report&) {}
 
-    SurfaceLight const* prepare(std::uint32_t index, std::span<FrameView const> views) override;
+    SurfaceLight const* prepare(std::uint32_t index, std::span<FrameView const> views,
+                                StopRequest const* stop) override;
     std::span<Photon const> caustic_photons() const { return caustics_.photons(); }
     /// Another number for other caustic photons.
     std::uint32_t caustics_version() const { return caustics_.version(); }
 
 private:
     using Clock = std::chrono::steady_clock;
-    bool frames() const { return stop_ == nullptr; }
+    bool frames() const { return frames_; }
     void find_focus(std::span<FrameView const> views);
     void find_middle(std::span<FrameView const> views);
     void update(std::uint32_t index, std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
@@ -86,7 +87,7 @@ private:
     void fit_budget(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     double share() const { return double(paths_) / settings_.photons.paths; }
 
-    StopRequest const* stop_;
+    bool frames_; ///< passes belong to frames instead of to one picture
     Caustics caustics_;
     LightRays light_rays_;
     bool light_changed_ = true, surfaces_changed_ = true, more_than_moved_ = true, has_light_ = false;

@@ -20,7 +20,7 @@ double rays_of(PathCounts const& c) { return double(c.nearest_rays + c.shadow_ra
 /// @tparam Paths  EmbreePaths, or KernelPaths of a space
 /// @param first_hits  one per pixel, set by its last path; empty = not needed
 /// @param memory  buffer for interleaved passes, in which pixels take indirect light from those in turn
-/// @param stop  throws Interrupted; what was traced is kept. Null = never
+/// @param stop  throws Interrupted; what was traced is kept, but of interleaved passes. Null = never
 template <class Paths>
 void trace_pass(Paths& tracing, PathSteps const& steps, Accumulator& sums, std::uint32_t first_path,
                 std::uint32_t paths, std::span<FirstHit> first_hits = {},
@@ -34,6 +34,7 @@ void trace_pass(Paths& tracing, PathSteps const& steps, Accumulator& sums, std::
         std::span<PathSample> const waiting = *memory;
         auto const keep = [&](std::size_t pixel, std::uint32_t, PathSample const& s) { waiting[pixel] = s; };
         sums.counts += tracing.trace(steps, pass, first, first_hits, keep);
+        given_up.check(); // before pixels take light that others lack
         spread_indirect(waiting, sums.width, steps.interleaving, first);
         tbb::parallel_for(std::size_t(0), waiting.size(),
                           [&](std::size_t p) { sums.add(p, waiting[p], sums.paths); });
@@ -91,11 +92,11 @@ public:
         FrameView const whole{camera, settings_.width, settings_.height};
         motion_.see({&whole, 1});
         auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
-            if (!moments) return trace_frame(camera, sums, paths);
-            for (std::uint32_t i = 0; i < paths; ++i) {
+            if (!moments) return trace_frame(camera, sums, paths, stop);
+            for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i) {
                 Moment const now = moments(sums.paths);
                 changed(now.changes);
-                trace_pass(tracing_, steps(now.camera), sums, paths_, 1);
+                trace_pass(tracing_, steps(now.camera), sums, paths_, 1, {}, nullptr, &stop);
             }
         };
         steps(camera); // so that the BVH is built before the passes
@@ -137,15 +138,15 @@ public:
 
 private:
     /// With a budget, renders passes of one path, in which pixels may wait for indirect light.
-    void trace_frame(Camera const& camera, Accumulator& sums, std::uint32_t paths)
+    void trace_frame(Camera const& camera, Accumulator& sums, std::uint32_t paths, StopRequest const& stop)
     {
         PathSteps through = steps(camera);
         if (!(settings_.budget_s > 0))
-            return trace_pass(tracing_, through, sums, paths_, paths, motion_.first_hits(0));
-        for (std::uint32_t i = 0; i < paths; ++i) {
+            return trace_pass(tracing_, through, sums, paths_, paths, motion_.first_hits(0), nullptr, &stop);
+        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i) {
             double const earlier = rays_of(sums.counts);
             through.interleaving.n = std::uint32_t(interleaving_.n());
-            trace_pass(tracing_, through, sums, paths_, 1, motion_.first_hits(0), &waiting_);
+            trace_pass(tracing_, through, sums, paths_, 1, motion_.first_hits(0), &waiting_, &stop);
             // Two rays per pixel are for its first surface.
             double const first = 2.0 * sums.width * sums.height,
                          later = std::max(0.0, rays_of(sums.counts) - earlier - first);

@@ -32,7 +32,7 @@ IndirectField::IndirectField(World const& world, RenderSettings const& settings,
       settings_(settings),
       first_moving_(std::min(first_moving, world.triangles.size())),
       report_(report),
-      stop_(stop),
+      frames_(stop == nullptr),
       voxels_(settings.sh_grid.voxels),
       light_paths_(std::uint32_t(settings.photons.paths)),
       photons_(world, settings, first_moving_),
@@ -198,19 +198,19 @@ void IndirectField::update_cells(ExactVisibility const& visibility, int part, in
 }
 
 void IndirectField::prepare(ExactVisibility const& visibility, std::uint32_t index,
-                            std::span<FrameView const> views, PathCounts& counts)
+                            std::span<FrameView const> views, StopRequest const* stop, PathCounts& counts)
 {
     if (settings_.bounces < 1 || world_.light_select.empty() || world_.bounds.empty()) return levels_.clear();
     if (!first_index_) first_index_ = index;
-    BuildStop const stop(stop_);
-    Now const now{visibility, views, stop, counts};
+    BuildStop const given_up(stop);
+    Now const now{visibility, views, given_up, counts};
     try {
         if (!has_field_ && settings_.budget_s > 0)
             fit_budget(now);
         else
             update(now);
     } catch (Interrupted const&) {
-        if (!has_field_) throw;
+        if (!has_field_ || frames()) throw;
     }
 }
 

@@ -18,7 +18,7 @@ namespace gi {
 class IndirectField {
 public:
     /// @param world  must outlive it  @param first_moving  index of the first triangle that may move
-    /// @param stop  of the only picture; null = frames
+    /// @param stop  of building, and of the only picture; null = frames
     IndirectField(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
                   StopRequest const* stop);
 
@@ -28,9 +28,10 @@ public:
     /// calls, after motion the photons at the same pace; in a world at rest, calls 4, 8, 16, ... average the
     /// fields of more photons and other directions.
     /// @param visibility  of the world as it is now  @param index  of the pass; the first decides which photons
-    /// are traced. Throws Interrupted if a stop is requested and there is no field yet.
+    /// are traced. Throws Interrupted if a stop is requested and there is no field yet, or in frames, which
+    /// must not have older light; null = never.
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
-                 PathCounts& counts);
+                 StopRequest const* stop, PathCounts& counts);
     /// Fewer than the settings' if they would take more than half of the budget.
     int voxels() const { return voxels_; }
     std::uint32_t light_paths() const { return light_paths_; }
@@ -62,7 +63,7 @@ private:
     void update_cells(ExactVisibility const& visibility, int part, int parts, BuildStop const& stop,
                       PathCounts& counts);
     /// Whether passes belong to frames, none of which shall take long, instead of to one picture.
-    bool frames() const { return stop_ == nullptr; }
+    bool frames() const { return frames_; }
     bool moves() const { return first_moving_ < world_.triangles.size(); }
     int parts() const { return settings_.sh_grid.field_passes; }
     RadianceBy by() const { return settings_.sh_grid.radiance_by; }
@@ -72,7 +73,7 @@ private:
     RenderSettings const& settings_;
     std::size_t first_moving_;
     Report& report_;
-    StopRequest const* stop_;
+    bool frames_;
     int voxels_;                ///< along the longest side
     std::uint32_t light_paths_; ///< of a set of photons
     Clock::time_point started_ = Clock::now();

@@ -16,7 +16,6 @@ public:
                    StopRequest const* stop)
         : TreeRenderer(world, settings, first_moving, report, stop),
           field_(world, settings, first_moving, report, stop),
-          stop_(stop),
           caustics_(world, settings, report)
     {
     }
@@ -50,13 +49,14 @@ public:
     }
 
 protected:
-    SurfaceLight const* prepare(std::uint32_t index, std::span<FrameView const> views) override
+    SurfaceLight const* prepare(std::uint32_t index, std::span<FrameView const> views,
+                                StopRequest const* stop) override
     {
         PathCounts counts;
-        field_.prepare(*visibility_, index, views, counts);
+        field_.prepare(*visibility_, index, views, stop, counts);
         auto const levels = field_.levels();
         caustics_.prepare(*visibility_, index, views, levels.size() > 1 ? levels[0].bounds : Bounds{},
-                          photon_share(), BuildStop(stop_), counts);
+                          photon_share(), BuildStop(stop), counts);
         rays_ += double(counts.nearest_rays + counts.shadow_rays);
         work_.paths += counts;
         if (light_) unseen_ += light_->unseen();
@@ -71,7 +71,6 @@ private:
     double photon_share() const { return double(field_.light_paths()) / settings_.photons.paths; }
 
     IndirectField field_;
-    StopRequest const* stop_;
     Caustics caustics_;
     std::uint64_t unseen_ = 0; ///< see FieldLight::unseen()
     std::optional<FieldLight> light_;

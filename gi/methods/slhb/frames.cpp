@@ -75,13 +75,13 @@ public:
         VertexSharing const sharing =
             settings_.slhb.cache == RadianceCaching::on ? VertexSharing::cached : VertexSharing::exact;
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
-            for (std::uint32_t i = 0; i < paths; ++i) {
+            for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i) {
                 if (moments) {
                     Moment const now = moments(sums.paths);
                     changed(now.changes);
                     see(full_size(now.camera));
                 }
-                one_pass({&sums, 1}, sharing);
+                one_pass({&sums, 1}, sharing, stop);
             }
         });
         finish(result, earlier);
@@ -134,14 +134,14 @@ public:
     }
 
 private:
-    void one_pass(std::span<Accumulator> sums, VertexSharing sharing)
+    void one_pass(std::span<Accumulator> sums, VertexSharing sharing, StopRequest const& stop)
     {
         if constexpr (kByKernels) {
             renderer_->pass(passes_++, sums, sharing);
         } else {
             settings_.slhb.interleave = interleaving_->n();
             renderer_->interleave(settings_.slhb.interleave);
-            renderer_->pass(passes_++, sums, sharing);
+            renderer_->pass(passes_++, sums, sharing, &stop);
             interleaving_->pass_ended(renderer_->indirect_share());
         }
     }

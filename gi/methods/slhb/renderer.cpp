@@ -237,12 +237,13 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached, PassSto
             .no_punctual = leaves_out_punctual_};
 }
 
-void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing)
+void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing,
+                        StopRequest const* stop)
 {
-    PassStop const stop(stop_, PassStop::of(sums[0].paths));
-    prepare(index, Sides::one, stop);
+    PassStop const given_up(stop, PassStop::of(sums[0].paths));
+    prepare(index, Sides::one, given_up);
     StageTimer const timer(report_, "paths");
-    paths_.trace(tracing(index, sharing == VertexSharing::cached, stop), views_, sharing, sums);
+    paths_.trace(tracing(index, sharing == VertexSharing::cached, given_up), views_, sharing, sums);
     if (cache_) cache_->end_pass();
     for (Accumulator& s : sums) ++s.paths;
 }

@@ -38,9 +38,10 @@ public:
     /// Sets the views from the next pass on. Each continues the previous frame's view of the same index.
     void see(std::span<FrameView const> views);
     /// Traces one more path for every pixel. @param index  of the pass; selects the random numbers
-    /// @param sums  one per view; unchanged if a requested stop makes this throw Interrupted: then there can be no
-    ///   further pass
-    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::exact);
+    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted: then there can be no further
+    ///   pass; null = never
+    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::exact,
+              StopRequest const* stop = nullptr);
 
     /// Traces a pass of one view with and without dynamic geometry, with the same random numbers; without it,
     /// only paths that dynamic geometry may affect are traced. Not for orthographic cameras, nor with ExactParts.
@@ -105,7 +106,7 @@ private:
     SlhbSettings const& slhb_ = settings_.slhb;
     std::size_t first_moving_; ///< index of the first dynamic triangle
     FirstSurfaces first_surfaces_;
-    StopRequest const* stop_; ///< of building and of passes; may be null
+    StopRequest const* stop_; ///< of building; may be null
     Report& report_;
     SeenViews views_;
     TriangleSoup soup_;

@@ -35,7 +35,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         chosen.slhb.cache == RadianceCaching::on ? VertexSharing::cached : VertexSharing::exact;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-            renderer.pass(loop.first_path() + sums.paths, {&sums, 1}, sharing);
+            renderer.pass(loop.first_path() + sums.paths, {&sums, 1}, sharing, &stop);
     });
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());

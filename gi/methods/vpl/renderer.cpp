@@ -22,12 +22,12 @@ float bound_of(World const& world, VirtualLightSettings const& s)
 
 VirtualLightRenderer::VirtualLightRenderer(VisibilityKind kind, World const& world, RenderSettings const& settings,
                                            std::size_t first_moving, Report& report, StopRequest const* stop)
-    : kind_(kind), world_(world), settings_(settings), first_moving_(first_moving), report_(report), stop_(stop)
+    : kind_(kind), world_(world), settings_(settings), first_moving_(first_moving), report_(report)
 {
-    build();
+    build(stop);
 }
 
-void VirtualLightRenderer::build()
+void VirtualLightRenderer::build(StopRequest const* stop)
 {
     term_.reset();
     {
@@ -36,26 +36,26 @@ void VirtualLightRenderer::build()
                                                         first_moving_);
     }
     StageTimer const timer(report_, "build (visibility)");
-    term_ = make_term(kind_, {world_, *visibility_, settings_, first_moving_, report_, stop_});
+    term_ = make_term(kind_, {world_, *visibility_, settings_, first_moving_, report_, stop});
 }
 
 void VirtualLightRenderer::changed(Changes const& changes)
 {
     // Rays with coverage tests use the materials from when the BVH was built.
-    if (changes.coverage || (changes.materials && plan_scene(world_).alpha_tests)) return build();
+    if (changes.coverage || (changes.materials && plan_scene(world_).alpha_tests)) return build(nullptr);
     if (!changes.geometry) return;
     visibility_->moved(world_);
     term_->world_changed();
 }
 
 void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
-                                MotionVectors* motion)
+                                MotionVectors* motion, StopRequest const* stop)
 {
-    PassStop const stop(stop_, PassStop::of(sums[0].paths));
+    PassStop const given_up(stop, PassStop::of(sums[0].paths));
     PathCounts counts;
     std::vector<LightVertex> lights;
     {
-        BuildStop const tracing(stop_);
+        BuildStop const tracing(stop);
         StageTimer const timer(report_, "virtual lights");
         lights = trace_light_paths(view(world_), world_.bounds, ExactPathRays(*visibility_),
                                    {.count = std::uint32_t(settings_.vpl.light_paths),
@@ -70,16 +70,16 @@ void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> 
     rays_ += double(counts.nearest_rays);
     {
         StageTimer const timer(report_, "visibility of a pass");
-        term_->prepare(lights, index, stop);
+        term_->prepare(lights, index, given_up);
     }
     StageTimer const timer(report_, "paths");
     for (std::size_t k = 0; k < views.size(); ++k)
         trace_view(views[k], index, lights, sums[k],
-                   motion == nullptr ? std::span<FirstHit>{} : motion->first_hits(k));
+                   motion == nullptr ? std::span<FirstHit>{} : motion->first_hits(k), stop);
 }
 
 void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index, std::span<LightVertex const> lights,
-                                      Accumulator& sums, std::span<FirstHit> first_hits)
+                                      Accumulator& sums, std::span<FirstHit> first_hits, StopRequest const* stop)
 {
     CameraPaths const paths{.world = view(world_),
                             .visibility = *visibility_,
@@ -90,8 +90,8 @@ void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index, s
                             .width = v.width,
                             .bound = bound_of(world_, settings_.vpl)};
     tbb::combinable<Counts> counts;
-    PassStop const stop(stop_, PassStop::of(sums.paths));
-    TiledPass pass(sums, 1, stop);
+    PassStop const given_up(stop, PassStop::of(sums.paths));
+    TiledPass pass(sums, 1, given_up);
     auto const trace_tile = [&](TiledPass::Tile const& tile, Counts& local) { // its paths advance together
         thread_local std::vector<CameraSubpath> batch;
         thread_local std::vector<Receiver> receivers;
@@ -104,7 +104,7 @@ void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index, s
         gathered.assign(receivers.size(), vec3{0});
         std::uint32_t const seed =
             hash_words(hash_words(std::uint32_t(settings_.seed), std::uint32_t(tile.index)), index);
-        gather({receivers, seed}, lights, *term_, paths.bound, stop, gathered, local.paths, local.gather);
+        gather({receivers, seed}, lights, *term_, paths.bound, given_up, gathered, local.paths, local.gather);
         for (std::size_t k = 0; k < receivers.size(); ++k)
             layer_of(batch[receivers[k].path].sample, 2) += gathered[k];
         auto next = batch.begin();

@@ -11,14 +11,14 @@ namespace gi {
 class VirtualLightRenderer : public PassRenderer {
 public:
     /// `world`, `settings` and `report` must outlive this object, and the world's arrays must not be reallocated.
-    /// @param stop  of structures and of passes, which throw Interrupted; null = never
+    /// @param stop  of building, which throws Interrupted; null = never
     VirtualLightRenderer(VisibilityKind kind, World const& world, RenderSettings const& settings,
                          std::size_t first_moving, Report& report, StopRequest const* stop = nullptr);
 
     void changed(Changes const& changes) override;
     /// All views are lit by the virtual lights of this pass.
     void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
-              MotionVectors* motion) override;
+              MotionVectors* motion, StopRequest const* stop) override;
     void report_work() override;
     double rays() const override { return rays_; }
     std::string options() const override;
@@ -28,16 +28,15 @@ private:
         PathCounts paths;
         GatherCounts gather;
     };
-    void build();
+    void build(StopRequest const* stop);
     void trace_view(FrameView const& view, std::uint32_t index, std::span<LightVertex const> lights,
-                    Accumulator& sums, std::span<FirstHit> first_hits);
+                    Accumulator& sums, std::span<FirstHit> first_hits, StopRequest const* stop);
 
     VisibilityKind kind_;
     World const& world_;
     RenderSettings const& settings_;
     std::size_t first_moving_;
     Report& report_;
-    StopRequest const* stop_;
     std::unique_ptr<ExactVisibility> visibility_;
     std::unique_ptr<VisibilityTerm> term_;
     GatherCounts gathered_;

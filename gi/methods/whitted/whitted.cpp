@@ -10,7 +10,7 @@ namespace gi {
 
 TreeRenderer::TreeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                            Report& report, StopRequest const* stop)
-    : world_(world), settings_(settings), first_moving_(first_moving), report_(report), pass_stop_(stop)
+    : world_(world), settings_(settings), first_moving_(first_moving), report_(report)
 {
     build(stop);
 }
@@ -30,26 +30,26 @@ void TreeRenderer::changed(Changes const& changes)
     if (changes.geometry) visibility_->moved(world_);
 }
 
-void TreeRenderer::begin(std::uint32_t index, std::span<FrameView const> views)
+void TreeRenderer::begin(std::uint32_t index, std::span<FrameView const> views, StopRequest const* stop)
 {
-    light_of_prepared_ = prepare(index, views);
+    light_of_prepared_ = prepare(index, views, stop);
     prepared_ = index;
 }
 
 void TreeRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
-                        MotionVectors* motion)
+                        MotionVectors* motion, StopRequest const* stop)
 {
-    if (prepared_ != index) begin(index, views);
+    if (prepared_ != index) begin(index, views, stop);
     prepared_.reset();
     SurfaceLight const* const light = light_of_prepared_;
     StageTimer const timer(report_, "ray trees");
     for (std::size_t k = 0; k < views.size(); ++k)
         trace_view(views[k], index, light, sums[k],
-                   motion == nullptr ? std::span<FirstHit>{} : motion->first_hits(k));
+                   motion == nullptr ? std::span<FirstHit>{} : motion->first_hits(k), stop);
 }
 
 void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLight const* light,
-                              Accumulator& sums, std::span<FirstHit> first_hits)
+                              Accumulator& sums, std::span<FirstHit> first_hits, StopRequest const* stop)
 {
     TreeTracer const tracer{.world = view(world_),
                             .visibility = *visibility_,
@@ -61,8 +61,8 @@ void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLi
                             .bounces = settings_.bounces,
                             .light = light};
     tbb::combinable<TreeCounts> counts;
-    PassStop const stop(pass_stop_, PassStop::of(sums.paths));
-    TiledPass pass(sums, 1, stop);
+    PassStop const given_up(stop, PassStop::of(sums.paths));
+    TiledPass pass(sums, 1, given_up);
     pass.run([&](TiledPass::Tile const& tile) { // whose trees advance together
         FlushDenormals const guard;
         tile.for_paths([&](std::uint32_t) {

@@ -19,16 +19,19 @@ public:
                  StopRequest const* stop);
 
     void changed(Changes const& changes) override;
-    void begin(std::uint32_t index, std::span<FrameView const> views) override;
+    void begin(std::uint32_t index, std::span<FrameView const> views, StopRequest const* stop) override;
     void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
-              MotionVectors* motion) override;
+              MotionVectors* motion, StopRequest const* stop) override;
     void report_work() override;
     double rays() const override { return rays_; }
     std::string options() const override;
 
 protected:
     /// Called before the trees of a pass. Returns their indirect light, or null.
-    virtual SurfaceLight const* prepare(std::uint32_t, std::span<FrameView const>) { return nullptr; }
+    virtual SurfaceLight const* prepare(std::uint32_t, std::span<FrameView const>, StopRequest const*)
+    {
+        return nullptr;
+    }
 
     World const& world_;
     RenderSettings const& settings_;
@@ -41,13 +44,12 @@ protected:
 private:
     void build(StopRequest const* stop);
     void trace_view(FrameView const& view, std::uint32_t index, SurfaceLight const* light, Accumulator& sums,
-                    std::span<FirstHit> first_hits);
+                    std::span<FirstHit> first_hits, StopRequest const* stop);
 
     /// What begin() has prepared: the light of the pass of this index.
     std::optional<std::uint32_t> prepared_;
     SurfaceLight const* light_of_prepared_ = nullptr;
     double trees_ = 0; ///< since the last report
-    StopRequest const* pass_stop_;
 };
 
 /// --recursion, --cutoff, --shadow-rays.

@@ -102,6 +102,18 @@ void save_interrupted(RenderOptions o, gi::RenderSettings const& settings, State
     result.resumable |= is_saved;
 }
 
+/// Where a complete picture could not be made, or be written: keeps what it would be made of.
+void keep_paths(StateSaving& state, std::filesystem::path const& file, gi::Report& report)
+{
+    if (!state.has_state()) return;
+    if (state.join(report))
+        return say("all paths are kept in '" + file.string() +
+                   "': the same command with --resume makes the picture of them");
+    print_losses(report);
+    if (std::filesystem::exists(file))
+        say("'" + file.string() + "' has earlier paths: --resume continues with them");
+}
+
 struct Shot {
     gi::ScenePlan plan;
     gi::RenderResult result;
@@ -246,6 +258,10 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings, gi::Deno
         is_left = true;
         result.end = gi::RenderEnd::interrupted;
         result.resumable = !saving && std::filesystem::exists(settings.checkpoint); // an earlier one
+    } catch (std::exception const&) {                                               // for example a full disk
+        if (!saving) saving.emplace(result);
+        keep_paths(*saving, settings.checkpoint, report);
+        throw;
     }
     if (is_left)
         say(std::string("interrupted: saving ") +

@@ -31,7 +31,7 @@ struct RecordingHeader {
 
 struct RecordedFrame {
     FrameCommand command;
-    std::optional<std::uint64_t> pixel_hash; ///< see pixel_hash.h
+    std::optional<std::uint64_t> pixel_hash; ///< see gi/core/xxhash.h
     std::optional<FrameTimes> times;
 
     bool operator==(RecordedFrame const&) const = default;

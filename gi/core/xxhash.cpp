@@ -1,9 +1,9 @@
-#include "viewer/protocol/recording/pixel_hash.h"
+#include "gi/core/xxhash.h"
 
 #include <bit>
 #include <cstring>
 
-namespace viewer {
+namespace gi {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -24,7 +24,7 @@ std::uint64_t merge(std::uint64_t hash, std::uint64_t sum) { return (hash ^ roun
 
 } // namespace
 
-std::uint64_t pixel_hash(std::span<std::byte const> bytes, std::uint64_t seed)
+std::uint64_t xxh64(std::span<std::byte const> bytes, std::uint64_t seed)
 {
     std::byte const* at = bytes.data();
     std::byte const* const end = at + bytes.size();
@@ -52,4 +52,4 @@ std::uint64_t pixel_hash(std::span<std::byte const> bytes, std::uint64_t seed)
     return hash ^ hash >> 32;
 }
 
-} // namespace viewer
+} // namespace gi
