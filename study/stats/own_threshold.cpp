@@ -11,7 +11,8 @@
 namespace study {
 namespace {
 
-constexpr int kThresholdSteps = 600; // over three ranges
+constexpr double kLeastInformation = 1e-200; // below it only the likelihood counts
+constexpr int kThresholdSteps = 600;         // over three ranges
 
 double place_of(int step) { return -1.5 + 3.0 * step / kThresholdSteps; }
 
@@ -46,7 +47,7 @@ std::vector<double> log_density(std::vector<LevelAnswers> const& levels, LevelCu
         LevelLikelihood const l = level_likelihood(levels, curve, t, false);
         double const information =
             is_fixed ? l.information : information_at(curve, std::clamp(t + best, -0.5, 0.5), t);
-        density.push_back(l.value + 0.5 * std::log(information) + std::log(weight));
+        density.push_back(l.value + 0.5 * std::log(std::max(information, kLeastInformation)) + std::log(weight));
     }
     return density;
 }

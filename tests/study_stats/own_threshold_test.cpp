@@ -90,6 +90,18 @@ TEST(OwnThreshold, IsNotFarFromLevelsThatAreAllRight)
     }
 }
 
+TEST(OwnThreshold, IsFiniteForAStepBetweenLevels)
+{
+    ObserverLevels o;
+    o.counts = {{0.4031, 6, 12}, {1.6017, 12, 12}};
+    GroupThreshold group = known_group(true);
+    group.shared.scale = 1e-5; // nothing on the grid of places informs
+    PosteriorLevel const p = own_threshold(o, group, settings());
+    EXPECT_GT(p.low, 0.39);
+    EXPECT_LT(p.high, 1.61);
+    EXPECT_LT(p.low, p.high);
+}
+
 TEST(OwnThreshold, TellsFixedLevelsFromThoseThatFollowAnswers)
 {
     Random random(2);
