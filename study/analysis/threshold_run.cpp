@@ -2,6 +2,7 @@
 
 #include "gi/core/quantile.h"
 #include "study/script/procedure_settings.h"
+#include "study/stats/own_threshold.h"
 #include "study/stats/psychometric_posterior.h"
 #include "study/stats/random.h"
 #include "study/stats/special.h"

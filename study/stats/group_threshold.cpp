@@ -134,6 +134,18 @@ std::string note_of(ThresholdFit const& fit)
     return "";
 }
 
+/// Levels do not follow the answers: all observers have the same ones, about as often (answers may be missing).
+bool are_levels_fixed(std::vector<ThresholdPerson> const& people)
+{
+    auto const& first = people.front().levels;
+    return std::all_of(people.begin(), people.end(), [&](ThresholdPerson const& p) {
+        return std::equal(first.begin(), first.end(), p.levels.begin(), p.levels.end(),
+                          [](LevelAnswers const& a, LevelAnswers const& b) {
+                              return a.u == b.u && 2 * a.trials >= b.trials && a.trials <= 2 * b.trials;
+                          });
+    });
+}
+
 GroupThreshold described(ThresholdFit const& fit, GroupThresholdSettings const& settings)
 {
     ThresholdMarginal const& m = fit.marginal();
@@ -147,6 +159,7 @@ GroupThreshold described(ThresholdFit const& fit, GroupThresholdSettings const& 
     g.shared = {g.mean, m.range() * std::exp(best[ThresholdPart::kScale]),
                 settings.fits_guess ? inverse_logit(best[ThresholdPart::kGuess]) : guess, m.lapse_of(best)};
     g.eta = m.is_repeated() ? inverse_logit(best[ThresholdPart::kEta]) : 0;
+    g.are_levels_fixed = are_levels_fixed(m.people());
     g.note = note_of(fit);
     return g;
 }
@@ -181,46 +194,6 @@ GroupThreshold group_threshold(std::span<ObserverLevels const> observers, GroupT
     };
     g.interval = {end(-1), end(1)};
     return g;
-}
-
-PosteriorLevel own_threshold(ObserverLevels const& observer, GroupThreshold const& group,
-                             GroupThresholdSettings const& settings)
-{
-    ThresholdMarginal const checked(std::span(&observer, 1), settings);
-    double const range = checked.range(), guess = settings.fits_guess ? group.shared.guess : observer.guess;
-    auto const curve = level_curve(settings.shape.sigmoid, settings.proportion, group.shared.scale / range,
-                                   group.shared.lapse, guess, checked.is_repeated() ? group.eta : 0);
-    if (!curve)
-        refuse("a threshold at " + std::to_string(settings.proportion) + " right answers",
-               "this observer's function starts above it or ends below it", "choose another proportion");
-    constexpr int kSteps = 600; // over three ranges
-    std::vector<double> place, density;
-    double most = -kInfinity;
-    for (int i = 0; i <= kSteps; ++i) {
-        place.push_back(-1.5 + 3.0 * i / kSteps);
-        density.push_back(level_likelihood(checked.people()[0].levels, *curve, place.back(), false).value);
-        most = std::max(most, density.back());
-    }
-    double sum = 0, first = 0, second = 0;
-    for (std::size_t i = 0; i < place.size(); ++i) {
-        density[i] = std::exp(density[i] - most);
-        sum += density[i];
-        first += density[i] * place[i];
-        second += density[i] * place[i] * place[i];
-    }
-    auto const quantile = [&](double p) {
-        double below = 0;
-        for (std::size_t i = 0; i < place.size(); ++i) {
-            double const here = density[i] / sum;
-            if (below + here >= p) return place[i] + ((p - below) / here - 0.5) * 3.0 / kSteps;
-            below += here;
-        }
-        return place.back();
-    };
-    auto const on_u = [&](double x) { return checked.centre() + range * x; };
-    double const tail = (1 - settings.confidence) / 2, mean = first / sum;
-    return {on_u(quantile(0.5)), range * std::sqrt(std::max(0.0, second / sum - mean * mean)),
-            on_u(quantile(tail)), on_u(quantile(1 - tail)), 0};
 }
 
 } // namespace study

@@ -6,10 +6,11 @@
 // threshold; all runs together do, and nobody's threshold needs to be averaged or left out.
 //
 // The threshold is the level at which a proportion of answers is right (or yes), lapses included. Intervals of the
-// mean are those of the profile likelihood. For thresholds of each observer see hierarchical_psychometric.h.
+// mean are those of the profile likelihood. For thresholds of each observer see own_threshold.h and
+// hierarchical_psychometric.h.
 
 #include "study/stats/binomial.h"
-#include "study/stats/psychometric_posterior.h"
+#include "study/stats/psychometric.h"
 
 #include <optional>
 #include <span>
@@ -39,6 +40,7 @@ struct GroupThreshold {
     PsychometricParameters shared;  ///< threshold: the mean; scale, guess, lapse
     double scale_error = 0;         ///< standard error of the scale's logarithm; 0 = not computed
     double eta = 0;                 ///< overdispersion: variance of n answers is n p q (1 + (n - 1) eta^2)
+    bool are_levels_fixed = false;  ///< those of all observers are the same, as with constant stimuli
     int observers = 0;
     std::string note; ///< what is doubtful; empty = nothing
 };
@@ -49,10 +51,5 @@ GroupThreshold group_threshold(std::span<ObserverLevels const> observers, GroupT
 /// The same without its interval, which takes most of the time, and without errors.
 GroupThreshold group_threshold_mode(std::span<ObserverLevels const> observers,
                                     GroupThresholdSettings const& settings);
-
-/// The threshold by one observer's own answers, with the scale, lapse rate and overdispersion of the group, every
-/// level within a range of the range being as likely before. @throws std::invalid_argument as group_threshold
-PosteriorLevel own_threshold(ObserverLevels const& observer, GroupThreshold const& group,
-                             GroupThresholdSettings const& settings);
 
 } // namespace study

@@ -1,0 +1,121 @@
+// Do intervals of own thresholds hold them as often as they say, also near the ends of the levels?
+
+#include "study/stats/own_threshold.h"
+#include "study/stats/random.h"
+#include "study/stats/special.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace study::test {
+namespace {
+
+constexpr double kScale = 0.3;
+
+double share_at(double level, double threshold) { return 0.5 + 0.5 * normal_cdf((level - threshold) / kScale); }
+
+/// Of observers whose scale is known.
+GroupThreshold known_group(bool are_levels_fixed)
+{
+    GroupThreshold g;
+    g.shared = {0, kScale, 0.5, 0};
+    g.are_levels_fixed = are_levels_fixed;
+    g.observers = 4;
+    return g;
+}
+
+GroupThresholdSettings settings()
+{
+    GroupThresholdSettings s;
+    s.shape.sigmoid = Sigmoid::gaussian;
+    s.low = 0;
+    s.high = 2;
+    s.lapse = 0;
+    return s;
+}
+
+ObserverLevels answers_at(std::vector<double> const& levels, int trials, double threshold, Random& random)
+{
+    ObserverLevels o;
+    for (double const level : levels) {
+        o.counts.push_back({level, 0, double(trials)});
+        for (int i = 0; i < trials; ++i) o.counts.back().correct += random.uniform() < share_at(level, threshold);
+    }
+    return o;
+}
+
+double share_held(double threshold)
+{
+    int held = 0;
+    constexpr int kObservers = 1500;
+    for (int i = 0; i < kObservers; ++i) {
+        Random random = Random::part(29, std::uint64_t(i));
+        auto const o = answers_at({0.4, 0.7, 1, 1.3, 1.6}, 12, threshold, random);
+        PosteriorLevel const p = own_threshold(o, known_group(true), settings());
+        held += p.low <= threshold && threshold <= p.high;
+    }
+    return double(held) / kObservers;
+}
+
+TEST(OwnThreshold, IsHeldAsOftenAsIntervalsSayAlsoNearTheEndsOfTheLevels)
+{
+    for (double const threshold : {0.5, 1.0, 1.5}) {
+        double const held = share_held(threshold);
+        EXPECT_GT(held, 0.935) << threshold;
+        EXPECT_LT(held, 0.965) << threshold;
+        RecordProperty("held at " + std::to_string(threshold), std::to_string(held));
+    }
+}
+
+TEST(OwnThreshold, IsLessSureWhereTheScaleIs)
+{
+    ObserverLevels o;
+    o.counts = {{1.6, 22, 24}}; // far above the threshold, at a distance that is a matter of scale
+    GroupThreshold group = known_group(true);
+    PosteriorLevel const known = own_threshold(o, group, settings());
+    group.scale_error = 0.5;
+    PosteriorLevel const unsure = own_threshold(o, group, settings());
+    EXPECT_GT(unsure.deviation, 1.05 * known.deviation);
+    EXPECT_GT(unsure.high - unsure.low, 1.05 * (known.high - known.low));
+}
+
+TEST(OwnThreshold, IsNotFarFromLevelsThatAreAllRight)
+{
+    ObserverLevels o;
+    o.counts = {{0.4, 12, 12}, {1, 12, 12}, {1.6, 12, 12}};
+    for (bool const are_fixed : {true, false}) {
+        PosteriorLevel const p = own_threshold(o, known_group(are_fixed), settings());
+        EXPECT_LT(p.high, 0.4);
+        EXPECT_GT(p.low, 0.4 - 5 * kScale);
+    }
+}
+
+TEST(OwnThreshold, IsFiniteForAStepBetweenLevels)
+{
+    ObserverLevels o;
+    o.counts = {{0.4031, 6, 12}, {1.6017, 12, 12}};
+    GroupThreshold group = known_group(true);
+    group.shared.scale = 1e-5; // nothing on the grid of places informs
+    PosteriorLevel const p = own_threshold(o, group, settings());
+    EXPECT_GT(p.low, 0.39);
+    EXPECT_LT(p.high, 1.61);
+    EXPECT_LT(p.low, p.high);
+}
+
+TEST(OwnThreshold, TellsFixedLevelsFromThoseThatFollowAnswers)
+{
+    Random random(2);
+    std::vector<ObserverLevels> people;
+    for (int i = 0; i < 4; ++i) people.push_back(answers_at({0.4, 0.7, 1, 1.3, 1.6}, 12, 1, random));
+    people[1].counts[2].trials = 9; // three answers came too early
+    people[1].counts[2].correct = std::min(people[1].counts[2].correct, 9.0);
+    EXPECT_TRUE(group_threshold(people, settings()).are_levels_fixed);
+    people[1].counts[2].trials = 2;
+    people[1].counts[2].correct = 1;
+    EXPECT_FALSE(group_threshold(people, settings()).are_levels_fixed);
+    people[1] = answers_at({0.4, 0.7, 1, 1.3, 1.5}, 12, 1, random);
+    EXPECT_FALSE(group_threshold(people, settings()).are_levels_fixed);
+}
+
+} // namespace
+} // namespace study::test
