@@ -4,10 +4,10 @@
 
 #include "gi/bvh/bvh.h"
 #include "gi/bvh/triangle_test.h"
+#include "gi/kernel/device_code.h"
 #include "gi/scene/model/camera.h"
 
 #include <bit>
-#include <cstring>
 
 namespace gi {
 
@@ -50,45 +50,6 @@ inline constexpr std::size_t kStackEntries = kDeepest * (kBvhWidth - 1) + 1;
 /// enlarged when they are built, see set_child_box.
 inline constexpr float kBoxSlack = 1 + 0x1p-20f;
 
-namespace bvh_detail {
-
-/// Four words that a device loads at once.
-struct Words {
-    std::uint32_t word[4];
-};
-
-GI_FN inline Words load_words(void const* from, std::size_t index)
-{
-#if defined(__CUDA_ARCH__)
-    uint4 const v = __ldg(static_cast<uint4 const*>(from) + index);
-    return {{v.x, v.y, v.z, v.w}};
-#else
-    Words w;
-    std::memcpy(&w, static_cast<char const*>(from) + index * sizeof(w), sizeof(w));
-    return w;
-#endif
-}
-
-/// glm::max and glm::min, by one instruction of a device.
-GI_FN inline float larger(float a, float b)
-{
-#if defined(__CUDA_ARCH__)
-    return fmaxf(a, b);
-#else
-    return glm::max(a, b);
-#endif
-}
-GI_FN inline float smaller(float a, float b)
-{
-#if defined(__CUDA_ARCH__)
-    return fminf(a, b);
-#else
-    return glm::min(a, b);
-#endif
-}
-
-} // namespace bvh_detail
-
 /// What a ray meets of a node's children.
 struct MetChildren {
     std::uint32_t bits = 0; ///< of children
@@ -104,9 +65,8 @@ struct MetChildren {
 /// Tests the children's boxes. @param reach  farther ones are not met
 GI_FN inline MetChildren meet_children(WideNode const& node, BvhRay const& ray, float reach)
 {
-    using namespace bvh_detail;
-    Words const w0 = load_words(&node, 0), w1 = load_words(&node, 1), w2 = load_words(&node, 2),
-                w3 = load_words(&node, 3), w4 = load_words(&node, 4);
+    FourWords const w0 = load_words(&node, 0), w1 = load_words(&node, 1), w2 = load_words(&node, 2),
+                    w3 = load_words(&node, 3), w4 = load_words(&node, 4);
     MetChildren met;
     met.first_node = w1.word[0];
     met.first_leaf = w1.word[1];
@@ -146,17 +106,16 @@ GI_FN inline MetChildren meet_children(WideNode const& node, BvhRay const& ray, 
 template <class Accepts>
 GI_FN void meet_leaf(Leaf const& leaf, BvhRay const& ray, BvhHit& hit, Accepts const& accepts)
 {
-    using namespace bvh_detail;
     RayShear const& s = ray.shear;
     vec3 const origin{ray.origin[s.x], ray.origin[s.y], ray.origin[s.z]};
     // Four corners' coordinates at a time, in the order x, y, z of the shear.
-    Words coordinate[9];
+    FourWords coordinate[9];
     for (int corner = 0; corner < 3; ++corner) {
         coordinate[3 * corner] = load_words(&leaf, std::size_t(3 * corner + s.x));
         coordinate[3 * corner + 1] = load_words(&leaf, std::size_t(3 * corner + s.y));
         coordinate[3 * corner + 2] = load_words(&leaf, std::size_t(3 * corner + s.z));
     }
-    Words const triangles = load_words(&leaf, 9);
+    FourWords const triangles = load_words(&leaf, 9);
     for (int k = 0; k < kLeafTriangles; ++k) {
         std::uint32_t const triangle = triangles.word[k];
         if (triangle == kNoLeafTriangle) return;

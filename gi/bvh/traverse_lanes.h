@@ -112,8 +112,7 @@ struct Lanes {
 
 } // namespace bvh_lanes
 
-/// As trace_scalar, which tests leaves at once: here they wait on the stack like nodes, while their memory is
-/// fetched.
+/// As trace_scalar. What waits on the stack is fetched meanwhile.
 template <bool any, class Accepts>
 void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts const& accepts)
 {

@@ -15,8 +15,6 @@ bool device_present() { return false; }
 namespace device {
 void* allocate(std::size_t) { throw_no_cuda("device memory"); }
 void release(void*) noexcept {}
-void* allocate_page_locked(std::size_t) { throw_no_cuda("page-locked memory"); }
-void release_page_locked(void*) noexcept {}
 void fill(void*, unsigned char, std::size_t) { throw_no_cuda("device memory"); }
 void copy(void*, void const*, std::size_t) { throw_no_cuda("device memory"); }
 } // namespace device

@@ -23,10 +23,13 @@ bool has_pool()
         std::uint64_t kept = kKept;
         int device = 0, supported = 0;
         cudaMemPool_t of_device = nullptr;
-        return cudaGetDevice(&device) == cudaSuccess &&
-               cudaDeviceGetAttribute(&supported, cudaDevAttrMemoryPoolsSupported, device) == cudaSuccess &&
-               supported != 0 && cudaDeviceGetDefaultMemPool(&of_device, device) == cudaSuccess &&
-               cudaMemPoolSetAttribute(of_device, cudaMemPoolAttrReleaseThreshold, &kept) == cudaSuccess;
+        bool const has =
+            cudaGetDevice(&device) == cudaSuccess &&
+            cudaDeviceGetAttribute(&supported, cudaDevAttrMemoryPoolsSupported, device) == cudaSuccess &&
+            supported != 0 && cudaDeviceGetDefaultMemPool(&of_device, device) == cudaSuccess &&
+            cudaMemPoolSetAttribute(of_device, cudaMemPoolAttrReleaseThreshold, &kept) == cudaSuccess;
+        cudaGetLastError(); // a refusal is no error of the next launch
+        return has;
     }();
     return pool;
 }
@@ -49,14 +52,6 @@ void release(void* bytes) noexcept
         cudaFree(bytes);
 }
 
-void* allocate_page_locked(std::size_t bytes)
-{
-    void* pointer = nullptr;
-    check_cuda(cudaMallocHost(&pointer, bytes), "allocate page-locked memory");
-    return pointer;
-}
-
-void release_page_locked(void* bytes) noexcept { cudaFreeHost(bytes); }
 
 void fill(void* bytes, unsigned char value, std::size_t count)
 {

@@ -8,9 +8,6 @@ namespace gi::device {
 
 void* allocate(std::size_t bytes);
 void release(void* bytes) noexcept;
-/// Memory of the host that the device copies to directly.
-void* allocate_page_locked(std::size_t bytes);
-void release_page_locked(void* bytes) noexcept;
 void fill(void* bytes, unsigned char value, std::size_t count);
 /// Copies within the device or between device and host; the addresses determine the direction.
 void copy(void* to, void const* from, std::size_t count);

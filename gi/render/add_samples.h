@@ -72,18 +72,26 @@ GI_FN inline void add_path(PixelMeans& m, PathSample const& s, std::uint32_t pat
     m.depth += (s.depth - m.depth) * of_hits;
 }
 
+/// Adds samples to the means of pixels.
+struct AddToMeans {
+    View<PixelMeans> means; ///< not read if there are no paths before
+    std::uint32_t before;   ///< paths in the means
+
+    /// @param path  number after those before
+    GI_FN void add(std::size_t pixel, std::uint32_t path, PathSample const& s) const
+    {
+        PixelMeans m = before + path > 0 ? means[pixel] : PixelMeans{};
+        add_path(m, s, before + path + 1);
+        means[pixel] = m;
+    }
+};
+
 /// Item = pixel. Adds a path.
 struct AddSamples {
     View<PathSample const> samples;
-    std::uint32_t before;   ///< paths in the means
-    View<PixelMeans> means; ///< not read if there are none before
+    AddToMeans to;
 
-    GI_FN void operator()(std::size_t i) const
-    {
-        PixelMeans m = before > 0 ? means[i] : PixelMeans{};
-        add_path(m, samples[i], before + 1);
-        means[i] = m;
-    }
+    GI_FN void operator()(std::size_t i) const { to.add(i, 0, samples[i]); }
 };
 
 } // namespace gi

@@ -21,11 +21,12 @@ public:
     /// Adds one path of every pixel.
     void add(View<PathSample const> samples)
     {
-        launch(S, "add samples", means_.size(), AddSamples{samples, paths_, means_.view()});
+        launch(S, "add samples", means_.size(), AddSamples{samples, added()});
         ++paths_;
     }
-    View<PixelMeans> means() { return means_.view(); } ///< for kernels that add paths themselves
-    /// Copies the means back, if there were or are any paths; the caller counts them.
+    /// For kernels that add paths themselves, and number them after those that were taken over.
+    AddToMeans added() { return {means_.view(), paths_}; }
+    /// Copies the means back, which are valid if there are any paths; the caller counts them.
     void give(Accumulator& sums) const
     {
         copy_bytes(Space::host, sums.pixels.data(), S, means_.view().data, means_.size() * sizeof(PixelMeans));

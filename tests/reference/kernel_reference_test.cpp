@@ -9,7 +9,10 @@
 #include "tests/support/on_device.h"
 #include "tests/support/scenes.h"
 
+#include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
+#include <thread>
+#include <unistd.h>
 
 namespace gi::test {
 namespace {
@@ -275,6 +278,44 @@ void check_budget()
     EXPECT_NEAR(mean_of(found.picture).mean, truth, 0.1 * truth);
 }
 LIGHTWELL_TEST_BOTH(KernelReference, BudgetsOfFrames, check_budget);
+
+/// Passes end between launches; a state goes on to the same bits.
+template <Space S>
+void check_interruptions()
+{
+    World const world = world_of(lit_room());
+    RenderSettings s = few_paths(4, 300);
+    s.width = 120;
+    s.height = 100;
+    Picture const whole = by_kernels(S, world, room_eye(), s).picture;
+    s.checkpoint =
+        std::filesystem::temp_directory_path() / ("lightwell_kernels_" + std::to_string(getpid()) + ".state");
+    int interrupted = 0;
+    for (int wait_ms = 5; interrupted < 3 && wait_ms < 2000; wait_ms += 1 + wait_ms / 4) {
+        s.resume = false;
+        StopRequest stop;
+        std::jthread const later([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+            stop.request();
+        });
+        Report report;
+        try {
+            RenderResult const part = render_reference_by_kernels(S, world, room_eye(), s, stop, {}, report);
+            if (part.end != RenderEnd::interrupted) break;
+            ASSERT_TRUE(part.resumable);
+            ++interrupted;
+        } catch (Interrupted const&) { // before there was a path
+            continue;
+        }
+        s.resume = true;
+        Picture const found = by_kernels(S, world, room_eye(), s).picture;
+        for (Layer const& layer : whole.layers)
+            EXPECT_EQ(found.find(layer.name.c_str())->data, layer.data) << layer.name;
+    }
+    EXPECT_GT(interrupted, 0);
+    std::filesystem::remove(s.checkpoint);
+}
+LIGHTWELL_TEST_BOTH(KernelReference, InterruptedRendersGoOn, check_interruptions);
 
 TEST(KernelReference, NeedsADevice)
 {

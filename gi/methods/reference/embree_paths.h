@@ -1,6 +1,7 @@
 #pragma once
 // Where the reference traces its paths on the CPU: tile by tile, through Embree.
 
+#include "gi/core/step.h"
 #include "gi/methods/reference/path_tracer.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/flush_denormals.h"
@@ -37,8 +38,9 @@ public:
     {
         if (!visibility_) {
             StageTimer const timer(report_, "build (Embree BVH)");
-            visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, threads_,
-                                                            first_moving_, stop_);
+            visibility_ =
+                std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, threads_, first_moving_,
+                                                  stop_ != nullptr ? stop_ : stop_of_steps());
         }
         return view(world_);
     }

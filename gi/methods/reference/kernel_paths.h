@@ -2,7 +2,7 @@
 // Where the reference traces its paths by kernels: the world, its BVH and the sums of a pass lie in a memory
 // space. Same functions as EmbreePaths.
 
-#include "gi/kernel/host_copy.h"
+#include "gi/core/step.h"
 #include "gi/kernel/launch.h"
 #include "gi/methods/reference/path_kernel.h"
 #include "gi/render/path_workers.h"
@@ -41,7 +41,8 @@ public:
     {
         if (!bvh_) {
             StageTimer const timer(report_, "build (BVH)");
-            bvh_.emplace(there_.view(), plan_scene(world_).alpha_tests, first_moving_, stop_);
+            bvh_.emplace(there_.view(), plan_scene(world_).alpha_tests, first_moving_,
+                         stop_ != nullptr ? stop_ : stop_of_steps());
         }
         return there_.view();
     }
@@ -51,22 +52,28 @@ public:
                      std::span<FirstHit> first_hits, Use const& use)
     {
         Buffer<PathSample, S> samples(pass.pixels());
+        on_host_.resize(pass.pixels());
         return run(
             steps, pass, first_path, first_hits, 1, [&](std::uint32_t) { return KeepSamples{samples.view()}; },
             [&](std::uint32_t path) {
-                std::span<PathSample const> const found = on_host_.of(samples);
-                tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t p) { use(p, path, found[p]); });
+                copy_bytes(Space::host, on_host_.data(), S, samples.view().data,
+                           samples.size() * sizeof(PathSample));
+                tbb::parallel_for(std::size_t(0), on_host_.size(),
+                                  [&](std::size_t p) { use(p, path, on_host_[p]); });
             });
     }
     PathCounts add(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                    std::span<FirstHit> first_hits, Accumulator& sums)
     {
-        std::uint32_t const before = sums.paths;
         sums_.take(sums);
+        AddToMeans to = sums_.added();
+        to.before = sums.paths; // paths of the pass have numbers from there, also those that it has already
         PathCounts const counts = run(
             steps, pass, first_path, first_hits, pass.paths,
             [&](std::uint32_t path) {
-                return AddToMeans{sums_.means(), before + path};
+                AddToMeans from = to;
+                from.before += path;
+                return from;
             },
             [](std::uint32_t) {});
         sums_.give(sums);
@@ -74,7 +81,7 @@ public:
     }
 
 private:
-    /// @param most  paths of a launch: as many as take kLaunch_s, so that a stop is soon noticed
+    /// @param most  paths of a launch
     /// @param to  (number of its first path) -> where samples go  @param ended  called with that after the launch
     template <class To, class Ended>
     PathCounts run(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
@@ -85,20 +92,20 @@ private:
         std::size_t const pixels = pass.pixels(), workers = path_workers(pixels);
         Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(kCounts));
         Buffer<FirstHit, S> hits(first_hits.empty() ? 0 : pixels);
-        std::uint32_t together = 1;
         for (std::uint32_t done = pass.done(); done < pass.paths && !pass.given_up();) {
-            std::uint32_t const now = std::min(pass.paths - done, together);
+            std::uint32_t const now = std::min({pass.paths - done, together_, most});
             auto const begun = std::chrono::steady_clock::now();
             launch(S, "trace paths of the reference", workers,
                    TraceReference{steps, bvh_->rays(), std::uint32_t(pixels), first_path + done, now, workers,
                                   to(done), hits.view(), counts.view()});
             std::chrono::duration<double> const took = std::chrono::steady_clock::now() - begun;
-            together = std::uint32_t(std::clamp(now * kLaunch_s / took.count(), 1.0, double(most)));
+            together_ = std::uint32_t(std::clamp(now * kLaunch_s / took.count(), 1.0, 4.0 * now));
             ended(done);
             done += now;
             pass.set_done(done);
         }
-        if (!first_hits.empty()) std::ranges::copy(download(hits), first_hits.begin());
+        if (!first_hits.empty() && pass.done() == pass.paths)
+            std::ranges::copy(download(hits), first_hits.begin());
         PathCounts all;
         for (PathCounts const& c : download(counts)) all += c;
         return all;
@@ -110,7 +117,8 @@ private:
     Report& report_;
     StopRequest const* stop_;
     std::optional<WorldBvh<S>> bvh_;
-    HostCopy<PathSample, S> on_host_;
+    std::vector<PathSample> on_host_; ///< kept, as fresh memory would take longer than the copy
+    std::uint32_t together_ = 1; ///< paths of a launch: as many as take kLaunch_s, so that a stop is soon noticed
     SumsOn<S> sums_;
 };
 

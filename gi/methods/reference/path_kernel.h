@@ -18,19 +18,6 @@ struct KeepSamples {
     GI_FN void add(std::size_t pixel, std::uint32_t, PathSample const& s) const { samples[pixel] = s; }
 };
 
-/// Adds samples to the means of pixels.
-struct AddToMeans {
-    View<PixelMeans> means; ///< not read if there are no paths before
-    std::uint32_t before;   ///< paths in the means
-
-    GI_FN void add(std::size_t pixel, std::uint32_t path, PathSample const& s) const
-    {
-        PixelMeans m = before + path > 0 ? means[pixel] : PixelMeans{};
-        add_path(m, s, before + path + 1);
-        means[pixel] = m;
-    }
-};
-
 template <class Samples>
 struct TraceReference {
     PathSteps steps;

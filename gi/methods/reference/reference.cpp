@@ -33,8 +33,9 @@ void trace_pass(Paths& tracing, PathSteps const& steps, Accumulator& sums, std::
         memory->resize(sums.pixels.size());
         std::span<PathSample> const waiting = *memory;
         auto const keep = [&](std::size_t pixel, std::uint32_t, PathSample const& s) { waiting[pixel] = s; };
-        sums.counts += tracing.trace(steps, pass, first, first_hits, keep);
+        PathCounts const counts = tracing.trace(steps, pass, first, first_hits, keep);
         given_up.check(); // before pixels take light that others lack
+        sums.counts += counts;
         spread_indirect(waiting, sums.width, steps.interleaving, first);
         tbb::parallel_for(std::size_t(0), waiting.size(),
                           [&](std::size_t p) { sums.add(p, waiting[p], sums.paths); });
@@ -78,6 +79,7 @@ public:
           tracing_(world.world(), settings_, world.world().static_triangles, report),
           motion_(world.world())
     {
+        tracing_.prepare();
     }
     void changed(Changes const& changes) override
     {

@@ -75,6 +75,13 @@ public:
         VertexSharing const sharing =
             settings_.slhb.cache == RadianceCaching::on ? VertexSharing::cached : VertexSharing::exact;
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
+            if constexpr (kByKernels)
+                if (!moments) {
+                    std::uint32_t const before = sums.paths;
+                    renderer_->passes(passes_, paths, {&sums, 1}, &stop);
+                    passes_ += sums.paths - before;
+                    return;
+                }
             for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i) {
                 if (moments) {
                     Moment const now = moments(sums.paths);

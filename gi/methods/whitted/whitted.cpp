@@ -1,5 +1,6 @@
 #include "gi/methods/whitted/whitted.h"
 
+#include "gi/core/step.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
@@ -19,7 +20,7 @@ void TreeRenderer::build(StopRequest const* stop)
 {
     StageTimer const timer(report_, "build (Embree BVH)");
     visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
-                                                    first_moving_, stop);
+                                                    first_moving_, stop != nullptr ? stop : stop_of_steps());
 }
 
 void TreeRenderer::changed(Changes const& changes)

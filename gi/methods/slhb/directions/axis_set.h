@@ -3,6 +3,7 @@
 // cosine with a normal.
 
 #include "gi/core/progress.h"
+#include "gi/kernel/device_code.h"
 #include "gi/methods/slhb/directions/cosine_tables.h"
 #include "gi/methods/slhb/hit_buffer/moving_layers.h"
 #include "gi/methods/slhb/hit_buffer/query_batch.h"
@@ -37,13 +38,15 @@ struct FewAxes {
         auto const find = [&](std::size_t k) {
             return share[k] * std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
         };
-#if defined(__CUDA_ARCH__) // found twice, as an array would lie in a device's slow memory
-        auto const& weight = find;
-#else
-        alignas(64) std::array<float, kMost> weights;
-        for (std::size_t k = 0; k < count; ++k) weights[k] = find(k);
-        auto const weight = [&](std::size_t k) { return weights[k]; };
-#endif
+        // On a device found twice: an array would lie in its slow memory.
+        alignas(64) std::array<float, kDeviceCode ? 1 : kMost> weights;
+        for (std::size_t k = 0; k < count && !kDeviceCode; ++k) weights[k] = find(k);
+        auto const weight = [&](std::size_t k) {
+            if constexpr (kDeviceCode)
+                return find(k);
+            else
+                return weights[k];
+        };
         float total = 0;
         for (std::size_t k = 0; k < count; ++k) total += weight(k);
         // Finds the first axis at which the cumulative weight exceeds u times the total, without random branches.
