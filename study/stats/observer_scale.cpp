@@ -142,9 +142,9 @@ ObserverScale scale_observers(std::vector<std::vector<PairCount>> const& observe
     for (std::size_t o = 0; o < observers.size(); ++o) {
         Eigen::MatrixXd const leverage = root * information[o] * root;
         // An observer who alone determines a score leaves no residual of it: the correction is bounded.
-        constexpr double kLeast = 0.05;
+        constexpr double kLeastRest = 0.05;
         Eigen::MatrixXd const rest = Eigen::MatrixXd::Identity(n, n) - leverage;
-        Eigen::MatrixXd const lifted = n > 0 ? power(rest, -0.5, kLeast) : leverage;
+        Eigen::MatrixXd const lifted = n > 0 ? power(rest, -0.5, kLeastRest) : leverage;
         Eigen::VectorXd const standard = lifted * (root * gradient[o]);
         Eigen::VectorXd moved = centre * (root * standard);
         gradient[o] = all * root * standard;

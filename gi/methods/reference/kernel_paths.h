@@ -96,8 +96,9 @@ private:
             std::uint32_t const now = std::min({pass.paths - done, together_, most});
             auto const begun = std::chrono::steady_clock::now();
             launch(S, "trace paths of the reference", workers,
-                   TraceReference{steps, bvh_->rays(), std::uint32_t(pixels), first_path + done, now, workers,
-                                  to(done), hits.view(), counts.view()});
+                   TraceReference<decltype(to(done))>{steps, bvh_->rays(), std::uint32_t(pixels),
+                                                      first_path + done, now, workers, to(done), hits.view(),
+                                                      counts.view()});
             std::chrono::duration<double> const took = std::chrono::steady_clock::now() - begun;
             together_ = std::uint32_t(std::clamp(now * kLaunch_s / took.count(), 1.0, 4.0 * now));
             ended(done);
