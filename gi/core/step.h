@@ -40,5 +40,10 @@ private:
 void at_step(char const* what, std::uint64_t done = 0, std::uint64_t of = 0);
 /// Whether this thread's work should stop, for long parts of a step; null on a thread without such a listener.
 StopRequest const* stop_of_steps();
+/// For builders: their own request, or if there is none, that of the steps.
+inline StopRequest const* stop_of_building(StopRequest const* own)
+{
+    return own != nullptr ? own : stop_of_steps();
+}
 
 } // namespace gi

@@ -21,11 +21,10 @@ public:
     /// Adds one path of every pixel.
     void add(View<PathSample const> samples)
     {
-        launch(S, "add samples", means_.size(), AddSamples{samples, added()});
+        launch(S, "add samples", means_.size(), AddSamples{samples, {means_.view(), paths_}});
         ++paths_;
     }
-    /// For kernels that add paths themselves, and number them after those that were taken over.
-    AddToMeans added() { return {means_.view(), paths_}; }
+    View<PixelMeans> means() { return means_.view(); } ///< for kernels that add paths themselves
     /// Copies the means back, which are valid if there are any paths; the caller counts them.
     void give(Accumulator& sums) const
     {

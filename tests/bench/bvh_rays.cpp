@@ -13,6 +13,7 @@
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/shading/warp.h"
+#include "tests/bench/device/starts.h"
 
 #include <algorithm>
 #include <chrono>
@@ -32,21 +33,12 @@ double seconds(Work const& work)
 
 std::vector<RayQuery> incoherent_rays(World const& world, std::size_t n)
 {
-    std::vector<double> area;
-    double sum = 0;
-    for (Surface const& s : world.surfaces)
-        area.push_back(sum += double(glm::length(glm::cross(s.edge1, s.edge2))));
-    Pcg32 rng(1, 2);
+    Pcg32 rng(3, 2);
     std::vector<RayQuery> rays;
-    for (std::size_t i = 0; i < n; ++i) {
-        auto const at = std::ranges::upper_bound(area, rng.uniform_double() * sum);
-        Surface const& s = world.surfaces[std::min(std::size_t(at - area.begin()), area.size() - 1)];
-        vec2 const w = square_to_triangle(rng.uniform2());
-        vec3 normal = glm::normalize(glm::cross(s.edge1, s.edge2));
-        if (rng.uniform() < 0.5f) normal = -normal;
-        vec3 const d = Frame::about(normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
-        rays.push_back({.ray = {s.corner + w.x * s.edge1 + w.y * s.edge2 + s.clearance * normal, d},
-                        .seed = std::uint32_t(i)});
+    for (bench::Start const& s : bench::anywhere(world, n)) {
+        vec3 const d = Frame::about(s.normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
+        rays.push_back({.ray = {s.position + world.surfaces[s.triangle].clearance * s.normal, d},
+                        .seed = std::uint32_t(rays.size())});
     }
     return rays;
 }

@@ -38,9 +38,8 @@ public:
     {
         if (!visibility_) {
             StageTimer const timer(report_, "build (Embree BVH)");
-            visibility_ =
-                std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, threads_, first_moving_,
-                                                  stop_ != nullptr ? stop_ : stop_of_steps());
+            visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, threads_,
+                                                            first_moving_, stop_of_building(stop_));
         }
         return view(world_);
     }

@@ -41,8 +41,7 @@ public:
     {
         if (!bvh_) {
             StageTimer const timer(report_, "build (BVH)");
-            bvh_.emplace(there_.view(), plan_scene(world_).alpha_tests, first_moving_,
-                         stop_ != nullptr ? stop_ : stop_of_steps());
+            bvh_.emplace(there_.view(), plan_scene(world_).alpha_tests, first_moving_, stop_of_building(stop_));
         }
         return there_.view();
     }
@@ -66,14 +65,10 @@ public:
                    std::span<FirstHit> first_hits, Accumulator& sums)
     {
         sums_.take(sums);
-        AddToMeans to = sums_.added();
-        to.before = sums.paths; // paths of the pass have numbers from there, also those that it has already
         PathCounts const counts = run(
             steps, pass, first_path, first_hits, pass.paths,
             [&](std::uint32_t path) {
-                AddToMeans from = to;
-                from.before += path;
-                return from;
+                return AddToMeans{sums_.means(), sums.paths + path};
             },
             [](std::uint32_t) {});
         sums_.give(sums);

@@ -63,7 +63,7 @@ void SlhbRenderer::build_exact()
     if (exact_ || !needs_exact_rays(world_, orthographic(), slhb_)) return;
     StageTimer const timer(report_, "build (Embree BVH)");
     exact_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
-                                               first_moving_, stop_ != nullptr ? stop_ : stop_of_steps());
+                                               first_moving_, stop_of_building(stop_));
 }
 
 /// Paths also leave the last surface along axes, but only if they can hit light there.

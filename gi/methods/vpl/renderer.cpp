@@ -34,7 +34,7 @@ void VirtualLightRenderer::build(StopRequest const* stop)
     {
         StageTimer const timer(report_, "build (Embree BVH)");
         visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
-                                                        first_moving_, stop != nullptr ? stop : stop_of_steps());
+                                                        first_moving_, stop_of_building(stop));
     }
     StageTimer const timer(report_, "build (visibility)");
     term_ = make_term(kind_, {world_, *visibility_, settings_, first_moving_, report_, stop});

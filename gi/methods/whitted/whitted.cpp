@@ -20,7 +20,7 @@ void TreeRenderer::build(StopRequest const* stop)
 {
     StageTimer const timer(report_, "build (Embree BVH)");
     visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
-                                                    first_moving_, stop != nullptr ? stop : stop_of_steps());
+                                                    first_moving_, stop_of_building(stop));
 }
 
 void TreeRenderer::changed(Changes const& changes)
