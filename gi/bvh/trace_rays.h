@@ -23,8 +23,12 @@ struct TraceRays {
         BvhHit hit;
         hit.distance = queries[i].reach;
         auto const accepts = [](std::uint32_t, vec2) { return true; };
-        for (BvhView const& tree : trees)
+        // One traversal in the code; trees are not indexed, as a device would copy them to local memory.
+#pragma unroll 1
+        for (int k = 0; k < 2; ++k) {
+            BvhView const tree = k == 0 ? trees[0] : trees[1];
             if (!any || hit.triangle == kNoBvhTriangle) trace_scalar<any>(tree, ray, hit, accepts);
+        }
         hits[i] = hit;
     }
 };

@@ -108,21 +108,16 @@ GI_FN void meet_leaf(Leaf const& leaf, BvhRay const& ray, BvhHit& hit, Accepts c
 {
     RayShear const& s = ray.shear;
     vec3 const origin{ray.origin[s.x], ray.origin[s.y], ray.origin[s.z]};
-    // Four corners' coordinates at a time, in the order x, y, z of the shear.
-    FourWords coordinate[9];
-    for (int corner = 0; corner < 3; ++corner) {
-        coordinate[3 * corner] = load_words(&leaf, std::size_t(3 * corner + s.x));
-        coordinate[3 * corner + 1] = load_words(&leaf, std::size_t(3 * corner + s.y));
-        coordinate[3 * corner + 2] = load_words(&leaf, std::size_t(3 * corner + s.z));
-    }
-    FourWords const triangles = load_words(&leaf, 9);
+    // Triangle by triangle, as an array of all would lie in a device's local memory.
+#pragma unroll 1
     for (int k = 0; k < kLeafTriangles; ++k) {
-        std::uint32_t const triangle = triangles.word[k];
+        std::uint32_t const triangle = leaf.triangle[k];
         if (triangle == kNoLeafTriangle) return;
         vec3 corner[3];
         for (int c = 0; c < 3; ++c)
-            for (int axis = 0; axis < 3; ++axis)
-                corner[c][axis] = std::bit_cast<float>(coordinate[3 * c + axis].word[k]) - origin[axis];
+            corner[c] =
+                vec3{leaf.corner[3 * c + s.x][k], leaf.corner[3 * c + s.y][k], leaf.corner[3 * c + s.z][k]} -
+                origin;
         TriangleHit const t = meet_sheared(corner[0], corner[1], corner[2], s, ray.start, hit.distance);
         if (t.distance == kInf || (t.distance == hit.distance && triangle >= hit.triangle)) continue;
         if (accepts(triangle, t.weights)) hit = {triangle, t.distance, t.weights};

@@ -55,12 +55,15 @@ GI_FN inline void add_path(PixelMeans& m, PathSample const& s, std::uint32_t pat
     UnbiasedRounding round(s, paths);
     double const weight = 1 / double(paths);
     dvec3 const of_path = sum(s.radiance), before = sum(m.radiance);
+#pragma unroll
     for (std::size_t i = 0; i < 3; ++i)
+#pragma unroll
         for (int c = 0; c < 3; ++c) {
             double const mean = double(m.radiance[i][c]);
             m.radiance[i][c] = round(mean + (double(s.radiance[i][c]) - mean) * weight);
         }
     dvec3 const after = sum(m.radiance), d(m.deviation);
+#pragma unroll
     for (int c = 0; c < 3; ++c)
         m.deviation[c] =
             round(root(d[c] * d[c] + glm::max(0.0, (of_path[c] - before[c]) * (of_path[c] - after[c]))));

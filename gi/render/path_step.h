@@ -26,6 +26,15 @@ GI_FN inline vec3& layer_of(PathSample& sample, int scatterings)
     return scatterings == 0 ? sample.radiance[0] : scatterings == 1 ? sample.radiance[1] : sample.radiance[2];
 }
 
+/// Adds to that sum. Without its address, for which kernels would keep all sums in local memory.
+GI_FN inline void add_light(PathSample& sample, int scatterings, vec3 light)
+{
+    int const layer = scatterings < 2 ? scatterings : 2;
+#pragma unroll
+    for (int k = 0; k < 3; ++k)
+        if (k == layer) sample.radiance[std::size_t(k)] += light;
+}
+
 /// Stores what the camera sees at a path's first surface.
 GI_FN inline void see_first_surface(PathSample& sample, ShadingPoint const& at, CameraRays const& camera)
 {
@@ -81,19 +90,24 @@ GI_FN vec3 unshadowed_light(ShadingPoint const& at, vec3 wo, LightSample const& 
     return value;
 }
 
+/// Surfaces after which every path may end by roulette, so that none goes on for ever in glass or between mirrors.
+inline constexpr int kSurfacesWithoutEnd = 32;
+
 /// Russian roulette: false if the path ends, otherwise its throughput is divided by the probability of continuing.
+/// @param vertex    number of surfaces before, delta lobes included
 /// @param roulette  see SlhbSettings; 0: all paths continue up to the fourth scattering, then with a probability
 /// of
 ///                  their throughput
 /// @param uniform   () -> a number in [0, 1); called only if needed
 template <class Uniform>
-GI_FN bool survives_roulette(PathState& s, float roulette, Uniform const& uniform)
+GI_FN bool survives_roulette(PathState& s, int vertex, float roulette, Uniform const& uniform)
 {
     float const largest = max_component(s.throughput);
     if (!(largest > 0)) return false;
-    float const keep = roulette > 0                            ? glm::min(1.0f, roulette * largest)
-                       : s.scatterings >= 3 && largest < 0.95f ? largest
-                                                               : 1.0f;
+    float keep = roulette > 0                            ? glm::min(1.0f, roulette * largest)
+                 : s.scatterings >= 3 && largest < 0.95f ? largest
+                                                         : 1.0f;
+    if (vertex >= kSurfacesWithoutEnd) keep = glm::min(keep, glm::min(largest, 0.95f));
     if (keep < 1) {
         if (uniform() >= keep) return false;
         s.throughput /= keep;
@@ -105,9 +119,10 @@ GI_FN bool survives_roulette(PathState& s, float roulette, Uniform const& unifor
 GI_FN inline std::uint32_t discard_invalid(PathSample& sample)
 {
     std::uint32_t n = 0;
-    for (int k = 0; k < 3; ++k)
-        if (vec3& part = layer_of(sample, k); !all_finite(part)) {
-            part = vec3{0};
+#pragma unroll
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!all_finite(sample.radiance[k])) {
+            sample.radiance[k] = vec3{0};
             ++n;
         }
     return n;

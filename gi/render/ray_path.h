@@ -20,13 +20,14 @@ struct RayPath : PathState {
     Ray ray;
     bool ended = false;
     RayQuery shadow;
-    int shadow_scatterings = 0; ///< of its light, see layer_of
+    int shadow_scatterings = 0; ///< of its light
     vec3 shadow_radiance{0};    ///< radiance that arrives if unblocked; 0 = no shadow ray needed
     PathSample sample;
 };
 
-/// Separate, so that it does not affect the rounding of pinhole rays.
-[[gnu::noinline]] GI_FN inline Ray lens_ray(CameraRays const& camera, vec2 place, vec2 u)
+/// Separate, so that it does not affect the rounding of pinhole rays; by value, as a reference would make kernels
+/// copy all their parameters to local memory.
+[[gnu::noinline]] GI_FN inline Ray lens_ray(CameraRays camera, vec2 place, vec2 u)
 {
     return camera.at_lens(square_to_disk(u)).through(place);
 }
@@ -53,7 +54,7 @@ GI_FN inline void add_environment(WorldView const& world, RayPath& p, int vertex
     if (vertex == 0)
         p.sample.radiance[0] = background_radiance(world, p.ray.direction);
     else if (!world.environment_radiance.empty())
-        layer_of(p.sample, p.scatterings) += p.throughput * met_environment(world, p, p.ray.direction);
+        add_light(p.sample, p.scatterings, p.throughput * met_environment(world, p, p.ray.direction));
 }
 
 /// Shadow ray from a surface to just before a light; reach <= 0 if the light lies on the surface.
@@ -79,7 +80,7 @@ GI_FN inline void aim_at_light(RayPath& p, ShadingPoint const& at, LightSample c
     p.shadow = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
 }
 
-GI_FN inline void add_noted_light(RayPath& p) { layer_of(p.sample, p.shadow_scatterings) += p.shadow_radiance; }
+GI_FN inline void add_noted_light(RayPath& p) { add_light(p.sample, p.shadow_scatterings, p.shadow_radiance); }
 
 /// True if a shadow ray decides about the noted light sample; one that lies on the surface itself is added.
 GI_FN inline bool needs_shadow_ray(RayPath& p)
@@ -99,10 +100,10 @@ GI_FN inline RayQuery next_query(RayPath& p, int vertex)
     return {.ray = p.ray, .seed = p.rng.next(), .start = vertex == 0 ? camera_clearance(p.ray.origin) : 0};
 }
 
-/// Continues a path along a sampled direction. Returns false if it ends.
-GI_FN inline bool continue_path(RayPath& p, ShadingPoint const& at, BsdfSample const& next)
+/// Continues a path along a sampled direction. Returns false if it ends. @param vertex  number of surfaces before
+GI_FN inline bool continue_path(RayPath& p, ShadingPoint const& at, BsdfSample const& next, int vertex)
 {
-    if (!survives_roulette(p, 0, [&] { return p.rng.uniform(); })) return false;
+    if (!survives_roulette(p, vertex, 0, [&] { return p.rng.uniform(); })) return false;
     vec3 const direction = at.frame.to_world(next.wi);
     if (!is_on_one_side(at, direction, next.wi)) return false;
     p.ray = {leave(at, direction), direction};

@@ -1,9 +1,12 @@
 #include "gi/render/add_samples.h"
 
 #include "gi/kernel/launch.cuh"
+#include "gi/render/ray_kernels.h"
 
 namespace gi {
 
 template void launch_device(char const*, std::size_t, AddSamples const&);
+template void launch_device(char const*, std::size_t, BlockedRays const&);
+template void launch_device(char const*, std::size_t, NearestHits const&);
 
 } // namespace gi

@@ -37,8 +37,12 @@ private:
         auto const accepts = [&](std::uint32_t triangle, vec2 weights) {
             return !alpha_tests || covers(world, triangle, weights, q.seed);
         };
-        for (BvhView const& tree : trees)
+        // One traversal in the code; trees are not indexed, as a device would copy them to local memory.
+#pragma unroll 1
+        for (int k = 0; k < 2; ++k) {
+            BvhView const tree = k == 0 ? trees[0] : trees[1];
             if (!any || hit.triangle == kNoBvhTriangle) trace_scalar<any>(tree, ray, hit, accepts);
+        }
         return hit;
     }
 };

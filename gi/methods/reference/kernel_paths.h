@@ -5,7 +5,6 @@
 #include "gi/core/step.h"
 #include "gi/kernel/launch.h"
 #include "gi/methods/reference/path_kernel.h"
-#include "gi/render/path_workers.h"
 #include "gi/render/render_settings.h"
 #include "gi/render/sums_on.h"
 #include "gi/render/tiled_pass.h"
@@ -18,6 +17,58 @@
 #include <tbb/parallel_for.h>
 
 namespace gi {
+
+/// Memory of paths on their way.
+template <Space S>
+class PathMemory {
+public:
+    PathMemory() = default;
+    /// @param n  number of slots  @param pixels  of the picture
+    PathMemory(std::size_t n, std::size_t pixels)
+        : slots_(n),
+          carried_(n),
+          lights_(n),
+          seen_(n),
+          queries_(n),
+          shadows_(n),
+          hits_(n),
+          blocked_(n),
+          added_(pixels),
+          taken_(1)
+    {
+    }
+    std::size_t pixels() const { return added_.size(); }
+
+    void lend(PathSlots& to)
+    {
+        to.slots = slots_.view();
+        to.carried = carried_.view();
+        to.lights = lights_.view();
+        to.seen = seen_.view();
+        to.queries = queries_.view();
+        to.shadows = shadows_.view();
+        to.hits = hits_.view();
+        to.blocked = blocked_.view();
+        to.added = added_.view();
+        to.taken = taken_.view();
+    }
+    void take_none()
+    {
+        for (auto const of : {added_.view(), taken_.view()})
+            fill_bytes(S, of.data, 0, of.size() * sizeof(std::uint32_t));
+    }
+    std::uint32_t taken() const { return download(taken_).front(); }
+
+private:
+    ColumnBuffer<PathSlot, S> slots_;
+    ColumnBuffer<PathCarry, S> carried_;
+    ColumnBuffer<PathLight, S> lights_;
+    ColumnBuffer<SeenSurface, S> seen_;
+    ColumnBuffer<RayQuery, S> queries_, shadows_;
+    ColumnBuffer<Hit, S> hits_;
+    Buffer<std::uint8_t, S> blocked_;
+    Buffer<std::uint32_t, S> added_, taken_;
+};
 
 template <Space S>
 class KernelPaths {
@@ -76,36 +127,64 @@ public:
     }
 
 private:
-    /// @param most  paths of a launch
-    /// @param to  (number of its first path) -> where samples go  @param ended  called with that after the launch
+    /// @param most  paths of each pixel that are traced together
+    /// @param to  (number of its first path) -> where samples go  @param ended  called with that when all are
+    /// there
     template <class To, class Ended>
     PathCounts run(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                    std::span<FirstHit> first_hits, std::uint32_t most, To const& to, Ended const& ended)
     {
-        constexpr double kLaunch_s = 0.1;
+        constexpr double kTogether_s = 0.1;
         constexpr std::size_t kCounts = 1024; // threads that add to one number wait for each other
-        std::size_t const pixels = pass.pixels(), workers = path_workers(pixels);
+        std::size_t const pixels = pass.pixels();
         Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(kCounts));
         Buffer<FirstHit, S> hits(first_hits.empty() ? 0 : pixels);
+        std::size_t const n = std::min(pixels, kMostSlots);
+        if (memory_.pixels() != pixels) memory_ = PathMemory<S>(n, pixels);
+        std::uint32_t const countable = std::uint32_t((kNoTriangle - n) / pixels);
+        PathSlots all;
+        all.steps = steps;
+        memory_.lend(all);
+        all.pixels = std::uint32_t(pixels);
+        all.first_hits = hits.view();
+        all.counts = counts.view();
         for (std::uint32_t done = pass.done(); done < pass.paths && !pass.given_up();) {
-            std::uint32_t const now = std::min({pass.paths - done, together_, most});
+            all.paths = std::min({pass.paths - done, together_, most, countable});
+            all.first_path = first_path + done;
             auto const begun = std::chrono::steady_clock::now();
-            launch(S, "trace paths of the reference", workers,
-                   TraceReference<decltype(to(done))>{steps, bvh_->rays(), std::uint32_t(pixels),
-                                                      first_path + done, now, workers, to(done), hits.view(),
-                                                      counts.view()});
+            trace_all(all, to(done));
             std::chrono::duration<double> const took = std::chrono::steady_clock::now() - begun;
-            together_ = std::uint32_t(std::clamp(now * kLaunch_s / took.count(), 1.0, 4.0 * now));
+            together_ = std::uint32_t(std::clamp(all.paths * kTogether_s / took.count(), 1.0, 4.0 * all.paths));
             ended(done);
-            done += now;
+            done += all.paths;
             pass.set_done(done);
         }
         if (!first_hits.empty() && pass.done() == pass.paths)
             std::ranges::copy(download(hits), first_hits.begin());
-        PathCounts all;
-        for (PathCounts const& c : download(counts)) all += c;
-        return all;
+        PathCounts sum;
+        for (PathCounts const& c : download(counts)) sum += c;
+        return sum;
     }
+
+    template <class Samples>
+    void trace_all(PathSlots const& all, Samples const& to)
+    {
+        constexpr int kSteps = 8; // between looks at how far it is
+        std::size_t const n = all.slots.count;
+        WorldView const& world = all.steps.world;
+        KernelRays const rays = bvh_->rays();
+        memory_.take_none();
+        launch(S, "start paths", n, StartPaths{all});
+        while (memory_.taken() < all.end())
+            for (int k = 0; k < kSteps; ++k) {
+                launch(S, "rays of paths", n, NearestHits{world, rays, all.queries, all.hits});
+                launch(S, "scatter paths", n, ScatterPaths{all});
+                launch(S, "shadow rays of paths", n, BlockedRays{world, rays, all.shadows, all.blocked});
+                launch(S, "end paths", n, EndPaths<Samples>{all, to});
+            }
+    }
+
+    static constexpr std::size_t kMostSlots = std::size_t(1) << 20; ///< enough to fill a device
 
     World const& world_;
     WorldOn<S> there_;
@@ -114,7 +193,9 @@ private:
     StopRequest const* stop_;
     std::optional<WorldBvh<S>> bvh_;
     std::vector<PathSample> on_host_; ///< kept, as fresh memory would take longer than the copy
-    std::uint32_t together_ = 1; ///< paths of a launch: as many as take kLaunch_s, so that a stop is soon noticed
+    std::uint32_t together_ =
+        1; ///< paths of each pixel: as many as take kTogether_s, so that a stop is soon noticed
+    PathMemory<S> memory_;
     SumsOn<S> sums_;
 };
 

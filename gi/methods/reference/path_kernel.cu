@@ -4,7 +4,9 @@
 
 namespace gi {
 
-template void launch_device(char const*, std::size_t, TraceReference<AddToMeans> const&);
-template void launch_device(char const*, std::size_t, TraceReference<KeepSamples> const&);
+template void launch_device(char const*, std::size_t, StartPaths const&);
+template void launch_device(char const*, std::size_t, ScatterPaths const&);
+template void launch_device(char const*, std::size_t, EndPaths<AddToMeans> const&);
+template void launch_device(char const*, std::size_t, EndPaths<KeepSamples> const&);
 
 } // namespace gi

@@ -1,13 +1,14 @@
 #pragma once
-// The path tracer as a kernel, by exact rays through the project's own BVH: one item, a worker, traces some paths
-// one after the other. Where a path ends the next one begins at once, so that the threads of a device that step
-// together do not wait for the longest path (Novak et al. 2010). Steps and random numbers are those of PathTracer,
-// so that both trace the same paths up to rounding.
+// The path tracer by kernels, with exact rays through the project's own BVH. Many paths are on their way together,
+// each in a slot, from one surface to the next: all their rays (NearestHits), all their scatterings, all their
+// shadow rays (BlockedRays). A slot whose path ends takes the next one, so that none waits for the longest (Novak
+// et al. 2010); samples of a pixel are added in the order of its paths. Steps and random numbers are those of
+// PathTracer, so that both trace the same paths up to rounding.
 
 #include "gi/kernel/atomics.h"
 #include "gi/methods/reference/path_steps.h"
 #include "gi/render/add_samples.h"
-#include "gi/render/world_bvh.h"
+#include "gi/render/ray_kernels.h"
 
 namespace gi {
 
@@ -18,68 +19,187 @@ struct KeepSamples {
     GI_FN void add(std::size_t pixel, std::uint32_t, PathSample const& s) const { samples[pixel] = s; }
 };
 
-template <class Samples>
-struct TraceReference {
+enum class PathStage : std::uint32_t {
+    goes_on,
+    ended,
+    in_turn, ///< ended, and all paths before it at its pixel are added
+    idle     ///< all paths are taken
+};
+
+/// Where a path is, and whose it is.
+struct PathSlot {
+    std::uint32_t pixel = 0;
+    std::uint32_t number = 0; ///< of the path, among those of its pixel
+    int vertex = 0;           ///< number of surfaces before
+    PathStage stage = PathStage::idle;
+    std::uint32_t nearest_rays = 0, shadow_rays = 0; ///< of all paths of the slot
+};
+
+/// What a path carries to its next surface.
+struct PathCarry {
+    PathState state;
+    std::uint32_t emitted; ///< as in Path, like the next
+    std::uint32_t share, unused = 0;
+    Pcg32 rng;
+};
+
+/// What the camera sees, as in PathSample.
+struct SeenSurface {
+    vec3 albedo, normal, position;
+    float depth;
+    std::uint32_t hit;
+    IndirectTurn turn;
+    std::array<std::uint8_t, 3> unused{};
+};
+
+/// The light that a path found.
+struct PathLight {
+    std::array<vec3, 3> radiance; ///< L0, L1, L2
+    vec3 unshadowed;              ///< arrives if the shadow ray is not blocked
+    int scatterings;              ///< of that
+};
+
+/// What the kernels share. Item = slot.
+struct PathSlots {
     PathSteps steps;
-    KernelRays rays;
     std::uint32_t pixels;     ///< of the picture, in rows of steps.width
     std::uint32_t first_path; ///< of those traced now
     std::uint32_t paths;      ///< of each pixel
-    std::size_t workers;      ///< number of items
-    Samples samples;
-    View<FirstHit> first_hits; ///< of the last path, per pixel; empty = not needed
-    View<PathCounts> counts;   ///< to be added up
+    ColumnView<PathSlot> slots;
+    ColumnView<PathCarry> carried;
+    ColumnView<PathLight> lights;
+    ColumnView<SeenSurface> seen;          ///< at the first surface
+    ColumnView<RayQuery> queries, shadows; ///< no_query() where there is none
+    ColumnView<Hit> hits;                  ///< of queries
+    View<std::uint8_t> blocked;            ///< of shadows
+    View<std::uint32_t> added;             ///< per pixel: number of paths
+    View<std::uint32_t> taken;             ///< [0]: number of paths
+    View<FirstHit> first_hits;             ///< of the last path, per pixel; empty = not needed
+    View<PathCounts> counts;               ///< to be added up
 
-    GI_FN void operator()(std::size_t worker) const
+    /// Paths that the slots have asked for when all are idle.
+    std::uint32_t end() const { return pixels * paths + std::uint32_t(slots.count); }
+
+    GI_FN PathCounts& counts_of(std::size_t i) const { return counts[i % counts.size()]; }
+
+    GI_FN void take_path(std::size_t i, PathSlot& s) const
     {
-        PathCounts local;
-        std::size_t pixel = worker;
-        std::uint32_t path = 0;
-        Path p = start(pixel, path);
-        for (int vertex = 0;;) {
-            step(p, vertex, local);
-            if (!p.ended) {
-                ++vertex;
-                continue;
-            }
-            local.invalid_paths += discard_invalid(p.sample);
-            samples.add(pixel, path, p.sample);
-            if (++path == paths) {
-                if (!first_hits.empty()) first_hits[pixel] = p.first;
-                path = 0;
-                pixel += workers;
-                if (pixel >= pixels) break;
-            }
-            p = start(pixel, path);
-            vertex = 0;
+        std::uint32_t const path = atomic_add(taken[0], 1);
+        s.pixel = path % pixels;
+        s.number = path / pixels;
+        s.vertex = 0;
+        s.stage = s.number < paths ? PathStage::goes_on : PathStage::idle;
+        shadows.store(i, no_query());
+        if (s.stage == PathStage::idle) {
+            queries.store(i, no_query());
+            atomic_add(counts_of(i).nearest_rays, std::uint64_t(s.nearest_rays));
+            atomic_add(counts_of(i).shadow_rays, std::uint64_t(s.shadow_rays));
+            return;
         }
-        add_counts(worker, local);
+        Path p;
+        steps.start(p, int(s.pixel) % steps.width, int(s.pixel) / steps.width, first_path + s.number);
+        lights.store(i, {});
+        go_on(i, s, p);
+    }
+    /// To the surface that the path meets next.
+    GI_FN void go_on(std::size_t i, PathSlot& s, Path& p) const
+    {
+        ++s.nearest_rays;
+        queries.store(i, next_query(p, s.vertex));
+        carried.store(i, {.state = p, .emitted = p.emitted, .share = p.share, .rng = p.rng});
+    }
+};
+
+struct StartPaths : PathSlots {
+    GI_FN void operator()(std::size_t i) const
+    {
+        PathSlot s;
+        take_path(i, s);
+        slots.store(i, s);
+    }
+};
+
+/// From the surface that a path met to its next ray, and the shadow ray of the light there.
+struct ScatterPaths : PathSlots {
+    GI_FN void operator()(std::size_t i) const
+    {
+        PathSlot s = slots.load(i);
+        if (s.stage == PathStage::idle) return;
+        if (s.stage == PathStage::goes_on)
+            scatter(i, s);
+        else
+            shadows.store(i, no_query()); // it has been answered; the path waits for its turn
+        if (s.stage == PathStage::ended && added[s.pixel] == s.number) s.stage = PathStage::in_turn;
+        slots.store(i, s);
     }
 
 private:
-    GI_FN Path start(std::size_t pixel, std::uint32_t path) const
+    GI_FN void scatter(std::size_t i, PathSlot& s) const
     {
-        return steps.start(int(pixel) % steps.width, int(pixel) / steps.width, first_path + path);
-    }
-    /// From one surface to the next, and the light there.
-    GI_FN void step(Path& p, int vertex, PathCounts& local) const
-    {
-        Hit const hit = rays.nearest(steps.world, next_query(p, vertex));
-        ++local.nearest_rays;
+        Path p;
+        PathCarry const carry = carried.load(i);
+        static_cast<PathState&>(p) = carry.state;
+        p.emitted = carry.emitted != 0;
+        p.share = carry.share;
+        p.rng = carry.rng;
+        p.ray = queries.load(i).ray;
+        Hit const hit = hits.load(i);
         if (hit.triangle != kNoTriangle && !steps.world.light_select.empty()) steps.choose_light(p);
-        p.shadow_radiance = vec3{0};
-        p.ended = !steps.advance(p, hit, vertex, local);
-        if (!needs_shadow_ray(p)) return;
-        ++local.shadow_rays;
-        if (!rays.occluded(steps.world, p.shadow)) add_noted_light(p);
+        PathCounts lost;
+        bool const goes_on = steps.advance(p, hit, s.vertex, lost);
+        if (lost.cut_paths > 0) atomic_add(counts_of(i).cut_paths, lost.cut_paths);
+        bool const asks = needs_shadow_ray(p);
+        if (asks) ++s.shadow_rays;
+        shadows.store(i, asks ? p.shadow : no_query());
+        PathLight light = lights.load(i);
+        for (std::size_t k = 0; k < 3; ++k) light.radiance[k] += p.sample.radiance[k];
+        light.unshadowed = p.shadow_radiance;
+        light.scatterings = p.shadow_scatterings;
+        lights.store(i, light);
+        if (s.vertex == 0) {
+            PathSample const& at = p.sample;
+            seen.store(i, {at.albedo, at.normal, at.position, at.depth, at.hit ? 1u : 0u, at.turn});
+            if (s.number + 1 == paths && !first_hits.empty()) first_hits[s.pixel] = p.first;
+        }
+        ++s.vertex;
+        if (goes_on) return go_on(i, s, p);
+        s.stage = PathStage::ended;
+        queries.store(i, no_query());
     }
-    GI_FN void add_counts(std::size_t item, PathCounts const& local) const
+};
+
+/// Adds the light that is not in shadow; where a path has ended, its sample, and starts the next.
+template <class Samples>
+struct EndPaths : PathSlots {
+    Samples samples;
+
+    GI_FN void operator()(std::size_t i) const
     {
-        PathCounts& all = counts[item % counts.size()];
-        atomic_add(all.nearest_rays, local.nearest_rays);
-        if (local.shadow_rays > 0) atomic_add(all.shadow_rays, local.shadow_rays);
-        if (local.cut_paths > 0) atomic_add(all.cut_paths, local.cut_paths);
-        if (local.invalid_paths > 0) atomic_add(all.invalid_paths, local.invalid_paths);
+        PathSlot s = slots.load(i);
+        if (s.stage == PathStage::idle) return;
+        bool const lit = shadows.load(i).reach > 0 && blocked[i] == 0, in_turn = s.stage == PathStage::in_turn;
+        if (!lit && !in_turn) return;
+        PathLight light = lights.load(i);
+        PathSample sample;
+        sample.radiance = light.radiance;
+        if (lit) add_light(sample, light.scatterings, light.unshadowed);
+        if (!in_turn) {
+            light.radiance = sample.radiance;
+            return lights.store(i, light);
+        }
+        SeenSurface const at = seen.load(i);
+        sample.albedo = at.albedo;
+        sample.normal = at.normal;
+        sample.position = at.position;
+        sample.depth = at.depth;
+        sample.hit = at.hit != 0;
+        sample.turn = at.turn;
+        if (std::uint32_t const invalid = discard_invalid(sample); invalid > 0)
+            atomic_add(counts_of(i).invalid_paths, std::uint64_t(invalid));
+        samples.add(s.pixel, s.number, sample);
+        added[s.pixel] = s.number + 1;
+        take_path(i, s);
+        slots.store(i, s);
     }
 };
 

@@ -32,19 +32,18 @@ struct PathSteps {
     Interleaving interleaving{};
 
     /// Starts path number `index` of pixel (x, y) at the camera.
-    GI_FN Path start(int x, int y, std::uint32_t index) const;
+    GI_FN void start(Path& p, int x, int y, std::uint32_t index) const;
     GI_FN void choose_light(Path& p) const { p.light = gi::choose_light(world, p.rng.uniform_double()); }
     /// Advances from a hit to the next ray. Returns false if the path ends.
     GI_FN bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
 };
 
-GI_FN inline Path PathSteps::start(int x, int y, std::uint32_t index) const
+GI_FN inline void PathSteps::start(Path& p, int x, int y, std::uint32_t index) const
 {
-    Path p;
+    p = {};
     start_path(p, camera, filter, seed, {x, y}, width, index);
     std::uint32_t const pixel = std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x);
     if (interleaving.n > 1) p.share = interleaving.share(pixel, std::uint32_t(width), index);
-    return p;
 }
 
 GI_FN inline bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const
@@ -60,8 +59,8 @@ GI_FN inline bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCo
         see_first_surface(p.sample, at, camera);
     }
     if (!std::exchange(p.emitted, false) && max_component(at.emission) > 0)
-        layer_of(p.sample, p.scatterings) +=
-            p.throughput * met_emission(world, p, at, hit.triangle, arrival, hit.distance);
+        add_light(p.sample, p.scatterings,
+                  p.throughput * met_emission(world, p, at, hit.triangle, arrival, hit.distance));
     if (vertex == kLongestPath) {
         ++counts.cut_paths;
         return false;
@@ -87,7 +86,7 @@ GI_FN inline bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCo
     BsdfSample const next = gi::sample(at.bsdf, wo, at.front, u_lobe, p.rng.uniform2());
     if (last && !next.delta) return false;
     p.throughput *= next.weight;
-    return continue_path(p, at, next);
+    return continue_path(p, at, next, vertex);
 }
 
 } // namespace gi

@@ -7,9 +7,9 @@
 #include "gi/methods/slhb/kernels/path_kernel.h"
 #include "gi/methods/slhb/lights/light_points.h"
 #include "gi/raster/draw_nearest.h"
-#include "gi/render/path_workers.h"
 #include "gi/scene/model/world_on.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -128,12 +128,12 @@ public:
         paths.chances = {std::as_const(chances_).view()};
         paths.samples = samples_.view();
         paths.counts = counts.view();
-        if (bvh_) paths.rays = bvh_->rays();
-        paths.workers = path_workers(pixels);
+        if (std::size_t const most = std::min(pixels, kMostOnWay); on_way_[0].size() != most)
+            for (OnWay& w : on_way_) w = OnWay(most);
         if (bvh_)
-            launch(S, "trace paths with exact rays", paths.workers, TracePaths<true>{paths});
+            trace_all<true>(paths);
         else
-            launch(S, "trace paths", paths.workers, TracePaths<false>{paths});
+            trace_all<false>(paths);
         counts_ = {};
         for (PathKernelCounts const& c : download(counts)) counts_ += c;
         return std::as_const(samples_).view();
@@ -142,6 +142,53 @@ public:
     PathKernelCounts const& counts() const { return counts_; } ///< of the last trace
 
 private:
+    /// All paths one surface further, again and again; the last ones to their ends or exact rays, as they are too
+    /// few to fill a device.
+    template <bool by_rays>
+    void trace_all(PassOfPaths& paths)
+    {
+        constexpr std::size_t kFew = 16384;
+        for (paths.first = 0; paths.first < paths.samples.size(); paths.first += kMostOnWay) {
+            paths.next = on_way_[0].none();
+            launch(S, "first steps of paths", std::min(paths.samples.size() - paths.first, kMostOnWay),
+                   FirstSteps<by_rays>{{paths}});
+            for (int now = 0; std::size_t const n = on_way_[now].count(); now = 1 - now) {
+                PathsOnWay const from = paths.next;
+                ColumnView<Hit> const hits = on_way_[now].hits();
+                paths.next = on_way_[1 - now].none();
+                if (by_rays)
+                    launch(S, "exact rays of paths", n,
+                           NearestHits{world_.view(), bvh_->rays(), from.queries, hits});
+                launch(S, "further steps of paths", n,
+                       FurtherSteps<by_rays>{{paths}, from, hits, n < kFew ? kLongestPath : 1});
+            }
+        }
+    }
+
+    /// Memory of paths between two surfaces.
+    class OnWay {
+    public:
+        OnWay() = default;
+        explicit OnWay(std::size_t most) : paths_(most), queries_(most), hits_(most), count_(1) {}
+        std::size_t size() const { return paths_.size(); }
+        std::size_t count() const { return download(count_).front(); }
+        ColumnView<Hit> hits() { return hits_.view(); }
+        PathsOnWay none()
+        {
+            fill_bytes(S, count_.view().data, 0, sizeof(std::uint32_t));
+            return {paths_.view(), queries_.view(), count_.view()};
+        }
+
+    private:
+        ColumnBuffer<PathOnWay, S> paths_;
+        ColumnBuffer<RayQuery, S> queries_;
+        ColumnBuffer<Hit, S> hits_;
+        Buffer<std::uint32_t, S> count_;
+    };
+
+    static constexpr std::size_t kMostOnWay = std::size_t(1)
+                                              << 20; ///< bounds memory, and is enough to fill a device
+
     template <class Work>
     void with_cut_outs(std::uint32_t seed, Work const& work) const
     {
@@ -166,6 +213,7 @@ private:
     std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per light point, its faces
     Buffer<LightPointView, S> light_points_;
     Buffer<PathSample, S> samples_;
+    OnWay on_way_[2];
     PathKernelCounts counts_;
 };
 

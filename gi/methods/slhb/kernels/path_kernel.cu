@@ -4,7 +4,9 @@
 
 namespace gi {
 
-template void launch_device(char const*, std::size_t, TracePaths<false> const&);
-template void launch_device(char const*, std::size_t, TracePaths<true> const&);
+template void launch_device(char const*, std::size_t, FirstSteps<false> const&);
+template void launch_device(char const*, std::size_t, FirstSteps<true> const&);
+template void launch_device(char const*, std::size_t, FurtherSteps<false> const&);
+template void launch_device(char const*, std::size_t, FurtherSteps<true> const&);
 
 } // namespace gi

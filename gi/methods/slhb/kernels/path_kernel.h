@@ -1,17 +1,16 @@
 #pragma once
-// The paths of a pass as a kernel: one item, a worker, traces the paths of several pixels one after the other,
-// with their state in registers. Where a path ends the next one begins at once, so that the threads of a device
-// that step together do not wait for the longest path (Novak et al. 2010). Estimators and random numbers are those
-// of SlhbTracer (tracer.h), so that both trace the same paths up to rounding.
+// The paths of a pass by kernels: all of them one surface further, and then those that go on, so that the threads
+// of a device do the same at the same time (Laine et al. 2013, "Megakernels Considered Harmful"). Estimators and
+// random numbers are those of SlhbTracer (tracer.h), so that both trace the same paths up to rounding.
 //
-// Mirrors, glass and narrow lobes continue by exact rays through the project's own BVH. Cone, gathering,
-// interleaving and shared vertices are not supported.
+// Mirrors, glass and narrow lobes continue by exact rays through the project's own BVH, traced by a kernel of
+// their own (NearestHits). Cone, gathering, interleaving and shared vertices are not supported.
 
 #include "gi/kernel/atomics.h"
 #include "gi/methods/slhb/kernels/axis_step.h"
 #include "gi/methods/slhb/kernels/path_random.h"
 #include "gi/methods/slhb/lights/shadow_look.h"
-#include "gi/render/world_bvh.h"
+#include "gi/render/ray_kernels.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
 namespace gi {
@@ -38,10 +37,26 @@ struct PathKernelCounts {
     }
 };
 
+/// A path between two surfaces, and the one that a look-up found.
+struct PathOnWay {
+    PathState state;
+    std::uint32_t pixel;
+    int vertex; ///< as in StepPaths, like the following
+    std::uint32_t triangle;
+    float distance;
+    vec3 position, direction;
+};
+
+/// Paths that go on.
+struct PathsOnWay {
+    ColumnView<PathOnWay> paths;
+    ColumnView<RayQuery> queries; ///< of those whose surface an exact ray finds; no_query() for the others
+    View<std::uint32_t> count;    ///< [0]
+};
+
 /// What the paths of a pass read and write.
 struct PassOfPaths {
     WorldView world;
-    KernelRays rays; ///< without trees if no lobe is narrow
     CameraRays camera;
     View<NearestTexel const> primary; ///< per pixel, in rows of `width`
     View<std::uint8_t const> hidden;  ///< per pixel: 1 = hidden, nothing is traced; empty = none hidden
@@ -55,27 +70,27 @@ struct PassOfPaths {
     float roulette; ///< see SlhbSettings
     bool smooth;    ///< the world contains a mirror or glass
     std::uint32_t seed, pass;
-    std::size_t workers;           ///< number of items
+    std::size_t first;             ///< pixel of the first item of FirstSteps
     View<PathSample> samples;      ///< per pixel
+    PathsOnWay next;               ///< to which paths are added
     View<PathKernelCounts> counts; ///< to be added up
 };
 
-/// @tparam by_rays  some lobes may be narrow; otherwise the kernel needs fewer registers and no stacks
+/// One step of paths. @tparam by_rays  some lobes may be narrow; otherwise no path needs an exact ray
 template <bool by_rays>
-struct TracePaths : PassOfPaths {
-    GI_FN void operator()(std::size_t i) const;
-
-private:
+struct StepPaths : PassOfPaths {
+protected:
     /// State of one path.
     struct State : PathState {
         RqmcStream random;
         std::uint32_t triangle = kNoPrimitive;
         vec2 barycentric{1.0f / 3};
-        vec3 position{0};          ///< only read where has_position
-        bool has_position = false; ///< found by a look-up, which gives the point instead of weights
-        vec3 direction{0};         ///< of arrival
-        float distance = 0;        ///< m, from the last surface
-        int vertex = 0;            ///< number of surfaces before, delta lobes included
+        vec3 position{0};            ///< only read where has_position
+        bool has_position = false;   ///< found by a look-up, which gives the point instead of weights
+        vec3 direction{0};           ///< of arrival
+        float distance = 0;          ///< m, from the last surface
+        int vertex = 0;              ///< number of surfaces before, delta lobes included
+        RayQuery query = no_query(); ///< of the exact ray that the path needs now
 
         GI_FN std::uint32_t dimension(PathDimension d) const { return dimension_of(std::uint32_t(vertex), d); }
         GI_FN float number(PathDimension d) const { return random.sample(dimension(d)); }
@@ -87,6 +102,7 @@ private:
     GI_FN vec3 sky(State const& s) const;
     GI_FN vec3 emission(State const& s, ShadingPoint const& at) const;
     GI_FN vec3 direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    GI_FN void go_on(std::size_t pixel, State const& s) const;
     /// Continues the path to the next surface. Returns false if it ends.
     GI_FN bool scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
     /// The same by a mirror, glass or a narrow lobe.
@@ -96,7 +112,7 @@ private:
                                   PathKernelCounts& local) const;
     GI_FN bool survives(State& s) const
     {
-        return survives_roulette(s, roulette, [&s] { return s.number(PathDimension::roulette); });
+        return survives_roulette(s, s.vertex, roulette, [&s] { return s.number(PathDimension::roulette); });
     }
     /// True where only delta lobes continue; mirrors and glass do not count as scatterings.
     GI_FN bool is_last(State const& s) const { return s.scatterings > bounces; }
@@ -106,6 +122,22 @@ private:
         return s.scatterings == bounces && !narrow && !smooth;
     }
     GI_FN void add_counts(std::size_t item, PathKernelCounts const& local) const;
+};
+
+/// First step. Item = pixel, from `first` on.
+template <bool by_rays>
+struct FirstSteps : StepPaths<by_rays> {
+    GI_FN void operator()(std::size_t i) const;
+};
+
+/// Further steps. Item = path.
+template <bool by_rays>
+struct FurtherSteps : StepPaths<by_rays> {
+    PathsOnWay from;
+    ColumnView<Hit> hits; ///< of from.queries
+    int most;             ///< steps, unless an exact ray is needed before
+
+    GI_FN void operator()(std::size_t i) const;
 };
 
 } // namespace gi

@@ -1,10 +1,10 @@
 #pragma once
-// Implementation of TracePaths; included by path_kernel.h.
+// Implementation of the kernels of paths; included by path_kernel.h.
 
 namespace gi {
 
 template <bool by_rays>
-GI_FN typename TracePaths<by_rays>::State TracePaths<by_rays>::start(std::size_t pixel) const
+GI_FN typename StepPaths<by_rays>::State StepPaths<by_rays>::start(std::size_t pixel) const
 {
     auto const id = std::uint32_t(pixel);
     Ray const ray = camera.through(vec2{float(id % width), float(id / width)} + place);
@@ -17,7 +17,7 @@ GI_FN typename TracePaths<by_rays>::State TracePaths<by_rays>::start(std::size_t
 }
 
 template <bool by_rays>
-GI_FN vec3 TracePaths<by_rays>::sky(State const& s) const
+GI_FN vec3 StepPaths<by_rays>::sky(State const& s) const
 {
     if (s.vertex == 0) return background_radiance(world, s.direction);
     if (world.environment_radiance.empty()) return vec3{0};
@@ -26,15 +26,15 @@ GI_FN vec3 TracePaths<by_rays>::sky(State const& s) const
 
 /// Emission of a light hit by the camera, a look-up or an exact ray.
 template <bool by_rays>
-GI_FN vec3 TracePaths<by_rays>::emission(State const& s, ShadingPoint const& at) const
+GI_FN vec3 StepPaths<by_rays>::emission(State const& s, ShadingPoint const& at) const
 {
     if (!(max_component(at.emission) > 0)) return vec3{0};
     return s.throughput * met_emission(world, s, at, s.triangle, s.direction, s.distance);
 }
 
 template <bool by_rays>
-GI_FN vec3 TracePaths<by_rays>::direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                       PathKernelCounts& local) const
+GI_FN vec3 StepPaths<by_rays>::direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                      PathKernelCounts& local) const
 {
     std::size_t k = 0;
     if (!chances.empty()) {
@@ -58,8 +58,8 @@ GI_FN vec3 TracePaths<by_rays>::direct(State const& s, ShadingPoint const& at, v
 }
 
 template <bool by_rays>
-GI_FN bool TracePaths<by_rays>::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
-                                               PathKernelCounts& local) const
+GI_FN bool StepPaths<by_rays>::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
+                                              PathKernelCounts& local) const
 {
     vec2 const u{s.number(PathDimension::lobe_u), s.number(PathDimension::lobe_v)};
     BsdfSample const sampled = gi::sample(at.bsdf, wo, at.front, u_lobe, u);
@@ -72,20 +72,15 @@ GI_FN bool TracePaths<by_rays>::scatter_by_ray(State& s, ShadingPoint const& at,
     if (!sampled.delta) ++s.scatterings;
     ++s.vertex;
     std::uint32_t const ray_seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), pass);
-    Hit const hit = rays.nearest(world, {.ray = {leave(at, direction), direction}, .seed = ray_seed});
-    ++local.exact_rays;
-    static_assert(kNoTriangle == kNoPrimitive);
-    s.triangle = hit.triangle;
-    s.barycentric = hit.barycentric;
-    s.has_position = false;
-    s.distance = hit.distance;
+    s.query = RayQuery{.ray = {leave(at, direction), direction}, .seed = ray_seed};
     s.direction = direction;
+    ++local.exact_rays;
     return true;
 }
 
 template <bool by_rays>
-GI_FN bool TracePaths<by_rays>::scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                                   PathKernelCounts& local) const
+GI_FN bool StepPaths<by_rays>::scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                                  PathKernelCounts& local) const
 {
     static_assert(kNoLayerHit == kNoPrimitive);
     if (is_last(s) || !(wo.z > 0)) return false;
@@ -114,8 +109,8 @@ GI_FN bool TracePaths<by_rays>::scatter_by_look_up(State& s, ShadingPoint const&
 }
 
 template <bool by_rays>
-GI_FN bool TracePaths<by_rays>::scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                        PathKernelCounts& local) const
+GI_FN bool StepPaths<by_rays>::scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                       PathKernelCounts& local) const
 {
     if (by_rays && narrow)
         if (float const u_lobe = s.number(PathDimension::lobe); takes_narrow_lobe(at.bsdf, wo, u_lobe))
@@ -124,7 +119,7 @@ GI_FN bool TracePaths<by_rays>::scatter(State& s, ShadingPoint const& at, vec3 w
 }
 
 template <bool by_rays>
-GI_FN void TracePaths<by_rays>::add_counts(std::size_t item, PathKernelCounts const& local) const
+GI_FN void StepPaths<by_rays>::add_counts(std::size_t item, PathKernelCounts const& local) const
 {
     PathKernelCounts& all = counts[item % counts.size()];
     auto const more = [](std::uint64_t& sum, std::uint64_t n) {
@@ -138,10 +133,10 @@ GI_FN void TracePaths<by_rays>::add_counts(std::size_t item, PathKernelCounts co
 }
 
 template <bool by_rays>
-GI_FN bool TracePaths<by_rays>::step(State& s, PathSample& out, PathKernelCounts& local) const
+GI_FN bool StepPaths<by_rays>::step(State& s, PathSample& out, PathKernelCounts& local) const
 {
     if (s.triangle == kNoPrimitive) {
-        layer_of(out, s.scatterings) += sky(s);
+        add_light(out, s.scatterings, sky(s));
         return false;
     }
     Surface const& surface = world.surfaces[s.triangle];
@@ -150,7 +145,7 @@ GI_FN bool TracePaths<by_rays>::step(State& s, PathSample& out, PathKernelCounts
     ShadingPoint at = shading_point(world, s.triangle, s.barycentric, s.direction);
     if (s.has_position) at.position = s.position;
     if (s.vertex == 0) see_first_surface(out, at, camera);
-    layer_of(out, s.scatterings) += emission(s, at);
+    add_light(out, s.scatterings, emission(s, at));
     if (!by_rays && is_last(s)) return false;
     if (s.vertex == kLongestPath) {
         ++local.cut_paths;
@@ -159,28 +154,74 @@ GI_FN bool TracePaths<by_rays>::step(State& s, PathSample& out, PathKernelCounts
     vec3 const wo = at.frame.to_local(-s.direction);
     bool const narrow = by_rays && has_narrow_lobe(at.bsdf);
     if (!is_last(s) && !light_points.empty() && !only_delta(at.bsdf))
-        layer_of(out, s.scatterings + 1) += direct(s, at, wo, narrow, local);
+        add_light(out, s.scatterings + 1, direct(s, at, wo, narrow, local));
     return scatter(s, at, wo, narrow, local);
 }
 
 template <bool by_rays>
-GI_FN void TracePaths<by_rays>::operator()(std::size_t worker) const
+GI_FN void StepPaths<by_rays>::go_on(std::size_t pixel, State const& s) const
+{
+    std::uint32_t const k = atomic_add(next.count[0], 1);
+    next.paths.store(k, {.state = s,
+                         .pixel = std::uint32_t(pixel),
+                         .vertex = s.vertex,
+                         .triangle = s.triangle,
+                         .distance = s.distance,
+                         .position = s.position,
+                         .direction = s.direction});
+    if (by_rays) next.queries.store(k, s.query);
+}
+
+template <bool by_rays>
+GI_FN void FirstSteps<by_rays>::operator()(std::size_t item) const
+{
+    std::size_t const i = this->first + item;
+    PathKernelCounts local;
+    PathSample out;
+    if (this->hidden.empty() || this->hidden[i] == 0) {
+        auto s = this->start(i);
+        if (this->step(s, out, local))
+            this->go_on(i, s);
+        else
+            local.invalid_paths += discard_invalid(out);
+        this->add_counts(i, local);
+    }
+    this->samples[i] = out;
+}
+
+template <bool by_rays>
+GI_FN void FurtherSteps<by_rays>::operator()(std::size_t i) const
 {
     PathKernelCounts local;
-    std::size_t i = worker;
-    auto const is_hidden = [&] { return !hidden.empty() && hidden[i] != 0; };
-    PathSample out;
-    State s = start(i);
-    for (;;) {
-        if (!is_hidden() && step(s, out, local)) continue;
-        local.invalid_paths += discard_invalid(out);
-        samples[i] = out;
-        i += workers;
-        if (i >= samples.size()) break;
-        out = {};
-        s = start(i);
+    PathOnWay const path = from.paths.load(i);
+    typename StepPaths<by_rays>::State s;
+    static_cast<PathState&>(s) = path.state;
+    s.random = pixel_stream(this->seed, path.pixel, this->width, this->pass);
+    s.vertex = path.vertex;
+    s.direction = path.direction;
+    if (by_rays && from.queries.load(i).reach > 0) {
+        static_assert(kNoTriangle == kNoPrimitive);
+        Hit const hit = hits.load(i);
+        s.triangle = hit.triangle;
+        s.barycentric = hit.barycentric;
+        s.distance = hit.distance;
+    } else {
+        s.triangle = path.triangle;
+        s.position = path.position;
+        s.has_position = true;
+        s.distance = path.distance;
     }
-    add_counts(worker, local);
+    PathSample out;
+    bool goes_on = true;
+    for (int k = 0; k < most && goes_on && !(s.query.reach > 0); ++k) goes_on = this->step(s, out, local);
+    PathSample& sum = this->samples[path.pixel];
+    for (std::size_t k = 0; k < out.radiance.size(); ++k) out.radiance[k] += sum.radiance[k];
+    if (goes_on)
+        this->go_on(path.pixel, s);
+    else
+        local.invalid_paths += discard_invalid(out);
+    sum.radiance = out.radiance;
+    this->add_counts(i, local);
 }
 
 } // namespace gi
