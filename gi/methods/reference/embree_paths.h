@@ -63,7 +63,7 @@ public:
                 batch.clear();
                 for (int y = tile.top; y < tile.bottom; ++y)
                     for (int x = tile.left; x < tile.right; ++x)
-                        steps.start(batch.emplace_back(), x, y, first_path + i);
+                        batch.push_back(steps.start(x, y, first_path + i));
                 tracer.trace(batch, local);
                 auto next = batch.begin();
                 bool const last = i + 1 == pass.paths && !first_hits.empty();

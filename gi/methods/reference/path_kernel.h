@@ -96,8 +96,7 @@ struct PathSlots {
             atomic_add(counts_of(i).shadow_rays, std::uint64_t(s.shadow_rays));
             return;
         }
-        Path p;
-        steps.start(p, int(s.pixel) % steps.width, int(s.pixel) / steps.width, first_path + s.number);
+        Path p = steps.start(int(s.pixel) % steps.width, int(s.pixel) / steps.width, first_path + s.number);
         lights.store(i, {});
         go_on(i, s, p);
     }

@@ -32,18 +32,19 @@ struct PathSteps {
     Interleaving interleaving{};
 
     /// Starts path number `index` of pixel (x, y) at the camera.
-    GI_FN void start(Path& p, int x, int y, std::uint32_t index) const;
+    GI_FN Path start(int x, int y, std::uint32_t index) const;
     GI_FN void choose_light(Path& p) const { p.light = gi::choose_light(world, p.rng.uniform_double()); }
     /// Advances from a hit to the next ray. Returns false if the path ends.
     GI_FN bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
 };
 
-GI_FN inline void PathSteps::start(Path& p, int x, int y, std::uint32_t index) const
+GI_FN inline Path PathSteps::start(int x, int y, std::uint32_t index) const
 {
-    p = {};
+    Path p;
     start_path(p, camera, filter, seed, {x, y}, width, index);
     std::uint32_t const pixel = std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x);
     if (interleaving.n > 1) p.share = interleaving.share(pixel, std::uint32_t(width), index);
+    return p;
 }
 
 GI_FN inline bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const
