@@ -90,24 +90,19 @@ GI_FN vec3 unshadowed_light(ShadingPoint const& at, vec3 wo, LightSample const& 
     return value;
 }
 
-/// Surfaces after which every path may end by roulette, so that none goes on for ever in glass or between mirrors.
-inline constexpr int kSurfacesWithoutEnd = 32;
-
 /// Russian roulette: false if the path ends, otherwise its throughput is divided by the probability of continuing.
-/// @param vertex    number of surfaces before, delta lobes included
 /// @param roulette  see SlhbSettings; 0: all paths continue up to the fourth scattering, then with a probability
 /// of
 ///                  their throughput
 /// @param uniform   () -> a number in [0, 1); called only if needed
 template <class Uniform>
-GI_FN bool survives_roulette(PathState& s, int vertex, float roulette, Uniform const& uniform)
+GI_FN bool survives_roulette(PathState& s, float roulette, Uniform const& uniform)
 {
     float const largest = max_component(s.throughput);
     if (!(largest > 0)) return false;
-    float keep = roulette > 0                            ? glm::min(1.0f, roulette * largest)
-                 : s.scatterings >= 3 && largest < 0.95f ? largest
-                                                         : 1.0f;
-    if (vertex >= kSurfacesWithoutEnd) keep = glm::min(keep, glm::min(largest, 0.95f));
+    float const keep = roulette > 0                            ? glm::min(1.0f, roulette * largest)
+                       : s.scatterings >= 3 && largest < 0.95f ? largest
+                                                               : 1.0f;
     if (keep < 1) {
         if (uniform() >= keep) return false;
         s.throughput /= keep;

@@ -100,10 +100,10 @@ GI_FN inline RayQuery next_query(RayPath& p, int vertex)
     return {.ray = p.ray, .seed = p.rng.next(), .start = vertex == 0 ? camera_clearance(p.ray.origin) : 0};
 }
 
-/// Continues a path along a sampled direction. Returns false if it ends. @param vertex  number of surfaces before
-GI_FN inline bool continue_path(RayPath& p, ShadingPoint const& at, BsdfSample const& next, int vertex)
+/// Continues a path along a sampled direction. Returns false if it ends.
+GI_FN inline bool continue_path(RayPath& p, ShadingPoint const& at, BsdfSample const& next)
 {
-    if (!survives_roulette(p, vertex, 0, [&] { return p.rng.uniform(); })) return false;
+    if (!survives_roulette(p, 0, [&] { return p.rng.uniform(); })) return false;
     vec3 const direction = at.frame.to_world(next.wi);
     if (!is_on_one_side(at, direction, next.wi)) return false;
     p.ray = {leave(at, direction), direction};

@@ -105,35 +105,6 @@ TEST(HardCases, ClosedRoomKeepsTheSkyOut)
     EXPECT_EQ(mean_of(p).mean, 0);
 }
 
-/// Nothing is absorbed and nothing leaves: only roulette ends a path.
-TEST(HardCases, RoomOfPerfectMirrorsEndsEveryPath)
-{
-    Scene scene;
-    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, mirror(vec3{1})), true);
-    RenderSettings s;
-    s.width = s.height = 16;
-    s.paths = 16;
-    Report report;
-    render_reference(world_of(scene), look_at({0, 0, 0}, {1, 0.8, 0.6}, 100), s, {}, {}, report);
-    EXPECT_EQ(report.losses().count("paths cut at 1024 surfaces"), 0u);
-    EXPECT_LT(report.counts().at("closest-hit rays"), 16.0 * 16 * 16 * 80);
-}
-
-/// Some 100 reflections lie between the camera and the sky; roulette keeps their mean.
-TEST(HardCases, ShaftOfPerfectMirrorsShowsTheSky)
-{
-    Scene scene;
-    set_environment(scene, vec3{1});
-    int const m = add_material(scene, mirror(vec3{1}));
-    for (float const side : {-1.0f, 1.0f}) {
-        add_quad(scene, {side, -1, 1}, {0, 2, 0}, {0, 0, -42}, m);
-        add_quad(scene, {-1, side, 1}, {2, 0, 0}, {0, 0, -42}, m);
-    }
-    add_quad(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, m);
-    Picture const p = render(world_of(scene), look_at({0, 0, 0}, {0.1, 0.05, -1}, 150), 1024).picture;
-    EXPECT_NEAR(mean_of(p).mean, 1, 0.02);
-}
-
 /// It sees what lies before it, not the surface.
 TEST(HardCases, CameraInASurface)
 {

@@ -12,7 +12,6 @@
 #include "gi/scene/model/world_on.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <tbb/parallel_for.h>
 
@@ -134,7 +133,6 @@ private:
     PathCounts run(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                    std::span<FirstHit> first_hits, std::uint32_t most, To const& to, Ended const& ended)
     {
-        constexpr double kTogether_s = 0.1;
         constexpr std::size_t kCounts = 1024; // threads that add to one number wait for each other
         std::size_t const pixels = pass.pixels();
         Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(kCounts));
@@ -149,14 +147,11 @@ private:
         all.first_hits = hits.view();
         all.counts = counts.view();
         for (std::uint32_t done = pass.done(); done < pass.paths && !pass.given_up();) {
-            all.paths = std::min({pass.paths - done, together_, most, countable});
+            all.paths = std::min({pass.paths - done, most, countable});
             all.first_path = first_path + done;
-            auto const begun = std::chrono::steady_clock::now();
-            trace_all(all, to(done));
-            std::chrono::duration<double> const took = std::chrono::steady_clock::now() - begun;
-            together_ = std::uint32_t(std::clamp(all.paths * kTogether_s / took.count(), 1.0, 4.0 * all.paths));
+            std::uint32_t const traced = trace_all(all, pass, to(done));
             ended(done);
-            done += all.paths;
+            done += traced;
             pass.set_done(done);
         }
         if (!first_hits.empty() && pass.done() == pass.paths)
@@ -166,22 +161,35 @@ private:
         return sum;
     }
 
+    /// Returns the number of paths of each pixel: fewer than asked for if the pass is given up.
     template <class Samples>
-    void trace_all(PathSlots const& all, Samples const& to)
+    std::uint32_t trace_all(PathSlots all, TiledPass const& pass, Samples const& to)
     {
         constexpr int kSteps = 8; // between looks at how far it is
-        std::size_t const n = all.slots.count;
+        constexpr std::uint32_t kFew = 16384;
+        auto const n = std::uint32_t(all.slots.count), few = std::min(n / 8, kFew);
         WorldView const& world = all.steps.world;
         KernelRays const rays = bvh_->rays();
         memory_.take_none();
         launch(S, "start paths", n, StartPaths{all});
-        while (memory_.taken() < all.end())
+        for (;;) {
+            std::uint32_t const taken = memory_.taken();
+            if (pass.given_up()) all.paths = std::min(all.paths, (taken + all.pixels - 1) / all.pixels);
+            std::uint32_t const end = all.pixels * all.paths, idle = taken > end ? taken - end : 0;
+            if (idle == n) return all.paths;
+            if (n - idle <= few) {
+                launch(S, "finish paths", n, FinishPaths{{all}, rays});
+                launch(S, "scatter paths", n, ScatterPaths{all});
+                launch(S, "end paths", n, EndPaths<Samples>{all, to});
+                continue;
+            }
             for (int k = 0; k < kSteps; ++k) {
                 launch(S, "rays of paths", n, NearestHits{world, rays, all.queries, all.hits});
                 launch(S, "scatter paths", n, ScatterPaths{all});
                 launch(S, "shadow rays of paths", n, BlockedRays{world, rays, all.shadows, all.blocked});
                 launch(S, "end paths", n, EndPaths<Samples>{all, to});
             }
+        }
     }
 
     static constexpr std::size_t kMostSlots = std::size_t(1) << 20; ///< enough to fill a device

@@ -6,6 +6,7 @@ namespace gi {
 
 template void launch_device(char const*, std::size_t, StartPaths const&);
 template void launch_device(char const*, std::size_t, ScatterPaths const&);
+template void launch_device(char const*, std::size_t, FinishPaths const&);
 template void launch_device(char const*, std::size_t, EndPaths<AddToMeans> const&);
 template void launch_device(char const*, std::size_t, EndPaths<KeepSamples> const&);
 

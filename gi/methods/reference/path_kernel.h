@@ -59,6 +59,16 @@ struct PathLight {
     int scatterings;              ///< of that
 };
 
+/// The same with what arrives unshadowed.
+GI_FN inline PathLight lit(PathLight light)
+{
+    PathSample sample;
+    sample.radiance = light.radiance;
+    add_light(sample, light.scatterings, light.unshadowed);
+    light.radiance = sample.radiance;
+    return light;
+}
+
 /// What the kernels share. Item = slot.
 struct PathSlots {
     PathSteps steps;
@@ -76,9 +86,6 @@ struct PathSlots {
     View<std::uint32_t> taken;             ///< [0]: number of paths
     View<FirstHit> first_hits;             ///< of the last path, per pixel; empty = not needed
     View<PathCounts> counts;               ///< to be added up
-
-    /// Paths that the slots have asked for when all are idle.
-    std::uint32_t end() const { return pixels * paths + std::uint32_t(slots.count); }
 
     GI_FN PathCounts& counts_of(std::size_t i) const { return counts[i % counts.size()]; }
 
@@ -132,7 +139,7 @@ struct ScatterPaths : PathSlots {
         slots.store(i, s);
     }
 
-private:
+protected:
     GI_FN void scatter(std::size_t i, PathSlot& s) const
     {
         Path p;
@@ -167,6 +174,24 @@ private:
     }
 };
 
+/// Traces paths to their ends: the last ones are too few to fill a device.
+struct FinishPaths : ScatterPaths {
+    KernelRays rays;
+
+    GI_FN void operator()(std::size_t i) const
+    {
+        PathSlot s = slots.load(i);
+        if (s.stage != PathStage::goes_on) return;
+        do {
+            hits.store(i, rays.nearest(steps.world, queries.load(i)));
+            scatter(i, s);
+            RayQuery const shadow = shadows.load(i);
+            if (shadow.reach > 0 && !rays.occluded(steps.world, shadow)) lights.store(i, lit(lights.load(i)));
+        } while (s.stage == PathStage::goes_on);
+        slots.store(i, s);
+    }
+};
+
 /// Adds the light that is not in shadow; where a path has ended, its sample, and starts the next.
 template <class Samples>
 struct EndPaths : PathSlots {
@@ -176,17 +201,14 @@ struct EndPaths : PathSlots {
     {
         PathSlot s = slots.load(i);
         if (s.stage == PathStage::idle) return;
-        bool const lit = shadows.load(i).reach > 0 && blocked[i] == 0, in_turn = s.stage == PathStage::in_turn;
-        if (!lit && !in_turn) return;
+        bool const is_lit = shadows.load(i).reach > 0 && blocked[i] == 0, in_turn = s.stage == PathStage::in_turn;
+        if (!is_lit && !in_turn) return;
         PathLight light = lights.load(i);
+        if (is_lit) light = lit(light);
+        if (!in_turn) return lights.store(i, light);
+        SeenSurface const at = seen.load(i);
         PathSample sample;
         sample.radiance = light.radiance;
-        if (lit) add_light(sample, light.scatterings, light.unshadowed);
-        if (!in_turn) {
-            light.radiance = sample.radiance;
-            return lights.store(i, light);
-        }
-        SeenSurface const at = seen.load(i);
         sample.albedo = at.albedo;
         sample.normal = at.normal;
         sample.position = at.position;

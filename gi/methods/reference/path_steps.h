@@ -87,7 +87,7 @@ GI_FN inline bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCo
     BsdfSample const next = gi::sample(at.bsdf, wo, at.front, u_lobe, p.rng.uniform2());
     if (last && !next.delta) return false;
     p.throughput *= next.weight;
-    return continue_path(p, at, next, vertex);
+    return continue_path(p, at, next);
 }
 
 } // namespace gi

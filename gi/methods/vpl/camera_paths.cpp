@@ -73,7 +73,7 @@ bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::ui
     if (!next.delta && share < 1 && p.rng.uniform() >= share) return false;
     p.straight = !next.delta && p.scatterings == 0;
     if (p.straight) p.value_x = kPi * max_component(evaluate(at.bsdf, wo, next.wi).f) * std::abs(next.wi.z);
-    return continue_path(p, at, next, surface);
+    return continue_path(p, at, next);
 }
 
 void CameraPaths::trace(std::span<CameraSubpath> paths, std::vector<Receiver>& receivers, PathCounts& counts) const

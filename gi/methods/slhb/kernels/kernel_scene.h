@@ -142,25 +142,27 @@ public:
     PathKernelCounts const& counts() const { return counts_; } ///< of the last trace
 
 private:
-    /// All paths one surface further, again and again; the last ones to their ends or exact rays, as they are too
-    /// few to fill a device.
+    /// All paths one surface further, again and again, and the last few to their ends.
     template <bool by_rays>
     void trace_all(PassOfPaths& paths)
     {
-        constexpr std::size_t kFew = 16384;
+        KernelRays const rays = by_rays ? bvh_->rays() : KernelRays{};
         for (paths.first = 0; paths.first < paths.samples.size(); paths.first += kMostOnWay) {
+            std::size_t const all = std::min(paths.samples.size() - paths.first, kMostOnWay);
+            std::size_t const few = std::min(all / 8, kFewOnWay);
             paths.next = on_way_[0].none();
-            launch(S, "first steps of paths", std::min(paths.samples.size() - paths.first, kMostOnWay),
-                   FirstSteps<by_rays>{{paths}});
+            launch(S, "first steps of paths", all, FirstSteps<by_rays>{{paths}});
             for (int now = 0; std::size_t const n = on_way_[now].count(); now = 1 - now) {
                 PathsOnWay const from = paths.next;
                 ColumnView<Hit> const hits = on_way_[now].hits();
                 paths.next = on_way_[1 - now].none();
                 if (by_rays)
-                    launch(S, "exact rays of paths", n,
-                           NearestHits{world_.view(), bvh_->rays(), from.queries, hits});
-                launch(S, "further steps of paths", n,
-                       FurtherSteps<by_rays>{{paths}, from, hits, n < kFew ? kLongestPath : 1});
+                    launch(S, "exact rays of paths", n, NearestHits{world_.view(), rays, from.queries, hits});
+                if (n > few)
+                    launch(S, "further steps of paths", n,
+                           FurtherSteps<by_rays, false>{{paths}, from, hits, rays});
+                else
+                    launch(S, "last steps of paths", n, FurtherSteps<by_rays, true>{{paths}, from, hits, rays});
             }
         }
     }
@@ -186,6 +188,7 @@ private:
         Buffer<std::uint32_t, S> count_;
     };
 
+    static constexpr std::size_t kFewOnWay = std::size_t(1) << 14;
     static constexpr std::size_t kMostOnWay = std::size_t(1)
                                               << 20; ///< bounds memory, and is enough to fill a device
 

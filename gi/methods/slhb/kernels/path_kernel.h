@@ -97,6 +97,8 @@ protected:
     };
 
     GI_FN State start(std::size_t pixel) const;
+    /// What the exact ray of the path found.
+    GI_FN static void meet(State& s, Hit const& hit);
     /// From one surface to the next. Returns false if the path ends.
     GI_FN bool step(State& s, PathSample& out, PathKernelCounts& local) const;
     GI_FN vec3 sky(State const& s) const;
@@ -112,7 +114,7 @@ protected:
                                   PathKernelCounts& local) const;
     GI_FN bool survives(State& s) const
     {
-        return survives_roulette(s, s.vertex, roulette, [&s] { return s.number(PathDimension::roulette); });
+        return survives_roulette(s, roulette, [&s] { return s.number(PathDimension::roulette); });
     }
     /// True where only delta lobes continue; mirrors and glass do not count as scatterings.
     GI_FN bool is_last(State const& s) const { return s.scatterings > bounces; }
@@ -130,12 +132,12 @@ struct FirstSteps : StepPaths<by_rays> {
     GI_FN void operator()(std::size_t i) const;
 };
 
-/// Further steps. Item = path.
-template <bool by_rays>
+/// A further step, or with `last` all that are left: the last paths are too few to fill a device. Item = path.
+template <bool by_rays, bool last>
 struct FurtherSteps : StepPaths<by_rays> {
     PathsOnWay from;
     ColumnView<Hit> hits; ///< of from.queries
-    int most;             ///< steps, unless an exact ray is needed before
+    KernelRays rays;      ///< for the last
 
     GI_FN void operator()(std::size_t i) const;
 };

@@ -190,7 +190,18 @@ GI_FN void FirstSteps<by_rays>::operator()(std::size_t item) const
 }
 
 template <bool by_rays>
-GI_FN void FurtherSteps<by_rays>::operator()(std::size_t i) const
+GI_FN void StepPaths<by_rays>::meet(State& s, Hit const& hit)
+{
+    static_assert(kNoTriangle == kNoPrimitive);
+    s.triangle = hit.triangle;
+    s.barycentric = hit.barycentric;
+    s.has_position = false;
+    s.distance = hit.distance;
+    s.query = no_query();
+}
+
+template <bool by_rays, bool last>
+GI_FN void FurtherSteps<by_rays, last>::operator()(std::size_t i) const
 {
     PathKernelCounts local;
     PathOnWay const path = from.paths.load(i);
@@ -199,21 +210,17 @@ GI_FN void FurtherSteps<by_rays>::operator()(std::size_t i) const
     s.random = pixel_stream(this->seed, path.pixel, this->width, this->pass);
     s.vertex = path.vertex;
     s.direction = path.direction;
-    if (by_rays && from.queries.load(i).reach > 0) {
-        static_assert(kNoTriangle == kNoPrimitive);
-        Hit const hit = hits.load(i);
-        s.triangle = hit.triangle;
-        s.barycentric = hit.barycentric;
-        s.distance = hit.distance;
-    } else {
-        s.triangle = path.triangle;
-        s.position = path.position;
-        s.has_position = true;
-        s.distance = path.distance;
-    }
+    s.triangle = path.triangle;
+    s.position = path.position;
+    s.has_position = true;
+    s.distance = path.distance;
+    if (by_rays && from.queries.load(i).reach > 0) this->meet(s, hits.load(i));
     PathSample out;
-    bool goes_on = true;
-    for (int k = 0; k < most && goes_on && !(s.query.reach > 0); ++k) goes_on = this->step(s, out, local);
+    bool goes_on = this->step(s, out, local);
+    while (last && goes_on) {
+        if (by_rays && s.query.reach > 0) this->meet(s, rays.nearest(this->world, s.query));
+        goes_on = this->step(s, out, local);
+    }
     PathSample& sum = this->samples[path.pixel];
     for (std::size_t k = 0; k < out.radiance.size(); ++k) out.radiance[k] += sum.radiance[k];
     if (goes_on)

@@ -247,7 +247,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
         s.emitted = from.alone;
         if (!(free_ ? scatter_freely(s, from, next) : scatter_along_axis(pass, s, from, next))) return false;
     }
-    if (!survives_roulette(s, s.vertex, roulette_, [&] { return (*s.u)[PathDimension::roulette]; })) return false;
+    if (!survives_roulette(s, roulette_, [&] { return (*s.u)[PathDimension::roulette]; })) return false;
     if (next.exact) next.ray = {leave(at, s.direction), s.direction};
     s.along_axis = !next.exact;
     if (seen)
