@@ -1,8 +1,23 @@
 #include "gi/raster/fragments.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <utility>
 
 namespace gi {
+namespace {
+
+std::atomic<unsigned> releases = 0;
+
+/// Of one thread, which may borrow more of them while it waits for others.
+struct Spare {
+    std::array<Fragments, 2> fragments;
+    unsigned since = 0;
+};
+thread_local Spare spare;
+
+} // namespace
 
 void Fragments::grow(std::size_t needed)
 {
@@ -17,5 +32,22 @@ void Fragments::grow(std::size_t needed)
     move(depth);
     move(primitive);
 }
+
+BorrowedFragments::BorrowedFragments() : since_(releases)
+{
+    if (spare.since != since_) spare = {{}, since_};
+    auto const largest = std::ranges::max_element(spare.fragments, {}, &Fragments::capacity);
+    fragments_ = std::exchange(*largest, {});
+    fragments_.count = 0;
+}
+
+BorrowedFragments::~BorrowedFragments()
+{
+    if (spare.since != since_) return;
+    auto const smallest = std::ranges::min_element(spare.fragments, {}, &Fragments::capacity);
+    if (smallest->capacity < fragments_.capacity) *smallest = std::move(fragments_);
+}
+
+void release_spare_fragments() { ++releases; }
 
 } // namespace gi
