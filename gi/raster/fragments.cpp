@@ -1,21 +1,26 @@
 #include "gi/raster/fragments.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
+#include <mutex>
 #include <utility>
+#include <vector>
 
 namespace gi {
 namespace {
 
-std::atomic<unsigned> releases = 0;
-
-/// Of one thread, which may borrow more of them while it waits for others.
-struct Spare {
-    std::array<Fragments, 2> fragments;
-    unsigned since = 0;
+struct Spares {
+    std::mutex mutex;
+    std::vector<Fragments> fragments; ///< those returned last at the end
+    std::size_t borrowed = 0;
+    unsigned releases = 0;
 };
-thread_local Spare spare;
+
+/// Never destroyed: threads may outlive static objects.
+Spares& spares()
+{
+    static Spares& all = *new Spares;
+    return all;
+}
 
 } // namespace
 
@@ -33,21 +38,34 @@ void Fragments::grow(std::size_t needed)
     move(primitive);
 }
 
-BorrowedFragments::BorrowedFragments() : since_(releases)
+BorrowedFragments::BorrowedFragments()
 {
-    if (spare.since != since_) spare = {{}, since_};
-    auto const largest = std::ranges::max_element(spare.fragments, {}, &Fragments::capacity);
-    fragments_ = std::exchange(*largest, {});
+    Spares& s = spares();
+    std::lock_guard const lock(s.mutex);
+    s.fragments.reserve(s.fragments.size() + s.borrowed + 1); // for all that will be returned
+    ++s.borrowed;
+    since_ = s.releases;
+    if (s.fragments.empty()) return;
+    fragments_ = std::move(s.fragments.back());
+    s.fragments.pop_back();
     fragments_.count = 0;
 }
 
 BorrowedFragments::~BorrowedFragments()
 {
-    if (spare.since != since_) return;
-    auto const smallest = std::ranges::min_element(spare.fragments, {}, &Fragments::capacity);
-    if (smallest->capacity < fragments_.capacity) *smallest = std::move(fragments_);
+    Spares& s = spares();
+    std::lock_guard const lock(s.mutex);
+    --s.borrowed;
+    if (since_ == s.releases) s.fragments.push_back(std::move(fragments_));
 }
 
-void release_spare_fragments() { ++releases; }
+void release_spare_fragments()
+{
+    Spares& s = spares();
+    std::vector<Fragments> freed;
+    std::lock_guard const lock(s.mutex);
+    ++s.releases;
+    freed.swap(s.fragments);
+}
 
 } // namespace gi

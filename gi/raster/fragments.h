@@ -31,7 +31,7 @@ private:
     void grow(std::size_t needed);
 };
 
-/// Fragments that are empty at first, with memory that this thread has used for others.
+/// Fragments that are empty at first, with memory that earlier ones have used, of any thread.
 class BorrowedFragments {
 public:
     BorrowedFragments();
@@ -44,7 +44,7 @@ public:
 
 private:
     Fragments fragments_;
-    unsigned since_; ///< number of calls of release_spare_fragments() before
+    unsigned since_ = 0; ///< number of calls of release_spare_fragments() before
 };
 
 /// Each thread frees what it keeps for BorrowedFragments before it borrows again: the next ones may be far

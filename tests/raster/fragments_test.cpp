@@ -1,6 +1,7 @@
 #include "gi/raster/fragments.h"
 
 #include <gtest/gtest.h>
+#include <thread>
 
 namespace gi::test {
 namespace {
@@ -21,13 +22,16 @@ TEST(BorrowedFragments, KeepMemoryUntilItIsReleased)
         EXPECT_EQ(outer->texel[0], 4u);
     }
     {
-        BorrowedFragments large, small;
+        BorrowedFragments large, small; // the outer one was returned last
         EXPECT_GE(large->capacity, kMany);
         EXPECT_EQ(large->count, 0u);
         EXPECT_GT(small->capacity, 0u);
         EXPECT_LT(small->capacity, kMany);
         release_spare_fragments(); // also what is borrowed
     }
+    EXPECT_EQ(BorrowedFragments()->capacity, 0u);
+    std::thread([] { BorrowedFragments()->reserve(kMany); }).join();
+    release_spare_fragments();
     EXPECT_EQ(BorrowedFragments()->capacity, 0u);
 }
 
