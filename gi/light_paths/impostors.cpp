@@ -76,16 +76,15 @@ void Impostors::draw(World const& world, std::size_t first, std::size_t last, bo
 {
     std::size_t const face = std::size_t(resolution_) * resolution_;
     tbb::parallel_for(std::size_t(0), 6 * centres_.size(), [&](std::size_t k) {
-        static thread_local Fragments fragments;
+        BorrowedFragments fragments;
         static thread_local NearestMap map;
         if (stop.given_up()) throw Interrupted();
         vec3 const centre = centres_[k / 6];
         PerspectiveGrid const grid = cube_face(centre, int(k % 6), resolution_, impostor_near(world, centre));
         clear(map, resolution_, resolution_);
-        fragments.count = 0;
-        rasterize(soup_, first, last, grid, fragments);
-        cut_outs_.remove(fragments, grid, seed_);
-        resolve(fragments, 1, map);
+        rasterize(soup_, first, last, grid, *fragments);
+        cut_outs_.remove(*fragments, grid, seed_);
+        resolve(*fragments, 1, map);
         StoreImpostorFace const store{grid, map.texels, {texels_.data() + k * face, face}, keep_nearer};
         for (std::size_t i = 0; i < face; ++i) store(i);
     });

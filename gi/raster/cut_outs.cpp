@@ -50,11 +50,10 @@ void draw_view(TriangleSoup const& soup, std::size_t first, std::size_t last, Cu
 {
     constexpr std::size_t kPart = 32 * TriangleSoup::kChunk;
     tbb::parallel_for(std::size_t(0), (last - first + kPart - 1) / kPart, [&](std::size_t k) {
-        thread_local Fragments fragments;
-        fragments.count = 0;
-        rasterize(soup, first + k * kPart, std::min(last, first + (k + 1) * kPart), grid, fragments);
-        cut_outs.remove(fragments, grid, seed);
-        resolve_shared(fragments, 1, map);
+        BorrowedFragments fragments;
+        rasterize(soup, first + k * kPart, std::min(last, first + (k + 1) * kPart), grid, *fragments);
+        cut_outs.remove(*fragments, grid, seed);
+        resolve_shared(*fragments, 1, map);
     });
 }
 

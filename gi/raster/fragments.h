@@ -31,4 +31,24 @@ private:
     void grow(std::size_t needed);
 };
 
+/// Fragments that are empty at first, with memory that earlier ones have used, of any thread.
+class BorrowedFragments {
+public:
+    BorrowedFragments();
+    ~BorrowedFragments();
+    BorrowedFragments(BorrowedFragments const&) = delete;
+    BorrowedFragments& operator=(BorrowedFragments const&) = delete;
+
+    Fragments& operator*() { return fragments_; }
+    Fragments* operator->() { return &fragments_; }
+
+private:
+    Fragments fragments_;
+    unsigned since_ = 0; ///< number of calls of release_spare_fragments() before
+};
+
+/// Each thread frees what it keeps for BorrowedFragments before it borrows again: the next ones may be far
+/// smaller.
+void release_spare_fragments();
+
 } // namespace gi

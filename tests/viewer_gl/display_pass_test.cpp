@@ -266,5 +266,38 @@ TEST_F(Display, TimesAreStated)
     std::cout << "\n";
 }
 
+/// As programs take memory, and a session may go through all modes.
+TEST_F(Display, KeepsAFewPrograms)
+{
+    glm::ivec2 const size{16, 8};
+    std::vector<float> const grey(std::size_t(3 * size.x * size.y), 0.5f);
+    PictureTexture texture;
+    texture.upload(size, grey);
+    EyeView const eye{texture.shown(), texture.shown()};
+    DisplayPass pass;
+    TextureTarget const target(TextureTarget::Format::bytes, size);
+    DisplaySettings settings;
+    pass.draw(target.target(), eye, eye, settings);
+    Bytes const first = read_bytes(target.target());
+    auto const programs = [] {
+        std::size_t count = 0;
+        for (GLuint name = 1; name < 10000; ++name) count += glIsProgram(name) == GL_TRUE ? 1 : 0;
+        return count;
+    };
+    std::size_t drawn = 1;
+    for (StereoMode const mode : {StereoMode::side_by_side, StereoMode::rows})
+        for (Comparison const comparison :
+             {Comparison::off, Comparison::split, Comparison::other, Comparison::difference})
+            for (gi::ToneCurve const curve : {gi::ToneCurve::srgb, gi::ToneCurve::filmic}) {
+                settings.stereo = mode;
+                settings.comparison = comparison;
+                settings.tone.curve = curve;
+                pass.draw(target.target(), eye, eye, settings);
+                EXPECT_EQ(programs(), std::min(++drawn, DisplayPass::kPrograms));
+            }
+    pass.draw(target.target(), eye, eye, {});
+    EXPECT_EQ(read_bytes(target.target()), first);
+}
+
 } // namespace
 } // namespace viewer::test

@@ -30,6 +30,7 @@ constexpr std::chrono::seconds kFrame(300); // of the slowest method, which what
 // in the first minutes, so that only a rough limit holds for short walks.
 constexpr double kGrowth = 1.05, kGrowthOfShortWalks = 1.5, kShortWalk_s = 600;
 constexpr double kBetweenRests_s = 30; // or a twelfth of the walk
+constexpr int kStill = 20;             // tenths of a second: the viewer gives memory back after ten
 constexpr glm::ivec2 kSize{320, 240};
 
 double seconds_from_environment(char const* name, double otherwise)
@@ -108,10 +109,11 @@ protected:
         window->resize(kSize);
         auto const begun = Clock::now();
         int still = 0;
-        for (int frame = -1; still < 10;) {
+        for (int frame = -1; still < kStill;) {
             if (Clock::now() - begun > kFrame) throw gi::InputError("refine", "goes on all the same", "see above");
-            int const newest = to.ask({{"do", "stats"}}, kAnswer).at("result").value("frame", -1);
-            still = newest == frame ? still + 1 : 0;
+            Json const stats = to.ask({{"do", "stats"}}, kAnswer).at("result");
+            int const newest = stats.value("frame", -1);
+            still = stats.value("at_rest", false) && newest == frame ? still + 1 : 0;
             frame = newest;
             sleep_ms(100);
         }

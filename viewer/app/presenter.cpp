@@ -15,12 +15,6 @@ std::span<float const> floats(gi::Picture const& picture, char const* layer)
     return l == nullptr ? std::span<float const>() : std::span<float const>(l->data);
 }
 
-void upload(PictureTexture& to, gi::Picture const& picture)
-{
-    to.upload({picture.width, picture.height}, floats(picture, "color"),
-              floats(picture, gi::seen_depth_of(picture)));
-}
-
 bool has_overlay(Pane const& pane, PresentSettings const& s)
 {
     return s.overlay && pane.of_wall >= 0 && pane.of_wall == s.overlay->wall;
@@ -37,44 +31,56 @@ Presenter::Presenter(std::vector<WallSettings> const& walls)
     }
 }
 
+void Presenter::upload(std::optional<Shown>& to, gi::Picture const& picture) const
+{
+    if (!to) to.emplace(Shown{{}, Reprojection(reprojection_)});
+    to->picture.upload({picture.width, picture.height}, floats(picture, "color"),
+                       floats(picture, gi::seen_depth_of(picture)));
+}
+
 void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes)
 {
     frame_ = std::move(frame);
-    while (shown_.size() < frame_->result.views.size()) shown_.emplace_back();
-    for (Shown& s : shown_) s.fresh = false;
+    shown_.resize(frame_->result.views.size());
+    std::vector<char> is_uploaded(shown_.size());
     for (Pane const& pane : panes) {
         std::vector<int> views{pane.left, pane.right};
         for (PaneFaces const* faces : {&pane.left_faces, &pane.right_faces})
             views.insert(views.end(), faces->views.begin(), faces->views.end());
         for (int const view : views) {
-            if (view < 0 || std::size_t(view) >= frame_->result.views.size()) continue;
-            Shown& s = shown_[std::size_t(view)];
-            if (s.fresh) continue;
+            if (view < 0 || std::size_t(view) >= shown_.size() || is_uploaded[std::size_t(view)]) continue;
+            ShownView& s = shown_[std::size_t(view)];
             ViewPicture const& v = frame_->result.views[std::size_t(view)];
-            upload(s.picture, v.picture);
-            s.has_other = v.compared.has_value();
-            if (s.has_other) upload(s.other, *v.compared);
-            s.fresh = true;
+            upload(s.own, v.picture);
+            if (v.compared)
+                upload(s.other, *v.compared);
+            else
+                s.other.reset();
+            is_uploaded[std::size_t(view)] = 1;
         }
     }
+    for (std::size_t view = 0; view < shown_.size(); ++view)
+        if (!is_uploaded[view]) shown_[view] = {};
 }
 
 EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
 {
     if (!frame_ || view < 0 || std::size_t(view) >= frame_->command.views.size()) return {};
-    Shown& s = shown_[std::size_t(view)];
+    if (std::size_t(view) >= shown_.size() || !shown_[std::size_t(view)].own) return {};
+    auto& [own, other] = shown_[std::size_t(view)];
     ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
-    if (!s.fresh) return {};
-    EyeView e{s.picture.shown(), s.has_other ? s.other.shown() : s.picture.shown()};
+    EyeView e{own->picture.shown(), other ? other->picture.shown() : own->picture.shown()};
     glm::ivec2 const margin = frame_->result.views[std::size_t(view)].margin_px,
                      size = e.picture.size_px - 2 * margin;
     bool const moved = std::size_t(view) < now.size() && !rendered.camera.orthographic &&
                        !(now[std::size_t(view)] == rendered.camera);
+    own->reprojection.keep_only(size);
+    if (other) other->reprojection.keep_only(size);
     if (!moved && margin == glm::ivec2(0)) return e;
     gi::Camera const from = with_margin(rendered.camera, size, margin),
                      &to = moved ? now[std::size_t(view)] : rendered.camera;
-    e.picture = e.other = s.reprojection.draw(s.picture, from, to, size);
-    if (s.has_other) e.other = s.other_reprojection.draw(s.other, from, to, size);
+    e.picture = e.other = own->reprojection.draw(own->picture, from, to, size);
+    if (other) e.other = other->reprojection.draw(other->picture, from, to, size);
     return e;
 }
 

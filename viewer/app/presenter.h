@@ -54,7 +54,7 @@ public:
     /// @param walls  settings of the walls that panes refer to; creates their passes
     explicit Presenter(std::vector<WallSettings> const& walls);
 
-    /// Uploads the views shown by these panes.
+    /// Uploads the views shown by these panes, and frees those that are not.
     void take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes);
     /// Draws the panes; pixels outside of them stay unchanged.
     /// @param on_screen_px  position of the target's top left corner
@@ -63,12 +63,15 @@ public:
               PresentSettings const& settings, std::vector<gi::Camera> const& now);
 
 private:
-    /// Draws one view.
     struct Shown {
-        PictureTexture picture, other;
-        Reprojection reprojection, other_reprojection;
-        bool has_other = false, fresh = false;
+        PictureTexture picture;
+        Reprojection reprojection;
     };
+    /// Draws one view; none = not shown.
+    struct ShownView {
+        std::optional<Shown> own, other;
+    };
+    void upload(std::optional<Shown>& to, gi::Picture const& picture) const;
     EyeView eye(int view, std::vector<gi::Camera> const& now);
     /// Bends the pictures of one wall into bent_. False if it has none.
     bool bend(Pane const& pane, PresentSettings const& shown, DisplaySettings const& settings,
@@ -80,7 +83,8 @@ private:
 
     std::shared_ptr<WallOverlay const> uploaded_;
     std::optional<TextureTarget> overlay_picture_;
-    std::deque<Shown> shown_;
+    std::shared_ptr<ReprojectionPrograms const> reprojection_ = std::make_shared<ReprojectionPrograms>();
+    std::vector<ShownView> shown_;
     std::shared_ptr<LiveFrame const> frame_;
     DisplayPass pass_;
     std::deque<WallPass> walls_;

@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "gi/filter/filter_names.h"
 #include "gi/kernel/device.h"
+#include "gi/raster/fragments.h"
 #include "gi/scene/motion/animation.h"
 #include "viewer/engine/picture_margin.h"
 
@@ -26,6 +27,14 @@ void blacken(gi::Picture& picture, std::vector<std::uint8_t> const& hidden)
     std::vector<float>&color = picture.find("color")->data, &depth = picture.find("depth")->data;
     for (std::size_t i = 0; i < hidden.size(); ++i)
         if (hidden[i] != 0) color[3 * i] = color[3 * i + 1] = color[3 * i + 2] = depth[i] = 0;
+}
+
+/// Returns it to the system: a session may load many scenes, and what one method leaves would stay between the
+/// pieces that the next one takes.
+void release_memory()
+{
+    gi::release_spare_fragments();
+    malloc_trim(0);
 }
 
 } // namespace
@@ -90,7 +99,7 @@ void RenderSession::restart()
 {
     main_.reset();
     compared_.reset();
-    malloc_trim(0); // else what one method leaves stays between the pieces that the next one takes: memory grows
+    release_memory();
 }
 
 PreparedScene RenderSession::prepare(std::string const& name, Settings const& settings,
@@ -143,7 +152,7 @@ void RenderSession::adopt(PreparedScene p)
     scene_ = std::move(p.scene);
     main_ = std::move(p.method);
     shown_ = std::move(p.change);
-    malloc_trim(0); // return the previous scene's memory to the system: a session may load many
+    release_memory();
 }
 
 void RenderSession::rebuild(std::shared_ptr<gi::Scene const> scene)

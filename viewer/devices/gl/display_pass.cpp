@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "viewer/displays/compose.h"
 
+#include <algorithm>
 #include <cmath>
 #include <epoxy/gl.h>
 
@@ -122,12 +123,18 @@ void DisplayPass::bind_table(std::shared_ptr<InverseTable const> const& table)
 
 GlProgram const& DisplayPass::program(std::string const& kind)
 {
-    if (auto const found = programs_.find(kind); found != programs_.end()) return found->second;
+    auto const found = std::ranges::find(programs_, kind, &Made::defines);
+    if (found != programs_.end()) {
+        programs_.splice(programs_.begin(), programs_, found);
+        return found->program;
+    }
     GlProgram made({"full_screen.vert"}, {"tone_map.glsl", "stereo.glsl", "display.frag"}, enums() + kind);
     DuboisMatrices const dubois;
     made.set("dubois_left", matrix_of(dubois.left));
     made.set("dubois_right", matrix_of(dubois.right));
-    return programs_.emplace(kind, std::move(made)).first->second;
+    programs_.push_front({kind, std::move(made)});
+    if (programs_.size() > kPrograms) programs_.pop_back();
+    return programs_.front().program;
 }
 
 StereoMode mode_on(DrawTarget const& target, StereoMode wanted)

@@ -8,7 +8,7 @@
 #include "viewer/displays/display_light.h"
 #include "viewer/displays/stereo_mode.h"
 
-#include <map>
+#include <list>
 
 namespace viewer {
 
@@ -43,9 +43,12 @@ struct DisplaySettings {
 };
 
 /// Belongs to the context that was current at its creation. Each display mode has its own program, compiled at
-/// first use, because software drivers execute both sides of every branch.
+/// first use, because software drivers execute both sides of every branch. Programs used least recently are
+/// dropped, as a driver may need a MiB for each.
 class DisplayPass {
 public:
+    static constexpr std::size_t kPrograms = 12; ///< that are kept: more than the modes of a display need together
+
     /// Fills the target. Pictures of size eye_size() keep their pixels, others are stretched to it (bilinear).
     /// Modes off and two_windows show only `left`: for the second window pass the right eye's view as `left`.
     /// Throws InputError on quad_buffer with a target without left and right buffers, and on views without
@@ -58,7 +61,11 @@ private:
               DisplaySettings const& settings);
     GlProgram const& program(std::string const& kind);
     void bind_table(std::shared_ptr<InverseTable const> const& table);
-    std::map<std::string, GlProgram> programs_; ///< keyed by their defines
+    struct Made {
+        std::string defines;
+        GlProgram program;
+    };
+    std::list<Made> programs_; ///< the one used last first
     std::shared_ptr<InverseTable const> uploaded_;
     GlObject table_;
     GlObject vertices_{GlObject::Kind::vertex_array};

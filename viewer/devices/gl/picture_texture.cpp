@@ -34,6 +34,7 @@ void PictureTexture::upload(glm::ivec2 size_px, std::span<float const> rgb, std:
     bool const resized = size_px != size_px_;
     size_px_ = size_px;
     has_depth_ = !depth_m.empty();
+    if (texels_.capacity() > 2 * pixels) texels_ = {}; // what a larger window left
     texels_.resize(pixels);
     glm::ivec2 const tiles = (size_px + kTile - 1) / kTile;
     std::vector<Range> own(std::size_t(tiles.x) * std::size_t(tiles.y));

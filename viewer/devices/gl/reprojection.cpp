@@ -49,10 +49,10 @@ ReprojectionMaps reprojection_maps(gi::Camera const& a, glm::ivec2 a_px, gi::Cam
     return maps;
 }
 
-Reprojection::Reprojection()
-    : turn_({"full_screen.vert"}, {"reprojection.frag"}, "#define SEARCHES 0\n#define TILE 1\n"),
-      search_({"full_screen.vert"}, {"reprojection.frag"},
-              "#define SEARCHES 1\n#define TILE " + std::to_string(PictureTexture::kTile) + "\n")
+ReprojectionPrograms::ReprojectionPrograms()
+    : turn({"full_screen.vert"}, {"reprojection.frag"}, "#define SEARCHES 0\n#define TILE 1\n"),
+      search({"full_screen.vert"}, {"reprojection.frag"},
+             "#define SEARCHES 1\n#define TILE " + std::to_string(PictureTexture::kTile) + "\n")
 {
 }
 
@@ -63,13 +63,14 @@ ShownPicture Reprojection::draw(PictureTexture const& picture, gi::Camera const&
     if (shown.texture == 0)
         throw gi::InputError("there is no picture to reproject", "none was uploaded", "upload one first");
     ReprojectionMaps const maps = reprojection_maps(a, shown.size_px, b, size_px);
-    if (!out_ || out_->shown().size_px != size_px) out_.emplace(TextureTarget::Format::linear, size_px);
+    keep_only(size_px);
+    if (!out_) out_.emplace(TextureTarget::Format::linear, size_px);
     bool const searches =
         picture.around() != 0 && std::isfinite(picture.nearest_m()) && maps.b_in_a != glm::vec3(0.0f);
     bind(out_->target());
     glBindTextureUnit(0, shown.texture);
     glBindTextureUnit(1, searches ? picture.around() : shown.texture);
-    GlProgram const& program = searches ? search_ : turn_;
+    GlProgram const& program = searches ? programs_->search : programs_->turn;
     program.set("a_from_b", maps.a_from_b);
     program.set("b_in_a", maps.b_in_a);
     program.set("nearest", searches ? 1 / picture.nearest_m() : 0.0f);

@@ -16,6 +16,7 @@
 #include "viewer/devices/gl/gl_program.h"
 #include "viewer/devices/gl/picture_texture.h"
 
+#include <memory>
 #include <optional>
 
 namespace viewer {
@@ -29,18 +30,34 @@ struct ReprojectionMaps {
 /// Throws InputError on an orthographic camera. Lenses are treated as pinholes; world_from_camera must be rigid.
 ReprojectionMaps reprojection_maps(gi::Camera const& a, glm::ivec2 a_px, gi::Camera const& b, glm::ivec2 b_px);
 
+/// Belong to the context that was current at their creation.
+struct ReprojectionPrograms {
+    ReprojectionPrograms();
+    GlProgram turn, search; ///< for pure rotation, and for translation
+};
+
 /// Belongs to the context that was current at its creation.
 class Reprojection {
 public:
-    Reprojection();
+    explicit Reprojection(
+        std::shared_ptr<ReprojectionPrograms const> programs = std::make_shared<ReprojectionPrograms>())
+        : programs_(std::move(programs))
+    {
+    }
     /// Reprojects `picture`, taken by camera a, to camera b at size_px: linear radiance; alpha is 1 where A saw
     /// the surface, 0 where pixels are stretched. With the same camera and size the pixels are bit-identical.
     /// Without depth, the picture is treated as infinitely far, so only rotation has an effect. The result is
     /// valid until the next call.
     ShownPicture draw(PictureTexture const& picture, gi::Camera const& a, gi::Camera const& b, glm::ivec2 size_px);
 
+    /// Frees the memory of a result of another size.
+    void keep_only(glm::ivec2 size_px)
+    {
+        if (out_ && out_->shown().size_px != size_px) out_.reset();
+    }
+
 private:
-    GlProgram turn_, search_; ///< for pure rotation, and for translation
+    std::shared_ptr<ReprojectionPrograms const> programs_;
     GlObject vertices_{GlObject::Kind::vertex_array};
     std::optional<TextureTarget> out_;
 };

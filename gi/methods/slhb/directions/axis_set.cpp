@@ -56,7 +56,6 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
     auto const build_one = [&](std::size_t k) {
         if (bytes > source_.most_bytes || building.given_up()) return;
         at_step("hit buffers", begun++, axes.size());
-        thread_local Fragments fragments;
         NewAxis const& axis = axes[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(axis.slot), axis.number);
         vec2 const jitter = rng.uniform2();
@@ -69,11 +68,11 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
             return;
         }
         bytes -= bytes_of(buffers_[axis.slot]);
-        fragments.count = 0;
+        BorrowedFragments fragments;
         rasterize(source_.soup, 0, std::min(source_.first_moving, source_.soup.count), grid, MacroPath::edge_table,
-                  fragments);
-        source_.cut_outs.remove(fragments, grid, cut_seeds_[axis.slot]);
-        fill_hit_buffer(fragments, grid, source_.most_layers, buffers_[axis.slot]);
+                  *fragments);
+        source_.cut_outs.remove(*fragments, grid, cut_seeds_[axis.slot]);
+        fill_hit_buffer(*fragments, grid, source_.most_layers, buffers_[axis.slot]);
         bytes += bytes_of(buffers_[axis.slot]);
     };
     cut_seeds_.resize(buffers_.size());

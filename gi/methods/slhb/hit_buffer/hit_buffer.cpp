@@ -64,11 +64,10 @@ void fill_hit_buffer(Fragments const& f, RasterGrid const& grid, std::uint32_t m
 HitBuffer make_hit_buffer(TriangleSoup const& soup, RasterGrid const& grid, MacroPath macro,
                           std::uint32_t most_layers)
 {
-    thread_local Fragments fragments;
-    fragments.count = 0;
-    rasterize(soup, 0, soup.count, grid, macro, fragments);
+    BorrowedFragments fragments;
+    rasterize(soup, 0, soup.count, grid, macro, *fragments);
     HitBuffer b;
-    fill_hit_buffer(fragments, grid, most_layers, b);
+    fill_hit_buffer(*fragments, grid, most_layers, b);
     return b;
 }
 

@@ -31,10 +31,9 @@ std::vector<Start> seen_by(CameraRays const& camera, TriangleSoup const& soup, f
     clear(map, grid.width, grid.height);
     constexpr std::size_t kPart = 32 * TriangleSoup::kChunk;
     tbb::parallel_for(std::size_t(0), (soup.count + kPart - 1) / kPart, [&](std::size_t k) {
-        thread_local Fragments fragments;
-        fragments.count = 0;
-        rasterize(soup, k * kPart, std::min(soup.count, (k + 1) * kPart), grid, fragments);
-        resolve_shared(fragments, 1, map);
+        BorrowedFragments fragments;
+        rasterize(soup, k * kPart, std::min(soup.count, (k + 1) * kPart), grid, *fragments);
+        resolve_shared(*fragments, 1, map);
     });
     std::vector<Start> starts;
     for (std::uint32_t j = 0; j < grid.height; ++j)

@@ -11,10 +11,10 @@ namespace gi {
 void MovingLayers::merge(Source const& source, std::uint32_t cut_seed, AxisPool const& pool, std::size_t a,
                          Axis& out)
 {
-    thread_local Fragments f;
+    BorrowedFragments borrowed;
+    Fragments& f = *borrowed;
     thread_local std::vector<std::uint32_t> count; // per texel; zero between calls
     RasterGrid const& grid = pool.grids[a];
-    f.count = 0;
     rasterize(source.soup, source.first, source.soup.count, grid, MacroPath::edge_table, f);
     source.cut_outs.remove(f, grid, cut_seed);
     if (count.size() < grid.texels()) count.resize(grid.texels());

@@ -40,7 +40,6 @@ void ShadowMapBuilder::start(ShadowView const& view, vec2 jitter, float turn_rad
 void ShadowMapBuilder::draw(int face, std::size_t first, std::size_t last, std::uint32_t seed,
                             ShadowMap const& map, Fragments& fragments) const
 {
-    fragments.count = 0;
     if (map.parallel) {
         rasterize(soup_, first, last, map.grid, MacroPath::edge_table, fragments);
         cut_outs_.remove(fragments, map.grid, seed);
@@ -53,8 +52,6 @@ void ShadowMapBuilder::draw(int face, std::size_t first, std::size_t last, std::
 
 namespace {
 
-thread_local Fragments drawn;
-
 float key_sign(ShadowMap const& map) { return map.parallel ? -1.0f : 1.0f; }
 
 } // namespace
@@ -64,13 +61,14 @@ void ShadowMapBuilder::build(ShadowView const& view, int face, std::size_t last,
 {
     PerspectiveGrid const& g = map.faces[std::size_t(face)];
     if (view.parallel ? face != 0 : sees_only_dark(view, g)) return;
-    draw(face, 0, last, seed, map, drawn);
+    BorrowedFragments drawn;
+    draw(face, 0, last, seed, map, *drawn);
     NearestMap& nearest = map.maps[std::size_t(face)];
     if (view.parallel)
         clear(nearest, map.grid.width, map.grid.height);
     else
         clear(nearest, g.width, g.height);
-    resolve(drawn, key_sign(map), nearest);
+    resolve(*drawn, key_sign(map), nearest);
 }
 
 void ShadowMapBuilder::move(int face, std::size_t first, std::uint32_t seed, ShadowMap& map,
@@ -81,10 +79,11 @@ void ShadowMapBuilder::move(int face, std::size_t first, std::uint32_t seed, Sha
     for (auto const& [at, texel] : under) nearest.texels[at] = texel;
     under.clear();
     if (nearest.texels.empty() || first == soup_.count) return;
-    draw(face, first, soup_.count, seed, map, drawn);
-    for (std::size_t k = 0; k < drawn.count; ++k)
-        under.emplace_back(drawn.texel[k], nearest.texels[drawn.texel[k]]);
-    resolve(drawn, key_sign(map), nearest);
+    BorrowedFragments drawn;
+    draw(face, first, soup_.count, seed, map, *drawn);
+    for (std::size_t k = 0; k < drawn->count; ++k)
+        under.emplace_back(drawn->texel[k], nearest.texels[drawn->texel[k]]);
+    resolve(*drawn, key_sign(map), nearest);
 }
 
 void ShadowMapBuilder::swap_moving(int face, bool back, ShadowMap& map, TakenTexels& taken)
