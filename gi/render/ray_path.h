@@ -20,7 +20,7 @@ struct RayPath : PathState {
     Ray ray;
     bool ended = false;
     RayQuery shadow;
-    int shadow_scatterings = 0; ///< of its light
+    int shadow_scatterings = 0; ///< with which its light is added, see add_light
     vec3 shadow_radiance{0};    ///< radiance that arrives if unblocked; 0 = no shadow ray needed
     PathSample sample;
 };

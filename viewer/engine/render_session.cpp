@@ -29,8 +29,8 @@ void blacken(gi::Picture& picture, std::vector<std::uint8_t> const& hidden)
         if (hidden[i] != 0) color[3 * i] = color[3 * i + 1] = color[3 * i + 2] = depth[i] = 0;
 }
 
-/// Returns it to the system: a session may load many scenes, and what one method leaves would stay between the
-/// pieces that the next one takes.
+/// Returns freed memory to the system: a session may load many scenes, and what one method leaves would stay
+/// between the pieces that the next one takes.
 void release_memory()
 {
     gi::release_spare_fragments();

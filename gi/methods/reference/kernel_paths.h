@@ -12,6 +12,7 @@
 #include "gi/scene/model/world_on.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <tbb/parallel_for.h>
 
@@ -127,8 +128,8 @@ public:
 
 private:
     /// @param most  paths of each pixel that are traced together
-    /// @param to  (number of its first path) -> where samples go  @param ended  called with that when all are
-    /// there
+    /// @param to     (number of its first path) -> where samples go
+    /// @param ended  called with that number when all samples are there
     template <class To, class Ended>
     PathCounts run(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                    std::span<FirstHit> first_hits, std::uint32_t most, To const& to, Ended const& ended)
@@ -138,8 +139,11 @@ private:
         Buffer<PathCounts, S> counts = upload<S>(std::vector<PathCounts>(kCounts));
         Buffer<FirstHit, S> hits(first_hits.empty() ? 0 : pixels);
         std::size_t const n = std::min(pixels, kMostSlots);
-        if (memory_.pixels() != pixels) memory_ = PathMemory<S>(n, pixels);
-        std::uint32_t const countable = std::uint32_t((kNoTriangle - n) / pixels);
+        if (memory_.pixels() != pixels) {
+            memory_ = {}; // first, as both together may be too much
+            memory_ = PathMemory<S>(n, pixels);
+        }
+        std::uint32_t const countable = std::uint32_t((std::numeric_limits<std::uint32_t>::max() - n) / pixels);
         PathSlots all;
         all.steps = steps;
         memory_.lend(all);
@@ -174,7 +178,8 @@ private:
         launch(S, "start paths", n, StartPaths{all});
         for (;;) {
             std::uint32_t const taken = memory_.taken();
-            if (pass.given_up()) all.paths = std::min(all.paths, (taken + all.pixels - 1) / all.pixels);
+            if (pass.given_up())
+                all.paths = std::min(all.paths, taken / all.pixels + (taken % all.pixels != 0 ? 1 : 0));
             std::uint32_t const end = all.pixels * all.paths, idle = taken > end ? taken - end : 0;
             if (idle == n) return all.paths;
             if (n - idle <= few) {
@@ -201,8 +206,6 @@ private:
     StopRequest const* stop_;
     std::optional<WorldBvh<S>> bvh_;
     std::vector<PathSample> on_host_; ///< kept, as fresh memory would take longer than the copy
-    std::uint32_t together_ =
-        1; ///< paths of each pixel: as many as take kTogether_s, so that a stop is soon noticed
     PathMemory<S> memory_;
     SumsOn<S> sums_;
 };

@@ -22,7 +22,7 @@ struct KeepSamples {
 enum class PathStage : std::uint32_t {
     goes_on,
     ended,
-    in_turn, ///< ended, and all paths before it at its pixel are added
+    may_add, ///< ended, and all paths before it at its pixel are added
     idle     ///< all paths are taken
 };
 
@@ -59,7 +59,7 @@ struct PathLight {
     int scatterings;              ///< of that
 };
 
-/// The same with what arrives unshadowed.
+/// That light with `unshadowed` added, whose shadow ray is not blocked.
 GI_FN inline PathLight lit(PathLight light)
 {
     PathSample sample;
@@ -135,7 +135,7 @@ struct ScatterPaths : PathSlots {
             scatter(i, s);
         else
             shadows.store(i, no_query()); // it has been answered; the path waits for its turn
-        if (s.stage == PathStage::ended && added[s.pixel] == s.number) s.stage = PathStage::in_turn;
+        if (s.stage == PathStage::ended && added[s.pixel] == s.number) s.stage = PathStage::may_add;
         slots.store(i, s);
     }
 
@@ -201,11 +201,11 @@ struct EndPaths : PathSlots {
     {
         PathSlot s = slots.load(i);
         if (s.stage == PathStage::idle) return;
-        bool const is_lit = shadows.load(i).reach > 0 && blocked[i] == 0, in_turn = s.stage == PathStage::in_turn;
-        if (!is_lit && !in_turn) return;
+        bool const is_lit = shadows.load(i).reach > 0 && blocked[i] == 0, may_add = s.stage == PathStage::may_add;
+        if (!is_lit && !may_add) return;
         PathLight light = lights.load(i);
         if (is_lit) light = lit(light);
-        if (!in_turn) return lights.store(i, light);
+        if (!may_add) return lights.store(i, light);
         SeenSurface const at = seen.load(i);
         PathSample sample;
         sample.radiance = light.radiance;

@@ -128,8 +128,12 @@ public:
         paths.chances = {std::as_const(chances_).view()};
         paths.samples = samples_.view();
         paths.counts = counts.view();
-        if (std::size_t const most = std::min(pixels, kMostOnWay); on_way_[0].size() != most)
-            for (OnWay& w : on_way_) w = OnWay(most);
+        std::size_t const most = std::min(pixels, kMostOnWay);
+        if (on_way_[0].size() != most || on_way_[0].has_rays() != bvh_.has_value())
+            for (OnWay& w : on_way_) {
+                w = {}; // first, as both together may be too much
+                w = OnWay(most, bvh_.has_value());
+            }
         if (bvh_)
             trace_all<true>(paths);
         else
@@ -171,8 +175,12 @@ private:
     class OnWay {
     public:
         OnWay() = default;
-        explicit OnWay(std::size_t most) : paths_(most), queries_(most), hits_(most), count_(1) {}
+        OnWay(std::size_t most, bool rays)
+            : paths_(most), queries_(rays ? most : 0), hits_(rays ? most : 0), count_(1)
+        {
+        }
         std::size_t size() const { return paths_.size(); }
+        bool has_rays() const { return queries_.size() > 0; }
         std::size_t count() const { return download(count_).front(); }
         ColumnView<Hit> hits() { return hits_.view(); }
         PathsOnWay none()
@@ -189,8 +197,8 @@ private:
     };
 
     static constexpr std::size_t kFewOnWay = std::size_t(1) << 14;
-    static constexpr std::size_t kMostOnWay = std::size_t(1)
-                                              << 20; ///< bounds memory, and is enough to fill a device
+    /// Bounds memory, and is enough to fill a device.
+    static constexpr std::size_t kMostOnWay = std::size_t(1) << 20;
 
     template <class Work>
     void with_cut_outs(std::uint32_t seed, Work const& work) const

@@ -37,11 +37,11 @@ struct PathKernelCounts {
     }
 };
 
-/// A path between two surfaces, and the one that a look-up found.
+/// A path between two surfaces, and the next one if a look-up found it.
 struct PathOnWay {
     PathState state;
     std::uint32_t pixel;
-    int vertex; ///< as in StepPaths, like the following
+    int vertex; ///< as in StepPaths::State, like the following
     std::uint32_t triangle;
     float distance;
     vec3 position, direction;

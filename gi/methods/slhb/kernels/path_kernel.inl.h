@@ -159,6 +159,17 @@ GI_FN bool StepPaths<by_rays>::step(State& s, PathSample& out, PathKernelCounts&
 }
 
 template <bool by_rays>
+GI_FN void StepPaths<by_rays>::meet(State& s, Hit const& hit)
+{
+    static_assert(kNoTriangle == kNoPrimitive);
+    s.triangle = hit.triangle;
+    s.barycentric = hit.barycentric;
+    s.has_position = false;
+    s.distance = hit.distance;
+    s.query = no_query();
+}
+
+template <bool by_rays>
 GI_FN void StepPaths<by_rays>::go_on(std::size_t pixel, State const& s) const
 {
     std::uint32_t const k = atomic_add(next.count[0], 1);
@@ -187,17 +198,6 @@ GI_FN void FirstSteps<by_rays>::operator()(std::size_t item) const
         this->add_counts(i, local);
     }
     this->samples[i] = out;
-}
-
-template <bool by_rays>
-GI_FN void StepPaths<by_rays>::meet(State& s, Hit const& hit)
-{
-    static_assert(kNoTriangle == kNoPrimitive);
-    s.triangle = hit.triangle;
-    s.barycentric = hit.barycentric;
-    s.has_position = false;
-    s.distance = hit.distance;
-    s.query = no_query();
 }
 
 template <bool by_rays, bool last>
