@@ -93,16 +93,16 @@ TEST(InterruptedFrames, WhileOneIsDenoised)
         wait_until([&] { return std::filesystem::exists(folder / "f_0.exr"); });
         double const frame_s = processor_s(program.pid());
         wait_until([&] { return processor_s(program.pid()) > 1.7 * frame_s; });
-        is_met = !created.names().contains(".f_1.exr.tmp");
+        bool const was_late = created.names().contains(".f_1.exr.tmp");
         program.send(SIGINT);
         Outcome const o = program.wait();
-        if (!is_met) continue; // it was so far already
-        EXPECT_EQ(created.names(), std::set<std::string>{}) << "the frame was denoised to the end";
+        is_met = !was_late && created.names().empty();
+        if (!is_met) continue; // it was so far already; always, if frames are denoised to the end
         EXPECT_EQ(o.code, 130) << o.err;
         EXPECT_EQ(folder.files(), (std::vector<std::string>{kStateOfFrames, "f_0.exr"}));
         expect_to_go_on(call, folder);
     }
-    EXPECT_TRUE(is_met);
+    EXPECT_TRUE(is_met) << "every frame was denoised to the end";
 }
 
 } // namespace
