@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace gi {
 
 namespace {
+
+/// Standard deviation of a float, relative: where all paths see the same, only it is left.
+constexpr double kRounding = std::numeric_limits<float>::epsilon();
 
 /// P(X >= chi2) for n degrees of freedom (Wilson & Hilferty 1931: the cube root of chi2 / n is nearly normal).
 double chi_square_tail(double chi2, double n)
@@ -28,8 +32,10 @@ ZTest z_test(std::vector<float> const& image, std::vector<float> const& variance
         double const var =
             double(variance[i]) + (reference_variance.empty() ? 0.0 : double(reference_variance[i]));
         if (!std::isfinite(difference) || !std::isfinite(var)) continue;
-        if (!(var > 0) && difference == 0) continue;
-        double const z = var > 0 ? difference / std::sqrt(var) : std::copysign(HUGE_VAL, difference);
+        double const rounding = kRounding * std::hypot(double(image[i]), double(reference[i]));
+        if (!(var > 0) && std::abs(difference) <= rounding) continue;
+        double const z =
+            var > 0 ? difference / std::hypot(std::sqrt(var), rounding) : std::copysign(HUGE_VAL, difference);
         ++t.count;
         if (std::isfinite(z)) sum += z;
         squares += z * z;

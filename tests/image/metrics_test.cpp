@@ -180,6 +180,15 @@ TEST(ZTest, AWrongValueWithoutVarianceIsCertain)
     EXPECT_EQ(z.chi2_p, 0);
 }
 
+TEST(ZTest, RoundingIsNoDifference)
+{
+    float const next = std::nextafter(1.8f, 2.0f);
+    std::vector<float> const x(1000, 1.8f), r(1000, next), none(1000, 0.0f), tiny(1000, 1e-17f);
+    EXPECT_EQ(z_test(x, none, r, none).count, 0u);
+    EXPECT_GT(z_test(x, tiny, r, tiny).sidak_p, 0.001);
+    EXPECT_LT(z_test(x, tiny, std::vector<float>(1000, 1.80001f), tiny).sidak_p, 1e-12);
+}
+
 TEST(DifferenceImage, IsBlackWhereThePicturesAgree)
 {
     Picture const a = constant(32, 16, vec3{0.4f});
