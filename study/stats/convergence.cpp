@@ -172,6 +172,11 @@ SamplerReport report_of(Draws const& draws)
     return r;
 }
 
+bool agrees(SamplerReport const& r, int chains)
+{
+    return r.worst_r_hat <= 1.01 && std::fmin(r.least_bulk, r.least_tail) >= 100 * chains;
+}
+
 std::string complaint(SamplerReport const& r, int chains)
 {
     std::string text;

@@ -118,10 +118,10 @@ Hierarchical hierarchical_dprime(DetectionTask task, std::span<DetectionCounts c
         start[2] = criteria;
         start[3] = -1;
     }
-    Draws const draws = sample(density, start, sampler);
-    Hierarchical h = summed_up(
-        draws, d, n, confidence, [](double v) { return v; }, 1);
-    return h;
+    return fit_by_draws(sampler, [&](SamplerSettings const& settings) {
+        return summed_up(
+            sample(density, start, settings), d, n, confidence, [](double v) { return v; }, 1);
+    });
 }
 
 Hierarchical hierarchical_psychometric(std::span<ObserverLevels const> observers, GroupThresholdSettings const& s,
@@ -188,16 +188,19 @@ Hierarchical hierarchical_psychometric(std::span<ObserverLevels const> observers
     start[4] = -1.7;
     start[5] = -1.5;
     if (is_repeated) start[6] = -2.5;
-    Draws const draws = sample(density, start, sampler);
-    Hierarchical h = summed_up(
-        draws, threshold, n, s.confidence, [&](double v) { return centre + range * v; }, range);
-    auto const at = [&](auto const& f) { return posterior(draws, f, s.confidence); };
-    h.scale = at([&](std::span<double const> x) { return range * std::exp(x[2]); });
-    h.lapse = at([&](std::span<double const> x) { return s.lapse.value_or(most_lapses * inverse_logit(x[4])); });
-    look_at(h.report, h.scale.convergence);
-    if (!s.lapse) look_at(h.report, h.lapse.convergence);
-    h.note = complaint(h.report, draws.chains);
-    return h;
+    return fit_by_draws(sampler, [&](SamplerSettings const& settings) {
+        Draws const draws = sample(density, start, settings);
+        Hierarchical h = summed_up(
+            draws, threshold, n, s.confidence, [&](double v) { return centre + range * v; }, range);
+        auto const at = [&](auto const& f) { return posterior(draws, f, s.confidence); };
+        h.scale = at([&](std::span<double const> x) { return range * std::exp(x[2]); });
+        h.lapse =
+            at([&](std::span<double const> x) { return s.lapse.value_or(most_lapses * inverse_logit(x[4])); });
+        look_at(h.report, h.scale.convergence);
+        if (!s.lapse) look_at(h.report, h.lapse.convergence);
+        h.note = complaint(h.report, draws.chains);
+        return h;
+    });
 }
 
 } // namespace study

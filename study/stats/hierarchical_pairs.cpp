@@ -99,6 +99,48 @@ private:
     std::vector<std::vector<PairCount>> pairs_;
 };
 
+/// Scores and how observers differ in them, with their diagnostics.
+HierarchicalScale scale_of(Draws const& draws, HierarchyLayout const& layout, double confidence)
+{
+    HierarchicalScale s;
+    s.report = report_of(draws);
+    auto const kept = [&](std::function<double(std::span<double const>)> const& quantity) {
+        Posterior const p = posterior(draws, quantity, confidence);
+        look_at(s.report, p.convergence);
+        return p;
+    };
+    std::size_t const n = layout.items;
+    auto const mean_of_scores = [n](std::span<double const> x) {
+        double sum = 0;
+        for (std::size_t i = 0; i < n; ++i) sum += score_at(x, i);
+        return sum / double(n);
+    };
+    for (std::size_t i = 0; i < n; ++i)
+        s.score.push_back(kept([&](std::span<double const> x) { return score_at(x, i) - mean_of_scores(x); }));
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j)
+            s.difference.push_back(
+                kept([&](std::span<double const> x) { return score_at(x, i) - score_at(x, j); }));
+    s.between_sd = kept([&](std::span<double const> x) { return std::exp(x[layout.sd_at()]); });
+    if (layout.has_ties)
+        s.tie_threshold = kept([&](std::span<double const> x) { return std::exp(x[layout.tie_at()]); });
+    for (std::size_t o = 0; o < layout.observers; ++o) {
+        std::vector<double> own(n, 0);
+        for (int c = 0; c < draws.chains; ++c)
+            for (int d = 0; d < draws.per_chain; ++d) {
+                auto const x = draws.at(c, d);
+                double const sd = std::exp(x[layout.sd_at()]);
+                for (std::size_t i = 0; i < n; ++i) own[i] += score_at(x, i) + sd * x[layout.own_at(o) + i];
+            }
+        double sum = 0;
+        for (double& v : own) sum += v /= double(draws.chains) * draws.per_chain;
+        for (double& v : own) v -= sum / double(n);
+        s.observer.push_back(std::move(own));
+    }
+    s.note = complaint(s.report, draws.chains);
+    return s;
+}
+
 } // namespace
 
 HierarchicalScale hierarchical_scale(std::vector<std::vector<PairCount>> const& observers, int items,
@@ -125,44 +167,10 @@ HierarchicalScale hierarchical_scale(std::vector<std::vector<PairCount>> const& 
     std::vector<double> start(layout.count(), 0.0);
     start[layout.sd_at()] = std::log(0.3);
     if (has_ties) start[layout.tie_at()] = std::log(kTiePrior);
-    Draws const draws = sample(HierarchyDensity(layout, std::move(pairs)), start, settings);
-
-    HierarchicalScale s;
-    s.report = report_of(draws);
-    auto const kept = [&](std::function<double(std::span<double const>)> const& quantity) {
-        Posterior const p = posterior(draws, quantity, confidence);
-        look_at(s.report, p.convergence);
-        return p;
-    };
-    auto const n = std::size_t(items);
-    auto const mean_of_scores = [n](std::span<double const> x) {
-        double sum = 0;
-        for (std::size_t i = 0; i < n; ++i) sum += score_at(x, i);
-        return sum / double(n);
-    };
-    for (std::size_t i = 0; i < n; ++i)
-        s.score.push_back(kept([&](std::span<double const> x) { return score_at(x, i) - mean_of_scores(x); }));
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = i + 1; j < n; ++j)
-            s.difference.push_back(
-                kept([&](std::span<double const> x) { return score_at(x, i) - score_at(x, j); }));
-    s.between_sd = kept([&](std::span<double const> x) { return std::exp(x[layout.sd_at()]); });
-    if (has_ties) s.tie_threshold = kept([&](std::span<double const> x) { return std::exp(x[layout.tie_at()]); });
-    for (std::size_t o = 0; o < observers.size(); ++o) {
-        std::vector<double> own(n, 0);
-        for (int c = 0; c < draws.chains; ++c)
-            for (int d = 0; d < draws.per_chain; ++d) {
-                auto const x = draws.at(c, d);
-                double const sd = std::exp(x[layout.sd_at()]);
-                for (std::size_t i = 0; i < n; ++i) own[i] += score_at(x, i) + sd * x[layout.own_at(o) + i];
-            }
-        double sum = 0;
-        for (double& v : own) sum += v /= double(draws.chains) * draws.per_chain;
-        for (double& v : own) v -= sum / double(n);
-        s.observer.push_back(std::move(own));
-    }
-    s.note = complaint(s.report, draws.chains);
-    return s;
+    HierarchyDensity const density(layout, std::move(pairs));
+    return fit_by_draws(settings, [&](SamplerSettings const& now) {
+        return scale_of(sample(density, start, now), layout, confidence);
+    });
 }
 
 } // namespace study

@@ -79,7 +79,21 @@ struct SamplerReport {
 };
 void look_at(SamplerReport& report, Convergence const& quantity);
 SamplerReport report_of(Draws const& draws);
-/// What is wrong with the draws; empty = nothing. R-hat up to 1.01 and 100 effective draws per chain are wanted.
+/// True if chains agree and are long enough: R-hat up to 1.01, and 100 effective draws per chain.
+bool agrees(SamplerReport const& report, int chains);
+/// What is wrong with the draws; empty = nothing. agrees() is wanted.
 std::string complaint(SamplerReport const& report, int chains);
+
+/// Returns fit(settings), which has a SamplerReport `report`, and once more with twice the draws if the chains do
+/// not agree: of thousands of fits, some have chains that differ by chance.
+template <class Fit>
+auto fit_by_draws(SamplerSettings settings, Fit const& fit)
+{
+    auto first = fit(settings);
+    if (agrees(first.report, settings.chains)) return first;
+    settings.warm_up *= 2;
+    settings.draws *= 2;
+    return fit(settings);
+}
 
 } // namespace study

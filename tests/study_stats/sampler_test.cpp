@@ -121,5 +121,27 @@ TEST(Convergence, IsThatOfArviz)
     EXPECT_TRUE(std::isnan(convergence({{1, 1, 1, 1, 1, 1, 1, 1}}).r_hat));
 }
 
+TEST(FitByDraws, IsMadeOnceMoreWhereChainsDiffer)
+{
+    struct Fit {
+        SamplerReport report;
+        int draws;
+    };
+    std::vector<double> r_hat;
+    auto const fit = [&](SamplerSettings const& s) {
+        SamplerReport report;
+        report.worst_r_hat = r_hat[0];
+        report.least_bulk = report.least_tail = 100 * s.chains;
+        r_hat.erase(r_hat.begin());
+        return Fit{report, s.draws};
+    };
+    int const usual = SamplerSettings{}.draws;
+    r_hat = {1.01, 1.0};
+    EXPECT_EQ(fit_by_draws({}, fit).draws, usual);
+    r_hat = {1.011, 1.02, 1.0};
+    EXPECT_EQ(fit_by_draws({}, fit).draws, 2 * usual);
+    EXPECT_EQ(r_hat.size(), 1u);
+}
+
 } // namespace
 } // namespace study::test
