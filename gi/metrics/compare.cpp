@@ -24,7 +24,7 @@ constexpr std::array kMetrics{
     MetricInfo{"ssim", "structural similarity of the display-encoded luminance", true},
     MetricInfo{"flip", "difference visible when the two alternate, 0..1", true},
     MetricInfo{"hdrflip", "FLIP over all exposures that the reference needs", false},
-    MetricInfo{"ztest", "z = (x - r) / sqrt(var x + var r); needs the layer 'variance'", false},
+    MetricInfo{"ztest", "z = (x - r) / sqrt(var x + var r + rounding); needs the layer 'variance'", false},
 };
 
 double mean(std::vector<float> const& v)

@@ -1,6 +1,6 @@
 #pragma once
 // Tests whether two noisy pictures estimate the same image. Per pixel and channel z = (x - r) / sqrt(var x + var r
-// + e^2 (x^2 + r^2)), where e = 2^-23 is the rounding of floats.
+// + e^2 (x^2 + r^2)), where e = 2^-23 bounds the rounding of floats.
 
 #include <vector>
 
@@ -21,7 +21,7 @@ struct ZTest {
 double two_sided_p(double z);
 
 /// All arrays have the same length; reference_variance may be empty (exact reference). Values without variance
-/// are omitted if they agree but for rounding, and count as |z| = infinity if they differ.
+/// are omitted if they agree but for rounding.
 ZTest z_test(std::vector<float> const& image, std::vector<float> const& variance,
              std::vector<float> const& reference, std::vector<float> const& reference_variance);
 

@@ -172,19 +172,14 @@ SamplerReport report_of(Draws const& draws)
     return r;
 }
 
-bool agrees(SamplerReport const& r, int chains)
-{
-    return r.worst_r_hat <= 1.01 && std::fmin(r.least_bulk, r.least_tail) >= 100 * chains;
-}
-
 std::string complaint(SamplerReport const& r, int chains)
 {
     std::string text;
     auto const say = [&](bool when, std::string const& what) {
         if (when) text += (text.empty() ? "" : "; ") + what;
     };
-    say(!(r.worst_r_hat <= 1.01),
-        fmt::format("chains differ (R-hat {:.3f}, wanted: 1.01 or less)", r.worst_r_hat));
+    say(!(r.worst_r_hat <= kMostRHat),
+        fmt::format("chains differ (R-hat {:.3f}, wanted: {} or less)", r.worst_r_hat, kMostRHat));
     double const least = std::fmin(r.least_bulk, r.least_tail);
     say(!(least >= 100 * chains), fmt::format("{:.0f} effective draws (wanted: {} or more)", least, 100 * chains));
     say(r.divergences > 0, fmt::format("{} of {} draws diverged", r.divergences, r.draws));

@@ -141,6 +141,8 @@ TEST(FitByDraws, IsMadeOnceMoreWhereChainsDiffer)
     r_hat = {1.011, 1.02, 1.0};
     EXPECT_EQ(fit_by_draws({}, fit).draws, 2 * usual);
     EXPECT_EQ(r_hat.size(), 1u);
+    r_hat = {1.02, 1.0};
+    EXPECT_EQ(fit_by_draws({.draws = usual / 2}, fit).draws, usual / 2);
 }
 
 } // namespace
