@@ -8,7 +8,7 @@ namespace gi {
 
 namespace {
 
-/// Spacing of floats, relative, a generous bound of their rounding: where all paths see the same, only that is left.
+/// Spacing of floats, relative: bounds their rounding, which alone is left where all paths see the same.
 constexpr double kRounding = std::numeric_limits<float>::epsilon();
 
 /// P(X >= chi2) for n degrees of freedom (Wilson & Hilferty 1931: the cube root of chi2 / n is nearly normal).

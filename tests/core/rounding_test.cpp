@@ -9,7 +9,7 @@ namespace {
 template <class T>
 T rest_of_square(T value, T rounded_square)
 {
-    T volatile const v = value, minus = -rounded_square; // not known when this is compiled
+    T const volatile v = value, minus = -rounded_square; // not known when this is compiled
     return v * v + minus;
 }
 

@@ -282,7 +282,10 @@ TEST(PrefilteredLights, DrawMapsOfManyTrianglesOverSeveralFrames)
             changes.push_back(light.change_on_still(place.point({x, 0, 0.02f}, {0, 1, 0})).irradiance.x);
         return changes;
     };
-    EXPECT_NE(on_floor(parts), on_floor(whole));
+    std::vector<float> const late = on_floor(parts), current = on_floor(whole);
+    float largest = 0;
+    for (std::size_t i = 0; i < late.size(); ++i) largest = std::max(largest, std::abs(late[i] - current[i]));
+    EXPECT_GT(largest, 0.01f); // not by rounding
     int frames = 0;
     while (parts.settle()) ++frames;
     EXPECT_GT(frames, 50);
