@@ -31,6 +31,12 @@ void print(Tally const& t, char const* unit)
     std::fflush(stdout);
 }
 
+/// On stderr, as a row may take an hour.
+void show_progress(Tally const& t)
+{
+    if (t.experiments % 50 == 0) fmt::print(stderr, "{}: {}, {:.1f} %\n", t.name, t.experiments, t.coverage());
+}
+
 void detection_row(DetectionExperiment e, std::string const& name, int experiments)
 {
     if (!g_choice.has(name)) return;
@@ -168,6 +174,7 @@ void observers(int experiments)
             std::vector<double> own;
             Analysis const a = analyse_detection(e, 50000 + std::uint64_t(i), settings, &own);
             add(mean, each, a.blocks.at(0).hierarchical.at(0), e.mean, own, false);
+            show_progress(mean);
         }
         print(mean, "");
         print(each, "");
@@ -182,6 +189,7 @@ void observers(int experiments)
         for (int i = 0; i < experiments; ++i) {
             SimulatedThresholds const s = analyse_thresholds(e, 50000 + std::uint64_t(i), settings);
             add(mean, each, s.analysis.blocks.at(0).hierarchical.at(0), kMeanThreshold, s.own, true);
+            show_progress(mean);
         }
         print(mean, "decades");
         print(each, "decades");
