@@ -120,7 +120,7 @@ HierarchicalResult hierarchical_of(DetectionResult const& d, Block const& b,
     return r;
 }
 
-/// The compared level, or the shown level of the varied setting; and the cell.
+/// The compared level or pair, or the shown level of the varied setting; and the cell.
 std::string condition_of(Script const& script, Block const& b, std::vector<Group> const& groups,
                          TrialRow const& row)
 {
@@ -128,7 +128,7 @@ std::string condition_of(Script const& script, Block const& b, std::vector<Group
     std::string what;
     int const f = compared_factor(b);
     if (f >= 0)
-        what = stimulus_label(script, b, row.step->trial.stimuli.front());
+        what = compared_label(script, b, row.step->trial);
     else if (row.done->level)
         what = fmt::format("{} {}", b.compare ? b.compare->vary : "level", level_text(*row.done->level));
     if (what.empty()) return cell;

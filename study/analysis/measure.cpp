@@ -201,7 +201,7 @@ std::vector<Measure> detections(Script const& script, Block const& b, std::vecto
             if (!is_used(row)) continue;
             std::vector<int> at = conditions.of(row);
             if (compared >= 0) {
-                at.push_back(place_on(shown, stimulus_label(script, b, row.step->trial.stimuli.front())));
+                at.push_back(place_on(shown, compared_label(script, b, row.step->trial)));
             } else if (!levels.empty() && row.step->trial.is_noise) {
                 add(without_signal[{o.participant, at}], row);
                 continue;

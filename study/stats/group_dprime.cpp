@@ -13,8 +13,9 @@
 namespace study {
 namespace {
 
-constexpr double kLargestMean = 8; ///< means beyond it are called infinite
-constexpr double kLeastSd = 0.01;  ///< of d' and criteria between observers
+constexpr double kLargestMean = 8;     ///< means beyond it are called infinite
+constexpr double kLeastSd = 0.01;      ///< of d' and criteria between observers
+constexpr double kVisibleLogSd = -2.3; ///< log 0.1: where the likelihood has a gradient
 
 /// Means and standard deviations of d' and criterion; a standard deviation is kLeastSd + exp(parameter).
 using Population = std::array<double, 4>; ///< mean d', log sd, mean criterion, log sd
@@ -182,6 +183,10 @@ public:
     double loss(double mean)
     {
         last_[0] = mean;
+        // Where the best deviation is 0 its logarithm has no gradient, but farther off observers may seem to
+        // differ.
+        for (int const i : free_)
+            if (i % 2 == 1) last_[std::size_t(i)] = std::max(last_[std::size_t(i)], kVisibleLogSd);
         return std::max(0.0, 2 * (most_ - maximise(last_, free_)));
     }
     void start_over() { last_ = best_; }
@@ -269,14 +274,13 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
     g.criterion_deviation = deviation(best[3]);
     for (Observer const& o : fit.marginal().observers()) g.observer.push_back(o.dprime);
     auto const n = double(g.observer.size());
-    double const limit = profile_limit(confidence, n, variance_ratio(task, fit));
+    double const ratio = variance_ratio(task, fit), limit = profile_limit(confidence, n, ratio);
     if (std::abs(g.mean) > kLargestMean) {
         g.mean = std::copysign(kInfinity, g.mean);
         g.note = "all answers are right (or all wrong): d' has no upper limit";
     }
     fit.start_over();
-    double const at_0 = fit.loss(0);
-    g.p = chi_square_tail(at_0 * profile_limit(confidence, 1, 0) / limit, 1);
+    g.p = profile_p(fit.loss(0), n, ratio);
     auto const end = [&](double direction) {
         fit.start_over();
         return profile_end({best[0], limit, direction, direction * kLargestMean},

@@ -14,7 +14,8 @@
 namespace study {
 namespace {
 
-constexpr double kFarThreshold = 2; ///< in ranges from the centre: infinite beyond
+constexpr double kFarThreshold = 2;      ///< in ranges from the centre: infinite beyond
+constexpr double kVisibleLogSpread = -3; ///< of 0.05 ranges: where the likelihood has a gradient
 
 class ThresholdFit {
     using enum ThresholdPart::Index;
@@ -104,6 +105,9 @@ public:
     double loss(double mean)
     {
         last_[kMean] = mean;
+        // As in group_dprime: where the best spread is 0 its logarithm has no gradient.
+        if (std::find(shared_.begin(), shared_.end(), kSpread) != shared_.end())
+            last_[kSpread] = std::max(last_[kSpread], kVisibleLogSpread);
         return std::max(0.0, 2 * (most_ - maximise(last_, shared_)));
     }
 

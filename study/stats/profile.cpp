@@ -15,6 +15,17 @@ double profile_limit(double confidence, double n, double ratio)
     return there <= 1 ? n * ratio * square : n * (std::log(there) + 1 - ratio);
 }
 
+double profile_p(double loss, double n, double ratio)
+{
+    if (!(n > 1)) return chi_square_tail(loss, 1);
+    double square = std::expm1(loss / n) / ratio;
+    if (ratio < 1) {
+        square = loss / (n * ratio);
+        if (ratio * (1 + square) > 1) square = std::exp(loss / n - 1 + ratio) / ratio - 1;
+    }
+    return 2 * student_cdf(-std::sqrt(square * (n - 1)), n - 1);
+}
+
 double moderated(double ratio, double n, double surprises, double trials)
 {
     // The kurtosis of a binomial count makes the variance of its squared deviation larger by this, of 2.

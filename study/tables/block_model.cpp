@@ -89,6 +89,7 @@ std::vector<BlockModel> block_models(Script const& script)
         if (m.kind == ModelKind::detection || m.kind == ModelKind::yes_no) {
             m.has_level = b.compare && !b.compare->vary.empty();
             m.compares_factor = compared_factor(b) >= 0;
+            m.compares_pairs = b.pairs.has_value();
             m.is_log = m.has_level && b.compare->scale != Scale::linear;
         }
         add_factors(script, b, m);

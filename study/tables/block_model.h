@@ -23,6 +23,7 @@ struct BlockModel {
     std::vector<std::string> between; ///< those of them that differ between participants
     std::vector<std::string> items;   ///< of pairs: the levels
     bool compares_factor = false;     ///< the column cond_a has the compared levels
+    bool compares_pairs = false;      ///< and cond_b those with which they are compared
     bool has_level = false;           ///< the column level has the varied setting
     bool is_log = false;              ///< of values or levels
     double guess = 0;                 ///< proportion of correct answers by guessing

@@ -110,7 +110,8 @@ std::string r_text(BlockModel const& m)
         prepared = m.is_log ? "d <- d[d$level > 0, ]\nd$x <- log2(d$level)\n" : "d$x <- d$level\n";
         columns.insert(columns.begin(), "x");
     } else if (m.compares_factor) {
-        prepared = "d$compared <- factor(d$cond_a)\n";
+        prepared = m.compares_pairs ? "d$compared <- factor(paste(d$cond_a, \"vs\", d$cond_b))\n"
+                                    : "d$compared <- factor(d$cond_a)\n";
         columns.insert(columns.begin(), "compared");
     }
     std::string const names = "c(" + r_list(columns) + ")", put = "models[[" + quoted(m.block) + "]] <- ";

@@ -146,6 +146,13 @@ int compared_factor(Block const& block)
     return block.compare ? block.compare->factor : -1;
 }
 
+std::string compared_label(Script const& script, Block const& block, Trial const& trial)
+{
+    std::string label = stimulus_label(script, block, trial.stimuli.front());
+    if (block.pairs && trial.stimuli.size() > 1) label += " vs " + stimulus_label(script, block, trial.stimuli[1]);
+    return label;
+}
+
 int shared_level(Block const& block, Trial const& trial, int factor)
 {
     if (trial.stimuli.empty() || compared_factor(block) == factor) return -1;

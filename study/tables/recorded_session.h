@@ -63,6 +63,8 @@ Stimulus const* stimulus_of(Trial const& trial, char letter);
 int shared_level(Block const& block, Trial const& trial, int factor);
 /// The factor whose levels are paired, ranked or compared by a block; -1 = none.
 int compared_factor(Block const& block);
+/// The level of that factor; in blocks of pairs both: "a vs b".
+std::string compared_label(Script const& script, Block const& block, Trial const& trial);
 /// Letter of the chosen stimulus, for tasks that choose one of the stimuli: 'b' for order "ba" and response
 /// "first"; none for other answers.
 std::optional<char> chosen_letter(TrialRow const& row);

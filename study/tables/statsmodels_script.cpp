@@ -171,7 +171,9 @@ std::string python_text(BlockModel const& m)
                             : "    d = d.assign(x=d[\"level\"])\n";
         columns.insert(columns.begin(), "x");
     } else if (m.compares_factor) {
-        prepared = "    d = d.assign(compared=d[\"cond_a\"])\n";
+        prepared = m.compares_pairs
+                       ? "    d = d.assign(compared=d[\"cond_a\"].astype(str) + \" vs \" + d[\"cond_b\"].astype(str))\n"
+                       : "    d = d.assign(compared=d[\"cond_a\"])\n";
         columns.insert(columns.begin(), "compared");
     }
     std::string const put = "    models[" + quoted(m.block) + "] = ";
