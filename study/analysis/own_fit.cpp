@@ -25,10 +25,9 @@ ThresholdEstimate maximum_likelihood_estimate(ThresholdRun const& run, Block con
         double const level = level_at(fit.shape, fit.parameters, proportion);
         e.note = fit.note;
         if (e.note.empty() && !guess) e.note = "no trials without a signal: a false alarm rate of 0 is assumed";
-        double const error = fit.standard_error.threshold;
+        double const error = standard_error_at(fit, proportion);
         if (std::isfinite(level)) {
             e.level = {level, {kUnknown, kUnknown}, 1};
-            // The error of the threshold, applied to a level at a fixed distance from it on the scale.
             if (error > 0 && std::isfinite(error)) {
                 double const half = normal_quantile((1 + settings.confidence) / 2) * error, u = on_u(level);
                 auto const back = [&](double v) {

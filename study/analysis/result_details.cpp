@@ -167,14 +167,15 @@ ResultTable parameters(Analysis const& a)
 
 ResultTable curves(Analysis const& a)
 {
-    ResultTable t{
-        "curves",
-        "Psychometric functions of the average observer",
-        "From all procedures: thresholds differ between observers, scale and lapse rate are common. "
-        "Interval of the mean threshold by the profile likelihood; of a formula, which is fitted to all "
-        "trials pooled, by a bootstrap over observers. Scale and sd: in decades if levels are logarithmic.",
-        false,
-        {}};
+    ResultTable t{"curves",
+                  "Psychometric functions of the average observer",
+                  "From all procedures: thresholds differ between observers, scale and lapse rate are common. "
+                  "Interval of the mean threshold by the profile likelihood; of a formula, which is fitted to all "
+                  "trials pooled, by a bootstrap over observers. Scale and sd: in decades, octaves or decibels if "
+                  "the scale of "
+                  "the levels is log10, log2 or db.",
+                  false,
+                  {}};
     t.table.columns = with_interval(
         {{"block", "Block"},
          {"cell", "Condition"},
@@ -201,7 +202,7 @@ ResultTable curves(Analysis const& a)
             add_estimate(row, c.threshold);
             bool const is_fitted = !c.counts.empty();
             auto const fitted = [&](double v) { return is_fitted ? cell(v) : cell(""); };
-            row.insert(row.end(), {cell(c.function), fitted(c.deviation), fitted(c.parameters.scale),
+            row.insert(row.end(), {cell(c.function), fitted(c.deviation), fitted(c.parameters.scale * c.decade),
                                    fitted(c.parameters.lapse), fitted(c.eta), fitted(c.pooled.deviance),
                                    fitted(c.pooled.degrees_of_freedom), fitted(c.pooled.fit_p)});
             t.table.rows.push_back(std::move(row));

@@ -211,6 +211,9 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
         int const right = int(std::count(run.correct.begin(), run.correct.end(), 1));
         if (right == int(run.correct.size()))
             e.note = "nothing but correct responses: there is no threshold among these levels";
+        Trend trend;
+        for (LevelCount const& c : counts) trend.add(transformed(shape, c.level), c.correct, c.trials);
+        if (trend.is_falling()) e.note = kWrongDirection;
         if (right == 0) e.note = "no correct response at all: there is no threshold among these levels";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();

@@ -275,7 +275,12 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
     for (Observer const& o : fit.marginal().observers()) g.observer.push_back(o.dprime);
     auto const n = double(g.observer.size());
     double const ratio = variance_ratio(task, fit), limit = profile_limit(confidence, n, ratio);
-    if (std::abs(g.mean) > kLargestMean) {
+    auto const is_all = [&](bool right) {
+        return std::all_of(observers.begin(), observers.end(), [&](DetectionCounts const& c) {
+            return c.hits == (right ? c.signals : 0) && c.false_alarms == (right ? 0 : c.noises);
+        });
+    };
+    if (std::abs(g.mean) > kLargestMean || is_all(true) || is_all(false)) {
         g.mean = std::copysign(kInfinity, g.mean);
         g.note = "all answers are right (or all wrong): d' has no upper limit";
     }

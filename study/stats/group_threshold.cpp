@@ -131,6 +131,10 @@ std::string note_of(ThresholdFit const& fit)
     ThresholdMarginal const& m = fit.marginal();
     if (m.is_all(true)) return "nothing but correct responses: there is no threshold among these levels";
     if (m.is_all(false)) return "no correct response at all: there is no threshold among these levels";
+    Trend trend;
+    for (ThresholdPerson const& p : m.people())
+        for (LevelAnswers const& l : p.levels) trend.add(l.u, l.right, l.trials);
+    if (trend.is_falling()) return kWrongDirection;
     if (std::abs(fit.best()[ThresholdPart::kMean]) > 0.5)
         return "the mean threshold lies outside the range of levels";
     if (fit.best()[ThresholdPart::kScale] > 0)

@@ -5,6 +5,7 @@
 #include "study/stats/sigmoid.h"
 #include "study/stats/special.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -56,6 +57,43 @@ double level_at(PsychometricShape const& shape, PsychometricParameters const& p,
     if (!(f > 0 && f < 1)) return std::nan("");
     if (shape.formula) return level_of(shape, crossing(shape, p, proportion));
     return level_of(shape, p.threshold + p.scale * sigmoid_quantile(shape.sigmoid, f));
+}
+
+double standard_error_at(PsychometricFit const& fit, double proportion)
+{
+    auto const moved = [&](std::size_t i, double by) {
+        PsychometricParameters p = fit.parameters;
+        if (i == 0) p.threshold += by;
+        if (i == 1) p.scale *= std::exp(by);
+        if (i == 2) p.guess += by;
+        if (i == 3) p.lapse += by;
+        return transformed(fit.shape, level_at(fit.shape, p, proportion));
+    };
+    std::array<double, 4> slope{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (fit.covariance(i, i) == 0) continue;
+        double const step = 1e-3 * std::sqrt(fit.covariance(i, i));
+        slope[i] = (moved(i, step) - moved(i, -step)) / (2 * step);
+    }
+    double variance = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j) variance += slope[i] * fit.covariance(i, j) * slope[j];
+    return std::sqrt(variance);
+}
+
+void Trend::add(double at, double n_correct, double n)
+{
+    trials += n;
+    correct += n_correct;
+    u += n * at;
+    square += n * at * at;
+    product += n_correct * at;
+}
+
+bool Trend::is_falling() const
+{
+    double const p = correct / trials, scatter = square - u * u / trials;
+    return product - p * u < -2 * std::sqrt(p * (1 - p) * scatter);
 }
 
 std::vector<LevelCount> count_levels(std::span<double const> levels, std::span<int const> correct)

@@ -74,6 +74,19 @@ double proportion_at(PsychometricShape const& shape, PsychometricParameters cons
 /// Level at which P has this value; NaN if P never reaches it, at or beyond guess and 1 - lapse.
 double level_at(PsychometricShape const& shape, PsychometricParameters const& p, double proportion);
 
+/// Standard error of u where P has this proportion, by the delta method; NaN as level_at.
+double standard_error_at(PsychometricFit const& fit, double proportion);
+
+/// Whether answers get better with u (Cochran 1954 and Armitage 1955, Biometrics 10:417, 11:375).
+struct Trend {
+    double trials = 0, correct = 0, u = 0, square = 0, product = 0; ///< sums over trials
+
+    void add(double at, double n_correct, double n);
+    bool is_falling() const; ///< by more than two standard errors
+};
+inline constexpr char kWrongDirection[] =
+    "responses change in the wrong direction: the other end of the levels may be the harder one (see `harder`)";
+
 /// Ignores levels without trials and merges equal levels. @throws std::invalid_argument fewer than two levels,
 /// invalid counts, levels that are NaN, levels <= 0 on a logarithmic axis, rates whose sum reaches 1
 PsychometricFit fit_psychometric(std::span<LevelCount const> counts, PsychometricSettings const& settings = {});

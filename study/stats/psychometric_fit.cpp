@@ -141,10 +141,13 @@ std::string note_of(Model const& m, MaximumLikelihood const& fit)
         std::all_of(m.points.begin(), m.points.end(), [](Point const& p) { return p.correct == p.trials; });
     say(none, "no correct response at all: there is no threshold among these levels");
     say(all, "nothing but correct responses: there is no threshold among these levels");
+    Trend trend;
+    for (Point const& p : m.points) trend.add(p.u, p.correct, p.trials);
+    say(trend.is_falling(), kWrongDirection);
     say(fit.at_bound[0], "the threshold lies far outside the levels shown");
     // Below a hundredth of the range the curve is a step between two levels.
     say(fit.estimate[1] < std::log(0.01) || std::isnan(fit.covariance(0, 0)),
-        "responses change within one step of level: threshold and scale are known only to lie between");
+        "responses change within one step of level: threshold and scale are known only to lie between levels");
     say(fit.estimate[1] > std::log(20.0), "responses hardly change with level: the scale cannot be estimated");
     say(m.fits_guess() && fit.estimate[2] >= m.guess.limit, "the guess rate is at its limit");
     say(m.fits_lapse() && fit.estimate[m.count() - 1] >= m.lapse.limit, "the lapse rate is at its limit");

@@ -104,6 +104,9 @@ PosteriorModel make_posterior_model(std::span<LevelCount const> counts, Posterio
     if (!(s.guess >= 0 && s.guess < 1 && s.false_alarms >= 0 && s.false_alarms <= s.noises))
         refuse("a guess rate of " + std::to_string(s.guess) + ", or more false alarms than trials",
                "both are proportions", "give rates from 0 to below 1");
+    if (s.guess + s.lapse.value_or(0) >= 1)
+        refuse("a guess rate of " + std::to_string(s.guess) + " and a lapse rate of " + std::to_string(*s.lapse),
+               "together they leave no room for a curve", "use rates whose sum is below 1");
     std::vector<LevelCount> sorted(counts.begin(), counts.end());
     std::sort(sorted.begin(), sorted.end(), [](auto const& x, auto const& y) { return x.level < y.level; });
     bool is_whole = true, is_repeated = false;

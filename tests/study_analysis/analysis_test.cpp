@@ -260,6 +260,40 @@ TEST(Analysis, OfQuestPlusKnowsThatSlopesMoveTheLevelOfAShare)
     EXPECT_GT(width("[0.5, 1, 2]"), 0.2);
 }
 
+TEST(Analysis, OfDetectionInPairsHasARowForEachPair)
+{
+    Script const s = parse_script(R"(schema: study/1
+id: p
+seed: 1
+participants: {count: 4}
+factors: {quality: [low, middle, high]}
+reference: {quality: low}
+defaults: {stimulus_ms: 200}
+sequence: [odd]
+blocks:
+  odd: {task: oddity, pairs: {factor: quality}, repeats: 6}
+)",
+                                  "p.yaml");
+    std::vector<RecordedSession> sessions;
+    for (int p = 1; p <= 3; ++p) {
+        int trials = 0;
+        sessions.push_back(record_session(s, p, [&](PlanStep const& step, TrialDone& done) {
+            bool const is_hard =
+                stimulus_of(step.trial, 'a')->levels[0] == 0 && stimulus_of(step.trial, 'b')->levels[0] == 1;
+            done.response = "first";
+            done.is_correct = !is_hard || ++trials % 3 == 0;
+        }));
+    }
+    AnalysisSettings settings;
+    settings.draws = 0;
+    Analysis const a = analyze(s, sessions, settings);
+    auto const& rows = a.blocks.at(0).detections;
+    ASSERT_EQ(rows.size(), 3u);
+    for (DetectionResult const& row : rows)
+        EXPECT_NEAR(row.correct / row.trials, row.condition == "low vs middle" ? 1 / 3.0 : 1, 1e-9)
+            << row.condition;
+}
+
 TEST(ResultTables, HaveNoRoundingInPlaceOfZero)
 {
     Analysis a;

@@ -127,5 +127,31 @@ TEST(GroupDPrime, OfPerfectObserversHasNoUpperLimit)
                  std::invalid_argument);
 }
 
+TEST(GroupDPrime, OfEqualObserversHasThePOfObserversWhoMayDifferAtZero)
+{
+    // Expected p: numerical integration over observers, with the deviation that is most likely at d' = 0.
+    auto const observers = [](std::vector<int> const& right) {
+        std::vector<DetectionCounts> counts;
+        for (int const r : right) counts.push_back({r / 2.0, 30, (60 - r) / 2.0, 30});
+        return counts;
+    };
+    auto const middle = observers({37, 44, 40, 41, 45, 45, 37}), easy = observers({58, 57, 55, 53, 57, 57, 53});
+    double const p = group_dprime(DetectionTask::two_interval, middle).p;
+    EXPECT_NEAR(p, 2.2e-4, 0.1e-4);
+    EXPECT_NEAR(group_dprime(DetectionTask::two_interval, easy).p, 4.5e-6, 0.1e-6);
+    EXPECT_EQ(group_dprime(DetectionTask::two_interval, middle, 0.8).p, p) << "of another confidence";
+    auto const just = group_dprime(DetectionTask::two_interval, middle, 1 - p);
+    EXPECT_NEAR(just.interval.low, 0, 5e-3) << "the interval that p belongs to ends at 0";
+}
+
+TEST(GroupDPrime, OfOnlyRightAnswersIsInfiniteForOneObserverToo)
+{
+    GroupDPrime const g = group_dprime(DetectionTask::two_interval, std::vector<DetectionCounts>{{10, 10, 0, 10}});
+    EXPECT_EQ(g.mean, INFINITY);
+    EXPECT_NE(g.note, "");
+    EXPECT_EQ(group_dprime(DetectionTask::two_interval, std::vector<DetectionCounts>{{0, 10, 10, 10}}).mean,
+              -INFINITY);
+}
+
 } // namespace
 } // namespace study::test

@@ -44,6 +44,15 @@ TEST(ProfileLimit, HoldsMeansOfNormalEstimatesWhateverTheirSpread)
 
 TEST(ProfileLimit, OfOneObserverIsThatOfChiSquare) { EXPECT_NEAR(profile_limit(0.95, 1, 0.3), 3.841459, 1e-5); }
 
+TEST(ProfileLimit, HasThePThatExcludesAValueWithItsInterval)
+{
+    for (double const n : {1.0, 3.0, 20.0})
+        for (double const ratio : {0.2, 0.7, 1.0, 1.6})
+            for (double const confidence : {0.5, 0.95, 0.999})
+                EXPECT_NEAR(profile_p(profile_limit(confidence, n, ratio), n, ratio), 1 - confidence, 1e-9)
+                    << n << " observers, ratio " << ratio;
+}
+
 TEST(ProfileLimit, TakesTheModelsVarianceWhereNothingIsSurprising)
 {
     EXPECT_DOUBLE_EQ(moderated(0.1, 10, 1e-9, 30), 1);

@@ -1,9 +1,11 @@
 // Psychometric functions against R's glm, and against observers that are simulated.
 
+#include "study/stats/group_threshold.h"
 #include "study/stats/psychometric.h"
 #include "study/stats/psychometric_posterior.h"
 
 #include "study/stats/random.h"
+#include "study/stats/special.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>
@@ -211,6 +213,35 @@ TEST(Psychometric, ConvergesWhereLapsesAndGuessesAreFitted)
             failed += !fit_psychometric(counts, {{kind}, {0.5, 0}, {0.01, 0.1}}).converged;
     }
     EXPECT_EQ(failed, 0);
+}
+
+TEST(PsychometricFit, HasTheErrorOfTheLevelOfAnyProportion)
+{
+    // A probit model: the error of (z(share) - b0) / b1 by the delta method from those of b0 and b1.
+    std::vector<LevelCount> const counts{{-2, 3, 40}, {-1, 9, 40}, {0, 22, 40}, {1, 31, 40}, {2, 38, 40}};
+    PsychometricSettings settings;
+    settings.guess = settings.lapse = {0, 0};
+    PsychometricFit const fit = fit_psychometric(counts, settings);
+    EXPECT_NEAR(standard_error_at(fit, 0.5), fit.standard_error.threshold, 1e-6);
+    double const z = normal_quantile(0.9), scale = fit.parameters.scale;
+    double const variance =
+        fit.covariance(0, 0) + 2 * z * scale * fit.covariance(0, 1) + z * z * scale * scale * fit.covariance(1, 1);
+    EXPECT_NEAR(standard_error_at(fit, 0.9), std::sqrt(variance), 1e-6);
+    EXPECT_GT(standard_error_at(fit, 0.9), 1.2 * standard_error_at(fit, 0.5));
+}
+
+TEST(PsychometricFit, SaysThatResponsesChangeInTheWrongDirection)
+{
+    std::vector<LevelCount> counts{{1, 38, 40}, {2, 33, 40}, {3, 25, 40}, {4, 21, 40}};
+    PsychometricSettings settings;
+    EXPECT_NE(fit_psychometric(counts, settings).note.find(kWrongDirection), std::string::npos);
+    settings.shape.direction = Direction::falling;
+    EXPECT_EQ(fit_psychometric(counts, settings).note.find(kWrongDirection), std::string::npos);
+    ObserverLevels const one{counts, 0.5};
+    GroupThresholdSettings group{settings.shape, 0.75, 1, 4};
+    EXPECT_NE(group_threshold(std::span(&one, 1), group).note, kWrongDirection);
+    group.shape.direction = Direction::rising;
+    EXPECT_EQ(group_threshold(std::span(&one, 1), group).note, kWrongDirection);
 }
 
 } // namespace

@@ -99,6 +99,8 @@ TEST(StudyTables, OfOthersAreAnalysedAndReportedLikeRecords)
     expect_refused("study analyze --table 1.csv --columns participant=who,first=a,second=b,chosen=c", folder,
                    "1.csv:1:1: there is no column 'c'");
     expect_refused("study analyze --table 1.csv --columns who=who", folder, "there is no such role");
+    expect_refused("study analyze --table 1.csv --columns participant=who --guess 0.6 --lapse 0.4", folder,
+                   "no room for a psychometric function");
     expect_refused("study analyze --table no.csv --columns item=a,value=b", folder, "no.csv");
     expect_refused("study analyze " + table + " --only age", folder, "--only 'age'");
 }

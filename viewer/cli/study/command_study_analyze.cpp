@@ -33,6 +33,10 @@ study::Dataset load(AnalyzeOptions& o)
                              "give DIR, or --table FILE --columns ROLES");
     if (o.guess >= 0) o.settings.guess = o.guess;
     if (o.lapse >= 0) o.settings.lapse = o.lapse;
+    if (o.guess + o.lapse >= 1)
+        throw gi::InputError(fmt::format("--guess {:g} and --lapse {:g}", o.guess, o.lapse),
+                             "together they leave no room for a psychometric function",
+                             "use rates whose sum is below 1");
     if (!o.dir.empty()) return load_records(o.dir, o.script);
     study::ImportedTable table = load_table(o.table);
     return {std::move(table.script), {}, std::move(table.sessions), std::move(table.notes)};
