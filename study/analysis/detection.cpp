@@ -85,6 +85,13 @@ void add_dprime(DetectionResult& d, Block const& b, std::vector<DetectionCounts>
                 DetectionCounts const& all, AnalysisSettings const& settings)
 {
     auto const task = detection_task(b.task);
+    // A guess rate that was given is another task's, such as that of four alternatives.
+    if (task == DetectionTask::two_interval && settings.guess && *settings.guess != guess_rate(b.task)) {
+        d.model.clear();
+        d.note = fmt::format("d' is that of two alternatives, which a guess rate of {:g} does not fit: left out",
+                             *settings.guess);
+        return;
+    }
     if (!task || (has_criterion(*task) && !(all.signals > 0 && all.noises > 0))) return;
     d.dprime = detection_point(*task, all).dprime;
     try {

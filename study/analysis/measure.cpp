@@ -75,7 +75,12 @@ int place_on(MeasureAxis& axis, std::string const& name)
 Measure judgements(Block const& b, std::vector<ObserverTrials> const& trials, Conditions const& conditions)
 {
     bool const is_log = b.task == Task::magnitude || (b.compare && b.compare->scale != Scale::linear);
-    Measure m{b.name, b.task == Task::rating ? "rating" : is_log ? "logarithm" : "level", conditions.axes(), {}};
+    Measure m{b.name,
+              b.task == Task::rating ? "rating"
+              : is_log               ? "natural logarithm"
+                                     : "level",
+              conditions.axes(),
+              {}};
     for (ObserverTrials const& o : trials)
         for (TrialRow const& row : o.rows)
             if (row.done->value && (!is_log || *row.done->value > 0))
@@ -248,6 +253,7 @@ std::vector<Measure> thresholds(Script const& script, Block const& b, std::vecto
             std::string name = fmt::format("threshold, {}: {}", run.procedure, e.method);
             if (proportions[{run.procedure, e.method}].size() > 1)
                 name += fmt::format(", {:.1f} % correct", 100 * e.proportion);
+            if (c.scale != Scale::linear) name += fmt::format(", {} of the level", name_of(c.scale));
             Measure& m = all.try_emplace(name, Measure{b.name, name, conditions.axes(), {}}).first->second;
             double const level = e.level.value;
             if (!(level >= std::min(c.low, c.high) && level <= std::max(c.low, c.high))) continue;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace study {
 namespace {
@@ -28,12 +29,19 @@ std::vector<std::string> tests_in(Analysis const& a)
     return names;
 }
 
-/// The name without blanks, with colons for crosses: "light:method", "exact-good".
+/// The name without blanks, with colons for crosses, in alphabetic order: "light:method", "exact-good".
 std::string compact(std::string name)
 {
     for (std::size_t at; (at = name.find(" x ")) != std::string::npos;) name.replace(at, 3, ":");
     std::erase(name, ' ');
-    return name;
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at <= name.size();) {
+        std::size_t const end = std::min(name.find(':', at), name.size());
+        parts.push_back(name.substr(at, end - at));
+        at = end + 1;
+    }
+    std::sort(parts.begin(), parts.end());
+    return fmt::format("{}", fmt::join(parts, ":"));
 }
 
 std::optional<Found> find_test(Analysis const& a, std::string const& wanted)

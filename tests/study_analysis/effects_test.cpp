@@ -147,5 +147,37 @@ varied: {contrast: {threshold: 4, slope: 2, between_sd: 0.2, shift: {light: {dus
     EXPECT_NEAR(fact(scale, "threshold of ties JOD"), 0.4, 0.12);
 }
 
+TEST(Effects, OfThresholdsNameTheScaleOfTheirLevels)
+{
+    Script const s = parse_script(R"(schema: study/1
+id: m
+seed: 3
+participants: {count: 4}
+factors: {light: [day, dusk], method: [exact]}
+reference: {method: exact}
+defaults: {stimulus_ms: 500}
+sequence: [seen]
+blocks:
+  seen:
+    task: 2ifc
+    cross: [light]
+    compare: {vary: points, against: reference, scale: log10, range: [1, 100], harder: down}
+    procedure: {method: constant, levels: [2, 5, 12, 30, 70], trials_per_level: 8}
+)",
+                                  "m.yaml");
+    ObserverModel const model =
+        read_observers("varied: {points: {threshold: 12, slope: 2, between_sd: 0.1}}\n", "o.yaml", s);
+    std::vector<RecordedSession> sessions;
+    for (int p = 1; p <= 4; ++p)
+        sessions.push_back(simulated_record(s, make_plan(s, p), draw_observer(model, 9, p)));
+    AnalysisSettings settings;
+    settings.draws = 0;
+    settings.permutations = 19;
+    Analysis const a = analyze(s, sessions, settings);
+    EXPECT_TRUE(std::any_of(a.effects.begin(), a.effects.end(), [](EffectResult const& e) {
+        return e.measure == "threshold, constant: likelihood, log10 of the level";
+    }));
+}
+
 } // namespace
 } // namespace study::test

@@ -92,7 +92,7 @@ TEST(StudyPower, KeepsWhatIsDoneWhenStopped)
 {
     Script const s = two_by_two();
     PowerSettings p;
-    p.test = "light x method";
+    p.test = "method:light";
     p.participants = {8, 12};
     p.simulations = 1000;
     PowerStudy const study = study_power(s, interacting(s), p, [](double share) { return share < 0.05; });
