@@ -147,6 +147,7 @@ private:
             need("first");
             need("second");
             if (has("first_wins")) {
+                made_.detail = TrialDetail::counts;
                 need("first_wins");
                 need("second_wins");
             } else
@@ -168,6 +169,7 @@ private:
         std::string const hits = is_yes ? "yes_count" : "correct_count",
                           rest = is_yes ? "no_count" : "wrong_count";
         if (has("level")) need("level");
+        if (has("percent") || has(hits)) made_.detail = TrialDetail::counts;
         if (has("percent")) {
             need("percent");
             need("trials");
@@ -325,6 +327,7 @@ private:
             throw ScriptError(t_.file, {}, "--matrix with --columns, --factors or --only",
                               "a matrix has no columns but its items", "leave them out");
         made_.task = Task::pair;
+        made_.detail = TrialDetail::wins;
         std::vector<std::string> const items(t_.columns.begin() + 1, t_.columns.end());
         for (auto const& row : t_.rows) {
             auto const own = std::find(items.begin(), items.end(), row[0].text);
@@ -347,7 +350,8 @@ private:
                 add(m, *wins);
             }
         }
-        made_.notes.emplace_back("a matrix does not say who chose: errors are those of independent choices");
+        made_.notes.emplace_back("a matrix does not say who chose, nor in which order: errors are those of "
+                                 "independent choices, order and agreement are not analysed");
     }
 
     std::string notes_of_rows() const

@@ -3,6 +3,7 @@
 #include "study/analysis/analysis.h"
 #include "study/imported/trial_table.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace study::test {
@@ -183,6 +184,42 @@ TEST(TrialTable, RefusesCellsWithTheirPlace)
     matrix.is_matrix = true;
     expect_refused(",a,b\na,0,1\nc,2,0\n", matrix, "t.csv:3:1", "no column has this name");
     expect_refused(",a,b\na,0,x\nb,2,0\n", matrix, "t.csv:2:5", "number of choices");
+}
+
+TEST(TrialTable, OfWinsKnowsNeitherOrderNorObservers)
+{
+    ColumnRoles roles;
+    roles.is_matrix = true;
+    ImportedTable const t = imported("-,a,b,c\na,0,9,8\nb,3,0,7\nc,4,5,0\n", roles);
+    Analysis const a = analyze(t.script, t.sessions);
+    EXPECT_EQ(a.observers.at(0).choices, 0);
+    EXPECT_TRUE(std::isnan(a.observers[0].bias_p));
+    EXPECT_EQ(a.observers[0].most_triads, 0);
+    EXPECT_TRUE(a.blocks.at(0).agreement.empty());
+    EXPECT_TRUE(a.transitions.empty());
+    EXPECT_TRUE(a.cautions.empty()) << a.cautions[0];
+    ScaleResult const& s = a.blocks[0].scales.at(0);
+    EXPECT_TRUE(s.notes.empty()) << s.notes[0];
+    EXPECT_GT(s.items.at(0).score.value, s.items.at(1).score.value);
+    for (NamedValue const& f : s.facts) EXPECT_EQ(f.name.find("order effect"), std::string::npos);
+}
+
+TEST(TrialTable, OfCountsDoesNotKnowTheOrderOfTrials)
+{
+    auto const transitions = [](ImportedTable const& t) {
+        return analyze(t.script, t.sessions, {.replicates = 50, .permutations = 19}).transitions.size();
+    };
+    EXPECT_EQ(transitions(imported("c,k,n\neasy,9,10\nhard,6,10\n", with("correct_count=k,trials=n", {"c"}))), 0u);
+    EXPECT_GT(transitions(imported("c,k\neasy,1\nhard,0\neasy,1\nhard,1\n", with("correct=k", {"c"}))), 0u);
+
+    auto const triads = [](std::string const& rows) {
+        ImportedTable const t = imported("a,b,x,y\n" + rows, with("first=a,second=b,first_wins=x,second_wins=y"));
+        Analysis const a = analyze(t.script, t.sessions);
+        EXPECT_TRUE(a.transitions.empty());
+        return a.observers.at(0).most_triads;
+    };
+    EXPECT_EQ(triads("p,q,2,0\nq,r,1,0\nr,p,1,0\n"), 1);
+    EXPECT_EQ(triads("p,q,2,1\nq,r,1,0\nr,p,1,0\n"), 0) << "which came first is unknown";
 }
 
 TEST(TrialTable, RolesOfAnotherTaskAndOfAMatrixAreRefused)
