@@ -9,7 +9,7 @@
 #include "study/stats/mixed_anova.h"
 #include "study/stats/psychometric.h"
 #include "study/stats/sampler.h"
-#include "study/tables/recorded_session.h"
+#include "study/tables/dataset.h"
 
 #include <limits>
 #include <map>
@@ -263,6 +263,8 @@ struct Analysis {
 /// @throws ScriptError as trial_rows and answered_questionnaires, and if a participant to exclude does not exist
 Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessions,
                  AnalysisSettings const& settings = {});
+/// The remarks of the dataset, such as rows left out, are cautions of the results, too.
+Analysis analyze(Dataset const& records, AnalysisSettings const& settings);
 /// Scales, thresholds and effects of one block, without timing, order and questionnaires: for simulations.
 Analysis analyze_one_block(Script const& script, std::span<RecordedSession const> sessions, int block,
                            AnalysisSettings const& settings);

@@ -62,9 +62,8 @@ void add_cautions(Script const& script, std::vector<RecordedSession> const& sess
     int const used = int(std::count_if(a.observers.begin(), a.observers.end(),
                                        [](ObserverSummary const& o) { return !o.is_excluded; }));
     if (used == 0) c.push_back("nobody is left to analyse");
-    bool const are_people = std::none_of(sessions.begin(), sessions.end(), [](RecordedSession const& s) {
-        return s.detail == TrialDetail::wins;
-    });
+    bool const are_people = std::none_of(sessions.begin(), sessions.end(),
+                                         [](RecordedSession const& s) { return s.detail == TrialDetail::wins; });
     if (used == 1 && are_people) c.push_back("one observer: intervals, if any, apply to this person only");
     if (used > 1 && used < 8)
         c.push_back(fmt::format("{} observers: intervals over observers are rough with fewer than about 8", used));
@@ -135,6 +134,13 @@ Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessi
     analyze_timing(script, kept, used, a);
     analyze_transitions(script, used, a);
     add_cautions(script, sessions, a);
+    return a;
+}
+
+Analysis analyze(Dataset const& records, AnalysisSettings const& settings)
+{
+    Analysis a = analyze(records.script, records.sessions, settings);
+    a.cautions.insert(a.cautions.begin(), records.remarks.begin(), records.remarks.end());
     return a;
 }
 

@@ -1,10 +1,13 @@
 // Tables of other programs: what they mean, and what is refused with its place.
 
-#include "study/analysis/analysis.h"
+#include "study/analysis/result_tables.h"
 #include "study/imported/trial_table.h"
+#include "study/report/page.h"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace study::test {
 namespace {
@@ -184,6 +187,18 @@ TEST(TrialTable, RefusesCellsWithTheirPlace)
     matrix.is_matrix = true;
     expect_refused(",a,b\na,0,1\nc,2,0\n", matrix, "t.csv:3:1", "no column has this name");
     expect_refused(",a,b\na,0,x\nb,2,0\n", matrix, "t.csv:2:5", "number of choices");
+}
+
+TEST(TrialTable, RowsLeftOutAreToldByTheAnalysis)
+{
+    ImportedTable t =
+        imported("w,a,b,c\n1,x,y,x\n2,x,y,\n3,x,y,y\n", with("participant=w,first=a,second=b,chosen=c"));
+    Analysis const a = analyze(Dataset{t.script, {}, t.sessions, t.notes}, {});
+    std::string const told = "1 of 3 rows left out: no 'c'";
+    ASSERT_FALSE(a.cautions.empty());
+    EXPECT_EQ(a.cautions[0], told);
+    EXPECT_NE(to_json(a).find(told), std::string::npos);
+    EXPECT_NE(report_page(t.script, t.sessions, a, {}).find("1 of 3 rows left out"), std::string::npos);
 }
 
 TEST(TrialTable, OfWinsKnowsNeitherOrderNorObservers)
