@@ -201,6 +201,26 @@ TEST(TrialTable, RowsLeftOutAreToldByTheAnalysis)
     EXPECT_NE(report_page(t.script, t.sessions, a, {}).find("1 of 3 rows left out"), std::string::npos);
 }
 
+TEST(TrialTable, NamesThatLookLikeNumbersAreWrittenAsRead)
+{
+    ImportedTable const t =
+        imported("w,a,b,c\n001,1.10,1.1,1.1\n1,1.10,1.1,1.10\ntrue,1.10,1.1,1.1\n1e0,1.1,1.10,1.10\n",
+                 with("participant=w,first=a,second=b,chosen=c"));
+    Analysis const a = analyze(t.script, t.sessions);
+    auto const j = nlohmann::json::parse(to_json(a));
+    std::string people, items;
+    for (auto const& row : j["tables"]["observers"]) people += row["participant"].get<std::string>() + " ";
+    for (auto const& row : j["tables"]["scores"]) items += row["item"].get<std::string>() + " ";
+    EXPECT_EQ(people, "001 1 true 1e0 ");
+    EXPECT_EQ(items, "1.10 1.1 ");
+    EXPECT_EQ(j["tables"]["observers"][0]["trials"], 1);
+    EXPECT_TRUE(j["tables"]["observers"][0]["used"].get<bool>());
+    std::string const text = to_text(a), page = report_page(t.script, t.sessions, a, {});
+    EXPECT_EQ(text.find("1.100"), std::string::npos) << text;
+    EXPECT_NE(text.find(" 1.10 "), std::string::npos) << text;
+    EXPECT_EQ(page.find("1.100"), std::string::npos);
+}
+
 TEST(TrialTable, OfWinsKnowsNeitherOrderNorObservers)
 {
     ColumnRoles roles;
