@@ -144,9 +144,11 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
     Matrix const wins = wins_of(pooled, items.count());
     auto const render = render_times(trials, items.count(), settings.confidence,
                                      [&](TrialRow const&, Stimulus const& s) { return items.of(s); });
+    std::vector<std::string> names;
     for (int i = 0; i < items.count(); ++i) {
         ScaledItem item;
         item.name = script.factors[std::size_t(factor)].levels[std::size_t(items.level(i))].name;
+        names.push_back(item.name);
         item.render_ms = render[std::size_t(i)];
         r.items.push_back(std::move(item));
         r.wins.emplace_back();
@@ -156,6 +158,7 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
     r.observations /= 2;
     try {
         if (pooled.empty()) throw std::invalid_argument("no pair was judged");
+        check_connected(wins, names);
         PairSettings scaling, logistic;
         scaling.ties = logistic.ties = ties;
         logistic.model = PairModel::bradley_terry;

@@ -201,6 +201,14 @@ TEST(TrialTable, RowsLeftOutAreToldByTheAnalysis)
     EXPECT_NE(report_page(t.script, t.sessions, a, {}).find("1 of 3 rows left out"), std::string::npos);
 }
 
+TEST(TrialTable, ItemsThatAreNotConnectedAreNamed)
+{
+    ImportedTable const t = imported("a,b,c\nx,y,x\ny,x,x\nfar,off,far\n", with("first=a,second=b,chosen=c"));
+    Analysis const a = analyze(t.script, t.sessions);
+    std::string const& refused = a.blocks.at(0).scales.at(0).refused;
+    EXPECT_EQ(refused.find("item 'far' is not connected with item 'x'"), 0u) << refused;
+}
+
 TEST(TrialTable, NamesThatLookLikeNumbersAreWrittenAsRead)
 {
     ImportedTable const t =
