@@ -125,9 +125,10 @@ private:
     {
         if (roles_.task) return *roles_.task;
         if (has("first") || has("second")) return Task::pair;
-        if (has("yes") || has("yes_count")) return Task::yes_no;
+        if (has("yes") || has("yes_count") || has_signals_and_correct()) return Task::yes_no;
         if (has("level")) return Task::two_interval;
         if (has("value")) return Task::rating;
+    bool has_signals_and_correct() const { return has("signal") && (has("correct") || has("correct_count")); }
         if (has("correct") || has("correct_count")) return Task::two_interval;
         refuse_roles("it is unknown what these trials are",
                      "name first and second with chosen, value, or level with correct: roles are " +
@@ -140,6 +141,11 @@ private:
             if (!has(role))
                 refuse_roles(fmt::format("a column for '{}' is missing", role),
                              fmt::format("add {}=COLUMN to --columns", role));
+    /// Answers of yes_no are given as yes and no, or by whether they are correct, of known signals.
+    bool says_yes() const
+    {
+        return made_.task == Task::yes_no && (has("yes") || has("yes_count") || !has_signals_and_correct());
+    }
             needed_.push_back(role);
         };
         if (has("participant")) needed_.emplace_back("participant");
@@ -160,7 +166,7 @@ private:
             if (!has("item") && factors_.empty()) refuse_roles("nothing says what was judged", "name item=COLUMN");
             return;
         }
-        bool const is_yes = made_.task == Task::yes_no;
+        bool const is_yes = says_yes();
         if (made_.task == Task::ranking || made_.task == Task::questionnaire || made_.task == Task::free_walk)
             throw ScriptError(
                 t_.file, {}, fmt::format("task '{}'", study::facts(made_.task).name),
@@ -178,8 +184,8 @@ private:
             need(has(rest) ? rest : "trials");
         } else
             need(is_yes ? "yes" : "correct");
-        bool const has_two_kinds =
-            made_.task == Task::same_different || made_.task == Task::abx || (is_yes && !has("level"));
+        bool const has_two_kinds = made_.task == Task::same_different || made_.task == Task::abx ||
+                                   (made_.task == Task::yes_no && !has("level"));
         if (has_two_kinds) need("signal");
     }
 
@@ -283,7 +289,7 @@ private:
 
     void read_answer(Row const& row, MadeTrial& m)
     {
-        bool const is_yes = made_.task == Task::yes_no;
+        bool const is_yes = says_yes(), is_yes_no = made_.task == Task::yes_no;
         if (has("level")) {
             m.level = number(row, "level");
             if (roles_.scale != Scale::linear && !(*m.level > 0)) {
@@ -316,7 +322,10 @@ private:
             (flag(row, role) ? hits : rest) = 1;
         for (bool const hit : {true, false}) {
             m.is_correct = is_yes ? hit == m.is_signal : hit;
-            m.response = is_yes ? (hit ? "yes" : "no") : hit ? "correct" : "wrong";
+            if (is_yes_no)
+                m.response = *m.is_correct == m.is_signal ? "yes" : "no";
+            else
+                m.response = hit ? "correct" : "wrong";
             add(m, hit ? hits : rest);
         }
     }

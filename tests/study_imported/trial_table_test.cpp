@@ -157,6 +157,28 @@ TEST(TrialTable, OfYesAndNoKnowsSignalsAndHasDprime)
     EXPECT_NEAR(a.blocks[0].detections[0].dprime, 1.64, 0.05) << "2 z(0.8), log-linear";
 }
 
+TEST(TrialTable, OfSignalsAndCorrectAnswersIsYesAndNo)
+{
+    std::string text = "s,signal,right\n";
+    for (int i = 0; i < 50; ++i) text += std::string("1,1,") + (i < 40 ? "1\n" : "0\n");
+    for (int i = 0; i < 50; ++i) text += std::string("1,0,") + (i < 30 ? "1\n" : "0\n");
+    auto roles = with("participant=s,signal=signal,correct=right");
+    for (std::optional<Task> const task : {std::optional<Task>{}, std::optional(Task::yes_no)}) {
+        roles.task = task;
+        ImportedTable const t = imported(text, roles);
+        EXPECT_EQ(t.script.blocks.at(0).task, Task::yes_no);
+        Analysis const a = analyze(t.script, t.sessions, {.replicates = 50});
+        DetectionResult const& d = a.blocks.at(0).detections.at(0);
+        EXPECT_NEAR(d.dprime, 0.842 + 0.253, 0.04) << "z(0.8) - z(0.4)";
+        EXPECT_EQ(d.correct, 70);
+    }
+    roles.task = Task::same_different;
+    EXPECT_EQ(imported(text, roles).script.blocks.at(0).task, Task::same_different);
+    ImportedTable const counts =
+        imported("signal,k,n\n1,40,50\n0,30,50\n", with("signal=signal,correct_count=k,trials=n"));
+    EXPECT_NEAR(analyze(counts.script, counts.sessions).blocks.at(0).detections.at(0).dprime, 1.095, 0.04);
+}
+
 TEST(TrialTable, RefusesCellsWithTheirPlace)
 {
     auto const pairs = with("participant=p,first=a,second=b,chosen=c");
