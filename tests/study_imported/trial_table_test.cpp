@@ -179,6 +179,38 @@ TEST(TrialTable, OfSignalsAndCorrectAnswersIsYesAndNo)
     EXPECT_NEAR(analyze(counts.script, counts.sessions).blocks.at(0).detections.at(0).dprime, 1.095, 0.04);
 }
 
+TEST(TrialTable, OfConditionsHasHierarchicalModelsOfDprime)
+{
+    std::string text = "p,c,signal,yes\n";
+    for (int p = 0; p < 3; ++p)
+        for (int i = 0; i < 80; ++i) {
+            bool const is_easy = i % 2 == 0, is_signal = i % 4 < 2;
+            text += fmt::format("{},{},{},{}\n", p, is_easy ? "easy" : "hard", int(is_signal),
+                                int((i / 4) % (is_easy ? 10 : 4) == p % 2 ? !is_signal : is_signal));
+        }
+    ImportedTable const t = imported(text, with("participant=p,signal=signal,yes=yes", {"c"}));
+    Analysis const a = analyze(t.script, t.sessions, {.permutations = 0, .draws = 200});
+    ASSERT_EQ(a.blocks.at(0).hierarchical.size(), 2u);
+    EXPECT_EQ(a.blocks[0].hierarchical[0].parameter, "d'");
+    EXPECT_GT(a.blocks[0].hierarchical[0].mean.value, a.blocks[0].hierarchical[1].mean.value);
+}
+
+TEST(TrialTable, OfSignalsOnlySaysWhyThereIsNoDprime)
+{
+    auto const notes = [](std::string const& text, ColumnRoles const& roles) {
+        ImportedTable const t = imported(text, roles);
+        Analysis const a = analyze(t.script, t.sessions, {.replicates = 50, .permutations = 19});
+        std::string all;
+        for (DetectionResult const& d : a.blocks.at(0).detections) all += d.note + "|";
+        return all;
+    };
+    EXPECT_EQ(notes("s,y\n1,1\n1,0\n", with("signal=s,yes=y")),
+              "no d': no trial is without a signal, so that the rate of false alarms is unknown|");
+    EXPECT_EQ(notes("c,s,y\na,1,1\na,0,0\nb,0,1\nb,0,0\nd,0,0\n", with("signal=s,yes=y", {"c"})),
+              "all answers are right (or all wrong): d' has no upper limit|no d': no trial has a signal, so that "
+              "the rate of hits is unknown (in 2 of 3 conditions)||");
+}
+
 TEST(TrialTable, RefusesCellsWithTheirPlace)
 {
     auto const pairs = with("participant=p,first=a,second=b,chosen=c");
