@@ -107,8 +107,9 @@ int leave_out_guessers(std::vector<ObserverLevels>& observers, std::vector<std::
 
 std::string left_out_note(int left_out)
 {
-    return left_out == 0
-               ? ""
+    return left_out == 0 ? ""
+           : left_out == 1
+               ? "1 observer whose false alarms alone reach the proportion is left out"
                : fmt::format("{} observers whose false alarms alone reach the proportion are left out", left_out);
 }
 

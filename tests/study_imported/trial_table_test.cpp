@@ -80,6 +80,43 @@ TEST(DelimitedText, OfOneRowPerValueBecomesWide)
     EXPECT_THROW(to_wide(t, "name", "value"), ScriptError);
 }
 
+TEST(DelimitedText, BeginsAfterEmptyLinesAndMayEndLinesInCarriageReturns)
+{
+    DelimitedText const t = read_delimited("\r\n\n a;b\n\n1;2\n", "t.csv");
+    ASSERT_EQ(t.columns, (std::vector<std::string>{"a", "b"}));
+    ASSERT_EQ(t.rows.size(), 1u);
+    EXPECT_EQ(t.rows[0][0].place.line, 5);
+    DelimitedText const old = read_delimited("a,b\r1,2\r3,4\r", "t.csv");
+    ASSERT_EQ(old.rows.size(), 2u);
+    EXPECT_EQ(old.rows[1][1].text, "4");
+    EXPECT_EQ(old.rows[1][1].place.line, 3);
+}
+
+TEST(DelimitedText, RefusesWhatIsNotUtf8WithoutEchoingIt)
+{
+    auto const message = [](std::string const& text) -> std::string {
+        try {
+            read_delimited(text, "t.csv");
+        } catch (ScriptError const& e) {
+            return e.what();
+        }
+        return "accepted";
+    };
+    std::string const latin = message("a,b\n1,Bj\xf6rn\n");
+    EXPECT_EQ(latin.find("t.csv:2:5: the text is not UTF-8"), 0u) << latin;
+    EXPECT_EQ(latin.find('\xf6'), std::string::npos);
+    EXPECT_EQ(message(std::string("\xff\xfe"
+                                  "a\0,\0",
+                                  6))
+                  .find("t.csv:1:1: the text is UTF-16"),
+              0u);
+    EXPECT_EQ(message(std::string("a,b\n1,x\0\n", 9)).find("t.csv:2:4: a zero byte"), 0u);
+    for (char const* bad : {"\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "\x80"})
+        EXPECT_EQ(message(std::string("a,b\n1,") + bad + "\n").find("t.csv:2:3: the text is not UTF-8"), 0u)
+            << bad;
+    EXPECT_EQ(message("a,b\n1,\xc3\xb6\xe2\x82\xac\xf0\x9f\x98\x80\n"), "accepted");
+}
+
 TEST(DelimitedText, RefusesWhatIsNoTable)
 {
     auto const refused = [](std::string const& text, std::string const& place) {
@@ -144,6 +181,22 @@ TEST(TrialTable, OfChoicesTakesNamesSidesAndTies)
     EXPECT_EQ(response(0, 2), "neither");
     EXPECT_EQ(response(1, 0), "second");
     EXPECT_EQ(response(1, 1), "second");
+}
+
+TEST(TrialTable, OfChoicesWarnsWhereNamesMayBePositions)
+{
+    auto const cautions = [](std::string const& rows) {
+        std::string all;
+        for (std::string const& note : imported("a,b,c\n" + rows, with("first=a,second=b,chosen=c")).notes)
+            all += note.substr(0, note.find(" may mean")) + "|";
+        return all;
+    };
+    EXPECT_EQ(cautions("2,1,1\n3,1,1\n2,3,2\n"), "answer '1' (2 of 3 rows)|answer '2' (1 of 3 rows)|");
+    EXPECT_EQ(cautions("2,1,1\n3,1,3\n2,3,2\n"), "") << "3 is no position: names are meant";
+    EXPECT_EQ(cautions("2,1,1\n2,3,3\n2,3,1\n"), "answer '1' (1 of 3 rows)|") << "not an item of the last pair";
+    EXPECT_EQ(cautions("x,none,x\nx,y,none\n"), "answer 'none' (1 of 2 rows)|");
+    EXPECT_EQ(cautions("x,y,1\ny,x,2\nx,y,none\n"), "");
+    EXPECT_EQ(cautions("1,2,1\n1,2,2\n"), "") << "both mean the same";
 }
 
 TEST(TrialTable, OfYesAndNoKnowsSignalsAndHasDprime)
@@ -211,6 +264,15 @@ TEST(TrialTable, OfSignalsOnlySaysWhyThereIsNoDprime)
               "the rate of hits is unknown (in 2 of 3 conditions)||");
 }
 
+TEST(TrialTable, RefusesPercentagesThatAreFractions)
+{
+    auto const roles = with("level=l,percent=p,trials=n");
+    expect_refused("l,p,n\n1,1.0,40\n2,0.55,40\n3,0.75,40\n", roles, "t.csv:3:3", "multiply fractions by 100");
+    expect_refused("l,p,n\n1,1e300,40\n", roles, "t.csv:2:3", "from 0 to 100");
+    EXPECT_EQ(imported("l,p,n\n1,0,40\n2,1,40\n", roles).sessions.size(), 1u);
+    EXPECT_EQ(imported("l,p,n\n1,0.5,40\n2,55,40\n", roles).sessions.size(), 1u);
+}
+
 TEST(TrialTable, RefusesCellsWithTheirPlace)
 {
     auto const pairs = with("participant=p,first=a,second=b,chosen=c");
@@ -227,6 +289,10 @@ TEST(TrialTable, RefusesCellsWithTheirPlace)
     expect_refused("l,k,n\n1,5,4\n", with("level=l,correct_count=k,trials=n"), "t.csv:2:3",
                    "more than the 4 trials");
     expect_refused("l,k,n\n1,1.5,4\n", with("level=l,correct_count=k,trials=n"), "t.csv:2:3", "whole number");
+    expect_refused("l,k,n\n1,5,3000000000\n", with("level=l,correct_count=k,trials=n"), "t.csv:2:5",
+                   "at most 2000000 trials");
+    expect_refused("i,v\nx,1e200\n", with("item=i,value=v"), "t.csv:2:3", "from -1e15 to 1e15");
+    expect_refused("l,c,t\n1,1,0.5\n2,1,-3\n", with("level=l,correct=c,reaction_s=t"), "t.csv:3:5", "below 0");
     expect_refused("p,v\n1,2\n", with("participant=p,value=v"), "t.csv: ", "what was judged");
     expect_refused("p,v\n1,2\n", with("participant=p"), "t.csv: ", "unknown what these trials are");
     expect_refused(
