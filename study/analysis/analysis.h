@@ -122,7 +122,8 @@ struct ThresholdRun {
     std::vector<int> reversals; ///< trials, from 0
     std::vector<ThresholdEstimate> estimates;
     std::vector<ParameterEstimate> parameters{};
-    std::string note{}; ///< why there are no parameters although the procedure has them
+    std::string note{};    ///< why there are no parameters although the procedure has them
+    bool has_order = true; ///< false: the order of its trials is unknown
 };
 /// Mean threshold of the population by one procedure and method, on the scale of levels.
 struct ThresholdSummary {

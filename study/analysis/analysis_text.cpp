@@ -115,7 +115,8 @@ std::string to_json(Analysis const& a)
                 for (ScaledItem const& i : s.items) names.push_back(i.name);
                 block["wins"][s.group] = {{"items", names}, {"row_over_column", s.wins}};
             }
-        for (ThresholdRun const& r : b.runs)
+        for (ThresholdRun const& r : b.runs) {
+            if (!r.has_order) continue;
             block["tracks"].push_back({{"participant", r.participant},
                                        {"procedure", r.procedure},
                                        {"cell", r.cell},
@@ -123,6 +124,7 @@ std::string to_json(Analysis const& a)
                                        {"levels", r.levels},
                                        {"correct", r.correct},
                                        {"reversals", r.reversals}});
+        }
         if (!block.empty()) j["blocks"][b.name] = std::move(block);
     }
     return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -375,6 +375,13 @@ TEST(TrialTable, OfCountsDoesNotKnowTheOrderOfTrials)
     EXPECT_EQ(transitions(imported("c,k,n\neasy,9,10\nhard,6,10\n", with("correct_count=k,trials=n", {"c"}))), 0u);
     EXPECT_GT(transitions(imported("c,k\neasy,1\nhard,0\neasy,1\nhard,1\n", with("correct=k", {"c"}))), 0u);
 
+    auto const has_tracks = [](ImportedTable const& t) {
+        return to_json(analyze(t.script, t.sessions, {.replicates = 50, .draws = 0})).find("\"tracks\"") !=
+               std::string::npos;
+    };
+    EXPECT_FALSE(has_tracks(imported("l,k,n\n1,9,10\n2,6,10\n", with("level=l,correct_count=k,trials=n"))));
+    EXPECT_TRUE(has_tracks(imported("l,k\n1,1\n2,0\n1,1\n2,1\n", with("level=l,correct=k"))));
+
     auto const triads = [](std::string const& rows) {
         ImportedTable const t = imported("a,b,x,y\n" + rows, with("first=a,second=b,first_wins=x,second_wins=y"));
         Analysis const a = analyze(t.script, t.sessions);
