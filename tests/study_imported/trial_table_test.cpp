@@ -321,6 +321,28 @@ TEST(TrialTable, RowsLeftOutAreToldByTheAnalysis)
     EXPECT_NE(report_page(t.script, t.sessions, a, {}).find("1 of 3 rows left out"), std::string::npos);
 }
 
+TEST(TrialTable, OneObserverWhoIsLeftOutIsToldInTheSingular)
+{
+    std::string ratings = "p,i,v\n4,a,1\n";
+    for (int p = 1; p < 4; ++p) ratings += fmt::format("{0},a,{0}\n{0},b,{1}\n", p, p * p + 1);
+    ImportedTable const rated = imported(ratings, with("participant=p,item=i,value=v"));
+    std::string notes;
+    Analysis const judged = analyze(rated.script, rated.sessions);
+    for (std::string const& n : judged.blocks.at(0).scales.at(0).notes) notes += n;
+    EXPECT_NE(notes.find("1 observer who did not judge every item is left out"), std::string::npos) << notes;
+
+    std::string answers = "p,l,s,y\n"; // the third one always says yes
+    for (int p = 0; p < 3; ++p)
+        for (int i = 0; i < 120; ++i)
+            answers += fmt::format("{},{},{},{}\n", p, 1 + i % 4, i % 2 ? 1 : int(i % 3 > 0),
+                                   int(p == 2 || (i % 2 || i % 3 ? i % 4 > 1 || i % 5 == 0 : i % 7 == 0)));
+    ImportedTable const seen = imported(answers, with("participant=p,level=l,signal=s,yes=y"));
+    Analysis const a = analyze(seen.script, seen.sessions, {.permutations = 0, .draws = 0});
+    EXPECT_NE(to_text(a).find("1 observer whose false alarms alone reach the proportion is left out"),
+              std::string::npos)
+        << to_text(a);
+}
+
 TEST(TrialTable, ItemsThatAreNotConnectedAreNamed)
 {
     ImportedTable const t = imported("a,b,c\nx,y,x\ny,x,x\nfar,off,far\n", with("first=a,second=b,chosen=c"));
