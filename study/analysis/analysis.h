@@ -9,7 +9,7 @@
 #include "study/stats/mixed_anova.h"
 #include "study/stats/psychometric.h"
 #include "study/stats/sampler.h"
-#include "study/tables/recorded_session.h"
+#include "study/tables/dataset.h"
 
 #include <limits>
 #include <map>
@@ -122,7 +122,8 @@ struct ThresholdRun {
     std::vector<int> reversals; ///< trials, from 0
     std::vector<ThresholdEstimate> estimates;
     std::vector<ParameterEstimate> parameters{};
-    std::string note{}; ///< why there are no parameters although the procedure has them
+    std::string note{};    ///< why there are no parameters although the procedure has them
+    bool has_order = true; ///< false: the order of its trials is unknown
 };
 /// Mean threshold of the population by one procedure and method, on the scale of levels.
 struct ThresholdSummary {
@@ -264,6 +265,8 @@ struct Analysis {
 /// @throws ScriptError as trial_rows and answered_questionnaires, and if a participant to exclude does not exist
 Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessions,
                  AnalysisSettings const& settings = {});
+/// The remarks of the dataset, such as rows left out, are cautions of the results, too.
+Analysis analyze(Dataset const& records, AnalysisSettings const& settings);
 /// Scales, thresholds and effects of one block, without timing, order and questionnaires: for simulations.
 Analysis analyze_one_block(Script const& script, std::span<RecordedSession const> sessions, int block,
                            AnalysisSettings const& settings);

@@ -14,13 +14,13 @@ using Json = nlohmann::ordered_json;
 std::optional<double> number(std::string const& cell)
 {
     if (cell.find_first_not_of("0123456789+-.e") != std::string::npos) return {};
-    if (cell.size() > 1 && cell[0] == '0' && cell[1] != '.') return {}; // a name: participant 007
     return gi::parse_finite(cell);
 }
 
-Json json_of(std::string const& text)
+Json json_of(Column const& column, std::string const& text)
 {
     if (text == kNothing) return nullptr;
+    if (column.is_name) return text;
     if (text == "true" || text == "false") return text == "true";
     if (auto const v = number(text)) return *v;
     return text;
@@ -28,8 +28,9 @@ Json json_of(std::string const& text)
 
 bool is_number_column(Table const& t, std::size_t c)
 {
-    return std::all_of(t.rows.begin(), t.rows.end(),
-                       [&](auto const& row) { return row[c] == kNothing || number(row[c]); });
+    return !t.columns[c].is_name && std::all_of(t.rows.begin(), t.rows.end(), [&](auto const& row) {
+        return row[c] == kNothing || number(row[c]);
+    });
 }
 
 } // namespace
@@ -38,7 +39,7 @@ std::string shown_cell(Column const& column, std::string const& text)
 {
     if (text == kNothing) return "–";
     auto const v = number(text);
-    if (!v) return text;
+    if (!v || column.is_name) return text;
     bool const is_p = column.name == "p" || column.name.starts_with("p_");
     if (is_p) return *v < 0.001 ? "<0.001" : fmt::format("{:.3f}", *v);
     if (std::abs(*v) < 1e-12) return "0"; // rounding of estimates that are 0
@@ -99,7 +100,8 @@ std::string to_json(Analysis const& a)
         Json rows = Json::array();
         for (auto const& row : r.table.rows) {
             Json object = Json::object();
-            for (std::size_t c = 0; c < row.size(); ++c) object[r.table.columns[c].name] = json_of(row[c]);
+            for (std::size_t c = 0; c < row.size(); ++c)
+                object[r.table.columns[c].name] = json_of(r.table.columns[c], row[c]);
             rows.push_back(std::move(object));
         }
         j["tables"][r.name] = std::move(rows);
@@ -113,7 +115,8 @@ std::string to_json(Analysis const& a)
                 for (ScaledItem const& i : s.items) names.push_back(i.name);
                 block["wins"][s.group] = {{"items", names}, {"row_over_column", s.wins}};
             }
-        for (ThresholdRun const& r : b.runs)
+        for (ThresholdRun const& r : b.runs) {
+            if (!r.has_order) continue;
             block["tracks"].push_back({{"participant", r.participant},
                                        {"procedure", r.procedure},
                                        {"cell", r.cell},
@@ -121,6 +124,7 @@ std::string to_json(Analysis const& a)
                                        {"levels", r.levels},
                                        {"correct", r.correct},
                                        {"reversals", r.reversals}});
+        }
         if (!block.empty()) j["blocks"][b.name] = std::move(block);
     }
     return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

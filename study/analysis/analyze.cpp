@@ -50,7 +50,7 @@ BlockResult analyze_block(Script const& script, std::vector<ObserverTrials> cons
     return result;
 }
 
-void add_cautions(Script const& script, Analysis& a)
+void add_cautions(Script const& script, std::vector<RecordedSession> const& sessions, Analysis& a)
 {
     auto& c = a.cautions;
     if (a.simulated > 0)
@@ -62,7 +62,9 @@ void add_cautions(Script const& script, Analysis& a)
     int const used = int(std::count_if(a.observers.begin(), a.observers.end(),
                                        [](ObserverSummary const& o) { return !o.is_excluded; }));
     if (used == 0) c.push_back("nobody is left to analyse");
-    if (used == 1) c.push_back("one observer: intervals, if any, apply to this person only");
+    bool const are_people = std::none_of(sessions.begin(), sessions.end(),
+                                         [](RecordedSession const& s) { return s.detail == TrialDetail::wins; });
+    if (used == 1 && are_people) c.push_back("one observer: intervals, if any, apply to this person only");
     if (used > 1 && used < 8)
         c.push_back(fmt::format("{} observers: intervals over observers are rough with fewer than about 8", used));
     if (used < script.participants.count)
@@ -90,7 +92,7 @@ Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessi
         std::string const& id = start.participant_id;
         auto it = std::find_if(observers.begin(), observers.end(),
                                [&](ObserverTrials const& o) { return o.participant == id; });
-        if (it == observers.end()) it = observers.insert(it, {id, {}});
+        if (it == observers.end()) it = observers.insert(it, {id, {}, session.detail});
         auto rows = trial_rows(script, session);
         it->rows.insert(it->rows.end(), rows.begin(), rows.end());
         summarise(session, start, rows, a);
@@ -131,7 +133,14 @@ Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessi
     for (Measure const& m : questionnaire_measures(script, used)) test_effects(m, groups, settings, a);
     analyze_timing(script, kept, used, a);
     analyze_transitions(script, used, a);
-    add_cautions(script, a);
+    add_cautions(script, sessions, a);
+    return a;
+}
+
+Analysis analyze(Dataset const& records, AnalysisSettings const& settings)
+{
+    Analysis a = analyze(records.script, records.sessions, settings);
+    a.cautions.insert(a.cautions.begin(), records.remarks.begin(), records.remarks.end());
     return a;
 }
 

@@ -80,19 +80,28 @@ char const* model_of(Task task)
     }
 }
 
+/// Why these trials have no d'; empty = they have one.
+std::string without_dprime(Task task, DetectionCounts const& all, AnalysisSettings const& settings)
+{
+    auto const model = detection_task(task);
+    // A guess rate that was given is another task's, such as that of four alternatives.
+    if (model == DetectionTask::two_interval && settings.guess && *settings.guess != guess_rate(task))
+        return fmt::format("no d': it is that of two alternatives, which a guess rate of {:g} does not fit",
+                           *settings.guess);
+    if (!model || !has_criterion(*model) || (all.signals > 0 && all.noises > 0)) return {};
+    bool const is_yes_no = task == Task::yes_no;
+    return all.signals > 0 ? fmt::format("no d': no trial {}, so that the rate of false alarms is unknown",
+                                         is_yes_no ? "is without a signal" : "has the same stimuli")
+                           : fmt::format("no d': no trial {}, so that the rate of hits is unknown",
+                                         is_yes_no ? "has a signal" : "has different stimuli");
+}
+
 /// d' of all trials pooled, and the mean of the population.
 void add_dprime(DetectionResult& d, Block const& b, std::vector<DetectionCounts> const& counts,
                 DetectionCounts const& all, AnalysisSettings const& settings)
 {
     auto const task = detection_task(b.task);
-    // A guess rate that was given is another task's, such as that of four alternatives.
-    if (task == DetectionTask::two_interval && settings.guess && *settings.guess != guess_rate(b.task)) {
-        d.model.clear();
-        d.note = fmt::format("d' is that of two alternatives, which a guess rate of {:g} does not fit: left out",
-                             *settings.guess);
-        return;
-    }
-    if (!task || (has_criterion(*task) && !(all.signals > 0 && all.noises > 0))) return;
+    if (!task || !without_dprime(b.task, all, settings).empty()) return;
     d.dprime = detection_point(*task, all).dprime;
     try {
         GroupDPrime const g = group_dprime(*task, counts, settings.confidence);
@@ -158,6 +167,7 @@ void add_detections(Script const& script, Block const& b, std::vector<ObserverTr
             tallies.resize(trials.size());
             count(tallies[o], b.task, row);
         }
+    std::map<std::string, std::vector<std::size_t>> without; // conditions, by why they have no d'
     for (auto const& [key, tallies] : conditions) {
         DetectionResult d;
         d.condition = std::get<2>(key);
@@ -183,12 +193,22 @@ void add_detections(Script const& script, Block const& b, std::vector<ObserverTr
         std::vector<DetectionCounts> counts;
         for (Tally const& t : tallies)
             if (t.trials > 0) counts.push_back(counts_of(b.task, t, has_both));
-        add_dprime(d, b, counts, counts_of(b.task, all, has_both), settings);
+        DetectionCounts const pooled = counts_of(b.task, all, has_both);
+        add_dprime(d, b, counts, pooled, settings);
+        if (std::string const why = without_dprime(b.task, pooled, settings); !why.empty()) {
+            without[why].push_back(result.detections.size());
+            d.model.clear();
+        }
         // Of a varied level thresholds are the aim, and every level would have a model of its own.
-        if (settings.draws > 0 && compared_factor(b) >= 0 && std::isfinite(d.dprime) && counts.size() > 1)
+        bool const is_varied = b.compare && !b.compare->vary.empty();
+        if (settings.draws > 0 && !is_varied && std::isfinite(d.dprime) && counts.size() > 1)
             result.hierarchical.push_back(hierarchical_of(d, b, counts, who, settings));
         result.detections.push_back(std::move(d));
     }
+    for (auto const& [why, which] : without)
+        result.detections[which[0]].note =
+            which.size() == 1 ? why
+                              : fmt::format("{} (in {} of {} conditions)", why, which.size(), conditions.size());
 }
 
 } // namespace

@@ -108,7 +108,9 @@ void test_variance(Measure const& m, CellTable const& t, std::vector<Participant
     if (left_out > 0)
         a.effect_notes.push_back(
             {m.block, m.name,
-             fmt::format("{} observers lack a cell and are not in the tests of effects", left_out)});
+             left_out == 1
+                 ? "1 observer lacks a cell and is not in the tests of effects"
+                 : fmt::format("{} observers lack a cell and are not in the tests of effects", left_out)});
     MixedDesign design;
     if (t.is_crossed)
         for (MeasureAxis const& axis : t.axes) design.within.push_back({axis.name, int(axis.levels.size())});

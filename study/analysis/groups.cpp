@@ -48,7 +48,7 @@ std::vector<ObserverTrials> counted(std::vector<ObserverTrials> const& observers
 {
     std::vector<ObserverTrials> out;
     for (ObserverTrials const& o : observers) {
-        out.push_back({o.participant, {}});
+        out.push_back({o.participant, {}, o.detail});
         for (TrialRow const& row : o.rows)
             if (row.step->block == block && row.status == TrialStatus::counted && group.has(row))
                 out.back().rows.push_back(row);

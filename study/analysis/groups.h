@@ -11,6 +11,7 @@ namespace study {
 struct ObserverTrials {
     std::string participant;
     std::vector<TrialRow> rows;
+    TrialDetail detail = TrialDetail::trials;
 };
 
 /// Trials of a block that share the level of a factor, or all of them.

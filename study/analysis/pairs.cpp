@@ -68,6 +68,12 @@ std::vector<PairCount> counts_of(Items const& items, std::vector<TrialRow> const
     return pool({counts});
 }
 
+bool has_wins_only(std::vector<ObserverTrials> const& observers)
+{
+    return std::any_of(observers.begin(), observers.end(),
+                       [](ObserverTrials const& o) { return o.detail == TrialDetail::wins; });
+}
+
 void add_fit(ScaleResult& r, std::string const& name, PairScale const& fit)
 {
     add_fact(r, name + " deviance", fit.deviance);
@@ -133,13 +139,16 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
     for (ObserverTrials const& o : trials)
         if (auto counts = counts_of(items, o.rows); !counts.empty()) observers.push_back(std::move(counts));
     r.observers = int(observers.size());
+    bool const is_wins_only = has_wins_only(trials);
     std::vector<PairCount> const pooled = pool(observers);
     Matrix const wins = wins_of(pooled, items.count());
     auto const render = render_times(trials, items.count(), settings.confidence,
                                      [&](TrialRow const&, Stimulus const& s) { return items.of(s); });
+    std::vector<std::string> names;
     for (int i = 0; i < items.count(); ++i) {
         ScaledItem item;
         item.name = script.factors[std::size_t(factor)].levels[std::size_t(items.level(i))].name;
+        names.push_back(item.name);
         item.render_ms = render[std::size_t(i)];
         r.items.push_back(std::move(item));
         r.wins.emplace_back();
@@ -149,6 +158,7 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
     r.observations /= 2;
     try {
         if (pooled.empty()) throw std::invalid_argument("no pair was judged");
+        check_connected(wins, names);
         PairSettings scaling, logistic;
         scaling.ties = logistic.ties = ties;
         logistic.model = PairModel::bradley_terry;
@@ -160,7 +170,7 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
             std::vector<std::vector<PairCount>> each;
             for (auto const& o : observers) each.push_back(without_order(o));
             over = scale_observers(each, items.count(), scaling);
-        } else
+        } else if (!is_wins_only)
             add_note(r, "one observer: intervals are of the fit, as if all trials were of different people");
         add_scores(r, fit, over, settings.confidence);
         for (std::size_t i = 0; i < r.items.size(); ++i)
@@ -184,7 +194,7 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
         }
         add_fit(r, "Thurstone V", fit);
         add_fit(r, "Bradley-Terry", other);
-        add_order_effect(r, pooled, items.count(), fit, ties);
+        if (!is_wins_only) add_order_effect(r, pooled, items.count(), fit, ties);
     } catch (std::invalid_argument const& e) {
         r.refused = e.what();
         return r;
@@ -198,8 +208,8 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
 }
 
 /// The first judgement of each pair by each observer in one cell: [i][j] = 1 if i was chosen. Empty if a
-/// pair is missing or tied.
-std::optional<Matrix> complete_choices(Items const& items, std::vector<TrialRow> const& rows)
+/// pair is missing or tied, or its first judgement unknown.
+std::optional<Matrix> complete_choices(Items const& items, std::vector<TrialRow> const& rows, TrialDetail detail)
 {
     auto const n = std::size_t(items.count());
     Matrix m(n, n, 0);
@@ -207,7 +217,8 @@ std::optional<Matrix> complete_choices(Items const& items, std::vector<TrialRow>
         auto const c = items.choice(row);
         if (!c || c->is_tie) continue;
         auto const i = std::size_t(c->first), j = std::size_t(c->second);
-        if (m(i, j) + m(j, i) == 0) (c->first_wins > 0 ? m(i, j) : m(j, i)) = 1;
+        auto& chosen = c->first_wins > 0 ? m(i, j) : m(j, i);
+        if (detail != TrialDetail::trials || m(i, j) + m(j, i) == 0) chosen = 1;
     }
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j)
@@ -230,8 +241,8 @@ Cells cells_of_observers(Script const& script, std::vector<ObserverTrials> const
     return cells;
 }
 
-void add_consistency(Items const& items, Cells const& cells, BlockResult& result,
-                     std::vector<ObserverSummary>& summaries)
+void add_consistency(Items const& items, Cells const& cells, std::vector<ObserverTrials> const& observers,
+                     BlockResult& result, std::vector<ObserverSummary>& summaries)
 {
     auto const n = std::size_t(items.count());
     for (auto const& [name, rows] : cells) {
@@ -239,7 +250,7 @@ void add_consistency(Items const& items, Cells const& cells, BlockResult& result
         a.cell = name;
         Matrix sum(n, n, 0);
         for (std::size_t o = 0; o < rows.size(); ++o) {
-            auto const choices = complete_choices(items, rows[o]);
+            auto const choices = complete_choices(items, rows[o], observers[o].detail);
             if (!choices) {
                 ++a.left_out;
                 continue;
@@ -293,7 +304,7 @@ void analyze_pairs(Script const& script, std::vector<ObserverTrials> const& obse
         result.scales.push_back(scale_of_group(script, counted(observers, block, g), items, b.pairs->factor, g,
                                                b.may_tie ? TieModel::threshold : TieModel::half_wins, settings));
     auto const cells = cells_of_observers(script, counted(observers, block), groups);
-    add_consistency(items, cells, result, summaries);
+    if (!has_wins_only(observers)) add_consistency(items, cells, observers, result, summaries);
     // An observer without trials in the last cells has rows of length 0 there.
     if (settings.has_outliers && !cells.empty()) add_outliers(items, cells, b.name, observers.size(), summaries);
 }

@@ -31,8 +31,8 @@ ResultTable agreement(Analysis const& a)
         "first judgement of each pair counts.",
         false,
         {}};
-    t.table.columns = {{"block", "Block"},
-                       {"cell", "Condition"},
+    t.table.columns = {name_column("block", "Block"),
+                       name_column("cell", "Condition"),
                        {"observers", "Observers who judged every pair"},
                        {"left_out", "Observers who did not"},
                        {"u", "Kendall's coefficient of agreement"},
@@ -73,9 +73,9 @@ ResultTable thresholds(Analysis const& a)
         false,
         {}};
     t.table.columns =
-        with_interval({{"block", "Block"},
-                       {"cell", "Condition"},
-                       {"procedure", "Procedure"},
+        with_interval({name_column("block", "Block"),
+                       name_column("cell", "Condition"),
+                       name_column("procedure", "Procedure"),
                        {"method", "Method of estimation"},
                        {"share", "Proportion correct at the threshold"},
                        {"level", "Threshold"}},
@@ -101,17 +101,17 @@ ResultTable runs(Analysis const& a)
                   "weak priors if there are fewer than three.",
                   true,
                   {}};
-    t.table.columns = with_interval({{"block", "Block"},
-                                     {"participant", "Participant"},
-                                     {"cell", "Condition"},
-                                     {"procedure", "Procedure"},
+    t.table.columns = with_interval({name_column("block", "Block"),
+                                     name_column("participant", "Participant"),
+                                     name_column("cell", "Condition"),
+                                     name_column("procedure", "Procedure"),
                                      {"run", "Run, from 1"},
                                      {"trials", "Trials"},
                                      {"reversals", "Reversals of a staircase"},
                                      {"method", "Method of estimation"},
                                      {"share", "Proportion correct at the threshold"},
                                      {"level", "Threshold"}},
-                                    {{"remark", "Remark on its reliability"}});
+                                    {name_column("remark", "Remark on its reliability")});
     for (BlockResult const& b : a.blocks)
         for (ThresholdRun const& r : b.runs)
             for (ThresholdEstimate const& e : r.estimates) {
@@ -140,16 +140,16 @@ ResultTable parameters(Analysis const& a)
         "standard deviations.",
         true,
         {}};
-    t.table.columns = {{"block", "Block"},
-                       {"cell", "Condition"},
-                       {"participant", "Participant"},
-                       {"procedure", "Procedure"},
+    t.table.columns = {name_column("block", "Block"),
+                       name_column("cell", "Condition"),
+                       name_column("participant", "Participant"),
+                       name_column("procedure", "Procedure"),
                        {"run", "Run, from 1"},
                        {"trials", "Trials"},
-                       {"parameter", "Parameter of the formula"},
+                       name_column("parameter", "Parameter of the formula"),
                        {"mean", "Posterior mean"},
                        {"sd", "Posterior standard deviation"},
-                       {"note", "Remark"}};
+                       name_column("note", "Remark")};
     for (BlockResult const& b : a.blocks)
         for (ThresholdRun const& r : b.runs) {
             std::vector<std::string> const start{cell(b.name),      cell(r.cell), cell(r.participant),
@@ -177,13 +177,13 @@ ResultTable curves(Analysis const& a)
                   false,
                   {}};
     t.table.columns = with_interval(
-        {{"block", "Block"},
-         {"cell", "Condition"},
+        {name_column("block", "Block"),
+         name_column("cell", "Condition"),
          {"observers", "Observers"},
          {"trials", "Trials"},
          {"share", "Proportion correct at the threshold"},
          {"threshold", "Level"}},
-        {{"function", "Psychometric function, or its formula"},
+        {name_column("function", "Psychometric function, or its formula"),
          {"sd", "Standard deviation of thresholds between observers"},
          {"scale", "Spread of the function; of a formula its slope"},
          {"lapse", "Lapse rate"},
@@ -231,7 +231,10 @@ ResultTable population(Analysis const& a)
         false,
         {}};
     auto& columns = t.table.columns;
-    columns = {{"block", "Block"}, {"condition", "Condition"}, {"of", "Parameter"}, {"observers", "Observers"}};
+    columns = {name_column("block", "Block"),
+               name_column("condition", "Condition"),
+               name_column("of", "Parameter"),
+               {"observers", "Observers"}};
     add_columns(columns, "mean", "Mean of the population");
     add_columns(columns, "sd", "Standard deviation between observers");
     columns.insert(columns.end(), {{"scale", "Spread of the psychometric function, in units of the scale"},
@@ -262,10 +265,10 @@ ResultTable population_observers(Analysis const& a)
                   "Shrunken towards the mean of the population, the more the less an observer's own answers say.",
                   true,
                   {}};
-    t.table.columns = with_interval({{"block", "Block"},
-                                     {"condition", "Condition"},
-                                     {"of", "Parameter"},
-                                     {"participant", "Participant"},
+    t.table.columns = with_interval({name_column("block", "Block"),
+                                     name_column("condition", "Condition"),
+                                     name_column("of", "Parameter"),
+                                     name_column("participant", "Participant"),
                                      {"value", "Posterior mean"}});
     for (BlockResult const& b : a.blocks)
         for (HierarchicalResult const& h : b.hierarchical)
@@ -288,8 +291,8 @@ ResultTable detection(Analysis const& a)
         "observers, interval by its profile.",
         false,
         {}};
-    t.table.columns = {{"block", "Block"},
-                       {"condition", "Condition"},
+    t.table.columns = {name_column("block", "Block"),
+                       name_column("condition", "Condition"),
                        {"observers", "Observers"},
                        {"right", "Correct answers"},
                        {"trials", "Trials"},
@@ -319,12 +322,13 @@ ResultTable detection(Analysis const& a)
 ResultTable questionnaires(Analysis const& a)
 {
     ResultTable t{"questionnaires", "Questionnaires", "Mean over answers, Student's interval.", false, {}};
-    t.table.columns = with_interval({{"questionnaire", "Questionnaire"},
-                                     {"score", "Score"},
-                                     {"when", "Number of the occasion, or the condition in which it was answered"},
-                                     {"n", "Answers"},
-                                     {"mean", "Mean"}},
-                                    {{"sd", "Standard deviation"}});
+    t.table.columns =
+        with_interval({name_column("questionnaire", "Questionnaire"),
+                       name_column("score", "Score"),
+                       name_column("when", "Number of the occasion, or the condition in which it was answered"),
+                       {"n", "Answers"},
+                       {"mean", "Mean"}},
+                      {{"sd", "Standard deviation"}});
     for (QuestionnaireResult const& q : a.questionnaires) {
         std::vector<std::string> row{cell(q.questionnaire), cell(q.score), cell(q.when), cell(q.mean.n)};
         add_estimate(row, q.mean);
@@ -341,8 +345,8 @@ ResultTable changes(Analysis const& a)
                   "Paired by participant; p by Student's test, not corrected for the number of tests.",
                   false,
                   {}};
-    t.table.columns = with_interval({{"questionnaire", "Questionnaire"},
-                                     {"score", "Score"},
+    t.table.columns = with_interval({name_column("questionnaire", "Questionnaire"),
+                                     name_column("score", "Score"),
                                      {"from", "Time"},
                                      {"to", "Time"},
                                      {"n", "Participants who answered both"},
@@ -395,7 +399,7 @@ ResultTable timing(Analysis const& a)
 ResultTable calibrations(Analysis const& a)
 {
     ResultTable t{"calibrations", "Tests of the display", "", false, {}};
-    t.table.columns = {{"participant", "Participant"},
+    t.table.columns = {name_column("participant", "Participant"),
                        {"part", "Part of the session"},
                        {"frames", "Frames timed"},
                        {"nominal_hz", "Refresh rate reported by the display", "Hz"},
@@ -403,7 +407,7 @@ ResultTable calibrations(Analysis const& a)
                        {"sd_ms", "Standard deviation of the period", "ms"},
                        {"passed", "Whether it passed"},
                        {"method", "How onsets are timed"},
-                       {"reason", "Why not"}};
+                       name_column("reason", "Why not")};
     for (CalibrationResult const& c : a.timing.calibrations)
         t.table.rows.push_back({cell(c.participant), cell(c.part), cell(c.done.frames),
                                 c.done.nominal_hz > 0 ? cell(c.done.nominal_hz) : cell(""),
@@ -416,8 +420,8 @@ ResultTable calibrations(Analysis const& a)
 ResultTable reactions(Analysis const& a)
 {
     ResultTable t{"reactions", "Reaction times, ms", "Quantiles of the trials that count.", false, {}};
-    t.table.columns = {{"block", "Block"},    {"trials", "Trials"},     {"q05", "5 %", "ms"},
-                       {"q25", "25 %", "ms"}, {"median", "50 %", "ms"}, {"q75", "75 %", "ms"},
+    t.table.columns = {name_column("block", "Block"), {"trials", "Trials"},     {"q05", "5 %", "ms"},
+                       {"q25", "25 %", "ms"},         {"median", "50 %", "ms"}, {"q75", "75 %", "ms"},
                        {"q95", "95 %", "ms"}};
     for (ReactionResult const& r : a.timing.reactions) {
         std::vector<std::string> row{cell(r.block), cell(int(r.ms.size()))};
@@ -430,8 +434,8 @@ ResultTable reactions(Analysis const& a)
 ResultTable transitions(Analysis const& a)
 {
     ResultTable t{"transitions", "Order: how often a trial differs from the previous one", "", false, {}};
-    t.table.columns = {{"block", "Block"},
-                       {"of", "Factor, answer or procedure"},
+    t.table.columns = {name_column("block", "Block"),
+                       name_column("of", "Factor, answer or procedure"),
                        {"switched", "Proportion of neighbours that differ"},
                        {"by_chance", "Its mean over all orders of the same trials"}};
     for (TransitionResult const& r : a.transitions)

@@ -39,9 +39,9 @@ double largest_score(ScaleResult const& s)
 ResultTable exclusions(Analysis const& a)
 {
     ResultTable t{"exclusions", "Excluded, or to be inspected", "", false, {}};
-    t.table.columns = {{"participant", "Participant"},
-                       {"what", "left out, kept, or look at"},
-                       {"why", "Reason"},
+    t.table.columns = {name_column("participant", "Participant"),
+                       name_column("what", "left out, kept, or look at"),
+                       name_column("why", "Reason"),
                        {"trials", "Trials concerned"}};
     for (Exclusion const& e : a.exclusions)
         t.table.rows.push_back({cell(e.participant), cell(e.what), cell(e.why), cell(e.trials)});
@@ -58,7 +58,7 @@ ResultTable observers(Analysis const& a)
         "above should be inspected. Bias: exact test of first as often as second.",
         false,
         {}};
-    t.table.columns = {{"participant", "Participant"},
+    t.table.columns = {name_column("participant", "Participant"),
                        {"used", "Whether the participant is analysed"},
                        {"complete", "Whether all sessions are complete"},
                        {"trials", "Trials that count"},
@@ -101,9 +101,9 @@ ResultTable scores(Analysis const& a)
         "shown, interval over observers.",
         false,
         {}};
-    t.table.columns = {{"block", "Block"},
-                       {"group", "Trials that share this level"},
-                       {"item", "Scored item"},
+    t.table.columns = {name_column("block", "Block"),
+                       name_column("group", "Trials that share this level"),
+                       name_column("item", "Scored item"),
                        {"unit", "Unit of the score"},
                        {"score", "Score"}};
     add_interval(t.table.columns, "", a.settings.confidence);
@@ -132,11 +132,11 @@ ResultTable cheapest(Analysis const& a)
         "judged, the best judged item replaces it.",
         false,
         {}};
-    t.table.columns = {{"block", "Block"},
-                       {"group", "Trials that share this level"},
-                       {"item", "Cheapest"},
+    t.table.columns = {name_column("block", "Block"),
+                       name_column("group", "Trials that share this level"),
+                       name_column("item", "Cheapest"),
                        {"render_ms", "Mean rendering time per frame of the item", "ms"},
-                       {"against", "Item that it is compared with"},
+                       name_column("against", "Item that it is compared with"),
                        {"judged", "Whether that is the reference or the best judged item"},
                        {"against_ms", "Mean rendering time per frame of that item", "ms"},
                        {"unit", "Unit of the difference"},
@@ -172,9 +172,12 @@ ResultTable differences(Analysis const& a)
         "p by Student's distribution on errors over observers; p_holm corrected for all pairs of the group.",
         true,
         {}};
-    t.table.columns = {{"block", "Block"}, {"group", "Trials that share this level"},
-                       {"a", "Item"},      {"b", "Other item"},
-                       {"unit", "Unit"},   {"difference", "a minus b"}};
+    t.table.columns = {name_column("block", "Block"),
+                       name_column("group", "Trials that share this level"),
+                       name_column("a", "Item"),
+                       name_column("b", "Other item"),
+                       {"unit", "Unit"},
+                       {"difference", "a minus b"}};
     add_interval(t.table.columns, "", a.settings.confidence);
     t.table.columns.push_back({"p", "p-value of the difference"});
     t.table.columns.push_back({"p_holm", "Corrected (Holm)"});
@@ -198,8 +201,10 @@ ResultTable fits(Analysis const& a)
                   "A small p of a deviance means that one scale does not explain the choices.",
                   true,
                   {}};
-    t.table.columns = {
-        {"block", "Block"}, {"group", "Trials that share this level"}, {"number", "Which"}, {"value", "Value"}};
+    t.table.columns = {name_column("block", "Block"),
+                       name_column("group", "Trials that share this level"),
+                       {"number", "Which"},
+                       {"value", "Value"}};
     for (BlockResult const& b : a.blocks)
         for (ScaleResult const& s : b.scales)
             for (NamedValue const& f : s.facts)
@@ -210,7 +215,8 @@ ResultTable fits(Analysis const& a)
 ResultTable refusals(Analysis const& a)
 {
     ResultTable t{"remarks", "Results that could not be computed, or only with regularisation", "", false, {}};
-    t.table.columns = {{"block", "Block"}, {"group", "Trials that share this level"}, {"remark", "Remark"}};
+    t.table.columns = {name_column("block", "Block"), name_column("group", "Trials that share this level"),
+                       name_column("remark", "Remark")};
     auto const say = [&](std::string const& block, std::string const& group, std::string const& text) {
         if (!text.empty()) t.table.rows.push_back({cell(block), cell(group), cell(text)});
     };

@@ -175,6 +175,11 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
                                       std::optional<GroupCurve> const& group, AnalysisSettings const& settings)
 {
     ThresholdEstimate e{"likelihood", proportion, {}, {}};
+    constexpr char const* kNever = "the function never reaches this proportion";
+    if (guess && *guess >= proportion) {
+        e.note = kNever;
+        return e;
+    }
     try {
         auto const counts = count_levels(run.levels, run.correct);
         PosteriorLevel level;
@@ -199,7 +204,7 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
             return !std::isfinite(u) ? kUnknown : shape.axis == Axis::log10 ? std::pow(10.0, x) : x;
         };
         if (std::isnan(level.centre)) {
-            e.note = "the function never reaches this proportion";
+            e.note = kNever;
             return e;
         }
         e.level = {

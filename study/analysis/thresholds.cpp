@@ -67,6 +67,7 @@ std::map<Place, std::vector<RunOf>> runs_of(Script const& script, Block const& b
             if (guess_rate(b.task) == 0 && !settings.guess) r.noise = false_alarms(r.is_own_noise ? rows : cell);
             if (settings.guess) r.guess = settings.guess;
             r.run.participant = o.participant;
+            r.run.has_order = o.detail == TrialDetail::trials;
             r.run.cell = std::get<0>(key);
             auto& list = all[{r.run.cell, procedure}];
             r.run.run = 1 + int(std::count_if(list.begin(), list.end(), [&](RunOf const& other) {
@@ -107,8 +108,9 @@ int leave_out_guessers(std::vector<ObserverLevels>& observers, std::vector<std::
 
 std::string left_out_note(int left_out)
 {
-    return left_out == 0
-               ? ""
+    return left_out == 0 ? ""
+           : left_out == 1
+               ? "1 observer whose false alarms alone reach the proportion is left out"
                : fmt::format("{} observers whose false alarms alone reach the proportion are left out", left_out);
 }
 

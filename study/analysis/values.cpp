@@ -100,8 +100,9 @@ void add_friedman(ScaleResult& r, Matrix const& table)
         add_fact(r, "Friedman p", f.p);
         add_fact(r, "Kendall W", f.kendall_w);
         if (f.left_out > 0)
-            add_note(r, fmt::format("Friedman's test: {} observers who did not judge every item are left out",
-                                    f.left_out));
+            add_note(r, fmt::format("Friedman's test: {} who did not judge every item {} left out",
+                                    f.left_out == 1 ? "1 observer" : fmt::format("{} observers", f.left_out),
+                                    f.left_out == 1 ? "is" : "are"));
     } catch (std::invalid_argument const& e) {
         add_note(r, std::string("no Friedman test: ") + e.what());
     }

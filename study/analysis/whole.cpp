@@ -58,7 +58,7 @@ void summarise(RecordedSession const& session, SessionStarted const& start, std:
             bool const is_right = row.done->is_correct.value_or(row.done->response == row.step->trial.answer);
             it->catches_right += is_right;
         }
-        if (row.status != TrialStatus::counted) continue;
+        if (row.status != TrialStatus::counted || session.detail == TrialDetail::wins) continue;
         if (row.done->response == "first") ++it->choices, ++it->chose_first;
         if (row.done->response == "second") ++it->choices;
     }
@@ -168,7 +168,8 @@ void analyze_transitions(Script const& script, std::vector<RecordedSession const
 {
     std::map<std::string, std::size_t> at;
     std::vector<int> parts;
-    for (RecordedSession const* session : sessions)
+    for (RecordedSession const* session : sessions) {
+        if (session->detail != TrialDetail::trials) continue;
         for (Transitions const& t : find_transitions(script, session->plan)) {
             std::string const& block = script.blocks[std::size_t(t.block)].name;
             std::string key = block + "\n" + t.subject;
@@ -184,6 +185,7 @@ void analyze_transitions(Script const& script, std::vector<RecordedSession const
             sum.by_chance += t.by_chance;
             ++parts[it->second];
         }
+    }
     for (std::size_t i = 0; i < parts.size(); ++i) {
         a.transitions[i].switched /= parts[i];
         a.transitions[i].by_chance /= parts[i];

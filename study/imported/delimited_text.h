@@ -1,6 +1,7 @@
 #pragma once
 // Tables of other programs: comma-, semicolon- or tab-separated text with a line of column names (RFC 4180: cells
-// in quotes may contain separators, line ends and doubled quotes). A byte-order mark is ignored.
+// in quotes may contain separators, line ends and doubled quotes), in UTF-8. A byte-order mark is ignored, as are
+// empty lines; lines end in LF, CR LF, or CR if there is no LF.
 
 #include "study/script/script_error.h"
 
@@ -35,7 +36,8 @@ DelimitedText joined(std::vector<DelimitedText> const& tables);
 DelimitedText to_wide(DelimitedText const& table, std::string const& names, std::string const& values);
 
 /// The separator is the one of comma, semicolon and tab that is most frequent in the line of column names.
-/// @throws ScriptError no columns, two with the same name, a row with another number of cells, an open quote
-DelimitedText read_delimited(std::string const& text, std::string const& file);
+/// @throws ScriptError text that is not UTF-8 or has zero bytes, no columns, two with the same name, a row with
+/// another number of cells, an open quote
+DelimitedText read_delimited(std::string text, std::string const& file);
 
 } // namespace study

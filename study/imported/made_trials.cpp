@@ -202,6 +202,7 @@ ImportedTable sessions_of(MadeExperiment const& made)
         auto const [it, is_new] = session_of.emplace(t.participant, out.sessions.size());
         if (is_new) {
             RecordedSession session;
+            session.detail = made.detail;
             session.plan.participant = int(out.sessions.size()) + 1;
             session.plan.participant_id = t.participant;
             SessionStarted start;

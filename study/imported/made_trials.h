@@ -18,6 +18,7 @@ struct MadeTrial {
 struct MadeExperiment {
     std::string id, file;
     Task task = Task::pair;
+    TrialDetail detail = TrialDetail::trials;
     std::vector<std::string> factors; ///< names
     std::vector<MadeTrial> trials;
     Scale scale = Scale::linear;

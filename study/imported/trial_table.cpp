@@ -18,6 +18,7 @@ constexpr std::string_view kRoles[] = {
     "correct_count", "wrong_count", "yes_count", "no_count", "percent", "reaction_s", "reaction_ms"};
 
 constexpr int kMostImportedTrials = 2'000'000;
+constexpr double kLargestValue = 1e15; ///< up to which whole numbers are exact, and squares far from overflow
 
 std::string lower_case(std::string text)
 {
@@ -50,6 +51,8 @@ public:
             made_.task = task();
             check_roles();
             for (auto const& row : t_.rows) read(row);
+            check_percent();
+            note_ambiguous_choices();
         }
         if (made_.trials.empty())
             throw ScriptError(t_.file, {}, "no trials are left", notes_of_rows(), "check --columns and --only");
@@ -115,23 +118,33 @@ private:
     int count(Row const& row, std::string const& role) const
     {
         double const v = number(row, role);
-        if (v < 0 || v != std::floor(v) || v > kMostImportedTrials)
+        if (v < 0 || v != std::floor(v))
             refuse_cell(cell(row, role), roles_.column.at(role), fmt::format("'{}' is a number of trials", role),
                         "use a whole number from 0 up");
+        if (v > kMostImportedTrials)
+            refuse_cell(cell(row, role), roles_.column.at(role),
+                        fmt::format("'{}' is at most {} trials", role, kMostImportedTrials),
+                        "analyse parts of the trials");
         return int(v);
     }
 
+    bool has_signals_and_correct() const { return has("signal") && (has("correct") || has("correct_count")); }
     Task task() const
     {
         if (roles_.task) return *roles_.task;
         if (has("first") || has("second")) return Task::pair;
-        if (has("yes") || has("yes_count")) return Task::yes_no;
+        if (has("yes") || has("yes_count") || has_signals_and_correct()) return Task::yes_no;
         if (has("level")) return Task::two_interval;
         if (has("value")) return Task::rating;
         if (has("correct") || has("correct_count")) return Task::two_interval;
         refuse_roles("it is unknown what these trials are",
                      "name first and second with chosen, value, or level with correct: roles are " +
                          known_roles());
+    }
+    /// Answers of yes_no are given as yes and no, or by whether they are correct, of known signals.
+    bool says_yes() const
+    {
+        return made_.task == Task::yes_no && (has("yes") || has("yes_count") || !has_signals_and_correct());
     }
     /// Which columns must not be empty.
     void check_roles()
@@ -147,6 +160,7 @@ private:
             need("first");
             need("second");
             if (has("first_wins")) {
+                made_.detail = TrialDetail::counts;
                 need("first_wins");
                 need("second_wins");
             } else
@@ -159,7 +173,7 @@ private:
             if (!has("item") && factors_.empty()) refuse_roles("nothing says what was judged", "name item=COLUMN");
             return;
         }
-        bool const is_yes = made_.task == Task::yes_no;
+        bool const is_yes = says_yes();
         if (made_.task == Task::ranking || made_.task == Task::questionnaire || made_.task == Task::free_walk)
             throw ScriptError(
                 t_.file, {}, fmt::format("task '{}'", study::facts(made_.task).name),
@@ -168,6 +182,7 @@ private:
         std::string const hits = is_yes ? "yes_count" : "correct_count",
                           rest = is_yes ? "no_count" : "wrong_count";
         if (has("level")) need("level");
+        if (has("percent") || has(hits)) made_.detail = TrialDetail::counts;
         if (has("percent")) {
             need("percent");
             need("trials");
@@ -176,8 +191,8 @@ private:
             need(has(rest) ? rest : "trials");
         } else
             need(is_yes ? "yes" : "correct");
-        bool const has_two_kinds =
-            made_.task == Task::same_different || made_.task == Task::abx || (is_yes && !has("level"));
+        bool const has_two_kinds = made_.task == Task::same_different || made_.task == Task::abx ||
+                                   (made_.task == Task::yes_no && !has("level"));
         if (has_two_kinds) need("signal");
     }
 
@@ -207,10 +222,13 @@ private:
         m.participant = has("participant") ? cell(row, "participant").text : "all";
         if (has("run")) m.run = cell(row, "run").text;
         for (int const f : factors_) m.factors.push_back(row[std::size_t(f)].text);
-        if (has("reaction_ms") && !DelimitedText::is_missing(cell(row, "reaction_ms").text))
-            m.reaction_ms = number(row, "reaction_ms");
-        else if (has("reaction_s") && !DelimitedText::is_missing(cell(row, "reaction_s").text))
-            m.reaction_ms = 1000 * number(row, "reaction_s");
+        for (auto const& [role, unit_ms] : {std::pair("reaction_ms", 1.0), std::pair("reaction_s", 1000.0)}) {
+            if (m.reaction_ms || !has(role) || DelimitedText::is_missing(cell(row, role).text)) continue;
+            m.reaction_ms = unit_ms * number(row, role);
+            if (*m.reaction_ms < 0)
+                refuse_cell(cell(row, role), roles_.column.at(role), "no reaction time is below 0",
+                            "leave the cell empty if there was none");
+        }
         switch (made_.task) {
         case Task::pair:
         case Task::pair_with_reference:
@@ -258,20 +276,45 @@ private:
         auto const is = [&](std::initializer_list<char const*> words) {
             return std::any_of(words.begin(), words.end(), [&](char const* w) { return text == w; });
         };
-        if (c.text == m.items[0] || (c.text != m.items[1] && is({"first", "left", "1"})))
-            return answered("first", 1);
-        if (c.text == m.items[1] || is({"second", "right", "2"})) return answered("second", 1);
-        if (is({"neither", "tie", "equal", "same", "none"})) return answered("neither", 1);
+        char const* const as_name = c.text == m.items[0] ? "first" : c.text == m.items[1] ? "second" : nullptr;
+        char const* const as_word = is({"first", "left", "1"})                        ? "first"
+                                    : is({"second", "right", "2"})                    ? "second"
+                                    : is({"neither", "tie", "equal", "same", "none"}) ? "neither"
+                                                                                      : nullptr;
+        if (as_name != nullptr && as_word == nullptr) is_chosen_by_name_ = true;
+        if (as_name != nullptr && as_word != nullptr && std::string_view(as_name) != as_word) ++as_names_[c.text];
+        if (as_name == nullptr && as_word != nullptr) ++as_words_[c.text];
+        if (as_name != nullptr || as_word != nullptr) return answered(as_name != nullptr ? as_name : as_word, 1);
         refuse_cell(
             c, roles_.column.at("chosen"),
             fmt::format("it is neither '{}' nor '{}', nor first, second or neither", m.items[0], m.items[1]),
             "name the chosen item, or use first_chosen for 1 and 0");
     }
 
+    /// A caution if answers may mean items or positions: items named 1, 2, 3 and `chosen` 1 or 2.
+    void note_ambiguous_choices()
+    {
+        std::set<std::string> items;
+        if (!as_words_.empty())
+            for (MadeTrial const& t : made_.trials) items.insert(t.items.begin(), t.items.end());
+        std::map<std::string, int> doubtful;
+        if (!is_chosen_by_name_) doubtful = as_names_;
+        for (auto const& [text, n] : as_words_)
+            if (items.contains(text)) doubtful[text] += n;
+        for (auto const& [text, n] : doubtful)
+            made_.notes.push_back(
+                fmt::format("answer '{}' ({} of {} rows) may mean an item or a position (or tie): it is the item "
+                            "where the pair has it; use first_chosen for positions",
+                            text, n, t_.rows.size()));
+    }
+
     void read_value(Row const& row, MadeTrial& m)
     {
         if (has("item")) m.items = {cell(row, "item").text};
         m.value = number(row, "value");
+        if (std::abs(*m.value) > kLargestValue)
+            refuse_cell(cell(row, "value"), roles_.column.at("value"), "values are from -1e15 to 1e15",
+                        "leave such rows out, or use another unit");
         if (made_.task == Task::magnitude && !(*m.value > 0))
             refuse_cell(cell(row, "value"), roles_.column.at("value"), "magnitudes are above 0",
                         "leave such rows out, or use --task rating");
@@ -281,7 +324,7 @@ private:
 
     void read_answer(Row const& row, MadeTrial& m)
     {
-        bool const is_yes = made_.task == Task::yes_no;
+        bool const is_yes = says_yes(), is_yes_no = made_.task == Task::yes_no;
         if (has("level")) {
             m.level = number(row, "level");
             if (roles_.scale != Scale::linear && !(*m.level > 0)) {
@@ -295,12 +338,14 @@ private:
         int hits = 0, rest = 0; // yes or correct; the others
         std::string const role = is_yes ? "yes" : "correct", other = is_yes ? "no" : "wrong";
         if (has("percent")) {
-            double const share = number(row, "percent") / 100;
-            int const n = count(row, "trials");
-            hits = int(std::lround(share * n));
+            double const percent = number(row, "percent"), share = percent / 100;
             if (share < 0 || share > 1)
                 refuse_cell(cell(row, "percent"), roles_.column.at("percent"), "it is from 0 to 100",
                             "use correct_count or yes_count for numbers of trials");
+            most_percent_ = std::max(most_percent_, percent);
+            if (percent > 0 && percent < 1 && fraction_ == nullptr) fraction_ = &cell(row, "percent");
+            int const n = count(row, "trials");
+            hits = int(std::lround(share * n));
             // Published percentages are often rounded, or means of sessions of other lengths.
             rounded_ += std::abs(share * n - hits) > 0.0051 * n;
             rest = n - hits;
@@ -314,9 +359,20 @@ private:
             (flag(row, role) ? hits : rest) = 1;
         for (bool const hit : {true, false}) {
             m.is_correct = is_yes ? hit == m.is_signal : hit;
-            m.response = is_yes ? (hit ? "yes" : "no") : hit ? "correct" : "wrong";
+            if (is_yes_no)
+                m.response = *m.is_correct == m.is_signal ? "yes" : "no";
+            else
+                m.response = hit ? "correct" : "wrong";
             add(m, hit ? hits : rest);
         }
+    }
+
+    void check_percent() const
+    {
+        if (fraction_ != nullptr && most_percent_ <= 1)
+            refuse_cell(*fraction_, roles_.column.at("percent"),
+                        "percentages are from 0 to 100, and none is above 1",
+                        "multiply fractions by 100, or use correct_count or yes_count");
     }
 
     void read_matrix()
@@ -325,6 +381,7 @@ private:
             throw ScriptError(t_.file, {}, "--matrix with --columns, --factors or --only",
                               "a matrix has no columns but its items", "leave them out");
         made_.task = Task::pair;
+        made_.detail = TrialDetail::wins;
         std::vector<std::string> const items(t_.columns.begin() + 1, t_.columns.end());
         for (auto const& row : t_.rows) {
             auto const own = std::find(items.begin(), items.end(), row[0].text);
@@ -347,7 +404,8 @@ private:
                 add(m, *wins);
             }
         }
-        made_.notes.emplace_back("a matrix does not say who chose: errors are those of independent choices");
+        made_.notes.emplace_back("a matrix does not say who chose, nor in which order: errors are those of "
+                                 "independent choices, order and agreement are not analysed");
     }
 
     std::string notes_of_rows() const
@@ -364,6 +422,11 @@ private:
     std::vector<std::string> needed_;
     std::map<std::string, int> left_out_;
     int rounded_ = 0;
+    std::map<std::string, int> as_names_; ///< answers that name an item of the pair, and another position
+    std::map<std::string, int> as_words_; ///< answers that are read as positions or ties
+    bool is_chosen_by_name_ = false;      ///< an answer is certainly the name of an item
+    TextCell const* fraction_ = nullptr;  ///< the first percentage between 0 and 1
+    double most_percent_ = 0;
     MadeExperiment made_;
 };
 

@@ -24,9 +24,10 @@ std::string html_of(ResultTable const& t)
         Column const& column = t.table.columns[c];
         std::string name = column.name;
         std::replace(name.begin(), name.end(), '_', ' ');
-        bool const is_number = std::all_of(t.table.rows.begin(), t.table.rows.end(), [&](auto const& row) {
-            return row[c] == kNothing || row[c].find_first_not_of("0123456789+-.e") == std::string::npos;
-        });
+        bool const is_number =
+            !column.is_name && std::all_of(t.table.rows.begin(), t.table.rows.end(), [&](auto const& row) {
+                return row[c] == kNothing || row[c].find_first_not_of("0123456789+-.e") == std::string::npos;
+            });
         columns.push_back({name, is_number, column.description});
     }
     for (auto const& row : t.table.rows) {

@@ -28,17 +28,20 @@ double saturated(PairParameters const& layout, std::span<PairCount const> pairs,
     return sum;
 }
 
-void check_connected(Matrix const& wins)
+} // namespace
+
+void check_connected(Matrix const& wins, std::vector<std::string> const& names)
 {
+    auto const name = [&](std::size_t i) {
+        return names.empty() ? "item " + std::to_string(i) : "item '" + names[i] + "'";
+    };
     std::vector<int> const part = connected_parts(wins);
     for (std::size_t i = 0; i < part.size(); ++i)
         if (part[i] != 0)
-            refuse("item " + std::to_string(i) + " is not connected with item 0 by any chain of comparisons",
+            refuse(name(i) + " is not connected with " + name(0) + " by any chain of comparisons",
                    "the distance between such items is unknown",
                    "scale the connected items separately, or add comparisons between them");
 }
-
-} // namespace
 
 PairScale fit_pairs(std::span<PairCount const> pairs, int items, PairSettings const& settings)
 {

@@ -53,6 +53,10 @@ struct PairScale {
 /// by a chain of comparisons; infinite estimates with Regularisation::never; only ties with TieModel::threshold
 PairScale fit_pairs(std::span<PairCount const> pairs, int items, PairSettings const& settings = {});
 
+/// @param names of the items, for the message; empty = their numbers
+/// @throws std::invalid_argument items not connected by a chain of comparisons
+void check_connected(Matrix const& wins, std::vector<std::string> const& names = {});
+
 /// JOD per unit of F: 1 / z(0.75) = 1.4826 for Thurstone's model, 1 / log 3 for Bradley's and Terry's
 /// (Perez-Ortiz & Mantiuk 2017, arXiv:1712.03686).
 double jod_per_unit(PairModel model);

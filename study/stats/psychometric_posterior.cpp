@@ -137,7 +137,7 @@ PosteriorModel make_posterior_model(std::span<LevelCount const> counts, Posterio
 /// Mode, starting from the best of some points.
 VectorXd mode_of(PosteriorModel const& m)
 {
-    VectorXd best(m.count());
+    VectorXd best = VectorXd::Zero(m.count());
     double most = -kInfinity;
     for (double const threshold : {-0.4, -0.2, 0.0, 0.2, 0.4})
         for (double const scale : {0.04, 0.12, 0.35}) {
@@ -277,6 +277,9 @@ PsychometricPosterior psychometric_posterior(std::span<LevelCount const> counts,
         p.eta += f.weight * f.eta;
         p.functions.push_back(f);
     }
+    if (p.functions.empty()) // nearly nothing is left between the guess rate and 1
+        refuse("a guess rate of " + std::to_string(settings.guess), "no psychometric function fits these answers",
+               "leave the observer out");
     p.mean.scale = std::exp(p.mean.scale);
     return p;
 }

@@ -54,7 +54,8 @@ struct PosteriorLevel {
 };
 
 /// One level is enough, as are data that are all right or all wrong: the priors then tell how little is known.
-/// @throws std::invalid_argument no trials, invalid counts, levels or rates, or a range without width
+/// @throws std::invalid_argument no trials, invalid counts, levels or rates, a range without width, or
+/// no function that fits (a guess rate of nearly 1)
 PsychometricPosterior psychometric_posterior(std::span<LevelCount const> counts,
                                              PosteriorSettings const& settings);
 

@@ -8,9 +8,17 @@
 
 namespace study {
 
+/// What is known of the trials: tables of other programs may have sums only.
+enum class TrialDetail {
+    trials, ///< each trial, in its order
+    counts, ///< not their order
+    wins,   ///< neither their order, nor which stimulus was shown first, nor who chose
+};
+
 struct RecordedSession {
     Plan plan;
     SessionRecord record;
+    TrialDetail detail = TrialDetail::trials;
 };
 
 /// Sets the pairs that were chosen during the session in the plan's trials. Call after the plan was checked

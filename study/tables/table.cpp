@@ -34,6 +34,13 @@ std::string quoted_for_csv(std::string const& text)
 
 } // namespace
 
+Column name_column(std::string name, std::string description)
+{
+    Column c{std::move(name), std::move(description)};
+    c.is_name = true;
+    return c;
+}
+
 std::string cell(double value)
 {
     return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string(kNothing);

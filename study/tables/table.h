@@ -21,7 +21,9 @@ struct Column {
     std::vector<std::pair<std::string, std::string>> meanings{}; ///< of its values, if they are few
     std::string hed{}; ///< HED string for every value, which it has as '#'; empty = none
     std::vector<std::pair<std::string, std::string>> hed_of{}; ///< HED strings by value; others have none
+    bool is_name = false; ///< cells are texts, even if they look like numbers ("1.10", "007", "true")
 };
+Column name_column(std::string name, std::string description);
 
 struct Table {
     std::vector<Column> columns;

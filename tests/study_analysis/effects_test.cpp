@@ -97,7 +97,7 @@ TEST(Effects, LeaveOutObserversWithoutACellAndSaySo)
     Analysis const a = analyze(s, sessions);
     EXPECT_EQ(effect(a, "group").observers, 10);
     ASSERT_EQ(a.effect_notes.size(), 1u);
-    EXPECT_NE(a.effect_notes[0].text.find("1 observers lack a cell"), std::string::npos);
+    EXPECT_NE(a.effect_notes[0].text.find("1 observer lacks a cell"), std::string::npos);
 }
 
 TEST(Effects, OfPairsAndThresholdsAreFoundInSimulatedGroups)

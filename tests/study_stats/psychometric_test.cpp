@@ -193,6 +193,9 @@ TEST(PsychometricPosterior, RefusesWhatIsNoData)
     PosteriorLevel const unknown =
         posterior_level(psychometric_posterior(std::vector<LevelCount>{{0.5, 1, 2}}, settings), 0.75);
     EXPECT_GT(unknown.high - unknown.low, 0.5); // two trials say little
+    settings.guess = 0.995;
+    EXPECT_THROW(psychometric_posterior(std::vector<LevelCount>{{0.2, 30, 30}, {0.8, 30, 30}}, settings),
+                 std::invalid_argument);
 }
 
 TEST(Psychometric, ConvergesWhereLapsesAndGuessesAreFitted)

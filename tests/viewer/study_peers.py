@@ -107,7 +107,7 @@ def ratings():
     friedman = stats.friedmanchisquare(*[wide[c] for c in wide.columns])
     ours = {r["number"]: r["value"] for r in t["fits"]}
     compare("scipy: Friedman's chi-square", ours["Friedman chi-square"], friedman.statistic, 2e-8, relative=True)
-    difference = next(r for r in t["differences"] if r["a"] == 0 and r["b"] == 40)
+    difference = next(r for r in t["differences"] if r["a"] == "0" and r["b"] == "40")
     test = stats.ttest_rel(wide[0], wide[40])
     compare("scipy: paired test of two videos, t interval", [difference["low"], difference["high"]],
             test.confidence_interval(), 1e-7)

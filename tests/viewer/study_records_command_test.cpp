@@ -92,6 +92,9 @@ TEST(StudyTables, OfOthersAreAnalysedAndReportedLikeRecords)
     EXPECT_EQ(j["participants"], 3);
     EXPECT_EQ(j["tables"]["scores"].size(), 9u) << "three items, all and two groups";
     EXPECT_NE(printed.err.find("1 of 10 rows left out: no 'best'"), std::string::npos) << printed.err;
+    EXPECT_EQ(j["cautions"][0], "1 of 10 rows left out: no 'best'");
+    run_well("study analyze " + table + " --out numbers --draws 0 --replicates 100", folder.path());
+    EXPECT_NE(file_text(folder / "numbers" / "cautions.csv").find("1 of 10 rows left out"), std::string::npos);
     run_well("study report " + table + " --out report.html --replicates 100", folder.path());
     EXPECT_NE(file_text(folder / "report.html").find("<svg"), std::string::npos);
     expect_refused("study analyze", folder, "no records");

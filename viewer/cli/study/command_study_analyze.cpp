@@ -48,6 +48,10 @@ std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
     std::vector<study::TextFile> files;
     for (study::ResultTable const& t : study::result_tables(analysis))
         files.push_back({t.name + ".csv", study::csv_text(t.table, "NA")});
+    study::Table cautions;
+    cautions.columns.push_back({"caution", "Warnings about the validity of the results"});
+    for (std::string const& c : analysis.cautions) cautions.rows.push_back({c});
+    if (!cautions.rows.empty()) files.push_back({"cautions.csv", study::csv_text(cautions, "NA")});
     files.push_back({"analysis.json", study::to_json(analysis)});
     return files;
 }
@@ -55,7 +59,7 @@ std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
 int run_analyze(AnalyzeOptions& o)
 {
     study::Dataset const records = load(o);
-    study::Analysis const analysis = study::analyze(records.script, records.sessions, o.settings);
+    study::Analysis const analysis = study::analyze(records, o.settings);
     if (!o.out.empty()) write_files(o.out, csv_files(analysis));
     std::fputs((o.json ? study::to_json(analysis) : study::to_text(analysis)).c_str(), stdout);
     return 0;
@@ -75,7 +79,7 @@ int run_report(AnalyzeOptions& o)
     inputs.push_back(o.script);
     check_outputs({o.out}, inputs);
     study::Dataset const records = load(o);
-    study::Analysis const analysis = study::analyze(records.script, records.sessions, o.settings);
+    study::Analysis const analysis = study::analyze(records, o.settings);
     study::ReportFacts facts;
     facts.program = version_text();
     if (!o.dir.empty()) {
