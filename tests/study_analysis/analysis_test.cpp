@@ -311,6 +311,19 @@ TEST(Analysis, OfOneRatedItemHasNeitherModelNorFriedmansTestNorRemarks)
     EXPECT_TRUE(all.notes.empty());
 }
 
+TEST(Analysis, TellsHowMuchOfAModelIsDrawn)
+{
+    Script const s = pairs_script();
+    AnalysisSettings settings;
+    settings.has_hierarchy = true;
+    settings.draws = 20;
+    std::map<std::string, double> drawn;
+    settings.progress = [&](std::string const& what, double share) { drawn[what] = share; };
+    analyze(s, sessions_of(s, 3), settings);
+    EXPECT_EQ(drawn, (std::map<std::string, double>{
+                         {"scores, all", 1}, {"scores, scene=hall", 1}, {"scores, scene=yard", 1}}));
+}
+
 TEST(ResultTables, HaveNoRoundingInPlaceOfZero)
 {
     Analysis a;
