@@ -125,10 +125,9 @@ HierarchicalResult hierarchical_of(DetectionResult const& d, Block const& b,
     r.observers = int(who.size());
     r.participants = who;
     try {
-        SamplerSettings sampler;
-        sampler.draws = settings.draws;
-        sampler.seed = settings.seed;
-        fill(r, hierarchical_dprime(*detection_task(b.task), counts, settings.confidence, sampler),
+        fill(r,
+             hierarchical_dprime(*detection_task(b.task), counts, settings.confidence,
+                                 sampler_of(settings, r.parameter + ", " + r.condition)),
              [](double v) { return v; });
     } catch (std::invalid_argument const& e) {
         r.refused = e.what();

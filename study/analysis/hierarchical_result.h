@@ -6,6 +6,16 @@ namespace study {
 
 inline Uncertain uncertain(Posterior const& p, int observers) { return {p.mean, {p.low, p.high}, observers}; }
 
+/// @param what  is drawn, for people
+inline SamplerSettings sampler_of(AnalysisSettings const& settings, std::string const& what)
+{
+    SamplerSettings sampler;
+    sampler.draws = settings.draws;
+    sampler.seed = settings.seed;
+    if (settings.progress) sampler.progress = [&settings, what](double share) { settings.progress(what, share); };
+    return sampler;
+}
+
 /// Posterior means and intervals in the units of the table; `r.participants` and `r.observers` are set.
 /// @param to_unit rising, of a value of the parameter
 template <class ToUnit>

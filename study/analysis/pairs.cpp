@@ -1,4 +1,5 @@
 #include "study/analysis/blocks.h"
+#include "study/analysis/hierarchical_result.h"
 #include "study/stats/bootstrap.h"
 #include "study/stats/observer_scale.h"
 #include "study/stats/outliers.h"
@@ -181,10 +182,8 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
                          over->reduced.score[i] * jod_per_unit(fit.model));
             add_fact(r, "dispersion over observers", over->dispersion);
             if (settings.has_hierarchy && settings.draws > 0) {
-                SamplerSettings draws;
-                draws.draws = settings.draws;
-                draws.seed = settings.seed;
-                r.hierarchy = hierarchical_scale(observers, items.count(), settings.confidence, draws);
+                r.hierarchy = hierarchical_scale(observers, items.count(), settings.confidence,
+                                                 sampler_of(settings, "scores, " + group.name));
                 if (!r.hierarchy->note.empty()) add_note(r, "hierarchical scale: " + r.hierarchy->note);
             }
         }

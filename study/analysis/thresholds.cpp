@@ -268,11 +268,9 @@ HierarchicalResult hierarchical_of(Block const& b, PsychometricChoice const& fun
     r.observers = int(data.who.size());
     r.participants = data.who;
     try {
-        SamplerSettings sampler;
-        sampler.draws = settings.draws;
-        sampler.seed = settings.seed;
         auto const s = group_settings(c, function, proportion, settings);
-        Hierarchical const h = hierarchical_psychometric(data.observers, s, sampler);
+        Hierarchical const h =
+            hierarchical_psychometric(data.observers, s, sampler_of(settings, r.parameter + ", " + r.condition));
         fill(r, h, [&](double u) { return level_of(s.shape, u); });
         double const unit = scale_units(c);
         r.deviation = {h.deviation.mean * unit, {h.deviation.low * unit, h.deviation.high * unit}, r.observers};

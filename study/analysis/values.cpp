@@ -62,19 +62,28 @@ bool is_log_axis(Block const& b)
            (b.task == Task::adjustment && b.compare && b.compare->scale != Scale::linear);
 }
 
-/// Items x observers, NaN = not judged.
-Matrix table_of(std::vector<ObserverTrials> const& trials, RatedItems& items, bool is_log)
+std::vector<Rating> judgements_of(std::vector<ObserverTrials> const& trials, RatedItems& items, bool is_log)
 {
     for (ObserverTrials const& o : trials)
         for (TrialRow const& row : o.rows) items.of(row.step->trial.stimuli.front());
-    Matrix sum(items.names().size(), trials.size(), 0), n = sum;
+    std::vector<Rating> judgements;
     for (std::size_t o = 0; o < trials.size(); ++o)
         for (TrialRow const& row : trials[o].rows) {
-            auto const i = std::size_t(items.of(row.step->trial.stimuli.front()));
             if (!row.done->value || (is_log && !(*row.done->value > 0))) continue;
-            sum(i, o) += is_log ? std::log(*row.done->value) : *row.done->value;
-            n(i, o) += 1;
+            judgements.push_back({items.of(row.step->trial.stimuli.front()), int(o),
+                                  is_log ? std::log(*row.done->value) : *row.done->value});
         }
+    return judgements;
+}
+
+/// Each observer's mean of each item; NaN = not judged.
+Matrix means_of(std::vector<Rating> const& judgements, std::size_t items, std::size_t observers)
+{
+    Matrix sum(items, observers, 0), n = sum;
+    for (Rating const& r : judgements) {
+        sum(std::size_t(r.item), std::size_t(r.observer)) += r.value;
+        n(std::size_t(r.item), std::size_t(r.observer)) += 1;
+    }
     for (std::size_t k = 0; k < sum.values.size(); ++k)
         sum.values[k] = n.values[k] > 0 ? sum.values[k] / n.values[k] : kUnknown;
     return sum;
@@ -108,10 +117,10 @@ void add_friedman(ScaleResult& r, Matrix const& table)
     }
 }
 
-void add_model(ScaleResult& r, Matrix const& table)
+void add_model(ScaleResult& r, std::vector<Rating> const& ratings, int observers)
 {
     try {
-        RatingModel const m = fit_ratings(table);
+        RatingModel const m = fit_ratings(ratings, int(r.items.size()), observers);
         for (std::size_t i = 0; i < r.items.size(); ++i)
             add_fact(r, "allowing for bias and inconsistency " + r.items[i].name, m.quality[i]);
         if (!m.note.empty()) add_note(r, "model of raters: " + m.note);
@@ -144,7 +153,8 @@ ScaleResult values_of_group(Script const& script, Block const& b, std::vector<Ob
     bool const is_log = is_log_axis(b);
     r.unit = b.task == Task::rating ? "rating" : is_log ? "ln(" + std::string(facts(b.task).name) + ")" : "level";
     RatedItems items(script, b);
-    Matrix const table = table_of(trials, items, is_log);
+    std::vector<Rating> const judgements = judgements_of(trials, items, is_log);
+    Matrix const table = means_of(judgements, items.names().size(), trials.size());
     for (ObserverTrials const& o : trials) {
         r.observers += o.rows.empty() ? 0 : 1;
         r.observations += int(o.rows.size());
@@ -164,9 +174,9 @@ ScaleResult values_of_group(Script const& script, Block const& b, std::vector<Ob
                            render[std::size_t(i)]});
     }
     add_paired_differences(r, table, settings);
-    add_friedman(r, table);
+    if (count > 1) add_friedman(r, table);
     if (b.task == Task::rating) {
-        add_model(r, table);
+        if (count > 1 && r.observers > 1) add_model(r, judgements, int(trials.size()));
         add_spread(r, b, trials, items);
     }
     if (r.observers < 2) add_note(r, "one observer: no interval, and no conclusion about others");

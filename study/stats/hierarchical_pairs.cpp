@@ -26,7 +26,7 @@ struct HierarchyLayout {
 double score_at(std::span<double const> x, std::size_t item) { return item == 0 ? 0 : x[item - 1]; }
 
 /// phi(z) / Phi(z).
-double hazard(double z) { return std::exp(-0.5 * z * z - 0.9189385332046727418 - log_normal_cdf(z)); }
+double hazard(double z, double log_cdf) { return std::exp(-0.5 * z * z - 0.9189385332046727418 - log_cdf); }
 
 class HierarchyDensity {
 public:
@@ -77,12 +77,13 @@ private:
     static double log_choices(PairCount const& p, double d, double t, double& by_d, double& by_t)
     {
         double const a = d - t, b = -d - t;
-        double const up = p.first_wins > 0 ? p.first_wins * hazard(a) : 0;
-        double const down = p.second_wins > 0 ? p.second_wins * hazard(b) : 0;
+        double const log_a = p.first_wins > 0 ? log_normal_cdf(a) : 0;
+        double const log_b = p.second_wins > 0 ? log_normal_cdf(b) : 0;
+        double const up = p.first_wins > 0 ? p.first_wins * hazard(a, log_a) : 0;
+        double const down = p.second_wins > 0 ? p.second_wins * hazard(b, log_b) : 0;
         by_d = up - down;
         by_t = -up - down;
-        double sum = (p.first_wins > 0 ? p.first_wins * log_normal_cdf(a) : 0) +
-                     (p.second_wins > 0 ? p.second_wins * log_normal_cdf(b) : 0);
+        double sum = p.first_wins * log_a + p.second_wins * log_b;
         if (p.ties > 0 && t > 0) {
             // P(tie) = Phi(t - d) - Phi(-t - d); by its smaller tail.
             double const s = std::abs(d), high = t - s, low = -t - s;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace study {
 namespace {
@@ -38,13 +39,84 @@ Interval skewed_interval(MeanOpinion const& m, std::vector<double> const& values
     return {m.mean - moderate(back(t)) * m.standard_error, m.mean + moderate(-back(-t)) * m.standard_error};
 }
 
-/// Calls use(item, observer, rating) for all ratings.
-template <class Use>
-void for_each(Matrix const& ratings, Use const& use)
+void check(std::span<Rating const> ratings, int items, int observers)
 {
-    for (std::size_t j = 0; j < ratings.rows; ++j)
-        for (std::size_t o = 0; o < ratings.columns; ++o)
-            if (!std::isnan(ratings(j, o))) use(j, o, ratings(j, o));
+    if (ratings.empty()) refuse("no ratings", "there is nothing to fit", "give one rating or more");
+    for (Rating const& r : ratings) {
+        if (!std::isfinite(r.value))
+            refuse("a rating that is not finite", "scales are finite", "leave missing ratings out");
+        if (r.item < 0 || r.item >= items || r.observer < 0 || r.observer >= observers)
+            refuse("a rating of item " + std::to_string(r.item) + " by observer " + std::to_string(r.observer),
+                   "there are " + std::to_string(items) + " and " + std::to_string(observers),
+                   "number them from 0");
+    }
+}
+
+/// Empty where the likelihood of an observer runs to infinity.
+/// @param prior  number of ratings that the mean square of all observers counts as, in that of each
+std::optional<RatingModel> alternating_fit(std::span<Rating const> ratings, std::size_t items,
+                                           std::size_t observers, double prior)
+{
+    RatingModel m;
+    std::vector<double> by_item(items, 0), by_observer(observers, 0);
+    m.quality.assign(items, 0);
+    for (Rating const& r : ratings) {
+        m.quality[std::size_t(r.item)] += r.value;
+        ++by_item[std::size_t(r.item)];
+        ++by_observer[std::size_t(r.observer)];
+    }
+    for (std::size_t j = 0; j < items; ++j) m.quality[j] /= by_item[j];
+
+    for (; m.iterations < 1000 && !m.converged; ++m.iterations) {
+        m.bias.assign(observers, 0);
+        for (Rating const& r : ratings)
+            m.bias[std::size_t(r.observer)] += r.value - m.quality[std::size_t(r.item)];
+        for (std::size_t o = 0; o < observers; ++o) m.bias[o] /= by_observer[o];
+
+        std::vector<double> squares(observers, 0);
+        double all = 0;
+        for (Rating const& r : ratings) {
+            auto const o = std::size_t(r.observer);
+            double const rest = r.value - m.quality[std::size_t(r.item)] - m.bias[o];
+            squares[o] += rest * rest;
+            all += rest * rest / double(ratings.size());
+        }
+        constexpr double kLeastShare = 0.02, kLeastInconsistency = 1e-12;
+        m.inconsistency.assign(observers, std::nan(""));
+        for (std::size_t o = 0; o < observers; ++o) {
+            if (by_observer[o] == 0) continue;
+            double const own = std::sqrt((squares[o] + prior * all) / (by_observer[o] + prior));
+            if (prior == 0 && own < std::max(kLeastInconsistency, kLeastShare * std::sqrt(all))) return {};
+            m.inconsistency[o] = std::max(kLeastInconsistency, own);
+        }
+
+        std::vector<double> sum(items, 0), weight(items, 0);
+        for (Rating const& r : ratings) {
+            auto const j = std::size_t(r.item), o = std::size_t(r.observer);
+            double const w = 1 / (m.inconsistency[o] * m.inconsistency[o]);
+            sum[j] += w * (r.value - m.bias[o]);
+            weight[j] += w;
+        }
+        double change = 0;
+        m.quality_error.assign(items, std::nan(""));
+        for (std::size_t j = 0; j < items; ++j) {
+            if (by_item[j] == 0) continue;
+            change = std::max(change, std::abs(sum[j] / weight[j] - m.quality[j]));
+            m.quality[j] = sum[j] / weight[j];
+            m.quality_error[j] = 1 / std::sqrt(weight[j]);
+        }
+        m.converged = change < 1e-9;
+    }
+
+    double mean_bias = 0, known = 0;
+    for (double const b : m.bias)
+        if (!std::isnan(b)) mean_bias += b, ++known;
+    mean_bias /= known;
+    for (double& b : m.bias) b -= mean_bias;
+    for (double& q : m.quality) q += mean_bias;
+    for (std::size_t o = 0; o < observers; ++o)
+        m.bias_error.push_back(m.inconsistency[o] / std::sqrt(by_observer[o]));
+    return m;
 }
 
 } // namespace
@@ -78,69 +150,20 @@ Matrix transposed(Matrix const& table)
     return t;
 }
 
-RatingModel fit_ratings(Matrix const& ratings)
+RatingModel fit_ratings(std::span<Rating const> ratings, int items, int observers)
 {
-    check(ratings);
-    constexpr double kLeastShare = 0.02;
-    std::size_t const items = ratings.rows, observers = ratings.columns;
-    RatingModel m;
-    std::vector<double> by_item(items, 0), by_observer(observers, 0);
-    for_each(ratings, [&](std::size_t j, std::size_t o, double) { ++by_item[j], ++by_observer[o]; });
-    if (std::all_of(by_item.begin(), by_item.end(), [](double n) { return n == 0; }))
-        refuse("no ratings", "there is nothing to fit", "give a table with one rating or more");
-
-    for (MeanOpinion const& opinion : mean_opinions(ratings)) m.quality.push_back(opinion.mean);
-    bool floored = false;
-    for (; m.iterations < 1000 && !m.converged; ++m.iterations) {
-        m.bias.assign(observers, 0);
-        for_each(ratings, [&](std::size_t j, std::size_t o, double r) { m.bias[o] += r - m.quality[j]; });
-        for (std::size_t o = 0; o < observers; ++o) m.bias[o] /= by_observer[o];
-
-        std::vector<double> squares(observers, 0);
-        double all = 0, count = 0;
-        for_each(ratings, [&](std::size_t j, std::size_t o, double r) {
-            double const rest = r - m.quality[j] - m.bias[o];
-            squares[o] += rest * rest;
-            all += rest * rest;
-            ++count;
-        });
-        double const least = std::max(1e-12, kLeastShare * std::sqrt(all / count));
-        m.inconsistency.clear();
-        floored = false;
-        for (std::size_t o = 0; o < observers; ++o) {
-            double const own = std::sqrt(squares[o] / by_observer[o]);
-            floored = floored || own < least;
-            m.inconsistency.push_back(own < least ? least : own);
-        }
-
-        std::vector<double> sum(items, 0), weight(items, 0);
-        for_each(ratings, [&](std::size_t j, std::size_t o, double r) {
-            double const w = 1 / (m.inconsistency[o] * m.inconsistency[o]);
-            sum[j] += w * (r - m.bias[o]);
-            weight[j] += w;
-        });
-        double change = 0;
-        m.quality_error.clear();
-        for (std::size_t j = 0; j < items; ++j) {
-            double const quality = weight[j] > 0 ? sum[j] / weight[j] : std::nan("");
-            if (weight[j] > 0) change = std::max(change, std::abs(quality - m.quality[j]));
-            m.quality[j] = quality;
-            m.quality_error.push_back(weight[j] > 0 ? 1 / std::sqrt(weight[j]) : std::nan(""));
-        }
-        m.converged = change < 1e-9;
+    check(ratings, items, observers);
+    auto const j = std::size_t(items), o = std::size_t(observers);
+    if (auto m = alternating_fit(ratings, j, o, 0)) {
+        if (!m->converged) m->note = "the fit did not converge";
+        return *m;
     }
-
-    double mean_bias = 0, known = 0;
-    for (double const b : m.bias)
-        if (!std::isnan(b)) mean_bias += b, ++known;
-    mean_bias /= known;
-    for (double& b : m.bias) b -= mean_bias;
-    for (double& q : m.quality) q += mean_bias;
-    for (std::size_t o = 0; o < observers; ++o)
-        m.bias_error.push_back(m.inconsistency[o] / std::sqrt(by_observer[o]));
-    if (floored)
-        m.note = "the ratings of an observer match the model exactly: the inconsistency is set to its minimum";
-    if (!m.converged) m.note += std::string(m.note.empty() ? "" : "; ") + "the fit did not converge";
+    constexpr double kPrior = 5;
+    RatingModel m = *alternating_fit(ratings, j, o, kPrior);
+    m.shrunken = true;
+    m.note = "the likelihood is infinite where quality equals the ratings of an observer: inconsistencies of "
+             "observers are drawn towards that of all";
+    if (!m.converged) m.note += "; the fit did not converge";
     return m;
 }
 

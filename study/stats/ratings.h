@@ -4,6 +4,7 @@
 #include "study/stats/binomial.h"
 #include "study/stats/matrix.h"
 
+#include <span>
 #include <string>
 
 namespace study {
@@ -25,23 +26,33 @@ std::vector<MeanOpinion> mean_opinions(Matrix const& ratings, double confidence 
 /// Transposed table, observers x items, as friedman() needs it.
 Matrix transposed(Matrix const& table);
 
+/// One rating; an observer may rate an item several times.
+struct Rating {
+    int item = 0, observer = 0;
+    double value = 0;
+};
+
 /// Quality that accounts for observers who rate lower than others or carelessly (Li, Bampis, Krasula, Janowski &
 /// Katsavounidis 2020, "A simple model for subject behavior in subjective experiments", HVEI; ITU-T P.910 Annex
 /// E):
-///   u_jo = quality_j + bias_o + inconsistency_o e,  e standard normal,
+///   u_jor = quality_j + bias_o + inconsistency_o e,  e standard normal, r-th rating,
 /// by maximum likelihood, alternating: bias, inconsistency, quality weighted by 1 / inconsistency^2. The biases
 /// have mean 0.
+///
+/// With few ratings of each observer this often runs to where quality equals the ratings of one, whose likelihood
+/// is infinite (inconsistency below a fiftieth of that of all). Then the fit is `shrunken`: the mean square of all
+/// observers counts as 5 ratings of each.
 struct RatingModel {
     std::vector<double> quality, quality_error;
     std::vector<double> bias, bias_error;
     std::vector<double> inconsistency;
+    bool shrunken = false;
     int iterations = 0;
     bool converged = false;
     std::string note; ///< a remark; empty = none
 };
-/// Inconsistency is at least a fiftieth of that of all observers: the likelihood of an observer who matches the
-/// model exactly would be infinite. NaN for items and observers without ratings.
-/// @throws std::invalid_argument no ratings, or one that is infinite
-RatingModel fit_ratings(Matrix const& ratings);
+/// NaN for items and observers without ratings. @throws std::invalid_argument no ratings, or one that is not
+/// finite; an item or observer that does not exist
+RatingModel fit_ratings(std::span<Rating const> ratings, int items, int observers);
 
 } // namespace study

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <tbb/parallel_for.h>
 
 namespace study {
@@ -65,11 +66,12 @@ private:
 class Chain {
 public:
     Chain(LogDensity const& density, std::span<double const> start, SamplerSettings const& s, int number,
-          Draws& out)
+          Draws& out, std::function<void()> const& drawn)
         : density_(density),
           s_(s),
           random_(Random::part(s.seed, std::uint64_t(number))),
           out_(out),
+          drawn_(drawn),
           variance_(start.size(), 1)
     {
         begin(start);
@@ -252,6 +254,7 @@ private:
             out_.longest_paths += doublings == s_.most_doublings;
             out_.acceptance += acceptance / (double(s_.chains) * s_.draws);
         }
+        drawn_();
         return acceptance;
     }
 
@@ -290,6 +293,7 @@ private:
     SamplerSettings const& s_;
     Random random_;
     Draws& out_;
+    std::function<void()> const& drawn_;
     std::vector<double> variance_; ///< of the parameters: the inverse of the metric
     State here_;
     StepSize step_;
@@ -310,8 +314,16 @@ Draws sample(LogDensity const& density, std::span<double const> start, SamplerSe
     d.chains = settings.chains;
     d.per_chain = settings.draws;
     std::vector<Draws> by_chain(std::size_t(settings.chains), Draws{});
+    std::mutex telling;
+    double drawn = 0;
+    double const all = double(settings.chains) * (settings.warm_up + settings.draws);
+    std::function<void()> const tell = [&] {
+        if (!settings.progress) return;
+        std::lock_guard const lock(telling);
+        settings.progress(++drawn / all);
+    };
     tbb::parallel_for(0, settings.chains,
-                      [&](int c) { Chain(density, start, settings, c, by_chain[std::size_t(c)]).run(); });
+                      [&](int c) { Chain(density, start, settings, c, by_chain[std::size_t(c)], tell).run(); });
     for (Draws const& c : by_chain) {
         d.values.insert(d.values.end(), c.values.begin(), c.values.end());
         d.step.insert(d.step.end(), c.step.begin(), c.step.end());

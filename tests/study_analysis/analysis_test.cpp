@@ -1,9 +1,11 @@
 #include "study/analysis/groups.h"
 #include "study/analysis/result_tables.h"
 #include "study/stats/random.h"
+#include "study/stats/ratings.h"
 #include "study/stats/staircase.h"
 #include "tests/study_analysis/made_sessions.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace study::test {
@@ -292,6 +294,68 @@ blocks:
     for (DetectionResult const& row : rows)
         EXPECT_NEAR(row.correct / row.trials, row.condition == "low vs middle" ? 1 / 3.0 : 1, 1e-9)
             << row.condition;
+}
+
+Script rating_script(std::string const& items)
+{
+    return parse_script("schema: study/1\nid: r\nseed: 1\nparticipants: {count: 8}\nfactors: {asset: [" + items +
+                            "]}\nsequence: [rate]\nblocks: {rate: {task: rating, cross: [asset], "
+                            "scale: {min: 1, max: 5}}}\n",
+                        "r.yaml");
+}
+
+/// Eight observers rate each item twice.
+std::vector<RecordedSession> rated_twice(Script const& script, int items, std::vector<Rating>& ratings)
+{
+    Random random(4);
+    std::vector<RecordedSession> sessions;
+    for (int o = 0; o < 8; ++o) {
+        MadeSession s(script, "P" + std::to_string(o));
+        for (int k = 0; k < 2 * items; ++k) {
+            double const value = std::clamp(std::round(1 + k % items + 0.8 * random.normal()), 1.0, 5.0);
+            s.add(0, {{k % items}}, "", value);
+            ratings.push_back({k % items, o, value});
+        }
+        sessions.push_back(s.finished());
+    }
+    return sessions;
+}
+
+TEST(Analysis, OfRepeatedRatingsFitsTheModelOfRatersToSingleOnes)
+{
+    Script const script = rating_script("a, b, c, d");
+    std::vector<Rating> ratings;
+    auto const sessions = rated_twice(script, 4, ratings);
+    Analysis const a = analyze(script, sessions);
+    ScaleResult const& all = a.blocks.at(0).scales.at(0);
+    RatingModel const model = fit_ratings(ratings, 4, 8);
+    for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_NEAR(fact(all, "allowing for bias and inconsistency " + all.items[i].name), model.quality[i], 1e-8);
+}
+
+TEST(Analysis, OfOneRatedItemHasNeitherModelNorFriedmansTestNorRemarks)
+{
+    Script const script = rating_script("a");
+    std::vector<Rating> ratings;
+    auto const sessions = rated_twice(script, 1, ratings);
+    Analysis const a = analyze(script, sessions);
+    ScaleResult const& all = a.blocks.at(0).scales.at(0);
+    EXPECT_EQ(all.items.size(), 1u);
+    EXPECT_TRUE(all.facts.empty());
+    EXPECT_TRUE(all.notes.empty());
+}
+
+TEST(Analysis, TellsHowMuchOfAModelIsDrawn)
+{
+    Script const s = pairs_script();
+    AnalysisSettings settings;
+    settings.has_hierarchy = true;
+    settings.draws = 20;
+    std::map<std::string, double> drawn;
+    settings.progress = [&](std::string const& what, double share) { drawn[what] = share; };
+    analyze(s, sessions_of(s, 3), settings);
+    EXPECT_EQ(drawn, (std::map<std::string, double>{
+                         {"scores, all", 1}, {"scores, scene=hall", 1}, {"scores, scene=yard", 1}}));
 }
 
 TEST(ResultTables, HaveNoRoundingInPlaceOfZero)

@@ -118,6 +118,25 @@ TEST(PairScale, OfToneMappersIsThatOfRAndPwcmp)
     }
 }
 
+TEST(PairScale, WithTheDistancePriorMaximisesWhatItSays)
+{
+    // The definition of distance_prior.h in numpy, maximised by scipy's BFGS and Nelder & Mead's method.
+    Matrix wins(6, 6);
+    wins.values = {0, 7, 9, 10, 0, 9, 3, 0, 6, 8, 9, 10, 1, 4, 0, 6, 7, 0, //
+                   0, 2, 4, 0,  6, 8, 0, 1, 3, 4, 0, 5,  1, 0, 0, 2, 5, 0};
+    expect_near(scale_with_distance_prior(wins),
+                {1.61138204, 0.84232427, 0.03417604, -0.41663859, -0.91326492, -1.15797884}, 1e-6, "score");
+
+    // Most pairs unanimous: beyond the maximum there is a way to infinity.
+    Matrix unanimous(7, 7);
+    unanimous.values = {0,  0,  0,  3, 0,  15, 0, 16, 0,  0,  14, 3,  16, 0, 16, 16, 0,     //
+                        16, 15, 16, 0, 13, 2,  0, 0,  0,  16, 0,  16, 13, 1, 16, 0,  16, 0, //
+                        1,  0,  0,  0, 0,  0,  0, 16, 16, 16, 16, 16, 16, 0};
+    expect_near(scale_with_distance_prior(unanimous),
+                {-2.73708366, -0.1148997, 2.62834654, -1.49710014, 1.14059874, -4.54772316, 5.12786139}, 1e-6,
+                "of nearly unanimous choices");
+}
+
 TEST(PairScale, MeetsTheCasesOfChoix)
 {
     LIGHTWELL_NEED_STUDY_DATA();

@@ -22,6 +22,30 @@ Matrix nflx()
     return ratings;
 }
 
+/// One rating per item and observer; NaN = none.
+RatingModel fit_table(Matrix const& table)
+{
+    std::vector<Rating> ratings;
+    for (std::size_t j = 0; j < table.rows; ++j)
+        for (std::size_t o = 0; o < table.columns; ++o)
+            if (!std::isnan(table(j, o))) ratings.push_back({int(j), int(o), table(j, o)});
+    return fit_ratings(ratings, int(table.rows), int(table.columns));
+}
+
+/// Six observers rate five items twice.
+std::vector<Rating> rated_twice()
+{
+    double const of_observer[6][5][2] = {
+        {{2, 2}, {3, 3}, {3, 4}, {5, 5}, {5, 4}}, {{1, 1}, {1, 2}, {2, 2}, {3, 3}, {4, 5}},
+        {{1, 2}, {2, 2}, {3, 3}, {3, 3}, {4, 4}}, {{1, 1}, {2, 3}, {3, 4}, {3, 4}, {5, 5}},
+        {{1, 2}, {3, 2}, {3, 3}, {4, 4}, {5, 5}}, {{2, 1}, {2, 3}, {2, 3}, {4, 4}, {4, 4}}};
+    std::vector<Rating> ratings;
+    for (int o = 0; o < 6; ++o)
+        for (int j = 0; j < 5; ++j)
+            for (double const value : of_observer[o][j]) ratings.push_back({j, o, value});
+    return ratings;
+}
+
 TEST(Ratings, AreThoseOfR)
 {
     LIGHTWELL_NEED_STUDY_DATA();
@@ -59,7 +83,7 @@ TEST(Ratings, ModelFindsBiasAndInconsistencyAgain)
         for (std::size_t o = 0; o < observers; ++o)
             ratings(j, o) = quality[j] + bias[o] + (o == 3 ? 1.5 : 0.4) * random.normal();
     for (std::size_t j = 0; j < items; j += 7) ratings(j, j % observers) = NAN;
-    RatingModel const m = fit_ratings(ratings);
+    RatingModel const m = fit_table(ratings);
     EXPECT_TRUE(m.converged);
     EXPECT_EQ(m.note, "");
     double squares = 0;
@@ -76,7 +100,7 @@ TEST(Ratings, ModelOfRealOnesLeansOnThoseWhoAgree)
 {
     LIGHTWELL_NEED_STUDY_DATA();
     Matrix const ratings = nflx();
-    RatingModel const m = fit_ratings(ratings);
+    RatingModel const m = fit_table(ratings);
     EXPECT_TRUE(m.converged);
     double largest = 0;
     auto const mos = mean_opinions(ratings);
@@ -86,6 +110,48 @@ TEST(Ratings, ModelOfRealOnesLeansOnThoseWhoAgree)
         read_json("ratings_nflx_public.expected.json")["subject_mean"].get<std::vector<double>>();
     // All rated all: the bias is the mean against that of all.
     for (std::size_t o = 0; o < 26; ++o) EXPECT_NEAR(m.bias[o], means[o] - mean(means), 1e-8) << o;
+}
+
+TEST(Ratings, ModelOfRepeatedOnesIsThatOfSureal)
+{
+    // sureal 0.9.0, SubjectMLEModelProjectionSolver.
+    RatingModel const m = fit_ratings(rated_twice(), 5, 6);
+    EXPECT_TRUE(m.converged);
+    EXPECT_FALSE(m.shrunken);
+    EXPECT_EQ(m.note, "");
+    expect_near(m.quality, {1.448135, 2.310016, 2.910152, 3.705382, 4.542982}, 1e-6, "quality");
+    expect_near(m.quality_error, std::vector<double>(5, 0.127652), 1e-6, "its error");
+    expect_near(m.bias, {0.616667, -0.583333, -0.283333, 0.116667, 0.216667, -0.083333}, 1e-6, "bias");
+    expect_near(m.inconsistency, {0.530104, 0.443475, 0.38675, 0.550968, 0.348654, 0.510669}, 1e-6,
+                "inconsistency");
+}
+
+TEST(Ratings, ModelMaximisesTheLikelihoodWithGaps)
+{
+    std::vector<Rating> ratings = rated_twice();
+    ratings.pop_back();
+    std::erase_if(ratings, [](Rating const& r) { return r.item == 2 && r.observer == 1; });
+    RatingModel const m = fit_ratings(ratings, 5, 6);
+    // The same likelihood, maximised by scipy's BFGS.
+    expect_near(m.quality, {1.45364514, 2.31095861, 3.01548936, 3.68665381, 4.5780477}, 1e-6, "quality");
+    expect_near(m.quality_error, {0.12782643, 0.12782643, 0.13955964, 0.12782643, 0.13158922}, 1e-6, "its error");
+    expect_near(m.bias, {0.59104106, -0.50732632, -0.30895893, 0.09104107, 0.19104107, -0.05683795}, 1e-6, "bias");
+    expect_near(m.inconsistency, {0.54632483, 0.45042, 0.36808653, 0.52871961, 0.35549162, 0.53837877}, 1e-6,
+                "inconsistency");
+}
+
+TEST(Ratings, ModelOfFewIsShrunkenWhereItWouldFollowOneObserver)
+{
+    std::vector<Rating> once, all = rated_twice();
+    for (std::size_t k = 0; k < all.size(); k += 2) once.push_back(all[k]);
+    RatingModel const m = fit_ratings(once, 5, 6);
+    EXPECT_TRUE(m.shrunken);
+    EXPECT_TRUE(m.converged);
+    EXPECT_NE(m.note, "");
+    // The same alternation in numpy; by maximum likelihood it ends at the ratings of one observer.
+    expect_near(m.quality, {1.31406574, 2.15244919, 2.70044223, 3.65157515, 4.51480102}, 1e-6, "quality");
+    expect_near(m.inconsistency, {0.37282264, 0.33635535, 0.35947643, 0.39949522, 0.38138987, 0.45773017}, 1e-6,
+                "inconsistency");
 }
 
 TEST(Ratings, OfNobodyOrOneAreDefined)
@@ -101,15 +167,17 @@ TEST(Ratings, OfNobodyOrOneAreDefined)
     EXPECT_EQ(m[2].interval.high, 4);
     EXPECT_TRUE(mean_opinions(Matrix(0, 0)).empty());
 
-    RatingModel const exact = fit_ratings(ratings);
+    RatingModel const exact = fit_table(ratings);
     EXPECT_NE(exact.note, "");
     EXPECT_TRUE(std::isnan(exact.quality[0]));
     EXPECT_NEAR(exact.quality[1], 4, 1e-9);
-    EXPECT_THROW(fit_ratings(Matrix(2, 2, NAN)), std::invalid_argument);
-    EXPECT_THROW(fit_ratings(Matrix(0, 0)), std::invalid_argument);
+    EXPECT_TRUE(exact.shrunken);
+    EXPECT_THROW(fit_ratings({}, 2, 2), std::invalid_argument);
+    EXPECT_THROW(fit_ratings(std::vector<Rating>{{2, 0, 1}}, 2, 2), std::invalid_argument);
+    EXPECT_THROW(fit_ratings(std::vector<Rating>{{0, -1, 1}}, 2, 2), std::invalid_argument);
     ratings(0, 0) = INFINITY;
     EXPECT_THROW(mean_opinions(ratings), std::invalid_argument);
-    EXPECT_THROW(fit_ratings(ratings), std::invalid_argument);
+    EXPECT_THROW(fit_table(ratings), std::invalid_argument);
 }
 
 double log_likelihood(std::vector<ChoiceAmong> const& choices, std::vector<double> const& score)

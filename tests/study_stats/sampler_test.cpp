@@ -52,6 +52,19 @@ TEST(Sampler, FindsTheQuantilesOfASkewedDistribution)
     EXPECT_NEAR(p.high, 5.5716, 0.25);
 }
 
+TEST(Sampler, TellsHowMuchIsDrawn)
+{
+    auto const density = [](std::span<double const> x, std::span<double> g) {
+        g[0] = -x[0];
+        return -0.5 * x[0] * x[0];
+    };
+    std::vector<double> shares;
+    sample(density, std::vector<double>{0},
+           {.chains = 3, .warm_up = 20, .draws = 5, .progress = [&](double s) { shares.push_back(s); }});
+    ASSERT_EQ(shares.size(), 75u);
+    for (std::size_t i = 0; i < shares.size(); ++i) EXPECT_DOUBLE_EQ(shares[i], double(i + 1) / 75);
+}
+
 TEST(Sampler, TellsAFunnelThatItCannotFollow)
 {
     // Neal 2003: the scale of nine numbers is exp(v / 2), v from N(0, 3^2).

@@ -1,5 +1,6 @@
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/core/progress.h"
 #include "study/analysis/result_tables.h"
 #include "study/observers/simulate.h"
 #include "study/report/page.h"
@@ -12,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 
 namespace viewer {
 namespace {
@@ -42,6 +44,21 @@ study::Dataset load(AnalyzeOptions& o)
     return {std::move(table.script), {}, std::move(table.sessions), std::move(table.notes)};
 }
 
+/// With a progress bar for each hierarchical model, and for each time that it is drawn.
+study::Analysis analyze_with_progress(study::Dataset const& records, study::AnalysisSettings settings)
+{
+    std::optional<gi::ProgressBar> bar;
+    std::string shown;
+    double last = 0;
+    settings.progress = [&](std::string const& what, double share) {
+        if (!bar || what != shown || share < last) bar.emplace("analyze: " + what);
+        shown = what;
+        last = share;
+        bar->update(share);
+    };
+    return study::analyze(records, settings);
+}
+
 /// Each table as CSV.
 std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
 {
@@ -59,7 +76,7 @@ std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
 int run_analyze(AnalyzeOptions& o)
 {
     study::Dataset const records = load(o);
-    study::Analysis const analysis = study::analyze(records, o.settings);
+    study::Analysis const analysis = analyze_with_progress(records, o.settings);
     if (!o.out.empty()) write_files(o.out, csv_files(analysis));
     std::fputs((o.json ? study::to_json(analysis) : study::to_text(analysis)).c_str(), stdout);
     return 0;
@@ -79,7 +96,7 @@ int run_report(AnalyzeOptions& o)
     inputs.push_back(o.script);
     check_outputs({o.out}, inputs);
     study::Dataset const records = load(o);
-    study::Analysis const analysis = study::analyze(records, o.settings);
+    study::Analysis const analysis = analyze_with_progress(records, o.settings);
     study::ReportFacts facts;
     facts.program = version_text();
     if (!o.dir.empty()) {
