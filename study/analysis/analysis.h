@@ -148,7 +148,8 @@ struct CurveResult {
     double eta = 0;                    ///< overdispersion
     Uncertain threshold;               ///< mean over the population of the level at `proportion`
     double deviation = kUnknown;       ///< of these levels between observers, in units of the scale
-    double decade = 1;                 ///< in units of the scale; 1: linear, or a formula
+    double scale_unit =
+        1; ///< a decade in units of the scale: log10 1, log2 3.32, db 20; 1 where levels are linear
     double proportion = kUnknown;
     PsychometricFit pooled; ///< one function through all trials, for its deviance
     std::string note, refused;

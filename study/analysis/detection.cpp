@@ -84,9 +84,11 @@ char const* model_of(Task task)
 std::string without_dprime(Task task, DetectionCounts const& all, AnalysisSettings const& settings)
 {
     auto const model = detection_task(task);
-    // A guess rate that was given is another task's, such as that of four alternatives.
-    if (model == DetectionTask::two_interval && settings.guess && *settings.guess != guess_rate(task))
-        return fmt::format("no d': it is that of two alternatives, which a guess rate of {:g} does not fit",
+    // A guess rate that was given may be another task's, such as that of four alternatives.
+    constexpr double kRounding = 0.01;
+    double const guess = guess_rate(task);
+    if (model && guess > 0 && std::abs(settings.guess.value_or(guess) - guess) > kRounding)
+        return fmt::format("no d': its model guesses {:.3g} right, not the {:g} of --guess", guess,
                            *settings.guess);
     if (!model || !has_criterion(*model) || (all.signals > 0 && all.noises > 0)) return {};
     bool const is_yes_no = task == Task::yes_no;

@@ -173,7 +173,7 @@ double signed_dprime(Task task, AnswerCounts const& t)
 }
 
 std::vector<Measure> detections(Script const& script, Block const& b, std::vector<ObserverTrials> const& trials,
-                                Conditions const& conditions)
+                                Conditions const& conditions, bool has_dprime)
 {
     Measure correct{b.name, "proportion correct", conditions.axes(), {}};
     int const compared = compared_factor(b);
@@ -230,7 +230,9 @@ std::vector<Measure> detections(Script const& script, Block const& b, std::vecto
             b.task == Task::two_interval || b.task == Task::yes_no ? signed_dprime(b.task, both) : kUnknown;
         if (std::isfinite(d)) dprime.observations.push_back({key.first, key.second, d});
     }
-    return {correct, dprime};
+    std::vector<Measure> out{correct};
+    if (has_dprime) out.push_back(dprime);
+    return out;
 }
 
 /// One measure for each procedure, method of estimation and proportion correct; runs of one observer count as
@@ -311,7 +313,10 @@ std::vector<Measure> measures_of(Script const& script, std::vector<ObserverTrial
     case Task::abx:
     case Task::oddity:
     case Task::yes_no: {
-        auto all = detections(script, b, trials, conditions);
+        bool const has_dprime = result.detections.empty() || // adaptive procedures only
+                                std::any_of(result.detections.begin(), result.detections.end(),
+                                            [](DetectionResult const& d) { return !d.model.empty(); });
+        auto all = detections(script, b, trials, conditions, has_dprime);
         if (b.compare && !b.compare->vary.empty())
             for (Measure& m : thresholds(script, b, trials, block, conditions, result))
                 all.push_back(std::move(m));

@@ -262,7 +262,8 @@ void add_consistency(Items const& items, Cells const& cells, std::vector<Observe
             s.most_triads += t.maximum;
         }
         try {
-            if (a.observers == 0) throw std::invalid_argument("no observer judged every pair");
+            if (a.observers == 0)
+                throw std::invalid_argument("no observer has a first choice, known and not a tie, of every pair");
             a.equality = equality_test(sum);
             a.kendall = kendall_u(sum);
         } catch (std::invalid_argument const& e) {

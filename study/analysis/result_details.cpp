@@ -31,18 +31,20 @@ ResultTable agreement(Analysis const& a)
         "first judgement of each pair counts.",
         false,
         {}};
-    t.table.columns = {name_column("block", "Block"),
-                       name_column("cell", "Condition"),
-                       {"observers", "Observers who judged every pair"},
-                       {"left_out", "Observers who did not"},
-                       {"u", "Kendall's coefficient of agreement"},
-                       {"u_least", "Smallest possible value"},
-                       {"chi_square", "Its chi-square, corrected"},
-                       {"df", "Degrees of freedom"},
-                       {"p_u", "Probability of that u or more under random choices"},
-                       {"D", "Equality test"},
-                       {"D_df", "Degrees of freedom"},
-                       {"p_D", "Probability of that D or more"}};
+    t.table.columns = {
+        name_column("block", "Block"),
+        name_column("cell", "Condition"),
+        {"observers", "Observers with a first choice of every pair"},
+        {"left_out",
+         "Observers without: a pair was not judged or tied, or counts do not tell which choice was the first"},
+        {"u", "Kendall's coefficient of agreement"},
+        {"u_least", "Smallest possible value"},
+        {"chi_square", "Its chi-square, corrected"},
+        {"df", "Degrees of freedom"},
+        {"p_u", "Probability of that u or more under random choices"},
+        {"D", "Equality test"},
+        {"D_df", "Degrees of freedom"},
+        {"p_D", "Probability of that D or more"}};
     for (BlockResult const& b : a.blocks)
         for (AgreementResult const& g : b.agreement) {
             std::vector<std::string> row{cell(b.name), cell(g.cell), cell(g.observers), cell(g.left_out)};
@@ -202,9 +204,10 @@ ResultTable curves(Analysis const& a)
             add_estimate(row, c.threshold);
             bool const is_fitted = !c.counts.empty();
             auto const fitted = [&](double v) { return is_fitted ? cell(v) : cell(""); };
-            row.insert(row.end(), {cell(c.function), fitted(c.deviation), fitted(c.parameters.scale * c.decade),
-                                   fitted(c.parameters.lapse), fitted(c.eta), fitted(c.pooled.deviance),
-                                   fitted(c.pooled.degrees_of_freedom), fitted(c.pooled.fit_p)});
+            row.insert(row.end(),
+                       {cell(c.function), fitted(c.deviation), fitted(c.parameters.scale * c.scale_unit),
+                        fitted(c.parameters.lapse), fitted(c.eta), fitted(c.pooled.deviance),
+                        fitted(c.pooled.degrees_of_freedom), fitted(c.pooled.fit_p)});
             t.table.rows.push_back(std::move(row));
         }
     return t;

@@ -177,7 +177,7 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
     ThresholdEstimate e{"likelihood", proportion, {}, {}};
     constexpr char const* kNever = "the function never reaches this proportion";
     if (guess && *guess >= proportion) {
-        e.note = kNever;
+        e.note = "guessing alone reaches this proportion";
         return e;
     }
     try {
@@ -218,7 +218,7 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
             e.note = "nothing but correct responses: there is no threshold among these levels";
         Trend trend;
         for (LevelCount const& c : counts) trend.add(transformed(shape, c.level), c.correct, c.trials);
-        if (trend.is_falling()) e.note = kWrongDirection;
+        if (trend.is_falling()) e.note = kWrongDirection + (e.note.empty() ? "" : "; " + e.note);
         if (right == 0) e.note = "no correct response at all: there is no threshold among these levels";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();

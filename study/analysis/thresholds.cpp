@@ -291,7 +291,7 @@ void add_curve(Block const& b, std::string const& cell, std::vector<RunOf const*
     r.cell = cell;
     r.proportion = middle(b.task);
     PsychometricChoice const function = fitted_function(b.procedures, c.scale);
-    if (!function.formula) r.decade = scale_units(c);
+    if (!function.formula) r.scale_unit = scale_units(c);
     r.function = function.name();
     GroupData const data = data_of(runs, r.proportion);
     r.observers = int(data.who.size());

@@ -173,6 +173,9 @@ private:
             if (!has("item") && factors_.empty()) refuse_roles("nothing says what was judged", "name item=COLUMN");
             return;
         }
+        if ((has("yes") || has("yes_count")) && (has("correct") || has("correct_count")))
+            throw ScriptError(t_.file, {}, "columns for both 'yes' and 'correct'", "each of them tells the answer",
+                              "name one of them");
         bool const is_yes = says_yes();
         if (made_.task == Task::ranking || made_.task == Task::questionnaire || made_.task == Task::free_walk)
             throw ScriptError(
@@ -303,8 +306,8 @@ private:
             if (items.contains(text)) doubtful[text] += n;
         for (auto const& [text, n] : doubtful)
             made_.notes.push_back(
-                fmt::format("answer '{}' ({} of {} rows) may mean an item or a position (or tie): it is the item "
-                            "where the pair has it; use first_chosen for positions",
+                fmt::format("answer '{}' ({} of {} rows) may name an item, a position or a tie: it is read as the "
+                            "item if the pair has one of that name; use first_chosen for positions",
                             text, n, t_.rows.size()));
     }
 
@@ -327,6 +330,9 @@ private:
         bool const is_yes = says_yes(), is_yes_no = made_.task == Task::yes_no;
         if (has("level")) {
             m.level = number(row, "level");
+            if (std::abs(*m.level) > kLargestValue)
+                refuse_cell(cell(row, "level"), roles_.column.at("level"), "levels are from -1e15 to 1e15",
+                            "leave such rows out, or use another unit");
             if (roles_.scale != Scale::linear && !(*m.level > 0)) {
                 if (!has("signal") || flag(row, "signal"))
                     refuse_cell(cell(row, "level"), roles_.column.at("level"), "it has no logarithm",

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kSigma = 1.4826; ///< as in pwcmp: 1 JOD = 75 %
 constexpr double kFloor = 0.1;
-constexpr double kLogRootTwoPi = 0.9189385332046727418;
 
 /// A compared pair, i < j.
 struct Met {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace study {
 namespace {
@@ -55,7 +56,7 @@ private:
         double log_density(double x) const
         {
             double const z = (x - mean) / sd;
-            return -0.5 * z * z - std::log(sd) - 0.9189385332046727418;
+            return -0.5 * z * z - std::log(sd) - kLogRootTwoPi;
         }
     };
 
@@ -275,14 +276,19 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
     for (Observer const& o : fit.marginal().observers()) g.observer.push_back(o.dprime);
     auto const n = double(g.observer.size());
     double const ratio = variance_ratio(task, fit), limit = profile_limit(confidence, n, ratio);
-    auto const is_all = [&](bool right) {
-        return std::all_of(observers.begin(), observers.end(), [&](DetectionCounts const& c) {
-            return c.hits == (right ? c.signals : 0) && c.false_alarms == (right ? 0 : c.noises);
-        });
-    };
-    if (std::abs(g.mean) > kLargestMean || is_all(true) || is_all(false)) {
-        g.mean = std::copysign(kInfinity, g.mean);
-        g.note = "all answers are right (or all wrong): d' has no upper limit";
+    auto const are_all = [&](auto const& is_so) { return std::all_of(observers.begin(), observers.end(), is_so); };
+    bool const has_noise = noises > 0;
+    bool const is_up = are_all([](DetectionCounts const& c) { return c.hits == c.signals; }) ||
+                       (has_noise && are_all([](DetectionCounts const& c) { return c.false_alarms == 0; }));
+    bool const is_down =
+        are_all([](DetectionCounts const& c) { return c.hits == 0; }) ||
+        (has_noise && are_all([](DetectionCounts const& c) { return c.false_alarms == c.noises; }));
+    if (is_up != is_down || std::abs(g.mean) > kLargestMean) {
+        bool const is_high = is_up != is_down ? is_up : g.mean > 0;
+        g.mean = is_high ? kInfinity : -kInfinity;
+        g.note = fmt::format("all answers to {} are {}: d' has no {} limit",
+                             has_noise ? "one kind of trial, or both," : "these trials", is_high ? "right" : "wrong",
+                             is_high ? "upper" : "lower");
     }
     fit.start_over();
     g.p = profile_p(fit.loss(0), n, ratio);

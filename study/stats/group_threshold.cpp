@@ -132,14 +132,17 @@ std::string note_of(ThresholdFit const& fit)
     if (m.is_all(true)) return "nothing but correct responses: there is no threshold among these levels";
     if (m.is_all(false)) return "no correct response at all: there is no threshold among these levels";
     Trend trend;
-    for (ThresholdPerson const& p : m.people())
+    for (ThresholdPerson const& p : m.people()) {
         for (LevelAnswers const& l : p.levels) trend.add(l.u, l.right, l.trials);
-    if (trend.is_falling()) return kWrongDirection;
+        trend.next_observer();
+    }
+    std::string note = trend.is_falling() ? kWrongDirection : "";
+    auto const say = [&](char const* what) { note += (note.empty() ? "" : "; ") + std::string(what); };
     if (std::abs(fit.best()[ThresholdPart::kMean]) > 0.5)
-        return "the mean threshold lies outside the range of levels";
-    if (fit.best()[ThresholdPart::kScale] > 0)
-        return "responses hardly change with level: the scale is wider than the range";
-    return "";
+        say("the mean threshold lies outside the range of levels");
+    else if (fit.best()[ThresholdPart::kScale] > 0)
+        say("responses hardly change with level: the scale is wider than the range");
+    return note;
 }
 
 /// Levels do not follow the answers: all observers have the same ones, about as often (answers may be missing).

@@ -26,7 +26,7 @@ struct HierarchyLayout {
 double score_at(std::span<double const> x, std::size_t item) { return item == 0 ? 0 : x[item - 1]; }
 
 /// phi(z) / Phi(z).
-double hazard(double z, double log_cdf) { return std::exp(-0.5 * z * z - 0.9189385332046727418 - log_cdf); }
+double hazard(double z, double log_cdf) { return std::exp(-0.5 * z * z - kLogRootTwoPi - log_cdf); }
 
 class HierarchyDensity {
 public:

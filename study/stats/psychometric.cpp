@@ -81,19 +81,36 @@ double standard_error_at(PsychometricFit const& fit, double proportion)
     return std::sqrt(variance);
 }
 
-void Trend::add(double at, double n_correct, double n)
+void Trend::add(double u, double n_correct, double n)
 {
-    trials += n;
-    correct += n_correct;
-    u += n * at;
-    square += n * at * at;
-    product += n_correct * at;
+    if (own_.trials == 0) own_.first = u;
+    double const away = u - own_.first; // 0 if there is one level, whatever is rounded
+    own_.trials += n;
+    own_.correct += n_correct;
+    own_.u += n * away;
+    own_.square += n * away * away;
+    own_.product += n_correct * away;
+}
+
+void Trend::next_observer()
+{
+    finish(covariance_, variance_);
+    own_ = {};
+}
+
+void Trend::finish(double& covariance, double& variance) const
+{
+    if (own_.trials == 0) return;
+    double const p = own_.correct / own_.trials;
+    covariance += own_.product - p * own_.u;
+    variance += p * (1 - p) * std::max(0.0, own_.square - own_.u * own_.u / own_.trials);
 }
 
 bool Trend::is_falling() const
 {
-    double const p = correct / trials, scatter = square - u * u / trials;
-    return product - p * u < -2 * std::sqrt(p * (1 - p) * scatter);
+    double covariance = covariance_, variance = variance_;
+    finish(covariance, variance);
+    return covariance < -2 * std::sqrt(variance);
 }
 
 std::vector<LevelCount> count_levels(std::span<double const> levels, std::span<int const> correct)

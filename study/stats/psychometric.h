@@ -77,12 +77,21 @@ double level_at(PsychometricShape const& shape, PsychometricParameters const& p,
 /// Standard error of u where P has this proportion, by the delta method; NaN as level_at.
 double standard_error_at(PsychometricFit const& fit, double proportion);
 
-/// Whether answers get better with u (Cochran 1954 and Armitage 1955, Biometrics 10:417, 11:375).
-struct Trend {
-    double trials = 0, correct = 0, u = 0, square = 0, product = 0; ///< sums over trials
-
-    void add(double at, double n_correct, double n);
+/// Whether answers get better with u within observers (Mantel 1963, JASA 58:690). Between them they may not:
+/// staircases of observers who err more stay at easier levels.
+class Trend {
+public:
+    void add(double u, double n_correct, double n);
+    void next_observer();
     bool is_falling() const; ///< by more than two standard errors
+
+private:
+    struct Sums { ///< over trials of an observer, u from his or her first level
+        double first = 0, trials = 0, correct = 0, u = 0, square = 0, product = 0;
+    };
+    Sums own_;
+    double covariance_ = 0, variance_ = 0; ///< of observers before
+    void finish(double& covariance, double& variance) const;
 };
 inline constexpr char kWrongDirection[] =
     "responses change in the wrong direction: the other end of the levels may be the harder one (see `harder`)";

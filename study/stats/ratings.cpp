@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <optional>
+#include <set>
 
 namespace study {
 namespace {
@@ -154,16 +156,32 @@ RatingModel fit_ratings(std::span<Rating const> ratings, int items, int observer
 {
     check(ratings, items, observers);
     auto const j = std::size_t(items), o = std::size_t(observers);
-    if (auto m = alternating_fit(ratings, j, o, 0)) {
-        if (!m->converged) m->note = "the fit did not converge";
-        return *m;
-    }
+    std::vector<int> by_observer(o, 0);
+    for (Rating const& r : ratings) ++by_observer[std::size_t(r.observer)];
+    std::vector<Rating> used; // one rating is explained by its observer's bias
+    std::set<int> rated;
+    for (Rating const& r : ratings)
+        if (by_observer[std::size_t(r.observer)] > 1) {
+            used.push_back(r);
+            rated.insert(r.item);
+        }
+    if (rated.size() < j) used.assign(ratings.begin(), ratings.end()); // an item that only they rated
+    std::string note;
+    if (std::size_t const n = ratings.size() - used.size(); n > 0)
+        note = fmt::format("{} with one rating {} left out",
+                           n == 1 ? "1 observer" : fmt::format("{} observers", n), n == 1 ? "is" : "are");
+    auto const say = [&](char const* what) { note += (note.empty() ? "" : "; ") + std::string(what); };
+    auto fit = alternating_fit(used, j, o, 0);
+    bool const is_shrunken = !fit;
     constexpr double kPrior = 5;
-    RatingModel m = *alternating_fit(ratings, j, o, kPrior);
-    m.shrunken = true;
-    m.note = "the likelihood is infinite where quality equals the ratings of an observer: inconsistencies of "
-             "observers are drawn towards that of all";
-    if (!m.converged) m.note += "; the fit did not converge";
+    if (is_shrunken) fit = alternating_fit(used, j, o, kPrior);
+    RatingModel m = *fit;
+    m.shrunken = is_shrunken;
+    if (is_shrunken)
+        say("the likelihood is infinite where quality equals the ratings of an observer: inconsistencies of "
+            "observers are drawn towards that of all");
+    if (!m.converged) say("the fit did not converge");
+    m.note = note;
     return m;
 }
 

@@ -31,8 +31,7 @@ double log_normal_cdf(double z)
     if (z > 5) return std::log1p(-normal_cdf(-z));
     if (!(z < -30)) return std::log(normal_cdf(z));
     double const s = 1 / (z * z);
-    return -0.5 * z * z - std::log(-z) - 0.9189385332046727418 +
-           std::log1p(-s * (1 - s * (3 - s * (15 - s * 105))));
+    return -0.5 * z * z - std::log(-z) - kLogRootTwoPi + std::log1p(-s * (1 - s * (3 - s * (15 - s * 105))));
 }
 
 double normal_quantile(double p)

@@ -6,6 +6,7 @@
 
 namespace study {
 
+inline constexpr double kLogRootTwoPi = 0.9189385332046727418; ///< log(2 pi) / 2
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double normal_pdf(double z);

@@ -3,6 +3,7 @@
 #include "study/stats/random.h"
 #include "study/stats/ratings.h"
 #include "study/stats/staircase.h"
+#include "study/tables/export.h"
 #include "tests/study_analysis/made_sessions.h"
 
 #include <algorithm>
@@ -294,6 +295,10 @@ blocks:
     for (DetectionResult const& row : rows)
         EXPECT_NEAR(row.correct / row.trials, row.condition == "low vs middle" ? 1 / 3.0 : 1, 1e-9)
             << row.condition;
+    ASSERT_FALSE(a.effects.empty());
+    EXPECT_EQ(a.effects[0].test.df1, 2) << "effect of three pairs";
+    EXPECT_NE(lme4_script(s, "t.csv").find("paste(d$cond_a, \"vs\", d$cond_b)"), std::string::npos);
+    EXPECT_NE(statsmodels_script(s, "t.csv").find("+ \" vs \" + d[\"cond_b\"]"), std::string::npos);
 }
 
 Script rating_script(std::string const& items)

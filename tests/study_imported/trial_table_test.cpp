@@ -4,6 +4,7 @@
 #include "study/imported/trial_table.h"
 #include "study/report/page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -188,7 +189,7 @@ TEST(TrialTable, OfChoicesWarnsWhereNamesMayBePositions)
     auto const cautions = [](std::string const& rows) {
         std::string all;
         for (std::string const& note : imported("a,b,c\n" + rows, with("first=a,second=b,chosen=c")).notes)
-            all += note.substr(0, note.find(" may mean")) + "|";
+            all += note.substr(0, note.find(" may name")) + "|";
         return all;
     };
     EXPECT_EQ(cautions("2,1,1\n3,1,1\n2,3,2\n"), "answer '1' (2 of 3 rows)|answer '2' (1 of 3 rows)|");
@@ -260,7 +261,8 @@ TEST(TrialTable, OfSignalsOnlySaysWhyThereIsNoDprime)
     EXPECT_EQ(notes("s,y\n1,1\n1,0\n", with("signal=s,yes=y")),
               "no d': no trial is without a signal, so that the rate of false alarms is unknown|");
     EXPECT_EQ(notes("c,s,y\na,1,1\na,0,0\nb,0,1\nb,0,0\nd,0,0\n", with("signal=s,yes=y", {"c"})),
-              "all answers are right (or all wrong): d' has no upper limit|no d': no trial has a signal, so that "
+              "all answers to one kind of trial, or both, are right: d' has no upper limit|no d': no trial has a "
+              "signal, so that "
               "the rate of hits is unknown (in 2 of 3 conditions)||");
 }
 
@@ -430,6 +432,40 @@ TEST(TrialTable, RefusesRolesThatDoNotExist)
     EXPECT_THROW(parse_roles("level"), ScriptError);
     EXPECT_THROW(parse_roles("level=a,level=b"), ScriptError);
     EXPECT_EQ(parse_roles("level=a, value=b").at("value"), "b");
+}
+
+TEST(ImportedTable, OfLevelsHasItsScaleInUnitsOfTheLevelsAndNoDPrimeOfAnotherTask)
+{
+    std::string text = "p,x,k,n\n";
+    for (char const* const p : {"a", "b", "c"})
+        for (auto const& [level, right] : {std::pair(0.1, 11), {0.2, 13}, {0.5, 17}, {1.0, 22}})
+            text += fmt::format("{},{},{},24\n", p, level, right + (*p == 'b'));
+    AnalysisSettings settings;
+    settings.draws = 0;
+    auto const analysed = [&](Scale scale) {
+        ColumnRoles roles = with("participant=p,level=x,correct_count=k,trials=n");
+        roles.scale = scale;
+        ImportedTable const t = imported(text, roles);
+        return analyze(t.script, t.sessions, settings);
+    };
+    auto const scale_of = [](Analysis const& a) {
+        auto const j = nlohmann::json::parse(to_json(a));
+        return double(j["tables"]["curves"][0]["scale"]);
+    };
+    EXPECT_NEAR(scale_of(analysed(Scale::db)), 20 * scale_of(analysed(Scale::log10)), 1e-6);
+    EXPECT_NEAR(scale_of(analysed(Scale::log2)), std::log2(10) * scale_of(analysed(Scale::log10)), 1e-6);
+    auto const has_dprime = [](Analysis const& a) {
+        return std::any_of(a.effects.begin(), a.effects.end(),
+                           [](EffectResult const& e) { return e.measure == "d'"; }) ||
+               std::isfinite(a.blocks.at(0).detections.at(0).dprime);
+    };
+    EXPECT_TRUE(has_dprime(analysed(Scale::log10)));
+    settings.guess = 0.25;
+    Analysis const four = analysed(Scale::log10);
+    EXPECT_FALSE(has_dprime(four));
+    EXPECT_NE(four.blocks.at(0).detections.at(0).note.find("no d'"), std::string::npos);
+    expect_refused("y,k,s\n1,1,1\n", with("yes=y,correct=k,signal=s"), "t.csv:", "each of them tells the answer");
+    expect_refused("x,k\n1e300,1\n", with("level=x,correct=k"), "t.csv:2:1", "1e300");
 }
 
 } // namespace

@@ -121,7 +121,16 @@ TEST(GroupDPrime, OfPerfectObserversHasNoUpperLimit)
     EXPECT_TRUE(std::isinf(g.mean));
     EXPECT_GT(g.interval.low, 2);
     EXPECT_TRUE(std::isinf(g.interval.high));
-    EXPECT_NE(g.note, "");
+    EXPECT_NE(g.note.find("no upper limit"), std::string::npos);
+    auto const yes_no = [](double hits, double false_alarms) {
+        return group_dprime(DetectionTask::yes_no, std::vector<DetectionCounts>{{hits, 20, false_alarms, 20},
+                                                                                {hits, 20, false_alarms, 20}});
+    };
+    EXPECT_EQ(yes_no(20, 10).mean, INFINITY) << "no signal was missed";
+    EXPECT_EQ(yes_no(11, 0).mean, INFINITY) << "no false alarm";
+    EXPECT_EQ(yes_no(0, 9).mean, -INFINITY);
+    EXPECT_NE(yes_no(0, 9).note.find("no lower limit"), std::string::npos);
+    EXPECT_TRUE(std::isfinite(yes_no(20, 20).mean)) << "always yes";
     EXPECT_THROW(group_dprime(DetectionTask::oddity, {}), std::invalid_argument);
     EXPECT_THROW(group_dprime(DetectionTask::yes_no, std::vector<DetectionCounts>{{3, 4, 0, 0}}),
                  std::invalid_argument);

@@ -126,6 +126,17 @@ TEST(Ratings, ModelOfRepeatedOnesIsThatOfSureal)
                 "inconsistency");
 }
 
+TEST(Ratings, ModelLeavesOutObserversWithOneRating)
+{
+    std::vector<Rating> ratings = rated_twice();
+    RatingModel const without = fit_ratings(ratings, 5, 6);
+    ratings.push_back({0, 6, 3});
+    RatingModel const m = fit_ratings(ratings, 5, 7);
+    EXPECT_EQ(m.quality, without.quality);
+    EXPECT_EQ(m.note, "1 observer with one rating is left out");
+    EXPECT_TRUE(std::isnan(m.bias[6]));
+}
+
 TEST(Ratings, ModelMaximisesTheLikelihoodWithGaps)
 {
     std::vector<Rating> ratings = rated_twice();
