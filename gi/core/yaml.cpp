@@ -85,6 +85,19 @@ void check_one_document(std::string const& text, std::string const& file)
                          "one file has one: check the indentation, or remove it");
 }
 
+/// Throws if a line is indented by a tab, which is why a text is not YAML though it looks like it.
+void check_indentation(std::string const& text, std::string const& file)
+{
+    std::istringstream in(text);
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        std::size_t const begin = line.find_first_not_of(" \t"), tab = line.find('\t');
+        if (begin != std::string::npos && tab < begin && line[begin] != '#')
+            throw InputError(TextLocation{file, number, int(tab) + 1}, "this line is indented by a tab",
+                             "YAML takes only blanks", "write blanks");
+    }
+}
+
 std::string shortened(std::string const& s) { return s.substr(0, 64); }
 
 } // namespace
@@ -98,6 +111,7 @@ Yaml Yaml::parse(std::string const& text, std::string const& file, std::string c
         check_one_document(readable, file);
         return {YAML::Load(readable), file, root};
     } catch (YAML::Exception const& e) {
+        check_indentation(text, file);
         throw InputError(location(file, e.mark), "this is not YAML", e.msg,
                          "check the indentation and the quotes");
     }

@@ -20,6 +20,20 @@ bool never_reaches_half(Block const& b, Procedure const& p)
            std::all_of(p.guess.begin(), p.guess.end(), [](double guess) { return guess >= 0.5; });
 }
 
+/// True if the task's proportion correct by guessing is known and lies beside the grid of `guess`.
+bool misses_guess_rate(Task task, Procedure const& p)
+{
+    constexpr double kNear = 0.02;
+    double const rate = guess_rate(task);
+    return rate > 0 && (rate < p.guess.front() - kNear || rate > p.guess.back() + kNear);
+}
+
+std::string range_text(std::vector<double> const& grid)
+{
+    return grid.size() == 1 ? fmt::format("{:g}", grid[0])
+                            : fmt::format("{:g} to {:g}", grid.front(), grid.back());
+}
+
 } // namespace
 
 std::vector<std::string> find_doubts(Script const& s)
@@ -40,6 +54,14 @@ std::vector<std::string> find_doubts(Script const& s)
                                              "use for example guess: [0, 0.1, 0.2]",
                                              b.name, p.name, facts(b.task).name,
                                              b.task == Task::yes_no ? "yes" : "different"));
+    for (Block const& b : s.blocks)
+        for (Procedure const& p : b.procedures)
+            if (p.method == Method::questplus && misses_guess_rate(b.task, p))
+                doubts.push_back(
+                    fmt::format("block '{}': guess of procedure '{}' is {}, but guessing gives {:.3g} "
+                                "in {}: thresholds would be wrong; write guess: {:.3g}",
+                                b.name, p.name, range_text(p.guess), guess_rate(b.task), facts(b.task).name,
+                                guess_rate(b.task)));
     for (Block const& b : s.blocks)
         if (b.gaze.any() && s.record.gaze.empty())
             doubts.push_back(

@@ -187,6 +187,8 @@ std::vector<Device> read_devices(gi::Yaml const& y, Mistakes& m)
                         throw input.error(fmt::format("'{}' is no input", input.text().substr(0, 64)),
                                           "an input is a device and a button or key",
                                           "write key:left, pad:x, mouse:left or xr:left/trigger");
+                    if (std::find(d.inputs.begin(), d.inputs.end(), input.text()) != d.inputs.end())
+                        throw input.error("'" + input.text() + "' twice", "once is enough", "remove one");
                     d.inputs.push_back(input.text());
                 });
             if (inputs.empty()) throw v.error("no inputs", "the answer could not be given", "write [key:left]");

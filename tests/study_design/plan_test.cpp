@@ -335,7 +335,7 @@ TEST(Doubts, AreLongSessionsAndUnbalancedCycles)
     EXPECT_NE(find_doubts(odd)[0].find("a multiple of 12 would"), std::string::npos);
 }
 
-TEST(Doubts, AreFalseAlarmsOfAHalf)
+TEST(Doubts, AreGuessRatesThatTheTaskCannotHave)
 {
     auto const doubts = [](std::string const& task, std::string const& guess) {
         return find_doubts(parse("factors: {q: {best: {paths: 4096}}}\nreference: {q: best}\n"
@@ -349,6 +349,10 @@ TEST(Doubts, AreFalseAlarmsOfAHalf)
     EXPECT_NE(doubts("yes_no", "0.5")[0].find("false alarm rate"), std::string::npos);
     EXPECT_TRUE(doubts("yes_no", "[0.1, 0.5]").empty());
     EXPECT_TRUE(doubts("2ifc", "0.5").empty());
+    EXPECT_TRUE(doubts("oddity", "0.33").empty());
+    ASSERT_EQ(doubts("2ifc", "[0, 0.1]").size(), 1u);
+    EXPECT_NE(doubts("2ifc", "[0, 0.1]")[0].find("is 0 to 0.1, but guessing gives 0.5 in 2ifc"),
+              std::string::npos);
 }
 
 TEST(Transitions, CountNeighbours)
