@@ -1,8 +1,10 @@
 #include "study/plan/doubts.h"
 
+#include "gi/core/text.h"
 #include "study/plan/counterbalance.h"
 #include "study/plan/duration.h"
 #include "study/plan/plan_text.h"
+#include "study/script/condition.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -34,6 +36,31 @@ std::string range_text(std::vector<double> const& grid)
                             : fmt::format("{:g} to {:g}", grid.front(), grid.back());
 }
 
+/// Equal if the renderer gets the same: without prefixes, numbers as numbers.
+std::map<std::string, std::string> plain(Patch const& patch)
+{
+    std::map<std::string, std::string> out;
+    for (auto const& [key, value] : patch) {
+        auto const number = gi::parse_finite(value);
+        out[plain_key(key)] = number ? level_text(*number) : value;
+    }
+    return out;
+}
+
+void find_equal_levels(Factor const& f, std::vector<std::string>& doubts)
+{
+    std::map<std::map<std::string, std::string>, std::string> seen;
+    for (FactorLevel const& level : f.levels) {
+        if (level.settings.empty()) continue;
+        auto const [first, is_new] = seen.emplace(plain(level.settings), level.name);
+        if (!is_new)
+            doubts.push_back(
+                fmt::format("levels '{}' and '{}' of factor '{}' have the same settings: their stimuli "
+                            "are alike",
+                            first->second, level.name, f.name));
+    }
+}
+
 } // namespace
 
 std::vector<std::string> find_doubts(Script const& s)
@@ -45,6 +72,15 @@ std::vector<std::string> find_doubts(Script const& s)
             fmt::format("{} participants do not have all {} combinations of orders equally often; a multiple "
                         "of {} would",
                         s.participants.count, cycle, cycle));
+    for (Factor const& f : s.factors) find_equal_levels(f, doubts);
+    for (Block const& b : s.blocks) {
+        if (!b.pairs || !b.pairs->is_active()) continue;
+        std::size_t const levels = levels_of_pairs(*b.pairs).size();
+        if (std::size_t(b.pairs->active_trials) + 1 < levels)
+            doubts.push_back(
+                fmt::format("block '{}': {} active trials cannot connect {} levels; at least {} would", b.name,
+                            b.pairs->active_trials, levels, levels - 1));
+    }
     for (Block const& b : s.blocks)
         for (Procedure const& p : b.procedures)
             if (never_reaches_half(b, p))

@@ -42,6 +42,32 @@ void read_sampling(gi::Yaml const& y, Pairs& p, Mistakes& m)
     p.order = PairOrder::random;
 }
 
+/// Adds pairs that are there twice, and, of active sampling, levels that no pairs connect.
+void check_pair_list(gi::Yaml const& list, Pairs const& p, Script const& s, Mistakes& m)
+{
+    for (std::size_t i = 0; i < p.pairs.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            bool const is_same = p.pairs[i] == p.pairs[j];
+            bool const is_turned = p.pairs[i] == std::pair(p.pairs[j].second, p.pairs[j].first);
+            if (is_same || (is_turned && p.order != PairOrder::fixed))
+                m.add(list.items()[i].error("this pair is in the list before", "a list selects pairs",
+                                            is_same ? "remove it; repeats shows all several times"
+                                                    : "remove it; order: both shows both orders"));
+        }
+    if (!p.is_active()) return;
+    auto const& levels = s.factors[std::size_t(p.factor)].levels;
+    std::vector<std::size_t> group(levels.size());
+    for (std::size_t i = 0; i < group.size(); ++i) group[i] = i;
+    for (auto const& [a, b] : p.pairs)
+        std::replace(group.begin(), group.end(), std::size_t(group[std::size_t(a)]), group[std::size_t(b)]);
+    for (auto const& [a, b] : p.pairs)
+        if (group[std::size_t(a)] != group[std::size_t(p.pairs[0].first)])
+            return m.add(
+                list.error(fmt::format("no pairs connect '{}' and '{}'",
+                                       levels[std::size_t(p.pairs[0].first)].name, levels[std::size_t(a)].name),
+                           "active sampling makes one scale of all levels", "add pairs between them"));
+}
+
 Pairs read_pairs(gi::Yaml const& y, Script const& s, Mistakes& m)
 {
     m.check_keys(y, "pairs");
@@ -59,6 +85,7 @@ Pairs read_pairs(gi::Yaml const& y, Script const& s, Mistakes& m)
     }
     if (y.has("omit")) m.add(y.at("omit").error("both list and omit", "the list selects pairs", "keep one"));
     auto const items = y.at("list").items();
+    std::size_t const before = m.count();
     for (gi::Yaml const& item : items)
         m.attempt([&] {
             auto const two = item.items();
@@ -69,6 +96,7 @@ Pairs read_pairs(gi::Yaml const& y, Script const& s, Mistakes& m)
                 throw item.error("a level paired with itself", "there is nothing to choose", "name two");
         });
     if (items.empty()) throw y.at("list").error("no pairs", "the block would be empty", "[[a, b], [a, c]]");
+    if (m.count() == before) check_pair_list(y.at("list"), p, s, m);
     return p;
 }
 
@@ -182,6 +210,19 @@ void read_varied_range(gi::Yaml const& y, Compare& c, Mistakes& m)
     });
 }
 
+/// Adds settings of `with` that the procedure sets anyway.
+void check_with(gi::Yaml const& with, Compare const& c, Mistakes& m)
+{
+    std::vector<gi::InputError> told; // by read_patch
+    for (auto const& [key, unused] : with.entries(told)) {
+        auto const is_it = [k = plain_key(key.text())](std::string const& s) { return plain_key(s) == k; };
+        if (is_it(c.vary) ||
+            std::any_of(c.also.begin(), c.also.end(), [&](FurtherSetting const& f) { return is_it(f.setting); }))
+            m.add(key.error(fmt::format("'with' sets '{}', whose level a procedure chooses", key.text()),
+                            "one overrides the other", "remove it"));
+    }
+}
+
 Compare read_compare(gi::Yaml const& y, Script const& s, Mistakes& m)
 {
     m.check_keys(y, "compare");
@@ -195,6 +236,7 @@ Compare read_compare(gi::Yaml const& y, Script const& s, Mistakes& m)
         read_compared_factor(y, s, c, knows_against, m);
     else
         read_varied_range(y, c, m);
+    if (y.at("with").is_map()) check_with(y.at("with"), c, m);
     return c;
 }
 

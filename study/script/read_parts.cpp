@@ -1,4 +1,5 @@
 #include "gi/core/edit_distance.h"
+#include "study/script/condition.h"
 #include "study/script/read.h"
 
 #include <algorithm>
@@ -42,6 +43,10 @@ Patch read_patch(gi::Yaml const& y, Mistakes& m)
     for (auto const& [key, value] : m.entries(y))
         m.attempt([&, k = key, v = value] {
             check_setting_key(k);
+            for (auto const& [other, unused] : patch)
+                if (plain_key(other) == plain_key(k.text()))
+                    throw k.error(fmt::format("'{}' and '{}' are one setting", other, k.text()),
+                                  "only one of them can count", "remove one");
             std::string const text = v.text();
             if (text.find_first_of("\t\n\r") != std::string::npos)
                 throw v.error(v.path() + " is more than a line", "a setting is one word or number", "shorten it");
@@ -60,13 +65,18 @@ void read_level_list(gi::Yaml const& key, gi::Yaml const& list, Factor& factor, 
         m.attempt([&] { factor.levels.push_back({level.name(), {{factor.name, level.name()}}}); });
 }
 
-Factor read_factor_levels(gi::Yaml const& key, gi::Yaml const& value, Mistakes& m)
+Factor read_factor_levels(gi::Yaml const& key, gi::Yaml const& value, std::vector<Factor> const& before_it,
+                          Mistakes& m)
 {
     Factor factor{key.name(), {}, key.place()};
     for (char const* reserved : {"pair", "answer", "procedure", "do"})
         if (factor.name == reserved)
             m.add(key.error("a factor named '" + factor.name + "'", "the word has another meaning in scripts",
                             "choose another name"));
+    for (Factor const& other : before_it)
+        if ("factor_" + other.name == factor.name || "factor_" + factor.name == other.name)
+            m.add(key.error(fmt::format("factors '{}' and '{}'", other.name, factor.name),
+                            "tables could have one column name for both", "rename one"));
     std::size_t const before = m.count();
     if (value.is_list())
         read_level_list(key, value, factor, m);
@@ -77,6 +87,10 @@ Factor read_factor_levels(gi::Yaml const& key, gi::Yaml const& value, Mistakes& 
                 factor.levels.back().settings = read_patch(p, m);
             });
     auto names = names_of(factor.levels);
+    for (char const* const missing : {"NA", "NaN", "nan", "-NaN", "-nan", "NULL", "null", "None"})
+        if (std::find(names.begin(), names.end(), missing) != names.end())
+            m.add(value.error(fmt::format("a level named '{}'", missing),
+                              "R and pandas read it as a missing value", "choose another name"));
     std::sort(names.begin(), names.end());
     if (auto const twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
         m.add(value.error(fmt::format("level '{}' twice in {}", *twice, factor.name),
@@ -95,7 +109,7 @@ std::vector<Factor> read_factors(gi::Yaml const& y, Mistakes& m)
 {
     std::vector<Factor> factors;
     for (auto const& [key, value] : m.entries(y))
-        m.attempt([&, k = key, v = value] { factors.push_back(read_factor_levels(k, v, m)); });
+        m.attempt([&, k = key, v = value] { factors.push_back(read_factor_levels(k, v, factors, m)); });
     return factors;
 }
 

@@ -355,6 +355,24 @@ TEST(Doubts, AreGuessRatesThatTheTaskCannotHave)
               std::string::npos);
 }
 
+TEST(Doubts, AreLevelsThatLookAlikeAndTooFewActiveTrials)
+{
+    auto const doubts = [](std::string const& levels, std::string const& trials) {
+        return find_doubts(parse("factors: {q: " + levels +
+                                 "}\nsequence: [b]\nblocks:\n  b: {task: pair, pairs: "
+                                 "{factor: q, sampling: active, trials: " +
+                                 trials + "}}\n"));
+    };
+    EXPECT_TRUE(doubts("{a: {paths: 1}, b: {paths: 2}, c: {paths: 1, reuse: 1}}", "2").empty());
+    EXPECT_TRUE(doubts("{a: {}, b: {}, c: {}}", "2").empty()) << "of another presenter";
+    auto const alike = doubts("{a: {paths: 1}, b: {gi.paths: 1.0}, c: {paths: 3}}", "2");
+    ASSERT_EQ(alike.size(), 1u);
+    EXPECT_NE(alike[0].find("levels 'a' and 'b' of factor 'q' have the same settings"), std::string::npos);
+    auto const few = doubts("[a, b, c, d]", "2");
+    ASSERT_EQ(few.size(), 1u);
+    EXPECT_NE(few[0].find("2 active trials cannot connect 4 levels; at least 3 would"), std::string::npos);
+}
+
 TEST(Transitions, CountNeighbours)
 {
     Script const s =

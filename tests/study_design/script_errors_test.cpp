@@ -320,6 +320,82 @@ TEST(ScriptErrors, OfATabNameItsLine)
               "t.yaml:7:1: this line is indented by a tab (YAML takes only blanks) write blanks");
 }
 
+TEST(ScriptErrors, OfCharactersAndQuotesNameTheirPlace)
+{
+    EXPECT_EQ(message_of(kHead + "title: sch\xf6n\n"),
+              "t.yaml:5:11: the byte f6 is no UTF-8 (texts would be unreadable) save the file as UTF-8");
+    EXPECT_EQ(message_of(kHead + "title: sch\xc3\xb6n\x07\n"),
+              "t.yaml:5:14: the control character 07 (it cannot be seen) remove it");
+    std::string const rest = kBlock + "{task: pair, pairs: {factor: q}}\n";
+    EXPECT_EQ(message_of("\xef\xbb\xbf" + kHead + rest), "") << "a byte order mark";
+    expect_told({
+        {rest + "title: \"A study\ntiming: {vsync: record}\ndevices: {confirm: [key:enter]}\"\n",
+         {"9:8: a quote that its line does not close (line 10, which is not indented further"}},
+        {rest + "title: 'It''s \\'\ntiming: {vsync: record}\n", {}},
+        {rest + "title: \"A \\\" \n  study\"\n", {}},
+        {rest + "title: \"A\n\n  study\"\n", {"9:8: a title of several lines"}},
+    });
+}
+
+TEST(ScriptErrors, OfNamesThatTablesCannotHold)
+{
+    std::string const rest =
+        "sequence: [b]\nblocks: {b: {task: rating, scale: {min: 1, max: 7}, cross: [level]}}\n";
+    expect_told({
+        {"factors: {level: [a, b], factor_level: [c]}\nreference: {factor_level: c}\n" + rest,
+         {"5:26: factors 'level' and 'factor_level'"}},
+        {"factors: {level: [NA, n.a, nan, \"true\"]}\n" + rest,
+         {"5:18: a level named 'NA'", "5:18: a level named 'nan'"}},
+        {"factors: {level: {None: {paths: 1}, n: {paths: 2}}}\n" + rest, {"5:18: a level named 'None'"}},
+    });
+    EXPECT_EQ(
+        message_of("schema: study/1\nid: t\nseed: 5\nparticipants: {count: 12, ask: [number, asked_number]}\n"
+                   "factors: {level: [a]}\n" +
+                   rest),
+        "t.yaml:4:41: questions 'number' and 'asked_number' (tables could not distinguish them) rename one");
+    EXPECT_NE(message_of("schema: study/1\nid: t\nseed: 5\nparticipants: {count: 12, ask: [eye.l, eye_l]}\n"
+                         "factors: {level: [a]}\n" +
+                         rest)
+                  .find("questions 'eye.l' and 'eye_l'"),
+              std::string::npos);
+}
+
+TEST(ScriptErrors, OfSettingsThatOverrideEachOther)
+{
+    std::string const rest =
+        "sequence: [b]\nblocks: {b: {task: rating, scale: {min: 1, max: 7}, cross: [p, e]}}\n";
+    expect_told({
+        {"factors: {p: {a: {gi.paths: 1}, b: {paths: 2}}, e: {a: {paths: 4, reuse: 1}, b: {gi.paths: 5}}}\n" +
+             rest,
+         {"5:11: nothing of factor 'p' is shown: factor 'e' sets 'paths' too"}},
+        {"factors: {p: {a: {paths: 1}, b: {paths: 2, reuse: 2}}, e: {a: {paths: 4}, b: {paths: 5}}}\n" + rest, {}},
+        {"factors: {p: {a: {paths: 1}, b: {paths: 2}}, e: {a: {paths: 4}, b: {reuse: 5}}}\n" + rest, {}},
+        {"factors: {p: [1, 2], e: [3, 4]}\ndefaults: {settings: {gi.paths: 3, paths: 5}}\n" + rest,
+         {"6:36: 'gi.paths' and 'paths' are one setting"}},
+        {"factors: {q: {best: {paths: 4096}}}\nreference: {q: best}\ndefaults: {stimulus_ms: 1000}\nsequence: "
+         "[b]\nblocks:\n  b:\n    task: "
+         "2ifc\n"
+         "    compare: {vary: paths, with: {gi.paths: 5, reuse: 1}, range: [1, 9], harder: up}\n"
+         "    procedure: {method: constant, levels: [1, 9]}\n",
+         {"12:35: 'with' sets 'gi.paths', whose level a procedure chooses"}},
+    });
+}
+
+TEST(ScriptErrors, OfPairListsThatMakeNoScale)
+{
+    std::string const head =
+        "factors: {q: [a, b, c, d]}\nsequence: [b]\nblocks:\n  b: {task: pair, pairs: {factor: q, ";
+    expect_told({
+        {head + "list: [[a, b], [b, a]]}}\n",
+         {"8:53: this pair is in the list before (a list selects pairs) remove it; order"}},
+        {head + "order: fixed, list: [[a, b], [b, a]]}}\n", {}},
+        {head + "order: fixed, list: [[a, b], [a, b]]}}\n", {"8:67: this pair is in the list before"}},
+        {head + "sampling: active, trials: 9, list: [[a, b], [c, d]]}}\n", {"8:73: no pairs connect 'a' and 'c'"}},
+        {head + "sampling: active, trials: 9, list: [[a, b], [c, d], [d, b]]}}\n", {}},
+        {head + "list: [[a, b], [c, d]]}}\n", {}},
+    });
+}
+
 TEST(ScriptErrors, OfUnknownWordsNameAllThatThereAre)
 {
     std::string const told =

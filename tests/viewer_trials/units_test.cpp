@@ -16,6 +16,7 @@
 #include "viewer/experiment/text_entry.h"
 #include "viewer/experiment/trial.h"
 #include "viewer/protocol/remote/remote_client.h"
+#include "viewer/study/setting_lookup.h"
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -192,6 +193,21 @@ TEST(AnswerKeys, EveryMistakeIsToldWithItsPlace)
                        taken);
     ASSERT_EQ(taken.count(), 1u);
     EXPECT_NE(std::string(taken.in_order()[0].what()).find("all default inputs of 'first'"), std::string::npos);
+}
+
+TEST(AnswerKeys, NoneIsWhatEndsSessionsOrTypesAnswers)
+{
+    auto const told = [](std::string const& block, std::string const& devices) {
+        study::Mistakes mistakes;
+        find_wrong_devices(script(block, devices), mistakes);
+        return mistakes.empty() ? "" : std::string(mistakes.in_order()[0].what());
+    };
+    std::string const rating = "{task: rating, scale: {min: 1, max: 7}, cross: scene}",
+                      pair = "{task: pair, pairs: {factor: scene}}";
+    EXPECT_NE(told(rating, "devices: {confirm: [key:escape]}\n").find("ends a session"), std::string::npos);
+    EXPECT_NE(told(rating, "devices: {confirm: [key:5]}\n").find("digits are typed as answers in rating of block"),
+              std::string::npos);
+    EXPECT_EQ(told(pair, "devices: {first: [key:1], second: [key:2]}\n"), "");
 }
 
 TEST(AnswerKeys, ShippedScriptsCanBeAnswered)
@@ -408,6 +424,27 @@ TEST(Stimuli, WholeSettingsTakeTheNearestLevel)
 {
     EXPECT_EQ(stimulus_settings({{"scene", "cornell"}, {"paths", "2.82842712"}}, "").settings.paths, 3);
     EXPECT_THROW(stimulus_settings({{"scene", "cornell"}, {"paths", "few"}}, ""), gi::InputError);
+}
+
+TEST(Stimuli, WholeSettingsHaveNoFractionsAndNoEqualLevels)
+{
+    EXPECT_NO_THROW(look_up_setting("gi.paths", "4.0", ""));
+    EXPECT_THROW(look_up_setting("gi.paths", "4.5", ""), gi::InputError);
+    EXPECT_NO_THROW(look_up_setting("exposure", "0.5", ""));
+    for (auto const& [levels, told] : {std::pair{"[1, 2.4, 3]", 0u}, {"[1, 1.4, 3]", 1u}, {"1..4/9", 1u}}) {
+        std::string const text = fmt::format(
+            "schema: study/1\nid: t\nseed: 1\nparticipants: {{count: 1}}\nfactors: {{q: {{a: {{exposure: 0}}}}}}\n"
+            "reference: {{q: a}}\ndefaults: {{stimulus_ms: 300}}\nsequence: [b]\nblocks:\n  b:\n    task: 2ifc\n"
+            "    compare: {{vary: paths, range: [1, 4], harder: up}}\n"
+            "    procedure: {{method: constant, levels: {}}}\n",
+            levels);
+        study::Mistakes mistakes;
+        find_wrong_settings(study::parse_script(text, "x.yaml"), text, "", mistakes);
+        EXPECT_EQ(mistakes.count(), told) << levels;
+        if (told > 0)
+            EXPECT_TRUE(std::string(mistakes.in_order()[0].what())
+                            .starts_with("x.yaml:12:21: 'paths' with the levels 1 and "));
+    }
 }
 
 /// Whoever answers whatever: the shipped staircases and QUEST+ never ask for a level that was not prepared.
