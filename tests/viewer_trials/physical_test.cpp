@@ -103,7 +103,7 @@ TEST(PhysicalUnits, PlaceTheStimulusInPixels)
     PlacedPixels const q = placed_within(aside.physical, &m, {0, 0}, {1920, 1080});
     EXPECT_NEAR(q.corner_px.x + 0.5 * q.size_px.x - 960, study::px_of_place(*m.screen, 5, false), 1);
     EXPECT_NEAR(q.corner_px.y + 0.5 * q.size_px.y - 540, study::px_of_place(*m.screen, 1, true), 1) << "down";
-    for (char const* const place : {"20 0 deg", "-20 0 deg", "0 10 deg", "0 -10 deg"})
+    for (char const* const place : {"20 0 deg", "-20 0 deg", "0 8 deg", "0 -8 deg"})
         EXPECT_NE(
             problem_of([&] {
                 placed_within(

@@ -206,6 +206,15 @@ bool takes_whole_numbers(std::string const& key)
     return k != nullptr && k->type == gi::OptionType::whole_number;
 }
 
+/// Throws if a script writes a fraction that would be rounded. Procedures may choose such levels.
+void check_whole(std::string const& key, std::string const& value)
+{
+    auto const number = gi::parse_finite(value);
+    if (number && *number != std::floor(*number) && takes_whole_numbers(key))
+        throw gi::InputError(fmt::format("'{}' = {}", key, value), "it takes whole numbers",
+                             fmt::format("write {:g} or {:g}", std::floor(*number), std::ceil(*number)));
+}
+
 /// Throws if two levels are the same number after rounding.
 void check_rounded_levels(std::string const& key, std::vector<double> const& levels)
 {
@@ -242,10 +251,6 @@ void look_up_setting(std::string const& written, std::string const& value, std::
     check_known(key);
     if (is_ar_key(key)) return;
     if (find_own(key) != nullptr) return check_own(key, value, folder);
-    if (auto const number = gi::parse_finite(value);
-        number && takes_whole_numbers(key) && *number != std::floor(*number))
-        throw gi::InputError(fmt::format("'{}' = {}", key, value), "it takes whole numbers",
-                             fmt::format("write {:g} or {:g}", std::floor(*number), std::ceil(*number)));
     Json const json = setting_value(key, value);
     if (is_scene_edit(key)) return check_scene_edit({key, json});
     check_of_viewer(key, json);
@@ -296,10 +301,12 @@ std::set<std::pair<std::string, std::string>> find_wrong_settings(study::Script 
             if (s.varied) {
                 look_up_varied(s.key, s.varied->first, s.varied->second);
                 check_rounded_levels(study::plain_key(s.key), s.levels);
-            } else if (!s.block.empty())
+            } else if (!s.block.empty()) {
                 look_up_varied(s.key);
-            else
+            } else {
+                check_whole(study::plain_key(s.key), s.value);
                 look_up_setting(s.key, s.value, folder);
+            }
         } catch (gi::InputError const& e) {
             wrong.emplace(s.key, s.value);
             m.add(study::ScriptError(script.file, where, e.problem(), e.why(), e.suggestion()));
