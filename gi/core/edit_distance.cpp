@@ -39,8 +39,11 @@ std::string suggest(std::string const& word, std::vector<std::string> const& kno
     if (auto const nearest = nearest_word(word, known)) return "did you mean '" + *nearest + "'?";
     if (!otherwise.empty()) return otherwise;
     if (known.empty()) return "remove it";
+    constexpr std::size_t kAll = 48, kSome = 24;
+    std::size_t const told = known.size() > kAll ? kSome : known.size();
     std::string all;
-    for (std::size_t i = 0; i < std::min<std::size_t>(24, known.size()); ++i) all += (i ? ", " : "") + known[i];
+    for (std::size_t i = 0; i < told; ++i) all += (i ? ", " : "") + known[i];
+    if (told < known.size()) all += " and " + std::to_string(known.size() - told) + " more";
     return "there are: " + all;
 }
 

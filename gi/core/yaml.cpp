@@ -51,6 +51,42 @@ void check_shape(std::string const& text, std::string const& file)
         throw InputError(TextLocation{file, 1, 1}, "this YAML is not read", why, "such files are small and flat");
 }
 
+/// Bytes of the UTF-8 character at the front; 0 = it is none.
+std::size_t character_bytes(std::string_view s)
+{
+    auto const byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
+    unsigned const first = byte(0);
+    if (first < 0x80) return 1;
+    std::size_t const count = first >= 0xc2 && first < 0xe0   ? 2
+                              : first >= 0xe0 && first < 0xf0 ? 3
+                              : first >= 0xf0 && first < 0xf5 ? 4
+                                                              : 0;
+    for (std::size_t i = 1; i < count; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    bool const is_overlong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
+    bool const is_beyond = (first == 0xed && byte(1) >= 0xa0) || (first == 0xf4 && byte(1) >= 0x90);
+    return is_overlong || is_beyond ? 0 : count;
+}
+
+/// The parser takes any bytes, which tables and windows cannot show.
+void check_characters(std::string const& text, std::string const& file)
+{
+    TextLocation where{file, 1, 1};
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t const bytes = character_bytes(std::string_view(text).substr(i));
+        auto const c = static_cast<unsigned char>(text[i]);
+        if (bytes == 0)
+            throw InputError(where, fmt::format("the byte {:02x} is no UTF-8", c), "texts would be unreadable",
+                             "save the file as UTF-8");
+        if ((c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f)
+            throw InputError(where, fmt::format("the control character {:02x}", c), "it cannot be seen",
+                             "remove it");
+        i += bytes;
+        where.column = c == '\n' ? 1 : where.column + int(bytes);
+        where.line += c == '\n';
+    }
+}
+
 /// Keeps where the last document begins.
 class DocumentStart : public YAML::EventHandler {
 public:
@@ -85,6 +121,19 @@ void check_one_document(std::string const& text, std::string const& file)
                          "one file has one: check the indentation, or remove it");
 }
 
+/// Throws if a line is indented by a tab, which is why a text is not YAML though it looks like it.
+void check_indentation(std::string const& text, std::string const& file)
+{
+    std::istringstream in(text);
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        std::size_t const begin = line.find_first_not_of(" \t"), tab = line.find('\t');
+        if (begin != std::string::npos && tab < begin && line[begin] != '#')
+            throw InputError(TextLocation{file, number, int(tab) + 1}, "this line is indented by a tab",
+                             "YAML takes only blanks", "write blanks");
+    }
+}
+
 std::string shortened(std::string const& s) { return s.substr(0, 64); }
 
 } // namespace
@@ -92,12 +141,14 @@ std::string shortened(std::string const& s) { return s.substr(0, 64); }
 Yaml Yaml::parse(std::string const& text, std::string const& file, std::string const& root)
 {
     check_shape(text, file);
+    check_characters(text, file);
     try {
         std::string readable = text;
         if (readable.starts_with("%YAML:1.0")) readable[5] = ' ';
         check_one_document(readable, file);
         return {YAML::Load(readable), file, root};
     } catch (YAML::Exception const& e) {
+        check_indentation(text, file);
         throw InputError(location(file, e.mark), "this is not YAML", e.msg,
                          "check the indentation and the quotes");
     }

@@ -18,7 +18,8 @@ public:
     /// Parses the whole text; OpenCV's "%YAML:1.0" is accepted too.
     /// @param file  for messages
     /// @param root  the name of the whole in messages; "file" is left out of the names of its values
-    /// @throws InputError not YAML, several documents, larger than 1 MiB, too deeply nested, or too many aliases
+    /// @throws InputError not YAML, not UTF-8, control characters, several documents, larger than 1 MiB, too
+    /// deeply nested, or too many aliases
     static Yaml parse(std::string const& text, std::string const& file, std::string const& root = "file");
 
     TextLocation place() const;

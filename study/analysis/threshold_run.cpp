@@ -254,13 +254,6 @@ void add_parameters(ThresholdRun& run, Block const& b, Procedure const& p, std::
 
 } // namespace
 
-double guess_rate(Task task)
-{
-    if (task == Task::oddity) return 1.0 / 3;
-    // Proportions of yes and different go down to the false alarm rate, which is fitted.
-    return task == Task::yes_no || task == Task::same_different ? 0 : 0.5;
-}
-
 double back_to_level(Compare const& compare, double on_scale) { return from_scale(compare.scale, on_scale); }
 
 ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<TrialRow> const& trials)

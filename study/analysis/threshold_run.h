@@ -5,8 +5,6 @@
 
 namespace study {
 
-/// Proportion correct by guessing.
-double guess_rate(Task task);
 /// Converts a value in units of the scale, such as a mean of reversals, to a level.
 double back_to_level(Compare const& compare, double on_scale);
 

@@ -14,6 +14,7 @@ namespace {
 using Points = std::vector<std::pair<double, double>>; // value, cd/m2; rising in value
 constexpr double kFloorShare = 1.0 / 20000;            // of the peak: error of a dark photometer
 constexpr double kNonMonotone = 0.01, kAdditive = 0.05, kTableResidual_percent = 2;
+constexpr double kLeastPeak = 0.8, kRepeatable = 0.05, kLeastGamma = 0.2, kMostGamma = 10;
 constexpr std::size_t kTablePoints = 9;
 constexpr char const* kColourNames[]{"white", "red", "green", "blue"};
 
@@ -44,6 +45,35 @@ void check_points(PatchColour colour, Points const& points)
         throw gi::InputError(fmt::format("{} does not become brighter: {:g} to {:g} cd/m2", name,
                                          points.front().second, points.back().second),
                              "luminance rises with the digital value", "check the columns and the photometer");
+    auto const brightest = std::max_element(points.begin(), points.end(),
+                                            [](auto const& a, auto const& b) { return a.second < b.second; });
+    if (points.back().second < kLeastPeak * brightest->second)
+        throw gi::InputError(fmt::format("{} falls to {:g} cd/m2 at its highest value, from {:g} at {:g}", name,
+                                         points.back().second, brightest->second, brightest->first),
+                             "the highest value is the brightest", "check the readings and their order");
+}
+
+/// Readings of one colour and value that disagree: said with the largest difference.
+void judge_repeats(std::vector<LuminanceReading> const& readings, LuminanceFit& fit)
+{
+    std::map<std::pair<PatchColour, double>, std::pair<double, double>> ends;
+    double peak = 0, worst = 0;
+    for (LuminanceReading const& r : readings) {
+        peak = std::max(peak, r.cd_m2);
+        auto const [at, is_new] = ends.try_emplace({r.colour, r.value}, r.cd_m2, r.cd_m2);
+        at->second = {std::min(at->second.first, r.cd_m2), std::max(at->second.second, r.cd_m2)};
+    }
+    std::string told;
+    for (auto const& [of, range] : ends) {
+        double const share = (range.second - range.first) / std::max(range.second, 0.01 * peak); // as of the fit
+        if (share <= std::max(worst, kRepeatable)) continue;
+        worst = share;
+        told =
+            fmt::format("repeated readings of {} at {:.3g} differ by {:.0f} % ({:g} and {:g} cd/m2): their mean "
+                        "is taken",
+                        kColourNames[int(of.first)], of.second, 100 * share, range.first, range.second);
+    }
+    if (!told.empty()) fit.warnings.push_back(told);
 }
 
 struct FittedCurve {
@@ -53,7 +83,7 @@ struct FittedCurve {
 
 /// b + k max(0, g v + 1 - g)^gamma: a black level, a peak, a gain and a gamma. The gain is 1 with fewer than six
 /// values. @param black  known already; none = fitted
-FittedCurve fit_curve(Points const& points, std::optional<double> black)
+FittedCurve fit_curve(PatchColour colour, Points const& points, std::optional<double> black)
 {
     double const peak = points.back().second, floor = kFloorShare * peak;
     bool const fits_gain = points.size() >= 6;
@@ -91,6 +121,11 @@ FittedCurve fit_curve(Points const& points, std::optional<double> black)
         if (best.at.empty() || found.value < best.value) best = found;
     }
     auto const [k, gamma, b, g] = parts(best.at);
+    if (!(gamma >= kLeastGamma && gamma <= kMostGamma))
+        throw gi::InputError(fmt::format("{} rises from {:g} to {:g} cd/m2 as with a gamma of {:.2g}",
+                                         kColourNames[int(colour)], points.front().second, peak, gamma),
+                             fmt::format("that of displays is {:g} to {:g}", kLeastGamma, kMostGamma),
+                             "check the readings, and whether the photometer measures dark light");
     FittedCurve out{{k, gamma, g, {}, 0, 0, int(points.size())}, std::max(0.0, b)};
     double squares = 0;
     for (auto const& [v, l] : points) {
@@ -186,6 +221,7 @@ LuminanceFit fit_luminance(std::vector<LuminanceReading> readings, std::optional
         throw gi::InputError("neither white nor all three channels were measured", "the rest cannot be inferred",
                              "measure white, or red, green and blue");
     LuminanceFit fit;
+    judge_repeats(readings, fit);
     DisplayLuminance& light = fit.light;
     double black = 0;
     int blacks = 0;
@@ -200,7 +236,7 @@ LuminanceFit fit_luminance(std::vector<LuminanceReading> readings, std::optional
     double worst = 0;
     std::optional<FittedCurve> white;
     if (has_white) {
-        white = fit_curve(all.at(PatchColour::white), known);
+        white = fit_curve(PatchColour::white, all.at(PatchColour::white), known);
         light.black = white->black;
     }
     auto const take = [&](int channel, FittedCurve const& fitted, Points const& points) {
@@ -213,7 +249,7 @@ LuminanceFit fit_luminance(std::vector<LuminanceReading> readings, std::optional
         double lowest = 1e300;
         for (int c = 0; c < 3; ++c) {
             Points const& points = all.at(PatchColour(c + 1));
-            FittedCurve const fitted = fit_curve(points, known);
+            FittedCurve const fitted = fit_curve(PatchColour(c + 1), points, known);
             lowest = std::min(lowest, fitted.black);
             take(c, fitted, points);
             judge(fit, c, kColourNames[c + 1]);

@@ -1,3 +1,4 @@
+#include "study/script/condition.h"
 #include "study/script/read.h"
 
 #include <algorithm>
@@ -32,6 +33,7 @@ public:
             }
         walk(s_.sequence, fixed);
         check_used();
+        check_overridden();
         for (auto const& [factor, error] : without_level_)
             if (factor_used_[std::size_t(factor)] && !m_.suggests(name(factor))) m_.add(error);
         check_devices();
@@ -220,6 +222,36 @@ private:
                 fail(s_.questionnaires[q].place,
                      fmt::format("questionnaire '{}' is not used", s_.questionnaires[q].name),
                      "nothing in the sequence asks it", "add it to the sequence, or remove it");
+    }
+
+    /// Settings of all levels of a factor, or of any.
+    std::set<std::string> settings_of_levels(std::size_t factor, bool of_all) const
+    {
+        std::map<std::string, std::size_t> count;
+        for (FactorLevel const& level : s_.factors[factor].levels)
+            for (auto const& [key, unused] : level.settings) ++count[plain_key(key)];
+        std::set<std::string> keys;
+        for (auto const& [key, levels] : count)
+            if (!of_all || levels == s_.factors[factor].levels.size()) keys.insert(key);
+        return keys;
+    }
+
+    /// Later factors override earlier ones in every stimulus, as it has a level of each.
+    void check_overridden()
+    {
+        for (std::size_t i = 0; i < s_.factors.size(); ++i) {
+            auto const own = settings_of_levels(i, false);
+            if (own.empty() || s_.factors[i].levels.size() < 2) continue;
+            for (std::size_t j = i + 1; j < s_.factors.size(); ++j) {
+                auto const later = settings_of_levels(j, true);
+                if (!std::includes(later.begin(), later.end(), own.begin(), own.end())) continue;
+                fail(s_.factors[i].place,
+                     fmt::format("nothing of factor '{}' is shown: factor '{}' sets '{}' too", name(int(i)),
+                                 name(int(j)), *own.begin()),
+                     "later factors override earlier ones", "remove one, or let them set different settings");
+                break;
+            }
+        }
     }
 
     /// Checks that no input gives two of these answers. @param where  place where they are asked for

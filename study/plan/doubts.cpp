@@ -1,8 +1,10 @@
 #include "study/plan/doubts.h"
 
+#include "gi/core/text.h"
 #include "study/plan/counterbalance.h"
 #include "study/plan/duration.h"
 #include "study/plan/plan_text.h"
+#include "study/script/condition.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -20,6 +22,45 @@ bool never_reaches_half(Block const& b, Procedure const& p)
            std::all_of(p.guess.begin(), p.guess.end(), [](double guess) { return guess >= 0.5; });
 }
 
+/// True if the task's proportion correct by guessing is known and lies beside the grid of `guess`.
+bool misses_guess_rate(Task task, Procedure const& p)
+{
+    constexpr double kNear = 0.02;
+    double const rate = guess_rate(task);
+    return rate > 0 && (rate < p.guess.front() - kNear || rate > p.guess.back() + kNear);
+}
+
+std::string range_text(std::vector<double> const& grid)
+{
+    return grid.size() == 1 ? fmt::format("{:g}", grid[0])
+                            : fmt::format("{:g} to {:g}", grid.front(), grid.back());
+}
+
+/// Equal if the renderer gets the same: without prefixes, numbers as numbers.
+std::map<std::string, std::string> plain(Patch const& patch)
+{
+    std::map<std::string, std::string> out;
+    for (auto const& [key, value] : patch) {
+        auto const number = gi::parse_finite(value);
+        out[plain_key(key)] = number ? level_text(*number) : value;
+    }
+    return out;
+}
+
+void find_equal_levels(Factor const& f, std::vector<std::string>& doubts)
+{
+    std::map<std::map<std::string, std::string>, std::string> seen;
+    for (FactorLevel const& level : f.levels) {
+        if (level.settings.empty()) continue;
+        auto const [first, is_new] = seen.emplace(plain(level.settings), level.name);
+        if (!is_new)
+            doubts.push_back(
+                fmt::format("levels '{}' and '{}' of factor '{}' have the same settings: their stimuli "
+                            "are alike",
+                            first->second, level.name, f.name));
+    }
+}
+
 } // namespace
 
 std::vector<std::string> find_doubts(Script const& s)
@@ -31,6 +72,15 @@ std::vector<std::string> find_doubts(Script const& s)
             fmt::format("{} participants do not have all {} combinations of orders equally often; a multiple "
                         "of {} would",
                         s.participants.count, cycle, cycle));
+    for (Factor const& f : s.factors) find_equal_levels(f, doubts);
+    for (Block const& b : s.blocks) {
+        if (!b.pairs || !b.pairs->is_active()) continue;
+        std::size_t const levels = levels_of_pairs(*b.pairs).size();
+        if (std::size_t(b.pairs->active_trials) + 1 < levels)
+            doubts.push_back(
+                fmt::format("block '{}': {} active trials cannot connect {} levels; at least {} would", b.name,
+                            b.pairs->active_trials, levels, levels - 1));
+    }
     for (Block const& b : s.blocks)
         for (Procedure const& p : b.procedures)
             if (never_reaches_half(b, p))
@@ -40,6 +90,14 @@ std::vector<std::string> find_doubts(Script const& s)
                                              "use for example guess: [0, 0.1, 0.2]",
                                              b.name, p.name, facts(b.task).name,
                                              b.task == Task::yes_no ? "yes" : "different"));
+    for (Block const& b : s.blocks)
+        for (Procedure const& p : b.procedures)
+            if (p.method == Method::questplus && misses_guess_rate(b.task, p))
+                doubts.push_back(
+                    fmt::format("block '{}': guess of procedure '{}' is {}, but guessing gives {:.3g} "
+                                "in {}: thresholds would be wrong; write guess: {:.3g}",
+                                b.name, p.name, range_text(p.guess), guess_rate(b.task), facts(b.task).name,
+                                guess_rate(b.task)));
     for (Block const& b : s.blocks)
         if (b.gaze.any() && s.record.gaze.empty())
             doubts.push_back(

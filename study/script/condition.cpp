@@ -14,6 +14,8 @@ std::vector<int> crossed_levels(Script const& script, Block const& block, int fa
     return all;
 }
 
+std::string plain_key(std::string const& key) { return key.starts_with("gi.") ? key.substr(3) : key; }
+
 void set_setting(Patch& patch, std::string const& key, std::string const& value)
 {
     for (auto& [name, old] : patch)

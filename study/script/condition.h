@@ -18,6 +18,8 @@ double easiest(Compare const& compare);
 /// Levels of a factor that the block uses, after its `only`.
 std::vector<int> crossed_levels(Script const& script, Block const& block, int factor);
 /// Replaces the value of a key, or adds it at the end.
+/// Without the prefix "gi.", which settings may have.
+std::string plain_key(std::string const& key);
 void set_setting(Patch& patch, std::string const& key, std::string const& value);
 /// All settings of a stimulus: those of defaults and block, those of the factors' levels in the order of the
 /// script, then `with` and the level of the varied setting. If a key is set twice, the later value counts.

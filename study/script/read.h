@@ -11,6 +11,8 @@
 
 namespace study {
 
+/// A number where these words are possible too, which are read already.
+double read_number_or(gi::Yaml const& y, std::vector<std::string> const& words, double low, double high);
 Patch read_patch(gi::Yaml const& y, Mistakes& m);
 std::vector<Factor> read_factors(gi::Yaml const& y, Mistakes& m);
 /// Convert names to indices; an unknown name is an error that suggests the nearest one.
@@ -30,13 +32,14 @@ void read_gaze(gi::Yaml const& y, GazeRules& gaze, Mistakes& m);
 std::vector<Sound> read_sounds(gi::Yaml const& y, Mistakes& m);
 /// A list, or `none`. @param s with its sounds
 std::vector<Cue> read_cues(gi::Yaml const& y, Script const& s, Mistakes& m);
-RatingScale read_scale(gi::Yaml const& y);
+RatingScale read_scale(gi::Yaml const& y, Mistakes& m);
 std::vector<Questionnaire> read_questionnaires(gi::Yaml const& y, Mistakes& m);
 /// Reads a number, a list, or "a..b/n" (n values from a to b, evenly spaced on the scale). Values must rise and
 /// lie within [low, high].
 std::vector<double> read_grid(gi::Yaml const& y, Scale scale, double low, double high);
 Procedure read_procedure(gi::Yaml const& y, Compare const& compare, Task task, Mistakes& m);
-Constraint read_constraint(gi::Yaml const& y, Script const& s);
+/// Throws, or adds to `m`, where it is wrong.
+Constraint read_constraint(gi::Yaml const& y, Script const& s, Mistakes& m);
 /// Sets is_broken if what is wrong with the block is more than a value.
 Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s, Mistakes& m);
 std::vector<SequenceItem> read_sequence(gi::Yaml const& y, Script const& s, Mistakes& m, int depth = 0);

@@ -42,6 +42,32 @@ void read_sampling(gi::Yaml const& y, Pairs& p, Mistakes& m)
     p.order = PairOrder::random;
 }
 
+/// Adds pairs that are there twice, and, of active sampling, levels that no pairs connect.
+void check_pair_list(gi::Yaml const& list, Pairs const& p, Script const& s, Mistakes& m)
+{
+    for (std::size_t i = 0; i < p.pairs.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            bool const is_same = p.pairs[i] == p.pairs[j];
+            bool const is_turned = p.pairs[i] == std::pair(p.pairs[j].second, p.pairs[j].first);
+            if (is_same || (is_turned && p.order != PairOrder::fixed))
+                m.add(list.items()[i].error("this pair is in the list before", "a list selects pairs",
+                                            is_same ? "remove it; repeats shows all several times"
+                                                    : "remove it; order: both shows both orders"));
+        }
+    if (!p.is_active()) return;
+    auto const& levels = s.factors[std::size_t(p.factor)].levels;
+    std::vector<std::size_t> group(levels.size());
+    for (std::size_t i = 0; i < group.size(); ++i) group[i] = i;
+    for (auto const& [a, b] : p.pairs)
+        std::replace(group.begin(), group.end(), std::size_t(group[std::size_t(a)]), group[std::size_t(b)]);
+    for (auto const& [a, b] : p.pairs)
+        if (group[std::size_t(a)] != group[std::size_t(p.pairs[0].first)])
+            return m.add(
+                list.error(fmt::format("no pairs connect '{}' and '{}'",
+                                       levels[std::size_t(p.pairs[0].first)].name, levels[std::size_t(a)].name),
+                           "active sampling makes one scale of all levels", "add pairs between them"));
+}
+
 Pairs read_pairs(gi::Yaml const& y, Script const& s, Mistakes& m)
 {
     m.check_keys(y, "pairs");
@@ -59,6 +85,7 @@ Pairs read_pairs(gi::Yaml const& y, Script const& s, Mistakes& m)
     }
     if (y.has("omit")) m.add(y.at("omit").error("both list and omit", "the list selects pairs", "keep one"));
     auto const items = y.at("list").items();
+    std::size_t const before = m.count();
     for (gi::Yaml const& item : items)
         m.attempt([&] {
             auto const two = item.items();
@@ -69,6 +96,7 @@ Pairs read_pairs(gi::Yaml const& y, Script const& s, Mistakes& m)
                 throw item.error("a level paired with itself", "there is nothing to choose", "name two");
         });
     if (items.empty()) throw y.at("list").error("no pairs", "the block would be empty", "[[a, b], [a, c]]");
+    if (m.count() == before) check_pair_list(y.at("list"), p, s, m);
     return p;
 }
 
@@ -107,14 +135,19 @@ FurtherSetting read_further(gi::Yaml const& key, gi::Yaml const& y, Mistakes& m)
     m.take(y, "scale", [&](gi::Yaml const& v) {
         f.scale = Scale(v.one_of({"linear", "log2", "log10", "db"}, "scale"));
     });
-    gi::Yaml const range = y.needed("range", "[1, 10]");
-    auto const ends = range.numbers(2, -1e12, 1e12);
-    f.low = ends[0];
-    f.high = ends[1];
-    if (!(f.low < f.high)) throw range.error("a range that does not rise", "low comes first", "swap them");
-    if (f.scale != Scale::linear && f.low <= 0)
-        throw range.error(fmt::format("a range from {:g}", f.low), "a logarithmic scale begins above 0",
-                          "start above 0 or write scale: linear");
+    bool const has_range = m.need(y, "range", "[1, 10]", [&](gi::Yaml const& range) {
+        auto const ends = range.numbers(2, -1e12, 1e12);
+        f.low = ends[0];
+        f.high = ends[1];
+        if (!(f.low < f.high)) throw range.error("a range that does not rise", "low comes first", "swap them");
+        if (f.scale != Scale::linear && f.low <= 0)
+            throw range.error(fmt::format("a range from {:g}", f.low), "a logarithmic scale begins above 0",
+                              "start above 0 or write scale: linear");
+    });
+    if (!has_range) { // told; nothing else seems to be outside of it
+        f.low = f.scale == Scale::linear ? -1e12 : 1e-12;
+        f.high = 1e12;
+    }
     f.usual = from_scale(f.scale, (to_scale(f.scale, f.low) + to_scale(f.scale, f.high)) / 2);
     m.take(y, "usual", [&](gi::Yaml const& v) { f.usual = v.number(f.low, f.high); });
     return f;
@@ -177,6 +210,19 @@ void read_varied_range(gi::Yaml const& y, Compare& c, Mistakes& m)
     });
 }
 
+/// Adds settings of `with` that the procedure sets anyway.
+void check_with(gi::Yaml const& with, Compare const& c, Mistakes& m)
+{
+    std::vector<gi::InputError> told; // by read_patch
+    for (auto const& [key, unused] : with.entries(told)) {
+        auto const is_it = [k = plain_key(key.text())](std::string const& s) { return plain_key(s) == k; };
+        if (is_it(c.vary) ||
+            std::any_of(c.also.begin(), c.also.end(), [&](FurtherSetting const& f) { return is_it(f.setting); }))
+            m.add(key.error(fmt::format("'with' sets '{}', whose level a procedure chooses", key.text()),
+                            "one overrides the other", "remove it"));
+    }
+}
+
 Compare read_compare(gi::Yaml const& y, Script const& s, Mistakes& m)
 {
     m.check_keys(y, "compare");
@@ -190,6 +236,7 @@ Compare read_compare(gi::Yaml const& y, Script const& s, Mistakes& m)
         read_compared_factor(y, s, c, knows_against, m);
     else
         read_varied_range(y, c, m);
+    if (y.at("with").is_map()) check_with(y.at("with"), c, m);
     return c;
 }
 
@@ -200,18 +247,20 @@ double read_vary_level(gi::Yaml const& y, Compare const& c)
     if (word == "hardest") return c.harder_up ? c.high : c.low;
     if (word == "min") return c.low;
     if (word == "max") return c.high;
-    return y.number(c.low, c.high);
+    return read_number_or(y, {"easiest", "hardest", "min", "max"}, c.low, c.high);
 }
 
+/// Of a block with mistakes, what they leave known.
 Catch read_catch(gi::Yaml const& y, Block const& b, Script const& s, Mistakes& m)
 {
     m.check_keys(y, "catch");
     Catch k;
     k.place = y.place();
-    k.every = y.needed("every", "12").integer(2, 100000);
+    m.need(y, "every", "12", [&](gi::Yaml const& v) { k.every = int(v.integer(2, 100000)); });
     bool const varies = b.compare && b.compare->factor < 0;
-    bool const is_preference = b.pairs && presented_orders(b.task, false).empty();
+    bool const is_preference = b.pairs && b.pairs->factor >= 0 && presented_orders(b.task, false).empty();
     bool const has_noise = b.task == Task::yes_no || b.task == Task::same_different;
+    if (b.is_broken && !varies && !is_preference) return k;
     if (y.has("level") != varies || y.has("better") != is_preference || y.has("worse") != is_preference)
         throw y.error("these catch trials have no correct answer",
                       varies          ? "the level of the varied setting defines it"
@@ -221,13 +270,13 @@ Catch read_catch(gi::Yaml const& y, Block const& b, Script const& s, Mistakes& m
                       : is_preference ? "write better: LEVEL, worse: LEVEL"
                                       : "remove them");
     if (is_preference) {
-        k.better = read_level(y.at("better"), s, b.pairs->factor);
-        k.worse = read_level(y.at("worse"), s, b.pairs->factor);
-        if (k.better == k.worse)
+        m.attempt([&] { k.better = read_level(y.at("better"), s, b.pairs->factor); });
+        m.attempt([&] { k.worse = read_level(y.at("worse"), s, b.pairs->factor); });
+        if (k.better == k.worse && k.better >= 0)
             throw y.error("better and worse are the same", "there is nothing to find", "name two");
     } else if (has_noise && y.at("level").is_text() && y.at("level").text() == "none") {
         k.kind = CatchLevel::absent;
-    } else {
+    } else if (varies) {
         k.level = read_vary_level(y.at("level"), *b.compare);
     }
     return k;
@@ -257,9 +306,10 @@ void read_nest(gi::Yaml const& key, gi::Yaml const& y, Script const& s, Block& b
     auto const is_crossed = [&](int f) { return std::find(b.cross.begin(), b.cross.end(), f) != b.cross.end(); };
     m.check_keys(y, "nest");
     Nest n;
-    n.factor = read_factor(key, s);
-    gi::Yaml const in = y.needed("in", "scene");
-    n.within = read_factor(in, s);
+    m.attempt([&] { n.factor = read_factor(key, s); });
+    m.need(y, "in", "scene", [&](gi::Yaml const& v) { n.within = read_factor(v, s); });
+    if (n.factor < 0 || n.within < 0) return; // told
+    gi::Yaml const in = y.at("in");
     if (!is_crossed(n.within) || is_crossed(n.factor) || !b.only[std::size_t(n.factor)].empty())
         throw key.error(fmt::format("'{}' cannot be nested in '{}'", key.text(), in.text()),
                         "the outer factor must be crossed and the inner one neither crossed nor under 'only'",
@@ -386,7 +436,7 @@ void read_procedures(gi::Yaml const& y, Block& b, Mistakes& m)
 void read_scales(gi::Yaml const& y, Script const& s, Block& b, Mistakes& m)
 {
     if (b.task == Task::rating)
-        m.need(y, "scale", "{min: 1, max: 7}", [&](gi::Yaml const& v) { b.scale = read_scale(v); });
+        m.need(y, "scale", "{min: 1, max: 7}", [&](gi::Yaml const& v) { b.scale = read_scale(v, m); });
     if (b.task == Task::free_walk)
         m.take(y, "duration_s", [&](gi::Yaml const& v) { b.duration_s = v.number(1, 36000); });
     if (b.task != Task::magnitude) return;
@@ -432,7 +482,11 @@ void read_rest_of_block(gi::Yaml const& y, Script const& s, Block& b, Mistakes& 
     m.take(y, "cues", [&](gi::Yaml const& v) { b.cues = read_cues(v, s, m); });
     m.take(y, "constraints", [&](gi::Yaml const& v) {
         for (gi::Yaml const& item : v.items())
-            m.attempt([&] { b.constraints.push_back(read_constraint(item, s)); });
+            m.attempt([&] {
+                std::size_t const before = m.count();
+                Constraint const c = read_constraint(item, s, m);
+                if (m.count() == before) b.constraints.push_back(c);
+            });
     });
 }
 
@@ -482,8 +536,12 @@ Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s, Mista
     read_scales(y, s, b, m);
     read_rest_of_block(y, s, b, m);
     read_presentation(y, b, m);
-    bool const knows_stimuli = !b.is_broken;
-    if (knows_stimuli) m.take(y, "catch", [&](gi::Yaml const& v) { b.catches = read_catch(v, b, s, m); });
+    if (block_keys(b.task).contains("catch"))
+        m.take(y, "catch", [&](gi::Yaml const& v) {
+            std::size_t const before_catch = m.count();
+            Catch const k = read_catch(v, b, s, m);
+            if (m.count() == before_catch) b.catches = k;
+        });
     m.take(y, "practice", [&](gi::Yaml const& v) { read_practice(v, b, m); });
     bool const is_many = b.compare && !b.compare->also.empty();
     if (is_many && b.stimuli == Stimuli::prepared)

@@ -1,9 +1,12 @@
+#include "gi/core/edit_distance.h"
+#include "study/script/condition.h"
 #include "study/script/read.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace study {
 namespace {
@@ -25,12 +28,25 @@ std::vector<std::string> names_of(std::vector<FactorLevel> const& levels)
 
 } // namespace
 
+double read_number_or(gi::Yaml const& y, std::vector<std::string> const& words, double low, double high)
+{
+    if (y.is_text() && !y.text().empty() && std::isalpha(static_cast<unsigned char>(y.text().front())))
+        throw y.error(
+            fmt::format("'{}' is neither a number nor {}", y.text().substr(0, 64), fmt::join(words, ", ")),
+            "nothing else is known here", gi::suggest(y.text(), words, "write a number, or a word of these"));
+    return y.number(low, high);
+}
+
 Patch read_patch(gi::Yaml const& y, Mistakes& m)
 {
     Patch patch;
     for (auto const& [key, value] : m.entries(y))
         m.attempt([&, k = key, v = value] {
             check_setting_key(k);
+            for (auto const& [other, unused] : patch)
+                if (plain_key(other) == plain_key(k.text()))
+                    throw k.error(fmt::format("'{}' and '{}' are one setting", other, k.text()),
+                                  "only one of them can count", "remove one");
             std::string const text = v.text();
             if (text.find_first_of("\t\n\r") != std::string::npos)
                 throw v.error(v.path() + " is more than a line", "a setting is one word or number", "shorten it");
@@ -49,13 +65,18 @@ void read_level_list(gi::Yaml const& key, gi::Yaml const& list, Factor& factor, 
         m.attempt([&] { factor.levels.push_back({level.name(), {{factor.name, level.name()}}}); });
 }
 
-Factor read_factor_levels(gi::Yaml const& key, gi::Yaml const& value, Mistakes& m)
+Factor read_factor_levels(gi::Yaml const& key, gi::Yaml const& value, std::vector<Factor> const& before_it,
+                          Mistakes& m)
 {
     Factor factor{key.name(), {}, key.place()};
     for (char const* reserved : {"pair", "answer", "procedure", "do"})
         if (factor.name == reserved)
             m.add(key.error("a factor named '" + factor.name + "'", "the word has another meaning in scripts",
                             "choose another name"));
+    for (Factor const& other : before_it)
+        if ("factor_" + other.name == factor.name || "factor_" + factor.name == other.name)
+            m.add(key.error(fmt::format("factors '{}' and '{}'", other.name, factor.name),
+                            "tables could have one column name for both", "rename one"));
     std::size_t const before = m.count();
     if (value.is_list())
         read_level_list(key, value, factor, m);
@@ -66,6 +87,10 @@ Factor read_factor_levels(gi::Yaml const& key, gi::Yaml const& value, Mistakes& 
                 factor.levels.back().settings = read_patch(p, m);
             });
     auto names = names_of(factor.levels);
+    for (char const* const missing : {"NA", "NaN", "nan", "-NaN", "-nan", "NULL", "null", "None"})
+        if (std::find(names.begin(), names.end(), missing) != names.end())
+            m.add(value.error(fmt::format("a level named '{}'", missing),
+                              "R and pandas read it as a missing value", "choose another name"));
     std::sort(names.begin(), names.end());
     if (auto const twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
         m.add(value.error(fmt::format("level '{}' twice in {}", *twice, factor.name),
@@ -84,7 +109,7 @@ std::vector<Factor> read_factors(gi::Yaml const& y, Mistakes& m)
 {
     std::vector<Factor> factors;
     for (auto const& [key, value] : m.entries(y))
-        m.attempt([&, k = key, v = value] { factors.push_back(read_factor_levels(k, v, m)); });
+        m.attempt([&, k = key, v = value] { factors.push_back(read_factor_levels(k, v, factors, m)); });
     return factors;
 }
 
@@ -148,7 +173,7 @@ void read_trial_timing(gi::Yaml const& y, TrialTiming& timing, Mistakes& m)
         m.take(y, key, [&](gi::Yaml const& v) {
             if (v.is_text() && v.text() == word) return value.reset();
             value = kHour_ms; // if it is none: there is a value, so that nothing else seems to lack it
-            value = v.number(1, kHour_ms);
+            value = read_number_or(v, {word}, 1, kHour_ms);
         });
     };
     optional("stimulus_ms", "until_response", timing.stimulus_ms);
@@ -167,24 +192,28 @@ void read_trial_timing(gi::Yaml const& y, TrialTiming& timing, Mistakes& m)
     optional("expected_response_ms", "usual", timing.expected_response_ms);
 }
 
-RatingScale read_scale(gi::Yaml const& y)
+RatingScale read_scale(gi::Yaml const& y, Mistakes& m)
 {
-    check_keys(y, "scale");
+    m.check_keys(y, "scale");
     RatingScale scale;
-    scale.low = y.needed("min", "1").number(-1e6, 1e6);
-    scale.high = y.needed("max", "7").number(-1e6, 1e6);
-    if (y.has("step")) scale.step = y.at("step").number(1e-6, 1e6);
+    bool has_ends = m.need(y, "min", "1", [&](gi::Yaml const& v) { scale.low = v.number(-1e6, 1e6); });
+    has_ends &= m.need(y, "max", "7", [&](gi::Yaml const& v) { scale.high = v.number(-1e6, 1e6); });
+    bool const has_step = m.take(y, "step", [&](gi::Yaml const& v) { scale.step = v.number(1e-6, 1e6); });
+    if (has_ends && !(scale.low < scale.high))
+        throw y.error(fmt::format("a scale from {:g} to {:g}", scale.low, scale.high), "min comes first",
+                      "raise max");
     double const steps = (scale.high - scale.low) / scale.step;
-    if (!(steps >= 1 && steps <= 1e5) || std::abs(steps - std::round(steps)) > 1e-6)
+    if (has_ends && has_step && (!(steps >= 1 && steps <= 1e5) || std::abs(steps - std::round(steps)) > 1e-6))
         throw y.error(fmt::format("a scale from {:g} to {:g} by {:g}", scale.low, scale.high, scale.step),
                       "it needs 2 to 100001 values, the last of them max", "change max or step");
-    if (y.has("labels"))
-        for (auto const& [key, value] : y.at("labels").entries())
-            scale.labels.emplace_back(key.number(scale.low, scale.high), value.text());
+    if (y.has("labels") && has_ends)
+        for (auto const& [key, value] : m.entries(y.at("labels")))
+            m.attempt(
+                [&, k = key, v = value] { scale.labels.emplace_back(k.number(scale.low, scale.high), v.text()); });
     return scale;
 }
 
-Constraint read_constraint(gi::Yaml const& y, Script const& s)
+Constraint read_constraint(gi::Yaml const& y, Script const& s, Mistakes& m)
 {
     check_keys(y, "constraint");
     Constraint c;
@@ -209,13 +238,11 @@ Constraint read_constraint(gi::Yaml const& y, Script const& s)
             "this is no constraint", "a constraint has one rule",
             "write {no_repeat: F}, {no_repeat: F, max_run: 2}, {max_run: 2, of: F}, {min_gap: 2, of: F}, "
             "{never_after: {F: [a, b]}} or {not_first: {F: a}}");
-    if (has_subject) subject(y.at("of"));
-    if (is_repeat) subject(y.at("no_repeat"));
-    if (is_run) c.count = y.at("max_run").integer(1, 100000);
-    if (is_gap) {
-        c.kind = RuleKind::min_gap;
-        c.count = y.at("min_gap").integer(1, 100000);
-    }
+    m.take(y, "of", subject);
+    m.take(y, "no_repeat", subject);
+    m.take(y, "max_run", [&](gi::Yaml const& v) { c.count = int(v.integer(1, 100000)); });
+    if (is_gap) c.kind = RuleKind::min_gap;
+    m.take(y, "min_gap", [&](gi::Yaml const& v) { c.count = int(v.integer(1, 100000)); });
     if (!is_after && !is_first) return c;
     gi::Yaml const map = y.at(is_after ? "never_after" : "not_first");
     auto const entries = map.entries();
@@ -229,8 +256,8 @@ Constraint read_constraint(gi::Yaml const& y, Script const& s)
                                                : "one is needed",
                                       is_after ? "write [a, b]" : "write one constraint for each");
     c.kind = is_after ? RuleKind::never_after : RuleKind::not_first;
-    if (is_after) c.from = read_level(levels[0], s, c.factor);
-    c.to = read_level(levels.back(), s, c.factor);
+    if (is_after) m.attempt([&] { c.from = read_level(levels[0], s, c.factor); });
+    m.attempt([&] { c.to = read_level(levels.back(), s, c.factor); });
     return c;
 }
 

@@ -40,21 +40,21 @@ std::vector<double> parse_range(gi::Yaml const& y, Scale scale)
 }
 
 /// Reads max_trials or trials.
-Stop read_stop(gi::Yaml const& y, bool may_reverse)
+Stop read_stop(gi::Yaml const& y, bool may_reverse, Mistakes& m)
 {
-    check_keys(y, "stop");
+    std::size_t const before = m.count();
+    m.check_keys(y, "stop");
     Stop stop;
     if (y.has("trials") && y.has("max_trials"))
-        throw y.error("both trials and max_trials", "they have the same meaning", "keep one");
+        m.add(y.error("both trials and max_trials", "they have the same meaning", "keep one"));
     for (char const* key : {"trials", "max_trials"})
-        if (y.has(key)) stop.trials = y.at(key).integer(1, 10000);
-    if (y.has("reversals")) {
+        m.take(y, key, [&](gi::Yaml const& v) { stop.trials = int(v.integer(1, 10000)); });
+    m.take(y, "reversals", [&](gi::Yaml const& v) {
         if (!may_reverse)
-            throw y.at("reversals")
-                .error("questplus has no reversals", "it has no steps", "write stop: {trials: 32}");
-        stop.reversals = y.at("reversals").integer(1, 1000);
-    }
-    if (stop.trials == 0)
+            throw v.error("questplus has no reversals", "it has no steps", "write stop: {trials: 32}");
+        stop.reversals = int(v.integer(1, 1000));
+    });
+    if (stop.trials == 0 && m.count() == before)
         throw y.error("this procedure may never end", "reversals may not occur", "add max_trials");
     return stop;
 }
@@ -97,15 +97,14 @@ void read_psychometric(gi::Yaml const& y, Procedure& p, Mistakes& m)
     });
 }
 
-void read_staircase(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes& m)
+void read_staircase(gi::Yaml const& y, Compare const& c, Task task, Procedure& p, Mistakes& m)
 {
+    std::size_t const before = m.count();
     m.check_keys(y, "staircase");
-    m.take(y, "target", [&](gi::Yaml const& v) {
-        if (y.has("up") || y.has("down"))
-            throw y.error("both target and up or down", "a weighted staircase is 1 up, 1 down, with unequal steps",
-                          "keep one");
-        p.target = v.number(0.5, 0.99);
-    });
+    m.take(y, "target", [&](gi::Yaml const& v) { p.target = v.number(0.5, 0.99); });
+    if (y.has("target") && (y.has("up") || y.has("down")))
+        m.add(y.error("both target and up or down", "a weighted staircase is 1 up, 1 down, with unequal steps",
+                      "keep one"));
     m.take(y, "up", [&](gi::Yaml const& v) { p.up = int(v.integer(1, 20)); });
     m.take(y, "down", [&](gi::Yaml const& v) { p.down = int(v.integer(1, 20)); });
     m.need(y, "start", "256", [&](gi::Yaml const& v) {
@@ -119,7 +118,13 @@ void read_staircase(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes&
         if (p.steps.empty()) throw v.error("no steps", "it could not move", "write [2, 1, 0.5]");
     });
     read_psychometric(y, p, m);
-    m.need(y, "stop", "{reversals: 8, max_trials: 40}", [&](gi::Yaml const& v) { p.stop = read_stop(v, true); });
+    m.need(y, "stop", "{reversals: 8, max_trials: 40}",
+           [&](gi::Yaml const& v) { p.stop = read_stop(v, true, m); });
+    if (m.count() == before && settles_at(p) <= guess_rate(task) + 1e-9)
+        m.add(y.error(fmt::format("the staircase converges to {:.2f} % correct", 100 * settles_at(p)),
+                      fmt::format("guessing gives {:.2f} % in {}, so its level would only wander",
+                                  100 * guess_rate(task), facts(task).name),
+                      "write down: 2 (70.71 %), or target: 0.75"));
 }
 
 /// The proportions that QUEST+ would use.
@@ -145,6 +150,104 @@ void check_function(gi::Yaml const& y, Compare const& c, Procedure const& p, Mis
                                   "a proportion lies between 0 and 1", "correct the formula or the grids"));
                     return;
                 }
+}
+
+/// Its ends and, as near as possible, `count` values in all.
+std::vector<double> some_of(std::vector<double> const& grid, std::size_t count)
+{
+    if (grid.size() <= count) return grid;
+    std::vector<double> out;
+    for (std::size_t i = 0; i < count; ++i) out.push_back(grid[i * (grid.size() - 1) / (count - 1)]);
+    return out;
+}
+
+std::vector<double> even_grid(Compare const& c, int count)
+{
+    std::vector<double> grid;
+    double const low = to_scale(c.scale, c.low), high = to_scale(c.scale, c.high);
+    for (int i = 0; i < count; ++i) grid.push_back(from_scale(c.scale, low + (high - low) * i / (count - 1)));
+    return grid;
+}
+
+/// The values that a formula may take besides x, in the order of its names: some of the grids, or, without them,
+/// thresholds within the range and slopes of any size, as a slope is whatever it is in the formula.
+std::vector<std::vector<double>> formula_grids(Procedure const& p, Compare const& c, Task task)
+{
+    std::vector<std::vector<double>> grids;
+    for (QuestGrid const& g : p.also) grids.push_back(some_of(g.values, 3));
+    if (p.method == Method::questplus) {
+        grids.push_back(some_of(p.threshold, 9));
+        for (std::vector<double> const* const grid : {&p.slope, &p.guess, &p.lapse})
+            grids.push_back(some_of(*grid, 3));
+    } else {
+        grids.push_back(even_grid(c, 9));
+        grids.push_back({1e-3, 1e-2, 0.1, 0.3, 1, 3, 10, 100, 1000});
+        grids.push_back({guess_rate(task)});
+        grids.push_back({0});
+    }
+    for (QuestGrid const& g : p.parameters) grids.push_back(some_of(g.values, 3));
+    return grids;
+}
+
+/// What a formula does over the range of levels, whatever the other values are.
+struct FormulaCourse {
+    double lowest = 1, highest = 0;
+    bool rises = false, falls = false;
+};
+
+FormulaCourse course_of(Formula const& formula, std::vector<double> const& levels,
+                        std::vector<std::vector<double>> const& grids)
+{
+    constexpr double kFlat = 1e-9;
+    FormulaCourse course;
+    std::vector<std::size_t> digits(grids.size());
+    std::vector<double> values(1 + grids.size());
+    for (std::size_t digit = 0; digit < grids.size();) {
+        for (std::size_t g = 0; g < grids.size(); ++g) values[1 + g] = grids[g][digits[g]];
+        double before = std::nan("");
+        for (double const level : levels) {
+            values[0] = level;
+            double const share = formula(values);
+            course.rises |= share > before + kFlat;
+            course.falls |= share < before - kFlat;
+            if (std::isfinite(share)) {
+                course.lowest = std::min(course.lowest, share);
+                course.highest = std::max(course.highest, share);
+            }
+            before = share;
+        }
+        for (digit = 0; digit < grids.size() && ++digits[digit] == grids[digit].size(); ++digit) digits[digit] = 0;
+    }
+    return course;
+}
+
+/// Whether a formula goes the way that `harder` says and reaches the proportion that the threshold is at.
+void check_formula(gi::Yaml const& y, Compare const& c, Task task, Procedure const& p, Mistakes& m)
+{
+    gi::Yaml const at = y.at("psychometric");
+    Formula const& formula = *p.psychometric->formula;
+    for (std::size_t i = 0; i < formula.names().size(); ++i)
+        for (QuestGrid const& g : p.parameters)
+            if (g.name == formula.names()[i] && !formula.uses(i))
+                m.add(at.error(fmt::format("the formula does not use the parameter '{}'", g.name),
+                               "no answer would tell its values apart", "use it, or remove it from parameters"));
+    FormulaCourse const course = course_of(formula, even_grid(c, 33), formula_grids(p, c, task));
+    if (c.harder_up ? course.rises && !course.falls : course.falls && !course.rises) {
+        m.add(at.error(
+            fmt::format("the formula {} with x", course.rises ? "rises" : "falls"),
+            fmt::format("P(correct) must {} where {} levels are harder", c.harder_up ? "fall" : "rise",
+                        c.harder_up ? "higher" : "lower"),
+            fmt::format("write {}, or harder: {}",
+                        c.harder_up ? "(threshold - x) or threshold / x" : "(x - threshold) or x / threshold",
+                        c.harder_up ? "down" : "up")));
+        return;
+    }
+    double const wanted = p.method == Method::staircase ? settles_at(p) : (1 + guess_rate(task)) / 2;
+    if (course.lowest > wanted || course.highest < wanted)
+        m.add(at.error(
+            fmt::format("the formula gives {:g} to {:g} over the range of levels", course.lowest, course.highest),
+            fmt::format("the threshold is where it gives {:g}, which it never does", wanted),
+            "correct the formula, the grids or the range"));
 }
 
 void check_grids(gi::Yaml const& y, Compare const& c, Procedure const& p, Mistakes& m)
@@ -219,7 +322,11 @@ void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p, Mistakes&
         m.add(y.error("several settings or further parameters without a formula", "the function is unknown",
                       "write psychometric: FORMULA"));
     if (has_all && m.count() == before) check_grids(y, c, p, m);
-    m.need(y, "stop", "{trials: 32}", [&](gi::Yaml const& v) { p.stop = read_stop(v, false); });
+    if (!p.guess.empty() && !p.lapse.empty() && p.guess.back() + p.lapse.back() >= 1)
+        m.add(y.at("guess").error(fmt::format("guess {:g} with lapse {:g}", p.guess.back(), p.lapse.back()),
+                                  "together they reach 1, which leaves no room for a curve",
+                                  "use rates whose sum is below 1"));
+    m.need(y, "stop", "{trials: 32}", [&](gi::Yaml const& v) { p.stop = read_stop(v, false, m); });
 }
 
 } // namespace
@@ -250,6 +357,7 @@ Procedure read_procedure(gi::Yaml const& y, Compare const& c, Task task, Mistake
 {
     Procedure p;
     p.place = y.place();
+    std::size_t const before = m.count();
     std::vector<std::string> const methods = task == Task::adjustment
                                                  ? std::vector<std::string>{"adjustment"}
                                                  : std::vector<std::string>{"constant", "staircase", "questplus"};
@@ -259,7 +367,7 @@ Procedure read_procedure(gi::Yaml const& y, Compare const& c, Task task, Mistake
     p.name = method;
     m.take(y, "name", [&](gi::Yaml const& v) { p.name = v.name(); });
     if (p.method == Method::staircase) {
-        read_staircase(y, c, p, m);
+        read_staircase(y, c, task, p, m);
     } else if (p.method == Method::questplus) {
         read_questplus(y, c, p, m);
     } else {
@@ -270,6 +378,7 @@ Procedure read_procedure(gi::Yaml const& y, Compare const& c, Task task, Mistake
                [&](gi::Yaml const& v) { p.levels = read_grid(v, c.scale, c.low, c.high); });
         m.take(y, "trials_per_level", [&](gi::Yaml const& v) { p.trials_per_level = int(v.integer(1, 1000)); });
     }
+    if (m.count() == before && p.psychometric && p.psychometric->formula) check_formula(y, c, task, p, m);
     return p;
 }
 

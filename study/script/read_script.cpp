@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
+#include <sstream>
 
 namespace study {
 namespace {
@@ -73,15 +74,30 @@ AskedQuestion read_question(gi::Yaml const& y, Mistakes& m)
     return q;
 }
 
+/// True if participants.tsv could have one column for both questions: its names have letters, digits and _, and
+/// begin with asked_ where BIDS has another meaning for one.
+bool are_one_column(std::string const& a, std::string const& b)
+{
+    auto const column = [](std::string name) {
+        std::replace_if(
+            name.begin(), name.end(), [](char c) { return c == '.' || c == '+' || c == '-'; }, '_');
+        return name;
+    };
+    std::string const one = column(a), other = column(b);
+    return one == other || one == "asked_" + other || other == "asked_" + one;
+}
+
 void read_asked(gi::Yaml const& y, Participants& p, Mistakes& m)
 {
     for (gi::Yaml const& item : y.one_or_more())
         m.attempt([&] {
             p.ask.push_back(read_question(item, m));
             for (std::size_t i = 0; i + 1 < p.ask.size(); ++i)
-                if (p.ask[i].id == p.ask.back().id)
-                    throw item.error("question '" + p.ask[i].id + "' twice", "tables could not distinguish them",
-                                     "rename one");
+                if (are_one_column(p.ask[i].id, p.ask.back().id))
+                    throw item.error(p.ask[i].id == p.ask.back().id
+                                         ? "question '" + p.ask[i].id + "' twice"
+                                         : "questions '" + p.ask[i].id + "' and '" + p.ask.back().id + "'",
+                                     "tables could not distinguish them", "rename one");
         });
 }
 
@@ -187,6 +203,8 @@ std::vector<Device> read_devices(gi::Yaml const& y, Mistakes& m)
                         throw input.error(fmt::format("'{}' is no input", input.text().substr(0, 64)),
                                           "an input is a device and a button or key",
                                           "write key:left, pad:x, mouse:left or xr:left/trigger");
+                    if (std::find(d.inputs.begin(), d.inputs.end(), input.text()) != d.inputs.end())
+                        throw input.error("'" + input.text() + "' twice", "once is enough", "remove one");
                     d.inputs.push_back(input.text());
                 });
             if (inputs.empty()) throw v.error("no inputs", "the answer could not be given", "write [key:left]");
@@ -329,7 +347,11 @@ Script read_whole(gi::Yaml const& y, std::string const& file, Mistakes& m)
         if (v.text() != "study/1") throw v.unknown("known schema", {"study/1"});
     });
     m.need(y, "id", "visibility2026", [&](gi::Yaml const& v) { s.id = v.name(); });
-    m.take(y, "title", [&](gi::Yaml const& v) { s.title = v.text(); });
+    m.take(y, "title", [&](gi::Yaml const& v) {
+        s.title = v.text();
+        if (s.title.find('\n') != std::string::npos)
+            throw v.error("a title of several lines", "it stands in one line of tables and pages", "shorten it");
+    });
     m.need(y, "seed", "20261", [&](gi::Yaml const& v) { s.seed = v.seed(); });
     m.need(y, "participants", "{count: 24}", [&](gi::Yaml const& v) { s.participants = read_participants(v, m); });
     m.take(y, "timing", [&](gi::Yaml const& v) { s.timing = read_timing(v, m); });
@@ -337,6 +359,54 @@ Script read_whole(gi::Yaml const& y, std::string const& file, Mistakes& m)
     m.take(y, "record", [&](gi::Yaml const& v) { s.record = read_record(v, m); });
     m.take(y, "resume", [&](gi::Yaml const& v) { s.resume = read_resume(v, m); });
     return s;
+}
+
+/// Adds a quoted text that goes on in lines which are not indented further than its own: its quote was forgotten,
+/// and it has swallowed what follows.
+void check_quote(gi::Yaml const& y, std::vector<std::string> const& lines, Mistakes& m)
+{
+    std::size_t line = std::size_t(y.place().line) - 1, at = std::size_t(y.place().column) - 1;
+    if (line >= lines.size() || at >= lines[line].size()) return;
+    char const quote = lines[line][at];
+    if (quote != '"' && quote != '\'') return;
+    auto const indent_of = [](std::string const& s) { return s.find_first_not_of(" \t\r"); };
+    std::size_t const indent = indent_of(lines[line]);
+    for (++at;; at = 0) {
+        for (; at < lines[line].size(); ++at) {
+            bool const is_pair = quote == '"' ? lines[line][at] == '\\' : lines[line].substr(at, 2) == "''";
+            if (is_pair)
+                ++at;
+            else if (lines[line][at] == quote)
+                return;
+        }
+        if (++line == lines.size()) return;
+        std::size_t const next = indent_of(lines[line]);
+        if (next != std::string::npos && next <= indent)
+            return m.add(y.error(
+                "a quote that its line does not close",
+                fmt::format("line {}, which is not indented further, belongs to the text", line + 1), "close it"));
+    }
+}
+
+void check_quotes(gi::Yaml const& y, std::vector<std::string> const& lines, Mistakes& m)
+{
+    if (y.is_quoted()) check_quote(y, lines, m);
+    if (y.is_list())
+        for (gi::Yaml const& item : y.items()) check_quotes(item, lines, m);
+    std::vector<gi::InputError> told;
+    if (y.is_map())
+        for (auto const& [key, value] : y.entries(told)) {
+            check_quotes(key, lines, m);
+            check_quotes(value, lines, m);
+        }
+}
+
+std::vector<std::string> lines_of(std::string const& text)
+{
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
 }
 
 /// How often a word is a key or a value, alone or before a colon.
@@ -362,6 +432,7 @@ ReadScript read_script(std::string const& text, std::string const& name)
     try {
         read.mistakes.attempt([&] {
             gi::Yaml const y = gi::Yaml::parse(text, name, "script");
+            check_quotes(y, lines_of(text), read.mistakes);
             read.script = read_whole(y, name, read.mistakes);
             read.is_whole = y.is_map();
             check_design(read.script, read.mistakes,

@@ -25,23 +25,23 @@ SequenceItem read_name(gi::Yaml const& y, Script const& s)
 
 void read_free_walk(gi::Yaml const& y, Script const& s, SequenceItem& item, Mistakes& m)
 {
-    check_keys(y, "free_walk");
+    m.check_keys(y, "free_walk");
     item.kind = SequenceKind::free_walk;
-    item.seconds = y.needed("duration_s", "60").number(1, 36000);
-    if (y.has("prompt")) item.text = y.at("prompt").text();
-    if (y.has("condition")) item.choice = read_choice(y.at("condition"), s, m);
+    m.need(y, "duration_s", "60", [&](gi::Yaml const& v) { item.seconds = v.number(1, 36000); });
+    m.take(y, "prompt", [&](gi::Yaml const& v) { item.text = v.text(); });
+    m.take(y, "condition", [&](gi::Yaml const& v) { item.choice = read_choice(v, s, m); });
 }
 
-void read_rest(gi::Yaml const& y, SequenceItem& item)
+void read_rest(gi::Yaml const& y, SequenceItem& item, Mistakes& m)
 {
     item.kind = SequenceKind::rest;
     if (!y.is_map()) {
         item.seconds = y.number(0, 3600);
         return;
     }
-    check_keys(y, "break");
-    item.seconds = y.needed("min_s", "60").number(0, 3600);
-    if (y.has("prompt")) item.text = y.at("prompt").text();
+    m.check_keys(y, "break");
+    m.need(y, "min_s", "60", [&](gi::Yaml const& v) { item.seconds = v.number(0, 3600); });
+    m.take(y, "prompt", [&](gi::Yaml const& v) { item.text = v.text(); });
 }
 
 SequenceItem read_item(gi::Yaml const& y, Script const& s, Mistakes& m, int depth)
@@ -66,7 +66,7 @@ SequenceItem read_item(gi::Yaml const& y, Script const& s, Mistakes& m, int dept
     } else if (y.has("free_walk")) {
         read_free_walk(y.at("free_walk"), s, item, m);
     } else if (y.has("break")) {
-        read_rest(y.at("break"), item);
+        read_rest(y.at("break"), item, m);
     } else {
         item.kind = SequenceKind::per;
         m.take(y, "do", [&](gi::Yaml const& v) { item.items = read_sequence(v, s, m, depth + 1); });

@@ -11,12 +11,13 @@ constexpr double kMostSound_ms = 60000;
 void read_tone(gi::Yaml const& y, Sound& s, Mistakes& m)
 {
     m.take(y, "tone_hz", [&](gi::Yaml const& v) { s.tone_hz = v.number(20, 20000); });
-    m.take(y, "duration_ms", [&](gi::Yaml const& v) { s.duration_ms = v.number(1, kMostSound_ms); });
-    m.take(y, "ramp_ms", [&](gi::Yaml const& v) { s.ramp_ms = v.number(0, kMostSound_ms); });
+    bool knows_times =
+        m.take(y, "duration_ms", [&](gi::Yaml const& v) { s.duration_ms = v.number(1, kMostSound_ms); });
+    knows_times &= m.take(y, "ramp_ms", [&](gi::Yaml const& v) { s.ramp_ms = v.number(0, kMostSound_ms); });
     m.take(y, "channel", [&](gi::Yaml const& v) {
         s.channel = SoundChannel(v.one_of({"both", "left", "right"}, "channel"));
     });
-    if (2 * s.ramp_ms > s.duration_ms)
+    if (knows_times && 2 * s.ramp_ms > s.duration_ms)
         throw y.error(fmt::format("two ramps of {:g} ms in {:g} ms", s.ramp_ms, s.duration_ms),
                       "the tone would fall before it has risen", "shorten ramp_ms");
 }
@@ -32,20 +33,20 @@ std::vector<Sound> read_sounds(gi::Yaml const& y, Mistakes& m)
             s.name = k.name();
             s.place = k.place();
             m.check_keys(v, "sound");
-            if (v.has("file") == v.has("tone_hz"))
-                throw v.error("sound '" + s.name + "' has " +
+            if (v.is_map() && v.has("file") == v.has("tone_hz"))
+                m.add(v.error("sound '" + s.name + "' has " +
                                   (v.has("file") ? "a file and a tone" : "neither file nor tone"),
-                              "it is one of them", "write file: FILE, or tone_hz: 1000");
+                              "it is one of them", "write file: FILE, or tone_hz: 1000"));
             if (v.has("file")) {
                 for (char const* tone : {"duration_ms", "ramp_ms", "channel"})
                     if (v.has(tone))
                         m.add(v.at(tone).error(fmt::format("'{}' of a file", tone), "only tones have it",
                                                "remove it"));
                 s.level_db = 0;
-                s.file = v.at("file").text();
                 s.file_place = v.at("file").place();
+                m.take(v, "file", [&](gi::Yaml const& file) { s.file = file.text(); });
             } else {
-                read_tone(v, s, m);
+                m.attempt([&] { read_tone(v, s, m); });
             }
             m.take(v, "level_db", [&](gi::Yaml const& level) { s.level_db = level.number(-120, 0); });
             all.push_back(std::move(s));
@@ -63,14 +64,15 @@ std::vector<Cue> read_cues(gi::Yaml const& y, Script const& s, Mistakes& m)
         m.attempt([&] {
             m.check_keys(item, "cue");
             Cue c;
-            c.sound = item.needed("sound", "NAME").one_of(names, "sound");
+            bool const is_known =
+                m.need(item, "sound", "NAME", [&](gi::Yaml const& v) { c.sound = v.one_of(names, "sound"); });
             m.take(item, "at", [&](gi::Yaml const& v) {
                 c.at = CueMoment(v.one_of({"fixation", "first_stimulus", "each_stimulus"}, "moment"));
             });
             // Before the fixation there is nothing to wait in.
             double const least = c.at == CueMoment::fixation ? 0 : -kMostSound_ms;
             m.take(item, "offset_ms", [&](gi::Yaml const& v) { c.offset_ms = v.number(least, kMostSound_ms); });
-            cues.push_back(c);
+            if (is_known) cues.push_back(c);
         });
     return cues;
 }

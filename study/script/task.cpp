@@ -32,6 +32,12 @@ constexpr TaskFacts kFacts[] = {
 
 TaskFacts const& facts(Task task) { return kFacts[std::size_t(task)]; }
 
+double guess_rate(Task task)
+{
+    if (task == Task::oddity) return 1.0 / 3;
+    return task == Task::yes_no || task == Task::same_different ? 0 : 0.5;
+}
+
 std::vector<PresentedOrder> presented_orders(Task task, bool without_noise)
 {
     switch (task) {

@@ -44,6 +44,8 @@ struct TaskFacts {
     double response_ms; ///< expected response time for planning; for ranking per stimulus
 };
 TaskFacts const& facts(Task task);
+/// Proportion correct by guessing; 0 where it goes down to the false alarm rate, which is not known before.
+double guess_rate(Task task);
 
 /// Presentation orders of a task as letters of its stimuli ("aab": a, a, then b) with the correct answer to each;
 /// only for tasks that have one. @param without_noise omits orders in which there is nothing to find

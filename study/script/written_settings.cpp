@@ -38,7 +38,7 @@ private:
 
     void add(gi::Yaml const& key, std::string const& name, gi::Yaml const& value)
     {
-        if (value.is_text()) found.push_back({name, value.text(), key.place(), value.place(), "", {}});
+        if (value.is_text()) found.push_back({name, value.text(), key.place(), value.place(), "", {}, {}});
     }
     void add_patch(gi::Yaml const& map)
     {
@@ -62,13 +62,18 @@ private:
             std::find_if(s_.blocks.begin(), s_.blocks.end(), [&](Block const& b) { return b.name == name; });
         if (!compare.has("vary") || !compare.at("vary").is_text() || block == s_.blocks.end()) return;
         gi::Yaml const vary = compare.at("vary");
-        found.push_back({vary.text(), "", vary.place(), vary.place(), name, {}});
+        found.push_back({vary.text(), "", vary.place(), vary.place(), name, {}, {}});
         if (!block->compare || block->is_broken) return;
         found.back().varied = presented_ends(*block);
+        for (Procedure const& p : block->procedures) {
+            auto const& listed = p.method == Method::questplus ? p.stimuli : p.levels;
+            found.back().levels.insert(found.back().levels.end(), listed.begin(), listed.end());
+        }
+        std::ranges::sort(found.back().levels);
         for (auto const& [key, value] : entries(compare, "also"))
             for (FurtherSetting const& f : block->compare->also)
                 if (f.setting == key.text())
-                    found.push_back({f.setting, "", key.place(), key.place(), name, std::pair{f.low, f.high}});
+                    found.push_back({f.setting, "", key.place(), key.place(), name, std::pair{f.low, f.high}, {}});
     }
 
     Script const& s_;

@@ -13,6 +13,7 @@ struct WrittenSetting {
     Place key_place, value_place;
     std::string block;                               ///< if a procedure of it varies the setting
     std::optional<std::pair<double, double>> varied; ///< lowest and highest level presented; none = unknown
+    std::vector<double> levels;                      ///< those that procedures list, rising
 };
 
 /// In the order of the script: `settings`, `camera` (as a setting of that name), levels of factors, `with`,

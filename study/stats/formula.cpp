@@ -66,8 +66,10 @@ public:
             fail("'" + rest() + "' after the formula", "an operator is missing", "write a * b");
         for (std::size_t i = 0; i < needed; ++i)
             if (!is_used_[i])
-                fail_at(0, "a formula without " + f_.names_[i], "it would not depend on it",
-                        "such as guess + (1 - guess - lapse) * normal((x - threshold) / slope)");
+                fail_at(
+                    0, "a formula without " + f_.names_[i], "it would not depend on it",
+                    "such as guess + (1 - guess - lapse) * normal((x - threshold) / slope), or (threshold - x) "
+                    "where higher levels are harder");
     }
 
 private:
@@ -206,6 +208,12 @@ Formula::Formula(std::string text, std::vector<std::string> names, std::size_t n
 Formula Formula::psychometric(std::string text)
 {
     return {std::move(text), {kPsychometricValues.begin(), kPsychometricValues.end()}, 2};
+}
+
+bool Formula::uses(std::size_t name) const
+{
+    return std::any_of(steps_.begin(), steps_.end(),
+                       [&](Step const& s) { return s.op == Op::variable && s.index == int(name); });
 }
 
 double Formula::operator()(std::span<double const> values) const

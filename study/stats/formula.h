@@ -39,6 +39,7 @@ public:
     double operator()(std::span<double const> values) const;
     std::string const& text() const { return text_; }
     std::vector<std::string> const& names() const { return names_; }
+    bool uses(std::size_t name) const; ///< @param name  index in names()
 
 private:
     friend class FormulaParser;

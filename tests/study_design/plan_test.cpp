@@ -335,7 +335,7 @@ TEST(Doubts, AreLongSessionsAndUnbalancedCycles)
     EXPECT_NE(find_doubts(odd)[0].find("a multiple of 12 would"), std::string::npos);
 }
 
-TEST(Doubts, AreFalseAlarmsOfAHalf)
+TEST(Doubts, AreGuessRatesThatTheTaskCannotHave)
 {
     auto const doubts = [](std::string const& task, std::string const& guess) {
         return find_doubts(parse("factors: {q: {best: {paths: 4096}}}\nreference: {q: best}\n"
@@ -349,6 +349,28 @@ TEST(Doubts, AreFalseAlarmsOfAHalf)
     EXPECT_NE(doubts("yes_no", "0.5")[0].find("false alarm rate"), std::string::npos);
     EXPECT_TRUE(doubts("yes_no", "[0.1, 0.5]").empty());
     EXPECT_TRUE(doubts("2ifc", "0.5").empty());
+    EXPECT_TRUE(doubts("oddity", "0.33").empty());
+    ASSERT_EQ(doubts("2ifc", "[0, 0.1]").size(), 1u);
+    EXPECT_NE(doubts("2ifc", "[0, 0.1]")[0].find("is 0 to 0.1, but guessing gives 0.5 in 2ifc"),
+              std::string::npos);
+}
+
+TEST(Doubts, AreLevelsThatLookAlikeAndTooFewActiveTrials)
+{
+    auto const doubts = [](std::string const& levels, std::string const& trials) {
+        return find_doubts(parse("factors: {q: " + levels +
+                                 "}\nsequence: [b]\nblocks:\n  b: {task: pair, pairs: "
+                                 "{factor: q, sampling: active, trials: " +
+                                 trials + "}}\n"));
+    };
+    EXPECT_TRUE(doubts("{a: {paths: 1}, b: {paths: 2}, c: {paths: 1, reuse: 1}}", "2").empty());
+    EXPECT_TRUE(doubts("{a: {}, b: {}, c: {}}", "2").empty()) << "of another presenter";
+    auto const alike = doubts("{a: {paths: 1}, b: {gi.paths: 1.0}, c: {paths: 3}}", "2");
+    ASSERT_EQ(alike.size(), 1u);
+    EXPECT_NE(alike[0].find("levels 'a' and 'b' of factor 'q' have the same settings"), std::string::npos);
+    auto const few = doubts("[a, b, c, d]", "2");
+    ASSERT_EQ(few.size(), 1u);
+    EXPECT_NE(few[0].find("2 active trials cannot connect 4 levels; at least 3 would"), std::string::npos);
 }
 
 TEST(Transitions, CountNeighbours)

@@ -101,7 +101,7 @@ TEST(ScriptErrors, NameTheirPlaceAndWhatToDo)
               "t.yaml:12:22: ", "did you mean 'best'?"},
              {"reference: {quality: best}", "reference: {qualty: best}",
               "t.yaml:12:13: ", "did you mean 'quality'?"},
-             {"stimulus_ms: 2000", "stimulus_ms: soon", "t.yaml:13:25: ", "not a number"},
+             {"stimulus_ms: 2000", "stimulus_ms: soon", "t.yaml:13:25: ", "neither a number nor until_response"},
              {"stimulus_ms: 2000", "stimulus_ms: -1", "t.yaml:13:25: ", "between 1 and"},
              {"[key:left]", "[left]", "t.yaml:14:", "write key:left"},
              {"second: [key:right]", "second: [key:left]",
@@ -214,6 +214,193 @@ TEST(ScriptErrors, OfProceduresSayWhy)
             << message;
         EXPECT_TRUE(message.starts_with("t.yaml:")) << message;
     }
+}
+
+/// All mistakes as `study check` tells them, but for the name of the file: "8:5: problem (why) suggestion".
+std::vector<std::string> mistakes_of(std::string const& text)
+{
+    std::vector<std::string> all;
+    ReadScript const read = read_script(text, "t.yaml");
+    for (ScriptError const& e : read.mistakes.in_order()) all.push_back(std::string(e.what()).substr(7));
+    return all;
+}
+
+/// Each mistake of a script is told, at its place, and no other.
+struct Told {
+    std::string body;
+    std::vector<std::string> begin;
+};
+
+void expect_told(std::vector<Told> const& all)
+{
+    for (Told const& t : all) {
+        auto const told = mistakes_of(kHead + t.body);
+        bool is_equal = told.size() == t.begin.size();
+        for (std::size_t i = 0; is_equal && i < told.size(); ++i) is_equal = told[i].starts_with(t.begin[i]);
+        std::string text;
+        for (std::string const& message : told) text += message + "\n";
+        EXPECT_TRUE(is_equal) << t.body << "\n" << text;
+    }
+}
+
+std::string const kBlock = "factors: {q: [a, b]}\nsequence: [b]\nblocks:\n  b: ";
+
+TEST(ScriptErrors, OfOneMapAreToldTogether)
+{
+    std::string const sound = "sounds: {beep: {tone_hz: 900, duration_ms: 5, ramp_ms: 50}}\n" + kBlock +
+                              "{task: pair, pairs: {factor: q}";
+    std::string const varied = kVaried + "    procedure: {method: ";
+    expect_told({
+        {sound + ", cues: [{sound: bep, at: onset, offset_ms: -1e9}]}\n",
+         {"5:16: two ramps of 50 ms", "9:54: 'bep' is no sound", "9:63: 'onset' is no moment", "9:81: "}},
+        {"questionnaires:\n  aft:\n    items: [{id: a, texte: x, type: scal}, {txt: y, min: z}]\n"
+         "    scales: {s: {items: [b, a], score: avg}, t: {items: a, wight: 2}}\n" +
+             kBlock + "{task: pair, pairs: {factor: q}}\n",
+         {"6:3: questionnaire 'aft' is not used", "7:21: unknown key 'texte'", "7:37: 'scal' is no type of item",
+          "7:44: script.questionnaires.aft.items[1] has no 'id'", "7:45: unknown key 'txt'",
+          "7:58: script.questionnaires.aft.items[1].min is not", "8:40: 'avg' is no way",
+          "8:60: unknown key 'wight'"}},
+        {kBlock + "{task: pair, pairs: {factor: q, order: up}, catch: {every: 0, better: hi, worse: lo},\n"
+                  "    constraints: [{max_run: 0, of: pairs}, {never_after: {q: [c, d]}}]}\n",
+         {"8:45: 'up' is no order", "8:65: script.blocks.b.catch.every is 0", "8:76: 'hi' is no level",
+          "8:87: 'lo' is no level", "9:29: script.blocks.b.constraints[0].max_run is 0",
+          "9:36: 'pairs' is no subject", "9:63: 'c' is no level", "9:66: 'd' is no level"}},
+        {kBlock +
+             "{task: rating, scale: {min: 7, max: 1, step: 0}, cross: q, nest: {n: {in: r, levels: {a: b}}}}\n",
+         {"8:28: a scale from 7 to 1", "8:51: script.blocks.b.scale.step is 0", "8:72: 'n' is no factor",
+          "8:80: 'r' is no factor"}},
+        {kBlock + "{task: rating, scale: {min: 1, max: 7}, cross: q, catch: {every: 2}}\n",
+         {"8:56: 'catch' does nothing in a block with task rating"}},
+        {varied + "staircase, target: 2, up: 0, start: 4, steps: 1, stop: {trials: 0, reversals: 0}}\n",
+         {"13:16: both target and up or down", "13:44: ", "13:51: ", "13:89: ", "13:103: "}},
+        {varied + "questplus, threshold: [0, 4], slope: 1, guess: 0.8, lapse: 0.3, stop: {trials: 5}}\n",
+         {"13:47: script.blocks.b.procedure.threshold has 0",
+          "13:72: guess 0.8 with lapse 0.3 (together they reach 1"}},
+        {varied +
+             "constant, levels: 4}\n    practice: {trials: 0, level: esy}\n    catch: {every: 1, level: eazy}\n",
+         {"14:24: ", "14:34: 'esy' is neither a number nor easiest, hardest, min, max",
+          "15:20: ", "15:30: 'eazy' is neither"}},
+        {"devices: {first: [key:a, key:a]}\n" + kBlock + "{task: pair, pairs: {factor: q}}\n",
+         {"5:26: 'key:a' twice"}},
+    });
+}
+
+TEST(ScriptErrors, OfProceduresThatCannotFindAThreshold)
+{
+    std::string const staircase =
+        kVaried + "    procedure: {method: staircase, start: 4, steps: 1, stop: {trials: 9}";
+    std::string const quest = kVaried + "    procedure: {method: questplus, threshold: 1..1024/9, slope: [1, 2], "
+                                        "guess: 0.5, lapse: 0.02, stop: {trials: 9}";
+    std::string const constant = kVaried + "    procedure: {method: constant, levels: 1..1024/9";
+    std::string const falls = "guess + (1 - guess - lapse) * normal(slope * (log2(threshold) - log2(x)))",
+                      rises = "guess + (1 - guess - lapse) * normal(slope * (log2(x) - log2(threshold)))";
+    std::string const psychometric = ", psychometric: \"", end = "\"}\n";
+    expect_told({
+        {staircase + "}\n", {"13:16: the staircase converges to 50.00 % correct (guessing gives 50.00 % in 2ifc"}},
+        {staircase + ", target: 0.5}\n", {"13:16: the staircase converges to 50.00 % correct"}},
+        {staircase + ", down: 2}\n", {}},
+        {quest + psychometric + falls + end, {}},
+        {quest + psychometric + rises + end, {"13:131: the formula rises with x (P(correct) must fall"}},
+        {constant + psychometric + falls + end, {}},
+        {constant + psychometric + rises + end, {"13:68: the formula rises with x"}},
+        {staircase + ", down: 2" + psychometric + rises + end, {"13:98: the formula rises with x"}},
+        {constant + psychometric + "guess + 0.2 * normal(log2(threshold / x))" + end,
+         {"13:68: the formula gives 0.5 to 0.7 over the range of levels (the threshold is where it gives 0.75"}},
+        {quest + ", parameters: {width: [1, 2]}" + psychometric + falls + end,
+         {"13:160: the formula does not use the parameter 'width'"}},
+    });
+    std::string yes_no = staircase + "}\n";
+    yes_no.replace(yes_no.find("2ifc"), 4, "yes_no");
+    EXPECT_TRUE(mistakes_of(kHead + yes_no).empty()) << "where half of the answers are yes";
+}
+
+TEST(ScriptErrors, OfATabNameItsLine)
+{
+    EXPECT_EQ(message_of(kHead + "blocks:\n  r:\n\ttask: rating\n"),
+              "t.yaml:7:1: this line is indented by a tab (YAML takes only blanks) write blanks");
+}
+
+TEST(ScriptErrors, OfCharactersAndQuotesNameTheirPlace)
+{
+    EXPECT_EQ(message_of(kHead + "title: sch\xf6n\n"),
+              "t.yaml:5:11: the byte f6 is no UTF-8 (texts would be unreadable) save the file as UTF-8");
+    EXPECT_EQ(message_of(kHead + "title: sch\xc3\xb6n\x07\n"),
+              "t.yaml:5:14: the control character 07 (it cannot be seen) remove it");
+    std::string const rest = kBlock + "{task: pair, pairs: {factor: q}}\n";
+    EXPECT_EQ(message_of("\xef\xbb\xbf" + kHead + rest), "") << "a byte order mark";
+    expect_told({
+        {rest + "title: \"A study\ntiming: {vsync: record}\ndevices: {confirm: [key:enter]}\"\n",
+         {"9:8: a quote that its line does not close (line 10, which is not indented further"}},
+        {rest + "title: 'It''s \\'\ntiming: {vsync: record}\n", {}},
+        {rest + "title: \"A \\\" \n  study\"\n", {}},
+        {rest + "title: \"A\n\n  study\"\n", {"9:8: a title of several lines"}},
+    });
+}
+
+TEST(ScriptErrors, OfNamesThatTablesCannotHold)
+{
+    std::string const rest =
+        "sequence: [b]\nblocks: {b: {task: rating, scale: {min: 1, max: 7}, cross: [level]}}\n";
+    expect_told({
+        {"factors: {level: [a, b], factor_level: [c]}\nreference: {factor_level: c}\n" + rest,
+         {"5:26: factors 'level' and 'factor_level'"}},
+        {"factors: {level: [NA, n.a, nan, \"true\"]}\n" + rest,
+         {"5:18: a level named 'NA'", "5:18: a level named 'nan'"}},
+        {"factors: {level: {None: {paths: 1}, n: {paths: 2}}}\n" + rest, {"5:18: a level named 'None'"}},
+    });
+    EXPECT_EQ(
+        message_of("schema: study/1\nid: t\nseed: 5\nparticipants: {count: 12, ask: [number, asked_number]}\n"
+                   "factors: {level: [a]}\n" +
+                   rest),
+        "t.yaml:4:41: questions 'number' and 'asked_number' (tables could not distinguish them) rename one");
+    EXPECT_NE(message_of("schema: study/1\nid: t\nseed: 5\nparticipants: {count: 12, ask: [eye.l, eye_l]}\n"
+                         "factors: {level: [a]}\n" +
+                         rest)
+                  .find("questions 'eye.l' and 'eye_l'"),
+              std::string::npos);
+}
+
+TEST(ScriptErrors, OfSettingsThatOverrideEachOther)
+{
+    std::string const rest =
+        "sequence: [b]\nblocks: {b: {task: rating, scale: {min: 1, max: 7}, cross: [p, e]}}\n";
+    expect_told({
+        {"factors: {p: {a: {gi.paths: 1}, b: {paths: 2}}, e: {a: {paths: 4, reuse: 1}, b: {gi.paths: 5}}}\n" +
+             rest,
+         {"5:11: nothing of factor 'p' is shown: factor 'e' sets 'paths' too"}},
+        {"factors: {p: {a: {paths: 1}, b: {paths: 2, reuse: 2}}, e: {a: {paths: 4}, b: {paths: 5}}}\n" + rest, {}},
+        {"factors: {p: {a: {paths: 1}, b: {paths: 2}}, e: {a: {paths: 4}, b: {reuse: 5}}}\n" + rest, {}},
+        {"factors: {p: [1, 2], e: [3, 4]}\ndefaults: {settings: {gi.paths: 3, paths: 5}}\n" + rest,
+         {"6:36: 'gi.paths' and 'paths' are one setting"}},
+        {"factors: {q: {best: {paths: 4096}}}\nreference: {q: best}\ndefaults: {stimulus_ms: 1000}\nsequence: "
+         "[b]\nblocks:\n  b:\n    task: "
+         "2ifc\n"
+         "    compare: {vary: paths, with: {gi.paths: 5, reuse: 1}, range: [1, 9], harder: up}\n"
+         "    procedure: {method: constant, levels: [1, 9]}\n",
+         {"12:35: 'with' sets 'gi.paths', whose level a procedure chooses"}},
+    });
+}
+
+TEST(ScriptErrors, OfPairListsThatMakeNoScale)
+{
+    std::string const head =
+        "factors: {q: [a, b, c, d]}\nsequence: [b]\nblocks:\n  b: {task: pair, pairs: {factor: q, ";
+    expect_told({
+        {head + "list: [[a, b], [b, a]]}}\n",
+         {"8:53: this pair is in the list before (a list selects pairs) remove it; order"}},
+        {head + "order: fixed, list: [[a, b], [b, a]]}}\n", {}},
+        {head + "order: fixed, list: [[a, b], [a, b]]}}\n", {"8:67: this pair is in the list before"}},
+        {head + "sampling: active, trials: 9, list: [[a, b], [c, d]]}}\n", {"8:73: no pairs connect 'a' and 'c'"}},
+        {head + "sampling: active, trials: 9, list: [[a, b], [c, d], [d, b]]}}\n", {}},
+        {head + "list: [[a, b], [c, d]]}}\n", {}},
+    });
+}
+
+TEST(ScriptErrors, OfUnknownWordsNameAllThatThereAre)
+{
+    std::string const told =
+        message_of(kHead + kBlock + "{task: rating, scale: {min: 1, max: 7}, cross: q, zzz: 1}\n");
+    EXPECT_NE(told.find(", ties, timeout_ms, warmup_frames"), std::string::npos) << told;
 }
 
 TEST(ScriptErrors, OfRankingsThatDigitsCannotGive)

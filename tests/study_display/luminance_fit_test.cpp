@@ -142,6 +142,38 @@ TEST(LuminanceFit, RefusesWhatCannotBeFitted)
     EXPECT_THROW(luminance_shares({{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.7, 0.2}}), gi::InputError);
 }
 
+TEST(LuminanceFit, SaysWhatIsWrongWithReadings)
+{
+    auto const message = [](std::vector<LuminanceReading> const& readings) -> std::string {
+        try {
+            fit_luminance(readings, {});
+        } catch (gi::InputError const& e) {
+            return e.what();
+        }
+        return "";
+    };
+    constexpr auto kWhite = PatchColour::white;
+    EXPECT_TRUE(message({{kWhite, 0, 0.3}, {kWhite, 0.5, 80}, {kWhite, 1, 20}})
+                    .starts_with("white falls to 20 cd/m2 at its highest value, from 80 at 0.5"));
+    EXPECT_TRUE(message({{kWhite, 0, 0}, {kWhite, 0.25, 0}, {kWhite, 0.5, 0}, {kWhite, 1, 80}})
+                    .starts_with("white rises from 0 to 80 cd/m2 as with a gamma of "));
+}
+
+TEST(LuminanceFit, SaysWhereRepeatedReadingsDisagree)
+{
+    auto readings = readings_of({}, 9, 0);
+    auto const is_told = [&] {
+        auto const warnings = fit_luminance(readings, {}).warnings;
+        return std::any_of(warnings.begin(), warnings.end(), [](std::string const& w) {
+            return w.find("repeated readings of white at 1 differ by 30 %") != std::string::npos;
+        });
+    };
+    readings.push_back({PatchColour::white, 1, TrueDisplay{}.white(1)});
+    EXPECT_FALSE(is_told());
+    readings.back().cd_m2 *= 0.7;
+    EXPECT_TRUE(is_told());
+}
+
 TEST(GammaByEye, IsTheSlopeOfTheMatches)
 {
     std::vector<GammaMatch> matches;

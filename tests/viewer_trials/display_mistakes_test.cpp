@@ -39,11 +39,11 @@ study::DisplayModel monitor(double distance_cm)
     return m;
 }
 
-std::vector<std::string> told(ShownOn const& shown_on)
+std::vector<std::string> told(std::optional<ShownOn> const& shown_on, std::string const& script = kScript)
 {
     test::TemporaryFolder const folder;
     std::string const file = (folder.path() / "t.yaml").string();
-    gi::write_text(file, kScript);
+    gi::write_text(file, script);
     ScriptToCheck read = load_script_to_check(file);
     ScriptCheckOptions options;
     options.stimuli.renders = false;
@@ -66,7 +66,7 @@ void expect_told(std::vector<std::string> const& all, std::size_t i, std::string
 TEST(DisplayMistakes, AreToldAtTheirPlaces)
 {
     study::DisplayModel const m = monitor(57.3);
-    auto const all = told({&m});
+    auto const all = told(ShownOn{&m});
     EXPECT_EQ(all.size(), 2u);
     expect_told(all, 0, "t.yaml:8:", "the screen has 1920 x 1080");
     expect_told(all, 1, "t.yaml:9:", "the display shows 0.4 to 99.4 cd/m2");
@@ -75,16 +75,36 @@ TEST(DisplayMistakes, AreToldAtTheirPlaces)
 TEST(DisplayMistakes, DegreesNeedADistance)
 {
     study::DisplayModel const m = monitor(0);
-    auto const all = told({&m});
+    auto const all = told(ShownOn{&m});
     ASSERT_EQ(all.size(), 4u);
     expect_told(all, 0, "t.yaml:7:", "no distance");
     expect_told(all, 1, "t.yaml:8:", "no distance");
     expect_told(all, 3, "t.yaml:13:", "degrees need the screen's size and distance");
 }
 
+TEST(DisplayMistakes, AreSettingsThatNoPictureCanHaveTogether)
+{
+    auto const with = [](std::string const& settings, std::string const& more = "") {
+        return "schema: study/1\nid: deg\nseed: 1\nparticipants: {count: 1}\nfactors: {exposure: [0, 1]}\n"
+               "defaults: {settings: {scene: cornell, " +
+               settings + "}" + more +
+               "}\nsequence: [seen]\nblocks:\n  seen: {task: rating, scale: {min: 1, max: 7}, cross: exposure}\n";
+    };
+    study::DisplayModel const m = monitor(57.3);
+    auto const edge = told(ShownOn{&m}, with("size: 40 x 4 deg, place: 15 0 deg"));
+    ASSERT_EQ(edge.size(), 1u);
+    expect_told(edge, 0, "t.yaml:6:", "beyond the edge of the screen's 1920 x 1080 px");
+    auto const both = told({}, with("mean_luminance: 20, peak_luminance: 10"));
+    ASSERT_EQ(both.size(), 1u);
+    expect_told(both, 0, "t.yaml:9:", "mean_luminance and peak_luminance of one stimulus");
+    auto const headset = told({}, with("view: openxr", ", stimuli: prepared"));
+    ASSERT_EQ(headset.size(), 1u);
+    expect_told(headset, 0, "t.yaml:9:", "stimuli: prepared with view: openxr");
+}
+
 TEST(DisplayMistakes, WallsHaveNoSizes)
 {
-    auto const all = told({nullptr, true});
+    auto const all = told(ShownOn{nullptr, true});
     ASSERT_EQ(all.size(), 5u);
     expect_told(all, 0, "t.yaml:7:", "on walls or in a headset");
     expect_told(all, 4, "t.yaml:13:", "degrees need the screen's size and distance");

@@ -80,6 +80,8 @@ TEST(PhysicalUnits, NeedADisplayModelThatCanShowThem)
     EXPECT_NE(check("size", "4 deg", false).find("--display-model"), std::string::npos);
     EXPECT_NE(check("luminance", "80", false).find("--display-model"), std::string::npos);
     EXPECT_NE(check("size", "60 deg").find("the screen has 1920 x 1080"), std::string::npos);
+    EXPECT_EQ(check("place", "20 0"), "none");
+    EXPECT_NE(check("place", "0 -16").find("beyond the edge of the screen's 1920 x 1080 px"), std::string::npos);
     EXPECT_NE(check("peak_luminance", "120").find("0.4 to 100 cd/m2"), std::string::npos);
     EXPECT_EQ(check("luminance", "120"), "none") << "white may be clipped: it is counted";
     m.screen->distance_cm = 0;
@@ -101,6 +103,15 @@ TEST(PhysicalUnits, PlaceTheStimulusInPixels)
     PlacedPixels const q = placed_within(aside.physical, &m, {0, 0}, {1920, 1080});
     EXPECT_NEAR(q.corner_px.x + 0.5 * q.size_px.x - 960, study::px_of_place(*m.screen, 5, false), 1);
     EXPECT_NEAR(q.corner_px.y + 0.5 * q.size_px.y - 540, study::px_of_place(*m.screen, 1, true), 1) << "down";
+    for (char const* const place : {"20 0 deg", "-20 0 deg", "0 8 deg", "0 -8 deg"})
+        EXPECT_NE(
+            problem_of([&] {
+                placed_within(
+                    stimulus_settings({{"scene", "cornell"}, {"size", "10 deg"}, {"place", place}}, "").physical,
+                    &m, {100, 0}, {800, 600});
+            }).find("its place in the window"),
+            std::string::npos)
+            << place;
     EXPECT_NE(problem_of([&] { placed_within(with("size", "20 deg").physical, &m, {0, 0}, {300, 300}); }), "none");
     PlacedPixels const whole = placed_within({}, nullptr, {3, 4}, {5, 6});
     EXPECT_EQ(whole.size_px, glm::ivec2(5, 6));

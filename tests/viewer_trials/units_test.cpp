@@ -16,6 +16,7 @@
 #include "viewer/experiment/text_entry.h"
 #include "viewer/experiment/trial.h"
 #include "viewer/protocol/remote/remote_client.h"
+#include "viewer/study/setting_lookup.h"
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -192,6 +193,21 @@ TEST(AnswerKeys, EveryMistakeIsToldWithItsPlace)
                        taken);
     ASSERT_EQ(taken.count(), 1u);
     EXPECT_NE(std::string(taken.in_order()[0].what()).find("all default inputs of 'first'"), std::string::npos);
+}
+
+TEST(AnswerKeys, NoneIsWhatEndsSessionsOrTypesAnswers)
+{
+    auto const told = [](std::string const& block, std::string const& devices) {
+        study::Mistakes mistakes;
+        find_wrong_devices(script(block, devices), mistakes);
+        return mistakes.empty() ? "" : std::string(mistakes.in_order()[0].what());
+    };
+    std::string const rating = "{task: rating, scale: {min: 1, max: 7}, cross: scene}",
+                      pair = "{task: pair, pairs: {factor: scene}}";
+    EXPECT_NE(told(rating, "devices: {confirm: [key:escape]}\n").find("ends a session"), std::string::npos);
+    EXPECT_NE(told(rating, "devices: {confirm: [key:5]}\n").find("digits are typed as answers in rating of block"),
+              std::string::npos);
+    EXPECT_EQ(told(pair, "devices: {first: [key:1], second: [key:2]}\n"), "");
 }
 
 TEST(AnswerKeys, ShippedScriptsCanBeAnswered)
@@ -408,6 +424,26 @@ TEST(Stimuli, WholeSettingsTakeTheNearestLevel)
 {
     EXPECT_EQ(stimulus_settings({{"scene", "cornell"}, {"paths", "2.82842712"}}, "").settings.paths, 3);
     EXPECT_THROW(stimulus_settings({{"scene", "cornell"}, {"paths", "few"}}, ""), gi::InputError);
+}
+
+TEST(Stimuli, WholeSettingsHaveNoFractionsAndNoEqualLevels)
+{
+    auto const told = [](std::string const& setting, std::string const& levels) -> std::string {
+        std::string const text =
+            "schema: study/1\nid: t\nseed: 1\nparticipants: {count: 1}\nfactors: {q: {a: {" + setting +
+            "}}}\nreference: {q: a}\ndefaults: {stimulus_ms: 300}\nsequence: [b]\nblocks:\n  b:\n    task: 2ifc\n"
+            "    compare: {vary: paths, range: [1, 4], harder: up}\n    procedure: {method: constant, levels: " +
+            levels + "}\n";
+        study::Mistakes mistakes;
+        find_wrong_settings(study::parse_script(text, "x.yaml"), text, "", mistakes);
+        return mistakes.empty() ? "" : mistakes.in_order()[0].what();
+    };
+    EXPECT_EQ(told("exposure: 0.5", "[1, 2.4, 3]"), "");
+    EXPECT_EQ(told("gi.bounces: 4.0", "[1, 4]"), "");
+    EXPECT_EQ(told("gi.bounces: 0.5", "[1, 4]"),
+              "x.yaml:5:31: 'bounces' = 0.5 (it takes whole numbers) write 0 or 1");
+    EXPECT_TRUE(told("exposure: 0", "[1, 1.4, 3]").starts_with("x.yaml:12:21: 'paths' with the levels 1 and 1.4"));
+    EXPECT_TRUE(told("exposure: 0", "1..4/9").starts_with("x.yaml:12:21: 'paths' with the levels 1 and 1.375"));
 }
 
 /// Whoever answers whatever: the shipped staircases and QUEST+ never ask for a level that was not prepared.

@@ -85,8 +85,34 @@ AnswerKeys::AnswerKeys(study::Script const& script)
                                      fmt::format("write devices: {{{}: [key:...]}}", answer));
 }
 
+/// Why digits cannot be bound in a script: what types them; empty = nothing.
+static std::string types_digits(study::Script const& script)
+{
+    for (study::Block const& b : script.blocks)
+        for (study::Task const task :
+             {study::Task::rating, study::Task::ranking, study::Task::magnitude, study::Task::questionnaire})
+            if (b.task == task) return fmt::format("{} of block '{}'", facts(task).name, b.name);
+    for (study::SequenceItem const& item : script.sequence)
+        if (item.kind == study::SequenceKind::questionnaire)
+            return fmt::format("questionnaire '{}'", script.questionnaires[std::size_t(item.index)].name);
+    return {};
+}
+
+static bool is_digit(std::string const& input)
+{
+    return input.size() == 5 && input.starts_with("key:") && input[4] >= '0' && input[4] <= '9';
+}
+
 void find_wrong_devices(study::Script const& script, study::Mistakes& mistakes)
 {
+    std::string const typed_in = types_digits(script);
+    for (study::Device const& d : script.devices)
+        for (std::string const& input : d.inputs)
+            if (is_digit(input) && !typed_in.empty() &&
+                (d.answer == "up" || d.answer == "down" || d.answer == "confirm"))
+                mistakes.add(gi::InputError(gi::TextLocation{script.file, d.place.line, d.place.column},
+                                            "devices: " + d.answer + ": " + input,
+                                            "digits are typed as answers in " + typed_in, "choose another key"));
     std::size_t const before = mistakes.count();
     study::Script one; // with one input at a time, so that each mistake is told
     one.file = script.file;
@@ -120,6 +146,9 @@ void AnswerKeys::bind(std::string const& answer, std::string const& input, gi::T
                      ? -1
                      : number_of(name.substr(slash + 1), {"select", "trigger", "menu"});
     }
+    if (b.kind == InputKind::key && b.code == GLFW_KEY_ESCAPE)
+        throw gi::InputError(place, "devices: " + answer + ": " + input, "escape, pressed twice, ends a session",
+                             "choose another input");
     if (b.code < 0)
         throw gi::InputError(place, "devices: " + answer + ": " + input, "there is no such input",
                              "write key:left, key:a, key:1, pad:x, mouse:left or xr:left/trigger");

@@ -46,8 +46,6 @@ constexpr bool takes_numbers(OwnSetting const& s) { return s.high >= s.low; }
 /// Settings of viewers that make no sense for stimuli: those of the device, and those of people at a panel.
 constexpr std::string_view kNotOfStimuli[]{"device", "panel", "font_scale", "refine"};
 
-std::string without_prefix(std::string const& key) { return key.starts_with("gi.") ? key.substr(3) : key; }
-
 OwnSetting const* find_own(std::string const& key)
 {
     auto const found =
@@ -200,13 +198,42 @@ StimulusPath path_of(std::string const& name)
     throw gi::InputError("camera: path:" + name, "there is no such path", "write path:orbit");
 }
 
+namespace {
+
+bool takes_whole_numbers(std::string const& key)
+{
+    SettingKey const* const k = find_of_viewer(key);
+    return k != nullptr && k->type == gi::OptionType::whole_number;
+}
+
+/// Throws if a script writes a fraction that would be rounded. Procedures may choose such levels.
+void check_whole(std::string const& key, std::string const& value)
+{
+    auto const number = gi::parse_finite(value);
+    if (number && *number != std::floor(*number) && takes_whole_numbers(key))
+        throw gi::InputError(fmt::format("'{}' = {}", key, value), "it takes whole numbers",
+                             fmt::format("write {:g} or {:g}", std::floor(*number), std::ceil(*number)));
+}
+
+/// Throws if two levels are the same number after rounding.
+void check_rounded_levels(std::string const& key, std::vector<double> const& levels)
+{
+    if (!takes_whole_numbers(key)) return;
+    for (std::size_t i = 1; i < levels.size(); ++i)
+        if (levels[i] != levels[i - 1] && std::llround(levels[i]) == std::llround(levels[i - 1]))
+            throw gi::InputError(
+                fmt::format("'{}' with the levels {:g} and {:g}", key, levels[i - 1], levels[i]),
+                fmt::format("it takes whole numbers, and both are rounded to {}", std::llround(levels[i])),
+                "choose levels that differ by 1 or more");
+}
+
+} // namespace
+
 Json setting_value(std::string const& key, std::string const& text)
 {
     Json value = Json::parse(text, nullptr, false);
     if (value.is_discarded()) value = text;
-    SettingKey const* const k = find_of_viewer(key);
-    bool const is_whole = k != nullptr && k->type == gi::OptionType::whole_number;
-    return is_whole && value.is_number_float() ? Json(std::llround(value.get<double>())) : value;
+    return takes_whole_numbers(key) && value.is_number_float() ? Json(std::llround(value.get<double>())) : value;
 }
 
 std::string scene_file(std::filesystem::path const& folder, std::string const& scene)
@@ -220,7 +247,7 @@ bool is_ar_key(std::string const& key) { return key == "ar" || key.starts_with("
 
 void look_up_setting(std::string const& written, std::string const& value, std::filesystem::path const& folder)
 {
-    std::string const key = without_prefix(written);
+    std::string const key = study::plain_key(written);
     check_known(key);
     if (is_ar_key(key)) return;
     if (find_own(key) != nullptr) return check_own(key, value, folder);
@@ -231,7 +258,7 @@ void look_up_setting(std::string const& written, std::string const& value, std::
 
 std::string look_up_varied(std::string const& written)
 {
-    std::string const key = without_prefix(written);
+    std::string const key = study::plain_key(written);
     check_known(key);
     std::string takes;
     if (OwnSetting const* const own = find_own(key))
@@ -269,14 +296,17 @@ std::set<std::pair<std::string, std::string>> find_wrong_settings(study::Script 
         study::Place where = s.value_place;
         try {
             where = s.key_place;
-            check_known(without_prefix(s.key));
+            check_known(study::plain_key(s.key));
             where = s.value_place;
-            if (s.varied)
+            if (s.varied) {
                 look_up_varied(s.key, s.varied->first, s.varied->second);
-            else if (!s.block.empty())
+                check_rounded_levels(study::plain_key(s.key), s.levels);
+            } else if (!s.block.empty()) {
                 look_up_varied(s.key);
-            else
+            } else {
+                check_whole(study::plain_key(s.key), s.value);
                 look_up_setting(s.key, s.value, folder);
+            }
         } catch (gi::InputError const& e) {
             wrong.emplace(s.key, s.value);
             m.add(study::ScriptError(script.file, where, e.problem(), e.why(), e.suggestion()));

@@ -14,6 +14,8 @@
 #include "viewer/report/machine.h"
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
 #include <fmt/format.h>
 #include <memory>
 
@@ -132,8 +134,20 @@ std::string readings_csv(std::vector<study::LuminanceReading> const& readings)
     return text;
 }
 
+void check_date(std::string const& date)
+{
+    int year = 0, month = 0, day = 0, read = 0;
+    bool const is_shaped = std::sscanf(date.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &read) == 3 &&
+                           std::size_t(read) == date.size() && date.size() == 10;
+    if (!is_shaped || !std::chrono::year_month_day(std::chrono::year(year), std::chrono::month(unsigned(month)),
+                                                   std::chrono::day(unsigned(day)))
+                           .ok())
+        throw gi::InputError("--date " + date, "there is no such day", "write 2026-11-26");
+}
+
 int run_calibrate(CalibrateOptions const& o)
 {
+    if (!o.date.empty()) check_date(o.date);
     check_outputs({o.out, o.readings_out}, {o.from, o.luminance});
     study::DisplayModel model;
     if (!o.from.empty()) model = study::load_display_model(o.from);

@@ -10,8 +10,10 @@
 #include "viewer/experiment/stimuli/study_stimuli.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <unistd.h>
 
 namespace viewer {
 namespace {
@@ -35,6 +37,18 @@ CheckedScript check(CheckOptions const& o, ScriptToCheck& read, std::optional<st
     if (model) options.stimuli.shown_on = ShownOn{&*model};
     options.stimuli.progress = [&](double share, std::string const& what) { bar.update(share, what); };
     return check_script(read, study_scenes(), options);
+}
+
+/// Why this machine cannot make a folder; empty = it can, or has it.
+std::string why_not_a_folder(std::string const& folder)
+{
+    std::error_code none;
+    std::filesystem::path existing = std::filesystem::absolute(folder, none);
+    while (!std::filesystem::exists(existing, none) && existing.has_relative_path())
+        existing = existing.parent_path();
+    if (!std::filesystem::is_directory(existing, none)) return fmt::format("'{}' is a file", existing.string());
+    if (access(existing.c_str(), W_OK) != 0) return fmt::format("'{}' cannot be written", existing.string());
+    return {};
 }
 
 int tell(CheckOptions const& o, study::Mistakes const& mistakes)
@@ -66,6 +80,12 @@ int run_check(CheckOptions const& o)
     if (!read.mistakes.empty()) return tell(o, read.mistakes);
     auto doubts = study::find_doubts(s);
     for (std::string& doubt : study::find_doubts(s, checked.longest)) doubts.push_back(std::move(doubt));
+    if (checked.needs_display_model && !model)
+        doubts.emplace_back("stimuli have sizes, places or luminances in physical units: study run needs "
+                            "--display-model, with which check finds what the display cannot show");
+    if (std::string const why = why_not_a_folder(s.record.dir); !why.empty())
+        doubts.push_back(fmt::format("record.dir '{}' cannot be made here: {}; study run needs another --dir",
+                                     s.record.dir, why));
     if (o.json) {
         nlohmann::ordered_json j{{"id", s.id},
                                  {"participants", s.participants.count},

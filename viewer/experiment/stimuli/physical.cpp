@@ -79,6 +79,18 @@ void check_physical(PhysicalStimulus const& s, study::DisplayModel const* model)
                             model->screen->width_px, model->screen->height_px),
                 "make it smaller, or sit closer");
     }
+    if (s.place && model != nullptr && model->screen) {
+        glm::dvec2 const screen(model->screen->width_px, model->screen->height_px);
+        glm::dvec2 const size = s.size ? in_px(*s.size, model, true) : glm::dvec2(0);
+        glm::dvec2 const beyond = glm::abs(in_px(*s.place, model, false)) + 0.5 * (size - screen);
+        double const most = std::max(beyond.x, beyond.y);
+        if (most > 0.5)
+            throw gi::InputError(
+                fmt::format("a stimulus at {:g} {:g} {}", s.place->x, s.place->y, name_of(s.place->unit)),
+                fmt::format("it would end {:.0f} px beyond the edge of the screen's {} x {} px", most,
+                            model->screen->width_px, model->screen->height_px),
+                "make it smaller, or move it to the centre");
+    }
 }
 
 void check_physical(std::string const& key, std::string const& text, ShownOn const& shown_on)
@@ -125,7 +137,8 @@ PlacedPixels placed_within(PhysicalStimulus const& s, study::DisplayModel const*
         glm::dvec2 const from_middle = in_px(*s.place, model, false);
         corner += glm::ivec2(glm::round(glm::dvec2(from_middle.x, -from_middle.y)));
     }
-    if (corner.x < 0 || size.x > size_px.x || size.y > size_px.y || corner.y < 0)
+    glm::ivec2 const end = corner + size, last = corner_px + size_px;
+    if (corner.x < corner_px.x || corner.y < corner_px.y || end.x > last.x || end.y > last.y)
         throw gi::InputError(
             fmt::format("a stimulus of {} x {} px at ({}, {})", size.x, size.y, corner.x, corner.y),
             fmt::format("its place in the window has {} x {} px at ({}, {})", size_px.x, size_px.y, corner_px.x,

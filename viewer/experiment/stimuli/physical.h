@@ -12,7 +12,8 @@
 namespace viewer {
 
 /// Throws InputError unless the model can show it: there is none, it lacks size, distance or luminance, the
-/// luminance is out of its range, or the picture is larger than the screen. @param model  null = none
+/// luminance is out of its range, or the picture is larger than the screen or ends beyond its edge.
+/// @param model  null = none
 void check_physical(PhysicalStimulus const& stimulus, study::DisplayModel const* model);
 
 /// What shows a stimulus.

@@ -48,6 +48,7 @@ CheckedScript check_script(ScriptToCheck& read, SceneAccess const& scenes, Scrip
     });
     find_wrong_sounds(s, loaded.folder, m);
     if (o.any_settings) return checked;
+    checked.needs_display_model = stimuli.need_display_model();
     ar.find_wrong(m);
     checked.ar_stimuli = ar.count();
     StimulusCheckOptions options = o.stimuli;

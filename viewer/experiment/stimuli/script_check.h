@@ -16,6 +16,7 @@ struct CheckedScript {
     int plans = 0;       ///< made: of the first 2,000 participants
     std::size_t ar_stimuli = 0;
     StimulusCheckResult stimuli;
+    bool needs_display_model = false; ///< stimuli have physical units
 };
 
 /// Adds blocks whose rules of gaze cannot be met. @param is_measured  gaze is   @param model  null = none

@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/core/step.h"
+#include "study/script/condition.h"
 #include "study/script/written_settings.h"
 #include "viewer/experiment/stimuli/stimulus_place.h"
 
@@ -89,6 +90,7 @@ private:
 void check_measures(PlannedStimulus const& stimulus, ShownOn shown_on, Teller& teller)
 {
     shown_on.has_own_views |= stimulus.settings.view == StimulusViewer::headset;
+    bool is_told = false;
     for (auto const& [written, value] : stimulus.patch) {
         std::string const key = written.starts_with("gi.") ? written.substr(3) : written;
         if (!is_physical_setting(key)) continue;
@@ -96,7 +98,14 @@ void check_measures(PlannedStimulus const& stimulus, ShownOn shown_on, Teller& t
             check_physical(key, value, shown_on);
         } catch (gi::InputError const& e) {
             teller.tell(stimulus, key, e);
+            is_told = true;
         }
+    }
+    if (is_told || !stimulus.settings.physical.place) return;
+    try {
+        check_physical(stimulus.settings.physical, shown_on.model);
+    } catch (gi::InputError const& e) {
+        teller.tell(stimulus, "place", e);
     }
 }
 
@@ -174,6 +183,18 @@ void StimulusCollection::add(int index, study::Stimulus const& stimulus, study::
     } catch (gi::InputError const& e) {
         return m.add(gi::InputError(planned.place, planned.what + ": " + e.problem(), e.why(), e.suggestion()));
     }
+    auto const refuse = [&](std::string const& what, std::string const& why, std::string const& suggestion) {
+        m.add(gi::InputError(planned.place, fmt::format("block {}: {}", block.name, what), why, suggestion));
+    };
+    if (block.stimuli == study::Stimuli::prepared && planned.settings.view == StimulusViewer::headset)
+        refuse("stimuli: prepared with view: openxr", "pictures in a headset follow the head",
+               "write stimuli: live");
+    std::set<std::string> luminances;
+    for (auto const& [key, unused] : patch)
+        if (study::plain_key(key).ends_with("luminance")) luminances.insert(study::plain_key(key));
+    if (luminances.size() > 1)
+        refuse(fmt::format("{} and {} of one stimulus", *luminances.begin(), *std::next(luminances.begin())),
+               "a picture has one scale of luminance", "keep one of them");
     std::string const digits = planned.settings.sha256;
     all_.emplace(digits, std::move(planned));
 }
@@ -189,6 +210,14 @@ void StimulusCollection::add(study::Plan const& plan, study::Mistakes& m)
         for (study::Stimulus const& stimulus : possible_stimuli(block, step.trial))
             for (study::Stimulus const& end : at_ends(block, stimulus)) add(step.block, end, m);
     }
+}
+
+bool StimulusCollection::need_display_model() const
+{
+    return std::ranges::any_of(all_, [](auto const& one) {
+        PhysicalStimulus const& s = one.second.settings.physical;
+        return s.needs_screen() || s.needs_luminance();
+    });
 }
 
 std::vector<PlannedStimulus> StimulusCollection::list() const

@@ -23,6 +23,8 @@ public:
     /// Adds those of a plan; what is wrong with one is added to the mistakes at its block.
     void add(study::Plan const& plan, study::Mistakes& m);
     std::vector<PlannedStimulus> list() const;
+    /// True if one has a size, place or luminance in physical units.
+    bool need_display_model() const;
 
 private:
     void add(int block, study::Stimulus const& stimulus, study::Mistakes& m);
