@@ -45,6 +45,22 @@ std::vector<std::string_view> split_at_commas(std::string_view text)
     }
 }
 
+std::size_t first_character(std::string_view text)
+{
+    auto const byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    unsigned const first = byte(0);
+    if (first < 0x80) return 1;
+    std::size_t const count = first >= 0xc2 && first < 0xe0   ? 2
+                              : first >= 0xe0 && first < 0xf0 ? 3
+                              : first >= 0xf0 && first < 0xf5 ? 4
+                                                              : 0;
+    for (std::size_t i = 1; i < count; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    bool const is_overlong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
+    bool const is_beyond = (first == 0xed && byte(1) >= 0xa0) || (first == 0xf4 && byte(1) >= 0x90);
+    return is_overlong || is_beyond ? 0 : count;
+}
+
 std::size_t characters(std::string_view text)
 {
     return text.size() - std::size_t(std::count_if(text.begin(), text.end(), continues));

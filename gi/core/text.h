@@ -53,6 +53,8 @@ struct TextLine {
     }
 };
 
+/// Bytes of the UTF-8 character at the front; 0 = there is none.
+std::size_t first_character(std::string_view text);
 /// Length of UTF-8 in characters.
 std::size_t characters(std::string_view text);
 /// At most so many bytes of UTF-8: cut between characters, "..." at its end.

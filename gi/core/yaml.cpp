@@ -51,29 +51,12 @@ void check_shape(std::string const& text, std::string const& file)
         throw InputError(TextLocation{file, 1, 1}, "this YAML is not read", why, "such files are small and flat");
 }
 
-/// Bytes of the UTF-8 character at the front; 0 = it is none.
-std::size_t character_bytes(std::string_view s)
-{
-    auto const byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
-    unsigned const first = byte(0);
-    if (first < 0x80) return 1;
-    std::size_t const count = first >= 0xc2 && first < 0xe0   ? 2
-                              : first >= 0xe0 && first < 0xf0 ? 3
-                              : first >= 0xf0 && first < 0xf5 ? 4
-                                                              : 0;
-    for (std::size_t i = 1; i < count; ++i)
-        if ((byte(i) & 0xc0) != 0x80) return 0;
-    bool const is_overlong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
-    bool const is_beyond = (first == 0xed && byte(1) >= 0xa0) || (first == 0xf4 && byte(1) >= 0x90);
-    return is_overlong || is_beyond ? 0 : count;
-}
-
 /// The parser takes any bytes, which tables and windows cannot show.
 void check_characters(std::string const& text, std::string const& file)
 {
     TextLocation where{file, 1, 1};
     for (std::size_t i = 0; i < text.size();) {
-        std::size_t const bytes = character_bytes(std::string_view(text).substr(i));
+        std::size_t const bytes = first_character(std::string_view(text).substr(i));
         auto const c = static_cast<unsigned char>(text[i]);
         if (bytes == 0)
             throw InputError(where, fmt::format("the byte {:02x} is no UTF-8", c), "texts would be unreadable",

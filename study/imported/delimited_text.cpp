@@ -19,24 +19,6 @@ char separator_of(std::string const& text)
     return best;
 }
 
-/// Length of the UTF-8 character at the beginning; 0 = there is none.
-std::size_t utf8_length(std::string_view text)
-{
-    auto const byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0; };
-    int const lead = byte(0), next = byte(1);
-    std::size_t const n = lead < 0x80   ? 1
-                          : lead < 0xc2 ? 0
-                          : lead < 0xe0 ? 2
-                          : lead < 0xf0 ? 3
-                          : lead < 0xf5 ? 4
-                                        : 0;
-    for (std::size_t i = 1; i < n; ++i)
-        if ((byte(i) & 0xc0) != 0x80) return 0;
-    bool const is_overlong = (lead == 0xe0 && next < 0xa0) || (lead == 0xf0 && next < 0x90);
-    bool const is_none = (lead == 0xed && next > 0x9f) || (lead == 0xf4 && next > 0x8f); // surrogates; too large
-    return is_overlong || is_none ? 0 : n;
-}
-
 /// @throws ScriptError the text is not UTF-8, or has zero bytes
 void check_encoding(std::string const& text, std::string const& file)
 {
@@ -45,7 +27,7 @@ void check_encoding(std::string const& text, std::string const& file)
         throw ScriptError(file, {1, 1}, "the text is UTF-16", "tables are read as UTF-8", kSave);
     Place at{1, 1};
     for (std::size_t i = 0; i < text.size();) {
-        std::size_t const n = utf8_length(std::string_view(text).substr(i));
+        std::size_t const n = gi::first_character(std::string_view(text).substr(i));
         if (n == 0)
             throw ScriptError(file, at, "the text is not UTF-8", "tables are read as UTF-8, this may be Latin-1",
                               kSave);

@@ -33,6 +33,8 @@ int block_of(study::Script const& s, std::string const& name)
         if (s.blocks[b].name == name) return int(b);
         known += (known.empty() ? "" : ", ") + s.blocks[b].name;
     }
+    if (name.empty())
+        throw gi::InputError("no --block", "power is that of a test of one block", "give one of " + known);
     throw gi::InputError(fmt::format("--block '{}'", name), "the script has no such block", "it has: " + known);
 }
 
