@@ -103,7 +103,7 @@ void add_dprime(DetectionResult& d, Block const& b, std::vector<DetectionCounts>
                 DetectionCounts const& all, AnalysisSettings const& settings)
 {
     auto const task = detection_task(b.task);
-    if (!task || !without_dprime(b.task, all, settings).empty()) return;
+    if (!task) return;
     d.dprime = detection_point(*task, all).dprime;
     try {
         GroupDPrime const g = group_dprime(*task, counts, settings.confidence);
@@ -195,11 +195,11 @@ void add_detections(Script const& script, Block const& b, std::vector<ObserverTr
         for (Tally const& t : tallies)
             if (t.trials > 0) counts.push_back(counts_of(b.task, t, has_both));
         DetectionCounts const pooled = counts_of(b.task, all, has_both);
-        add_dprime(d, b, counts, pooled, settings);
         if (std::string const why = without_dprime(b.task, pooled, settings); !why.empty()) {
             without[why].push_back(result.detections.size());
             d.model.clear();
-        }
+        } else
+            add_dprime(d, b, counts, pooled, settings);
         // Of a varied level thresholds are the aim, and every level would have a model of its own.
         bool const is_varied = b.compare && !b.compare->vary.empty();
         if (settings.draws > 0 && !is_varied && std::isfinite(d.dprime) && counts.size() > 1)

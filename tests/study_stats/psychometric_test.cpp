@@ -268,5 +268,20 @@ TEST(PsychometricFit, SaysThatResponsesChangeInTheWrongDirection)
     EXPECT_NE(group_threshold(std::span(&one, 1), group).note.find(kWrongDirection), std::string::npos);
 }
 
+TEST(GroupThreshold, OfEqualObserversHasStudentsIntervalFarOffToo)
+{
+    // The spread that is most likely is 0; at the ends of wide intervals it is not.
+    ObserverLevels const one{{{1, 41, 80}, {2, 46, 80}, {3, 60, 80}, {4, 74, 80}, {5, 79, 80}}, 0.5};
+    std::vector<ObserverLevels> const observers(3, one);
+    GroupThresholdSettings settings{{}, 0.75, 1, 5};
+    auto const width = [&](double confidence) {
+        settings.confidence = confidence;
+        Interval const i = group_threshold(observers, settings).interval;
+        return i.high - i.low;
+    };
+    double const expected = student_quantile(0.9995, 2) / student_quantile(0.975, 2);
+    EXPECT_NEAR(width(0.999) / width(0.95), expected, 0.2 * expected);
+}
+
 } // namespace
 } // namespace study::test
