@@ -1,7 +1,7 @@
 #pragma once
 // First surfaces of a camera's view, without lighting: rasterised, so the cost is small compared with a pass.
 
-#include "gi/methods/slhb/lights/primary_map.h"
+#include "gi/methods/paths/primary_map.h"
 #include "gi/scene/model/camera.h"
 #include "gi/scene/model/world.h"
 

@@ -7,8 +7,9 @@
 
 namespace viewer {
 
-PairRenderer::PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report)
-    : local_(std::move(local)), settings_(settings), report_(report), world_(local_.scene, 0, report)
+PairRenderer::PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report,
+                           std::string method)
+    : local_(std::move(local)), method_(std::move(method)), settings_(settings), report_(report), world_(local_.scene, 0, report)
 {
     auto const& lights = world_.world().lights;
     virtual_lights_.assign(lights.begin() + std::ptrdiff_t(std::min(local_.first_virtual_light, lights.size())),
@@ -83,14 +84,19 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
         turn(gi::PairSide::with, time_s);
         settings_.width = width;
         settings_.height = height;
-        frames_ = gi::find_method("slhb").frames(world_, camera, settings_, report_);
+        frames_ = gi::find_method(method_).frames(world_, camera, settings_, report_);
+        pairs_by_paths_ = gi::ask<gi::PairFrames>(*frames_);
+        if (pairs_by_paths_ == nullptr)
+            throw gi::InputError("method " + method_ + " in an AR session",
+                                 "it cannot render a scene with and without objects with the same random numbers",
+                                 "set method: auto, paths or slhb");
     }
     filter.threads = settings_.threads;
     bool denoise = gi::can_filter(filter, paths);
     gi::PairSettings const pair{
         paths, virtual_lights_.empty() ? gi::PairDifference::vanishing : gi::PairDifference::anything,
         denoise ? gi::PictureLayers::all : gi::PictureLayers::color_and_depth};
-    gi::PairResult both = frames_->pair(
+    gi::PairResult both = pairs_by_paths_->pair(
         {camera, width, height}, pair, [&](gi::PairSide side) { return turn(side, time_s); }, stop);
     denoise = denoise && gi::can_filter(filter, both.with.paths);
     cv::Mat const raw = denoise ? matrix_of(both.with.picture, "color") : cv::Mat();

@@ -7,14 +7,16 @@
 #include "ar/scene/session_file.h"
 #include "gi/core/report.h"
 #include "gi/filter/denoise.h"
+#include "gi/methods/names.h"
 #include "gi/scene/motion/moving_world.h"
 
 namespace viewer {
 
 class PairRenderer {
 public:
-    /// @param settings  method slhb; size and number of paths are set per call of `render`
-    PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report);
+    /// @param settings  size and number of paths are set per call of `render`
+    PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report,
+                 std::string method = std::string(gi::kDefaultMethod));
 
     /// Sets the place's environment map; null: none.
     void set_environment(std::shared_ptr<gi::EnvironmentMap const> map);
@@ -40,12 +42,14 @@ private:
     ar::SceneChange change_since_last(gi::SceneTime time_s);
 
     LocalScene local_;
+    std::string method_;
     gi::RenderSettings settings_;
     gi::Report& report_;
     gi::MovingWorld world_;
     std::vector<gi::Light> virtual_lights_; ///< the virtual lights, for the side with them
     gi::Changes pending_;                   ///< since the last picture
     std::unique_ptr<gi::FrameRenderer> frames_;
+    gi::PairFrames* pairs_by_paths_ = nullptr; ///< of frames_
     bool light_changed_ = true;         ///< since the last picture
     std::optional<gi::Pose> last_pose_; ///< of the last picture
     bool prefiltered_ = false;

@@ -51,7 +51,7 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
                        gi::Report& report, std::string prefix)
     : session_(session),
       camera_(camera),
-      renderer_(local_scene(session, report), session.render.settings, report),
+      renderer_(local_scene(session, report), session.render.settings, report, session.render.method),
       light_(session),
       compositor_(camera.photometry,
                   with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),

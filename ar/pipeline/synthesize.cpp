@@ -68,7 +68,7 @@ std::string options_text(SynthesizeOptions const& o)
 
 std::string session_text(SynthesizeOptions const& o)
 {
-    return options_text(o) + fmt::format(R"(schema: ar/1
+    return options_text(o) + fmt::format(R"(schema: ar/2
 frames: {{source: frames, rate_hz: {}}}
 camera: camera.yaml
 markers: markers.yaml

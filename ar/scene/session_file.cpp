@@ -25,8 +25,11 @@ public:
     {
         root_.only_keys({"schema", "frames", "camera", "markers", "light", "real", "virtual", "render",
                          "composite", "pose", "hmd", "passes", "occlusion"});
-        if (!root_.has("schema") || root_.at("schema").text() != "ar/1")
-            throw root_.error("no 'schema: ar/1'", "this may be a file of another kind", "begin the file with it");
+        std::string const schema = root_.has("schema") ? root_.at("schema").text() : "";
+        if (schema != "ar/1" && schema != "ar/2")
+            throw root_.error("no 'schema: ar/2'", "this may be a file of another kind", "begin the file with it");
+        is_of_0_1_ = schema == "ar/1";
+        if (is_of_0_1_) session_.render.method = gi::method_of_0_1("slhb");
         for (char const* needed : {"frames", "camera", "markers"})
             if (!root_.has(needed))
                 throw root_.error(fmt::format("no '{}'", needed), "a session cannot begin without it", "add it");
@@ -114,8 +117,10 @@ private:
     void read_render(Yaml const& r)
     {
         std::vector<std::string> keys{"light", "paths", "resolution", "denoise"};
+        if (!is_of_0_1_) keys.push_back("method");
+        if (!is_of_0_1_ && r.has("method")) session_.render.method = method(r.at("method"));
         for (gi::RenderOption const& o : gi::render_options()) {
-            if (!o.live || !o.read_by("slhb") || o.name == "device") continue; // pairs need the CPU
+            if (!o.live || !o.read_by(session_.render.method) || o.name == "device") continue; // pairs need the CPU
             std::vector<std::string> names = o.former;
             names.push_back(o.key);
             for (std::string const& key : names)
@@ -130,6 +135,15 @@ private:
         if (r.has("denoise")) session_.render.denoise = filter(r.at("denoise"));
         if (r.has("paths")) session_.render.paths = std::uint32_t(r.at("paths").integer(1, 65536));
         if (r.has("resolution")) session_.render.resolution = r.at("resolution").number(0.1, 4);
+    }
+
+    static std::string method(Yaml const& at)
+    {
+        try {
+            return std::string(gi::find_method(at.text()).name);
+        } catch (gi::InputError const& e) {
+            throw at.error(e.problem(), e.why(), e.suggestion());
+        }
     }
 
     void set(gi::RenderOption const& option, Yaml const& at)
@@ -250,6 +264,7 @@ private:
     Yaml const& root_;
     fs::path folder_;
     ArSession session_;
+    bool is_of_0_1_ = false; ///< written for version 0.1, which had other methods
 };
 
 } // namespace

@@ -35,7 +35,7 @@ enum class PairLight {
     automatic,   ///< prefiltered where the scenes allow it
     prefiltered, ///< by prefiltered light (ar/pipeline/prefiltered): no noise, real-time; matt and broadly glossy
                  ///< surfaces
-    paths        ///< by paths of the method slhb
+    paths        ///< by paths of ArRender::method
 };
 
 struct ArRender {
@@ -44,7 +44,8 @@ struct ArRender {
     /// Rendered pixels per pixel of the camera; nothing: as resolution_of has it.
     std::optional<double> resolution;
     gi::DenoiseSettings denoise;               ///< no effect with fewer than two paths
-    gi::RenderSettings settings{.bounces = 3}; ///< of method slhb
+    std::string method{gi::kDefaultMethod};
+    gi::RenderSettings settings{.bounces = 3}; ///< of that method
 };
 
 /// Processing of a rendered pair before compositing; each step costs time only if enabled.

@@ -13,6 +13,9 @@
 
 namespace gi {
 
+/// The value of an option with the words on and off.
+enum class Switch : std::uint8_t { on, off };
+
 enum class OptionType : std::uint8_t { word, number, whole_number, yes_or_no };
 char const* name_of(OptionType type);
 

@@ -90,8 +90,8 @@ void Caustics::changed(Changes const& c)
 void Caustics::prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
                        Bounds const& focus, double share, BuildStop const& stop, PathCounts& counts)
 {
-    if (settings_.photons.caustic_paths == 0) return;
-    paths_ = std::max(1u, std::uint32_t(share * settings_.photons.caustic_paths));
+    if (settings_.of<PhotonSettings>().caustic_paths == 0) return;
+    paths_ = std::max(1u, std::uint32_t(share * settings_.of<PhotonSettings>().caustic_paths));
     if (!first_index_) first_index_ = index;
     bool const new_focus = focus.low != focus_.low || focus.high != focus_.high;
     bool const new_cameras = !std::ranges::equal(views, cameras_, {}, &FrameView::camera);
@@ -156,7 +156,7 @@ void Caustics::trace(ExactVisibility const& visibility, BuildStop const& stop, P
     Bounds box = focus_;
     if (focus_.empty())
         for (Photon const& p : photons) box = joined(box, {p.position, p.position});
-    float const chosen = settings_.photons.caustic_radius_m,
+    float const chosen = settings_.of<PhotonSettings>().caustic_radius_m,
                 largest = chosen > 0 ? chosen : kLargest * max_component(box.high - box.low);
     float const shrunk = sets_ == 0 ? 1.0f : shrunk_ * std::sqrt((float(sets_) + kAlpha) / (float(sets_) + 1));
     PhotonMap map;

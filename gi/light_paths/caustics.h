@@ -17,6 +17,7 @@
 #include "gi/core/report.h"
 #include "gi/light_paths/lit_starts.h"
 #include "gi/light_paths/photon_map.h"
+#include "gi/light_paths/settings.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/frame_renderer.h"
 #include "gi/render/path_sample.h"

@@ -13,6 +13,7 @@
 // place to the nearest surface, as a few rays tell. This greedy choice reaches at least 1 - 1/e of what is
 // possible (Nemhauser et al. 1978).
 
+#include "gi/light_paths/settings.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/render_settings.h"
 

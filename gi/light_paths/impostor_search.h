@@ -4,6 +4,7 @@
 // and its direction as seen from the impostor (Fei and Wang), or by a walk through the texels (impostor_walk.h).
 
 #include "gi/light_paths/impostor_maps.h"
+#include "gi/light_paths/settings.h"
 #include "gi/render/render_settings.h"
 #include "gi/scene/shading/shading_point.h"
 

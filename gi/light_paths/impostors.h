@@ -6,6 +6,7 @@
 #include "gi/core/progress.h"
 #include "gi/kernel/launch.h"
 #include "gi/light_paths/impostor_kernels.h"
+#include "gi/light_paths/settings.h"
 #include "gi/raster/cut_outs.h"
 #include "gi/raster/draw_nearest.h"
 #include "gi/render/render_settings.h"

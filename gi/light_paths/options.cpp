@@ -12,7 +12,7 @@ template <class T>
 RenderOption photons(char const* name, OptionValues values, char const* meaning, T P::*member, Methods methods)
 {
     return {make_option<RenderSettings>(
-                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.photons.*member; }),
+                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.template of<PhotonSettings>().*member; }),
             "Photons", std::move(methods)};
 }
 
@@ -30,7 +30,7 @@ RenderOptionTable const& photon_options()
     places.takes_other_words = true;
     places.set = [](RenderSettings& s, std::string const& text, std::string const&) {
         if (!text.empty()) read_impostor_places(text); // throws
-        s.photons.impostor_places = text;
+        s.of<PhotonSettings>().impostor_places = text;
     };
     static RenderOptionTable const table{
         places,

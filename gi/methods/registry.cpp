@@ -2,15 +2,17 @@
 
 #include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
+#include "gi/hit_buffers/options.h"
 #include "gi/light_paths/options.h"
+#include "gi/methods/automatic/automatic.h"
+#include "gi/methods/paths/paths.h"
 #include "gi/methods/photons/explain.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/sh_grid/explain.h"
 #include "gi/methods/sh_grid/sh_grid.h"
-#include "gi/methods/slhb/frames.h"
-#include "gi/methods/slhb/settings.h"
 #include "gi/methods/slhb/slhb.h"
+#include "gi/methods/slhb_0_1/slhb_0_1.h"
 #include "gi/methods/vpl/visibility.h"
 #include "gi/methods/whitted/whitted.h"
 
@@ -23,17 +25,79 @@
 namespace gi {
 namespace {
 
+/// @param visibility, variant  see Method
 template <VisibilityKind kind>
-constexpr Method virtual_lights(std::string_view name, std::string_view summary)
+constexpr Method virtual_lights(std::string_view name, std::string_view visibility, std::string_view summary,
+                                std::string_view variant = {})
 {
-    return {name, summary, render_visibility<kind>, start_visibility_frames<kind>, virtual_light_options};
+    return {.name = name,
+            .summary = summary,
+            .render = render_visibility<kind>,
+            .frames = start_visibility_frames<kind>,
+            .options = virtual_light_options,
+            .variant = variant,
+            .visibility = visibility};
+}
+
+template <SurfacesBy surfaces, ShadowsBy shadows>
+std::vector<PlanItem> explain_paths(World const& world, RenderSettings const& asked, Camera const& camera)
+{
+    return explain_choices(world, with({surfaces, shadows, surfaces == SurfacesBy::rays}, asked), camera);
 }
 
 constexpr std::array kMethods{
-    Method{"reference", "path tracing with exact rays: slow, unbiased, for comparison", render_reference,
-           start_reference_frames},
-    Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
-           start_slhb_frames, slhb_options, explain_settings},
+    Method{.name = "auto",
+           .summary = "the plan chooses paths or slhb by their costs; lightwell info says which and why",
+           .render = render_auto,
+           .frames = start_auto_frames,
+           .explain = explain_auto,
+           .ends_frames_early = true,
+           .choose = choose_method,
+           .for_display = paths_for_display,
+           .for_exposure = auto_exposure},
+    Method{.name = "paths",
+           .summary = "path tracing with exact rays, light samples chosen by resampling, and a radiance cache",
+           .render = render_paths,
+           .frames = start_path_frames,
+           .options = paths_options,
+           .explain = explain_paths<SurfacesBy::rays, ShadowsBy::rays>,
+           .ends_frames_early = true,
+           .for_display = paths_for_display,
+           .for_exposure = paths_exposure},
+    Method{.name = "slhb",
+           .summary = "path tracing by look-ups in spherical layered hit buffers and shadow maps instead of rays",
+           .render = render_slhb,
+           .frames = start_slhb_frames,
+           .options = hit_buffer_options,
+           .explain = explain_paths<SurfacesBy::look_ups, ShadowsBy::maps>,
+           .ends_frames_early = true,
+           .variant = "schedule",
+           .for_display = slhb_for_display,
+           .for_exposure = slhb_exposure,
+           .updates_axes = slhb_updates_axes,
+           .check = check_hit_buffer_options},
+    Method{"reference", "path tracing with exact rays, simple and unbiased: noisy, to compare others with",
+           render_reference, start_reference_frames},
+    Method{.name = "paths_shadow_maps",
+           .summary = "as paths, with the shadow maps of slhb",
+           .render = render_paths_shadow_maps,
+           .frames = start_paths_shadow_maps_frames,
+           .options = hit_buffer_options,
+           .explain = explain_paths<SurfacesBy::rays, ShadowsBy::maps>,
+           .ends_frames_early = true,
+           .for_display = paths_for_display,
+           .check = check_hit_buffer_options},
+    Method{.name = "slhb_shadow_rays",
+           .summary = "as slhb, with exact rays for shadows",
+           .render = render_slhb_shadow_rays,
+           .frames = start_slhb_shadow_rays_frames,
+           .options = hit_buffer_options,
+           .explain = explain_paths<SurfacesBy::look_ups, ShadowsBy::rays>,
+           .ends_frames_early = true,
+           .variant = "schedule",
+           .for_display = slhb_for_display,
+           .updates_axes = slhb_updates_axes,
+           .check = check_hit_buffer_options},
     Method{"whitted", "ray trees: direct light, mirrors and glass, no diffuse interreflection", render_whitted,
            start_whitted_frames, whitted_options},
     Method{"sh_grid", "ray trees, with indirect light from photons in a field of spherical harmonics",
@@ -47,21 +111,33 @@ constexpr std::array kMethods{
     Method{"multi_image", "ray trees, with indirect light from photons that follow distance impostors",
            render_multi_image, start_multi_image_frames, nullptr, explain_multi_image},
     virtual_lights<VisibilityKind::exact>(
-        "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
+        "vpl_exact", "exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),
-    virtual_lights<VisibilityKind::slhb>("vpl_slhb", "... by look-ups in spherical layered hit buffers"),
-    virtual_lights<VisibilityKind::imperfect>("vpl_imperfect", "... by imperfect shadow maps, drawn from points"),
-    virtual_lights<VisibilityKind::ambient>("vpl_ao", "... by ambient occlusion within a radius"),
-    virtual_lights<VisibilityKind::directional>("vpl_dao", "... by directional occlusion within a radius"),
-    virtual_lights<VisibilityKind::none>("vpl_none", "... none: every surface sees every other"),
+    virtual_lights<VisibilityKind::slhb>("vpl_slhb", "slhb", "... by look-ups in spherical layered hit buffers",
+                                         "directions"),
+    virtual_lights<VisibilityKind::imperfect>("vpl_imperfect", "imperfect", "... by imperfect shadow maps, drawn from points",
+                                              "points"),
+    virtual_lights<VisibilityKind::ambient>("vpl_ao", "ao", "... by ambient occlusion within a radius", "ao-radius"),
+    virtual_lights<VisibilityKind::directional>("vpl_dao", "directional_ao", "... by directional occlusion within a radius",
+                                                "ao-radius"),
+    virtual_lights<VisibilityKind::none>("vpl_none", "none", "... none: every surface sees every other"),
+    Method{.name = "slhb_0_1",
+           .summary = "what version 0.1 called slhb: rays or look-ups, by its options",
+           .render = render_slhb_0_1,
+           .frames = start_slhb_0_1_frames,
+           .options = slhb_0_1_options,
+           .offered = false,
+           .ends_frames_early = true,
+           .for_display = slhb_0_1_for_display,
+           .for_exposure = slhb_0_1_exposure,
+           .updates_axes = slhb_updates_axes,
+           .check = check_hit_buffer_options},
 };
 
-/// Why a method that reads the option with some schedule does not with its own; nullptr if it does.
-char const* why_unused(RenderOption const& option, ChosenMethod const& method)
+std::optional<Unused> why_unused(RenderOption const& option, ChosenMethod const& method)
 {
-    for (UnusedBy const& u : option.unused_by)
-        if (u.schedule == method.schedule && render_option("schedule").read_by(method.name)) return u.why;
-    return nullptr;
+    return option.unused && render_option("schedule").read_by(method.name) ? option.unused(method.settings)
+                                                                            : std::nullopt;
 }
 
 void check_used(RenderOption const& option, std::vector<ChosenMethod> const& methods)
@@ -69,15 +145,23 @@ void check_used(RenderOption const& option, std::vector<ChosenMethod> const& met
     ChosenMethod const* reader = nullptr;
     for (ChosenMethod const& m : methods) {
         if (!option.read_by(m.name)) continue;
-        if (why_unused(option, m) == nullptr) return;
+        if (!why_unused(option, m)) return;
         if (reader == nullptr) reader = &m;
     }
-    if (reader == nullptr)
+    if (reader == nullptr && !option.replaced_by.empty())
         throw InputError(fmt::format("--{} with --method {}", option.name, methods.front().name),
-                         fmt::format("it applies to {}", fmt::join(option.methods, " and ")),
+                         "its values are methods of their own now", "give " + option.replaced_by);
+    if (reader == nullptr) {
+        std::vector<std::string_view> readers;
+        for (std::string_view const name : option.methods)
+            if (name.ends_with('*') || find_method(name).offered) readers.push_back(name);
+        throw InputError(fmt::format("--{} with --method {}", option.name, methods.front().name),
+                         fmt::format("it applies to {}", fmt::join(readers, ", ")),
                          "add such a method, or leave it out");
-    throw InputError(fmt::format("--{} with {}", option.name, reader->as_given), why_unused(option, *reader),
-                     "leave one of them out");
+    }
+    Unused const unused = *why_unused(option, *reader);
+    throw InputError(fmt::format("--{} with {}", option.name, reader->as_given.empty() ? unused.by : reader->as_given),
+                     unused.why, "leave one of them out");
 }
 
 } // namespace
@@ -87,7 +171,8 @@ std::span<Method const> methods() { return kMethods; }
 std::vector<std::string> method_names()
 {
     std::vector<std::string> names;
-    for (Method const& m : kMethods) names.emplace_back(m.name);
+    for (Method const& m : kMethods)
+        if (m.offered) names.emplace_back(m.name);
     return names;
 }
 
@@ -124,25 +209,19 @@ RenderOption const* find_render_option(std::string_view name)
 
 RenderOption const& render_option(std::string_view name) { return *find_render_option(name); }
 
-void check_options(std::vector<std::string> const& given, RenderSettings const& settings,
-                   std::vector<ChosenMethod> const& methods)
+std::string options_of(std::string_view method, RenderSettings const& settings)
 {
-    auto const is_given = [&](char const* name) { return std::ranges::find(given, name) != given.end(); };
+    std::vector<std::string_view> names;
+    for (RenderOption const& o : render_options())
+        if (!o.methods.empty() && o.name != "device" && o.read_by(method)) names.push_back(o.name);
+    return as_options(render_options(), settings, names);
+}
+
+void check_options(std::vector<std::string> const& given, std::vector<ChosenMethod> const& methods)
+{
     for (std::string const& name : given) check_used(render_option(name), methods);
-    bool const any_schedule = std::ranges::none_of(
-        methods, [](ChosenMethod const& m) { return m.name == "slhb" && m.schedule != Schedule::automatic; });
-    if (any_schedule && is_given("directions") && (is_given("axes") || is_given("fresh-axes")))
-        throw InputError("--directions with --axes or --fresh-axes",
-                         "only the stored schedule uses --directions, only the others draw axes",
-                         "leave one of them out");
-    SlhbSettings const& s = settings.slhb;
-    auto const check_part = [](char const* part, int fresh, char const* whole, int all) {
-        if (all > 0 && fresh > all)
-            throw InputError(fmt::format("{} is larger than {}", part, whole), "it is the part that is new",
-                             fmt::format("give at most {}", all));
-    };
-    check_part("--fresh-axes", s.fresh_axes, "--axes", s.axes);
-    check_part("--fresh-light-samples", s.fresh_light_samples, "--light-samples", s.light_samples);
+    for (ChosenMethod const& m : methods)
+        if (auto const check = find_method(m.name).check) check(given, m.settings);
 }
 
 } // namespace gi

@@ -71,7 +71,7 @@ void add(Hash& h, Material const& m)
 } // namespace
 
 std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettings const& s,
-                          std::string_view method)
+                          std::string_view method, std::string_view options)
 {
     Hash h;
     for (char const c : method) h.add(std::uint64_t(c));
@@ -109,71 +109,7 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
         for (double const v : {edge->left, edge->right, edge->bottom, edge->top}) h.add(v);
     if (camera.aperture_radius_m > 0)
         for (double const v : {camera.aperture_radius_m, camera.focus_distance_m}) h.add(v);
-    if (method.starts_with("slhb")) {
-        SlhbSettings const& o = s.slhb;
-        for (char const c : o.directions) h.add(std::uint64_t(c));
-        for (int const v :
-             {int(o.schedule), o.resolution, o.axes, o.fresh_axes, o.light_samples, o.fresh_light_samples,
-              o.shadow_resolution, o.most_layers, int(o.packed), o.interleave, int(o.gather), int(o.look_ups),
-              int(o.shadows), int(o.cache), int(o.exact.queries), int(o.exact.shadows), int(o.exact.directions)})
-            h.add(std::uint64_t(v));
-        h.add(o.cone);
-        h.add(o.roulette);
-    }
-    if (method.starts_with("vpl_")) {
-        VirtualLightSettings const& o = s.vpl;
-        for (char const c : s.slhb.directions) h.add(std::uint64_t(c));
-        for (int const v : {s.slhb.resolution, s.slhb.most_layers, o.light_paths, o.points_per_map(), o.point_map})
-            h.add(std::uint64_t(v));
-        h.add(o.near_m);
-        h.add(o.ao_radius_m);
-    }
-    if (method == "sh_grid") {
-        ShGridSettings const& o = s.sh_grid;
-        for (int const v : {o.voxels, o.degree, o.directions, o.gather_directions, o.glossy_directions,
-                            o.field_shadow_rays, o.field_passes, int(o.field_rays), int(o.radiance_by),
-                            int(o.multilevel), int(o.leak_weights), int(o.field_glyphs)})
-            h.add(std::uint64_t(v));
-        h.add(o.obscurance_m);
-    }
-    if (!method.starts_with("vpl_") && method != "slhb" && method != "reference") {
-        PhotonSettings const& o = s.photons;
-        for (char const c : o.impostor_places) h.add(std::uint64_t(c));
-        h.add(std::uint64_t(o.impostor_places.size()));
-        for (int const v : {o.paths,
-                            o.caustic_paths,
-                            o.reflections,
-                            int(o.rays),
-                            int(o.first_bounce),
-                            int(o.frozen),
-                            int(o.kernel_by),
-                            o.propagation_cells,
-                            o.propagation_cascades,
-                            o.propagation_steps,
-                            int(o.reprojection),
-                            o.low_cells,
-                            o.middle_cells,
-                            o.high_cells,
-                            o.lattice_cascades,
-                            int(o.lattice_smoothing),
-                            int(o.irradiance_by),
-                            int(o.caustics_by),
-                            o.impostors,
-                            o.impostor_texels,
-                            int(o.impostor_search),
-                            o.volume_cells,
-                            o.volume_gathers,
-                            o.screen_gathers})
-            h.add(std::uint64_t(v));
-        h.add(o.caustic_radius_m);
-        h.add(o.kernel_size);
-        if (o.rays == PhotonRays::look_ups) {
-            for (char const c : s.slhb.directions) h.add(std::uint64_t(c));
-            for (int const v : {s.slhb.resolution, s.slhb.most_layers}) h.add(std::uint64_t(v));
-        }
-        for (int const v : {s.whitted.recursion, s.whitted.light_samples}) h.add(std::uint64_t(v));
-        h.add(s.whitted.cutoff);
-    }
+    for (char const c : options) h.add(std::uint64_t(c));
     for (std::uint64_t const v : {std::uint64_t(s.width), std::uint64_t(s.height), std::uint64_t(s.bounces),
                                   s.seed, std::uint64_t(s.filter)})
         h.add(v);

@@ -1,7 +1,5 @@
 #include "gi/render/frame_renderer.h"
 
-#include "gi/core/error.h"
-
 #include <algorithm>
 
 namespace gi {
@@ -13,14 +11,6 @@ void hide_pixels(Picture& picture, std::span<std::uint8_t const> hidden)
         for (std::size_t i = 0; i < hidden.size(); ++i)
             if (hidden[i] != 0) std::fill_n(&layer.data[i * std::size_t(layer.channels)], layer.channels, 0.0f);
     }
-}
-
-void FrameRenderer::update_axes(int) {}
-
-PairResult FrameRenderer::pair(FrameView const&, PairSettings const&, PairWorld const&, StopRequest const&)
-{
-    throw InputError("pictures with and without dynamic geometry, by this method",
-                     "it cannot render both with the same random numbers", "use the method slhb");
 }
 
 } // namespace gi

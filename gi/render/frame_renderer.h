@@ -27,10 +27,10 @@ struct FrameView {
     int partner = -1; ///< index of an earlier view that sees nearly the same; light computed there may be reused
                       ///< where it is valid; -1 = none
     /// 1 for each pixel that is never seen, rows from the top; empty = all are seen. Must outlive the call.
-    /// Hidden pixels are black and have no surface. The method slhb traces nothing for them; other methods render
-    /// and then hide them.
+    /// Hidden pixels are black and have no surface. Some methods trace nothing for them; others render and then
+    /// hide them.
     std::span<std::uint8_t const> hidden{};
-    /// Instead of the settings' filter; only the method slhb heeds it.
+    /// Instead of the settings' filter, where the method can.
     std::optional<PixelFilter> filter{};
 };
 
@@ -85,11 +85,6 @@ public:
 
     /// Call before the next frame if the world has changed.
     virtual void changed(Changes const& changes) = 0;
-    /// From the next frame on: update about `axes` stored axes per bounce each frame, round-robin (method slhb,
-    /// schedule stored); paths sample only the updated ones; 0 = all. No effect on methods that store no axes.
-    virtual void update_axes(int axes);
-    /// Returns the counts of the last frame's update.
-    virtual DynamicUpdate dynamic_update() const { return {}; }
     /// Renders a frame; the settings' budget and paths apply to each frame. The layers are those of RenderResult
     /// and, if the method supports it, "motion" (see gi/render/motion.h).
     /// @param moments  if set, every path of a pixel is traced at its own moment, so that their mean is motion
@@ -103,17 +98,51 @@ public:
     ///   end
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
                                             VertexSharing sharing, StopRequest const& stop) = 0;
+};
+
+/// What only some renderers of frames can do; ask<FollowingAxes>(renderer) is null for the others.
+template <class Ability>
+Ability* ask(FrameRenderer& renderer)
+{
+    return dynamic_cast<Ability*>(&renderer);
+}
+
+/// Takes options over from one frame to the next that need no new renderer (RenderOption::restarts).
+class LiveSettings {
+public:
+    virtual ~LiveSettings() = default;
+    virtual void follow(RenderSettings const& settings) = 0;
+};
+
+/// Paths share stored axes, whose hit buffers follow dynamic geometry.
+class FollowingAxes {
+public:
+    virtual ~FollowingAxes() = default;
+    /// From the next frame on: update about `axes` stored axes per bounce each frame, round-robin; paths sample only
+    /// the updated ones; 0 = all.
+    virtual void update_axes(int axes) = 0;
+    /// Returns the counts of the last frame's update.
+    virtual DynamicUpdate dynamic_update() const = 0;
+};
+
+class PunctualLeftOut {
+public:
+    virtual ~PunctualLeftOut() = default;
     /// From the next frame on: leave out, of L1, the light of punctual lights on the surfaces that views show, also
-    /// in mirrors and panes (gi/scene/shading/seen_mirror.h), because the caller adds it. Returns false, and does
-    /// nothing, if the method cannot.
-    virtual bool leave_out_punctual(bool) { return false; }
+    /// in mirrors and panes (gi/scene/shading/seen_mirror.h), because the caller adds it.
+    virtual void leave_out_punctual(bool on) = 0;
+};
+
+class PairFrames {
+public:
+    virtual ~PairFrames() = default;
     /// Renders one view with and without the dynamic geometry. Calls `turn` for the two sides alternately, `with`
     /// first, and leaves the world at either side. With PairDifference::vanishing the world stays at `with` if
-    /// possible, and of the other picture only those paths are traced that the dynamic geometry could affect; the
-    /// bounds of the world, and so the choice of lights, are those of `with` in both.
-    /// @throws InputError if the method does not support it
+    /// possible, light samples are tested by shadow maps, which show what dynamic geometry may affect, and of the
+    /// other picture only those paths are traced; the bounds of the world, and so the choice of lights, are those of
+    /// `with` in both.
     virtual PairResult pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
-                            StopRequest const& stop);
+                            StopRequest const& stop) = 0;
 };
 
 /// Makes a renderer for the current state of the world; the world and the report must outlive it.

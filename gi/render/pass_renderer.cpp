@@ -127,7 +127,7 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
     auto const limit = limit_threads(settings.threads);
     PassLoop loop(settings, stop, progress, report);
     auto const renderer = start(world, settings, world.triangles.size(), report, &stop);
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name, renderer->asked_options()) : 0;
     FrameView const eye{camera, settings.width, settings.height};
     loop.resume(print);
     on_threads(settings.threads, [&] { renderer->begin(loop.next_path(), {&eye, 1}, &stop); });

@@ -32,6 +32,8 @@ public:
     virtual double rays() const = 0;
     /// The chosen settings, as command-line options that reproduce the picture.
     virtual std::string options() const = 0;
+    /// The same before the first pass, which may choose numbers by the time that is left.
+    virtual std::string asked_options() const { return options(); }
 };
 
 /// Makes the renderer of a world. All arguments must outlive it, and the world's arrays must not be reallocated.

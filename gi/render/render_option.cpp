@@ -53,8 +53,8 @@ RenderOptionTable const& common_options()
         table.back().live = false;
         RenderOption device = common(
             "device", {"cpu", "cuda"},
-            "of reference and slhb: cpu; or cuda: everything on the GPU, also --reuse and --shutter", &S::space);
-        device.methods = {"reference", "slhb"};
+            "of methods that have kernels: cpu; or cuda: everything on the GPU, also --reuse and --shutter", &S::space);
+        device.methods = {"auto", "reference", "slhb", "slhb_0_1"};
         table.push_back(std::move(device));
         return table;
     }();

@@ -7,17 +7,19 @@
 
 namespace gi {
 
-/// Why slhb with a schedule does not use an option.
-struct UnusedBy {
-    Schedule schedule;
+/// Another option because of which a method that reads an option does not use it.
+struct Unused {
+    std::string by;  ///< "--schedule stored"
     char const* why;
 };
 
 struct RenderOption : Option<RenderSettings> {
     std::string group;                     ///< heading in --help and panel; empty for common options
     std::vector<std::string_view> methods; ///< that read it, a last * for any ending; empty = all
-    std::vector<UnusedBy> unused_by = {};
-    bool live = true; ///< viewers and AR sessions have it
+    std::function<std::optional<Unused>(RenderSettings const&)> unused = {};
+    bool live = true;     ///< viewers and AR sessions have it
+    bool restarts = true; ///< in viewers, a change begins the methods anew
+    std::string replaced_by = {}; ///< only in files of earlier versions; what to give instead. Empty = offered to people
 
     bool read_by(std::string_view method) const;
 };

@@ -49,6 +49,7 @@ py::list keys()
 {
     py::list all;
     for (viewer::SettingKey const& k : viewer::setting_keys()) {
+        if (!k.is_offered()) continue;
         py::dict d;
         d["key"] = k.key;
         d["type"] = gi::name_of(k.type);

@@ -87,7 +87,7 @@ void bind_render(py::module_& m)
     m.def("methods", [] {
         std::map<std::string, std::string> methods;
         for (gi::Method const& method : gi::methods())
-            methods.emplace(std::string(method.name), std::string(method.summary));
+            if (method.offered) methods.emplace(std::string(method.name), std::string(method.summary));
         return methods;
     });
     m.def("render", &render, py::arg("world"), py::arg("method"), py::arg("camera"), py::arg("keywords"),

@@ -48,7 +48,7 @@ void set_options(gi::RenderSettings& s, py::dict const& options, std::string con
 {
     std::vector<std::string> given, known;
     for (gi::RenderOption const& o : gi::render_options())
-        if (!o.methods.empty()) known.push_back(o.key);
+        if (!o.methods.empty() && o.replaced_by.empty()) known.push_back(o.key);
     for (auto const& [key, value] : options) {
         auto const keyword = py::cast<std::string>(key);
         gi::RenderOption const* const option = gi::find_render_option(keyword);
@@ -59,8 +59,7 @@ void set_options(gi::RenderSettings& s, py::dict const& options, std::string con
         bool const is_off = py::isinstance<py::bool_>(value) && !py::cast<bool>(value);
         if (!is_off) given.push_back(option->name);
     }
-    std::string const schedule = gi::render_option("schedule").get(s);
-    check_options(given, s, {{method, s.slhb.schedule, "--schedule " + schedule}});
+    check_options(given, {{method, s}});
     gi::check_device(s.space);
 }
 

@@ -11,7 +11,7 @@ import lightwell
 
 parser = argparse.ArgumentParser()
 parser.add_argument("--scene", default="cornell")
-parser.add_argument("--methods", default="reference,slhb")
+parser.add_argument("--methods", default="reference,paths")
 parser.add_argument("--size", default="160x120")
 parser.add_argument("--budgets", default="0.1,0.3,1,3", help="seconds")
 parser.add_argument("--reference-s", type=float, default=30.0, help="seconds for the reference picture")

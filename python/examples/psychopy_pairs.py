@@ -19,7 +19,7 @@ import numpy as np
 from lightwell import FrameRenderer, study
 
 SCRIPT = """\
-schema: study/1
+schema: study/2
 id: psychopypairs
 seed: 12
 participants: {count: 20}
@@ -28,7 +28,7 @@ factors:
   scene: [cornell]
   bounces: [0, 1, 3]
 reference: {bounces: 3}
-defaults: {settings: {method: slhb, exposure: 0}, warmup_frames: 2, stimulus_ms: 2000, timeout_ms: 10000}
+defaults: {settings: {method: paths, exposure: 0}, warmup_frames: 2, stimulus_ms: 2000, timeout_ms: 10000}
 sequence: [{instructions: "Which room looks more real? Left or right arrow. Space goes on."}, real]
 blocks:
   real:

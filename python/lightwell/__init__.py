@@ -2,7 +2,7 @@
 
 >>> import lightwell
 >>> world = lightwell.load("cornell")
->>> picture = world.render("slhb", size=(64, 64), paths=16)
+>>> picture = world.render("paths", size=(64, 64), paths=16)
 >>> picture.color.shape, picture.color.dtype
 ((64, 64, 3), dtype('float32'))
 

@@ -103,7 +103,7 @@ class FrameRenderer:
             size: (width, height) of the view, pixels.
             camera: name of a camera of the scene, or a `Camera`; None = the scene's first.
             threads: number of threads; 0 = all.
-            **settings: keys of `set`: ``method="slhb"``, ``bounces=3``, ``reuse=16``, ...
+            **settings: keys of `set`: ``method="paths"``, ``bounces=3``, ``reuse=16``, ...
 
         Raises:
             InputError: the scene or a setting is invalid.

@@ -157,7 +157,7 @@ class World:
 
     def render(
         self,
-        method: str = "slhb",
+        method: str = "auto",
         *,
         camera: CameraLike = None,
         size: tuple[int, int] = (512, 512),

@@ -19,7 +19,7 @@ def test_the_notebook_runs_as_a_script_and_its_errors_fall(tmp_path):
     command = [sys.executable, EXAMPLES / "error_over_time.py", *options]
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     lines = [line.split() for line in printed.splitlines() if " relMSE " in line and " paths " in line]
-    errors = [float(words[-1]) for words in lines if words[0] in ("reference", "slhb")]
+    errors = [float(words[-1]) for words in lines if words[0] in ("reference", "paths")]
     assert len(errors) == 4 and errors[1] < errors[0] and errors[3] < errors[2], printed
     assert (tmp_path / "e_reference.png").exists()
 

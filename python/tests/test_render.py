@@ -42,7 +42,7 @@ def test_arrays_outlive_what_they_came_from():
     np.testing.assert_array_equal(color, again)
 
 
-@pytest.mark.parametrize("method", ["slhb", "reference"])
+@pytest.mark.parametrize("method", ["paths", "slhb", "reference"])
 def test_pictures_equal_those_of_the_program_bit_for_bit(program, cornell, tmp_path, method):
     out = tmp_path / "a.exr"
     options = ["--method", method, "--size", "48x32", "--paths", "4", "--bounces", "3", "--seed", "5"]
@@ -191,6 +191,6 @@ def test_methods_take_their_own_options(cornell):
 
 
 def test_every_method_and_metric_has_a_line():
-    assert {"slhb", "reference"} <= set(lightwell.methods())
+    assert {"auto", "paths", "slhb", "reference"} <= set(lightwell.methods())
     assert {"relmse", "flip"} <= set(lightwell.metrics())
     assert all(lightwell.methods().values())

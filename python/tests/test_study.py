@@ -10,7 +10,7 @@ import lightwell
 from lightwell import study
 
 PAIRS = """\
-schema: study/1
+schema: study/2
 id: twopairs
 seed: 7
 participants: {count: 2}
@@ -19,7 +19,7 @@ factors:
   scene: [cornell]
   bounces: [0, 1, 3]
 reference: {bounces: 3}
-defaults: {settings: {method: slhb}, stimulus_ms: 100, iti_ms: 0}
+defaults: {settings: {method: paths}, stimulus_ms: 100, iti_ms: 0}
 sequence: [{instructions: "Which is brighter?"}, similarity, {questionnaire: thoughts}]
 blocks:
   similarity:
@@ -116,7 +116,7 @@ def test_a_session_runs_and_its_records_are_tables(script, tmp_path):
     trial = presenter.seen[0]
     assert (trial.block, trial.task, trial.prompt) == ("similarity", "pair", "Which?")
     assert trial.answers == ["first", "second"] and trial.timing.stimulus_ms == 100
-    assert trial.presented[0].settings["method"] == "slhb"
+    assert trial.presented[0].settings["method"] == "paths"
     records = study.read_records(tmp_path / "data", script.file)
     trials = records.trials
     assert len(trials) == 6 and trials["valid"].all() and (trials["analysis"] == "counted").all()

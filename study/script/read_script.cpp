@@ -343,8 +343,9 @@ Script read_whole(gi::Yaml const& y, std::string const& file, Mistakes& m)
     s.file = file;
     m.check_keys(y, "study");
     if (!y.is_map()) return s;
-    m.need(y, "schema", "study/1", [&](gi::Yaml const& v) {
-        if (v.text() != "study/1") throw v.unknown("known schema", {"study/1"});
+    m.need(y, "schema", "study/2", [&](gi::Yaml const& v) {
+        if (v.text() != "study/1" && v.text() != "study/2") throw v.unknown("known schema", {"study/2", "study/1"});
+        s.schema = v.text() == "study/1" ? 1 : 2;
     });
     m.need(y, "id", "visibility2026", [&](gi::Yaml const& v) { s.id = v.name(); });
     m.take(y, "title", [&](gi::Yaml const& v) {

@@ -1,5 +1,5 @@
 #pragma once
-// An experiment as its script describes it (schema study/1, docs/study.md). Names are resolved: factors, levels,
+// An experiment as its script describes it (schema study/2, docs/study.md). Names are resolved: factors, levels,
 // blocks and questionnaires are indices into the lists of the Script; -1 = none. Times are in milliseconds unless
 // their names end in another unit.
 
@@ -253,6 +253,7 @@ struct Resume {
 
 struct Script {
     std::string file; ///< name in messages
+    int schema = 2;   ///< 1: written for version 0.1 of the program
     std::string id, title;
     std::uint64_t seed = 0;
     Participants participants;

@@ -3,6 +3,7 @@
 // tests judge light that was captured.
 
 #include "ar/light/lamps.h"
+#include "gi/light_paths/settings.h"
 
 #include <array>
 #include <cmath>

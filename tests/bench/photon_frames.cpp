@@ -8,6 +8,7 @@
 
 #include "gi/core/quantile.h"
 #include "gi/core/text.h"
+#include "gi/light_paths/settings.h"
 #include "gi/methods/registry.h"
 #include "gi/metrics/compare.h"
 #include "gi/render/exact_visibility.h"
@@ -109,7 +110,7 @@ void measure(std::string const& name, Options const& o)
     s.paths = 1;
     s.budget_s = o.budget_s;
     if (o.budget_s > 0) s.paths = 1 << 20;
-    if (o.photons > 0) s.photons.paths = o.photons;
+    if (o.photons > 0) s.of<PhotonSettings>().paths = o.photons;
     for (std::string const& m : o.methods) {
         Report report;
         MovingWorld world(scene, 0, report);

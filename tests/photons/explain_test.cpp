@@ -74,25 +74,25 @@ TEST(ExplainPhotons, EachItemHasItsReason)
         "orthographic"));
     EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "lattice of caustics").build);
     RenderSettings kernels = s;
-    kernels.photons.caustics_by = CausticsBy::kernels;
+    kernels.of<PhotonSettings>().caustics_by = CausticsBy::kernels;
     PlanItem const none = item(explain_isllpm(world, kernels, in_the_room()), "lattice of caustics");
     EXPECT_FALSE(none.build);
     EXPECT_TRUE(says(none, "--caustics-by kernels")) << none.reason;
-    s.photons.high_cells = kernels.photons.high_cells = 512;
-    EXPECT_LT(PhotonLattices::bytes(lattices_of(kernels.photons), world.bounds, 40),
-              PhotonLattices::bytes(lattices_of(s.photons), world.bounds, 40) / 2);
-    s.photons.caustic_paths = 0;
+    s.of<PhotonSettings>().high_cells = kernels.of<PhotonSettings>().high_cells = 512;
+    EXPECT_LT(PhotonLattices::bytes(lattices_of(kernels.of<PhotonSettings>()), world.bounds, 40),
+              PhotonLattices::bytes(lattices_of(s.of<PhotonSettings>()), world.bounds, 40) / 2);
+    s.of<PhotonSettings>().caustic_paths = 0;
     EXPECT_TRUE(says(item(explain_ispm(world, s, in_the_room()), "caustics"), "--caustic-photons 0"));
-    s.photons.frozen = Switch::on;
+    s.of<PhotonSettings>().frozen = Switch::on;
     EXPECT_TRUE(
         says(item(explain_ispm(world, s, in_the_room()), "new photons when something moves"), "--frozen-light"));
-    s.photons.first_bounce = FirstBounce::map;
-    s.photons.rays = PhotonRays::look_ups;
+    s.of<PhotonSettings>().first_bounce = FirstBounce::map;
+    s.of<PhotonSettings>().rays = PhotonRays::look_ups;
     EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "bounce maps").build);
     EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "hit buffers of light paths").build);
     EXPECT_TRUE(says(item(explain_lpv(world, s, in_the_room()), "nested lattices"), "what the camera shows"));
     EXPECT_FALSE(item(explain_lpv(world, s, in_the_room()), "nested lattices").build);
-    s.photons.propagation_cascades = 3;
+    s.of<PhotonSettings>().propagation_cascades = 3;
     EXPECT_TRUE(item(explain_lpv(world, s, in_the_room()), "nested lattices").build);
 }
 
@@ -132,8 +132,8 @@ TEST(ExplainPhotons, MemoryThatWouldBeRefused)
     World const world = world_of(room_with_mirror());
     RenderSettings s;
     EXPECT_TRUE(item(explain_isllpm(world, s, in_the_room()), "memory of lattices").build);
-    s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = 512;
-    s.photons.lattice_cascades = 4;
+    s.of<PhotonSettings>().low_cells = s.of<PhotonSettings>().middle_cells = s.of<PhotonSettings>().high_cells = 512;
+    s.of<PhotonSettings>().lattice_cascades = 4;
     PlanItem const memory = item(explain_isllpm(world, s, in_the_room()), "memory of lattices");
     EXPECT_FALSE(memory.build);
     EXPECT_TRUE(says(memory, "refused")) << memory.reason;

@@ -1,5 +1,6 @@
 // Frames of the photon methods: they follow what changes, or keep their light if it is frozen; views; threads.
 
+#include "gi/hit_buffers/settings.h"
 #include "tests/photons/photon_methods.h"
 
 #include <fmt/format.h>
@@ -51,8 +52,8 @@ TEST(PhotonFrames, FrozenLight)
     for (PhotonMethod const& m : kPhotonMethods)
         for (bool const frozen : {true, false}) {
             RenderSettings s = small_photon_picture(16, 8192);
-            s.photons.frozen = frozen ? Switch::on : Switch::off;
-            s.photons.propagation_cascades = s.photons.lattice_cascades = 2;
+            s.of<PhotonSettings>().frozen = frozen ? Switch::on : Switch::off;
+            s.of<PhotonSettings>().propagation_cascades = s.of<PhotonSettings>().lattice_cascades = 2;
             Picture last[2];
             for (bool const walks : {false, true}) {
                 Report report;
@@ -88,7 +89,7 @@ TEST(PhotonFrames, FrozenLightWithoutCaustics)
     add_light(scene, lamp);
     for (PhotonMethod const& m : kPhotonMethods) {
         RenderSettings s = small_photon_picture(8, 4096);
-        s.photons.frozen = Switch::on;
+        s.of<PhotonSettings>().frozen = Switch::on;
         Report report;
         MovingWorld moving(std::make_shared<Scene const>(scene), 0.0, report);
         auto const frames = m.start(moving, in_the_room(), s, report);
@@ -123,8 +124,8 @@ TEST(PhotonFrames, LatticesFollowTheCamera)
     for (PhotonMethod const& m : kPhotonMethods) {
         if (std::string_view(m.name) == "ispm") continue;
         RenderSettings s = small_photon_picture(24, 16384);
-        s.photons.lattice_cascades = s.photons.propagation_cascades = 4;
-        s.photons.volume_gathers = 0;
+        s.of<PhotonSettings>().lattice_cascades = s.of<PhotonSettings>().propagation_cascades = 4;
+        s.of<PhotonSettings>().volume_gathers = 0;
         for (int const steps_at_rest : {0, 2}) {
             Picture seen[2];
             double cells[2] = {0, 0};
@@ -183,10 +184,10 @@ TEST(PhotonFrames, AnyNumberOfThreadsGivesTheSameBits)
                 if (first == FirstBounce::map && rays != PhotonRays::exact) continue;
                 RenderSettings s = small_photon_picture(24, 8192);
                 s.paths = 2;
-                s.photons.rays = rays;
-                s.photons.first_bounce = first;
-                s.slhb.directions = "icosahedron:20";
-                s.slhb.resolution = 64;
+                s.of<PhotonSettings>().rays = rays;
+                s.of<PhotonSettings>().first_bounce = first;
+                s.of<SlhbSettings>().directions = "icosahedron:20";
+                s.of<SlhbSettings>().resolution = 64;
                 s.threads = 1;
                 Report report;
                 Picture const one = m.render(world, in_the_room(), s, {}, {}, report).picture;

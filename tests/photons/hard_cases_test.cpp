@@ -1,6 +1,7 @@
 // Scenes and settings that could break the photon methods: each becomes a picture of finite numbers or is refused.
 
 #include "gi/core/error.h"
+#include "gi/methods/sh_grid/settings.h"
 #include "gi/methods/sh_grid/sh_grid.h"
 #include "tests/photons/photon_methods.h"
 
@@ -174,24 +175,24 @@ TEST(PhotonMethods, PhotonsLatticesAndImpostorsBeyondMemory)
         }
     };
     RenderSettings s = small_photon_picture(8, 256);
-    s.photons.impostors = 256;
-    s.photons.impostor_texels = 2048;
+    s.of<PhotonSettings>().impostors = 256;
+    s.of<PhotonSettings>().impostor_texels = 2048;
     refused("multi_image", s);
-    s.photons.rays = PhotonRays::impostors;
+    s.of<PhotonSettings>().rays = PhotonRays::impostors;
     for (char const* const name : {"ispm", "lpv", "isllpm", "sh_grid"}) refused(name, s);
-    s.photons.impostors = 1;
+    s.of<PhotonSettings>().impostors = 1;
     for (int k = 0; k < 256; ++k)
-        s.photons.impostor_places += (k > 0 ? ";0,0.01," : "0,0.01,") + std::to_string(k);
+        s.of<PhotonSettings>().impostor_places += (k > 0 ? ";0,0.01," : "0,0.01,") + std::to_string(k);
     for (char const* const name : {"ispm", "lpv", "isllpm", "multi_image"}) refused(name, s);
-    s.photons.impostor_places.clear();
+    s.of<PhotonSettings>().impostor_places.clear();
     s = small_photon_picture(8, PhotonSettings::kMostPaths);
     for (FirstBounce const first : {FirstBounce::rays, FirstBounce::map}) {
-        s.photons.first_bounce = first;
+        s.of<PhotonSettings>().first_bounce = first;
         for (char const* const name : {"ispm", "lpv", "isllpm", "multi_image"}) refused(name, s);
     }
     s = small_photon_picture(8, 256);
-    s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = 512;
-    s.photons.lattice_cascades = 4;
+    s.of<PhotonSettings>().low_cells = s.of<PhotonSettings>().middle_cells = s.of<PhotonSettings>().high_cells = 512;
+    s.of<PhotonSettings>().lattice_cascades = 4;
     refused("isllpm", s);
 }
 
@@ -277,9 +278,9 @@ TEST(PhotonStops, WithoutCausticPhotons)
     for (PhotonMethod const& m :
          {kPhotonMethods[0], PhotonMethod{"sh_grid", render_sh_grid, start_sh_grid_frames}}) {
         RenderSettings s = small_photon_picture(8, 4096);
-        s.sh_grid.voxels = 16;
+        s.of<ShGridSettings>().voxels = 16;
         s.paths = 1000;
-        s.photons.caustic_paths = 16000000;
+        s.of<PhotonSettings>().caustic_paths = 16000000;
         RenderResult r;
         double const took = stop_after_first_pass(m, world, in_the_room(), s, 0.4, r);
         fmt::print("{}: {} passes, stopped {:.3f} s after the request\n", m.name, r.paths, took);
@@ -299,13 +300,13 @@ TEST(PhotonStops, AfterTracing)
     };
     std::vector<Stage> stages;
     RenderSettings s = small_photon_picture(8, 600000);
-    s.photons.caustic_paths = 0;
-    s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = 128;
+    s.of<PhotonSettings>().caustic_paths = 0;
+    s.of<PhotonSettings>().low_cells = s.of<PhotonSettings>().middle_cells = s.of<PhotonSettings>().high_cells = 128;
     stages.push_back({"isllpm", "light lattices", s});
     stages.push_back({"ispm", "photon map", s});
     s = small_photon_picture(256, 4096);
-    s.photons.caustic_paths = 4096;
-    s.photons.screen_gathers = 1000;
+    s.of<PhotonSettings>().caustic_paths = 4096;
+    s.of<PhotonSettings>().screen_gathers = 1000;
     stages.push_back({"multi_image", "caustics on screen", s});
     for (Stage const& stage : stages)
         for (PhotonMethod const& m : kPhotonMethods) {

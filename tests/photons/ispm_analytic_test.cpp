@@ -1,6 +1,7 @@
 // Pictures of the method ispm: furnaces, convergence as photons grow, and splatting against the photon map.
 
 #include "gi/light_paths/light_paths.h"
+#include "gi/light_paths/settings.h"
 #include "gi/methods/photons/methods.h"
 #include "gi/methods/photons/splat_light.h"
 #include "tests/support/scenes.h"
@@ -43,7 +44,7 @@ TEST(Ispm, Furnace)
         for (bool const sphere : {false, true}) {
             RenderSettings s;
             s.paths = 8;
-            s.photons.kernel_by = by;
+            s.of<PhotonSettings>().kernel_by = by;
             auto const [mean, off] = furnace(sphere, s);
             fmt::print("{}, kernels by {}: mean {:.4f}, off by {:.4f}\n", sphere ? "sphere" : "box",
                        by == KernelBy::density ? "density" : "footprint", mean, off);
@@ -61,9 +62,9 @@ TEST(Ispm, ConvergesWithPhotons)
         for (int k = 0; k < 4; ++k) {
             RenderSettings s;
             s.paths = 1;
-            s.photons.paths = 4096 << 3 * k;
+            s.of<PhotonSettings>().paths = 4096 << 3 * k;
             double const off = furnace(sphere, s).second;
-            fmt::print("{}: {} light paths, off by {:.4f}\n", sphere ? "sphere" : "box", s.photons.paths, off);
+            fmt::print("{}: {} light paths, off by {:.4f}\n", sphere ? "sphere" : "box", s.of<PhotonSettings>().paths, off);
             (k == 0 ? first : last) = off;
         }
         double const slope = std::log2(last / first) / 9;

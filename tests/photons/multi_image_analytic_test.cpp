@@ -1,5 +1,6 @@
 // Pictures of the method multi_image: furnaces, light by a mirror in closed form, hard cases.
 
+#include "gi/light_paths/settings.h"
 #include "gi/methods/photons/methods.h"
 #include "tests/support/scenes.h"
 
@@ -25,9 +26,9 @@ TEST(MultiImage, Furnace)
             RenderSettings s;
             s.width = s.height = 48;
             s.paths = 4;
-            s.photons.paths = 65536;
-            s.photons.volume_cells = 16;
-            s.photons.impostor_search = search;
+            s.of<PhotonSettings>().paths = 65536;
+            s.of<PhotonSettings>().volume_cells = 16;
+            s.of<PhotonSettings>().impostor_search = search;
             Report report;
             Picture const p =
                 render_multi_image(world_of(scene), look_at({0, 0, 0.3}, {0, -0.2, -1}, 90), s, {}, {}, report)
@@ -70,7 +71,7 @@ TEST(MultiImage, LightByAMirror)
     s.width = s.height = 32;
     s.paths = 16;
     s.bounces = 1;
-    s.photons.caustic_paths = 262144;
+    s.of<PhotonSettings>().caustic_paths = 262144;
     // 0.4 m of the floor, from 4 m above; in front of it the lamp is no surface.
     Camera const above = look_at({0, 4, 0.001}, {0, 0, 0}, 2 * std::atan(0.05) * 180 / kPiD);
     Report report;

@@ -1,6 +1,7 @@
 #pragma once
 // All methods of gi/methods/photons, for tests that hold for each of them, and small scenes.
 
+#include "gi/light_paths/settings.h"
 #include "gi/methods/photons/methods.h"
 #include "tests/support/scenes.h"
 
@@ -24,12 +25,12 @@ inline RenderSettings small_photon_picture(int size, int paths)
     RenderSettings s;
     s.width = s.height = size;
     s.paths = 1;
-    s.photons.paths = paths;
-    s.photons.caustic_paths = paths / 4;
-    s.photons.propagation_cells = 12;
-    s.photons.low_cells = s.photons.middle_cells = s.photons.high_cells = s.photons.volume_cells = 16;
-    s.photons.impostors = 8;
-    s.photons.impostor_texels = 64;
+    s.of<PhotonSettings>().paths = paths;
+    s.of<PhotonSettings>().caustic_paths = paths / 4;
+    s.of<PhotonSettings>().propagation_cells = 12;
+    s.of<PhotonSettings>().low_cells = s.of<PhotonSettings>().middle_cells = s.of<PhotonSettings>().high_cells = s.of<PhotonSettings>().volume_cells = 16;
+    s.of<PhotonSettings>().impostors = 8;
+    s.of<PhotonSettings>().impostor_texels = 64;
     return s;
 }
 

@@ -2,7 +2,9 @@
 // and never anything else.
 
 #include "gi/core/error.h"
+#include "gi/light_paths/settings.h"
 #include "gi/methods/registry.h"
+#include "gi/methods/sh_grid/settings.h"
 #include "gi/scene/load/load.h"
 #include "tests/support/data.h"
 #include "tests/support/scenes.h"
@@ -75,12 +77,12 @@ Outcome try_to_load(fs::path const& file)
         dvec3 const middle = world.bounds.empty() ? dvec3{0} : dvec3(world.bounds.center()) + world.origin;
         double const distance = std::max(3.0 * double(world.bounds.radius()), 1e-3);
         Camera const camera = look_at(middle + dvec3{0, 0, distance}, middle, 45);
-        settings.sh_grid.voxels = 32;
-        settings.photons.paths = settings.photons.caustic_paths = 1000;
-        settings.photons.impostors = 4;
-        settings.photons.impostor_texels = 32;
-        settings.photons.low_cells = settings.photons.middle_cells = settings.photons.high_cells =
-            settings.photons.volume_cells = 16;
+        settings.of<ShGridSettings>().voxels = 32;
+        settings.of<PhotonSettings>().paths = settings.of<PhotonSettings>().caustic_paths = 1000;
+        settings.of<PhotonSettings>().impostors = 4;
+        settings.of<PhotonSettings>().impostor_texels = 32;
+        settings.of<PhotonSettings>().low_cells = settings.of<PhotonSettings>().middle_cells = settings.of<PhotonSettings>().high_cells =
+            settings.of<PhotonSettings>().volume_cells = 16;
         for (char const* const name : {"reference", "sh_grid", "ispm", "lpv", "isllpm", "multi_image"}) {
             Picture const p = find_method(name).render(world, camera, settings, {}, {}, report).picture;
             for (float const v : p.find("color")->data) EXPECT_TRUE(std::isfinite(v)) << file << ", " << name;

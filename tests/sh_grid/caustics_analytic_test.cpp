@@ -4,6 +4,7 @@
 #include "gi/light_paths/caustics.h"
 #include "gi/methods/sh_grid/field_rays.h"
 #include "gi/methods/sh_grid/sh_grid.h"
+#include "gi/methods/whitted/settings.h"
 #include "tests/support/scenes.h"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ RenderSettings caustic_settings(int size, std::uint32_t paths, int voxels)
     RenderSettings s;
     s.width = s.height = size;
     s.paths = paths;
-    s.sh_grid.voxels = voxels;
+    s.of<ShGridSettings>().voxels = voxels;
     return s;
 }
 
@@ -55,7 +56,7 @@ TEST(ShGridCaustics, SunOverAMirrorOnAWall)
     EXPECT_NEAR(seen / truth, 1, 0.02);
     EXPECT_NEAR(report.counts().at("caustic photons: flux, W (luminance)"), 2 * kReflectance, 0.02);
     // Without, it is dark, but for rounding: the sun grazes the wall.
-    s.photons.caustic_paths = 0;
+    s.of<PhotonSettings>().caustic_paths = 0;
     EXPECT_LT(mean_of(render_sh_grid(world_of(scene), eye, s, {}, {}, report).picture, "L1").mean, 1e-9);
 }
 
@@ -98,7 +99,7 @@ TEST(ShGridCaustics, EdgesGetSharper)
     for (int k = 0; k < 2; ++k) {
         Report report;
         RenderSettings s = caustic_settings(kSize, k == 0 ? 4 : 64, 32);
-        s.photons.caustic_paths = 16384;
+        s.of<PhotonSettings>().caustic_paths = 16384;
         Picture const p =
             render_sh_grid(world, orthographic({0, 0, 0.5}, {0, 0, 0}, 0.6), s, {}, {}, report).picture;
         for (int x = 0; x < kSize; ++x) // the mean of a column hides the noise
@@ -121,7 +122,7 @@ TEST(ShGridCaustics, FurnaceWithAMirrorWall)
     for (int const photons : {0, 65536}) {
         Report report;
         RenderSettings s = caustic_settings(32, 8, 64);
-        s.photons.caustic_paths = photons;
+        s.of<PhotonSettings>().caustic_paths = photons;
         Picture const p =
             render_sh_grid(world_of(scene), look_at({0, 0, 0}, {0, 0, 1}, 80), s, {}, {}, report).picture;
         double const once = 2 * mean_of(p, "L1").mean, more = 2 * mean_of(p, "L2").mean;
@@ -154,9 +155,9 @@ TEST(ShGridCaustics, EnergyOfTheReference)
         s.threads = 0;
         Picture const paths = render_reference(world, eye, s, {}, {}, report).picture;
         s.paths = 8;
-        s.whitted.recursion = 16;
+        s.of<WhittedSettings>().recursion = 16;
         for (int const photons : {0, 65536}) {
-            s.photons.caustic_paths = photons;
+            s.of<PhotonSettings>().caustic_paths = photons;
             Picture const trees = render_sh_grid(world, eye, s, {}, {}, report).picture;
             double const l1 = mean_of(trees, "L1").mean / mean_of(paths, "L1").mean,
                          l2 = mean_of(trees, "L2").mean / mean_of(paths, "L2").mean;
@@ -228,7 +229,7 @@ TEST(ShGridCaustics, NothingSmoothCostsNothing)
     RenderSettings s = caustic_settings(16, 2, 32);
     Picture const with = render_sh_grid(world, eye, s, {}, {}, report).picture;
     for (auto const& [stage, seconds] : report.times()) EXPECT_NE(stage, "caustic photons");
-    s.photons.caustic_paths = 0;
+    s.of<PhotonSettings>().caustic_paths = 0;
     EXPECT_EQ(with.find("color")->data, render_sh_grid(world, eye, s, {}, {}, report).picture.find("color")->data);
 }
 

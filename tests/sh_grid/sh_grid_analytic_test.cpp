@@ -1,6 +1,7 @@
 // Pictures of the method sh_grid against closed forms and quadrature: furnaces, form factors, flux, leaks, scales.
 
 #include "gi/methods/reference/reference.h"
+#include "gi/methods/sh_grid/settings.h"
 #include "gi/methods/sh_grid/sh_grid.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/motion/moving_world.h"
@@ -18,7 +19,7 @@ RenderSettings picture_of(int size, int voxels)
     RenderSettings s;
     s.width = s.height = size;
     s.paths = 4;
-    s.sh_grid.voxels = voxels;
+    s.of<ShGridSettings>().voxels = voxels;
     return s;
 }
 
@@ -55,7 +56,7 @@ TEST(ShGrid, Furnace)
                 if (shape == Shape::turned_box) transform(scene, kTurn);
                 Report report;
                 RenderSettings s = picture_of(32, voxels);
-                s.sh_grid.radiance_by = by;
+                s.of<ShGridSettings>().radiance_by = by;
                 Picture const p =
                     render_sh_grid(world_of(scene), look_at({0, 0, 0.3}, {0, -0.2, -1}, 90), s, {}, {}, report)
                         .picture;
@@ -95,7 +96,7 @@ double off_at_wall(int voxels, int degree)
     add_light(scene, sun);
     RenderSettings s = picture_of(24, voxels);
     s.bounces = 1;
-    s.sh_grid.degree = degree;
+    s.of<ShGridSettings>().degree = degree;
     s.paths = 32;
     Report report;
     Picture const p =
@@ -146,8 +147,8 @@ double leak(Switch weights, int rays)
     add_light(scene, lamp);
     World const world = world_of(scene);
     RenderSettings s = picture_of(32, 64);
-    s.sh_grid.leak_weights = weights;
-    s.sh_grid.field_shadow_rays = rays;
+    s.of<ShGridSettings>().leak_weights = weights;
+    s.of<ShGridSettings>().field_shadow_rays = rays;
     Report report;
     auto const light = [&](double x, double towards) {
         Picture const p =
@@ -193,7 +194,7 @@ TEST(ShGrid, ClosedFormIsTheLimitOfSamples)
     Report report;
     RenderSettings s = picture_of(24, 64);
     double const closed = mean_of(render_sh_grid(world, eye, s, {}, {}, report).picture, "L2").mean;
-    s.sh_grid.gather_directions = 32;
+    s.of<ShGridSettings>().gather_directions = 32;
     double const sampled = mean_of(render_sh_grid(world, eye, s, {}, {}, report).picture, "L2").mean;
     fmt::print("closed form over 32 samples: {:.4f}\n", closed / sampled);
     EXPECT_NEAR(closed / sampled, 1, 0.03);
@@ -319,7 +320,7 @@ TEST(ShGrid, FollowsMotion)
     for (std::size_t k = box; k < scene.nodes.size(); ++k)
         pose.world_from_node[k] = glm::translate(pose.world_from_node[k], dvec3{1.2, 0, 0});
     frames->changed(moving.advance(pose));
-    int const parts = s.sh_grid.field_passes;
+    int const parts = s.of<ShGridSettings>().field_passes;
     double const followed = mean_now(*frames, 2 * parts - 1);
     auto const fresh = start_sh_grid_frames(moving, eye, s, report);
     double const truth = mean_now(*fresh, 1);
@@ -347,7 +348,7 @@ TEST(ShGrid, GlyphsShowTheField)
     Scene scene;
     add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, glowing(1, 0.5f)), true);
     RenderSettings s = picture_of(32, 32);
-    s.sh_grid.field_glyphs = Switch::on;
+    s.of<ShGridSettings>().field_glyphs = Switch::on;
     Report report;
     Picture const p =
         render_sh_grid(world_of(scene), look_at({0, 0, 0.3}, {0, -0.2, -1}, 90), s, {}, {}, report).picture;
@@ -429,7 +430,7 @@ TEST(ShGrid, VoxelsForExactRays)
     Report report;
     RenderSettings s = picture_of(24, 128);
     double const exact = mean_of(render_sh_grid(world, world.cameras.at(0), s, {}, {}, report).picture, "L2").mean;
-    s.sh_grid.field_rays = FieldRays::voxels;
+    s.of<ShGridSettings>().field_rays = FieldRays::voxels;
     double const voxels =
         mean_of(render_sh_grid(world, world.cameras.at(0), s, {}, {}, report).picture, "L2").mean;
     fmt::print("voxels over exact rays: {:.4f}\n", voxels / exact);

@@ -19,7 +19,7 @@ Picture by_reference(World const& world, RenderSettings const& s)
 }
 Picture by_slhb(World const& world, RenderSettings const& s)
 {
-    return render_with_slhb(world, kCamera, s).result.picture;
+    return render_small(world, kCamera, s).result.picture;
 }
 Picture by_kernels(World const& world, RenderSettings const& s)
 {

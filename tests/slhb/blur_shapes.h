@@ -2,6 +2,7 @@
 // The shape that a luminous square leaves when it is out of focus or moves.
 
 #include "gi/core/math.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/image_io/picture.h"
 #include "gi/render/render_settings.h"
 
@@ -21,8 +22,8 @@ inline RenderSettings blur_settings(std::uint32_t paths)
     s.paths = paths;
     s.bounces = 0;
     s.seed = 5;
-    s.slhb.light_samples = 1;
-    s.slhb.shadow_resolution = 8;
+    s.of<SlhbSettings>().light_samples = 1;
+    s.of<SlhbSettings>().shadow_resolution = 8;
     return s;
 }
 

@@ -2,9 +2,9 @@
 
 #include "gi/core/error.h"
 #include "gi/core/rng.h"
-#include "gi/methods/slhb/directions/cosine_tables.h"
-#include "gi/methods/slhb/directions/direction_picture.h"
-#include "gi/methods/slhb/directions/direction_quality.h"
+#include "gi/hit_buffers/directions/cosine_tables.h"
+#include "gi/hit_buffers/directions/direction_picture.h"
+#include "gi/hit_buffers/directions/direction_quality.h"
 
 #include <gtest/gtest.h>
 

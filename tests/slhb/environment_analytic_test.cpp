@@ -1,6 +1,7 @@
 // Light from environment maps, in both methods: one bright texel against a parallel light, turned maps against
 // turned scenes, and a sun that must neither vanish nor leave single bright pixels.
 
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/slhb/kernels/kernel_render.h"
 #include "gi/metrics/ztest.h"
@@ -18,11 +19,11 @@ Picture render_with(Method method, World const& world, Camera const& camera, Ren
 {
     StopRequest stop;
     Report report;
-    s.slhb.schedule = method == Method::stored ? Schedule::stored : Schedule::streamed;
+    s.of<SlhbSettings>().schedule = method == Method::stored ? Schedule::stored : Schedule::streamed;
     if (method == Method::reference) return render_reference(world, camera, s, stop, {}, report).picture;
     if (method == Method::kernels)
         return render_by_kernels(Space::host, world, camera, s, stop, {}, report).picture;
-    return render_with_slhb(world, camera, s).result.picture;
+    return render_small(world, camera, s).result.picture;
 }
 
 std::string name_of(Method m)
@@ -79,10 +80,10 @@ TEST(EnvironmentLight, OneBrightTexelIsAParallelLight)
     World const map = world_of(with_map), light_point = world_of(with_light);
     for (Method const m : kMethods) {
         RenderSettings s = small_settings(32, m == Method::reference ? 512 : 256, 3);
-        s.slhb.shadow_resolution = 512;
-        s.slhb.light_samples = 8;
-        s.slhb.axes = 8;
-        s.slhb.resolution = 128;
+        s.of<SlhbSettings>().shadow_resolution = 512;
+        s.of<SlhbSettings>().light_samples = 8;
+        s.of<SlhbSettings>().axes = 8;
+        s.of<SlhbSettings>().resolution = 128;
         Picture const a = render_with(m, map, yard_camera(), s), b = render_with(m, light_point, yard_camera(), s);
         for (char const* const part : {"L1", "L2"}) {
             double const truth = mean_of(b, part).mean, found = mean_of(a, part).mean;
@@ -112,9 +113,9 @@ TEST(EnvironmentLight, TurningTheMapIsTurningTheScene)
         RunningMean mean_a[2][kParts], mean_b[2][kParts];
         for (int seed = 0; seed < kSeeds; ++seed) {
             RenderSettings s = small_settings(kSize, 64, 2);
-            s.slhb.axes = 4;
-            s.slhb.resolution = 64;
-            s.slhb.shadow_resolution = 128;
+            s.of<SlhbSettings>().axes = 4;
+            s.of<SlhbSettings>().resolution = 64;
+            s.of<SlhbSettings>().shadow_resolution = 128;
             for (bool const first : {true, false}) {
                 s.seed = std::uint64_t(100 + 2 * seed + first);
                 Picture const p =

@@ -1,5 +1,6 @@
 // Bias of slhb against the reference under real panoramas, on a diffuse and a glossy object.
 
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/scene/load/load.h"
 #include "tests/slhb/slhb_render.h"
@@ -63,13 +64,13 @@ TEST_P(RealSky, NoBiasAgainstTheReference)
         for (Schedule const schedule : {Schedule::streamed, Schedule::stored}) {
             bool const stored = schedule == Schedule::stored;
             RenderSettings s = small_settings(40, stored ? 48 : 256, 3);
-            s.slhb.schedule = schedule;
-            s.slhb.resolution = 128;
-            s.slhb.shadow_resolution = 512;
-            s.slhb.light_samples = 8;
-            s.slhb.axes = 8;
+            s.of<SlhbSettings>().schedule = schedule;
+            s.of<SlhbSettings>().resolution = 128;
+            s.of<SlhbSettings>().shadow_resolution = 512;
+            s.of<SlhbSettings>().light_samples = 8;
+            s.of<SlhbSettings>().axes = 8;
             RunningMean const found = over_seeds(stored ? stored_seeds : 6, s, [&](RenderSettings const& now) {
-                return render_with_slhb(world, camera, now).result.picture;
+                return render_small(world, camera, now).result.picture;
             });
             double const sigma = std::hypot(truth.sigma(), found.sigma()), bias = found.mean() - truth.mean();
             fmt::print("{} {} {}: bias {:+.3f} % +- {:.3f}, z {:+.2f}\n", file, glossy ? "glossy" : "diffuse",

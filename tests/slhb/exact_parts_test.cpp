@@ -1,5 +1,6 @@
 // slhb with exact rays in place of look-ups: what bench accuracy measures biases against has none itself.
 
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/reference/reference.h"
 #include "tests/slhb/slhb_render.h"
 
@@ -32,13 +33,13 @@ TEST(SlhbExactParts, WithoutLookUpsThereIsNoBias)
         Report report;
         return render_reference(world, camera, now, stop, {}, report).picture;
     });
-    s.slhb.schedule = Schedule::streamed;
-    s.slhb.axes = 8;
-    s.slhb.light_samples = 8;
+    s.of<SlhbSettings>().schedule = Schedule::streamed;
+    s.of<SlhbSettings>().axes = 8;
+    s.of<SlhbSettings>().light_samples = 8;
     for (bool const own_directions : {false, true}) {
-        s.slhb.exact = {.queries = true, .shadows = true, .directions = own_directions};
+        s.of<SlhbSettings>().exact = {.queries = true, .shadows = true, .directions = own_directions};
         Estimate const exact = indirect_over_seeds(s, kSeeds, [&](RenderSettings const& now) {
-            return render_with_slhb(world, camera, now).result.picture;
+            return render_small(world, camera, now).result.picture;
         });
         double const error = std::hypot(truth.sigma, exact.sigma);
         EXPECT_LT(error, 0.01 * truth.mean); // else the next line says nothing
@@ -62,10 +63,10 @@ TEST(SlhbExactParts, NothingIsLookedUp)
     Camera const camera = look_at({1, 1, 2}, {0, 0.2, 0}, 50);
     for (Schedule const schedule : {Schedule::streamed, Schedule::stored}) {
         RenderSettings s = small_settings(16, 64, 2);
-        s.slhb.schedule = schedule;
-        SlhbRun const look_ups = render_with_slhb(world, camera, s);
-        s.slhb.exact = {.queries = true, .shadows = true};
-        SlhbRun const exact = render_with_slhb(world, camera, s);
+        s.of<SlhbSettings>().schedule = schedule;
+        SlhbRun const look_ups = render_small(world, camera, s);
+        s.of<SlhbSettings>().exact = {.queries = true, .shadows = true};
+        SlhbRun const exact = render_small(world, camera, s);
         EXPECT_EQ(exact.counts.at("hit-buffer queries"), 0);
         EXPECT_GT(exact.counts.at("exact rays"), 0);
         double const truth = mean_of(exact.result.picture).mean;

@@ -1,8 +1,6 @@
 #include "gi/filter/temporal.h"
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/slhb/frames.h"
-#include "gi/methods/slhb/renderer.h"
-#include "gi/methods/slhb/settings.h"
+#include "gi/methods/paths/renderer.h"
 #include "gi/scene/generate/figure.h"
 #include "gi/scene/generate/generate.h"
 #include "tests/slhb/slhb_render.h"
@@ -28,9 +26,9 @@ RenderSettings few_pixels(Schedule schedule)
     s.width = s.height = 40;
     s.paths = 2;
     s.bounces = 2;
-    s.slhb.schedule = schedule;
-    if (schedule == Schedule::stored) s.slhb.directions = "icosahedron:80";
-    s.slhb.resolution = 48;
+    s.of<SlhbSettings>().schedule = schedule;
+    if (schedule == Schedule::stored) s.of<SlhbSettings>().directions = "icosahedron:80";
+    s.of<SlhbSettings>().resolution = 48;
     return s;
 }
 
@@ -44,7 +42,7 @@ TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
     MovingWorld moving(scene, 0, report);
     Camera const camera = moving.world().cameras.at(0);
     RenderSettings settings = few_pixels(GetParam());
-    auto const frames = start_slhb_frames(moving, camera, settings, report);
+    auto const frames = start_frames_as_set(moving, camera, settings, report);
     Picture last;
     for (double const t : {0.0, 0.3, 0.5}) {
         frames->changed(moving.advance(t));
@@ -54,9 +52,9 @@ TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
 
     MovingWorld const anew(scene, 0.5, report);
     TriangleSoup soup = make_soup(anew.world());
-    settings.slhb = choose_frame_settings(settings, anew.world(), soup, camera);
+    settings = choose_frame_settings(with(algorithm_as_set(settings), settings), anew.world(), soup);
     FrameView const eye{camera, settings.width, settings.height};
-    SlhbRenderer renderer(anew.world(), {&eye, 1}, settings, std::move(soup), anew.world().triangles.size(),
+    PathsRenderer renderer(anew.world(), {&eye, 1}, settings, std::move(soup), anew.world().triangles.size(),
                           report);
     Accumulator sums(settings.width, settings.height);
     for (std::uint32_t pass = 0; pass < 6; ++pass) {
@@ -79,7 +77,7 @@ TEST(MotionVectors, AreThoseOfWhatMoves)
     RenderSettings settings = few_pixels(Schedule::streamed);
     settings.width = settings.height = 128;
     settings.paths = 1;
-    auto const frames = start_slhb_frames(moving, camera, settings, report);
+    auto const frames = start_frames_as_set(moving, camera, settings, report);
     frames->frame(camera, {}, {});
     frames->changed(moving.advance(0.1));
     Picture const p = frames->frame(camera, {}, {}).picture;
@@ -124,7 +122,7 @@ TEST(TemporalFrames, ALightSwitchedOffIsOff)
     Report report;
     MovingWorld world(std::make_shared<Scene const>(std::move(scene)), 0, report);
     Camera const camera = look_at({0, 0, 1.9}, {0, 0, -1}, 70);
-    auto const frames = start_slhb_frames(world, camera, few_pixels(Schedule::streamed), report);
+    auto const frames = start_frames_as_set(world, camera, few_pixels(Schedule::streamed), report);
     TemporalReuse reuse({});
     auto const show = [&](SceneChange change) {
         Picture p = frames->frame(camera, {}, {}).picture;
@@ -153,7 +151,7 @@ TEST(TemporalFrames, AStillPictureIsTheRenderOfAllItsPaths)
     Camera const camera = world.world().cameras.at(0);
     RenderSettings settings = few_pixels(Schedule::streamed);
     settings.paths = 1;
-    auto const frames = start_slhb_frames(world, camera, settings, report);
+    auto const frames = start_frames_as_set(world, camera, settings, report);
     TemporalReuse reuse({.most_frames = 4});
     Picture p;
     for (int k = 0; k < 24; ++k) {
@@ -161,7 +159,7 @@ TEST(TemporalFrames, AStillPictureIsTheRenderOfAllItsPaths)
         reuse.add(p, k == 0 ? SceneChange::light : SceneChange::nothing);
     }
     settings.paths = 24;
-    auto const all = start_slhb_frames(world, camera, settings, report);
+    auto const all = start_frames_as_set(world, camera, settings, report);
     Picture const q = all->frame(camera, {}, {}).picture;
     for (std::size_t k = 0; k < p.find("color")->data.size(); ++k)
         ASSERT_NEAR(p.find("color")->data[k], q.find("color")->data[k], 1e-4f * (1 + q.find("color")->data[k]));
@@ -191,17 +189,16 @@ TEST(InterleavedFrames, HaveTheLightOfAllPixels)
     s.width = s.height = 48;
     s.bounces = 3;
     s.paths = 1;
-    s.slhb.look_ups = LookUps::none;
     auto const [direct, indirect] = light_of_frames(start_slhb_frames, s, kFrames);
     auto const expect_same = [&](std::array<double, 2> const& light, std::string const& what) {
         EXPECT_NEAR(light[0], direct, kWithin * direct) << what;
         EXPECT_NEAR(light[1], indirect, kWithin * indirect) << what;
     };
     for (int const n : {2, 3, 4}) {
-        s.slhb.interleave = n;
+        s.of<PathsSettings>().interleave = n;
         expect_same(light_of_frames(start_slhb_frames, s, kFrames), fmt::format("slhb, {}", n));
     }
-    s.slhb.interleave = 0;
+    s.of<PathsSettings>().interleave = 0;
     s.budget_s = kNoTime; // one pass a frame, one of 4 x 4 pixels
     expect_same(light_of_frames(start_slhb_frames, s, kFrames), "slhb, by time");
     expect_same(light_of_frames(start_reference_frames, s, kFrames), "reference, by time");

@@ -1,6 +1,7 @@
 // The method slhb on the analytic ladder: within 0.5 % of closed forms. Its error is correlated over the picture
 // (all pixels share axes and lamps), so that the variance of pixels says nothing about the mean.
 
+#include "gi/hit_buffers/settings.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <fmt/format.h>
@@ -22,9 +23,9 @@ TEST(SlhbFurnace, SphereUnderAUniformSky)
         World const world = world_of(scene);
         for (int const bounces : {0, 1, 3, 64}) {
             RenderSettings s = small_settings(12, 256, bounces);
-            s.slhb.shadow_resolution = 128;
-            s.slhb.resolution = 64;
-            expect_mean(render_with_slhb(world, orthographic({0, 0, 5}, {0, 0, 0}, 1.2), s).result.picture, albedo,
+            s.of<SlhbSettings>().shadow_resolution = 128;
+            s.of<SlhbSettings>().resolution = 64;
+            expect_mean(render_small(world, orthographic({0, 0, 5}, {0, 0, 0}, 1.2), s).result.picture, albedo,
                         fmt::format("albedo {}, {} bounces", albedo, bounces));
         }
     }
@@ -43,13 +44,13 @@ TEST(SlhbFurnace, ClosedSphereThatGlows)
         World const world = world_of(scene);
         for (int const bounces : {0, 3, 32}) {
             RenderSettings s = small_settings(8, 1024, bounces);
-            s.slhb.shadow_resolution = 128;
-            s.slhb.resolution = 64;
-            s.slhb.axes = 8;
-            s.slhb.light_samples = 8;
+            s.of<SlhbSettings>().shadow_resolution = 128;
+            s.of<SlhbSettings>().resolution = 64;
+            s.of<SlhbSettings>().axes = 8;
+            s.of<SlhbSettings>().light_samples = 8;
             // E (1 + rho + ... + rho^(bounces + 1))
             double const truth = 0.5 * (1 - std::pow(double(rho), bounces + 2)) / (1 - double(rho));
-            expect_mean(render_with_slhb(world, look_at({0.1, 0.2, 0.1}, {-1, -0.5, -0.7}, 90), s).result.picture,
+            expect_mean(render_small(world, look_at({0.1, 0.2, 0.1}, {-1, -0.5, -0.7}, 90), s).result.picture,
                         truth, fmt::format("albedo {}, {} bounces", rho, bounces));
         }
     }
@@ -60,18 +61,18 @@ TEST(SlhbFurnace, SchedulesAgree)
     World const world = world_of(box_with_block_and_lamp());
     Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
     RenderSettings s = small_settings(24, 512, 3);
-    double const streamed = mean_of(render_with_slhb(world, camera, s).result.picture, "L2").mean;
+    double const streamed = mean_of(render_small(world, camera, s).result.picture, "L2").mean;
     for (Schedule const other : {Schedule::stored, Schedule::temporal}) {
-        s.slhb.schedule = other;
-        EXPECT_NEAR(mean_of(render_with_slhb(world, camera, s).result.picture, "L2").mean, streamed,
+        s.of<SlhbSettings>().schedule = other;
+        EXPECT_NEAR(mean_of(render_small(world, camera, s).result.picture, "L2").mean, streamed,
                     0.01 * streamed);
     }
-    s.slhb.schedule = Schedule::stored;
-    s.slhb.directions = "icosahedron:80";
+    s.of<SlhbSettings>().schedule = Schedule::stored;
+    s.of<SlhbSettings>().directions = "icosahedron:80";
     s.paths = 400; // ten times all 40 axes
-    double const stored = mean_of(render_with_slhb(world, camera, s).result.picture, "L2").mean;
-    s.slhb.gather = true;
-    EXPECT_NEAR(mean_of(render_with_slhb(world, camera, s).result.picture, "L2").mean, stored, 0.01 * stored);
+    double const stored = mean_of(render_small(world, camera, s).result.picture, "L2").mean;
+    s.of<SlhbSettings>().gather = true;
+    EXPECT_NEAR(mean_of(render_small(world, camera, s).result.picture, "L2").mean, stored, 0.01 * stored);
 }
 
 TEST(SlhbFurnace, InterleavingTakesEveryPixelInTurn)
@@ -83,11 +84,11 @@ TEST(SlhbFurnace, InterleavingTakesEveryPixelInTurn)
     World const world = world_of(scene);
     for (int const n : {2, 3, 5, 10}) {
         RenderSettings s = small_settings(20, std::uint32_t(n * n), 1);
-        s.slhb.interleave = n;
-        s.slhb.resolution = 16;
-        s.slhb.shadow_resolution = 32;
+        s.of<PathsSettings>().interleave = n;
+        s.of<SlhbSettings>().resolution = 16;
+        s.of<SlhbSettings>().shadow_resolution = 32;
         Picture const picture =
-            render_with_slhb(world, look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70), s).result.picture;
+            render_small(world, look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70), s).result.picture;
         std::size_t dark = 0;
         std::vector<float> const& indirect = picture.find("L2")->data;
         for (std::size_t p = 0; p < indirect.size(); p += 3) dark += indirect[p] == 0;
@@ -108,7 +109,7 @@ TEST(SlhbRadiometry, PointAndParallelLight)
         add_light(scene, light);
         World const world = world_of(scene);
         double const irradiance = type == LightType::point ? 3.0 / 4 : 3.0;
-        expect_mean(render_with_slhb(world, orthographic({0, 1, 0}, {0, 0, 0}, 0.02), small_settings(8, 16, 2))
+        expect_mean(render_small(world, orthographic({0, 1, 0}, {0, 0, 0}, 0.02), small_settings(8, 16, 2))
                         .result.picture,
                     0.5 / M_PI * irradiance, "light");
     }
@@ -124,7 +125,7 @@ TEST(SlhbRadiometry, FormFactorOfParallelSquares)
     World const world = world_of(scene);
     double const h = 1 / std::sqrt(2.0), factor = 4 * (2 * h * std::atan(h)) / (2 * M_PI);
     RenderSettings s = small_settings(8, 512, 0);
-    expect_mean(render_with_slhb(world, orthographic({0, 0.5, 0}, {0, 0, 0}, 0.02), s).result.picture,
+    expect_mean(render_small(world, orthographic({0, 0.5, 0}, {0, 0, 0}, 0.02), s).result.picture,
                 0.5 * factor, "square");
 }
 
@@ -135,7 +136,7 @@ TEST(SlhbFurnace, MirrorsAndGlassPassTheFieldOn)
         add_sphere(scene, vec3{0}, 1, 3, add_material(scene, material), false);
         set_environment(scene, vec3{1});
         expect_mean(
-            render_with_slhb(world_of(scene), orthographic({0, 0, 5}, {0, 0, 0}, 1.2), small_settings(12, 64, 64))
+            render_small(world_of(scene), orthographic({0, 0, 5}, {0, 0, 0}, 1.2), small_settings(12, 64, 64))
                 .result.picture,
             1, "lossless");
     }

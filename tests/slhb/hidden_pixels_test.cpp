@@ -1,6 +1,6 @@
 // Pixels that nobody sees cost nothing, and what is seen is what it would be without them.
 
-#include "gi/methods/slhb/frames.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/metrics/metrics.h"
 #include "tests/slhb/slhb_render.h"
 
@@ -33,9 +33,9 @@ class HiddenPixels : public ::testing::Test {
 protected:
     HiddenPixels()
     {
-        s.slhb.schedule = Schedule::stored;
-        s.slhb.directions = "icosahedron:80";
-        s.slhb.resolution = 64;
+        s.of<SlhbSettings>().schedule = Schedule::stored;
+        s.of<SlhbSettings>().directions = "icosahedron:80";
+        s.of<SlhbSettings>().resolution = 64;
     }
 
     std::vector<RenderResult> render(bool hides, int partner, VertexSharing sharing, std::uint32_t paths)
@@ -43,7 +43,7 @@ protected:
         std::vector<FrameView> views{{eye(), kSize, kSize}, {eye(0.06), kSize, kSize, partner}};
         if (hides) views[0].hidden = views[1].hidden = hidden;
         Report report;
-        auto results = start_slhb_frames(world, eye(), s, report)->views(views, paths, sharing, {});
+        auto results = start_frames_as_set(world, eye(), s, report)->views(views, paths, sharing, {});
         counts = report.counts();
         return results;
     }
@@ -123,7 +123,7 @@ TEST_F(HiddenPixels, GiveNoLightToOthers)
 TEST_F(HiddenPixels, OfAnEarlierCallAreForgotten)
 {
     Report report;
-    auto const frames = start_slhb_frames(world, eye(), s, report);
+    auto const frames = start_frames_as_set(world, eye(), s, report);
     FrameView view{eye(), kSize, kSize};
     view.hidden = hidden;
     frames->views({&view, 1}, 1, VertexSharing::exact, {});

@@ -1,5 +1,5 @@
 #include "gi/core/rng.h"
-#include "gi/methods/slhb/hit_buffer/query_batch.h"
+#include "gi/hit_buffers/query_batch.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

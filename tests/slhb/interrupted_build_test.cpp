@@ -2,10 +2,9 @@
 // has the same bits as an undisturbed one.
 
 #include "gi/methods/registry.h"
-#include "gi/methods/slhb/slhb.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/motion/moving_world.h"
-#include "tests/support/scenes.h"
+#include "tests/slhb/slhb_render.h"
 
 #include <chrono>
 #include <gtest/gtest.h>
@@ -22,15 +21,14 @@ TEST(InterruptedBuild, OfALaterPassKeepsThePicture)
     RenderSettings s;
     s.width = s.height = 16;
     s.paths = 1000;
-    s.slhb.look_ups = LookUps::all;
-    s.slhb.schedule = Schedule::streamed;
-    s.slhb.axes = 64; // some tenths of a second for each pass
-    s.slhb.resolution = 256;
+    s.of<SlhbSettings>().schedule = Schedule::streamed;
+    s.of<SlhbSettings>().axes = 64; // some tenths of a second for each pass
+    s.of<SlhbSettings>().resolution = 256;
     StopRequest stop;
     std::jthread asks;
     Clock::time_point asked;
     Report report;
-    RenderResult const r = render_slhb(
+    RenderResult const r = render_as_set(
         world, look_at({0, 0, 3}, {0, 0, 0}, 50), s, stop,
         [&](RenderStatus const& now) {
             if (now.paths >= 2 && !asks.joinable())
@@ -54,9 +52,8 @@ RenderSettings settings_of_long_passes()
     s.threads = 1;
     s.width = s.height = 512; // some tenths of a second for each pass
     s.paths = 12;
-    s.slhb.look_ups = LookUps::all;
-    s.slhb.directions = "icosahedron:20";
-    s.slhb.resolution = 64;
+    s.of<SlhbSettings>().directions = "icosahedron:20";
+    s.of<SlhbSettings>().resolution = 64;
     return s;
 }
 
@@ -69,7 +66,7 @@ TEST(InterruptedPass, TheFirstIsGivenUp)
     stop.request();
     Report report;
     auto const begun = Clock::now();
-    EXPECT_THROW(render_slhb(world, look_at({0, 0, 3}, {0, 0, 0}, 50), s, stop, {}, report), Interrupted);
+    EXPECT_THROW(render_as_set(world, look_at({0, 0, 3}, {0, 0, 0}, 50), s, stop, {}, report), Interrupted);
     RecordProperty("seconds", std::to_string(std::chrono::duration<double>(Clock::now() - begun).count()));
 }
 
@@ -79,7 +76,7 @@ TEST(InterruptedPass, ALaterOneLeavesNoTrace)
     Camera const camera = look_at({0, 0, 3}, {0, 0, 0}, 50);
     RenderSettings s = settings_of_long_passes();
     Report report;
-    RenderResult const whole = render_slhb(world, camera, s, {}, {}, report);
+    RenderResult const whole = render_as_set(world, camera, s, {}, {}, report);
     s.checkpoint = std::filesystem::temp_directory_path() / "lightwell_interrupted_pass.state";
     std::filesystem::remove(s.checkpoint);
     StopRequest stop;
@@ -91,12 +88,12 @@ TEST(InterruptedPass, ALaterOneLeavesNoTrace)
                 stop.request();
             });
     };
-    RenderResult const part = render_slhb(world, camera, s, stop, in_the_next_pass, report);
+    RenderResult const part = render_as_set(world, camera, s, stop, in_the_next_pass, report);
     ASSERT_EQ(part.end, RenderEnd::interrupted);
     ASSERT_TRUE(part.resumable);
     EXPECT_LT(part.paths, s.paths);
     s.resume = true;
-    RenderResult const resumed = render_slhb(world, camera, s, {}, {}, report);
+    RenderResult const resumed = render_as_set(world, camera, s, {}, {}, report);
     std::filesystem::remove(s.checkpoint);
     EXPECT_EQ(resumed.paths, s.paths);
     for (std::size_t k = 0; k < whole.picture.layers.size(); ++k)
@@ -111,8 +108,7 @@ TEST(InterruptedPass, OfAFrameIsGivenUpByEveryMethod)
     RenderSettings s;
     s.width = s.height = 1024; // some tenths of a second, and a first pass goes on for 0.08 s
     s.paths = 1;
-    s.slhb.look_ups = LookUps::all;
-    s.slhb.resolution = 64;
+    s.of<SlhbSettings>().resolution = 64;
     Moments const moments = [&](std::uint32_t) { return Moment{.changes = {}, .camera = camera}; };
     for (Method const& m : methods())
         for (bool const blurs : {false, true}) {

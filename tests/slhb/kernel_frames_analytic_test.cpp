@@ -1,7 +1,7 @@
 // Frames by kernels on the analytic ladder: where everything glows and reflects alike, light is the same
 // everywhere, whatever moves.
 
-#include "gi/methods/slhb/frames.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/scene/motion/animation.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
@@ -27,11 +27,11 @@ void check_furnace()
         Report report;
         MovingWorld world(shared, 0, report);
         RenderSettings s = small_settings(8, 8, 1);
-        s.slhb.schedule = schedule;
-        if (schedule == Schedule::stored) s.slhb.directions = "icosahedron:80";
-        s.slhb.resolution = s.slhb.shadow_resolution = 32;
-        s.slhb.light_samples = 4;
-        s.slhb.axes = schedule == Schedule::stored ? 0 : 4;
+        s.of<SlhbSettings>().schedule = schedule;
+        if (schedule == Schedule::stored) s.of<SlhbSettings>().directions = "icosahedron:80";
+        s.of<SlhbSettings>().resolution = s.of<SlhbSettings>().shadow_resolution = 32;
+        s.of<SlhbSettings>().light_samples = 4;
+        s.of<SlhbSettings>().axes = schedule == Schedule::stored ? 0 : 4;
         auto const frames = start_kernel_frames(S, world, camera, s, report);
         double sum = 0;
         for (int k = 0; k < kFrames; ++k) {
@@ -56,12 +56,12 @@ void check_mean()
     MovingWorld const world(std::make_shared<Scene const>(box_with_block_and_lamp()), 0, report);
     Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
     RenderSettings s = small_settings(24, 8, 3);
-    s.slhb.schedule = Schedule::stored;
+    s.of<SlhbSettings>().schedule = Schedule::stored;
     auto const frames = start_kernel_frames(S, world, camera, s, report);
     double sum = 0;
     for (int k = 0; k < 16; ++k) sum += mean_of(frames->frame(camera, {}, {}).picture, "L2").mean;
     s.paths = 128;
-    double const truth = mean_of(render_with_slhb(world.world(), camera, s).result.picture, "L2").mean;
+    double const truth = mean_of(render_small(world.world(), camera, s).result.picture, "L2").mean;
     EXPECT_NEAR(sum / 16, truth, 0.01 * truth);
 }
 LIGHTWELL_TEST_BOTH(KernelFramesFurnace, MeanIsThePictureOfAllPaths, check_mean);

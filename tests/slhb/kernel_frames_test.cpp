@@ -2,7 +2,7 @@
 // numbers they trace the same paths but for rounding, whatever moves or changes between them.
 
 #include "gi/core/error.h"
-#include "gi/methods/slhb/frames.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/scene/motion/animation.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
@@ -44,13 +44,13 @@ Camera frame_eye(double aside = 0)
 RenderSettings settings_of(Schedule schedule)
 {
     RenderSettings s = small_settings(kFrameSize, 2, 2);
-    s.slhb.schedule = schedule;
-    if (schedule == Schedule::stored) s.slhb.directions = "icosahedron:80";
-    s.slhb.resolution = 48;
-    s.slhb.shadow_resolution = 64;
-    s.slhb.light_samples = 4;
-    s.slhb.fresh_light_samples = 2;
-    s.slhb.interleave = 1;
+    s.of<SlhbSettings>().schedule = schedule;
+    if (schedule == Schedule::stored) s.of<SlhbSettings>().directions = "icosahedron:80";
+    s.of<SlhbSettings>().resolution = 48;
+    s.of<SlhbSettings>().shadow_resolution = 64;
+    s.of<SlhbSettings>().light_samples = 4;
+    s.of<SlhbSettings>().fresh_light_samples = 2;
+    s.of<PathsSettings>().interleave = 1;
     return s;
 }
 
@@ -96,7 +96,7 @@ public:
         : scene_(std::move(scene)),
           world(scene_, 0, report),
           kernels(start_kernel_frames(S, world, frame_eye(), settings, report)),
-          cpu_(start_slhb_frames(world, frame_eye(), settings, cpu_report_))
+          cpu_(start_frames_as_set(world, frame_eye(), settings, cpu_report_))
     {
     }
 
@@ -132,8 +132,8 @@ public:
     }
     void update_axes(int axes)
     {
-        kernels->update_axes(axes);
-        cpu_->update_axes(axes);
+        ask<FollowingAxes>(*kernels)->update_axes(axes);
+        ask<FollowingAxes>(*cpu_)->update_axes(axes);
     }
 
 private:
@@ -248,13 +248,13 @@ void check_following()
     Both<S> both(settings_of(Schedule::stored));
     both.update_axes(8);
     for (int k = 0; k < 7; ++k) both.next(both.place({-0.05 * k, 0.02 * k, 0}), "8 of 40");
-    DynamicUpdate const f = both.kernels->dynamic_update();
+    DynamicUpdate const f = ask<FollowingAxes>(*both.kernels)->dynamic_update();
     EXPECT_EQ(f.stored, 40);
     EXPECT_GE(f.axes, 8);
     EXPECT_LT(f.axes, 40);
     both.update_axes(0);
     both.next({}, "all, and nothing moved");
-    EXPECT_EQ(both.kernels->dynamic_update().axes, 40);
+    EXPECT_EQ(ask<FollowingAxes>(*both.kernels)->dynamic_update().axes, 40);
 }
 LIGHTWELL_TEST_BOTH(KernelFrames, MayFollowInSomeDirections, check_following);
 
@@ -312,7 +312,7 @@ void check_moments()
         RenderSettings s = settings_of(Schedule::streamed);
         s.paths = 4;
         auto const frames = by_kernels ? start_kernel_frames(S, world, frame_eye(), s, report)
-                                       : start_slhb_frames(world, frame_eye(), s, report);
+                                       : start_frames_as_set(world, frame_eye(), s, report);
         return frames->frame(frame_eye(), {}, {}, [&](std::uint32_t pass) {
             Pose pose = evaluate_pose(*scene, 0);
             pose.world_from_node.back() =
@@ -353,8 +353,6 @@ void check_mirror()
     append(scene, std::move(object), "object", dmat4(1));
     scene.nodes.back().driven = true;
     RenderSettings s = settings_of(Schedule::stored);
-    s.slhb.look_ups = LookUps::all;
-    s.slhb.shadows = Shadows::maps;
     Both<S> both(s, std::make_shared<Scene const>(std::move(scene)));
     both.next({}, "at first");
     both.next(both.place({-0.2, 0.1, 0}), "moved");
@@ -372,12 +370,10 @@ TEST(KernelFrames, RefuseWhatKernelsLackAndGoOn)
     Both<Space::host> both(settings_of(Schedule::stored));
     FrameView const view{orthographic({0, 0, 0.9}, {0, 0, 0}, 1), kFrameSize, kFrameSize};
     EXPECT_THROW(both.kernels->views({&view, 1}, 1, VertexSharing::none, {}), InputError);
-    EXPECT_THROW(
-        both.kernels->pair({frame_eye(), kFrameSize, kFrameSize}, {}, [](PairSide) { return Changes{}; }, {}),
-        InputError);
+    EXPECT_EQ(ask<PairFrames>(*both.kernels), nullptr);
     both.next({}, "and goes on");
     RenderSettings gather = settings_of(Schedule::stored), device = gather;
-    gather.slhb.gather = true;
+    gather.of<SlhbSettings>().gather = true;
     EXPECT_THROW(start_kernel_frames(Space::host, both.world, frame_eye(), gather, both.report), InputError);
     if (device_present()) return;
     device.space = Space::device;

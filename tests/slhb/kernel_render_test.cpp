@@ -2,6 +2,7 @@
 // they trace the same paths, but for rounding.
 
 #include "gi/core/error.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/slhb/kernels/kernel_render.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
@@ -38,7 +39,7 @@ Camera room_camera() { return look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70); 
 RenderSettings settings_of(std::uint32_t paths, int bounces)
 {
     RenderSettings s = small_settings(24, paths, bounces);
-    s.slhb.resolution = 64;
+    s.of<SlhbSettings>().resolution = 64;
     return s;
 }
 
@@ -68,7 +69,7 @@ template <Space S>
 void expect_like_cpu(Scene scene, RenderSettings const& settings, std::string const& what)
 {
     World const world = world_of(std::move(scene));
-    SlhbRun const expected = render_with_slhb(world, room_camera(), settings);
+    SlhbRun const expected = render_small(world, room_camera(), settings);
     EXPECT_EQ(expected.counts.at("shared vertices shaded for several paths"), 0) << what;
     expect_same_picture(render_with_kernels(S, world, room_camera(), settings), expected, what);
 }
@@ -112,12 +113,12 @@ void check_schedules()
     add_quad(light_point, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f},
              add_material(light_point, emitter(vec3{10})));
     RenderSettings s = settings_of(6, 5);
-    s.slhb.schedule = Schedule::temporal;
+    s.of<SlhbSettings>().schedule = Schedule::temporal;
     expect_like_cpu<S>(light_point, s, "temporal");
-    s.slhb.schedule = Schedule::stored;
-    s.slhb.directions = "icosahedron:80";
+    s.of<SlhbSettings>().schedule = Schedule::stored;
+    s.of<SlhbSettings>().directions = "icosahedron:80";
     expect_like_cpu<S>(light_point, s, "stored");
-    s.slhb.most_layers = 2;
+    s.of<SlhbSettings>().most_layers = 2;
     expect_like_cpu<S>(light_point, s, "few layers");
 }
 LIGHTWELL_TEST_BOTH(KernelRender, SchedulesAsOnTheCpu, check_schedules);
@@ -162,8 +163,6 @@ void check_narrow_lobes()
 {
     auto const check = [](Scene scene, int bounces, std::string const& what) {
         RenderSettings s = settings_of(8, bounces);
-        s.slhb.look_ups = LookUps::all;
-        s.slhb.shadows = Shadows::maps; // as the kernels, instead of the CPU's plan
         expect_like_cpu<S>(std::move(scene), s, what);
     };
     Scene lamp = shiny_room();
@@ -234,10 +233,10 @@ void check_lens()
     camera.aperture_radius_m = 0.1;
     camera.focus_distance_m = 2;
     RenderSettings const s = settings_of(16, 2);
-    SlhbRun const expected = render_with_slhb(world, camera, s);
+    SlhbRun const expected = render_small(world, camera, s);
     expect_same_picture(render_with_kernels(S, world, camera, s), expected, "lens");
     camera.aperture_radius_m = 0;
-    EXPECT_NE(render_with_slhb(world, camera, s).result.picture.find("depth")->data,
+    EXPECT_NE(render_small(world, camera, s).result.picture.find("depth")->data,
               expected.result.picture.find("depth")->data);
 }
 LIGHTWELL_TEST_BOTH(KernelRender, LensesAreThoseOfTheCpu, check_lens);
@@ -250,18 +249,14 @@ TEST(KernelRender, WhatKernelsLackIsRefused)
     };
     refused(orthographic({0, 0, 1}, {0, 0, 0}, 1), settings_of(1, 1));
     RenderSettings cone = settings_of(1, 1), gather = settings_of(1, 1), device = settings_of(1, 1);
-    cone.slhb.cone = 1;
+    cone.of<SlhbSettings>().cone = 1;
     refused(room_camera(), cone);
-    gather.slhb.gather = true;
+    gather.of<SlhbSettings>().gather = true;
     refused(room_camera(), gather);
-    RenderSettings rays = settings_of(1, 1), shadow_rays = settings_of(1, 1);
-    rays.slhb.look_ups = LookUps::none;
-    refused(room_camera(), rays);
-    shadow_rays.slhb.shadows = Shadows::rays;
-    refused(room_camera(), shadow_rays);
     if (device_present()) return;
+    Report report;
     device.space = Space::device;
-    EXPECT_THROW(render_with_slhb(world, room_camera(), device), InputError);
+    EXPECT_THROW(render_slhb(world, room_camera(), device, {}, {}, report), InputError);
 }
 
 } // namespace

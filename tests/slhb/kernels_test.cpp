@@ -1,7 +1,7 @@
 // Hit buffers and queries as kernels, on the host and on the device, against the CPU's own forms.
 
-#include "gi/methods/slhb/hit_buffer/build_hit_buffer.h"
-#include "gi/methods/slhb/hit_buffer/query_batch.h"
+#include "gi/hit_buffers/build_hit_buffer.h"
+#include "gi/hit_buffers/query_batch.h"
 #include "tests/raster/plain_raster.h"
 #include "tests/support/closed_mesh.h"
 #include "tests/support/on_device.h"

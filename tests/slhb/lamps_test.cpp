@@ -1,4 +1,4 @@
-#include "gi/methods/slhb/lights/light_points.h"
+#include "gi/hit_buffers/shadow_maps/light_points.h"
 #include "gi/scene/generate/figure.h"
 #include "gi/scene/motion/moving_world.h"
 #include "tests/support/scenes.h"

@@ -119,7 +119,7 @@ void expect_no_bias(World const& world, Camera const& camera, std::string const&
         truth.add(render_reference(world, camera, s, stop, {}, lost).picture);
         s.paths = paths;
         s.seed = std::uint64_t(100 + k);
-        SlhbRun const run = render_with_slhb(world, camera, s);
+        SlhbRun const run = render_small(world, camera, s);
         found.add(run.result.picture);
         escaped += run.counts.at("hit-buffer queries");
     }

@@ -105,12 +105,12 @@ TEST(LensOfBothMethods, GivesThePictureOfTheReference)
     camera.aperture_radius_m = 0.15;
     camera.focus_distance_m = 1.9; // the wall behind
     RenderSettings s = small_settings(48, 256, 2);
-    s.slhb.resolution = 96;
+    s.of<SlhbSettings>().resolution = 96;
     Report report;
     Picture const expected = render_reference(world, camera, s, {}, {}, report).picture,
-                  found = render_with_slhb(world, camera, s).result.picture;
+                  found = render_small(world, camera, s).result.picture;
     camera.aperture_radius_m = 0;
-    Picture const sharp = render_with_slhb(world, camera, s).result.picture;
+    Picture const sharp = render_small(world, camera, s).result.picture;
     EXPECT_LT(block_distance(found, expected), 0.03 * mean_of(expected).mean);
     EXPECT_GT(block_distance(sharp, expected), 3 * block_distance(found, expected));
 }

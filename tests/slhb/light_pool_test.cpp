@@ -1,6 +1,6 @@
 // Light samples from a pool: what they bring in the mean is what light sampling brings.
 
-#include "gi/methods/slhb/lights/light_pool.h"
+#include "gi/methods/paths/light_pool.h"
 
 #include "gi/core/rng.h"
 #include "tests/slhb/slhb_render.h"
@@ -121,7 +121,7 @@ TEST(LightPool, ManyLampsOfOnePlace)
     }
     RenderSettings s = small_settings(16, 4096, 0);
     double const seen =
-        mean_of(render_with_slhb(world, orthographic({0, 1, 0}, {0, 0, 0}, 0.02), s).result.picture).mean;
+        mean_of(render_small(world, orthographic({0, 1, 0}, {0, 0, 0}, 0.02), s).result.picture).mean;
     EXPECT_NEAR(seen, 0.5 / M_PI * truth, 0.01 * truth * 0.5 / M_PI);
 }
 

@@ -2,8 +2,8 @@
 
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/registry.h"
-#include "gi/methods/slhb/frames.h"
-#include "gi/methods/slhb/hit_buffer/motion.h"
+#include "tests/slhb/slhb_render.h"
+#include "gi/methods/paths/motion.h"
 #include "gi/scene/generate/figure.h"
 #include "gi/scene/generate/generate.h"
 #include "tests/support/scenes.h"
@@ -29,8 +29,8 @@ RenderSettings one_path()
     s.width = s.height = 96;
     s.paths = 1;
     s.bounces = 1;
-    s.slhb.schedule = Schedule::streamed;
-    s.slhb.resolution = 48;
+    s.of<SlhbSettings>().schedule = Schedule::streamed;
+    s.of<SlhbSettings>().resolution = 48;
     return s;
 }
 

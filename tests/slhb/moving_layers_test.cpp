@@ -1,6 +1,6 @@
 #include "gi/core/rng.h"
-#include "gi/methods/slhb/directions/axis_set.h"
-#include "gi/methods/slhb/directions/directions.h"
+#include "gi/hit_buffers/directions/axis_set.h"
+#include "gi/hit_buffers/directions/directions.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Where things only vanish, the picture without them is that of all its paths in its own world, in every bit and
 // layer, though only those are traced that what moves may count in.
 
-#include "gi/methods/slhb/frames.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/scene/generate/generate.h"
 #include "tests/slhb/slhb_render.h"
 
@@ -83,10 +83,10 @@ protected:
         joint.nodes[node_].driven = true;
         scene_ = std::make_shared<Scene const>(std::move(joint));
         settings_ = small_settings(40, 1, 3);
-        settings_.slhb.resolution = 32;
-        settings_.slhb.light_samples = 4;
-        settings_.slhb.fresh_light_samples = 2;
-        settings_.slhb.shadow_resolution = 32;
+        settings_.of<SlhbSettings>().resolution = 32;
+        settings_.of<SlhbSettings>().light_samples = 4;
+        settings_.of<SlhbSettings>().fresh_light_samples = 2;
+        settings_.of<SlhbSettings>().shadow_resolution = 32;
     }
     Pose pose(double time_s, PairSide side) const
     {
@@ -101,10 +101,10 @@ protected:
     {
         MovingWorld world(scene_, 0, report);
         Camera const eye = look_at({-0.6, 0.1, 0.95}, {0.2, -0.6, 0}, 80);
-        auto const frames = start_slhb_frames(world, eye, settings_, report);
+        auto const frames = start_frames_as_set(world, eye, settings_, report);
         std::vector<PairResult> results;
         for (int k = 0; k < 3; ++k)
-            results.push_back(frames->pair(
+            results.push_back(ask<PairFrames>(*frames)->pair(
                 {eye, 40, 40}, {k == 1 ? 1u : 3u, difference},
                 [&](PairSide side) { return world.advance(pose(k * GetParam().time_step_s, side)); }, {}));
         return results;
@@ -139,8 +139,8 @@ void expect_same(Picture const& a, Picture const& b, std::string const& what)
 TEST_P(InPlace, GivesTheBitsOfBothWorlds)
 {
     for (Schedule const schedule : {Schedule::stored, Schedule::temporal}) {
-        settings_.slhb.schedule = schedule;
-        if (schedule == Schedule::temporal) settings_.slhb.axes = 8, settings_.slhb.fresh_axes = 2;
+        settings_.of<SlhbSettings>().schedule = schedule;
+        if (schedule == Schedule::temporal) settings_.of<SlhbSettings>().axes = 8, settings_.of<SlhbSettings>().fresh_axes = 2;
         Report report, whole_report;
         auto const quick = frames(PairDifference::vanishing, report),
                    whole = frames(PairDifference::anything, whole_report);

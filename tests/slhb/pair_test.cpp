@@ -2,8 +2,8 @@
 // equal in every bit.
 
 #include "gi/core/error.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/slhb/frames.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -24,8 +24,8 @@ protected:
         room.nodes[node_].driven = true;
         scene_ = std::make_shared<Scene const>(std::move(room));
         settings_ = small_settings(48, 1, 3);
-        settings_.slhb.schedule = GetParam();
-        settings_.slhb.resolution = 48;
+        settings_.of<SlhbSettings>().schedule = GetParam();
+        settings_.of<SlhbSettings>().resolution = 48;
     }
     Pose pose(PairSide side) const
     {
@@ -40,15 +40,15 @@ protected:
     PairResult rendered(std::uint32_t paths, PairSide first = PairSide::with, PairSide second = PairSide::without)
     {
         MovingWorld world(scene_, 0, report_);
-        auto const frames = start_slhb_frames(world, camera(), settings_, report_);
-        return frames->pair(
+        auto const frames = start_frames_as_set(world, camera(), settings_, report_);
+        return ask<PairFrames>(*frames)->pair(
             view(), {paths},
             [&](PairSide side) { return world.advance(pose(side == PairSide::with ? first : second)); }, stop_);
     }
     std::vector<float> alone(PairSide side, std::uint32_t paths)
     {
         MovingWorld world(scene_, 0, report_);
-        auto const frames = start_slhb_frames(world, camera(), settings_, report_);
+        auto const frames = start_frames_as_set(world, camera(), settings_, report_);
         frames->changed(world.advance(pose(side)));
         FrameView const v = view();
         return frames->views({&v, 1}, paths, VertexSharing::none, stop_)[0].picture.find("color")->data;
@@ -122,7 +122,7 @@ TEST(PairsOfOtherMethods, AreRefused)
     MovingWorld world(std::make_shared<Scene const>(box_with_block_and_lamp()), 0, report);
     Camera const eye = look_at({-0.6, 0.1, 0.9}, {0, 0, 0}, 60);
     auto const frames = start_reference_frames(world, eye, small_settings(8, 1, 1), report);
-    EXPECT_THROW(frames->pair({eye, 8, 8}, {}, [](PairSide) { return Changes{}; }, {}), InputError);
+    EXPECT_EQ(ask<PairFrames>(*frames), nullptr);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // Shares of the paths of a picture, rendered apart and added, are the picture that one process renders.
 
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/slhb/kernels/kernel_render.h"
 #include "gi/render/accumulator.h"
@@ -78,7 +79,7 @@ TEST(PathShare, OfSlhbWithEverySchedule)
 {
     for (Schedule const schedule : {Schedule::streamed, Schedule::stored, Schedule::temporal}) {
         RenderSettings s = small_settings(24, 16, 4);
-        s.slhb.schedule = schedule;
+        s.of<SlhbSettings>().schedule = schedule;
         SCOPED_TRACE(int(schedule));
         expect_shares_make_the_whole(s, with(render_slhb));
     }
@@ -87,10 +88,10 @@ TEST(PathShare, OfSlhbWithEverySchedule)
 TEST(PathShare, OfSlhbWithLampsThatStay)
 {
     RenderSettings s = small_settings(24, 16, 4);
-    s.slhb.schedule = Schedule::temporal;
-    s.slhb.light_samples = 4;
-    s.slhb.fresh_light_samples = 1;
-    s.slhb.interleave = 2;
+    s.of<SlhbSettings>().schedule = Schedule::temporal;
+    s.of<SlhbSettings>().light_samples = 4;
+    s.of<SlhbSettings>().fresh_light_samples = 1;
+    s.of<PathsSettings>().interleave = 2;
     expect_shares_make_the_whole(s, with(render_slhb));
 }
 

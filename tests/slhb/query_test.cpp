@@ -1,7 +1,7 @@
 // What a query makes of surfaces that its columns meet from behind: insides of what is solid, and sheets.
 
 #include "gi/core/rng.h"
-#include "gi/methods/slhb/hit_buffer/query_batch.h"
+#include "gi/hit_buffers/query_batch.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

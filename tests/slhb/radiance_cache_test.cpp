@@ -1,10 +1,9 @@
 // The radiance cache: cells know what they were taught, and pictures of many passes keep their light but for a
 // little blur, whatever moves, on any number of threads and at any size of the world.
 
-#include "gi/methods/slhb/tracer/radiance_cache.h"
+#include "gi/hit_buffers/settings.h"
+#include "gi/methods/paths/radiance_cache.h"
 
-#include "gi/methods/slhb/frames.h"
-#include "gi/methods/slhb/settings.h"
 #include "gi/methods/slhb/slhb.h"
 #include "gi/render/accumulator.h"
 #include "gi/scene/generate/generate.h"
@@ -21,7 +20,7 @@ constexpr int kCachedSize = 64;
 RenderSettings settings_of_cache()
 {
     RenderSettings s = small_settings(kCachedSize, 1, 3);
-    s.slhb.cache = RadianceCaching::on;
+    s.of<PathsSettings>().cache = RadianceCaching::on;
     return s;
 }
 
@@ -35,7 +34,7 @@ Seen see(MovingWorld const& world, Camera const& camera, VertexSharing sharing, 
 {
     Report report;
     FrameView const view{camera, kCachedSize, kCachedSize};
-    auto result = start_slhb_frames(world, camera, s, report)->views({&view, 1}, paths, sharing, {});
+    auto result = start_frames_as_set(world, camera, s, report)->views({&view, 1}, paths, sharing, {});
     return {std::move(result[0].picture),
             report.counts().at("paths that ended in the radiance cache") / double(paths),
             report.counts().at("cells of the radiance cache")};
@@ -207,10 +206,10 @@ TEST(RadianceCache, BringsTheSameLightByLookUps)
 {
     MovingWorld const world = box();
     RenderSettings s = settings_of_cache();
-    s.slhb.schedule = Schedule::stored;
-    s.slhb.directions = "icosahedron:320";
-    s.slhb.resolution = 64;
-    s.slhb.shadow_resolution = 64;
+    s.of<SlhbSettings>().schedule = Schedule::stored;
+    s.of<SlhbSettings>().directions = "icosahedron:320";
+    s.of<SlhbSettings>().resolution = 64;
+    s.of<SlhbSettings>().shadow_resolution = 64;
     Seen const exact = see(world, in_box(), VertexSharing::none, 256, s),
                cached = see(world, in_box(), VertexSharing::cached, 256, s);
     EXPECT_GT(cached.ended, 0.3 * kCachedSize * kCachedSize);
@@ -269,7 +268,7 @@ TEST(RadianceCache, ChangesOfLightAreSeenAtOnce)
     Report report;
     RenderSettings const s = settings_of_cache();
     FrameView const view{in_box(), kCachedSize, kCachedSize};
-    auto const frames = start_slhb_frames(world, view.camera, s, report);
+    auto const frames = start_frames_as_set(world, view.camera, s, report);
     auto const light = [&] { return frames->views({&view, 1}, 8, VertexSharing::cached, {})[0].picture; };
     light();
     double const before = report.counts().at("cells of the radiance cache");
@@ -289,7 +288,7 @@ TEST(RadianceCache, AFrameIsTheSameByItself)
     s.paths = 2;
     auto const second = [&](int before) {
         Report report;
-        auto const frames = start_slhb_frames(world, in_box(), s, report);
+        auto const frames = start_frames_as_set(world, in_box(), s, report);
         for (int k = 0; k < before; ++k) frames->frame(in_box(), {}, {}, {});
         return report.counts()["paths that ended in the radiance cache"];
     };
@@ -303,13 +302,13 @@ TEST(RadianceCache, IsForPicturesThatTimeDecides)
     World const world = world_of(box_with_block_and_lamp());
     TriangleSoup const soup = make_soup(world);
     RenderSettings asked = small_settings(kCachedSize, 64, 3);
-    auto const chosen = [&] { return choose_settings(asked, world, soup, in_box()).cache; };
+    auto const chosen = [&] { return choose_settings(asked, world, soup).of<PathsSettings>().cache; };
     EXPECT_EQ(chosen(), RadianceCaching::off);
     asked.budget_s = 1;
     EXPECT_EQ(chosen(), RadianceCaching::on);
-    asked.slhb.cache = RadianceCaching::off;
+    asked.of<PathsSettings>().cache = RadianceCaching::off;
     EXPECT_EQ(chosen(), RadianceCaching::off);
-    asked.slhb.cache = RadianceCaching::on;
+    asked.of<PathsSettings>().cache = RadianceCaching::on;
     asked.budget_s = 0;
     EXPECT_EQ(chosen(), RadianceCaching::on);
     asked.bounces = 0;

@@ -1,9 +1,12 @@
-// What the plan of slhb chooses between look-ups and exact rays, and that its choice is right where look-ups were
-// not.
+// What the method auto chooses between look-ups and exact rays, and that its choice is right where look-ups were not.
 
+#include "gi/hit_buffers/settings.h"
+#include "gi/methods/automatic/automatic.h"
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/slhb/hit_buffer/look_up_trust.h"
-#include "gi/methods/slhb/settings.h"
+#include "gi/methods/registry.h"
+#include "gi/methods/slhb_0_1/slhb_0_1.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/methods/paths/look_up_trust.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <chrono>
@@ -60,7 +63,7 @@ TEST(RayPlan, RoomOnAWidePlane)
         StopRequest stop;
         Report report;
         Picture const truth = render_reference(world, kInRoom, s, stop, {}, report).picture;
-        Picture const seen = render_with_slhb(world, kInRoom, s).result.picture;
+        Picture const seen = render_small(world, kInRoom, s).result.picture;
         for (char const* const layer : {"L1", "L2"}) {
             double const t = mean_of(truth, layer).mean;
             EXPECT_NEAR(mean_of(seen, layer).mean, t, 0.01 * t) << layer << ", plane of " << reach << " m";
@@ -82,41 +85,74 @@ TEST(RayPlan, LampsInMirrors)
         StopRequest stop;
         Report report;
         double const truth = mean_of(render_reference(world, camera, s, stop, {}, report).picture).mean;
-        for (LookUps const l : {LookUps::all, LookUps::none}) {
-            s.slhb.look_ups = l;
-            EXPECT_NEAR(mean_of(render_with_slhb(world, camera, s).result.picture).mean, truth, 0.01 * truth)
-                << bounces << " bounces, look-ups " << int(l);
-        }
+        for (auto const& [name, render] : {std::pair{"slhb", render_slhb}, std::pair{"paths", render_paths}})
+            EXPECT_NEAR(mean_of(render(world, camera, s, stop, {}, report).picture).mean, truth, 0.01 * truth)
+                << name << ", bounces " << bounces;
     }
 }
 
-TEST(RayPlan, DoesWhatIsAskedFor)
+TEST(RayPlan, ChoosesLookUpsOnlyWhereABvhTakesTooLongAndTheyAreRight)
 {
-    World const world = world_of(room_on_a_plane(5000));
+    World const wide = world_of(room_on_a_plane(5000)), world = world_of(generate_boxes(200000, 1));
+    Camera const camera = look_at({0, 0, 3}, {0, 0, 0}, 50);
+    RenderSettings asked = small_settings(64, 16, 3);
+    EXPECT_EQ(choose_method(world, asked, camera, RenderUse::picture).method, "paths");
+    asked.budget_s = 1e-3; // a BVH takes about 0.08 s
+    MethodChoice const choice = choose_method(world, asked, camera, RenderUse::picture);
+    EXPECT_EQ(choice.method, "slhb");
+    EXPECT_NE(choice.why.text.find("a BVH takes about 0.96 s"), std::string::npos) << choice.why.text;
+    EXPECT_EQ(choose_method(world, asked, camera, RenderUse::frames).method, "paths");
+    asked.budget_s = 1e-9;
+    EXPECT_EQ(choose_method(wide, asked, kInRoom, RenderUse::picture).method, "paths");
+    asked.space = Space::device;
+    EXPECT_EQ(choose_method(world, asked, camera, RenderUse::picture).method, "reference");
+}
+
+TEST(RayPlan, ABudgetChoosesTheCacheAndRoulette)
+{
+    World const world = world_of(room_on_a_plane(50));
     TriangleSoup const soup = make_soup(world);
     RenderSettings asked = small_settings(64, 16, 3);
-    SlhbSettings s = choose_settings(asked, world, soup, kInRoom);
-    EXPECT_EQ(s.look_ups, LookUps::none);
-    EXPECT_EQ(s.shadows, Shadows::rays);
-    EXPECT_EQ(s.roulette, 0);
+    EXPECT_EQ(choose_settings(asked, world, soup).of<PathsSettings>().roulette, 0);
     asked.budget_s = 1;
-    EXPECT_GT(choose_settings(asked, world, soup, kInRoom).roulette, 0);
-    asked.slhb.schedule = Schedule::streamed;
-    s = choose_settings(asked, world, soup, kInRoom);
-    EXPECT_EQ(s.look_ups, LookUps::all);
-    EXPECT_EQ(s.shadows, Shadows::maps);
-    asked.slhb.shadows = Shadows::rays;
-    EXPECT_EQ(choose_settings(asked, world, soup, kInRoom).shadows, Shadows::rays);
+    PathsSettings const paths = choose_settings(asked, world, soup).of<PathsSettings>(),
+                        slhb = choose_settings(with(kSlhb, asked), world, soup).of<PathsSettings>();
+    EXPECT_EQ(paths.roulette, 3);
+    EXPECT_EQ(paths.cache, RadianceCaching::on);
+    EXPECT_EQ(slhb.roulette, 2);
+    EXPECT_EQ(slhb.cache, RadianceCaching::off);
+}
+
+/// What version 0.1 called slhb is rays or look-ups, by its options.
+TEST(RayPlan, SlhbOf01DoesWhatItDid)
+{
+    World const world = world_of(box_with_block_and_lamp());
+    Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
+    StopRequest stop;
+    Report report;
+    auto const same = [&](RenderFunction now, std::vector<std::pair<char const*, char const*>> const& options) {
+        RenderSettings s = small_settings(16, 2, 2);
+        for (auto const& [name, value] : options) render_option(name).set(s, value, name);
+        return render_slhb_0_1(world, camera, s, stop, {}, report).picture.find("color")->data ==
+               now(world, camera, s, stop, {}, report).picture.find("color")->data;
+    };
+    EXPECT_TRUE(same(render_paths, {}));
+    EXPECT_TRUE(same(render_slhb, {{"look-ups", "all"}, {"shadows", "maps"}}));
+    EXPECT_TRUE(same(render_slhb, {{"axes", "4"}}));
+    EXPECT_TRUE(same(render_slhb, {{"hit-buffer", "32"}}));
+    EXPECT_TRUE(same(render_slhb_shadow_rays, {{"look-ups", "all"}, {"shadows", "rays"}}));
+    EXPECT_TRUE(same(render_paths_shadow_maps, {{"light-samples", "4"}}));
+    EXPECT_FALSE(same(render_slhb, {}));
 }
 
 TEST(RayPlan, BuffersStayWithinTheirMemory)
 {
     World const world = world_of(box_with_block_and_lamp());
     RenderSettings s = small_settings(8, 4, 2);
-    s.slhb.schedule = Schedule::stored;
-    s.slhb.resolution = 256;
-    s.slhb.memory_mib = 64; // 160 axes of 256 x 256 take about 500
-    SlhbRun const run = render_with_slhb(world, look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70), s);
+    s.of<SlhbSettings>().schedule = Schedule::stored;
+    s.of<SlhbSettings>().resolution = 256;
+    s.of<SlhbSettings>().memory_mib = 64; // 160 axes of 256 x 256 take about 500
+    SlhbRun const run = render_small(world, look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70), s);
     std::string const what = "times the resolution of hit buffers was halved to stay within --memory";
     ASSERT_EQ(run.losses.count(what), 1u);
     EXPECT_GE(run.losses.at(what).count, 1u);
@@ -128,23 +164,23 @@ TEST(RayPlan, LongBuildingCanBeInterrupted)
     Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
     Report report;
     RenderSettings s = small_settings(8, 4, 2);
-    s.slhb.schedule = Schedule::stored;
-    s.slhb.resolution = 16; // takes no time: there is a picture
+    s.of<SlhbSettings>().schedule = Schedule::stored;
+    s.of<SlhbSettings>().resolution = 16; // takes no time: there is a picture
     std::uint32_t paths = 0;
     auto const last = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (paths == 0 && std::chrono::steady_clock::now() < last) { // again where the machine is busy for 80 ms
         StopRequest at_once;
         at_once.request();
         try {
-            paths = render_slhb(world, camera, s, at_once, {}, report).paths;
+            paths = render_as_set(world, camera, s, at_once, {}, report).paths;
         } catch (Interrupted const&) {
         }
     }
     EXPECT_EQ(paths, 1u);
     StopRequest stop;
     stop.request();
-    s.slhb.resolution = 1024; // takes seconds
-    EXPECT_THROW(render_slhb(world, camera, s, stop, {}, report), Interrupted);
+    s.of<SlhbSettings>().resolution = 1024; // takes seconds
+    EXPECT_THROW(render_as_set(world, camera, s, stop, {}, report), Interrupted);
 }
 
 } // namespace

@@ -1,7 +1,6 @@
 // Motion blur, by both methods: while the shutter is open, every path sees a moment of its own.
 
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/slhb/frames.h"
 #include "gi/render/pass_samples.h"
 #include "tests/slhb/blur_shapes.h"
 #include "tests/slhb/slhb_render.h"
@@ -144,16 +143,16 @@ TEST(ShutterOfBothMethods, GivesThePictureOfTheReference)
     MovingWorld world(std::make_shared<Scene const>(std::move(scene)), 0, report);
     Camera const camera = look_at({0, 0, 0.95}, {0, -0.4, 0}, 80);
     RenderSettings s = small_settings(48, 256, 2);
-    s.slhb.resolution = 96;
+    s.of<SlhbSettings>().resolution = 96;
     Moments const moments = [&](std::uint32_t pass) {
         return Moment{world.advance(moment_of_pass(s.seed, pass)), camera};
     };
     Picture const expected =
         start_reference_frames(world, camera, s, report)->frame(camera, {}, {}, moments).picture;
     world.advance(0);
-    Picture const found = start_slhb_frames(world, camera, s, report)->frame(camera, {}, {}, moments).picture;
+    Picture const found = start_frames_as_set(world, camera, s, report)->frame(camera, {}, {}, moments).picture;
     world.advance(0.5);
-    Picture const frozen = start_slhb_frames(world, camera, s, report)->frame(camera, {}, {}).picture;
+    Picture const frozen = start_frames_as_set(world, camera, s, report)->frame(camera, {}, {}).picture;
     double const mean = mean_of(expected).mean;
     EXPECT_LT(block_distance(found, expected), 0.03 * mean);
     EXPECT_GT(block_distance(frozen, expected), 3 * block_distance(found, expected));

@@ -1,6 +1,10 @@
 #pragma once
-// Rendering small scenes with the method slhb.
+// Rendering small scenes with the method whose options a test sets: slhb with any of hit buffers, paths_shadow_maps with
+// any of shadow maps alone, else paths.
 
+#include "gi/hit_buffers/options.h"
+#include "gi/methods/paths/choose.h"
+#include "gi/methods/paths/paths.h"
 #include "gi/methods/slhb/slhb.h"
 #include "tests/support/scenes.h"
 
@@ -24,11 +28,29 @@ inline RenderSettings small_settings(int size, std::uint32_t paths, int bounces)
     return s;
 }
 
-inline SlhbRun render_with_slhb(World const& world, Camera const& camera, RenderSettings const& settings)
+inline PathAlgorithm algorithm_as_set(RenderSettings const& s)
+{
+    bool look_ups = s.of<SlhbSettings>().exact.any(), maps = look_ups;
+    for (RenderOption const& o : hit_buffer_options())
+        if (o.name != "memory" && o.get(s) != o.get({})) (o.group == "Shadow maps" ? maps : look_ups) = true;
+    return {look_ups ? SurfacesBy::look_ups : SurfacesBy::rays, look_ups || maps ? ShadowsBy::maps : ShadowsBy::rays};
+}
+inline RenderResult render_as_set(World const& world, Camera const& camera, RenderSettings const& s,
+                                  StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_by("test", world, camera, with(algorithm_as_set(s), s), stop, progress, report);
+}
+inline std::unique_ptr<FrameRenderer> start_frames_as_set(MovingWorld const& world, Camera const& camera,
+                                                          RenderSettings const& s, Report& report)
+{
+    return start_frames_by(world, camera, with(algorithm_as_set(s), s), report);
+}
+
+inline SlhbRun render_small(World const& world, Camera const& camera, RenderSettings const& settings)
 {
     StopRequest stop;
     Report report;
-    SlhbRun run{render_slhb(world, camera, settings, stop, {}, report), {}, {}};
+    SlhbRun run{render_as_set(world, camera, settings, stop, {}, report), {}, {}};
     run.losses = report.losses();
     run.counts = report.counts();
     EXPECT_EQ(run.losses.count("path terms that were not finite, dropped"), 0u);

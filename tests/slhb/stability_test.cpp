@@ -1,6 +1,7 @@
 // Hard inputs: the right picture or a message, and never a value that is not finite (render_with_slhb checks).
 
 #include "gi/core/error.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/reference/reference.h"
 #include "tests/slhb/slhb_render.h"
 
@@ -17,7 +18,7 @@ void expect_like_reference(World const& world, Camera const& camera, double tole
     StopRequest stop;
     Report report;
     double const truth = mean_of(render_reference(world, camera, s, stop, {}, report).picture).mean;
-    EXPECT_NEAR(mean_of(render_with_slhb(world, camera, s).result.picture).mean, truth, tolerance * truth + 1e-12)
+    EXPECT_NEAR(mean_of(render_small(world, camera, s).result.picture).mean, truth, tolerance * truth + 1e-12)
         << what;
 }
 
@@ -57,11 +58,11 @@ TEST(SlhbStability, FarFromTheOrigin)
 TEST(SlhbStability, EmptySceneIsBlackAndEmptySkyIsSky)
 {
     Camera const camera = look_at({0, 0, 1}, {0, 0, 0}, 45);
-    EXPECT_EQ(mean_of(render_with_slhb(world_of(Scene{}), camera, small_settings(8, 4, 2)).result.picture).mean,
+    EXPECT_EQ(mean_of(render_small(world_of(Scene{}), camera, small_settings(8, 4, 2)).result.picture).mean,
               0);
     Scene sky;
     set_environment(sky, vec3{2});
-    EXPECT_NEAR(mean_of(render_with_slhb(world_of(sky), camera, small_settings(8, 4, 2)).result.picture).mean, 2,
+    EXPECT_NEAR(mean_of(render_small(world_of(sky), camera, small_settings(8, 4, 2)).result.picture).mean, 2,
                 1e-5);
 }
 
@@ -126,9 +127,9 @@ TEST(SlhbStability, ThinWallsKeepLightOut)
     World const world = world_of(scene);
     RenderSettings const s = small_settings(24, 256, 4);
     double const lit =
-        mean_of(render_with_slhb(world, look_at({-1.8, 0.5, 0.9}, {-1, -0.5, -0.3}, 70), s).result.picture).mean;
+        mean_of(render_small(world, look_at({-1.8, 0.5, 0.9}, {-1, -0.5, -0.3}, 70), s).result.picture).mean;
     Picture const other =
-        render_with_slhb(world, look_at({1.8, 0.5, 0.9}, {0.2, -0.5, -0.3}, 70), s).result.picture;
+        render_small(world, look_at({1.8, 0.5, 0.9}, {0.2, -0.5, -0.3}, 70), s).result.picture;
     double const dark = mean_of(other).mean;
     EXPECT_LT(mean_of(other, "L1").mean, 1e-3 * lit);
     EXPECT_GT(lit, 0.1);
@@ -140,10 +141,10 @@ TEST(SlhbStability, AxisAlignedGeometrySeenEdgeOn)
     // Stored axes along x, y and z: walls are seen exactly edge-on.
     World const world = world_of(room(1, vec3{0}));
     RenderSettings s = small_settings(24, 256, 2);
-    double const truth = mean_of(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture).mean;
-    s.slhb.schedule = Schedule::stored;
-    s.slhb.directions = "octahedron:128";
-    EXPECT_NEAR(mean_of(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture).mean, truth,
+    double const truth = mean_of(render_small(world, room_camera(1, dvec3{0}), s).result.picture).mean;
+    s.of<SlhbSettings>().schedule = Schedule::stored;
+    s.of<SlhbSettings>().directions = "octahedron:128";
+    EXPECT_NEAR(mean_of(render_small(world, room_camera(1, dvec3{0}), s).result.picture).mean, truth,
                 0.03 * truth);
 }
 
@@ -159,10 +160,10 @@ TEST(SlhbStability, LightsOnSurfacesOutsideAndCamerasInsideGeometry)
     outside.intensity = vec3{100};
     add_light(scene, outside);
     World const world = world_of(scene);
-    render_with_slhb(world, room_camera(1, dvec3{0}), small_settings(16, 32, 2));
+    render_small(world, room_camera(1, dvec3{0}), small_settings(16, 32, 2));
     // Inside of the box: dark but for what nothing lights.
     double const inside =
-        mean_of(render_with_slhb(world, look_at({0, -0.5, 0}, {0, -0.9, 0.1}, 60), small_settings(16, 32, 2))
+        mean_of(render_small(world, look_at({0, -0.5, 0}, {0, -0.9, 0.1}, 60), small_settings(16, 32, 2))
                     .result.picture)
             .mean;
     EXPECT_LT(inside, 1e-3);
@@ -186,24 +187,24 @@ TEST(SlhbStability, ThreadsAndInterruptionsDoNotChangeThePicture)
     World const world = world_of(room(1, vec3{0}));
     RenderSettings s = small_settings(80, 5, 3);
     s.threads = 1;
-    Picture const one = render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture;
+    Picture const one = render_small(world, room_camera(1, dvec3{0}), s).result.picture;
     s.threads = 2;
-    s.slhb.schedule = Schedule::temporal;
-    Picture const whole = render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture;
+    s.of<SlhbSettings>().schedule = Schedule::temporal;
+    Picture const whole = render_small(world, room_camera(1, dvec3{0}), s).result.picture;
     std::filesystem::path const state = std::filesystem::temp_directory_path() / "lightwell_slhb_test.state";
     std::filesystem::remove(state);
     s.checkpoint = state;
     StopRequest stop;
     Report report;
     auto const after_the_first_pass = [&](RenderStatus const&) { stop.request(); };
-    RenderResult const part = render_slhb(world, room_camera(1, dvec3{0}), s, stop, after_the_first_pass, report);
+    RenderResult const part = render_as_set(world, room_camera(1, dvec3{0}), s, stop, after_the_first_pass, report);
     ASSERT_EQ(part.end, RenderEnd::interrupted);
     s.resume = true;
-    EXPECT_EQ(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data,
+    EXPECT_EQ(render_small(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data,
               whole.find("color")->data);
     std::filesystem::remove(state);
     s = small_settings(80, 5, 3);
-    EXPECT_EQ(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data,
+    EXPECT_EQ(render_small(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data,
               one.find("color")->data);
 }
 

@@ -2,7 +2,7 @@
 // has the same error for less work.
 
 #include "gi/filter/reused_light.h"
-#include "gi/methods/slhb/frames.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/metrics/metrics.h"
 #include "gi/render/accumulator.h"
 #include "gi/scene/generate/generate.h"
@@ -27,9 +27,9 @@ Camera view_eye(double aside = 0)
 RenderSettings settings_of_views(int bounces)
 {
     RenderSettings s = small_settings(64, 1, bounces);
-    s.slhb.schedule = Schedule::stored;
-    s.slhb.directions = "icosahedron:80";
-    s.slhb.resolution = 64;
+    s.of<SlhbSettings>().schedule = Schedule::stored;
+    s.of<SlhbSettings>().directions = "icosahedron:80";
+    s.of<SlhbSettings>().resolution = 64;
     return s;
 }
 
@@ -44,11 +44,11 @@ TEST(Views, AreThePicturesThatTheyWouldBeAlone)
     MovingWorld const world(view_room(), 0, report);
     RenderSettings s = settings_of_views(0);
     std::vector<FrameView> const all{{view_eye(), 64, 64}, {view_eye(0.5), 40, 56}, {view_eye(-0.2), 64, 30}};
-    auto const together = start_slhb_frames(world, view_eye(), s, report)->views(all, 3, VertexSharing::exact, {});
+    auto const together = start_frames_as_set(world, view_eye(), s, report)->views(all, 3, VertexSharing::exact, {});
     ASSERT_EQ(together.size(), 3u);
     for (std::size_t k = 0; k < all.size(); ++k) {
         auto const alone =
-            start_slhb_frames(world, view_eye(), s, report)->views({&all[k], 1}, 3, VertexSharing::exact, {});
+            start_frames_as_set(world, view_eye(), s, report)->views({&all[k], 1}, 3, VertexSharing::exact, {});
         EXPECT_EQ(color(together[k]), color(alone[0])) << k;
         EXPECT_EQ(together[k].picture.width, all[k].width);
     }
@@ -60,7 +60,7 @@ TEST(Views, CanBeSampledAtTheMiddlesOfPixels)
     MovingWorld const world(view_room(), 0, report);
     std::vector<FrameView> views{{view_eye(), 64, 64}};
     auto const depth_moves = [&] {
-        auto const frames = start_slhb_frames(world, view_eye(), settings_of_views(0), report);
+        auto const frames = start_frames_as_set(world, view_eye(), settings_of_views(0), report);
         std::vector<float> const
             first = frames->views(views, 1, VertexSharing::exact, {})[0].picture.find("depth")->data,
             second = frames->views(views, 1, VertexSharing::exact, {})[0].picture.find("depth")->data;
@@ -82,9 +82,9 @@ TEST(Views, LightTakenFromAPartnerIsTheLightThere)
     std::vector<FrameView> const own{{view_eye(), 64, 64}, {view_eye(apart), 64, 64}};
     std::vector<FrameView> taking = own;
     taking[1].partner = 0;
-    auto const a = start_slhb_frames(world, view_eye(), s, report)->views(own, 256, VertexSharing::exact, {});
+    auto const a = start_frames_as_set(world, view_eye(), s, report)->views(own, 256, VertexSharing::exact, {});
     Report counted;
-    auto const b = start_slhb_frames(world, view_eye(), s, counted)->views(taking, 256, VertexSharing::exact, {});
+    auto const b = start_frames_as_set(world, view_eye(), s, counted)->views(taking, 256, VertexSharing::exact, {});
     double const share = counted.counts().at("share of pixels lit by a partner view");
     EXPECT_GT(share, 0.8);
     EXPECT_LT(share, 0.99); // what only the second eye sees is traced
@@ -110,8 +110,8 @@ TEST(Views, MirrorsAreTracedForEachEye)
     std::vector<FrameView> const own{{front, 48, 48}, {right, 48, 48}};
     std::vector<FrameView> taking = own;
     taking[1].partner = 0;
-    auto const a = start_slhb_frames(world, front, s, report)->views(own, 4, VertexSharing::exact, {});
-    auto const b = start_slhb_frames(world, front, s, report)->views(taking, 4, VertexSharing::exact, {});
+    auto const a = start_frames_as_set(world, front, s, report)->views(own, 4, VertexSharing::exact, {});
+    auto const b = start_frames_as_set(world, front, s, report)->views(taking, 4, VertexSharing::exact, {});
     EXPECT_EQ(b[1].picture.find("L0")->data, a[1].picture.find("L0")->data);
     EXPECT_GT(relmse_of(*a[1].picture.find("color"), *a[0].picture.find("color")), 1e-3); // they do differ
 }
@@ -123,7 +123,7 @@ TEST(Views, TellWhoseLightTheyTook)
     MovingWorld const world(view_room(), 0, report);
     RenderSettings const s = settings_of_views(1);
     std::vector<FrameView> const views{{view_eye(), 48, 40}, {view_eye(0.05), 64, 56, 0}};
-    auto const frames = start_slhb_frames(world, view_eye(), s, report);
+    auto const frames = start_frames_as_set(world, view_eye(), s, report);
     std::size_t told_of_one = 0;
     for (std::uint32_t const paths : {1u, 6u}) {
         auto const results = frames->views(views, paths, VertexSharing::exact, {});
@@ -162,7 +162,7 @@ TEST(Views, MayChangeFromFrameToFrame)
 {
     Report report;
     MovingWorld const world(view_room(), 0, report);
-    auto const frames = start_slhb_frames(world, view_eye(), settings_of_views(1), report);
+    auto const frames = start_frames_as_set(world, view_eye(), settings_of_views(1), report);
     std::vector<FrameView> views{{view_eye(), 32, 32}, {view_eye(0.1), 32, 32, 0}};
     EXPECT_EQ(frames->views(views, 1, VertexSharing::exact, {}).size(), 2u);
     views[1].width = 20;

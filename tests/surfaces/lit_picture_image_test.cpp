@@ -43,8 +43,8 @@ Picture rendered(World const& world, Camera const& camera, int size, std::uint32
     s.width = s.height = size;
     s.paths = paths;
     s.bounces = 3;
-    s.slhb.directions = "icosahedron:320";
-    s.slhb.resolution = 128;
+    s.of<SlhbSettings>().directions = "icosahedron:320";
+    s.of<SlhbSettings>().resolution = 128;
     Report report;
     return find_method("slhb").render(world, camera, s, {}, {}, report).picture;
 }

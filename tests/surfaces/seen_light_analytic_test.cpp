@@ -164,14 +164,15 @@ TEST_P(LeftOutLight, LightIsJustThatOfTheSurfacesSeen)
     RenderSettings s;
     s.width = s.height = kSize;
     s.bounces = 2;
-    s.slhb.schedule = Schedule::stored;
-    s.slhb.directions = "icosahedron:80";
-    s.slhb.resolution = 64;
+    s.of<SlhbSettings>().schedule = Schedule::stored;
+    s.of<SlhbSettings>().directions = "icosahedron:80";
+    s.of<SlhbSettings>().resolution = 64;
     Picture pictures[2];
     for (bool const out : {false, true}) {
         MovingWorld const world(scene, 0, report);
         auto const frames = find_method("slhb").frames(world, eye(), s, report);
-        ASSERT_TRUE(frames->leave_out_punctual(out));
+        ASSERT_NE(ask<PunctualLeftOut>(*frames), nullptr);
+        ask<PunctualLeftOut>(*frames)->leave_out_punctual(out);
         FrameView const v{eye(), kSize, kSize};
         pictures[out ? 1 : 0] = frames->views({&v, 1}, 256, VertexSharing::cached, {})[0].picture;
     }
@@ -202,7 +203,7 @@ TEST(LeftOut, OtherMethodsSayThatTheyCannot)
     MovingWorld const world(scene, 0, report);
     RenderSettings s;
     s.width = s.height = 8;
-    EXPECT_FALSE(find_method("reference").frames(world, eye(), s, report)->leave_out_punctual(true));
+    EXPECT_EQ(ask<PunctualLeftOut>(*find_method("reference").frames(world, eye(), s, report)), nullptr);
 }
 
 } // namespace

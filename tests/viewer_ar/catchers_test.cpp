@@ -32,10 +32,10 @@ PairPictures rendered(ProxySurface const& floor, gi::Material const& material, f
     ArProxy const plane{"floor", floor, ProxyPlane{{-0.6, 0, 0.6}, {1.2, 0, 0}, {0, 0, -1.2}}};
     gi::RenderSettings settings;
     settings.bounces = 4;
-    settings.slhb.directions = "icosahedron:80";
-    settings.slhb.resolution = 48;
-    settings.slhb.light_samples = 4;
-    settings.slhb.shadow_resolution = 64;
+    settings.of<gi::SlhbSettings>().directions = "icosahedron:80";
+    settings.of<gi::SlhbSettings>().resolution = 48;
+    settings.of<gi::SlhbSettings>().light_samples = 4;
+    settings.of<gi::SlhbSettings>().shadow_resolution = 64;
     PairRenderer renderer(join_scenes(scene_of(plane, report), ball(material), gi::dmat4(1)), settings, report);
     renderer.set_environment(sky(lamp));
     ar::CameraModel camera = synthetic_camera({40, 30}).model;

@@ -59,10 +59,10 @@ TEST(MovingLamp, IsFollowedInTheFrameThatShowsIt)
     session.render.paths = 32;
     session.render.denoise.denoiser = gi::Denoiser::none;
     session.render.resolution = 1;
-    session.render.settings.slhb.directions = "icosahedron:80";
-    session.render.settings.slhb.resolution = 32;
-    session.render.settings.slhb.light_samples = 8;
-    session.render.settings.slhb.shadow_resolution = 64;
+    session.render.settings.of<gi::SlhbSettings>().directions = "icosahedron:80";
+    session.render.settings.of<gi::SlhbSettings>().resolution = 32;
+    session.render.settings.of<gi::SlhbSettings>().light_samples = 8;
+    session.render.settings.of<gi::SlhbSettings>().shadow_resolution = 64;
     // Wide, so that a lamp at its borders stands beside the ball and not behind it.
     ArCamera camera;
     camera.model = {ar::LensModel::pinhole, {120, 90}, 35, 35, 59.5, 44.5, {}};

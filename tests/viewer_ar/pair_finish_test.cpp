@@ -39,10 +39,10 @@ gi::RenderSettings quick_settings()
 {
     gi::RenderSettings settings;
     settings.bounces = 1;
-    settings.slhb.directions = "icosahedron:80";
-    settings.slhb.resolution = 48;
-    settings.slhb.light_samples = 4;
-    settings.slhb.shadow_resolution = 64;
+    settings.of<gi::SlhbSettings>().directions = "icosahedron:80";
+    settings.of<gi::SlhbSettings>().resolution = 48;
+    settings.of<gi::SlhbSettings>().light_samples = 4;
+    settings.of<gi::SlhbSettings>().shadow_resolution = 64;
     return settings;
 }
 

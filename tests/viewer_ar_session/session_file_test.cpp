@@ -1,6 +1,9 @@
 #include "ar/scene/session_file.h"
 
 #include "gi/core/error.h"
+#include "gi/hit_buffers/settings.h"
+#include "gi/methods/slhb_0_1/slhb_0_1.h"
+#include "gi/methods/paths/settings.h"
 
 namespace viewer::test {
 namespace {
@@ -56,14 +59,14 @@ TEST(ArSessions, TakeOptionsOfSlhb)
             .render.settings;
     EXPECT_EQ(s.bounces, 2);
     EXPECT_EQ(s.seed, 9u);
-    EXPECT_EQ(s.slhb.directions, "icosahedron:80");
-    EXPECT_EQ(s.slhb.resolution, 64);
-    EXPECT_EQ(s.slhb.light_samples, 8);
-    EXPECT_EQ(s.slhb.fresh_light_samples, 2);
-    EXPECT_EQ(s.slhb.shadow_resolution, 128);
-    EXPECT_EQ(s.slhb.roulette, 0.5f);
-    EXPECT_TRUE(s.slhb.packed);
-    EXPECT_EQ(s.slhb.shadows, gi::Shadows::maps);
+    EXPECT_EQ(s.of<gi::SlhbSettings>().directions, "icosahedron:80");
+    EXPECT_EQ(s.of<gi::SlhbSettings>().resolution, 64);
+    EXPECT_EQ(s.of<gi::SlhbSettings>().light_samples, 8);
+    EXPECT_EQ(s.of<gi::SlhbSettings>().fresh_light_samples, 2);
+    EXPECT_EQ(s.of<gi::SlhbSettings>().shadow_resolution, 128);
+    EXPECT_EQ(s.of<gi::PathsSettings>().roulette, 0.5f);
+    EXPECT_TRUE(s.of<gi::SlhbSettings>().packed);
+    EXPECT_EQ(s.of<gi::FormerSlhbSettings>().shadows, gi::FormerShadows::maps);
     EXPECT_EQ(parse_ar_session(kLeastSession, "s.yaml").render.settings.bounces, 3);
     for (char const* wrong : {"hit_buffer: 1e9", "directions: 'cube:6'", "shadows: some", "packed: 1"})
         EXPECT_NE(session_refusal(kLeastSession + "render: {" + wrong + "}\n").find("s.yaml:5:"),
@@ -73,6 +76,19 @@ TEST(ArSessions, TakeOptionsOfSlhb)
         EXPECT_NE(session_refusal(kLeastSession + "render: {" + unknown + "}\n").find("s.yaml:5:"),
                   std::string::npos)
             << unknown;
+}
+
+/// Sessions of schema ar/1 were written for version 0.1, whose slhb was rays or look-ups by its options.
+TEST(ArSessions, NameTheirMethod)
+{
+    std::string const present = "schema: ar/2" + kLeastSession.substr(kLeastSession.find('\n'));
+    auto const render = [](std::string const& text) { return parse_ar_session(text, "s.yaml").render; };
+    EXPECT_EQ(render(kLeastSession).method, "slhb_0_1");
+    EXPECT_EQ(render(present).method, "auto");
+    EXPECT_EQ(render(present + "render: {method: slhb, hit_buffer: 64}\n").settings.of<gi::SlhbSettings>().resolution, 64);
+    for (char const* wrong : {"method: slhp", "method: paths, hit_buffer: 64", "hit_buffer: 64", "shadows: maps"})
+        EXPECT_NE(session_refusal(present + "render: {" + wrong + "}\n").find("s.yaml:5:"), std::string::npos) << wrong;
+    EXPECT_NE(session_refusal(kLeastSession + "render: {method: slhb}\n").find("s.yaml:5:"), std::string::npos);
 }
 
 TEST(ArSessions, SayHowPairsAreFinishedAndPosesUsed)

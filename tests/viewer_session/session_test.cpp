@@ -1,5 +1,6 @@
 // The same changes and orders give the same pixels; what is set is set; what cannot be leaves all as it was.
 
+#include "gi/methods/vpl/settings.h"
 #include "viewer/engine/render_session.h"
 
 #include "gi/core/error.h"
@@ -315,10 +316,10 @@ TEST(RenderSession, PointsAreANumberOrAShareOfTheTexels)
                                         {nlohmann::json("25%"), texels / 4},
                                         {nlohmann::json(90.51), 91}}) {
         set(s, {"points", value});
-        EXPECT_EQ(s.render.vpl.points_per_map(), points) << value;
+        EXPECT_EQ(s.render.of<gi::VirtualLightSettings>().points_per_map(), points) << value;
         Settings again; // as recordings do
         set(again, {"points", get(s, "points")});
-        EXPECT_EQ(again.render.vpl.points_per_map(), points) << value;
+        EXPECT_EQ(again.render.of<gi::VirtualLightSettings>().points_per_map(), points) << value;
     }
 }
 

@@ -1,7 +1,9 @@
 // One table of options for all front ends: values as text, former names, and what viewers make of them.
 
 #include "gi/core/error.h"
+#include "gi/methods/paths/settings.h"
 #include "gi/methods/registry.h"
+#include "gi/methods/vpl/settings.h"
 #include "viewer/engine/settings.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +56,7 @@ TEST(RenderOptions, NumbersAreWholeExactAndInRange)
     set("bounces", "12.0");
     EXPECT_EQ(s.bounces, 12);
     set("ao_radius", "0.8");
-    EXPECT_EQ(s.vpl.ao_radius_m, 0.8f);
+    EXPECT_EQ(s.of<gi::VirtualLightSettings>().ao_radius_m, 0.8f);
     EXPECT_EQ(gi::render_option("ao-radius").get(s), "0.8");
     for (auto const& [name, text] : {std::pair{"seed", "18446744073709551616"},
                                      {"seed", "-1"},
@@ -85,11 +87,11 @@ TEST(RenderOptions, AShareOfPointsFollowsTheMap)
 {
     gi::RenderSettings s;
     gi::render_option("points").set(s, "25%", "");
-    EXPECT_EQ(s.vpl.points_per_map(), 64 * 64 / 4);
+    EXPECT_EQ(s.of<gi::VirtualLightSettings>().points_per_map(), 64 * 64 / 4);
     gi::render_option("point-map").set(s, "32", "");
-    EXPECT_EQ(s.vpl.points_per_map(), 32 * 32 / 4);
+    EXPECT_EQ(s.of<gi::VirtualLightSettings>().points_per_map(), 32 * 32 / 4);
     gi::render_option("points").set(s, "77", "");
-    EXPECT_EQ(s.vpl.points_per_map(), 77);
+    EXPECT_EQ(s.of<gi::VirtualLightSettings>().points_per_map(), 77);
 }
 
 TEST(Settings, FormerKeysAndValuesAreUnderstood)
@@ -98,11 +100,11 @@ TEST(Settings, FormerKeysAndValuesAreUnderstood)
     for (Change const& c : std::vector<Change>{
              {"resolution", 64}, {"lamps", 8}, {"fresh_lamps", 2}, {"followed", 16}, {"share_endings", false}})
         set(s, c);
-    EXPECT_EQ(s.render.slhb.resolution, 64);
-    EXPECT_EQ(s.render.slhb.light_samples, 8);
-    EXPECT_EQ(s.render.slhb.fresh_light_samples, 2);
+    EXPECT_EQ(s.render.of<gi::SlhbSettings>().resolution, 64);
+    EXPECT_EQ(s.render.of<gi::SlhbSettings>().light_samples, 8);
+    EXPECT_EQ(s.render.of<gi::SlhbSettings>().fresh_light_samples, 2);
     EXPECT_EQ(s.updated_axes, 16);
-    EXPECT_EQ(s.render.slhb.cache, gi::RadianceCaching::off);
+    EXPECT_EQ(s.render.of<gi::PathsSettings>().cache, gi::RadianceCaching::off);
     set(s, {"radiance_cache", true});
     EXPECT_EQ(get(s, "share_endings"), "auto");
     EXPECT_EQ(get(s, "resolution"), 64);

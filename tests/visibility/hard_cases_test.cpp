@@ -92,7 +92,7 @@ TEST(VisibilityHardCases, APassIsInterruptedBetweenItsTiles)
         std::filesystem::temp_directory_path() / ("lightwell_vpl_tiles_" + std::to_string(getpid()) + ".state");
     for (VisibilityKind const kind : kKinds) {
         RenderSettings s = small_picture(100, 2, 3);
-        s.vpl.light_paths = 512;
+        s.of<VirtualLightSettings>().light_paths = 512;
         Picture const whole = render_visibility(kind, world, in_the_box(), s).result.picture;
         s.checkpoint = state;
         bool is_met = false;
@@ -182,7 +182,7 @@ TEST(VisibilityHardCases, WhatIsBoundedAndWhatNoAxisLeavesIsCounted)
 {
     World const world = world_of(box_with_block());
     RenderSettings s = small_picture(16, 4, 2);
-    s.vpl.near_m = 0.2f;
+    s.of<VirtualLightSettings>().near_m = 0.2f;
     VisibilityRun const exact = render_visibility(VisibilityKind::exact, world, in_the_box(), s);
     EXPECT_GT(exact.counts.at("virtual lights"), 64 * 4);
     EXPECT_GT(exact.counts.at("connections bounded, the rest computed by camera paths"), 0);
@@ -198,10 +198,10 @@ TEST(VisibilityHardCases, MapsThatCannotBeAreRefused)
 {
     World const world = world_of(box_with_block());
     RenderSettings s = small_picture(8, 1, 1);
-    s.vpl.point_map = 100;
+    s.of<VirtualLightSettings>().point_map = 100;
     EXPECT_THROW(render_visibility(VisibilityKind::imperfect, world, in_the_box(), s), InputError);
-    s.vpl.point_map = 64;
-    s.vpl.points = 0;
+    s.of<VirtualLightSettings>().point_map = 64;
+    s.of<VirtualLightSettings>().points = 0;
     EXPECT_THROW(render_visibility(VisibilityKind::imperfect, world, in_the_box(), s), InputError);
 }
 

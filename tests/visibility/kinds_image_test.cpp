@@ -55,13 +55,13 @@ TEST(VisibilityKinds, OcclusionWithoutARadiusIsNoneAndWithALargeOneDirectionalIs
 {
     World const world = world_of(box_with_block());
     RenderSettings s = small_picture(24, 3, 2);
-    s.vpl.ao_radius_m = 0;
+    s.of<VirtualLightSettings>().ao_radius_m = 0;
     auto const none = indirect(VisibilityKind::none, world, s);
     EXPECT_EQ(indirect(VisibilityKind::ambient, world, s), none);
     EXPECT_EQ(indirect(VisibilityKind::directional, world, s), none);
-    s.vpl.ao_radius_m = 1e-5f;
+    s.of<VirtualLightSettings>().ao_radius_m = 1e-5f;
     EXPECT_LT(rms_difference(indirect(VisibilityKind::ambient, world, s), none), 1e-3);
-    s.vpl.ao_radius_m = 100;
+    s.of<VirtualLightSettings>().ao_radius_m = 100;
     EXPECT_EQ(indirect(VisibilityKind::directional, world, s), indirect(VisibilityKind::exact, world, s));
 }
 
@@ -72,7 +72,7 @@ TEST(VisibilityKinds, WiderOcclusionIsDarker)
     for (VisibilityKind const kind : {VisibilityKind::ambient, VisibilityKind::directional}) {
         double last = 1e9;
         for (float const radius : {0.1f, 0.3f, 1.0f}) {
-            s.vpl.ao_radius_m = radius;
+            s.of<VirtualLightSettings>().ao_radius_m = radius;
             double const mean = mean_of(render_visibility(kind, world, in_the_box(), s).result.picture, "L2").mean;
             EXPECT_LT(mean, last) << int(kind) << ", radius " << radius;
             last = mean;
@@ -95,8 +95,8 @@ TEST(VisibilityKinds, AmbientOcclusionOfACornerIsItsClosedForm)
     add_light(scene, sun);
     World const world = world_of(scene);
     RenderSettings s = small_picture(4, 64, 1);
-    s.vpl.ao_radius_m = 1;
-    s.vpl.near_m = 1e-3f; // nothing from camera paths
+    s.of<VirtualLightSettings>().ao_radius_m = 1;
+    s.of<VirtualLightSettings>().near_m = 1e-3f; // nothing from camera paths
     for (double const d : {0.02, 0.5, 1.5}) {
         Camera const eye = orthographic({d, 0.5, 0}, {d, 0, 0}, 0.002);
         double const
@@ -115,8 +115,8 @@ TEST(VisibilityKinds, HitBuffersComeNearerToExactWithTheirQuality)
     std::vector<double> errors;
     for (auto const& [directions, resolution] :
          {std::pair{"icosahedron:20", 16}, std::pair{"icosahedron:320", 64}, std::pair{"icosahedron:5120", 128}}) {
-        s.slhb.directions = directions;
-        s.slhb.resolution = resolution;
+        s.of<SlhbSettings>().directions = directions;
+        s.of<SlhbSettings>().resolution = resolution;
         errors.push_back(rms_difference(indirect(VisibilityKind::slhb, world, s), exact));
     }
     double const all = rms_difference(indirect(VisibilityKind::none, world, s), exact);
@@ -132,8 +132,8 @@ TEST(VisibilityKinds, ImperfectMapsComeNearerToExactWithTheirPoints)
     auto const exact = indirect(VisibilityKind::exact, world, s);
     std::vector<double> errors;
     for (auto const& [points, map] : {std::pair{64, 32}, std::pair{2048, 128}, std::pair{131072, 512}}) {
-        s.vpl.points = points;
-        s.vpl.point_map = map;
+        s.of<VirtualLightSettings>().points = points;
+        s.of<VirtualLightSettings>().point_map = map;
         errors.push_back(rms_difference(indirect(VisibilityKind::imperfect, world, s), exact));
     }
     double const all = rms_difference(indirect(VisibilityKind::none, world, s), exact);

@@ -26,7 +26,7 @@ TEST(VisibilityFurnace, RoomOfGlowingWallsHasTheRadianceOfItsSeries)
         add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, wall), true);
         World const world = world_of(scene);
         RenderSettings s = small_picture(12, 48, 1000);
-        s.vpl.light_paths = 256;
+        s.of<VirtualLightSettings>().light_paths = 256;
         RunningMean const m =
             mean_over_seeds(VisibilityKind::exact, world, look_at({0.3, 0.1, 0.2}, {-1, -0.5, -0.7}, 70), s, 24);
         expect_mean(m, 0.5 / (1 - double(rho)), fmt::format("albedo {}", rho));
@@ -107,9 +107,9 @@ TEST(VisibilityCornell, WhatIsNearComesFromCameraPathsWithoutABias)
     World const world = world_of(box_with_block());
     RunningMean few, many;
     RenderSettings s = small_picture(16, 24, 2);
-    s.vpl.near_m = 0.01f;
+    s.of<VirtualLightSettings>().near_m = 0.01f;
     few = mean_over_seeds(VisibilityKind::exact, world, in_the_box(), s, 16, "L2");
-    s.vpl.near_m = 1.5f;
+    s.of<VirtualLightSettings>().near_m = 1.5f;
     many = mean_over_seeds(VisibilityKind::exact, world, in_the_box(), s, 16, "L2");
     EXPECT_NEAR(few.mean(), many.mean(), 3.5 * std::hypot(few.sigma(), many.sigma()));
     EXPECT_LT(std::hypot(few.sigma(), many.sigma()), 0.015 * few.mean());

@@ -1,7 +1,9 @@
 #pragma once
 // Rendering small scenes with the methods vpl_*.
 
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/reference/reference.h"
+#include "gi/methods/vpl/settings.h"
 #include "gi/methods/vpl/visibility.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -21,9 +23,9 @@ inline RenderSettings small_picture(int size, std::uint32_t paths, int bounces)
     s.paths = paths;
     s.bounces = bounces;
     s.seed = 5;
-    s.slhb.directions = "icosahedron:80"; // quick to build
-    s.slhb.resolution = 32;
-    s.vpl.light_paths = 64;
+    s.of<SlhbSettings>().directions = "icosahedron:80"; // quick to build
+    s.of<SlhbSettings>().resolution = 32;
+    s.of<VirtualLightSettings>().light_paths = 64;
     return s;
 }
 

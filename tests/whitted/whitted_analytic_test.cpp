@@ -51,8 +51,8 @@ TEST(Whitted, ShowsWhatTheReferenceShowsDirectly)
         World const world = room(smooth);
         Report report;
         RenderSettings s = picture_of(24, smooth ? 1500 : 64);
-        s.whitted.recursion = 20;
-        s.whitted.cutoff = 1e-4f;
+        s.of<WhittedSettings>().recursion = 20;
+        s.of<WhittedSettings>().cutoff = 1e-4f;
         Picture const trees = render_whitted(world, eye, s, {}, {}, report).picture;
         s.paths = smooth ? 5000 : 600;
         s.bounces = 0;
@@ -71,7 +71,7 @@ TEST(Whitted, RecursionLimitCutsAndCounts)
     World const world = world_of(scene);
     Report report;
     RenderSettings s = picture_of(8, 2);
-    s.whitted.recursion = 5;
+    s.of<WhittedSettings>().recursion = 5;
     Picture const p = render_whitted(world, look_at({0, 0, 0}, {0.2, 0.1, 1}, 60), s, {}, {}, report).picture;
     EXPECT_EQ(mean_of(p).mean, 0);
     EXPECT_EQ(report.losses().at("rays cut by the recursion limit or the cut-off weight").count, 8u * 8 * 2);

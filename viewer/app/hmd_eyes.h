@@ -2,6 +2,7 @@
 // The two eye pictures of a frame for a headset, reprojected to the current eye poses, in textures for the
 // runtime.
 
+#include "gi/light_paths/settings.h"
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/reprojection.h"
 #include "viewer/devices/gl/window.h"

@@ -61,7 +61,7 @@ void edit_settings(ViewState& s)
 {
     std::vector<std::string> groups{""};
     for (SettingKey const& k : setting_keys())
-        if (std::ranges::find(groups, k.group) == groups.end()) groups.push_back(k.group);
+        if (k.is_offered() && std::ranges::find(groups, k.group) == groups.end()) groups.push_back(k.group);
     for (std::string const& group : groups)
         if (ImGui::CollapsingHeader(group.empty() ? "Settings" : group.c_str()))
             for (SettingKey const& k : setting_keys())

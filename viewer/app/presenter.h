@@ -2,6 +2,7 @@
 // Shows the newest frame in one window: pictures are uploaded once, reprojected to the current head pose, composed
 // for stereo, and warped and blended for walls.
 
+#include "gi/light_paths/settings.h"
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/reprojection.h"
 #include "viewer/devices/gl/surface_pass.h"

@@ -5,6 +5,7 @@
 #include "viewer/base/arguments.h"
 #include "viewer/base/frame_range.h"
 #include "viewer/batch/file_hash.h"
+#include "viewer/batch/former_command.h"
 #include "viewer/batch/placeholders.h"
 
 #include <algorithm>
@@ -101,7 +102,11 @@ public:
 
     void read(gi::Yaml const& y)
     {
-        m_.check_keys(y, with_how({"batch", "sequences", "sweeps", "stimuli", "simulated"}));
+        m_.check_keys(y, with_how({"schema", "batch", "sequences", "sweeps", "stimuli", "simulated"}));
+        m_.take(y, "schema", [&](gi::Yaml const& v) {
+            if (v.text() != "batch/1" && v.text() != "batch/2") throw v.unknown("known schema", {"batch/2", "batch/1"});
+            is_of_0_1_ = v.text() == "batch/1";
+        });
         m_.need(y, "batch", "example", [&](gi::Yaml const& v) { batch_.name = v.name(); });
         Task usual;
         read_how(y, usual);
@@ -163,6 +168,7 @@ private:
                                   "name it with a {parameter} in which they differ");
         }
         batch_.tasks.push_back(t);
+        if (is_of_0_1_) batch_.tasks.back().command = current_command(t.command);
     }
 
     /// The words of a command: a list, or a text split at blanks.
@@ -413,6 +419,7 @@ private:
     Batch& batch_;
     std::vector<std::string> const& commands_;
     InputFinder finder_;
+    bool is_of_0_1_ = true; ///< for whose methods the commands were written
     std::set<std::string> groups_, outputs_;
 };
 

@@ -1,8 +1,7 @@
 #include "viewer/batch/resume.h"
 
+#include "gi/methods/names.h"
 #include "viewer/batch/command_words.h"
-
-#include <set>
 
 namespace viewer::batch {
 namespace {
@@ -10,9 +9,8 @@ namespace {
 /// The light of the other methods, and of a radiance cache, starts anew when a picture is resumed.
 bool resumes_exactly(CommandWords const& words)
 {
-    static std::set<std::string> const kMethods{"reference", "slhb", "whitted"};
-    std::string const method = words.value("--method").value_or("reference");
-    return (kMethods.contains(method) || method.starts_with("vpl_")) &&
+    std::string const method = words.value("--method").value_or(std::string(gi::kDefaultMethod));
+    return gi::resumes_exactly(method) &&
            words.value("--radiance-cache").value_or("off") == "off";
 }
 

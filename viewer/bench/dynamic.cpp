@@ -117,8 +117,8 @@ private:
     void render(std::string const& name, std::shared_ptr<Scene const> const& scene, Structure const& structure,
                 RenderSettings settings, DenoiseSettings const& filter)
     {
-        settings.slhb.schedule = structure.schedule;
-        if (structure.schedule != Schedule::stored) settings.slhb.directions.clear();
+        settings.of<gi::SlhbSettings>().schedule = structure.schedule;
+        if (structure.schedule != Schedule::stored) settings.of<gi::SlhbSettings>().directions.clear();
         auto const truth = [&](int f) -> Picture const& {
             return references_[structure.moves ? std::size_t(f) : 0];
         };

@@ -14,7 +14,7 @@ struct PicturesOptions {
     std::vector<std::string> scenes; ///< names from the list; empty = all
     std::vector<std::string> budgets{"1path", "100ms", "300ms", "1s", "4s"};
     std::vector<std::string> filters{"none", "atrous"};
-    std::vector<std::string> methods{kPeer, "slhb", "vpl_slhb"};
+    std::vector<std::string> methods{kPeer, "paths", "slhb", "vpl_slhb"};
     std::uint32_t reference_paths = 4096;
     std::string references; ///< folder; empty = "references" within `out`
     int repeats = 3;

@@ -48,18 +48,13 @@ void check_pictures(SweepOptions const& o, std::vector<std::string> const& names
 
 SweepMethod find_sweep_method(std::string const& name)
 {
-    constexpr std::pair<std::string_view, char const*> kOptions[]{{"slhb", "schedule"},
-                                                                  {"vpl_slhb", "directions"},
-                                                                  {"vpl_imperfect", "points"},
-                                                                  {"vpl_ao", "ao-radius"},
-                                                                  {"vpl_dao", "ao-radius"}};
     std::size_t const colon = name.find(':');
     gi::Method const& method = gi::find_method(name.substr(0, colon));
     if (colon == std::string::npos) return {name, method, nullptr, ""};
-    for (auto const& [of, option] : kOptions)
-        if (method.name == of) return {name, method, &gi::render_option(option), name.substr(colon + 1)};
-    throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
-                         "only slhb has schedules", fmt::format("name it '{}'", method.name));
+    if (!method.variant.empty())
+        return {name, method, &gi::render_option(method.variant), name.substr(colon + 1)};
+    throw gi::InputError(fmt::format("--methods {}: '{}' has no variants", name, method.name),
+                         "nothing may follow the name of this method", fmt::format("name it '{}'", method.name));
 }
 
 gi::RenderSettings sweep_settings(RenderOptions options)
@@ -94,18 +89,20 @@ void check_sweep_methods(CLI::App const& command, RenderOptions const& options,
                          std::vector<std::string> const& names)
 {
     std::vector<gi::ChosenMethod> methods;
+    gi::RenderOption const& schedule = gi::render_option("schedule");
+    bool shared = false; // some method uses --schedule
     for (std::string const& name : names) {
         SweepMethod const m = find_sweep_method(name);
-        methods.push_back(chosen_method(options, std::string(m.method.name)));
-        if (m.option == nullptr || m.option->name != "schedule") continue;
-        methods.back().schedule = settings_of(m, options.settings).slhb.schedule;
-        methods.back().as_given = "--methods " + name;
+        bool const own_schedule = m.option == &schedule;
+        methods.push_back({std::string(m.method.name), settings_of(m, options.settings),
+                           own_schedule ? "--methods " + name : ""});
+        shared |= !own_schedule && schedule.read_by(m.method.name);
     }
-    check_method_options(command, options.settings, methods);
-    bool const shared = std::ranges::find(names, "slhb") != names.end(); // some method uses --schedule
+    check_method_options(command, methods);
     if (!shared && command.get_option("--schedule")->count() > 0)
         throw gi::InputError(fmt::format("--schedule with --methods {}", fmt::join(names, ",")),
-                             "it applies only to 'slhb' without a schedule of its own", "leave one of them out");
+                             "it applies only to methods with schedules that are not named with one",
+                             "leave one of them out");
 }
 
 SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)

@@ -30,7 +30,7 @@ double relative_variance(gi::Picture const& picture)
 
 std::string hash(SweepScene const& scene, gi::RenderSettings const& s, ReferenceOf valid)
 {
-    std::uint64_t h = gi::fingerprint(scene.world, scene.camera, s, "reference");
+    std::uint64_t h = gi::fingerprint(scene.world, scene.camera, s, "reference", {});
     auto const add = [&](std::uint64_t v) { h = gi::mix_bits(h ^ (v + 0x9e3779b97f4a7c15ULL)); };
     add(s.paths);
     std::string const program = valid == ReferenceOf::any_program ? "L1" : scene.options.scene + '\n' + git_hash();

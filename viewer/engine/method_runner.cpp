@@ -1,6 +1,7 @@
 #include "viewer/engine/method_runner.h"
 
 #include "gi/filter/filter_names.h"
+#include "gi/methods/paths/settings.h"
 #include "viewer/engine/same_surfaces.h"
 
 #include <limits>
@@ -82,20 +83,15 @@ gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
 
 MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings,
                            int threads, SceneStart const& start, gi::Report& report, bool ahead)
-    : report_(report), threads_(threads), origin_(world.world().origin), ahead_(ahead)
+    : method_(gi::find_method(method)), report_(report), threads_(threads), origin_(world.world().origin), ahead_(ahead)
 {
     gi::RenderSettings s = settings.render;
     s.threads = threads;
     s.paths = 1;
-    s.slhb.cache = gi::RadianceCaching::automatic;       // render() says for every frame whether paths end in it
     s.width = std::max(1, int(std::sqrt(start.pixels))); // the plan needs only the number of pixels
     s.height = std::max(1, int(std::lround(start.pixels / s.width)));
-    // Use the same axes for all frames: fresh axes in every frame would flicker.
-    bool const by_look_ups = s.slhb.look_ups == gi::LookUps::all || s.has_look_up_options();
-    if (by_look_ups && s.slhb.schedule == gi::Schedule::automatic && method == "slhb")
-        s.slhb.schedule = gi::Schedule::stored;
-    s.slhb.interleave = 1;
-    renderer_ = gi::find_method(method).frames(world, start.camera, s, report);
+    if (method_.for_display != nullptr) s = method_.for_display(std::move(s));
+    renderer_ = method_.frames(world, start.camera, s, report);
 }
 
 std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
@@ -104,7 +100,9 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
                                                    gi::SeenSurfaces* seen, bool leaves_out_punctual,
                                                    gi::StopRequest const& stop)
 {
-    left_out_punctual_ = renderer_->leave_out_punctual(leaves_out_punctual) && leaves_out_punctual;
+    auto* const punctual = gi::ask<gi::PunctualLeftOut>(*renderer_);
+    if (punctual != nullptr) punctual->leave_out_punctual(leaves_out_punctual);
+    left_out_punctual_ = punctual != nullptr && leaves_out_punctual;
     if (!first_ || ahead_) renderer_->changed(changes);
     bool const small = command.light_scale < 1;
     bool anything_moved = first_ || seen_.size() != command.views.size() || changes.any();
@@ -140,12 +138,10 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         // longer.
         if (small) views.back().filter = gi::PixelFilter::centre;
     }
-    // Its blur would stay in the mean of a still picture.
-    gi::RadianceCaching const cache = settings.render.slhb.cache;
-    bool const cached =
-        cache == gi::RadianceCaching::on || (cache == gi::RadianceCaching::automatic && anything_moved);
-    auto const sharing = cached ? gi::VertexSharing::cached : gi::VertexSharing::exact;
-    renderer_->update_axes(settings.has_automatic_schedule() ? settings.updated_axes : 0);
+    // The blur of a radiance cache would stay in the mean of a still picture.
+    auto const sharing = anything_moved ? gi::VertexSharing::cached : gi::VertexSharing::exact;
+    if (auto* const live = gi::ask<gi::LiveSettings>(*renderer_)) live->follow(settings.render);
+    if (auto* const axes = gi::ask<gi::FollowingAxes>(*renderer_)) axes->update_axes(gi::updates_axes(method_, settings.render) ? settings.updated_axes : 0);
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
     // Of the paths that were traced: where the frame was stopped, a replay is told only these.
     still_paths_ = (anything_moved ? 0 : still_paths_) + results[0].paths;

@@ -38,7 +38,11 @@ public:
         return seen_[view].light ? &*seen_[view].light : nullptr;
     }
     int still_frames() const { return still_; }
-    gi::DynamicUpdate dynamic_update() const { return renderer_->dynamic_update(); } ///< of the last frame
+    gi::DynamicUpdate dynamic_update() const ///< of the last frame
+    {
+        auto const* const axes = gi::ask<gi::FollowingAxes>(*renderer_);
+        return axes != nullptr ? axes->dynamic_update() : gi::DynamicUpdate{};
+    }
 
 private:
     struct Seen { ///< state kept for a view

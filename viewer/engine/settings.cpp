@@ -38,13 +38,14 @@ SettingKey own(char const* names, gi::OptionValues values, char const* meaning, 
             ""};
 }
 
-/// An option of renders as a setting. Whether paths end in the radiance cache is decided for every frame.
+/// An option of renders as a setting.
 SettingKey of_renders(gi::RenderOption const& o)
 {
     return {{o, [&o](Settings& s, auto const& text, auto const& given) { o.set(s.render, text, given); },
              [&o](Settings const& s) { return o.get(s.render); }},
             o.group,
-            o.name != "radiance-cache"};
+            o.restarts,
+            &o};
 }
 
 std::vector<SettingKey> make_keys()
@@ -55,13 +56,20 @@ std::vector<SettingKey> make_keys()
                                      "second method, shown beside the first for comparison; empty = none",
                                      &S::compare)};
     keys[0].restarts = true;
+    for (SettingKey& k : keys) { // also the methods of earlier versions
+        k.takes_other_words = true;
+        k.set = [member = &k == &keys[0] ? &S::method : &S::compare](S& s, std::string const& text,
+                                                                     std::string const&) {
+            if (!text.empty() || member == &S::method) gi::find_method(text); // throws
+            s.*member = text;
+        };
+    }
     for (gi::RenderOption const& o : gi::render_options())
         if (o.live) keys.push_back(of_renders(o));
     keys.insert(
         keys.end(),
         {own("updated-axes,followed", {0, 64},
-             "slhb: stored axes per bounce updated each frame for dynamic geometry, 0 = all; set by the schedule "
-             "auto",
+             "stored axes per bounce updated each frame for dynamic geometry, 0 = all; set by the schedule auto",
              &S::updated_axes),
          own("reuse", {1, 256},
              "frames that temporal reuse averages over, 1 = none; up to 8 times as many where light does not "
@@ -115,7 +123,8 @@ SettingKey const& known(std::string const& key)
 {
     if (SettingKey const* const k = find(key)) return *k;
     std::vector<std::string> all;
-    for (SettingKey const& k : setting_keys()) all.push_back(k.key);
+    for (SettingKey const& k : setting_keys())
+        if (k.is_offered()) all.push_back(k.key);
     throw gi::InputError("there is no setting '" + key + "'", "its key is unknown",
                          gi::suggest(key, all, "lightwell info --settings has the list"));
 }
@@ -168,9 +177,32 @@ bool is_setting(std::string const& key) { return find(key) != nullptr; }
 
 bool restarts_methods(std::string const& key) { return known(key).restarts; }
 
+MadeFor made_for(std::string const& program)
+{
+    return program.starts_with("lightwell 0.1.") ? MadeFor::version_0_1 : MadeFor::this_version;
+}
+
+Settings first_settings(MadeFor made_for)
+{
+    Settings s;
+    if (made_for == MadeFor::version_0_1) s.method = gi::method_of_0_1("slhb"); // its default
+    return s;
+}
+
+Change current(Change change, MadeFor made_for)
+{
+    bool const is_method = change.key == "method" || change.key == "compare";
+    if (made_for == MadeFor::version_0_1 && is_method && change.value.is_string())
+        change.value = std::string(gi::method_of_0_1(change.value.get<std::string>()));
+    return change;
+}
+
 void set(Settings& settings, Change const& change)
 {
     SettingKey const& k = known(change.key);
+    if (!k.is_offered() && !k.option->read_by(settings.method))
+        throw gi::InputError(fmt::format("'{}' with method {}", change.key, settings.method),
+                             "only files of earlier versions have it", "give " + k.option->replaced_by);
     Json value = change.value;
     if (k.key == "radiance_cache" && value.is_boolean()) value = value.get<bool>() ? "auto" : "off"; // formerly
     k.set(settings, value.is_string() ? value.get<std::string>() : dumped(value),
@@ -192,7 +224,8 @@ Json get(Settings const& settings, std::string const& key) { return value_of(kno
 Json all_settings(Settings const& settings)
 {
     Json all = Json::object();
-    for (SettingKey const& k : setting_keys()) all[k.key] = value_of(k, settings);
+    for (SettingKey const& k : setting_keys())
+        if (k.is_offered() || k.get(settings) != k.get(Settings{})) all[k.key] = value_of(k, settings);
     return all;
 }
 

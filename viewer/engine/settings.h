@@ -5,7 +5,8 @@
 #include "gi/core/option.h"
 #include "gi/filter/denoise.h"
 #include "gi/filter/tone_map.h"
-#include "gi/render/render_settings.h"
+#include "gi/methods/names.h"
+#include "gi/render/render_option.h"
 #include "viewer/protocol/frame_command.h"
 
 #include <span>
@@ -13,7 +14,7 @@
 namespace viewer {
 
 struct Settings {
-    std::string method = "slhb", compare; ///< compare: second method, shown beside the first; empty = none
+    std::string method{gi::kDefaultMethod}, compare; ///< compare: second method, shown beside the first; empty = none
     gi::RenderSettings render;            ///< those of gi::render_options() that are live count
     int updated_axes = 0; ///< stored axes per bounce updated each frame for dynamic geometry; 0 = all. With the
                           ///< schedule auto, the live viewer sets it every frame (update_governor.h)
@@ -41,13 +42,25 @@ struct Settings {
     bool refine = true;           ///< keep adding paths while nothing moves
     bool panel = true;
     double font_scale = 1; ///< of the letters in the panel, over the usual size on the monitor
-
-    bool has_automatic_schedule() const { return render.slhb.schedule == gi::Schedule::automatic; }
 };
+
+/// The version of the program that wrote a file, or for whose schema a file was written. Methods had other names in 0.1
+/// (gi/methods/names.h).
+enum class MadeFor : std::uint8_t { version_0_1, this_version };
+/// By the program's name as files record it: "lightwell 0.1.0 (git ...)".
+MadeFor made_for(std::string const& program);
+/// What a file that says nothing has.
+Settings first_settings(MadeFor made_for);
+/// A change as this version has it.
+Change current(Change change, MadeFor made_for);
 
 struct SettingKey : gi::Option<Settings> {
     std::string group;     ///< heading in the panel; empty for those of the viewer itself and of all methods
     bool restarts = false; ///< a change begins the methods anew
+    gi::RenderOption const* option = nullptr; ///< of which it is the setting
+
+    /// False for what only files of earlier versions have.
+    bool is_offered() const { return option == nullptr || option->replaced_by.empty(); }
 };
 std::span<SettingKey const> setting_keys();
 /// The beginning of its meaning, with the unit, as the label of a control: "Target frame rate, Hz".

@@ -1,7 +1,6 @@
 #include "viewer/offline/exposure.h"
 
 #include "gi/core/rng.h"
-#include "gi/methods/slhb/settings.h"
 #include "gi/render/fingerprint.h"
 #include "gi/render/pass_samples.h"
 #include "gi/scene/motion/motion.h"
@@ -22,37 +21,18 @@ bool depends_on_time(gi::Scene const& scene, bool scene_still, CameraMotion cons
     return std::ranges::any_of(motion.node, moves) || std::ranges::any_of(motion.morph, moves);
 }
 
-namespace {
-
-/// Streams axes if triangles move: appending those to all stored axes again for every path is more work.
-gi::RenderSettings with_moving_triangles(gi::RenderSettings settings)
-{
-    gi::SlhbSettings& s = settings.slhb;
-    if (s.schedule == gi::Schedule::automatic && s.directions.empty() && s.fresh_axes == 0)
-        s.schedule = gi::Schedule::streamed;
-    return settings;
-}
-
-/// Chooses settings for the budget of a single picture, which includes building all structures.
-gi::RenderSettings with_budget(gi::RenderSettings settings, gi::Method const& method, gi::World const& world,
-                               gi::Camera const& camera)
-{
-    if (method.name == "slhb" && settings.budget_s > 0)
-        settings.slhb = gi::choose_settings(settings, world, gi::make_soup(world), camera);
-    return settings;
-}
-
-} // namespace
-
 gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposure const& exposure,
                         gi::RenderSettings const& settings, gi::StopRequest const& stop,
                         gi::RenderProgress const& progress, gi::Report& report)
 {
     gi::Camera const first = exposure.camera(world.world(), 0);
     bool const moves = !exposure.still && world.world().static_triangles < world.world().triangles.size();
-    gi::RenderSettings const asked =
-        with_budget(moves ? with_moving_triangles(settings) : settings, method, world.world(), first);
-    auto const renderer = start_frames(method, world, first, asked, report, stop);
+    gi::ExposurePlan plan{method.name, settings};
+    if (method.for_exposure != nullptr)
+        plan = method.for_exposure(world.world(), settings, first,
+                                   moves ? gi::Triangles::moving : gi::Triangles::still);
+    auto const renderer =
+        start_frames(gi::find_method(plan.method), world, first, plan.settings, report, stop);
     FlatTriangles flat(exposure.still ? gi::Changes{} : world.advance(exposure.from_s));
     auto const moments = [&](std::uint32_t pass) {
         double const after_s = exposure.shutter_s * gi::moment_of_pass(settings.seed, pass);
@@ -76,7 +56,7 @@ std::uint64_t motion_fingerprint(gi::MovingWorld& world, Exposure const& exposur
     if (!exposure.still) world.advance(exposure.from_s + exposure.shutter_s);
     constexpr int kMoments = 16;
     auto const camera = [&](int i) { return exposure.camera(world.world(), exposure.shutter_s * i / kMoments); };
-    std::uint64_t hash = gi::fingerprint(world.world(), camera(kMoments), settings, method);
+    std::uint64_t hash = gi::fingerprint(world.world(), camera(kMoments), settings, method, gi::options_of(method, settings));
     auto const add = [&](double v) { hash = gi::mix_bits(hash ^ std::bit_cast<std::uint64_t>(v)); };
     for (int i = 1; i < kMoments; ++i) {
         gi::Camera const c = camera(i);

@@ -158,7 +158,7 @@ private:
                                                 gi::RenderResult const& result, gi::MovingWorld* moving) const
     {
         gi::RenderSettings const s = settings_of(frame);
-        std::uint64_t const opening = gi::fingerprint(world, camera, s, o_.method);
+        std::uint64_t const opening = gi::fingerprint(world, camera, s, o_.method, gi::options_of(o_.method, s));
         return frame_metadata(options_of(frame), s, result, frame, opening,
                               moving ? motion_fingerprint(*moving, exposure_of(frame), s, o_.method) : 0);
     }

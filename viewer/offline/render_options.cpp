@@ -175,7 +175,7 @@ CLI::Option* declare_option(CLI::App& c, gi::RenderSettings& settings, std::stri
                   names, [set] { set("true"); }, o.meaning)
             : c.add_option_function<std::string>(names, set, o.meaning)->type_name("[" + o.values_text() + "]");
     if (o.name == "threads") option->transform(as_many_threads_as_there_are());
-    if (!o.group.empty()) option->group(o.group);
+    if (!o.group.empty()) option->group(o.replaced_by.empty() ? o.group : "");
     bool const explains_default = o.meaning.find("(default") != std::string::npos;
     if (o.type != gi::OptionType::yes_or_no && !explains_default) option->default_str(o.get(settings));
     return option;
@@ -193,20 +193,14 @@ void declare_method_options(CLI::App& c, gi::RenderSettings& settings,
     }
 }
 
-gi::ChosenMethod chosen_method(RenderOptions const& o, std::string const& method)
-{
-    return {method, o.settings.slhb.schedule, "--schedule " + gi::render_option("schedule").get(o.settings)};
-}
-
-void check_method_options(CLI::App const& command, gi::RenderSettings const& settings,
-                          std::vector<gi::ChosenMethod> const& methods)
+void check_method_options(CLI::App const& command, std::vector<gi::ChosenMethod> const& methods)
 {
     std::vector<std::string> given;
     for (gi::RenderOption const& o : gi::render_options()) {
         CLI::Option const* const option = command.get_option_no_throw("--" + o.name);
         if (option != nullptr && option->count() > 0) given.push_back(o.name);
     }
-    gi::check_options(given, settings, methods);
+    gi::check_options(given, methods);
 }
 
 void declare_options(CLI::App& c, RenderOptions& o)
@@ -217,7 +211,8 @@ void declare_options(CLI::App& c, RenderOptions& o)
           gi::built_in_scenes())
         ->required();
     std::string known;
-    for (gi::Method const& m : gi::methods()) known += fmt::format("\n  {}: {}", m.name, m.summary);
+    for (gi::Method const& m : gi::methods())
+        if (m.offered) known += fmt::format("\n  {}: {}", m.name, m.summary);
     offer(c.add_option("--method", o.method, "light transport method:" + known), gi::method_names())
         ->capture_default_str();
     c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
@@ -284,7 +279,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render atrium --time 0.4 --eye left --screen-distance 6 --size 64x48 --paths 4 --out left.exr --png left.png
   lightwell render atrium --time 0.4 --eye right --screen-distance 6 --size 64x48 --paths 4 --out right.exr --png right.png
   lightwell render atrium --frames 0:3@10 --size 48x48 --paths 2 --out walk_%04d.exr --png walk_%04d.png
-  lightwell render atrium --method slhb --frames 0:3@24 --reuse 16 --paths 1 --bounces 2 --size 48x48 --out reuse_%04d.exr --stats reuse.json
+  lightwell render atrium --method paths --frames 0:3@24 --reuse 16 --paths 1 --bounces 2 --size 48x48 --out reuse_%04d.exr --stats reuse.json
   lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv
 
 --stats and --json hold: schema, program, command, machine, settings, outputs, result (end, paths_per_pixel, seconds,

@@ -19,7 +19,7 @@ class Option;
 namespace viewer {
 
 struct RenderOptions {
-    std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, background,
+    std::string scene, method{gi::kDefaultMethod}, size = "512x512", camera, look_from, look_at, environment, background,
                        budget, until, denoise = "none", out, png, stats, tone = "srgb", eye, checkpoint = "30s",
                        state;
     std::vector<std::string> layers;
@@ -51,10 +51,8 @@ void declare_method_options(CLI::App& command, gi::RenderSettings& settings,
                             std::vector<std::string_view> const& methods = {},
                             std::vector<std::string_view> const& except = {});
 /// The method with the schedule of the options.
-gi::ChosenMethod chosen_method(RenderOptions const& options, std::string const& method);
 /// Throws InputError if a given option is read by none of the methods (at least one), or if some contradict.
-void check_method_options(CLI::App const& command, gi::RenderSettings const& settings,
-                          std::vector<gi::ChosenMethod> const& methods);
+void check_method_options(CLI::App const& command, std::vector<gi::ChosenMethod> const& methods);
 /// Options of `lightwell render`.
 void declare_options(CLI::App& command, RenderOptions& options);
 

@@ -89,9 +89,13 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     for (Change const& c : o.settings) overridden.insert(current_key(c.key));
     if (!settings.contains("first_surfaces") && !overridden.contains("first_surfaces"))
         session.apply({"first_surfaces", false}); // recorded before there were any
+    MadeFor const made = made_for(header.program);
+    // First, as other settings may be those of one method.
+    if (!overridden.contains("method"))
+        session.apply(current({"method", settings.value("method", first_settings(made).method)}, made));
     for (auto const& [key, value] : settings.items())
         if (!overridden.contains(current_key(key)))
-            session.apply({key, value}); // e.g. a device that is missing here
+            session.apply(current({key, value}, made)); // e.g. a device that is missing here
     for (Change const& c : o.settings) session.apply(c);
     SceneChange scene{header.scene, {}};
     if (header.settings.contains("start")) scene.start = start_from_json(header.settings.at("start"));
@@ -105,7 +109,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
         }
         FrameCommand& command = frame->command;
         for (Change const& c : command.changes)
-            if (!overridden.contains(current_key(c.key))) session.apply(c);
+            if (!overridden.contains(current_key(c.key))) session.apply(current(c, made));
         if (o.paths > 0) command.paths = o.paths;
         for (ViewCommand& v : command.views)
             if (o.size) {

@@ -117,14 +117,14 @@ void check_own(std::string const& key, std::string const& value, std::filesystem
     check_number(key, *number, own.low, own.high);
 }
 
-void check_of_viewer(std::string const& key, Json const& value)
+void check_of_viewer(std::string const& key, Json const& value, MadeFor made)
 {
     if (current_key(key) == "device")
         throw gi::InputError("device: " + value.dump(),
                              "stimuli are rendered on the CPU, so that they are equal at all sites",
                              "leave it out");
-    Settings settings;
-    set(settings, {key, value});
+    Settings settings = first_settings(made);
+    set(settings, current({key, value}, made));
 }
 
 /// Words may be numbers too: "16384" or "30%".
@@ -175,20 +175,20 @@ std::vector<StudySetting> study_settings()
                        std::string(s.meaning), takes_numbers(s)});
     for (SceneEditKey const& k : scene_edit_keys()) all.push_back(of_edit(k));
     for (SettingKey const& k : setting_keys())
-        if (std::find(std::begin(kNotOfStimuli), std::end(kNotOfStimuli), k.key) == std::end(kNotOfStimuli))
+        if (k.is_offered() &&
+            std::find(std::begin(kNotOfStimuli), std::end(kNotOfStimuli), k.key) == std::end(kNotOfStimuli))
             all.push_back(of_viewer(k));
     return all;
 }
 
 std::string visibility_method(std::string const& word)
 {
-    static std::map<std::string, std::string> const kMethods{{"exact", "vpl_exact"},         {"slhb", "vpl_slhb"},
-                                                             {"imperfect", "vpl_imperfect"}, {"ao", "vpl_ao"},
-                                                             {"directional_ao", "vpl_dao"},  {"none", "vpl_none"}};
-    auto const found = kMethods.find(word);
-    if (found != kMethods.end()) return found->second;
     std::vector<std::string> known;
-    for (auto const& [name, method] : kMethods) known.push_back(name);
+    for (gi::Method const& m : gi::methods()) {
+        if (m.visibility.empty()) continue;
+        if (m.visibility == word) return std::string(m.name);
+        known.emplace_back(m.visibility);
+    }
     throw gi::InputError("visibility: " + word, "there is no such approximation", gi::suggest(word, known));
 }
 
@@ -245,7 +245,13 @@ std::string scene_file(std::filesystem::path const& folder, std::string const& s
 
 bool is_ar_key(std::string const& key) { return key == "ar" || key.starts_with("ar."); }
 
-void look_up_setting(std::string const& written, std::string const& value, std::filesystem::path const& folder)
+MadeFor made_for(study::Script const& script)
+{
+    return script.schema == 1 ? MadeFor::version_0_1 : MadeFor::this_version;
+}
+
+void look_up_setting(std::string const& written, std::string const& value, std::filesystem::path const& folder,
+                     MadeFor made)
 {
     std::string const key = study::plain_key(written);
     check_known(key);
@@ -253,7 +259,7 @@ void look_up_setting(std::string const& written, std::string const& value, std::
     if (find_own(key) != nullptr) return check_own(key, value, folder);
     Json const json = setting_value(key, value);
     if (is_scene_edit(key)) return check_scene_edit({key, json});
-    check_of_viewer(key, json);
+    check_of_viewer(key, json, made);
 }
 
 std::string look_up_varied(std::string const& written)
@@ -283,7 +289,7 @@ void look_up_varied(std::string const& written, double low, double high)
         else if (is_scene_edit(key))
             check_scene_edit({key, Json(end)});
         else
-            check_of_viewer(key, setting_value(key, study::level_text(end)));
+            check_of_viewer(key, setting_value(key, study::level_text(end)), MadeFor::version_0_1);
 }
 
 std::set<std::pair<std::string, std::string>> find_wrong_settings(study::Script const& script,
@@ -305,7 +311,7 @@ std::set<std::pair<std::string, std::string>> find_wrong_settings(study::Script 
                 look_up_varied(s.key);
             } else {
                 check_whole(study::plain_key(s.key), s.value);
-                look_up_setting(s.key, s.value, folder);
+                look_up_setting(s.key, s.value, folder, made_for(script));
             }
         } catch (gi::InputError const& e) {
             wrong.emplace(s.key, s.value);

@@ -39,7 +39,10 @@ bool is_ar_key(std::string const& key); ///< `ar` or `ar.KEY`: the settings of a
 
 /// Throws InputError unless there is such a setting (with the nearest one, if there is) and it takes the value.
 /// Settings of AR sessions are not looked up. @param folder  of the script, for scenes
-void look_up_setting(std::string const& key, std::string const& value, std::filesystem::path const& folder);
+void look_up_setting(std::string const& key, std::string const& value, std::filesystem::path const& folder,
+                     MadeFor made_for = MadeFor::this_version);
+/// The version that a script was written for.
+MadeFor made_for(study::Script const& script);
 /// Throws InputError unless a procedure can vary the setting: it takes numbers. @returns key without prefix
 std::string look_up_varied(std::string const& key);
 /// As look_up_varied(), and it takes all numbers from `low` to `high`.

@@ -2,7 +2,7 @@
 // The nearest surfaces along one direction, for many look-ups: an orthographic depth map (gi's shadow map of a
 // parallel light) with a quick answer where nothing is drawn.
 
-#include "gi/methods/slhb/lights/shadow_map.h"
+#include "gi/hit_buffers/shadow_maps/shadow_map.h"
 
 namespace viewer {
 

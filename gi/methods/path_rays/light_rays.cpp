@@ -1,7 +1,7 @@
 #include "gi/methods/path_rays/light_rays.h"
 
 #include "gi/light_paths/impostor_places.h"
-#include "gi/methods/slhb/settings.h"
+#include "gi/hit_buffers/options.h"
 
 namespace gi {
 
@@ -9,8 +9,8 @@ LightRays::LightRays(World const& world, RenderSettings const& settings, std::si
                      StopRequest const* stop)
     : world_(world), settings_(settings), first_moving_(first_moving), report_(report), stop_(stop)
 {
-    if (settings.photons.rays == PhotonRays::impostors)
-        check_impostors(settings.photons, first_moving < world.triangles.size());
+    if (settings.of<PhotonSettings>().rays == PhotonRays::impostors)
+        check_impostors(settings.of<PhotonSettings>(), first_moving < world.triangles.size());
 }
 
 void LightRays::changed(Changes const& c)
@@ -43,7 +43,7 @@ void LightRays::build_look_ups(ExactVisibility const& exact)
 {
     StageTimer const timer(report_, "hit buffers");
     if (!axes_)
-        axes_.emplace(world_, with_stored_axes(settings_.slhb), settings_.seed, first_moving_, stop_);
+        axes_.emplace(world_, with_stored_axes(settings_.of<SlhbSettings>()), settings_.seed, first_moving_, stop_);
     else if (axes_moved_)
         axes_->moved();
     axes_moved_ = false;
@@ -52,7 +52,7 @@ void LightRays::build_look_ups(ExactVisibility const& exact)
 
 void LightRays::build_impostors(ExactVisibility const& exact, Bounds const& focus)
 {
-    PhotonSettings const& s = settings_.photons;
+    PhotonSettings const& s = settings_.of<PhotonSettings>();
     bool const by_hand = !s.impostor_places.empty(),
                same_focus = focus.low == impostors_about_.low && focus.high == impostors_about_.high;
     if (!by_hand && !same_focus) impostors_.reset();
@@ -87,8 +87,8 @@ std::string LightRays::options(PhotonRays kind) const
 {
     if (kind != PhotonRays::look_ups) return {};
     RenderSettings chosen = settings_;
-    chosen.slhb = with_stored_axes(chosen.slhb);
-    return " " + as_options(slhb_options(), chosen, {"directions", "hit-buffer"});
+    chosen.of<SlhbSettings>() = with_stored_axes(chosen.of<SlhbSettings>());
+    return " " + as_options(hit_buffer_options(), chosen, {"directions", "hit-buffer"});
 }
 
 } // namespace gi

@@ -1,6 +1,6 @@
 #include "gi/methods/path_rays/look_up_rays.h"
 
-#include "gi/methods/slhb/hit_buffer/query_batch.h"
+#include "gi/hit_buffers/query_batch.h"
 #include "gi/scene/shading/shading_point.h"
 
 namespace gi {

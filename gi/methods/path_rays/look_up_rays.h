@@ -4,7 +4,7 @@
 // and those whose direction leaves their surface edge-on.
 
 #include "gi/light_paths/path_rays.h"
-#include "gi/methods/slhb/directions/stored_axes.h"
+#include "gi/hit_buffers/directions/stored_axes.h"
 
 namespace gi {
 

@@ -73,7 +73,7 @@ PlanItem focus_item(World const& world, Shown const& shown)
 /// What all methods have in common.
 Items light_path_items(World const& world, RenderSettings const& s, Shown const& shown, LightPathPlan const& plan)
 {
-    PhotonSettings const& p = s.photons;
+    PhotonSettings const& p = s.of<PhotonSettings>();
     Items out;
     out.push_back({"light_paths",
                    "light paths",
@@ -125,18 +125,18 @@ PlanItem bytes_item(char const* what, std::uint64_t bytes)
     return {"memory", what, fits, fits ? most : most + fmt::format(": refused, above {} GiB", kMostBytes >> 30)};
 }
 
-int reflections(RenderSettings const& s) { return std::min(s.photons.reflections, s.bounces); }
+int reflections(RenderSettings const& s) { return std::min(s.of<PhotonSettings>().reflections, s.bounces); }
 
 } // namespace
 
 Items explain_ispm(World const& world, RenderSettings const& s, Camera const& camera)
 {
-    LightPathPlan const plan{s.photons.rays, reflections(s)};
+    LightPathPlan const plan{s.of<PhotonSettings>().rays, reflections(s)};
     if (std::string const why = why_no_paths(world, plan); !why.empty())
         return {{"light_paths", "light paths", false, why}};
     Shown const shown = what_is_shown(world, s, camera);
     Items out = light_path_items(world, s, shown, plan);
-    out.push_back(explain_caustics(world, s.photons));
+    out.push_back(explain_caustics(world, s.of<PhotonSettings>()));
     out.push_back({"photon_tiles",
                    "lists of photons by tiles of the screen",
                    true,
@@ -148,19 +148,19 @@ Items explain_ispm(World const& world, RenderSettings const& s, Camera const& ca
 Items explain_lpv(World const& world, RenderSettings const& s, Camera const& camera)
 {
     // Of a light path the lattice's propagation is the last bounce.
-    LightPathPlan const plan{s.photons.rays, reflections(s)};
+    LightPathPlan const plan{s.of<PhotonSettings>().rays, reflections(s)};
     if (std::string const why = why_no_paths(world, plan); !why.empty())
         return {{"light_paths", "light paths", false, why}};
     Shown const shown = what_is_shown(world, s, camera);
     Items out = light_path_items(world, s, shown, plan);
-    PropagationSettings of = propagation_of(s.photons);
+    PropagationSettings of = propagation_of(s.of<PhotonSettings>());
     if (of.cascades == 0) of.cascades = nested_cascades(world.bounds, shown.focus, of.kMostCascades);
     auto const frames =
         nested_frames(world.bounds, center_of(shown.focus, world.bounds.center()), of.cells, of.cascades);
     int const steps = of.steps > 0 ? of.steps : 2 * of.cells;
     out.push_back({"propagation_lattice", "lattice in which light propagates", true,
                    cells_of(frames) + PlanText(", {} steps from cell to cell", {figure("steps", steps)})});
-    out.push_back(cascades_item(s.photons.propagation_cascades, of.cascades, shown));
+    out.push_back(cascades_item(s.of<PhotonSettings>().propagation_cascades, of.cascades, shown));
     out.push_back(bytes_item("memory of lattices", LightPropagation::bytes(of, world.bounds)));
     out.push_back({"caustics", "caustics", false, "a lattice in which light propagates is too coarse for them"});
     return out;
@@ -168,27 +168,27 @@ Items explain_lpv(World const& world, RenderSettings const& s, Camera const& cam
 
 Items explain_isllpm(World const& world, RenderSettings const& s, Camera const& camera)
 {
-    LightPathPlan const plan{s.photons.rays, reflections(s)};
+    LightPathPlan const plan{s.of<PhotonSettings>().rays, reflections(s)};
     if (std::string const why = why_no_paths(world, plan); !why.empty())
         return {{"light_paths", "light paths", false, why}};
     Shown const shown = what_is_shown(world, s, camera);
     Items out = light_path_items(world, s, shown, plan);
-    PhotonLatticeSettings const of = PhotonLattices::placed(lattices_of(s.photons), world, shown.focus);
-    PlanItem const caustics = explain_caustics(world, s.photons);
+    PhotonLatticeSettings const of = PhotonLattices::placed(lattices_of(s.of<PhotonSettings>()), world, shown.focus);
+    PlanItem const caustics = explain_caustics(world, s.of<PhotonSettings>());
     char const *const names[] = {"low_lattice", "middle_lattice", "caustic_lattice"},
                       *const whats[] = {"lattice of two and more reflections", "lattice of one reflection",
                                         "lattice of caustics"};
     for (std::size_t k = 0; k < 3; ++k) {
         auto const frames = frames_off_walls(world.bounds, center_of(shown.focus, world.bounds.center()),
                                              of.cells[k], of.cascades);
-        bool const by_kernels = s.photons.caustics_by == CausticsBy::kernels;
+        bool const by_kernels = s.of<PhotonSettings>().caustics_by == CausticsBy::kernels;
         bool const used = k < 2 || (caustics.build && !by_kernels);
         out.push_back({names[k], whats[k], used,
                        used ? cells_of(frames) + (of.smooth[k] ? ", smoothed over 3 x 3 x 3 cells" : "")
                        : caustics.build ? "the photon map shows them (--caustics-by kernels)"
                                         : caustics.reason + "; it stays empty"});
     }
-    out.push_back(cascades_item(s.photons.lattice_cascades, of.cascades, shown));
+    out.push_back(cascades_item(s.of<PhotonSettings>().lattice_cascades, of.cascades, shown));
     out.push_back(bytes_item("memory of lattices", PhotonLattices::bytes(of, world.bounds, surface_area(world))));
     out.push_back(caustics);
     return out;
@@ -201,22 +201,22 @@ Items explain_multi_image(World const& world, RenderSettings const& s, Camera co
         return {{"light_paths", "light paths", false, why}};
     Shown const shown = what_is_shown(world, s, camera);
     Items out = light_path_items(world, s, shown, plan);
-    PhotonLatticeSettings const of = PhotonLattices::placed(volume_of(s.photons), world, shown.focus);
+    PhotonLatticeSettings const of = PhotonLattices::placed(volume_of(s.of<PhotonSettings>()), world, shown.focus);
     out.push_back({"gathering_volume", "light gathering volume", true,
                    cells_of(frames_off_walls(world.bounds, center_of(shown.focus, world.bounds.center()),
                                              of.cells[0], of.cascades)) +
                        PlanText(", {} steps of gathering", {figure("steps", of.gathers)})});
-    out.push_back(cascades_item(s.photons.lattice_cascades, of.cascades, shown));
+    out.push_back(cascades_item(s.of<PhotonSettings>().lattice_cascades, of.cascades, shown));
     out.push_back(
         bytes_item("memory of the volume", PhotonLattices::bytes(of, world.bounds, surface_area(world))));
-    PlanItem const caustics = explain_caustics(world, s.photons);
+    PlanItem const caustics = explain_caustics(world, s.of<PhotonSettings>());
     out.push_back(caustics);
     bool const on_screen = caustics.build && !camera.orthographic;
     out.push_back({"screen_caustics", "caustics in screen space", on_screen,
                    on_screen        ? PlanText("{} x {} pixels of {} bytes, {} steps of gathering",
                                                {figure("width_px", s.width), figure("height_px", s.height),
                                                 figure("pixel_bytes", sizeof(ScreenSurface) + sizeof(ShColor)),
-                                                figure("steps", s.photons.screen_gathers)})
+                                                figure("steps", s.of<PhotonSettings>().screen_gathers)})
                    : caustics.build ? "an orthographic camera: caustics come from the photon map"
                                     : caustics.reason});
     return out;

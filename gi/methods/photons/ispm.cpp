@@ -27,7 +27,7 @@ protected:
         std::vector<Photon> photons = std::move(set.photons);
         sort_along_curve(photons, set.stop); // lists of tiles then read neighbours one after the other
         float const shrunk = set.number == 0
-                                 ? settings_.photons.kernel_size
+                                 ? settings_.of<PhotonSettings>().kernel_size
                                  : shrunk_ * std::sqrt((float(set.number) - 1 + kAlpha) / float(set.number));
         Bounds box;
         for (Photon const& p : photons) box = joined(box, {p.position, p.position});
@@ -35,7 +35,7 @@ protected:
         if (!(largest > 0)) photons.clear(); // they all lie at one point: no area to spread them over
         // As many photons in a kernel as make noise and blur fall at the same pace: a power of 2/3 of all.
         float const each = 24 * std::pow(float(set.paths) / 65536, kAlpha);
-        std::vector<float> radii = settings_.photons.kernel_by == KernelBy::density
+        std::vector<float> radii = settings_.of<PhotonSettings>().kernel_by == KernelBy::density
                                        ? radii_by_density(photons, largest, std::size_t(std::max(1.0f, each)),
                                                           settings_.seed + set.number, set.stop)
                                        : radii_by_footprint(photons, largest, each);

@@ -53,7 +53,7 @@ public:
     PropagationRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                         Report& report, StopRequest const* stop)
         : PhotonRenderer(world, settings, first_moving, report, stop),
-          of_propagation_(propagation_of(settings.photons)),
+          of_propagation_(propagation_of(settings.of<PhotonSettings>())),
           propagation_(of_propagation_),
           light_(propagation_)
     {
@@ -94,7 +94,7 @@ public:
     LatticeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
                     StopRequest const* stop)
         : PhotonRenderer(world, settings, first_moving, report, stop),
-          of_lattices_(lattices_of(settings.photons)),
+          of_lattices_(lattices_of(settings.of<PhotonSettings>())),
           lattices_(of_lattices_),
           light_(lattices_)
     {
@@ -118,7 +118,7 @@ protected:
     SurfaceLight const* light(std::span<FrameView const>, PhotonMap const* caustics,
                               BuildStop const& stop) override
     {
-        bool const by_kernels = settings_.photons.caustics_by == CausticsBy::kernels;
+        bool const by_kernels = settings_.of<PhotonSettings>().caustics_by == CausticsBy::kernels;
         light_.take_caustics(by_kernels ? caustics : nullptr);
         if (of_caustics_ == caustics_version()) return &light_;
         of_caustics_.reset();

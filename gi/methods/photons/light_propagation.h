@@ -24,6 +24,7 @@
 
 #include "gi/core/progress.h"
 #include "gi/light_paths/photon.h"
+#include "gi/light_paths/settings.h"
 #include "gi/methods/photons/propagation_kernels.h"
 
 namespace gi {

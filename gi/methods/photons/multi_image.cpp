@@ -63,11 +63,11 @@ class MultiImageRenderer : public PhotonRenderer {
 public:
     MultiImageRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
                        Report& report, StopRequest const* stop)
-        : PhotonRenderer(world, settings, first_moving, report, stop), volume_(volume_of(settings.photons))
+        : PhotonRenderer(world, settings, first_moving, report, stop), volume_(volume_of(settings.of<PhotonSettings>()))
     {
-        check_bytes(PhotonLattices::bytes(volume_of(settings.photons), world.bounds, surface_area(world)),
+        check_bytes(PhotonLattices::bytes(volume_of(settings.of<PhotonSettings>()), world.bounds, surface_area(world)),
                     "a light gathering volume", "choose fewer --volume-cells");
-        check_impostors(settings.photons, first_moving < world.triangles.size());
+        check_impostors(settings.of<PhotonSettings>(), first_moving < world.triangles.size());
     }
     void changed(Changes const& c) override
     {
@@ -82,7 +82,7 @@ protected:
     PhotonRays rays_kind() const override { return PhotonRays::impostors; }
     std::string_view timer_name() const override { return "light gathering volume"; }
     std::size_t bytes_per_photon() const override { return 200; }
-    int cascades_about_camera() const override { return settings_.photons.lattice_cascades; }
+    int cascades_about_camera() const override { return settings_.of<PhotonSettings>().lattice_cascades; }
     void take(PhotonSet&& set) override
     {
         if (set.surfaces_changed || set.middle_changed)
@@ -140,7 +140,7 @@ private:
         of_caustics_.reset();
         for (FrameView const& v : views) {
             if (v.camera.orthographic) continue;
-            screens_.emplace_back(ScreenVolumeSettings{.gathers = settings_.photons.screen_gathers});
+            screens_.emplace_back(ScreenVolumeSettings{.gathers = settings_.of<PhotonSettings>().screen_gathers});
             screens_.back().place(world_, *soup_, *cut_outs_, v, std::uint32_t(settings_.seed));
         }
     }

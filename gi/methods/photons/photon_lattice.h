@@ -24,6 +24,7 @@
 // Memory: per cell with surfaces 120 bytes, twice with smoothing; per piece of a surface in a cell 20 bytes.
 
 #include "gi/light_paths/memory_limit.h"
+#include "gi/light_paths/settings.h"
 #include "gi/methods/photons/exposed_sides.h"
 #include "gi/methods/photons/sh_lattice.h"
 #include "gi/render/render_settings.h"

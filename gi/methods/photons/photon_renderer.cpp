@@ -29,7 +29,7 @@ PhotonRenderer::PhotonRenderer(World const& world, RenderSettings const& setting
       frames_(stop == nullptr),
       caustics_(world, settings, report),
       light_rays_(world, settings, first_moving, report, stop),
-      paths_(std::uint32_t(settings.photons.paths))
+      paths_(std::uint32_t(settings.of<PhotonSettings>().paths))
 {
 }
 
@@ -50,7 +50,7 @@ SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<Frame
     PathCounts counts;
     if (!first_index_) first_index_ = index;
     bool const any = !world_.light_select.empty() && !world_.bounds.empty(),
-               frozen = settings_.photons.frozen == Switch::on;
+               frozen = settings_.of<PhotonSettings>().frozen == Switch::on;
     if (any && !(frozen && has_light_)) find_focus(views);
     if (any && settings_.bounces > 0) update(index, views, BuildStop(stop), counts);
     BuildStop const given_up(stop);
@@ -96,7 +96,7 @@ void PhotonRenderer::find_middle(std::span<FrameView const> views)
 void PhotonRenderer::update(std::uint32_t index, std::span<FrameView const> views, BuildStop const& stop,
                             PathCounts& counts)
 {
-    if (settings_.photons.frozen == Switch::on && has_light_) return;
+    if (settings_.of<PhotonSettings>().frozen == Switch::on && has_light_) return;
     bool const new_cameras = !std::ranges::equal(views, cameras_, {}, &FrameView::camera);
     cameras_.clear();
     for (FrameView const& v : views) cameras_.push_back(v.camera);
@@ -149,7 +149,7 @@ void PhotonRenderer::trace_set(std::span<FrameView const> views, BuildStop const
     {
         PathRays const& rays = light_rays_.of(rays_kind(), *visibility_, focus_);
         StageTimer const timer(report_, "light paths");
-        bool const by_map = settings_.photons.first_bounce == FirstBounce::map;
+        bool const by_map = settings_.of<PhotonSettings>().first_bounce == FirstBounce::map;
         if (by_map) {
             if (!soup_)
                 soup_ = make_soup(world_);
@@ -201,11 +201,17 @@ void PhotonRenderer::report_work()
     caustics_.report_counts();
 }
 
+std::string PhotonRenderer::asked_options() const
+{
+    return TreeRenderer::options() + " " + changed_options(photon_options(), settings_, {}) +
+           light_rays_.options(rays_kind());
+}
+
 std::string PhotonRenderer::options() const
 {
     RenderSettings chosen = settings_;
-    chosen.photons.paths = int(paths_);
-    chosen.photons.caustic_paths = int(share() * chosen.photons.caustic_paths);
+    chosen.of<PhotonSettings>().paths = int(paths_);
+    chosen.of<PhotonSettings>().caustic_paths = int(share() * chosen.of<PhotonSettings>().caustic_paths);
     std::vector<std::string_view> names{"photons"};
     if (has_caustics()) names.push_back("caustic-photons");
     return TreeRenderer::options() + " " + changed_options(photon_options(), chosen, names) +

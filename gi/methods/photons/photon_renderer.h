@@ -48,6 +48,7 @@ public:
     void changed(Changes const& changes) override;
     void report_work() override;
     std::string options() const override;
+    std::string asked_options() const override;
 
 protected:
     /// Vertices of light paths that the method stores.
@@ -55,8 +56,8 @@ protected:
     /// Whether light that comes by mirrors and glass alone has photons of its own.
     virtual bool has_caustics() const { return true; }
     /// Indirect bounces that the method's light paths give, at most.
-    virtual int bounces() const { return std::min(settings_.photons.reflections, settings_.bounces); }
-    virtual PhotonRays rays_kind() const { return settings_.photons.rays; }
+    virtual int bounces() const { return std::min(settings_.of<PhotonSettings>().reflections, settings_.bounces); }
+    virtual PhotonRays rays_kind() const { return settings_.of<PhotonSettings>().rays; }
     /// Nested lattices that follow the camera; fewer than 2 = none do.
     virtual int cascades_about_camera() const { return 0; }
     virtual std::string_view timer_name() const = 0; ///< of take()
@@ -85,7 +86,7 @@ private:
     void update(std::uint32_t index, std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     void trace_set(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
     void fit_budget(std::span<FrameView const> views, BuildStop const& stop, PathCounts& counts);
-    double share() const { return double(paths_) / settings_.photons.paths; }
+    double share() const { return double(paths_) / settings_.of<PhotonSettings>().paths; }
 
     bool frames_; ///< passes belong to frames instead of to one picture
     Caustics caustics_;

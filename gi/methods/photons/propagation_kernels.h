@@ -8,6 +8,7 @@
 // 0, and the others of the cell are scaled so that their sum is the cell's flux. So propagation in free space
 // keeps each channel's flux.
 
+#include "gi/light_paths/settings.h"
 #include "gi/methods/photons/sh_lattice.h"
 #include "gi/render/render_settings.h"
 

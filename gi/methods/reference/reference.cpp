@@ -182,7 +182,7 @@ RenderResult render_picture(char const* name, World const& world, Camera const& 
     PassLoop loop(settings, stop, progress, report);
     Paths tracing(world, settings, world.triangles.size(), report, &stop);
     PathSteps const steps = start_steps(tracing, world, camera, settings);
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name, {}) : 0;
     auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
         trace_pass(tracing, steps, sums, loop.first_path(), paths, {}, nullptr, &stop);
     };

@@ -21,7 +21,7 @@ PlanText cells_of(Bounds const& box, int voxels)
 
 std::vector<PlanItem> explain_sh_grid(World const& world, RenderSettings const& settings, Camera const& camera)
 {
-    ShGridSettings const& s = settings.sh_grid;
+    ShGridSettings const& s = settings.of<ShGridSettings>();
     if (world.bounds.empty()) return {{"grid", "grid", false, "there are no surfaces"}};
     if (world.light_select.empty()) return {{"grid", "grid", false, "there is no light"}};
     ExactVisibility const visibility(world, plan_scene(world).alpha_tests, settings.threads);
@@ -35,9 +35,9 @@ std::vector<PlanItem> explain_sh_grid(World const& world, RenderSettings const& 
     bool const has_fine = needs_fine_grid(focus, world.bounds);
     out.push_back({"fine_grid", "fine grid of what is shown", has_fine,
                    has_fine ? cells_of(focus, s.voxels) + "; " + extents : extents});
-    out.push_back(explain_caustics(world, settings.photons));
+    out.push_back(explain_caustics(world, settings.of<PhotonSettings>()));
     out.push_back({"photons", "photons", true,
-                   PlanText("{} light paths per update", {figure("paths", settings.photons.paths)}) +
+                   PlanText("{} light paths per update", {figure("paths", settings.of<PhotonSettings>().paths)}) +
                        (has_fine ? ", and as many that begin on surfaces of the fine grid" : "")});
     std::size_t const moving = world.triangles.size() - world.static_triangles;
     out.push_back({"moving_parts", "updates of moving parts", moving > 0,

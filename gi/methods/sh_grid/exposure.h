@@ -4,6 +4,7 @@
 
 #include "gi/methods/sh_grid/patches.h"
 #include "gi/methods/sh_grid/photons.h"
+#include "gi/methods/sh_grid/settings.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/render_settings.h"
 

@@ -1,7 +1,7 @@
 #include "gi/methods/sh_grid/field.h"
 
 #include "gi/core/rng.h"
-#include "gi/methods/slhb/directions/direction_map.h"
+#include "gi/hit_buffers/directions/direction_map.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "gi/methods/sh_grid/field_light.h"
 
 #include "gi/methods/sh_grid/field_glyphs.h"
-#include "gi/methods/slhb/directions/direction_map.h"
+#include "gi/hit_buffers/directions/direction_map.h"
 #include "gi/methods/whitted/caustic_light.h"
 #include "gi/methods/whitted/lobe_light.h"
 #include "gi/scene/shading/warp.h"

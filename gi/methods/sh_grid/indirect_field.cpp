@@ -33,8 +33,8 @@ IndirectField::IndirectField(World const& world, RenderSettings const& settings,
       first_moving_(std::min(first_moving, world.triangles.size())),
       report_(report),
       frames_(stop == nullptr),
-      voxels_(settings.sh_grid.voxels),
-      light_paths_(std::uint32_t(settings.photons.paths)),
+      voxels_(settings.of<ShGridSettings>().voxels),
+      light_paths_(std::uint32_t(settings.of<PhotonSettings>().paths)),
       photons_(world, settings, first_moving_),
       light_rays_(world, settings, first_moving_, report, stop)
 {
@@ -119,7 +119,7 @@ void IndirectField::place_cells(GridLevel& level)
         });
     constexpr std::size_t kStale = 8; // every kStale-th cell may lie where surfaces no longer are
     SparseCells<FieldCell>& cells = level.field.cells;
-    level.field.degree = settings_.sh_grid.degree;
+    level.field.degree = settings_.of<ShGridSettings>().degree;
     if (cells.place.empty()) cells = SparseCells<FieldCell>(frame);
     if (cells.values.size() > wanted.size() + wanted.size() / kStale) {
         SparseCells<FieldCell> fresh(frame);
@@ -136,7 +136,7 @@ void IndirectField::update_cells(ExactVisibility const& visibility, int part, in
                                  PathCounts& counts)
 {
     StageTimer const timer(report_, "spherical-harmonics field");
-    ShGridSettings const& s = settings_.sh_grid;
+    ShGridSettings const& s = settings_.of<ShGridSettings>();
     FieldDirections const directions(s.directions, s.degree, *first_index_ + updates_);
     std::size_t const n = directions.all.size();
     std::vector<FieldTarget> targets;
@@ -220,7 +220,7 @@ void IndirectField::fit_budget(Now const& now)
 {
     constexpr int kFirst = 32;                      // voxels
     constexpr double kSurfaces = 1.8, kLight = 4.5; // growth of time when voxels are doubled
-    ShGridSettings const& asked = settings_.sh_grid;
+    ShGridSettings const& asked = settings_.of<ShGridSettings>();
     double const most_s = 0.5 * settings_.budget_s;
     int doublings = 0;
     for (int v = asked.voxels; v / 2 >= kFirst; v /= 2) ++doublings;
@@ -231,7 +231,7 @@ void IndirectField::fit_budget(Now const& now)
         levels_.clear();
         surfaces_changed_ = light_changed_ = update_all_ = true;
         voxels_ = asked.voxels >> doublings;
-        light_paths_ = std::max(1u, std::uint32_t(settings_.photons.paths) >> 2 * doublings);
+        light_paths_ = std::max(1u, std::uint32_t(settings_.of<PhotonSettings>().paths) >> 2 * doublings);
         auto const begun = Clock::now();
         try {
             update(now);
@@ -263,7 +263,7 @@ void IndirectField::update(Now const& now)
     place_levels(now.visibility, now.views, now.stop);
     auto const begun = Clock::now();
     auto const trace_photons = [&](bool whole) {
-        PathRays const& rays = light_rays_.of(settings_.photons.rays, now.visibility);
+        PathRays const& rays = light_rays_.of(settings_.of<PhotonSettings>().rays, now.visibility);
         StageTimer const timer(report_, "photons");
         PhotonSets::Trace const trace{levels_, now.visibility, rays, now.views, now.stop, now.counts};
         whole ? photons_.trace_all(trace) : photons_.trace_next(trace);

@@ -38,7 +38,7 @@ public:
     /// The finest level first; empty without indirect light.
     std::span<GridLevel const> levels() const { return levels_; }
     void report_counts();
-    std::string ray_options() const { return light_rays_.options(settings_.photons.rays); } ///< see LightRays
+    std::string ray_options() const { return light_rays_.options(settings_.of<PhotonSettings>().rays); } ///< see LightRays
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -65,8 +65,8 @@ private:
     /// Whether passes belong to frames, none of which shall take long, instead of to one picture.
     bool frames() const { return frames_; }
     bool moves() const { return first_moving_ < world_.triangles.size(); }
-    int parts() const { return settings_.sh_grid.field_passes; }
-    RadianceBy by() const { return settings_.sh_grid.radiance_by; }
+    int parts() const { return settings_.of<ShGridSettings>().field_passes; }
+    RadianceBy by() const { return settings_.of<ShGridSettings>().radiance_by; }
     bool sky_shines() const { return !view(world_).environment_radiance.empty(); }
 
     World const& world_;

@@ -1,3 +1,4 @@
+#include "gi/methods/sh_grid/settings.h"
 #include "gi/methods/sh_grid/sh_grid.h"
 
 namespace gi {
@@ -7,7 +8,7 @@ template <class T>
 RenderOption field(char const* name, OptionValues values, char const* meaning, T ShGridSettings::*member)
 {
     return {make_option<RenderSettings>(
-                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.sh_grid.*member; }),
+                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.template of<ShGridSettings>().*member; }),
             "Method sh_grid",
             {"sh_grid"}};
 }

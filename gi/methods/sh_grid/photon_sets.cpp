@@ -1,4 +1,5 @@
 #include "gi/methods/sh_grid/photon_sets.h"
+#include "gi/light_paths/settings.h"
 
 #include <algorithm>
 
@@ -34,7 +35,7 @@ LightPaths PhotonSets::light_paths_of(int part, Trace const& trace) const
     return {.count = light_paths_,
             .first = std::uint32_t(all * std::uint64_t(part) / n),
             .last = std::uint32_t(all * std::uint64_t(part + 1) / n),
-            .bounces = std::min(settings_.photons.reflections, settings_.bounces),
+            .bounces = std::min(settings_.of<PhotonSettings>().reflections, settings_.bounces),
             .seed = settings_.seed,
             .pass = first_index_ + sets_,
             .stop = &trace.stop};

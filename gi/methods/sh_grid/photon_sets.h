@@ -38,7 +38,7 @@ public:
     std::uint32_t sets() const { return sets_; } ///< traced since the last restart or motion
 
 private:
-    int parts() const { return settings_.sh_grid.field_passes; }
+    int parts() const { return settings_.of<ShGridSettings>().field_passes; }
     LightPaths light_paths_of(int part, Trace const& trace) const;
     template <class Vertices>
     std::vector<ReflectedPhoton> trace_part(Trace const& trace, int part, LightPaths paths, std::uint64_t stream,

@@ -36,13 +36,18 @@ public:
         field_.report_counts();
         caustics_.report_counts();
     }
+    std::string asked_options() const override
+    {
+        return TreeRenderer::options() + " " + changed_options(photon_options(), settings_, {}) + " " +
+               changed_options(sh_grid_options(), settings_, {}) + field_.ray_options();
+    }
     std::string options() const override
     {
         RenderSettings chosen = settings_;
-        PhotonSettings& photons = chosen.photons;
+        PhotonSettings& photons = chosen.of<PhotonSettings>();
         photons.caustic_paths = int(photon_share() * photons.caustic_paths);
         photons.paths = int(field_.light_paths());
-        chosen.sh_grid.voxels = field_.voxels();
+        chosen.of<ShGridSettings>().voxels = field_.voxels();
         return TreeRenderer::options() + " " +
                changed_options(photon_options(), chosen, {"photons", "caustic-photons"}) + " " +
                changed_options(sh_grid_options(), chosen, {"voxels"}) + field_.ray_options();
@@ -62,13 +67,13 @@ protected:
         if (light_) unseen_ += light_->unseen();
         light_.reset();
         if (levels.empty() && caustics_.map() == nullptr) return nullptr;
-        light_.emplace(levels, caustics_.map(), *visibility_, settings_.sh_grid);
+        light_.emplace(levels, caustics_.map(), *visibility_, settings_.of<ShGridSettings>());
         return &*light_;
     }
 
 private:
     /// Of the photons that the settings ask for: less if a budget allows no more.
-    double photon_share() const { return double(field_.light_paths()) / settings_.photons.paths; }
+    double photon_share() const { return double(field_.light_paths()) / settings_.of<PhotonSettings>().paths; }
 
     IndirectField field_;
     Caustics caustics_;

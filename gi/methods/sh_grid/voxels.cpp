@@ -1,6 +1,7 @@
 #include "gi/methods/sh_grid/voxels.h"
 
 #include "gi/core/error.h"
+#include "gi/methods/sh_grid/settings.h"
 #include "gi/scene/shading/shading_point.h"
 
 #include <algorithm>

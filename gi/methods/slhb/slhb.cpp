@@ -1,49 +1,94 @@
 #include "gi/methods/slhb/slhb.h"
 
 #include "gi/kernel/device.h"
+#include "gi/methods/paths/frames_of.h"
+#include "gi/methods/paths/paths.h"
 #include "gi/methods/slhb/kernels/kernel_render.h"
-#include "gi/methods/slhb/renderer.h"
-#include "gi/methods/slhb/settings.h"
-#include "gi/render/fingerprint.h"
-#include "gi/render/pass_loop.h"
-
-#include <optional>
-#include <tbb/global_control.h>
+#include "gi/methods/slhb/kernels/kernel_renderer.h"
 
 namespace gi {
+namespace {
+
+constexpr PathAlgorithm kSlhbShadowRays{SurfacesBy::look_ups, ShadowsBy::rays, false},
+    kPathsShadowMaps{SurfacesBy::rays, ShadowsBy::maps};
+
+} // namespace
 
 RenderResult render_slhb(World const& world, Camera const& camera, RenderSettings const& settings,
                          StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
-    if (settings.space == Space::device) {
-        check_device(Space::device);
-        return render_by_kernels(Space::device, world, camera, settings, stop, progress, report);
-    }
-    std::optional<tbb::global_control> limit; // also limits the building of structures before the passes
-    if (settings.threads > 0)
-        limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
-    PassLoop loop(settings, stop, progress, report);
-    TriangleSoup soup = make_soup(world);
-    RenderSettings chosen = settings;
-    chosen.slhb = choose_settings(settings, world, soup, camera);
-    FrameView const eye{camera, settings.width, settings.height};
-    SlhbRenderer renderer(
-        world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
-        chosen.slhb.look_ups == LookUps::none ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb") : 0;
-    VertexSharing const sharing =
-        chosen.slhb.cache == RadianceCaching::on ? VertexSharing::cached : VertexSharing::exact;
-    RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
-        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-            renderer.pass(loop.first_path() + sums.paths, {&sums, 1}, sharing, &stop);
-    });
-    renderer.report_work();
-    report.lose("layers beyond the limit of a texel", renderer.lost_layers());
-    report.lose("radiance samples for which the radiance cache had no room", renderer.refused_notes());
-    result.rays = renderer.rays();
-    result.options = as_options(chosen);
-    loop.deliver(world, result);
-    return result;
+    RenderSettings const s = with(kSlhb, settings);
+    if (s.space == Space::host) return render_by("slhb", world, camera, s, stop, progress, report);
+    check_device(Space::device);
+    return render_by_kernels(Space::device, world, camera, s, stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camera const& camera,
+                                                 RenderSettings const& settings, Report& report)
+{
+    RenderSettings const s = with(kSlhb, settings);
+    if (s.space == Space::host) return start_frames_by(world, camera, s, report);
+    check_device(Space::device);
+    return start_kernel_frames(Space::device, world, camera, s, report);
+}
+
+RenderSettings slhb_for_display(RenderSettings settings)
+{
+    settings = paths_for_display(std::move(settings));
+    // The same axes for all frames: fresh axes in every frame would flicker.
+    Schedule& schedule = settings.of<SlhbSettings>().schedule;
+    if (schedule == Schedule::automatic) schedule = Schedule::stored;
+    return settings;
+}
+
+ExposurePlan slhb_exposure(World const& world, RenderSettings const& asked, Camera const&, Triangles triangles)
+{
+    RenderSettings s = with(kSlhb, asked);
+    SlhbSettings& buffers = s.of<SlhbSettings>();
+    // Appending moving triangles to all stored axes again for every path is more work than new axes.
+    bool const any_axes =
+        buffers.schedule == Schedule::automatic && buffers.directions.empty() && buffers.fresh_axes == 0;
+    if (triangles == Triangles::moving && any_axes) buffers.schedule = Schedule::streamed;
+    if (s.budget_s > 0) s = choose_settings(s, world, make_soup(world));
+    return {"slhb", s};
+}
+
+bool slhb_updates_axes(RenderSettings const& settings)
+{
+    return settings.of<SlhbSettings>().schedule == Schedule::automatic;
+}
+
+RenderResult render_slhb_shadow_rays(World const& world, Camera const& camera, RenderSettings const& settings,
+                                     StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_by("slhb_shadow_rays", world, camera, with(kSlhbShadowRays, settings), stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_slhb_shadow_rays_frames(MovingWorld const& world, Camera const& camera,
+                                                             RenderSettings const& settings, Report& report)
+{
+    return start_frames_by(world, camera, with(kSlhbShadowRays, settings), report);
+}
+
+RenderResult render_paths_shadow_maps(World const& world, Camera const& camera, RenderSettings const& settings,
+                                      StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_by("paths_shadow_maps", world, camera, with(kPathsShadowMaps, settings), stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_paths_shadow_maps_frames(MovingWorld const& world, Camera const& camera,
+                                                              RenderSettings const& settings, Report& report)
+{
+    return start_frames_by(world, camera, with(kPathsShadowMaps, settings), report);
+}
+
+std::unique_ptr<FrameRenderer> start_kernel_frames(Space space, MovingWorld const& world, Camera const& camera,
+                                                   RenderSettings const& settings, Report& report)
+{
+    RenderSettings const s = with(kSlhb, settings);
+    if (space == Space::host)
+        return std::make_unique<PathsFrames<KernelRenderer<Space::host>>>(world, camera, s, report);
+    return std::make_unique<PathsFrames<KernelRenderer<Space::device>>>(world, camera, s, report);
 }
 
 } // namespace gi

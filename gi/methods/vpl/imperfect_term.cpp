@@ -28,7 +28,7 @@ std::uint32_t checked(VirtualLightSettings const& s)
 
 ImperfectTerm::ImperfectTerm(TermSource const& source)
     : world_(source.world),
-      vpl_(source.settings.vpl),
+      vpl_(source.settings.of<VirtualLightSettings>()),
       seed_(source.settings.seed),
       cloud_(make_point_cloud(source.world, seed_)),
       grid_{checked(vpl_)}

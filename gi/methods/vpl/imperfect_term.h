@@ -2,6 +2,7 @@
 // Visibility by imperfect shadow maps, one for every virtual light of a pass.
 
 #include "gi/methods/vpl/imperfect_map.h"
+#include "gi/methods/vpl/settings.h"
 #include "gi/methods/vpl/visibility_term.h"
 
 namespace gi {

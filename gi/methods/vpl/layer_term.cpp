@@ -1,6 +1,6 @@
 #include "gi/methods/vpl/layer_term.h"
 
-#include "gi/methods/slhb/hit_buffer/query_batch.h"
+#include "gi/hit_buffers/query_batch.h"
 
 #include <cmath>
 
@@ -34,7 +34,7 @@ struct LayerTerm::Walks {
 
 LayerTerm::LayerTerm(TermSource const& source)
     : world_(source.world),
-      axes_(source.world, source.settings.slhb, source.settings.seed, source.first_moving, source.stop)
+      axes_(source.world, source.settings.of<SlhbSettings>(), source.settings.seed, source.first_moving, source.stop)
 {
 }
 

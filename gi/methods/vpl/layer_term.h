@@ -9,7 +9,7 @@
 // o; a hit there may be on the far end's own surface. So hits do not block within texel + (texel + that distance)
 // * slope of the far surface against the axis, up to half the length of the connection.
 
-#include "gi/methods/slhb/directions/stored_axes.h"
+#include "gi/hit_buffers/directions/stored_axes.h"
 #include "gi/methods/vpl/visibility_term.h"
 
 #include <atomic>

@@ -1,5 +1,6 @@
 #include "gi/core/error.h"
 #include "gi/core/text.h"
+#include "gi/methods/vpl/settings.h"
 #include "gi/methods/vpl/visibility.h"
 
 #include <fmt/format.h>
@@ -14,14 +15,14 @@ RenderOption virtual_lights(char const* name, OptionValues values, char const* m
                             std::vector<std::string_view> methods = {"vpl_*"})
 {
     return {make_option<RenderSettings>(
-                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.vpl.*member; }),
+                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.template of<VirtualLightSettings>().*member; }),
             "Methods vpl_*", std::move(methods)};
 }
 
 /// A number of points, or "30%" of the texels of a map.
 void set_points(RenderSettings& s, std::string const& text, std::string const& given)
 {
-    V vpl = s.vpl;
+    V vpl = s.of<VirtualLightSettings>();
     bool const is_share = text.ends_with('%');
     double const v = parse_finite(std::string_view(text).substr(0, text.size() - is_share)).value_or(-1);
     vpl.points_percent = is_share ? v : 0;
@@ -31,7 +32,7 @@ void set_points(RenderSettings& s, std::string const& text, std::string const& g
                          fmt::format("it takes 1 to {} points, or a share of the {} texels of a map", kMostPoints,
                                      vpl.point_map * vpl.point_map),
                          "write 1024, or 30%");
-    s.vpl = vpl;
+    s.of<VirtualLightSettings>() = vpl;
 }
 
 } // namespace
@@ -47,8 +48,8 @@ RenderOptionTable const& virtual_light_options()
         points.takes_other_words = true;
         points.set = set_points;
         points.get = [](RenderSettings const& s) {
-            return s.vpl.points_percent > 0 ? number_text(s.vpl.points_percent) + "%"
-                                            : std::to_string(s.vpl.points);
+            return s.of<VirtualLightSettings>().points_percent > 0 ? number_text(s.of<VirtualLightSettings>().points_percent) + "%"
+                                            : std::to_string(s.of<VirtualLightSettings>().points);
         };
         return RenderOptionTable{
             virtual_lights("light-paths", {1, 1 << 20},

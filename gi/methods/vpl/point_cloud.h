@@ -2,6 +2,7 @@
 // Surfaces as points (Ritschel et al. 2008, sec. 3.1): each point represents the same area, as a disk in its
 // surface.
 
+#include "gi/methods/vpl/settings.h"
 #include "gi/render/render_settings.h"
 #include "gi/scene/model/world.h"
 

@@ -2,6 +2,7 @@
 
 #include "gi/core/rqmc.h"
 #include "gi/core/step.h"
+#include "gi/methods/vpl/settings.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
@@ -59,7 +60,7 @@ void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> 
         BuildStop const tracing(stop);
         StageTimer const timer(report_, "virtual lights");
         lights = trace_light_paths(view(world_), world_.bounds, ExactPathRays(*visibility_),
-                                   {.count = std::uint32_t(settings_.vpl.light_paths),
+                                   {.count = std::uint32_t(settings_.of<VirtualLightSettings>().light_paths),
                                     .bounces = settings_.bounces,
                                     .seed = settings_.seed,
                                     .pass = index,
@@ -89,7 +90,7 @@ void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index, s
                             .seed = settings_.seed,
                             .filter = settings_.filter,
                             .width = v.width,
-                            .bound = bound_of(world_, settings_.vpl)};
+                            .bound = bound_of(world_, settings_.of<VirtualLightSettings>())};
     tbb::combinable<Counts> counts;
     PassStop const given_up(stop, PassStop::of(sums.paths));
     TiledPass pass(sums, 1, given_up);

@@ -1,8 +1,9 @@
 #include "gi/methods/vpl/visibility.h"
 
-#include "gi/methods/slhb/directions/stored_axes.h"
-#include "gi/methods/slhb/settings.h"
+#include "gi/hit_buffers/directions/stored_axes.h"
+#include "gi/hit_buffers/options.h"
 #include "gi/methods/vpl/renderer.h"
+#include "gi/methods/vpl/settings.h"
 
 #include <array>
 #include <fmt/format.h>
@@ -18,20 +19,22 @@ constexpr std::array<char const*, 6> kNames{"vpl_exact", "vpl_slhb", "vpl_imperf
 std::string options_of(VisibilityKind kind, RenderSettings const& s)
 {
     std::vector<std::string_view> own{"light-paths"};
-    if (s.vpl.near_m > 0) own.push_back("near");
+    if (s.of<VirtualLightSettings>().near_m > 0) own.push_back("near");
     if (kind == VisibilityKind::imperfect) own.insert(own.end(), {"points", "point-map"});
     if (kind == VisibilityKind::ambient || kind == VisibilityKind::directional) own.push_back("ao-radius");
     std::string const text = as_options(virtual_light_options(), s, own);
     if (kind != VisibilityKind::slhb) return text;
-    return text + " " + as_options(slhb_options(), s, {"directions", "hit-buffer"});
+    std::vector<std::string_view> names{"directions", "hit-buffer"};
+    if (s.of<SlhbSettings>().most_layers > 0) names.push_back("max-layers");
+    return text + " " + as_options(hit_buffer_options(), s, names);
 }
 
 /// Returns the settings with defaults chosen.
 RenderSettings chosen(RenderSettings settings)
 {
-    settings.slhb = with_stored_axes(settings.slhb);
-    settings.vpl.points = settings.vpl.points_per_map();
-    settings.vpl.points_percent = 0;
+    settings.of<SlhbSettings>() = with_stored_axes(settings.of<SlhbSettings>());
+    settings.of<VirtualLightSettings>().points = settings.of<VirtualLightSettings>().points_per_map();
+    settings.of<VirtualLightSettings>().points_percent = 0;
     return settings;
 }
 

@@ -6,7 +6,7 @@ namespace gi {
 
 std::unique_ptr<VisibilityTerm> make_term(VisibilityKind kind, TermSource const& source)
 {
-    float const radius_m = source.settings.vpl.ao_radius_m;
+    float const radius_m = source.settings.of<VirtualLightSettings>().ao_radius_m;
     switch (kind) {
     case VisibilityKind::exact:
         return std::make_unique<RayTerm>(source.visibility, kInf);

@@ -7,7 +7,7 @@ template <class T>
 RenderOption ray_trees(char const* name, OptionValues values, char const* meaning, T WhittedSettings::*member)
 {
     return {make_option<RenderSettings>(
-                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.whitted.*member; }),
+                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.template of<WhittedSettings>().*member; }),
             "Ray trees",
             {"whitted", "sh_grid", "ispm", "lpv", "isllpm", "multi_image"}};
 }

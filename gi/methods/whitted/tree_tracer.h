@@ -8,6 +8,7 @@
 // Trees advance together, one generation at a time: all nearest hits, then all surfaces, then all shadow rays.
 
 #include "gi/core/rng.h"
+#include "gi/methods/whitted/settings.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/path_step.h"
 #include "gi/render/ray_path.h"

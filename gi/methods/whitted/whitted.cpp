@@ -55,7 +55,7 @@ void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLi
     TreeTracer const tracer{.world = view(world_),
                             .visibility = *visibility_,
                             .camera = camera_rays(v.camera, v.width, v.height, world_.origin),
-                            .settings = settings_.whitted,
+                            .settings = settings_.of<WhittedSettings>(),
                             .seed = settings_.seed,
                             .filter = settings_.filter,
                             .width = v.width,

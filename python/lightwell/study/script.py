@@ -37,7 +37,7 @@ class Outcome:
 
 
 class Script:
-    """An experiment script of schema study/1 (docs/study.md), read and checked.
+    """An experiment script of schema study/2 (docs/study.md), read and checked.
 
     Raises:
         ScriptError: the script is invalid; the error has file, line and column.

@@ -22,7 +22,7 @@ void add_bench(CLI::App& app, int& exit_code)
     for (char const* const name : {"raster", "rays", "accuracy", "thesis", "dynamic", "views", "schedules"})
         c->get_subcommand(name)->group("Measurements for developers of Lightwell");
     c->footer(R"(Examples:
-  lightwell bench sweep --scene cornell --methods slhb,reference --budgets 20ms,80ms --size 48x48 --reference-paths 64 --out sweep
+  lightwell bench sweep --scene cornell --methods paths,reference --budgets 20ms,80ms --size 48x48 --reference-paths 64 --out sweep
   lightwell bench report sweep)");
 }
 

@@ -150,7 +150,7 @@ private:
         Rendered r;
         StopRequest const stop;
         RenderSettings s = settings_;
-        s.slhb = slhb;
+        s.of<gi::SlhbSettings>() = slhb;
         s.paths = paths;
         for (int k = 0; k < o_.seeds; ++k) {
             s.seed = first_seed + std::uint64_t(k);
@@ -167,7 +167,7 @@ private:
     }
     SlhbSettings slhb(std::string const& directions) const
     {
-        SlhbSettings s = settings_.slhb;
+        SlhbSettings s = settings_.of<gi::SlhbSettings>();
         s.schedule = directions.empty() ? Schedule::streamed : Schedule::stored;
         s.directions = directions;
         return s;

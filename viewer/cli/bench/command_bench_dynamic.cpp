@@ -72,9 +72,11 @@ with its range from frame 100 on; raised counts frames with more error than with
 in all pictures. The last frame is saved as a picture, with its FLIP map.)");
     c->callback([o, c, &exit_code] {
         std::vector<gi::ChosenMethod> methods;
-        for (std::string const& s : o->structures)
-            methods.push_back({"slhb", find_structure(s).schedule, "--structures " + s});
-        check_method_options(*c, o->render.settings, methods);
+        for (std::string const& s : o->structures) {
+            methods.push_back({"slhb", o->render.settings, "--structures " + s});
+            methods.back().settings.of<gi::SlhbSettings>().schedule = find_structure(s).schedule;
+        }
+        check_method_options(*c, methods);
         exit_code = run(*o);
     });
 }

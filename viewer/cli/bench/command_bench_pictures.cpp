@@ -45,7 +45,7 @@ int run(PicturesOptions const& o)
 void set_interactive_defaults(CLI::App const& command, PicturesOptions& o)
 {
     auto const is_given = [&](char const* name) { return command.get_option(name)->count() > 0; };
-    if (!is_given("--methods")) o.methods = {kPeer, "slhb"};
+    if (!is_given("--methods")) o.methods = {kPeer, "paths"};
     if (!is_given("--denoise")) o.filters = {"none", "atrous"};
     if (!is_given("--size")) o.render.size = "512x512";
     if (!is_given("--reference-paths")) o.reference_paths = 256;
@@ -116,8 +116,8 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
     c->add_flag("--json", r.json, "print both tables as JSON");
     c->add_flag("--quiet", r.quiet, "no progress bar");
     c->footer(fmt::format(R"(Examples:
-  lightwell bench pictures --scenes cornell --methods reference,slhb --budgets 1path,20ms --repeats 1 --size 32x32 --reference-paths 16 --out pictures
-  lightwell bench pictures --scenes cornell --methods reference,slhb --budgets 1path,20ms,40ms --repeats 1 --size 32x32 --reference-paths 16 --resume --out pictures
+  lightwell bench pictures --scenes cornell --methods reference,paths --budgets 1path,20ms --repeats 1 --size 32x32 --reference-paths 16 --out pictures
+  lightwell bench pictures --scenes cornell --methods reference,paths --budgets 1path,20ms,40ms --repeats 1 --size 32x32 --reference-paths 16 --resume --out pictures
   lightwell bench pictures --scenes atrium --interactive --frames 4 --scored-frames 1,4 --size 24x16 --frame-budget 20ms --reference-paths 4 --out frames
 
 Every render (scene, budget, method, repeat) is filtered by every filter. render_s is the time of the whole call;
@@ -133,7 +133,7 @@ is lost. Times differ where one path takes longer than the budget. The summary a
 'reference' needs for the same error, filter included, estimated from its errors at all budgets.
 
 --interactive renders consecutive frames, with the same temporal reuse and filters for all methods. Its defaults
-are --methods reference,slhb --denoise none,atrous --size 512x512 --reference-paths 256. frame_s is the time of
+are --methods reference,paths --denoise none,atrous --size 512x512 --reference-paths 256. frame_s is the time of
 world, render and reuse; in the row 'mean' it is the median of all frames except the first, which builds lasting
 structures.
 

@@ -1,6 +1,6 @@
 #include "gi/core/durable_file.h"
 #include "gi/core/rng.h"
-#include "gi/methods/slhb/hit_buffer/hit_buffer.h"
+#include "gi/hit_buffers/hit_buffer.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/scene/generate/generate.h"
 #include "viewer/bench/bench_record.h"

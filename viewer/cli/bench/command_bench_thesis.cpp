@@ -95,9 +95,9 @@ private:
                     .render(m.world, camera, settings(o_.reference_paths, bounces, 99), stop, {}, unused)
                     .picture;
         RenderSettings s = settings(std::uint32_t(paths), bounces, 1);
-        s.slhb.schedule = Schedule::stored;
-        s.slhb.directions = directions;
-        s.slhb.resolution = resolution;
+        s.of<gi::SlhbSettings>().schedule = Schedule::stored;
+        s.of<gi::SlhbSettings>().directions = directions;
+        s.of<gi::SlhbSettings>().resolution = resolution;
         std::vector<double> frame, build;
         ErrorSums errors;
         for (int k = 0; k < o_.repeats; ++k) {

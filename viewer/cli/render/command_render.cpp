@@ -337,7 +337,7 @@ void add_render(CLI::App& app, int& exit_code)
     CLI::App* const c = app.add_subcommand("render", about("render"));
     declare_options(*c, *o);
     c->callback([o, c, &exit_code] {
-        check_method_options(*c, o->settings, {chosen_method(*o, o->method)});
+        check_method_options(*c, {{o->method, o->settings}});
         check_display(*c, *o);
         exit_code = run(*o);
     });

@@ -108,7 +108,7 @@ void add_study(CLI::App& app, int& exit_code)
 
     CLI::App* const plan = study->add_subcommand(
         "plan", "Print a participant's plan: order, counts, transitions, expected duration.");
-    plan->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    plan->add_option("SCRIPT", o->script, "experiment (YAML, schema study/2)")->required();
     plan->add_option("--participant", o->participant, "number, from 1")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();

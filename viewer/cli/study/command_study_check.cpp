@@ -120,7 +120,7 @@ void add_study_check(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<CheckOptions>();
     CLI::App* const c = study.add_subcommand("check", about("study check"));
-    c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/2)")->required();
     c->add_option("--display-model", o->display_model,
                   "display model (study calibrate): checks sizes and luminances, prints pixels per degree");
     c->add_flag("--no-render", o->no_render, "load and set up the stimuli, but render no tiny picture of each");

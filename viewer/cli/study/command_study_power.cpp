@@ -94,7 +94,7 @@ void add_study_power(CLI::App& study, int& exit_code)
     auto const o = std::make_shared<PowerOptions>();
     CLI::App* const power = study.add_subcommand(
         "power", "Power by simulation: how often the analysis finds an effect, by its size and the participants.");
-    power->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    power->add_option("SCRIPT", o->script, "experiment (YAML, schema study/2)")->required();
     power
         ->add_option(
             "--test", o->test,

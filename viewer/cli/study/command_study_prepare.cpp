@@ -113,7 +113,7 @@ void add_study_prepare(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<PrepareOptions>();
     CLI::App* const c = study.add_subcommand("prepare", about("study prepare"));
-    c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/2)")->required();
     c->add_option("--size", o->size, "size of the participant's window, px")->capture_default_str();
     c->add_option("--font", o->font_px, "height of text in the window, px")
         ->check(CLI::Range(8, 200))

@@ -225,7 +225,7 @@ void add_study_run(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<RunOptions>();
     CLI::App* const c = study.add_subcommand("run", about("study run"));
-    c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/2)")->required();
     c->add_option("--participant", o->participant, "number, from 1")->check(CLI::Range(1, 100000))->required();
     c->add_option("--session", o->session, "number of the session")
         ->check(CLI::Range(1, 99))

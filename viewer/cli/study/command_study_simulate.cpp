@@ -96,7 +96,7 @@ void add_study_simulate(CLI::App& study, int& exit_code)
     auto const o = std::make_shared<SimulateOptions>();
     CLI::App* const simulate = study.add_subcommand(
         "simulate", "Simulate sessions with model observers: to try a script, for power analysis, for tests.");
-    simulate->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    simulate->add_option("SCRIPT", o->script, "experiment (YAML, schema study/2)")->required();
     simulate->add_option("--participants", o->participants, "3, 1..24 or 1,4,7..9 (default: all of the script)");
     simulate->add_option("-o,--out", o->out, "folder of the data set (default: simulated-ID)");
     simulate->add_option("--observer", o->observer, "model of the observers (YAML, docs/study.md)");

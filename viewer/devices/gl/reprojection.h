@@ -12,6 +12,7 @@
 // farther pixel along the translation, or the stretched edge of the picture. View-dependent light (mirrors) moves
 // with its surface.
 
+#include "gi/light_paths/settings.h"
 #include "gi/scene/model/camera.h"
 #include "viewer/devices/gl/gl_program.h"
 #include "viewer/devices/gl/picture_texture.h"

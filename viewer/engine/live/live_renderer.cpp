@@ -221,8 +221,7 @@ bool LiveRenderer::anything_moves(Viewpoint const& now) const
 void LiveRenderer::choose_updated_axes(bool may_move)
 {
     Settings const& s = session_.settings();
-    bool const is_governed = s.method == "slhb" && s.has_automatic_schedule();
-    int const updated = is_governed ? update_governor_.next(may_move) : 0;
+    int const updated = updates_axes(s) ? update_governor_.next(may_move) : 0;
     if (updated == s.updated_axes) return;
     Change const change{"updated_axes", updated};
     session_.apply(change);
@@ -330,7 +329,7 @@ void LiveRenderer::run_leading()
             std::lock_guard const lock(mutex_);
             resting_ = false;
             // Ranks must trace the same number of paths, and so must both methods of a comparison.
-            bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
+            bool const may_end_early = still && link_ == nullptr && gi::find_method(s.method).ends_frames_early && s.compare.empty();
             refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
         }
         ahead_s_ = command.scene_s != scene_s_ ? seen_after_s() : 0;
@@ -361,7 +360,7 @@ void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
     FrameBudget done = budget;
     done.paths = last_.paths;
     governor_.measured(done, pixels_of(last_look_.views), work.seconds, s.rate_hz, work.surfaces_s);
-    if (s.method == "slhb" && s.has_automatic_schedule())
+    if (updates_axes(s))
         update_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
 }
 
@@ -415,7 +414,7 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
                         surfaces == frame->result.stages_s.end() ? 0 : surfaces->second};
     if (done && link_ == nullptr) measure(own, budget);
     if (!frame->result.views.empty()) stored_ = own.dynamic_update.stored;
-    if (Settings const& s = frame->settings; s.method == "slhb")
+    if (Settings const& s = frame->settings; gi::find_method(s.method).updates_axes != nullptr)
         frame->schedule = schedule_sentence(get(s, "schedule").get<std::string>(), s.updated_axes, stored_,
                                             update_governor_.share_of_all());
     if (done && hooks_.finished) hooks_.finished(*frame);

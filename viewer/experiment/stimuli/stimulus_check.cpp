@@ -179,7 +179,8 @@ void StimulusCollection::add(int index, study::Stimulus const& stimulus, study::
     if (std::ranges::none_of(patch, [](auto const& one) { return one.first == "camera"; }))
         planned.patch.emplace_back("camera", camera);
     try {
-        planned.settings = stimulus_settings(patch, camera, std::filesystem::path(script_.file).parent_path());
+        planned.settings = stimulus_settings(patch, camera, std::filesystem::path(script_.file).parent_path(),
+                                             made_for(script_));
     } catch (gi::InputError const& e) {
         return m.add(gi::InputError(planned.place, planned.what + ": " + e.problem(), e.why(), e.suggestion()));
     }

@@ -63,13 +63,14 @@ StimulusSettings stimulus_settings(study::Script const& script, study::Block con
                                    study::Stimulus const& stimulus)
 {
     return stimulus_settings(settings_of(script, block, stimulus), block.camera,
-                             std::filesystem::path(script.file).parent_path());
+                             std::filesystem::path(script.file).parent_path(), made_for(script));
 }
 
 StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera,
-                                   std::filesystem::path const& folder)
+                                   std::filesystem::path const& folder, MadeFor made)
 {
     StimulusSettings s;
+    s.settings = first_settings(made);
     s.settings.panel = false;
     s.settings.refine = false;
     if (std::any_of(patch.begin(), patch.end(), [](auto const& one) { return is_ar_setting(one.first); })) {
@@ -95,7 +96,7 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
     see_from(camera);
     for (auto const& [written, text] : patch) {
         if (written != "scene" && written != "gi.scene")
-            look_up_setting(written, text, folder); // loading finds it
+            look_up_setting(written, text, folder, made); // loading finds it
         std::string const key = written.starts_with(kGi) ? written.substr(kGi.size()) : written;
         if (key == "scene")
             s.scene = text;
@@ -114,7 +115,7 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
         else if (is_scene_edit(key))
             s.edits.push_back({key, setting_value(key, text)});
         else
-            set(s.settings, {key, setting_value(key, text)});
+            set(s.settings, current({key, setting_value(key, text)}, made));
     }
     gi::check_filter(denoise_settings(s.settings, 0));
     if (s.scene.empty())

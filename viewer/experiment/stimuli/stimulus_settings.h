@@ -34,7 +34,8 @@ struct StimulusSettings {
 /// Throws InputError that names a key or value unknown to the renderer.
 /// @param camera  of the block: "", a name or "path:orbit"   @param folder  base of relative paths
 StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera,
-                                   std::filesystem::path const& folder = {});
+                                   std::filesystem::path const& folder = {},
+                                   MadeFor made_for = MadeFor::this_version);
 /// Settings of a stimulus in a script's block. Paths of AR sessions are relative to the script; those of scenes to
 /// the script or else to the current folder.
 StimulusSettings stimulus_settings(study::Script const& script, study::Block const& block,

@@ -1,7 +1,7 @@
 #include "gi/methods/slhb/kernels/kernel_render.h"
 
 #include "gi/methods/slhb/kernels/kernel_renderer.h"
-#include "gi/methods/slhb/settings.h"
+#include "gi/methods/paths/choose.h"
 #include "gi/render/fingerprint.h"
 #include "gi/render/pass_loop.h"
 
@@ -14,19 +14,19 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
 {
     PassLoop loop(settings, stop, progress, report);
     TriangleSoup soup = make_soup(world);
-    RenderSettings chosen = settings;
-    chosen.slhb = choose_settings(settings, world, soup, camera);
-    limit_to_kernels(chosen.slhb);
+    RenderSettings chosen = choose_settings(with(kSlhb, settings), world, soup);
+    KernelRenderer<S>::limit(chosen);
+    std::string const options = as_options(chosen);
     FrameView const eye{camera, settings.width, settings.height};
     KernelRenderer<S> renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report);
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb by kernels") : 0;
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb by kernels", options) : 0;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         renderer.passes(loop.next_path(), paths, {&sums, 1}, &stop);
     });
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());
     result.rays = renderer.rays();
-    result.options = as_options(chosen);
+    result.options = options;
     loop.deliver(world, result);
     return result;
 }
@@ -37,7 +37,7 @@ RenderResult render_by_kernels(Space space, World const& world, Camera const& ca
                                RenderSettings const& settings, StopRequest const& stop,
                                RenderProgress const& progress, Report& report)
 {
-    check_kernels_can(camera, settings.slhb);
+    KernelRenderer<Space::host>::check(camera, settings);
     auto const& run = space == Space::host ? render<Space::host> : render<Space::device>;
     return run(world, camera, settings, stop, progress, report);
 }

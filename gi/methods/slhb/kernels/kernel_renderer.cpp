@@ -1,7 +1,7 @@
 #include "gi/methods/slhb/kernels/kernel_renderer.h"
 
-#include "gi/methods/slhb/directions/grid_bounds.h"
-#include "gi/methods/slhb/ray_plan.h"
+#include "gi/hit_buffers/directions/grid_bounds.h"
+#include "gi/methods/paths/lobes.h"
 #include "gi/render/pass_samples.h"
 #include "gi/scene/model/plan.h"
 
@@ -9,8 +9,11 @@
 
 namespace gi {
 
-void check_kernels_can(Camera const& camera, SlhbSettings const& s)
+template <Space S>
+void KernelRenderer<S>::check(Camera const& camera, RenderSettings const& settings)
 {
+    SlhbSettings const& s = settings.of<SlhbSettings>();
+    PathsSettings const& own = settings.of<PathsSettings>();
     char const* const suggestion = "leave it out, or render with --device cpu";
     if (camera.orthographic)
         throw InputError("--device cuda with an orthographic camera",
@@ -19,25 +22,13 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     if (s.cone > 0) throw InputError("--device cuda with --cone", "its kernels use one column only", suggestion);
     if (s.packed)
         throw InputError("--device cuda with --packed", "its kernels read plain layers only", suggestion);
-    if (s.interleave > 1)
+    if (own.interleave > 1)
         throw InputError("--device cuda with --interleave", "its kernels compute indirect light in all pixels",
                          suggestion);
-    if (s.cache == RadianceCaching::on)
+    if (own.cache == RadianceCaching::on)
         throw InputError("--device cuda with --radiance-cache on", "its kernels do not end paths in a cache",
                          suggestion);
-    if (s.look_ups == LookUps::none)
-        throw InputError("--device cuda with --look-ups none", "its kernels find surfaces by look-ups",
-                         "leave it out, or choose --method reference");
-    if (s.shadows == Shadows::rays)
-        throw InputError("--device cuda with --shadows rays", "its kernels look into shadow maps", suggestion);
     if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes at random", suggestion);
-}
-
-void limit_to_kernels(SlhbSettings& chosen)
-{
-    chosen.interleave = 1; // regardless of the budget
-    chosen.look_ups = LookUps::all;
-    chosen.shadows = Shadows::maps;
 }
 
 template <Space S>
@@ -147,7 +138,7 @@ void KernelRenderer<S>::end_frame()
 template <Space S>
 void KernelRenderer<S>::see(std::span<FrameView const> views)
 {
-    for (FrameView const& v : views) check_kernels_can(v.camera, slhb_);
+    for (FrameView const& v : views) check(v.camera, settings_);
     std::size_t const known_views = views_.size();
     views_.resize(views.size());
     for (std::size_t k = 0; k < views.size(); ++k) {
@@ -212,7 +203,7 @@ void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sum
         paths.width = std::uint32_t(v.width);
         paths.bounces = settings_.bounces;
         paths.smooth = smooth;
-        paths.roulette = settings_.slhb.roulette;
+        paths.roulette = settings_.of<PathsSettings>().roulette;
         paths.seed = random_key(settings_.seed);
         paths.pass = index;
         v.sums.add(scene_.trace(paths));

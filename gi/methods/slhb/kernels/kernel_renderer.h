@@ -1,5 +1,5 @@
 #pragma once
-// Counterpart of SlhbRenderer that runs the passes of slhb as kernels in one space, and keeps structures between
+// Counterpart of PathsRenderer that runs the passes of slhb as kernels in one space, and keeps structures between
 // passes and frames. Light points, axes and random numbers are the same, so that both trace the same paths up to
 // rounding.
 //
@@ -8,8 +8,8 @@
 // lobe is narrow, has a tree of dynamic triangles, which is refitted. Views do not reuse each other's light,
 // and paths do not share vertices. For the limits of paths see path_kernel.h.
 
-#include "gi/methods/slhb/directions/frame_axes.h"
-#include "gi/methods/slhb/hit_buffer/motion.h"
+#include "gi/hit_buffers/directions/frame_axes.h"
+#include "gi/methods/paths/motion.h"
 #include "gi/methods/slhb/kernels/kernel_scene.h"
 #include "gi/render/accumulator.h"
 #include "gi/render/frame_renderer.h"
@@ -19,16 +19,16 @@
 
 namespace gi {
 
-/// Throws InputError on features that kernels lack: an orthographic camera, --cone, --gather, --packed,
-/// --interleave, --look-ups none, --shadows rays.
-void check_kernels_can(Camera const& camera, SlhbSettings const& settings);
-/// Sets what the plan would choose for the CPU to what kernels have.
-void limit_to_kernels(SlhbSettings& chosen);
-
 template <Space S>
 class KernelRenderer {
 public:
-    /// See SlhbRenderer.
+    /// Throws InputError on features that kernels lack: an orthographic camera, --cone, --gather, --packed,
+    /// --interleave, --radiance-cache on.
+    static void check(Camera const& camera, RenderSettings const& settings);
+    /// Sets what the plan would choose for the CPU to what kernels have.
+    static void limit(RenderSettings& chosen) { chosen.of<PathsSettings>().interleave = 1; } // regardless of the budget
+
+    /// See PathsRenderer.
     KernelRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
                    TriangleSoup soup, std::size_t first_moving, Report& report);
 
@@ -77,7 +77,7 @@ private:
 
     World const& world_;
     RenderSettings settings_;
-    SlhbSettings const& slhb_ = settings_.slhb;
+    SlhbSettings const& slhb_ = settings_.of<SlhbSettings>();
     std::size_t first_moving_; ///< index of the first dynamic triangle
     Report& report_;
     std::vector<View> views_;

@@ -2,10 +2,10 @@
 // Data that the kernels of slhb read from a world and build from it: everything is in one space, and only first
 // surfaces are copied back, on request.
 
-#include "gi/methods/slhb/directions/axis_set.h"
-#include "gi/methods/slhb/hit_buffer/build_hit_buffer.h"
+#include "gi/hit_buffers/directions/axis_set.h"
+#include "gi/hit_buffers/build_hit_buffer.h"
 #include "gi/methods/slhb/kernels/path_kernel.h"
-#include "gi/methods/slhb/lights/light_points.h"
+#include "gi/hit_buffers/shadow_maps/light_points.h"
 #include "gi/raster/draw_nearest.h"
 #include "gi/scene/model/world_on.h"
 

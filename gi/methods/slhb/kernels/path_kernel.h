@@ -1,15 +1,15 @@
 #pragma once
 // The paths of a pass by kernels: all of them one surface further, and then those that go on, so that the threads
 // of a device do the same at the same time (Laine et al. 2013, "Megakernels Considered Harmful"). Estimators and
-// random numbers are those of SlhbTracer (tracer.h), so that both trace the same paths up to rounding.
+// random numbers are those of PathsTracer (tracer.h), so that both trace the same paths up to rounding.
 //
 // Mirrors, glass and narrow lobes continue by exact rays through the project's own BVH, traced by a kernel of
 // their own (NearestHits). Cone, gathering, interleaving and shared vertices are not supported.
 
 #include "gi/kernel/atomics.h"
-#include "gi/methods/slhb/kernels/axis_step.h"
-#include "gi/methods/slhb/kernels/path_random.h"
-#include "gi/methods/slhb/lights/shadow_look.h"
+#include "gi/hit_buffers/axis_step.h"
+#include "gi/render/path_random.h"
+#include "gi/hit_buffers/shadow_maps/shadow_look.h"
 #include "gi/render/ray_kernels.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
@@ -118,7 +118,7 @@ protected:
     }
     /// True where only delta lobes continue; mirrors and glass do not count as scatterings.
     GI_FN bool is_last(State const& s) const { return s.scatterings > bounces; }
-    /// True at the last scattering, where light samples must account for all light, see SlhbTracer.
+    /// True at the last scattering, where light samples must account for all light, see PathsTracer.
     GI_FN bool lit_alone(State const& s, bool narrow) const
     {
         return s.scatterings == bounces && !narrow && !smooth;

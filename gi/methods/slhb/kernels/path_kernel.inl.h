@@ -1,6 +1,8 @@
 #pragma once
 // Implementation of the kernels of paths; included by path_kernel.h.
 
+#include "gi/render/path_random.h"
+
 namespace gi {
 
 template <bool by_rays>

@@ -1,0 +1,120 @@
+#include "gi/methods/automatic/automatic.h"
+
+#include "gi/methods/paths/look_up_trust.h"
+#include "gi/methods/paths/lobes.h"
+#include "gi/methods/paths/paths.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/methods/slhb/slhb.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+namespace gi {
+namespace {
+
+/// Fraction of a pilot's look-ups that must be right, as far as columns show.
+constexpr double kTrusted = 0.87;
+/// Largest fraction of the budget that building a BVH may take.
+constexpr double kMostForBvh = 0.8;
+
+/// Seconds of one core that a picture may take; 0 = unlimited.
+double budget_of(RenderSettings const& s)
+{
+    return s.budget_s * (s.threads > 0 ? s.threads : tbb::this_task_arena::max_concurrency());
+}
+
+struct Candidate {
+    std::string_view name;
+    RenderFunction render;
+    StartFrames frames;
+};
+constexpr std::array kCandidates{Candidate{"paths", render_paths, start_path_frames},
+                                 Candidate{"slhb", render_slhb, start_slhb_frames},
+                                 Candidate{"slhb_shadow_rays", render_slhb_shadow_rays, start_slhb_shadow_rays_frames},
+                                 Candidate{"reference", render_reference, start_reference_frames}};
+Candidate const& find(std::string_view name) { return *std::ranges::find(kCandidates, name, &Candidate::name); }
+
+/// What its paths do, for the method named.
+PathAlgorithm algorithm_of(std::string_view name)
+{
+    return name == "slhb"               ? PathAlgorithm{SurfacesBy::look_ups, ShadowsBy::maps}
+           : name == "slhb_shadow_rays" ? PathAlgorithm{SurfacesBy::look_ups, ShadowsBy::rays}
+                                        : PathAlgorithm{};
+}
+
+} // namespace
+
+AlgorithmChoice choose_algorithm(World const& world, TriangleSoup const& soup, RenderSettings const& asked,
+                                 Camera const& camera, RenderUse use)
+{
+    constexpr char const* kRays = "exact rays: of look-ups, pixels would share the error, which no filter removes";
+    if (use == RenderUse::frames || !(asked.budget_s > 0) || camera.orthographic) return {{}, kRays};
+    Costs const costs = costs_of(world, soup);
+    if (!(costs.bvh > kMostForBvh * budget_of(asked))) return {{}, kRays};
+    RenderSettings const chosen = choose_settings(with({SurfacesBy::look_ups, ShadowsBy::maps}, asked), world, soup);
+    double const trusted = look_up_agreement(world, soup, camera_rays(camera, asked.width, asked.height, world.origin),
+                                             std::uint32_t(chosen.of<SlhbSettings>().resolution));
+    bool const look_ups = trusted >= kTrusted, bvh = narrow_somewhere(world);
+    PathAlgorithm const by{look_ups ? SurfacesBy::look_ups : SurfacesBy::rays,
+                           look_ups && !bvh ? ShadowsBy::maps : ShadowsBy::rays};
+    return {by,
+            {"a BVH takes about {} s of one core, and {} % of look-ups can be trusted",
+             {figure("bvh_s", costs.bvh, 2),
+              Figure{{"trusted_percent", 100 * trusted}, fmt::format("{:.0f}", 100 * trusted)}}}};
+}
+
+MethodChoice choose_method(World const& world, RenderSettings const& asked, Camera const& camera, RenderUse use)
+{
+    if (asked.space == Space::device)
+        return {"reference", "exact rays took half of the time of look-ups on a CUDA device, and are unbiased"};
+    AlgorithmChoice const c = choose_algorithm(world, make_soup(world), asked, camera, use);
+    bool const rays = c.algorithm.surfaces == SurfacesBy::rays, maps = c.algorithm.shadows == ShadowsBy::maps;
+    return {rays ? "paths" : maps ? "slhb" : "slhb_shadow_rays", c.why};
+}
+
+RenderResult render_auto(World const& world, Camera const& camera, RenderSettings const& settings,
+                         StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    auto const begun = std::chrono::steady_clock::now();
+    MethodChoice const choice = choose_method(world, settings, camera, RenderUse::picture);
+    RenderSettings left = settings;
+    left.of<PathAlgorithm>().caches = true;
+    if (settings.budget_s > 0) {
+        double const spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        left.budget_s = std::max(settings.budget_s - spent_s, 1e-9);
+    }
+    RenderResult result = find(choice.method).render(world, camera, left, stop, progress, report);
+    result.options = fmt::format("--method {}{}{}", choice.method, result.options.empty() ? "" : " ", result.options);
+    return result;
+}
+
+std::unique_ptr<FrameRenderer> start_auto_frames(MovingWorld const& world, Camera const& camera,
+                                                 RenderSettings const& settings, Report& report)
+{
+    MethodChoice const choice = choose_method(world.world(), settings, camera, RenderUse::frames);
+    return find(choice.method).frames(world, camera, settings, report);
+}
+
+std::vector<PlanItem> explain_auto(World const& world, RenderSettings const& asked, Camera const& camera)
+{
+    MethodChoice const choice = choose_method(world, asked, camera, RenderUse::picture);
+    std::vector<PlanItem> items{{"method", "method " + std::string(choice.method), true, choice.why}};
+    if (asked.space == Space::device) return items;
+    std::vector<PlanItem> const own = explain_choices(world, with(algorithm_of(choice.method), asked), camera);
+    items.insert(items.end(), own.begin(), own.end());
+    return items;
+}
+
+ExposurePlan auto_exposure(World const& world, RenderSettings const& asked, Camera const& camera, Triangles triangles)
+{
+    if (asked.space == Space::device) return {"reference", asked};
+    bool const still = triangles == Triangles::still;
+    MethodChoice const choice = choose_method(world, asked, camera, still ? RenderUse::picture : RenderUse::frames);
+    if (!(asked.budget_s > 0)) return {choice.method, asked};
+    return {choice.method, choose_settings(with(algorithm_of(choice.method), asked), world, make_soup(world))};
+}
+
+} // namespace gi

@@ -1,0 +1,27 @@
+#pragma once
+// What programs that do not render know of methods by their names.
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace gi {
+
+/// The method of renders, viewers, studies and AR sessions that name none: the plan chooses.
+inline constexpr std::string_view kDefaultMethod = "auto";
+
+/// Of a file that version 0.1 of the program wrote, or that follows a schema of that version: its `slhb` was exact rays
+/// or look-ups, as its options said.
+constexpr std::string_view method_of_0_1(std::string_view name) { return name == "slhb" ? "slhb_0_1" : name; }
+
+/// True if a picture by this method that is interrupted and resumed is that of an uninterrupted one, bit for bit. Light
+/// of the others starts anew.
+constexpr bool resumes_exactly(std::string_view method)
+{
+    constexpr std::array kMethods{"auto",      "paths",   "paths_shadow_maps", "slhb", "slhb_shadow_rays", "slhb_0_1",
+                                  "reference", "whitted"};
+    return method.starts_with("vpl_") ||
+           std::ranges::find(kMethods, method, [](char const* m) { return std::string_view(m); }) != kMethods.end();
+}
+
+} // namespace gi

@@ -1,0 +1,40 @@
+#pragma once
+// How paths from the camera find surfaces and test light samples. Each of the four combinations is a method of its
+// own: paths, slhb, paths_shadow_maps, slhb_shadow_rays.
+
+#include "gi/render/render_settings.h"
+
+namespace gi {
+
+/// What finds the next surface of a path that leaves by a broad lobe; mirrors, glass and narrow lobes always take
+/// exact rays.
+enum class SurfacesBy : std::uint8_t {
+    rays,    ///< each path in its own direction
+    look_ups ///< in hit buffers, along axes that all paths of a pass share
+};
+
+/// What tests whether a light sample is visible.
+enum class ShadowsBy : std::uint8_t {
+    rays, ///< each path to its own light samples
+    maps  ///< shadow maps of a few light samples, shared by all paths of a pass
+};
+
+/// Held by RenderSettings beside the options; the method sets it.
+struct PathAlgorithm {
+    SurfacesBy surfaces = SurfacesBy::rays;
+    ShadowsBy shadows = ShadowsBy::rays;
+    bool caches = true; ///< RadianceCaching::automatic may choose a cache
+
+    bool only_looks_up() const { return surfaces == SurfacesBy::look_ups && shadows == ShadowsBy::maps; }
+};
+
+/// Cells of a cache are no part of the method: paths end in them on request only.
+inline constexpr PathAlgorithm kSlhb{SurfacesBy::look_ups, ShadowsBy::maps, false};
+
+inline RenderSettings with(PathAlgorithm algorithm, RenderSettings settings)
+{
+    settings.of<PathAlgorithm>() = algorithm;
+    return settings;
+}
+
+} // namespace gi

@@ -1,0 +1,113 @@
+#include "gi/methods/paths/light_pool.h"
+
+#include "gi/core/rqmc.h"
+#include "gi/scene/shading/warp.h"
+
+#include <algorithm>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+void LightPool::fill(LightOrder const& order, World const& world, std::uint32_t groups, std::uint64_t seed,
+                     std::uint32_t pass)
+{
+    lights_.clear();
+    groups_.clear();
+    if (world.light_select.empty()) return;
+    WorldView const w = view(world);
+    std::uint32_t const count = groups * kCandidates;
+    lights_.resize(count);
+    rounds_ = world.light_select.entries.size() > kManyLights ? std::min(kMostRounds, groups) : 1;
+    groups_.resize(groups);
+    auto const draw = [&](std::uint32_t k) {
+        std::uint32_t const part = k % kCandidates, g = k / kCandidates;
+        RqmcStream const stream{std::uint32_t(mix_bits(seed ^ 0x9001)), pass * count + k};
+        vec4 const u = stream.sample_together(0);
+        PooledLight& p = lights_[k];
+        p.choice = order.choose((part * groups + g + double(u.x)) / count);
+        p.u = {u.y, u.z};
+        p.light = distant_light(world, p.choice, p.u);
+        Group& to = groups_[g];
+        vec3 at = p.light.direction, facing{0};
+        float near = 0, power = p.light.pdf > 0 ? luminance(p.light.radiance) / p.light.pdf : 0, back = 0;
+        if (p.light.pdf > 0 || !(p.choice.probability > 0)) {
+        } else if (p.choice.light < world.lights.size()) {
+            Light const& light = world.lights[p.choice.light];
+            at = light.position;
+            near = 1;
+            power = luminance(light.intensity) / p.choice.probability;
+        } else if (!light_detail::is_environment(w, p.choice)) {
+            Surface const& s = world.surfaces[world.emitters[p.choice.light - world.lights.size()]];
+            vec3 const area = light_detail::area_vector(s);
+            float const doubled = glm::length(area);
+            facing = area / doubled;
+            at = shading_detail::SurfacePoint{s, square_to_triangle(p.u)}.position();
+            near = 1;
+            back = s.is(Surface::kDoubleSided) ? 1 : 0;
+            // Its radiance towards a point in front of it.
+            LightSample const seen = sample_light(w, p.choice, at + std::sqrt(doubled) * facing, p.u);
+            power = luminance(seen.radiance) * 0.5f * doubled / p.choice.probability;
+            p.position = at;
+            p.facing = facing;
+            p.radiance = seen.radiance;
+            p.density = 2 * p.choice.probability / doubled;
+            p.both_sides = back > 0;
+        }
+        to.x[part] = at.x;
+        to.y[part] = at.y;
+        to.z[part] = at.z;
+        to.near[part] = near;
+        to.power[part] = power < kInf ? power : 0;
+        to.facing_x[part] = facing.x;
+        to.facing_y[part] = facing.y;
+        to.facing_z[part] = facing.z;
+        to.everywhere[part] = facing == vec3{0} ? 1 : 0;
+        to.back[part] = back;
+    };
+    tbb::parallel_for(std::uint32_t(0), groups, [&](std::uint32_t g) {
+        for (std::uint32_t k = 0; k < kCandidates; ++k) draw(g * kCandidates + k);
+    });
+}
+
+void LightPool::weigh(Group const& from, vec3 position, vec3 normal, float* weight)
+{
+    for (std::uint32_t k = 0; k < kCandidates; ++k) {
+        float const near = from.near[k];
+        float const x = from.x[k] - near * position.x, y = from.y[k] - near * position.y,
+                    z = from.z[k] - near * position.z;
+        float const squared = x * x + y * y + z * z, inverse = 1 / std::sqrt(squared + 1e-30f);
+        float const cosine = (x * normal.x + y * normal.y + z * normal.z) * inverse;
+        float const front = -(x * from.facing_x[k] + y * from.facing_y[k] + z * from.facing_z[k]) * inverse;
+        float const light_point = from.everywhere[k] + std::max(front, -front * from.back[k]);
+        float const w = from.power[k] * std::max(cosine, 0.0f) * std::max(light_point, 0.0f) *
+                        (near * inverse * inverse + (1 - near));
+        weight[k] = w < 1e30f ? w : 0;
+    }
+}
+
+ChosenLight LightPool::choose(vec3 position, vec3 normal, float u, float pick) const
+{
+    alignas(32) std::array<float, kMostRounds * kCandidates> weight;
+    std::array<std::size_t, kMostRounds> group;
+    std::size_t const groups = groups_.size();
+    for (std::uint32_t r = 0; r < rounds_; ++r) {
+        group[r] = (std::min(std::size_t(u * float(groups)), groups - 1) + r * groups / rounds_) % groups;
+        weigh(groups_[group[r]], position, normal, &weight[r * kCandidates]);
+    }
+    std::uint32_t const count = rounds_ * kCandidates;
+    float sum = 0;
+    for (std::uint32_t k = 0; k < count; ++k) sum += weight[k];
+    if (!(sum > 0)) return {};
+    float const wanted = pick * sum;
+    float up_to = 0;
+    std::uint32_t chosen = 0;
+    for (std::uint32_t k = 0; k + 1 < count; ++k) {
+        up_to += weight[k];
+        chosen += up_to <= wanted ? 1 : 0;
+    }
+    while (chosen > 0 && !(weight[chosen] > 0)) --chosen; // only because of rounding
+    if (!(weight[chosen] > 0)) return {};
+    return {&lights_[group[chosen / kCandidates] * kCandidates + chosen % kCandidates],
+            sum / (weight[chosen] * float(count))};
+}
+
+} // namespace gi

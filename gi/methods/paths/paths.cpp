@@ -1,0 +1,69 @@
+#include "gi/methods/paths/paths.h"
+
+#include "gi/methods/paths/frames_of.h"
+#include "gi/render/fingerprint.h"
+
+namespace gi {
+
+RenderResult render_by(char const* name, World const& world, Camera const& camera, RenderSettings const& settings,
+                       StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    std::optional<tbb::global_control> limit; // also limits the building of structures before the passes
+    if (settings.threads > 0)
+        limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
+    PassLoop loop(settings, stop, progress, report);
+    TriangleSoup soup = make_soup(world);
+    RenderSettings const chosen = choose_settings(settings, world, soup);
+    std::string const options = as_options(chosen);
+    bool const rays = chosen.of<PathAlgorithm>().surfaces == SurfacesBy::rays;
+    FrameView const eye{camera, settings.width, settings.height};
+    PathsRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
+                           rays ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, name, options) : 0;
+    bool const cached = chosen.of<PathsSettings>().cache == RadianceCaching::on;
+    RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
+        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
+            renderer.pass(loop.first_path() + sums.paths, {&sums, 1},
+                          cached ? VertexSharing::cached : VertexSharing::exact, &stop);
+    });
+    renderer.report_work();
+    report.lose("layers beyond the limit of a texel", renderer.lost_layers());
+    report.lose("radiance samples for which the radiance cache had no room", renderer.refused_notes());
+    result.rays = renderer.rays();
+    result.options = options;
+    loop.deliver(world, result);
+    return result;
+}
+
+std::unique_ptr<FrameRenderer> start_frames_by(MovingWorld const& world, Camera const& camera,
+                                               RenderSettings const& settings, Report& report)
+{
+    return std::make_unique<PathsFrames<PathsRenderer>>(world, camera, settings, report);
+}
+
+RenderResult render_paths(World const& world, Camera const& camera, RenderSettings const& settings,
+                          StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_by("paths", world, camera, with(PathAlgorithm{}, settings), stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_path_frames(MovingWorld const& world, Camera const& camera,
+                                                 RenderSettings const& settings, Report& report)
+{
+    return start_frames_by(world, camera, with(PathAlgorithm{}, settings), report);
+}
+
+RenderSettings paths_for_display(RenderSettings settings)
+{
+    settings.of<PathsSettings>().cache = RadianceCaching::automatic; // LiveSettings says for every frame
+    settings.of<PathsSettings>().interleave = 1;
+    return settings;
+}
+
+ExposurePlan paths_exposure(World const& world, RenderSettings const& asked, Camera const&, Triangles)
+{
+    if (!(asked.budget_s > 0)) return {"paths", asked};
+    return {"paths", choose_settings(with(PathAlgorithm{}, asked), world, make_soup(world))};
+}
+
+} // namespace gi

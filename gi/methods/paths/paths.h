@@ -1,0 +1,27 @@
+#pragma once
+// The method paths: path tracing by exact rays, with a pool of light samples from which every path chooses by
+// resampling, a radiance cache, and in frames light that one eye reuses from the other. Also the CPU form of the
+// methods that find surfaces or shadows by look-ups (gi/methods/slhb), as PathAlgorithm says.
+
+#include "gi/methods/paths/algorithm.h"
+#include "gi/render/method.h"
+
+namespace gi {
+
+/// See Method. Throws InputError on incompatible settings.
+RenderResult render_paths(World const& world, Camera const& camera, RenderSettings const& settings,
+                          StopRequest const& stop, RenderProgress const& progress, Report& report);
+std::unique_ptr<FrameRenderer> start_path_frames(MovingWorld const& world, Camera const& camera,
+                                                 RenderSettings const& settings, Report& report);
+
+RenderSettings paths_for_display(RenderSettings settings);
+ExposurePlan paths_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
+                            Triangles triangles);
+
+/// The same with settings.of<PathAlgorithm>(). @param name  of the method, for checkpoints
+RenderResult render_by(char const* name, World const& world, Camera const& camera, RenderSettings const& settings,
+                       StopRequest const& stop, RenderProgress const& progress, Report& report);
+std::unique_ptr<FrameRenderer> start_frames_by(MovingWorld const& world, Camera const& camera,
+                                               RenderSettings const& settings, Report& report);
+
+} // namespace gi

@@ -1,0 +1,301 @@
+#include "gi/methods/paths/renderer.h"
+
+#include "gi/core/step.h"
+#include "gi/hit_buffers/directions/grid_bounds.h"
+#include "gi/methods/paths/choose.h"
+#include "gi/methods/paths/lobes.h"
+#include "gi/render/pass_samples.h"
+#include "gi/scene/model/plan.h"
+
+#include <algorithm>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// Number of groups of light samples per pass: each is shared by few paths; with few lights all groups fit the
+/// second-level cache; with many lights each has about two samples.
+std::uint32_t light_groups(std::size_t pixels, World const& world)
+{
+    constexpr std::size_t kPixelsOfGroup = 32, kLeast = 64, kUsual = 256, kMost = 4096;
+    std::size_t const for_pixels = std::clamp(pixels / kPixelsOfGroup, kLeast, kUsual),
+                      for_lights = 2 * world.light_select.entries.size() / LightPool::kCandidates;
+    return std::uint32_t(std::min(std::max(for_pixels, for_lights), kMost));
+}
+
+/// Choosing among axes and light points only needs their grids.
+std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n); }
+
+} // namespace
+
+PathsRenderer::PathsRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
+                           TriangleSoup soup, std::size_t first_moving, Report& report,
+                           FirstSurfaces first_surfaces, StopRequest const* stop)
+    : world_(world),
+      settings_(settings),
+      first_moving_(first_moving),
+      first_surfaces_(first_surfaces),
+      stop_(stop),
+      report_(report),
+      soup_(std::move(soup)),
+      cut_outs_(world),
+      grid_bounds_(grid_bounds(world, soup_, first_moving)),
+      axes_(slhb_, report),
+      paths_(world, settings_, report)
+{
+    shadow_maps_ = by_.shadows == ShadowsBy::maps;
+    see(views);
+    build_exact();
+    end_frame();
+    make_axes();
+    make_light_points();
+    if (own_.cache != RadianceCaching::off && settings_.bounces > 0)
+        cache_.emplace(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20);
+}
+
+bool PathsRenderer::orthographic() const
+{
+    return std::any_of(views_.begin(), views_.end(), [](SeenView const& v) { return v.rays.orthographic; });
+}
+
+void PathsRenderer::build_exact()
+{
+    if (exact_ || !needs_exact_rays(world_, orthographic(), settings_)) return;
+    StageTimer const timer(report_, "build (Embree BVH)");
+    exact_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
+                                               first_moving_, stop_of_building(stop_));
+}
+
+/// Paths also leave the last surface along axes, but only if they can hit light there.
+bool PathsRenderer::to_the_end() const
+{
+    return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
+}
+
+bool PathsRenderer::walks() const
+{
+    return by_.surfaces == SurfacesBy::look_ups && (settings_.bounces > 0 || to_the_end());
+}
+
+void PathsRenderer::make_axes()
+{
+    axes_.make({.bounds = grid_bounds_,
+                .soup = soup_,
+                .cut_outs = cut_outs_,
+                .resolution = texels(slhb_.exact.queries, slhb_.resolution),
+                .most_layers = std::uint32_t(slhb_.most_layers),
+                .packed = slhb_.packed,
+                .seed = settings_.seed,
+                .most_bytes = std::size_t(slhb_.memory_mib) << 20,
+                .stop = stop_,
+                .first_moving = first_moving_},
+               walks());
+}
+
+void PathsRenderer::make_light_points()
+{
+    if (light_points_) earlier_maps_ += light_points_->maps_built();
+    light_points_.emplace(world_, grid_bounds_, soup_, cut_outs_,
+                          LightPointSettings{.count = std::uint32_t(shadow_maps_ ? slhb_.light_samples : 0),
+                                             .fresh = std::uint32_t(slhb_.fresh_light_samples),
+                                             .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
+                                             .seed = settings_.seed,
+                                             .first_moving = first_moving_,
+                                             .stop = stop_});
+}
+
+void PathsRenderer::changed(Changes const& c)
+{
+    if (c.geometry || c.materials || c.coverage || c.lights || c.emitters || c.environment || c.light_select)
+        forget();
+    if (c.materials || c.environment) materials_changed();
+    bool const lights = changes_lights(c);
+    if (c.geometry || lights) world_moved(c.geometry, lights);
+}
+
+void PathsRenderer::world_moved(bool geometry, bool lights)
+{
+    if (geometry) {
+        {
+            StageTimer const timer(report_, "update of dynamic triangles");
+            if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, first_moving_);
+            update_soup(world_, first_moving_, soup_);
+        }
+        {
+            StageTimer const timer(report_, "BVH of dynamic triangles (Embree)");
+            if (exact_) exact_->moved(world_);
+        }
+        if (!grow(grid_bounds_, world_.bounds)) {
+            axes_.set().moved();
+        } else {
+            if (slhb_.schedule != Schedule::streamed) // streamed buffers are rebuilt in every pass
+                report_.lose("frames outside the bounds of the hit buffers, which were rebuilt");
+            make_axes();
+            lights = true; // the maps of parallel lights depend on the same bounds
+        }
+        light_points_->moved();
+    }
+    if (lights) make_light_points();
+}
+
+void PathsRenderer::materials_changed()
+{
+    if ((exact_ != nullptr) != needs_exact_rays(world_, orthographic(), settings_)) {
+        exact_.reset();
+        build_exact();
+    }
+    if (axes_.walks() != walks()) make_axes();
+}
+
+void PathsRenderer::end_frame()
+{
+    axes_.end_frame();
+    earlier_ = {first_moving_, {}};
+    for (SeenView& v : views_) v.earlier = v.rays;
+}
+
+void PathsRenderer::add_motion(std::size_t view, Picture& picture) const
+{
+    SeenView const& v = views_[view];
+    if (v.primary) gi::add_motion(*v.primary, soup_, v.rays, v.earlier, earlier_, picture);
+}
+
+void PathsRenderer::see(std::span<FrameView const> views)
+{
+    std::size_t first = 0;
+    while (views_.size() > views.size()) views_.pop_back();
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        FrameView const& now = views[k];
+        bool const known = k < views_.size() && views_[k].width == now.width && views_[k].height == now.height;
+        if (k == views_.size()) views_.emplace_back();
+        SeenView& v = views_[k];
+        v.width = now.width;
+        v.height = now.height;
+        v.partner = now.partner;
+        v.hidden = now.hidden;
+        v.filter = now.filter.value_or(settings_.filter);
+        v.hidden_pixels = now.hidden.size() - std::size_t(std::ranges::count(now.hidden, 0));
+        v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
+        v.first = first;
+        first += v.pixels();
+        if (!known) v.earlier = v.rays;
+        if (v.rays.orthographic || first_surfaces_ == FirstSurfaces::by_rays)
+            v.primary.reset();
+        else if (!known || !v.primary)
+            v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
+        if (v.primary) v.primary->set_filter(v.filter);
+    }
+    if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
+}
+
+void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& stop)
+{
+    axes_.prepare(settings_.bounces + (to_the_end() ? 1 : 0), index);
+    {
+        StageTimer const timer(report_, "shadow maps");
+        light_points_->refresh(index, stop);
+    }
+    StageTimer const timer(report_, "G-buffer");
+    for (SeenView& v : views_) {
+        stop.check();
+        if (!v.primary) continue;
+        CameraRays const eye = eye_of_pass(v.rays, settings_.seed, index);
+        float const near_m = near_plane(world_.bounds);
+        if (sides == Sides::pair)
+            v.primary->refresh_pair(eye, near_m, index, first_moving_);
+        else
+            v.primary->refresh(eye, near_m, index);
+    }
+}
+
+PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassStop const& stop)
+{
+    bool const walks = axes_.walks();
+    std::uint32_t const gathered = slhb_.gather && walks
+                                       ? index / std::uint32_t(own_.interleave * own_.interleave) %
+                                             std::uint32_t(axes_.set().first_bounce_axes())
+                                       : kNoPrimitive;
+    if (!shadow_maps_) {
+        light_order_.update(world_);
+        lights_.fill(light_order_, world_, light_groups(views_.back().first + views_.back().pixels(), world_),
+                     settings_.seed, index);
+    }
+    sky_.clear();
+    if (walks && !slhb_.exact.directions) sky_ = sky_along(axes_.set(), world_);
+    return {.axes = axes_.set(),
+            .light_points = *light_points_,
+            .exact = exact_.get(),
+            .stop = stop,
+            .index = index,
+            .gather_axis = gathered,
+            .sky = sky_,
+            .lights = shadow_maps_ ? nullptr : &lights_,
+            .smooth = smooth_somewhere(world_),
+            .look_ups = !slhb_.exact.queries && by_.surfaces == SurfacesBy::look_ups,
+            .cache = cached && cache_ ? &*cache_ : nullptr,
+            .spread = spread_ && by_.surfaces == SurfacesBy::rays,
+            .no_punctual = leaves_out_punctual_};
+}
+
+void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing,
+                        StopRequest const* stop)
+{
+    PassStop const given_up(stop, PassStop::of(sums[0].paths));
+    prepare(index, Sides::one, given_up);
+    StageTimer const timer(report_, "paths");
+    paths_.trace(tracing(index, sharing == VertexSharing::cached, given_up), views_, sharing, sums);
+    if (cache_) cache_->end_pass();
+    for (Accumulator& s : sums) ++s.paths;
+}
+
+void PathsRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts)
+{
+    if (!std::exchange(shadow_maps_, true))
+        make_light_points(); // shadow maps show which paths dynamic geometry may
+                             // affect
+    PassStop const never(nullptr);
+    prepare(index, Sides::pair, never);
+    StageTimer const timer(report_, "paths");
+    PathsTracer::Pass now = tracing(index, false, never);
+    now.first_watched = std::uint32_t(first_moving_);
+    // The world is not changed: look-ups ignore dynamic geometry.
+    auto const show_moving = [&](bool shown) {
+        axes_.set().show_moving(shown);
+        light_points_->show_moving(shown);
+    };
+    paths_.trace_pair(now, views_, show_moving, sums, counts);
+}
+
+void PathsRenderer::add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const
+{
+    SeenView const& v = views_[view];
+    if (!v.primary) return;
+    constexpr std::size_t kBlock = 4096;
+    std::span const samples = paths_.samples(v);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, counts.size(), kBlock), [&](auto const& range) {
+        for (std::size_t p = range.begin(); p != range.end(); ++p) {
+            std::uint32_t const t = v.primary->triangle(p);
+            if (t == kNoPrimitive || t < first_moving_) continue;
+            counts[p] += 1;
+            for (vec3 const part : samples[p].radiance) radiance[p] += part;
+        }
+    });
+}
+
+std::span<std::uint32_t const> PathsRenderer::light_from(std::size_t view) const
+{
+    SeenView const& v = views_[view];
+    return v.partner < 0 ? std::span<std::uint32_t const>() : paths_.light_from(v);
+}
+
+void PathsRenderer::report_work() const
+{
+    paths_.report_work();
+    axes_.report_work();
+    report_.count("shadow maps built", double(earlier_maps_ + light_points_->maps_built()));
+    if (!cache_) return;
+    report_.count("cells of the radiance cache", double(cache_->cells()));
+    report_.count("bytes of the radiance cache", double(cache_->bytes()));
+}
+
+} // namespace gi
