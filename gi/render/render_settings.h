@@ -92,6 +92,7 @@ struct RenderResult {
     double seconds = 0; ///< for all paths, including those before an interruption
     double relmse = 0;
     std::string options;    ///< settings chosen by the method, as command-line options
+    std::string method, why_method; ///< of a method that chooses another: its name, and why it was chosen
     bool resumable = false; ///< settings.checkpoint holds the state needed to continue
     /// With RenderSettings::by_rows and a checkpoint: saves the state, on any thread, also while `rows` are read.
     /// It is for the caller to do so where the render is unfinished. Throws InputError. By then the memory of the method is free, and the picture need not wait for it. The state is of

@@ -29,7 +29,7 @@ struct Options {
     int photons = 0; ///< 0 = the methods' default
     double budget_s = 0;
     std::uint32_t reference_paths = 2048;
-    std::vector<std::string> methods{"ispm", "lpv", "isllpm", "multi_image", "sh_grid", "slhb", "reference"};
+    std::vector<std::string> methods{"ispm", "lpv", "isllpm", "multi_image", "sh_grid", "paths", "slhb", "reference"};
     std::vector<std::string> scenes;
 };
 

@@ -9,7 +9,7 @@
 namespace viewer::test {
 namespace {
 
-constexpr char const* kSmall = "bench pictures --scenes cornell --size 32x32 --repeats 2 --methods reference,slhb "
+constexpr char const* kSmall = "bench pictures --scenes cornell --size 32x32 --repeats 2 --methods reference,paths "
                                "--denoise none,atrous --reference-paths 32 --out d --budgets ";
 
 BenchTable const& table_of(BenchFolder const& folder, std::string const& name)
@@ -21,7 +21,7 @@ TEST(BenchPictures, JudgesMethodsBudgetsAndFilters)
 {
     TemporaryFolder const folder;
     Outcome const o = run_well(std::string(kSmall) + "1path,20ms", folder.path());
-    EXPECT_NE(o.out.find("rows that slhb loses to reference: "), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("rows that paths loses to reference: "), std::string::npos) << o.out;
     BenchFolder const found = read_bench_folder(folder / "d");
     ASSERT_EQ(found.tables.size(), 2u);
     BenchTable const &t = table_of(found, "pictures"), &summary = table_of(found, "pictures_summary");
@@ -138,7 +138,7 @@ TEST(BenchPictures, WrongCallsAreRefused)
                        {"--list nowhere.yaml", "nowhere.yaml"},
                        {"--list bad.yaml", "bad.yaml:1:"},
                        {"--scenes cornell --methods magic", "magic"},
-                       {"--scenes cornell --methods slhb,slhb", "twice"},
+                       {"--scenes cornell --methods paths,paths", "twice"},
                        {"--scenes cornell --budgets 0path", "0path"},
                        {"--scenes cornell --denoise soap", "soap"},
                        {"--scenes cornell --size 0x8", "0x8"},

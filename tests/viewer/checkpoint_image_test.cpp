@@ -21,7 +21,7 @@ TEST(Checkpoint, AKilledRenderGoesOn)
 
 TEST(Checkpoint, SoDoesOneByLookUps)
 {
-    expect_the_same_picture("render cornell --method slhb --look-ups all --size 48x48 --paths 600 --threads 2", 2,
+    expect_the_same_picture("render cornell --method slhb --size 48x48 --paths 600 --threads 2", 2,
                             1.5);
 }
 

@@ -43,8 +43,8 @@ TEST(Completion, OffersCommandsOptionsAndValues)
     EXPECT_EQ(candidates({"study", "sim"}), (Words{"simulate"}));
     EXPECT_EQ(candidates({"study", "cal"}), (Words{"calibrate"})); // of another program
     EXPECT_EQ(candidates({"study", "run", "--partic"}), (Words{"--participant"}));
-    EXPECT_EQ(candidates({"render", "atrium", "--method", "slh"}), (Words{"slhb"}));
-    EXPECT_EQ(candidates({"render", "atrium", "--method=slh"}), (Words{"--method=slhb"}));
+    EXPECT_EQ(candidates({"render", "atrium", "--method", "slh"}), (Words{"slhb", "slhb_shadow_rays"}));
+    EXPECT_EQ(candidates({"render", "atrium", "--method=slh"}), (Words{"--method=slhb", "--method=slhb_shadow_rays"}));
     EXPECT_EQ(candidates({"render", "atrium", "--tone", ""}), (Words{"srgb", "filmic"}));
     EXPECT_EQ(candidates({"render", "corn"}), (Words{"cornell", kFilesLine}));
     EXPECT_EQ(candidates({"render", "cornell", "--png", "a"}), (Words{kFilesLine}));

@@ -37,7 +37,7 @@ int frames_of_video(std::filesystem::path const& file, cv::Size size)
 TEST(Frames, AreThePicturesOfTheirTimes)
 {
     TemporaryFolder const folder;
-    for (std::string const method : {"reference", "slhb"}) {
+    for (std::string const method : {"reference", "paths", "slhb"}) {
         std::string const how = " --size 32x24 --paths 2 --camera gallery --method " + method;
         Outcome const o =
             run_well("render atrium --frames 3:6@7 --out f_%02d.exr --png f_%d.png" + how, folder.path());
@@ -60,7 +60,7 @@ TEST(Frames, AreThePicturesOfTheirTimes)
 TEST(Frames, AreThePicturesOfTheirShutters)
 {
     TemporaryFolder const folder;
-    for (std::string const method : {"reference", "slhb"}) {
+    for (std::string const method : {"reference", "paths", "slhb"}) {
         std::string const how = " --size 32x24 --paths 4 --camera gallery --method " + method;
         std::string const call = "render atrium --frames 3:5@7 --out f_%d.exr --shutter 0.1" + how;
         run_well(call, folder.path());
@@ -103,7 +103,7 @@ TEST(Frames, ABudgetIsThatOfOneExposure)
 TEST(Frames, OfWhatStandsStillHaveNoShutter)
 {
     TemporaryFolder const folder;
-    std::string const call = "render cornell --size 24x24 --paths 4 --method slhb ";
+    std::string const call = "render cornell --size 24x24 --paths 4 --method paths ";
     Outcome const o = run_well(call + "--time 0 --shutter 1 --out open.exr", folder.path());
     EXPECT_TRUE(contains(o.err, "--shutter does nothing")) << o.err;
     run_well(call + "--time 0 --out closed.exr", folder.path());
@@ -146,7 +146,7 @@ TEST(Frames, ReportTrianglesThatCollapse)
     TemporaryFolder const folder;
     write_collapsing(folder / "s", 0, 4);
     std::string const what = "moved so that they have no area, or are not finite: 1";
-    std::string const call = "render s --method slhb --size 8x8 ";
+    std::string const call = "render s --method paths --size 8x8 ";
     Outcome const reused = run_well(call + "--paths 2 --frames 0:3@24 --reuse 4 --out r_%d.exr", folder.path());
     EXPECT_TRUE(contains(reused.err, what)) << reused.err;
     // Passes are of moments all over the shutter; from 2/24 to 3/24 s there is no area.
@@ -169,7 +169,7 @@ double relmse(std::filesystem::path const& picture, std::filesystem::path const&
 TEST(Frames, ResumedHaveWhatTheyReuse)
 {
     TemporaryFolder const folder;
-    std::string const how = "render cornell --method slhb --bounces 2 --size 32x32 ";
+    std::string const how = "render cornell --method paths --bounces 2 --size 32x32 ";
     std::string const call = how + "--paths 1 --frames 0:6@24 --reuse 6 --out f_%d.exr";
     run_well(how + "--paths 256 --seed 1 --out truth.exr", folder.path());
     run_well(call, folder.path());
@@ -193,7 +193,7 @@ TEST(Frames, FarFromZeroResumeWithReuse)
     TemporaryFolder const folder;
     write_collapsing(folder / "far", 5000, 4);
     std::string const call =
-        "render far --method slhb --size 8x8 --paths 1 --frames 0:3@24 --reuse 2 --out f_%d.exr";
+        "render far --method paths --size 8x8 --paths 1 --frames 0:3@24 --reuse 2 --out f_%d.exr";
     run_well(call, folder.path());
     std::filesystem::remove(folder / "f_2.exr");
     Outcome const o = run_well(call + " --resume", folder.path());

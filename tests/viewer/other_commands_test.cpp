@@ -54,7 +54,7 @@ TEST(OtherCommands, InfoTellsWhatMethodsBuild)
 {
     TemporaryFolder const folder;
     auto const all = Json::parse(run_well("info cornell --json", folder.path()).out);
-    for (char const* const method : {"slhb", "sh_grid", "ispm", "lpv", "isllpm", "multi_image"}) {
+    for (char const* const method : {"auto", "paths", "slhb", "sh_grid", "ispm", "lpv", "isllpm", "multi_image"}) {
         Json const& plan = all["plan_" + std::string(method)];
         ASSERT_FALSE(plan.empty()) << method;
         for (Json const& item : plan) EXPECT_FALSE(item["reason"].get<std::string>().empty()) << item;

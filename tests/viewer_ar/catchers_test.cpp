@@ -36,7 +36,7 @@ PairPictures rendered(ProxySurface const& floor, gi::Material const& material, f
     settings.of<gi::SlhbSettings>().resolution = 48;
     settings.of<gi::SlhbSettings>().light_samples = 4;
     settings.of<gi::SlhbSettings>().shadow_resolution = 64;
-    PairRenderer renderer(join_scenes(scene_of(plane, report), ball(material), gi::dmat4(1)), settings, report);
+    PairRenderer renderer(join_scenes(scene_of(plane, report), ball(material), gi::dmat4(1)), settings, report, "slhb");
     renderer.set_environment(sky(lamp));
     ar::CameraModel camera = synthetic_camera({40, 30}).model;
     camera.lens = ar::LensModel::pinhole;

@@ -59,6 +59,7 @@ TEST(MovingLamp, IsFollowedInTheFrameThatShowsIt)
     session.render.paths = 32;
     session.render.denoise.denoiser = gi::Denoiser::none;
     session.render.resolution = 1;
+    session.render.method = "slhb";
     session.render.settings.of<gi::SlhbSettings>().directions = "icosahedron:80";
     session.render.settings.of<gi::SlhbSettings>().resolution = 32;
     session.render.settings.of<gi::SlhbSettings>().light_samples = 8;

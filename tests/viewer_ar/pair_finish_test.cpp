@@ -52,7 +52,7 @@ Finished finished(double resolution, ArFinish const& finish, std::uint32_t paths
     session.render.resolution = resolution;
     session.finish = finish;
     gi::Report report;
-    PairRenderer renderer(scene(), quick_settings(), report);
+    PairRenderer renderer(scene(), quick_settings(), report, "slhb");
     renderer.set_environment(std::make_shared<gi::EnvironmentMap const>(
         environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
     PairFinish finisher(session, synthetic_camera(kSize).model, {});
@@ -95,7 +95,7 @@ double flicker(double smoothing)
     session.render.resolution = 0.5;
     session.smoothing = smoothing;
     gi::Report report;
-    PairRenderer renderer(scene(), quick_settings(), report);
+    PairRenderer renderer(scene(), quick_settings(), report, "slhb");
     renderer.set_environment(std::make_shared<gi::EnvironmentMap const>(
         environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
     PairFinish finisher(session, synthetic_camera(kSize).model, {});

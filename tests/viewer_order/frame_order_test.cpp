@@ -39,7 +39,7 @@ FrameCommand cave_order()
     o.others = {{}, o.tracked, {}};
     o.others[1].head.reset();
     o.changes = {{"exposure", 1.5},
-                 {"method", "slhb"},
+                 {"method", "paths"},
                  {"object.door.position", {0.1, 2, -3e-9}},
                  {"light.0", {{"on", true}, {"color", {1, 0.1 + 0.2, 0}}, {"note", nullptr}}}};
     o.views.clear();

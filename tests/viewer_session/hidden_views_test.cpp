@@ -131,7 +131,7 @@ TEST_F(HiddenViews, WithoutFilterWhatIsSeenIsTheSameInEveryBit)
 {
     for (Change const& c : {Change{"denoise", "none"}, {"reuse", 1}, {"bounces", 0}, {"share_eyes", false}})
         set(c);
-    for (char const* const method : {"slhb", "reference", "vpl_none"}) {
+    for (char const* const method : {"paths", "reference", "vpl_none"}) {
         set({"method", method});
         SessionFrame const a = masked.render(view_order(0), {}), b = whole.render(view_order(0), {});
         EXPECT_FALSE(b.views[0].hidden);
@@ -141,8 +141,8 @@ TEST_F(HiddenViews, WithoutFilterWhatIsSeenIsTheSameInEveryBit)
             EXPECT_TRUE(is_black(where(view_color(a, eye), hidden, 1))) << method;
             EXPECT_EQ(where(view_color(a, eye), hidden, 0), where(view_color(b, eye), hidden, 0)) << method;
         }
-        if (std::string(method) == "slhb") {
-            std::printf("slhb: %.1f %% of the pixels left out, %.1f %% of the look-ups\n",
+        if (std::string(method) == "paths") {
+            std::printf("paths: %.1f %% of the pixels left out, %.1f %% of the look-ups\n",
                         100 * share(*a.views[0].hidden), 100 * (1 - a.rays / b.rays));
             EXPECT_NEAR(1 - a.rays / b.rays, share(*a.views[0].hidden), 0.05);
         }

@@ -115,7 +115,7 @@ TEST_F(Loading, TextIsThereAtOnce)
 
 TEST_F(Loading, OldSceneIsUsedUntilTheNewOneIsThere)
 {
-    LiveView view("cornell --size 320x240 --set look_ups=all");
+    LiveView view("cornell --size 320x240 --set method=slhb");
     std::string const big = big_scene(view.folder().path());
     view.ask({{"do", "camera"}});
     Meanwhile const m = load(view, big);

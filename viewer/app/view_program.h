@@ -44,7 +44,7 @@ struct ViewRunSummary {
     double longest_block_ms = 0; ///< longest time between two reads of input on the main thread
     std::string gl;
     double exposure_ev = 0; ///< of the last frame
-    std::string schedule;   ///< of slhb: schedule of the last frame and why; empty for other methods
+    std::string schedule;   ///< what the plan chose for the last frame and why; empty = nothing
     nlohmann::json trackers, headset;
 };
 

@@ -4,6 +4,7 @@
 #include "gi/methods/paths/settings.h"
 #include "viewer/engine/same_surfaces.h"
 
+#include <fmt/format.h>
 #include <limits>
 #include <tbb/parallel_for.h>
 
@@ -91,6 +92,10 @@ MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& wor
     s.width = std::max(1, int(std::sqrt(start.pixels))); // the plan needs only the number of pixels
     s.height = std::max(1, int(std::lround(start.pixels / s.width)));
     if (method_.for_display != nullptr) s = method_.for_display(std::move(s));
+    if (method_.choose != nullptr) {
+        gi::MethodChoice const c = method_.choose(world.world(), s, start.camera, gi::RenderUse::frames);
+        choice_ = fmt::format("{} chose {}: {}", method_.name, c.method, c.why.text);
+    }
     renderer_ = method_.frames(world, start.camera, s, report);
 }
 

@@ -38,6 +38,8 @@ public:
         return seen_[view].light ? &*seen_[view].light : nullptr;
     }
     int still_frames() const { return still_; }
+    /// Of a method that chooses another: which and why, a sentence; else empty.
+    std::string const& choice() const { return choice_; }
     gi::DynamicUpdate dynamic_update() const ///< of the last frame
     {
         auto const* const axes = gi::ask<gi::FollowingAxes>(*renderer_);
@@ -73,6 +75,8 @@ private:
     void finish(std::size_t view, Results& results, int partner, Settings const& settings,
                 gi::Picture const& unfiltered, gi::SeenSurfaces* seen, gi::MirrorLayers const& mirrors);
 
+    gi::Method const& method_;
+    std::string choice_;
     gi::Report& report_;
     int threads_;
     gi::dvec3 origin_; ///< of the world

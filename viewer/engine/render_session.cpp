@@ -293,6 +293,7 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
     frame.still_frames = main_->still_frames();
     frame.dynamic_update = main_->dynamic_update();
     frame.options = results[0].options;
+    frame.choice = main_->choice();
     frame.paths = int(results[0].paths);
     for (std::size_t k = 0; k < results.size(); ++k) {
         frame.rays += results[k].rays;

@@ -47,6 +47,7 @@ struct SessionFrame {
     double rays = 0;                  ///< exact rays and look-ups
     std::map<std::string, double> stages_s;
     std::string options; ///< options that the method chose
+    std::string choice;  ///< of a method that chooses another: which and why, a sentence; else empty
 };
 
 /// Stage of SessionFrame::stages_s in which surfaces of another size than light are drawn.

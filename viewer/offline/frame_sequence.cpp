@@ -150,7 +150,7 @@ private:
 
     std::string stats_command() const
     {
-        return describe_call(o_, settings_, stop_option(settings_), "").at("command").get<std::string>();
+        return describe_call(o_, settings_, stop_option(settings_), {}).at("command").get<std::string>();
     }
 
     /// @param moving  with motion blur: the world, which is advanced to the closing of the shutter
@@ -386,7 +386,7 @@ private:
     void print() const
     {
         Json stats = describe_call(o_, settings_, stop_option(settings_),
-                                   rendered_ > 0 ? last_rendered().result.options : "");
+                                   rendered_ > 0 ? chosen_of(last_rendered().result) : Chosen{});
         stats["frames"] = to_json(records_, f_);
         stats["frame_seconds"] = frame_seconds(records_);
         stats["plan"] = plan_;

@@ -20,11 +20,11 @@ std::string filter_of(gi::RenderSettings const& s) { return gi::render_option("f
 
 /// All options that determine the picture, in a fixed order and with defaults written out.
 std::string normalised_command(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
-                               std::string const& chosen)
+                               Chosen const& chosen)
 {
     std::string command =
         fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}",
-                    gi::shell_quoted(o.scene), o.method, s.width, s.height, s.bounces, filter_of(s),
+                    gi::shell_quoted(o.scene), chosen.method.empty() ? o.method : chosen.method, s.width, s.height, s.bounces, filter_of(s),
                     o.seed_per_frame && !o.frames.empty() ? o.settings.seed : s.seed, amount);
     auto const add = [&](char const* option, std::string const& value) {
         if (!value.empty()) command += fmt::format(" {} {}", option, gi::shell_quoted(value));
@@ -52,7 +52,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     if (o.reuse > 1) add("--reuse", std::to_string(o.reuse));
     if (o.seed_per_frame && !o.frames.empty()) command += " --seed-per-frame";
     if (o.shutter_s > 0) add("--shutter", fmt::format("{}", o.shutter_s));
-    if (!chosen.empty()) command += " " + chosen;
+    if (!chosen.options.empty()) command += " " + chosen.options;
     return command;
 }
 
@@ -95,7 +95,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
 {
     return {{"version", version_number()},
             {"git", git_hash()},
-            {"command", normalised_command(o, s, paths_option(result), result.options)},
+            {"command", normalised_command(o, s, paths_option(result), chosen_of(result))},
             {"scene", o.scene},
             {"method", o.method},
             {"size", fmt::format("{}x{}", s.width, s.height)},
@@ -108,7 +108,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
 }
 
 Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
-                   std::string const& chosen)
+                   Chosen const& chosen)
 {
     auto const or_null = [](auto const& value) { return value ? Json(*value) : Json(); };
     auto const name_or_null = [](std::string const& name) { return name.empty() ? Json() : Json(name); };
@@ -120,6 +120,8 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
     j["machine"] = {{"cpu", machine.cpu}, {"cores", machine.cores}, {"memory_gib", machine.memory_gib}};
     j["settings"] = {{"scene", o.scene},
                      {"method", o.method},
+                     {"chosen_method", name_or_null(chosen.method)},
+                     {"chosen_method_because", name_or_null(chosen.why_method)},
                      {"width", s.width},
                      {"height", s.height},
                      {"camera", name_or_null(o.camera)},
@@ -167,7 +169,7 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
 Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePlan const& plan,
                 gi::RenderResult const& r, gi::Report const& report)
 {
-    Json j = describe_call(o, s, paths_option(r), r.options);
+    Json j = describe_call(o, s, paths_option(r), chosen_of(r));
     j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
                    {"seconds", r.seconds},   {"relmse_estimate", relmse_json(r)},
                    {"rays", r.rays},         {"rays_per_s", rays_per_second(r)}};

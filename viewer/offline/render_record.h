@@ -17,10 +17,16 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& options, g
 /// Stop condition as an option: "--paths 64", "--budget 2s" or "--until relmse=0.01".
 std::string stop_option(gi::RenderSettings const& settings);
 
+/// What the plan chose for a picture: the settings as options; the method, where another was to choose, and why.
+struct Chosen {
+    std::string options, method, why_method;
+};
+inline Chosen chosen_of(gi::RenderResult const& r) { return {r.options, r.method, r.why_method}; }
+
 /// The call, for --stats and --json: schema, program, command, settings and outputs.
-/// @param amount  stop condition as an option   @param chosen  settings chosen by the method, as options
+/// @param amount  stop condition as an option
 nlohmann::ordered_json describe_call(RenderOptions const& options, gi::RenderSettings const& settings,
-                                     std::string const& amount, std::string const& chosen);
+                                     std::string const& amount, Chosen const& chosen);
 char const* end_text(gi::RenderEnd end);
 /// Estimated relMSE; null if unknown, as with one path.
 nlohmann::ordered_json relmse_json(gi::RenderResult const& result);

@@ -47,13 +47,14 @@ PathAlgorithm algorithm_of(std::string_view name)
 
 } // namespace
 
-AlgorithmChoice choose_algorithm(World const& world, TriangleSoup const& soup, RenderSettings const& asked,
-                                 Camera const& camera, RenderUse use)
+AlgorithmChoice choose_algorithm(World const& world, RenderSettings const& asked, Camera const& camera,
+                                 RenderUse use)
 {
     constexpr char const* kRays = "exact rays: of look-ups, pixels would share the error, which no filter removes";
     if (use == RenderUse::frames || !(asked.budget_s > 0) || camera.orthographic) return {{}, kRays};
-    Costs const costs = costs_of(world, soup);
-    if (!(costs.bvh > kMostForBvh * budget_of(asked))) return {{}, kRays};
+    double const bvh_s = Costs(world, 1).bvh;
+    if (!(bvh_s > kMostForBvh * budget_of(asked))) return {{}, kRays};
+    TriangleSoup const soup = make_soup(world);
     RenderSettings const chosen = choose_settings(with({SurfacesBy::look_ups, ShadowsBy::maps}, asked), world, soup);
     double const trusted = look_up_agreement(world, soup, camera_rays(camera, asked.width, asked.height, world.origin),
                                              std::uint32_t(chosen.of<SlhbSettings>().resolution));
@@ -62,7 +63,7 @@ AlgorithmChoice choose_algorithm(World const& world, TriangleSoup const& soup, R
                            look_ups && !bvh ? ShadowsBy::maps : ShadowsBy::rays};
     return {by,
             {"a BVH takes about {} s of one core, and {} % of look-ups can be trusted",
-             {figure("bvh_s", costs.bvh, 2),
+             {figure("bvh_s", bvh_s, 2),
               Figure{{"trusted_percent", 100 * trusted}, fmt::format("{:.0f}", 100 * trusted)}}}};
 }
 
@@ -70,7 +71,7 @@ MethodChoice choose_method(World const& world, RenderSettings const& asked, Came
 {
     if (asked.space == Space::device)
         return {"reference", "exact rays took half of the time of look-ups on a CUDA device, and are unbiased"};
-    AlgorithmChoice const c = choose_algorithm(world, make_soup(world), asked, camera, use);
+    AlgorithmChoice const c = choose_algorithm(world, asked, camera, use);
     bool const rays = c.algorithm.surfaces == SurfacesBy::rays, maps = c.algorithm.shadows == ShadowsBy::maps;
     return {rays ? "paths" : maps ? "slhb" : "slhb_shadow_rays", c.why};
 }
@@ -87,7 +88,8 @@ RenderResult render_auto(World const& world, Camera const& camera, RenderSetting
         left.budget_s = std::max(settings.budget_s - spent_s, 1e-9);
     }
     RenderResult result = find(choice.method).render(world, camera, left, stop, progress, report);
-    result.options = fmt::format("--method {}{}{}", choice.method, result.options.empty() ? "" : " ", result.options);
+    result.method = choice.method;
+    result.why_method = choice.why.text;
     return result;
 }
 

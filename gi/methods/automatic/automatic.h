@@ -11,14 +11,13 @@
 
 namespace gi {
 
-/// @param soup  of the world  @param use  structures for frames serve many pictures, so that their build time is
-///   ignored
+/// @param use  structures for frames serve many pictures, so that their build time is ignored
 struct AlgorithmChoice {
     PathAlgorithm algorithm;
     PlanText why;
 };
-AlgorithmChoice choose_algorithm(World const& world, TriangleSoup const& soup, RenderSettings const& asked,
-                                 Camera const& camera, RenderUse use);
+AlgorithmChoice choose_algorithm(World const& world, RenderSettings const& asked, Camera const& camera,
+                                 RenderUse use);
 
 /// See Method.
 MethodChoice choose_method(World const& world, RenderSettings const& asked, Camera const& camera, RenderUse use);

@@ -35,7 +35,7 @@ PathAlgorithm algorithm_of(RenderSettings const& asked, World const& world, Came
     else if (has_look_up_options(asked))
         by.surfaces = SurfacesBy::look_ups;
     else
-        by = choose_algorithm(world, make_soup(world), asked, camera, use).algorithm;
+        by = choose_algorithm(world, asked, camera, use).algorithm;
     bool const bvh = narrow_somewhere(world) || by.surfaces == SurfacesBy::rays;
     bool const maps = says_maps(asked) || has_look_up_options(asked) || !bvh;
     by.shadows = former.shadows == FormerShadows::maps   ? ShadowsBy::maps

@@ -305,7 +305,7 @@ int run(RenderOptions o)
     CameraChoice const choice = camera_choice(o);
     if (!o.background.empty()) parse_background(o.background); // before any work
     if (Cluster::started_by_mpirun()) check_ranks(o, settings);
-    std::string const command = describe_call(o, settings, stop_option(settings), "").at("command");
+    std::string const command = describe_call(o, settings, stop_option(settings), {}).at("command");
     Cluster cluster({version_text(), command, Cluster::started_by_mpirun() ? file_hash(o.scene) : 0},
                     cluster_settings(o.ranks));
     if (!cluster.leads()) be_silent();

@@ -1,6 +1,7 @@
 #include "viewer/engine/live/live_renderer.h"
 
 #include "gi/core/error.h"
+#include "gi/methods/registry.h"
 #include "viewer/engine/live/background_priority.h"
 #include "viewer/engine/picture_margin.h"
 
@@ -24,6 +25,8 @@ bool same_sizes(std::vector<ViewCommand> const& a, std::vector<ViewCommand> cons
         return x.width == y.width && x.height == y.height;
     });
 }
+
+bool updates_axes(Settings const& s) { return gi::updates_axes(gi::find_method(s.method), s.render); }
 
 /// Looks (0.1 s each) that find nothing to render before memory is given back that the next frame would need
 /// again.
@@ -414,6 +417,7 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
                         surfaces == frame->result.stages_s.end() ? 0 : surfaces->second};
     if (done && link_ == nullptr) measure(own, budget);
     if (!frame->result.views.empty()) stored_ = own.dynamic_update.stored;
+    frame->schedule = frame->result.choice;
     if (Settings const& s = frame->settings; gi::find_method(s.method).updates_axes != nullptr)
         frame->schedule = schedule_sentence(get(s, "schedule").get<std::string>(), s.updated_axes, stored_,
                                             update_governor_.share_of_all());

@@ -42,7 +42,7 @@ struct LiveFrame {
     double ahead_s = 0;             ///< the command's scene_s is that of so much after begun_s
     std::uint32_t still_paths = 0;  ///< per pixel since anything last moved
     Settings settings;              ///< used for this frame
-    std::string schedule;           ///< of slhb: schedule in use and why, a sentence; empty for other methods
+    std::string schedule;           ///< what the plan chose and why, a sentence; empty = nothing
 };
 
 inline constexpr std::uint32_t kConvergedPaths = 4096;
