@@ -10,7 +10,7 @@
 namespace gi {
 
 /// Look-ups are cheaper than rays, but pixels share their error: at equal time, exact rays leave less visible
-/// error, and far less after a filter (docs/results/2026-11-25-pictures.md). So look-ups are used on request, or
+/// error, and far less after a filter (docs/decisions/look-ups-on-cpu.md). So look-ups are used on request, or
 /// if building a BVH would take too much of the budget and look-ups are accurate enough.
 struct RayPlan {
     LookUps look_ups = LookUps::none;
