@@ -65,7 +65,8 @@ INSTANTIATE_TEST_SUITE_P(Of, Examples,
 TEST(DocumentExamples, Run)
 {
     for (char const* const document :
-         {"README.md", "docs/commands.md", "docs/batch.md", "docs/displays.md", "docs/study.md"}) {
+         {"README.md", "docs/commands.md", "docs/batch.md", "docs/displays.md", "docs/study/tutorial.md",
+          "docs/study/analysis.md"}) {
         SCOPED_TRACE(document);
         std::vector<std::string> shell;
         bool inside = false;

@@ -145,7 +145,7 @@ SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const&
     RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, lasting);
     s.look_ups = plan.look_ups;
     // With a budget, paths of low throughput are worth less, as ending them leaves time for more paths.
-    constexpr float kRoulette = 2, kRouletteToCells = 3; // measured: docs/methods.md
+    constexpr float kRoulette = 2, kRouletteToCells = 3; // measured: docs/decisions/path-tracer.md
     constexpr double kFewPasses = 1.4;
     bool const by_time =
         lasting || asked.until_relmse > 0 || (asked.budget_s > 0 && expected_passes(asked, costs) >= kFewPasses);
