@@ -29,7 +29,7 @@ struct ResponseFit {
 /// Fits the curve of Debevec and Malik 1997 as a power law times the exponential of a polynomial, so that
 /// ln(light) of a pixel in two exposures differs by ln of the exposure ratio: least squares over pairs of pixels
 /// (as Mitsunaga and Nayar 1999, in logarithms). cv::createCalibrateDebevec has 256 free values and was 9 to 90 %
-/// off at byte 250 of synthetic brackets, where this fit is 1 % off (docs/results).
+/// off at byte 250 of synthetic brackets, where this fit is 1 % off (docs/decisions/markers.md).
 /// @throws gi::InputError as check(), or too few pixels that are neither dark nor bright in two exposures
 ResponseFit calibrate_response(Bracket const& bracket);
 

@@ -7,7 +7,7 @@
 //
 // All is computed in units of the camera's bytes (ar/camera/photometry.h): with and without go through exposure,
 // colour matrix and vignetting, then through the response to the nearest byte. Uncovered pixels where with equals
-// without keep the camera's bytes. Frames of 16 bits and of linear radiance keep their depth. docs/methods.md has
+// without keep the camera's bytes. Frames of 16 bits and of linear radiance keep their depth. docs/methods/ar-light.md has
 // the equations of the options.
 
 #include "ar/camera/photometry.h"

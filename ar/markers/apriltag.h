@@ -1,6 +1,6 @@
 #pragma once
 // Detection with the original AprilTag 3 library (Krogius et al. 2019), which finds small and slanted tags that
-// OpenCV's ArUco search misses (docs/results).
+// OpenCV's ArUco search misses (docs/decisions/markers.md).
 
 #include "ar/markers/aruco.h"
 

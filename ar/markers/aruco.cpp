@@ -42,7 +42,7 @@ FoundMarkers find_squares(cv::Mat const& searched, std::string const& dictionary
     p->adaptiveThreshWinSizeMin = s.smallest_window_px;
     p->adaptiveThreshWinSizeMax = s.largest_window_px;
     p->adaptiveThreshWinSizeStep = s.window_step_px;
-    p->perspectiveRemovePixelPerCell = 8; // more small markers are read than with 4 (docs/results)
+    p->perspectiveRemovePixelPerCell = 8; // more small markers are read than with 4 (docs/decisions/markers.md)
     if (s.refinement == Refinement::contour) p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_CONTOUR;
     if (s.refinement == Refinement::apriltag) p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_APRILTAG;
     std::vector<std::vector<cv::Point2f>> corners, rejected;

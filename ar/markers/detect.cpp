@@ -11,7 +11,7 @@
 namespace ar {
 namespace {
 
-/// Typical error of corners, measured on synthetic pictures with noise and blur (docs/results).
+/// Typical error of corners, measured on synthetic pictures with noise and blur (docs/decisions/markers.md).
 constexpr double kMarkerSigma_px = 0.15, kBoardSigma_px = 0.08, kUnrefinedSigma_px = 0.6;
 
 void check_picture(cv::Mat const& gray)

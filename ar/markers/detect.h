@@ -12,7 +12,7 @@ struct DetectorSettings {
     Refinement refinement = Refinement::edges;
     /// Markers with shorter sides are ignored; 0: chosen by the picture's size (see search_settings).
     double smallest_side_px = 0;
-    /// 2 finds markers with sides below 25 pixels more often, in twice the time (docs/results).
+    /// 2 finds markers with sides below 25 pixels more often, in twice the time (docs/decisions/markers.md).
     int enlarge = 1;
     /// MarkerTracker: searches the whole picture every this many pictures, for markers that came into view;
     /// 0 = never.

@@ -1,5 +1,5 @@
 #pragma once
-// Basic error measures of linear values. Definitions: docs/methods.md. Pairs with a value that is not finite are
+// Basic error measures of linear values. Definitions: docs/methods/errors.md. Pairs with a value that is not finite are
 // omitted and counted.
 
 #include "gi/core/math.h"

@@ -3,7 +3,7 @@
 // Only triangles with a (partly) transparent material go through the filter that tests coverage; partial coverage
 // is a random decision per ray and triangle that does not depend on traversal order.
 // If the scene has dynamic geometry, that gets a BVH of its own beside the static one, and only the dynamic BVH
-// is updated, by refitting its boxes. Measured against rebuilding it: docs/results/2026-11-21-moving.md.
+// is updated, by refitting its boxes. Measured against rebuilding it: docs/decisions/bvh.md.
 
 #include "gi/core/progress.h"
 #include "gi/render/ray_query.h"

@@ -1,5 +1,5 @@
 #pragma once
-// An experiment as its script describes it (schema study/2, docs/study.md). Names are resolved: factors, levels,
+// An experiment as its script describes it (schema study/2, docs/study/reference.md). Names are resolved: factors, levels,
 // blocks and questionnaires are indices into the lists of the Script; -1 = none. Times are in milliseconds unless
 // their names end in another unit.
 

@@ -7,7 +7,7 @@
 
 namespace study {
 
-/// Parses a script of schema study/1 or study/2 (all keys: docs/study.md). Throws ScriptError with file:line:column if the
+/// Parses a script of schema study/1 or study/2 (all keys: docs/study/reference.md). Throws ScriptError with file:line:column if the
 /// text is invalid, or the design is impossible or has parts that nothing uses.
 /// @param name name of the text in messages
 Script parse_script(std::string const& text, std::string const& name);

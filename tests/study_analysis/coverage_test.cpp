@@ -1,4 +1,4 @@
-// A small version of the simulations in docs/results/2026-11-26-study-coverage.md: do intervals of `analyze` hold?
+// A small version of the simulations in docs/performance.md: do intervals of `analyze` hold?
 
 #include "tests/study_analysis/coverage.h"
 

@@ -1,9 +1,10 @@
-// data/study.schema.json, docs/study.md and the program know the same keys.
+// data/study.schema.json, docs/study/reference.md and the program know the same keys.
 
 #include "study/script/examples.h"
 #include "study/script/keys.h"
 #include "tests/study_design/samples.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -25,25 +26,31 @@ TEST(StudySchema, HasTheKeysOfTheProgram)
     EXPECT_EQ(in_schema, script_keys());
 }
 
+TEST(StudyDocs, HaveTheTablesOfTheSchema)
+{
+    char const* const check = "/usr/bin/python3 '" LIGHTWELL_SOURCE_DIR "/scripts/study-reference' --check";
+    EXPECT_EQ(std::system(check), 0) << "run scripts/study-reference";
+}
+
 TEST(StudyDocs, NameEveryKey)
 {
-    std::string const docs = file_text(LIGHTWELL_SOURCE_DIR "/docs/study.md");
+    std::string const docs = file_text(LIGHTWELL_SOURCE_DIR "/docs/study/reference.md");
     for (auto const& [kind, keys] : script_keys())
         for (std::string const& key : keys)
             EXPECT_NE(docs.find("`" + key + "`"), std::string::npos)
-                << kind << "." << key << " is not in docs/study.md";
+                << kind << "." << key << " is not in docs/study/reference.md";
     for (Task const t : kTasks)
         EXPECT_NE(docs.find("`" + std::string(facts(t).name) + "`"), std::string::npos) << facts(t).name;
 }
 
 TEST(StudyDocs, HaveExamplesThatArePlanned)
 {
-    std::string const docs = file_text(LIGHTWELL_SOURCE_DIR "/docs/study.md");
+    std::string const docs = file_text(LIGHTWELL_SOURCE_DIR "/docs/study/reference.md");
     int count = 0;
     for (std::size_t at = 0; (at = docs.find("```yaml\n", at)) != std::string::npos; ++at) {
         std::string const text = docs.substr(at + 8, docs.find("```\n", at + 8) - at - 8);
         if (!text.starts_with("schema:")) continue;
-        Script const s = parse_script(text, "docs/study.md");
+        Script const s = parse_script(text, "docs/study/reference.md");
         EXPECT_EQ(trials_of(make_plan(s, 1), Phase::main).size(), 12u);
         ++count;
     }

@@ -64,8 +64,10 @@ INSTANTIATE_TEST_SUITE_P(Of, Examples,
 /// A newcomer's hour: what the README and the documents say, in this order, in one folder.
 TEST(DocumentExamples, Run)
 {
+    run_well("generate boxes --triangles 2000 --out YOUR_SCENE.glb", folder().path());
     for (char const* const document :
-         {"README.md", "docs/commands.md", "docs/batch.md", "docs/displays.md", "docs/study.md"}) {
+         {"README.md", "docs/commands.md", "docs/batch.md", "docs/displays.md", "docs/study/tutorial.md",
+          "docs/study/analysis.md"}) {
         SCOPED_TRACE(document);
         std::vector<std::string> shell;
         bool inside = false;

@@ -78,7 +78,7 @@ TEST(StudyCommand, RefusesInOneLine)
           {"study plan r.yaml --out r.yaml", "it is also an input"},
           {"study plan r.yaml --out nowhere/plan.tsv", "there is no folder"},
           {"study example nothing --out x",
-           "there are: active, ar_paths, pairs, rating, sensitivity, sounds, staircase, visibility2026"}}) {
+           "there are: active, ar_paths, brightness, pairs, rating, sensitivity, sounds, staircase, visibility2026"}}) {
         Outcome const o = run(arguments, folder.path());
         EXPECT_EQ(o.code, 2) << arguments;
         EXPECT_NE(o.err.find(mentions), std::string::npos) << arguments << "\n" << o.err;

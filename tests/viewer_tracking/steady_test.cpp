@@ -1,5 +1,5 @@
 // What the brief of trackers promises: with 10 % of packets lost and delays of 0 to 50 ms the view is steady,
-// within bounds that were measured (docs/results/2026-11-22-trackers.md).
+// within bounds that were measured (docs/performance.md).
 
 #include "tests/viewer_tracking/lossy_walk.h"
 #include "viewer/devices/tracking/dtrack.h"

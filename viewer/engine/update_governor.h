@@ -5,7 +5,7 @@
 // on the number of paths and pixels, and exceeds their cost if much moves. Updating only some axes, different ones
 // in every frame (AxisSet::update_some_axes), reduces it in proportion and adds a little noise, which temporal
 // reuse averages; nothing is rebuilt, and no reused light is lost. The rule comes from measurements:
-// docs/results/2026-11-22-schedules.md.
+// docs/decisions/schedules.md.
 //
 // - All axes, or 32 per bounce, if their update takes at most 0.2 of the time between frames; else 16 if it takes
 //   at most 0.35; else 8.

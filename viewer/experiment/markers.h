@@ -1,6 +1,6 @@
 #pragma once
 // Event markers for recording devices (EEG, heart rate, skin conductance): a line of JSON in a UDP packet and, if
-// liblsl is installed, a sample of a Lab Streaming Layer stream of type Markers. docs/study.md lists the events
+// liblsl is installed, a sample of a Lab Streaming Layer stream of type Markers. docs/study/running.md lists the events
 // and their fields.
 
 #include "gi/core/report.h"

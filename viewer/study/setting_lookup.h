@@ -1,5 +1,5 @@
 #pragma once
-// The settings of stimuli that scripts of experiments may have (docs/study.md): those of the viewer
+// The settings of stimuli that scripts of experiments may have (docs/study/running.md): those of the viewer
 // (viewer/engine/settings.h), with or without the prefix "gi.", edits of the scene (viewer/engine/scene_edits.h),
 // and the scene, the camera, and the display of a stimulus. Looks them up without loading or rendering anything.
 

@@ -167,7 +167,7 @@ RenderSettings with_paths(RenderSettings const& asked, SlhbSettings const& buffe
     RenderSettings chosen = asked;
     chosen.of<SlhbSettings>() = buffers;
     // With a budget, paths of low throughput are worth less, as ending them leaves time for more paths.
-    constexpr float kRoulette = 2, kRouletteToCells = 3; // measured: docs/methods/paths.md
+    constexpr float kRoulette = 2, kRouletteToCells = 3; // measured: docs/decisions/path-tracer.md
     constexpr double kFewPasses = 1.4;
     bool const by_time =
         lasting || asked.until_relmse > 0 || (asked.budget_s > 0 && expected_passes(asked, costs) >= kFewPasses);

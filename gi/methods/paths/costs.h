@@ -1,5 +1,5 @@
 #pragma once
-// Rough costs of the parts of a picture, in seconds on one core, from the machine and scenes of docs/results. The
+// Rough costs of the parts of a picture, in seconds on one core, from the machine and scenes of docs/performance.md. The
 // plan compares them; they are constants, so that the same call always gives the same plan.
 
 #include "gi/scene/model/world.h"

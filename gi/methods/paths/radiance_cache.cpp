@@ -11,7 +11,7 @@ namespace gi {
 namespace {
 
 /// Largest width of the widest level's cells relative to the footprint; rounding to powers of two can halve it.
-/// This and the numbers below are measured: docs/results/2026-11-25-cache.md.
+/// This and the numbers below are measured: docs/decisions/radiance-cache.md.
 constexpr float kWidth = 0.6f;
 /// Number of notes required before paths end in a cell; with more, the probability of continuing falls inversely.
 constexpr float kEnough = 3;

@@ -1,5 +1,5 @@
 #pragma once
-// Materials as plain data. One struct holds both models; bsdf.h and docs/methods.md define them.
+// Materials as plain data. One struct holds both models; bsdf.h and docs/methods/scene.md define them.
 
 #include "gi/scene/model/texture.h"
 

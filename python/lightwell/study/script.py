@@ -37,7 +37,7 @@ class Outcome:
 
 
 class Script:
-    """An experiment script of schema study/2 (docs/study.md), read and checked.
+    """An experiment script of schema study/2 (docs/study/reference.md), read and checked.
 
     Raises:
         ScriptError: the script is invalid; the error has file, line and column.
@@ -165,7 +165,7 @@ class Script:
         Args:
             participants: numbers of the participants; None = all.
             dir: folder of the data set; the observers' true parameters go to its sourcedata/simulation/truth.json.
-            observer: file that describes the model observers (YAML, docs/study.md); "" = the default observers.
+            observer: file that describes the model observers (YAML, docs/study/analysis.md); "" = the default observers.
             seed: seed of observers and answers; None = that of the script.
             session, resume: as for `run`.
             gap_s: with resume: simulated seconds between the interruption and resuming.

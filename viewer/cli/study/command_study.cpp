@@ -143,7 +143,7 @@ void add_study(CLI::App& app, int& exit_code)
   lightwell study report sessions --out report.html
 
 A script and a participant always give the same plan, byte for byte. Doubtful choices, such as sessions of
-more than 60 minutes, are reported on stderr. docs/study.md describes every key of a script.)");
+more than 60 minutes, are reported on stderr. docs/study/reference.md describes every key of a script.)");
 }
 
 } // namespace viewer

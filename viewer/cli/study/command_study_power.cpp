@@ -101,7 +101,7 @@ void add_study_power(CLI::App& study, int& exit_code)
             "an effect as analyze names it (display:scene, or 'display x scene'), or two items (exact-none)")
         ->required();
     power->add_option("--block", o->block, "the block that is tested (needed if there are several)");
-    power->add_option("--observer", o->observer, "model of the observers (YAML, docs/study.md)");
+    power->add_option("--observer", o->observer, "model of the observers (YAML, docs/study/analysis.md)");
     power
         ->add_option("--effects", o->settings.effects,
                      "factors on the model's effects; 0: none, as a check of alpha")

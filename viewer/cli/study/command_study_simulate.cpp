@@ -99,7 +99,7 @@ void add_study_simulate(CLI::App& study, int& exit_code)
     simulate->add_option("SCRIPT", o->script, "experiment (YAML, schema study/2)")->required();
     simulate->add_option("--participants", o->participants, "3, 1..24 or 1,4,7..9 (default: all of the script)");
     simulate->add_option("-o,--out", o->out, "folder of the data set (default: simulated-ID)");
-    simulate->add_option("--observer", o->observer, "model of the observers (YAML, docs/study.md)");
+    simulate->add_option("--observer", o->observer, "model of the observers (YAML, docs/study/analysis.md)");
     simulate->add_option("--seed", o->seed, "seed of the observers and their answers (default: the script's)");
     simulate->add_option("--session", o->session, "number of the session")
         ->check(CLI::Range(1, 99))

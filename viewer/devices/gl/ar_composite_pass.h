@@ -1,6 +1,6 @@
 #pragma once
 // Composites virtual objects into a camera frame on the GPU: ar/composite's equation with its tables
-// (docs/methods.md). Unchanged pixels keep the camera's bytes; others differ from the CPU result by at most one,
+// (docs/methods/ar-light.md). Unchanged pixels keep the camera's bytes; others differ from the CPU result by at most one,
 // due to rounding.
 
 #include "ar/composite/composite.h"

@@ -1,7 +1,7 @@
 #pragma once
 // Reads OBJ in the place of Assimp's own importer, which clears a buffer of 16 MiB twice for each file, drops
 // vertices such as ".5 .5 .5", and gives faces before the first `usemtl` the material of later ones. tinyobjloader
-// loses data without a word: docs/results/2026-11-27-limits.md.
+// loses data without a word: docs/decisions/obj-reader.md.
 
 #include <assimp/BaseImporter.h>
 
