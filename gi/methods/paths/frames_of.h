@@ -108,8 +108,8 @@ public:
                                     StopRequest const& stop) override
     {
         if (cache_ == RadianceCaching::on) sharing = VertexSharing::cached;
-        bool const never = cache_ == RadianceCaching::off ||
-                           (cache_ == RadianceCaching::automatic && !asked_.of<PathAlgorithm>().caches);
+        bool const may = asked_.of<PathAlgorithm>().caches || asked_.of<PathsSettings>().cache == RadianceCaching::on;
+        bool const never = cache_ == RadianceCaching::off || (cache_ == RadianceCaching::automatic && !may);
         if (never && sharing == VertexSharing::cached) sharing = VertexSharing::exact;
         auto const begun = std::chrono::steady_clock::now();
         see_all(views);
