@@ -29,7 +29,7 @@ public:
         if (schema != "ar/1" && schema != "ar/2")
             throw root_.error("no 'schema: ar/2'", "this may be a file of another kind", "begin the file with it");
         is_of_0_1_ = schema == "ar/1";
-        if (is_of_0_1_) session_.render.method = gi::method_of_0_1("slhb");
+        if (is_of_0_1_) session_.render.method = gi::kDefaultMethodOf01;
         for (char const* needed : {"frames", "camera", "markers"})
             if (!root_.has(needed))
                 throw root_.error(fmt::format("no '{}'", needed), "a session cannot begin without it", "add it");

@@ -10,6 +10,7 @@
 #include "ar/scene/proxies.h"
 #include "ar/scene/tracked_pose.h"
 #include "gi/filter/denoise.h"
+#include "gi/methods/names.h"
 #include "gi/render/render_settings.h"
 
 #include <filesystem>

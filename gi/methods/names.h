@@ -14,6 +14,9 @@ inline constexpr std::string_view kDefaultMethod = "auto";
 /// or look-ups, as its options said.
 constexpr std::string_view method_of_0_1(std::string_view name) { return name == "slhb" ? "slhb_0_1" : name; }
 
+/// The method of viewers, studies and AR sessions of version 0.1 that name none.
+inline constexpr std::string_view kDefaultMethodOf01 = method_of_0_1("slhb");
+
 /// True if a picture by this method that is interrupted and resumed is that of an uninterrupted one, bit for bit. Light
 /// of the others starts anew.
 constexpr bool resumes_exactly(std::string_view method)

@@ -185,7 +185,7 @@ MadeFor made_for(std::string const& program)
 Settings first_settings(MadeFor made_for)
 {
     Settings s;
-    if (made_for == MadeFor::version_0_1) s.method = gi::method_of_0_1("slhb"); // its default
+    if (made_for == MadeFor::version_0_1) s.method = gi::kDefaultMethodOf01;
     return s;
 }
 

@@ -3,6 +3,7 @@
 #include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/core/text.h"
+#include "gi/methods/registry.h"
 #include "gi/scene/load/load.h"
 #include "study/script/condition.h"
 #include "study/script/written_settings.h"

@@ -1,7 +1,6 @@
 #include "gi/methods/paths/renderer.h"
 
 #include "gi/core/step.h"
-#include "gi/hit_buffers/directions/grid_bounds.h"
 #include "gi/methods/paths/choose.h"
 #include "gi/methods/paths/lobes.h"
 #include "gi/render/pass_samples.h"
@@ -33,13 +32,10 @@ PathsRenderer::PathsRenderer(World const& world, std::span<FrameView const> view
                            FirstSurfaces first_surfaces, StopRequest const* stop)
     : world_(world),
       settings_(settings),
-      first_moving_(first_moving),
       first_surfaces_(first_surfaces),
       stop_(stop),
       report_(report),
-      soup_(std::move(soup)),
-      cut_outs_(world),
-      grid_bounds_(grid_bounds(world, soup_, first_moving)),
+      traced_(world, std::move(soup), first_moving),
       axes_(slhb_, report),
       paths_(world, settings_, report)
 {
@@ -63,44 +59,38 @@ void PathsRenderer::build_exact()
     if (exact_ || !needs_exact_rays(world_, orthographic(), settings_)) return;
     StageTimer const timer(report_, "build (Embree BVH)");
     exact_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
-                                               first_moving_, stop_of_building(stop_));
-}
-
-/// Paths also leave the last surface along axes, but only if they can hit light there.
-bool PathsRenderer::to_the_end() const
-{
-    return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
+                                               traced_.first_moving, stop_of_building(stop_));
 }
 
 bool PathsRenderer::walks() const
 {
-    return by_.surfaces == SurfacesBy::look_ups && (settings_.bounces > 0 || to_the_end());
+    return by_.surfaces == SurfacesBy::look_ups && (settings_.bounces > 0 || meets_light(world_));
 }
 
 void PathsRenderer::make_axes()
 {
-    axes_.make({.bounds = grid_bounds_,
-                .soup = soup_,
-                .cut_outs = cut_outs_,
+    axes_.make({.bounds = traced_.grid_bounds,
+                .soup = traced_.soup,
+                .cut_outs = traced_.cut_outs,
                 .resolution = texels(slhb_.exact.queries, slhb_.resolution),
                 .most_layers = std::uint32_t(slhb_.most_layers),
                 .packed = slhb_.packed,
                 .seed = settings_.seed,
                 .most_bytes = std::size_t(slhb_.memory_mib) << 20,
                 .stop = stop_,
-                .first_moving = first_moving_},
+                .first_moving = traced_.first_moving},
                walks());
 }
 
 void PathsRenderer::make_light_points()
 {
     if (light_points_) earlier_maps_ += light_points_->maps_built();
-    light_points_.emplace(world_, grid_bounds_, soup_, cut_outs_,
+    light_points_.emplace(world_, traced_.grid_bounds, traced_.soup, traced_.cut_outs,
                           LightPointSettings{.count = std::uint32_t(shadow_maps_ ? slhb_.light_samples : 0),
                                              .fresh = std::uint32_t(slhb_.fresh_light_samples),
                                              .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
                                              .seed = settings_.seed,
-                                             .first_moving = first_moving_,
+                                             .first_moving = traced_.first_moving,
                                              .stop = stop_});
 }
 
@@ -118,18 +108,15 @@ void PathsRenderer::world_moved(bool geometry, bool lights)
     if (geometry) {
         {
             StageTimer const timer(report_, "update of dynamic triangles");
-            if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, first_moving_);
-            update_soup(world_, first_moving_, soup_);
+            traced_.move(world_);
         }
         {
             StageTimer const timer(report_, "BVH of dynamic triangles (Embree)");
             if (exact_) exact_->moved(world_);
         }
-        if (!grow(grid_bounds_, world_.bounds)) {
+        if (!traced_.outgrown(world_, slhb_.schedule, report_)) {
             axes_.set().moved();
         } else {
-            if (slhb_.schedule != Schedule::streamed) // streamed buffers are rebuilt in every pass
-                report_.lose("frames outside the bounds of the hit buffers, which were rebuilt");
             make_axes();
             lights = true; // the maps of parallel lights depend on the same bounds
         }
@@ -150,14 +137,14 @@ void PathsRenderer::materials_changed()
 void PathsRenderer::end_frame()
 {
     axes_.end_frame();
-    earlier_ = {first_moving_, {}};
+    traced_.end_frame();
     for (SeenView& v : views_) v.earlier = v.rays;
 }
 
 void PathsRenderer::add_motion(std::size_t view, Picture& picture) const
 {
     SeenView const& v = views_[view];
-    if (v.primary) gi::add_motion(*v.primary, soup_, v.rays, v.earlier, earlier_, picture);
+    if (v.primary) gi::add_motion(*v.primary, traced_.soup, v.rays, v.earlier, traced_.earlier, picture);
 }
 
 void PathsRenderer::see(std::span<FrameView const> views)
@@ -166,23 +153,17 @@ void PathsRenderer::see(std::span<FrameView const> views)
     while (views_.size() > views.size()) views_.pop_back();
     for (std::size_t k = 0; k < views.size(); ++k) {
         FrameView const& now = views[k];
-        bool const known = k < views_.size() && views_[k].width == now.width && views_[k].height == now.height;
         if (k == views_.size()) views_.emplace_back();
         SeenView& v = views_[k];
-        v.width = now.width;
-        v.height = now.height;
+        bool const known = v.follow(now, world_.origin, settings_.filter);
         v.partner = now.partner;
         v.hidden = now.hidden;
-        v.filter = now.filter.value_or(settings_.filter);
-        v.hidden_pixels = now.hidden.size() - std::size_t(std::ranges::count(now.hidden, 0));
-        v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
         v.first = first;
         first += v.pixels();
-        if (!known) v.earlier = v.rays;
         if (v.rays.orthographic || first_surfaces_ == FirstSurfaces::by_rays)
             v.primary.reset();
         else if (!known || !v.primary)
-            v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
+            v.primary.emplace(traced_.soup, traced_.cut_outs, settings_, v.width, v.height);
         if (v.primary) v.primary->set_filter(v.filter);
     }
     if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
@@ -190,7 +171,7 @@ void PathsRenderer::see(std::span<FrameView const> views)
 
 void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& stop)
 {
-    axes_.prepare(settings_.bounces + (to_the_end() ? 1 : 0), index);
+    axes_.prepare(settings_.bounces + (meets_light(world_) ? 1 : 0), index);
     {
         StageTimer const timer(report_, "shadow maps");
         light_points_->refresh(index, stop);
@@ -202,7 +183,7 @@ void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& st
         CameraRays const eye = eye_of_pass(v.rays, settings_.seed, index);
         float const near_m = near_plane(world_.bounds);
         if (sides == Sides::pair)
-            v.primary->refresh_pair(eye, near_m, index, first_moving_);
+            v.primary->refresh_pair(eye, near_m, index, traced_.first_moving);
         else
             v.primary->refresh(eye, near_m, index);
     }
@@ -257,7 +238,7 @@ void PathsRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& c
     prepare(index, Sides::pair, never);
     StageTimer const timer(report_, "paths");
     PathsTracer::Pass now = tracing(index, false, never);
-    now.first_watched = std::uint32_t(first_moving_);
+    now.first_watched = std::uint32_t(traced_.first_moving);
     // The world is not changed: look-ups ignore dynamic geometry.
     auto const show_moving = [&](bool shown) {
         axes_.set().show_moving(shown);
@@ -275,7 +256,7 @@ void PathsRenderer::add_coverage(std::size_t view, std::span<float> counts, std:
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, counts.size(), kBlock), [&](auto const& range) {
         for (std::size_t p = range.begin(); p != range.end(); ++p) {
             std::uint32_t const t = v.primary->triangle(p);
-            if (t == kNoPrimitive || t < first_moving_) continue;
+            if (t == kNoPrimitive || t < traced_.first_moving) continue;
             counts[p] += 1;
             for (vec3 const part : samples[p].radiance) radiance[p] += part;
         }

@@ -3,7 +3,6 @@
 // the world, and their per-pass updates.
 
 #include "gi/hit_buffers/directions/frame_axes.h"
-#include "gi/methods/paths/motion.h"
 #include "gi/methods/paths/view_paths.h"
 
 #include <memory>
@@ -96,7 +95,6 @@ private:
     void make_axes();
     void make_light_points();
     bool walks() const;
-    bool to_the_end() const;
     enum class Sides : std::uint8_t { one, pair };
     void prepare(std::uint32_t index, Sides sides, PassStop const& stop);
     PathsTracer::Pass tracing(std::uint32_t index, bool cached, PassStop const& stop);
@@ -106,21 +104,17 @@ private:
     SlhbSettings const& slhb_ = settings_.of<SlhbSettings>();
     PathsSettings const& own_ = settings_.of<PathsSettings>();
     PathAlgorithm const by_ = settings_.of<PathAlgorithm>();
-    std::size_t first_moving_; ///< index of the first dynamic triangle
     FirstSurfaces first_surfaces_;
     StopRequest const* stop_; ///< of building; may be null
     Report& report_;
     SeenViews views_;
-    TriangleSoup soup_;
-    CutOuts cut_outs_;
+    TracedWorld traced_;
     std::unique_ptr<ExactVisibility> exact_;
-    Bounds grid_bounds_; ///< of the hit buffers
     FrameAxes axes_;
     LightOrder light_order_;
     LightPool lights_;        ///< of a pass; empty with shadow maps
     bool shadow_maps_ = true; ///< else paths trace their own shadow rays
     std::optional<LightPoints> light_points_;
-    EarlierCorners earlier_;
     std::vector<SkyAlong> sky_;          ///< in a pass
     std::optional<RadianceCache> cache_; ///< none if switched off
     ViewPaths paths_;

@@ -1,6 +1,5 @@
 #include "gi/methods/slhb/kernels/kernel_renderer.h"
 
-#include "gi/hit_buffers/directions/grid_bounds.h"
 #include "gi/methods/paths/lobes.h"
 #include "gi/render/pass_samples.h"
 #include "gi/scene/model/plan.h"
@@ -37,12 +36,9 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
                                   Report& report)
     : world_(world),
       settings_(settings),
-      first_moving_(first_moving),
       report_(report),
-      soup_(std::move(soup)),
-      cut_outs_(world),
-      scene_(world, soup_, cut_outs_, std::uint32_t(slhb_.most_layers)),
-      grid_bounds_(grid_bounds(world, soup_, first_moving)),
+      traced_(world, std::move(soup), first_moving),
+      scene_(world, traced_.soup, traced_.cut_outs, std::uint32_t(slhb_.most_layers)),
       axes_(slhb_, report)
 {
     see(views);
@@ -52,13 +48,6 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
     make_light_points();
 }
 
-/// Paths also leave the last surface along axes.
-template <Space S>
-bool KernelRenderer<S>::meets_light() const
-{
-    return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
-}
-
 template <Space S>
 void KernelRenderer<S>::build_exact()
 {
@@ -66,7 +55,7 @@ void KernelRenderer<S>::build_exact()
     if (needed && scene_.has_rays()) return scene_.test_alpha(plan_scene(world_).alpha_tests);
     if (needed == scene_.has_rays()) return;
     StageTimer const timer(report_, "build (BVH)");
-    scene_.use_rays(needed, plan_scene(world_).alpha_tests, first_moving_);
+    scene_.use_rays(needed, plan_scene(world_).alpha_tests, traced_.first_moving);
 }
 
 template <Space S>
@@ -75,15 +64,15 @@ void KernelRenderer<S>::make_axes()
     auto const build = [this](std::size_t a, RasterGrid const& grid, std::uint32_t seed) {
         return scene_.build_axis(a, grid, seed);
     };
-    axes_.make({.bounds = grid_bounds_,
-                .soup = soup_,
-                .cut_outs = cut_outs_,
+    axes_.make({.bounds = traced_.grid_bounds,
+                .soup = traced_.soup,
+                .cut_outs = traced_.cut_outs,
                 .resolution = std::uint32_t(slhb_.resolution),
                 .most_layers = std::uint32_t(slhb_.most_layers),
                 .packed = false,
                 .seed = settings_.seed,
                 .elsewhere = build,
-                .first_moving = first_moving_},
+                .first_moving = traced_.first_moving},
                walks());
 }
 
@@ -92,12 +81,12 @@ void KernelRenderer<S>::make_light_points()
 {
     if (light_points_) earlier_maps_ += light_points_->maps_built();
     scene_.forget_light_points();
-    light_points_.emplace(world_, grid_bounds_, soup_, cut_outs_,
+    light_points_.emplace(world_, traced_.grid_bounds, traced_.soup, traced_.cut_outs,
                           LightPointSettings{.count = std::uint32_t(slhb_.light_samples),
                                              .fresh = std::uint32_t(slhb_.fresh_light_samples),
                                              .resolution = std::uint32_t(slhb_.shadow_resolution),
                                              .seed = settings_.seed,
-                                             .first_moving = first_moving_},
+                                             .first_moving = traced_.first_moving},
                           [this](LightPoints::DeviceDraw const& now) { scene_.draw_light_points(now); });
 }
 
@@ -106,20 +95,14 @@ void KernelRenderer<S>::changed(Changes const& c)
 {
     {
         StageTimer const timer(report_, "update of dynamic triangles");
-        if (c.geometry) {
-            if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, first_moving_);
-            update_soup(world_, first_moving_, soup_);
-        }
-        scene_.update(world_, soup_, c);
+        if (c.geometry) traced_.move(world_);
+        scene_.update(world_, traced_.soup, c);
     }
     if (c.materials || c.coverage) build_exact();
     bool axes = axes_.walks() != walks(), light_points = changes_lights(c);
     if (c.geometry) {
-        if (grow(grid_bounds_, world_.bounds)) {
-            if (slhb_.schedule != Schedule::streamed) // streamed buffers are rebuilt in every pass
-                report_.lose("frames outside the bounds of the hit buffers, which were rebuilt");
+        if (traced_.outgrown(world_, slhb_.schedule, report_))
             axes = light_points = true; // the maps of parallel lights depend on the same bounds
-        }
         axes_.set().moved();
         light_points_->moved();
     }
@@ -131,7 +114,7 @@ template <Space S>
 void KernelRenderer<S>::end_frame()
 {
     axes_.end_frame();
-    earlier_ = {first_moving_, {}};
+    traced_.end_frame();
     for (View& v : views_) v.earlier = v.rays;
 }
 
@@ -139,28 +122,21 @@ template <Space S>
 void KernelRenderer<S>::see(std::span<FrameView const> views)
 {
     for (FrameView const& v : views) check(v.camera, settings_);
-    std::size_t const known_views = views_.size();
     views_.resize(views.size());
     for (std::size_t k = 0; k < views.size(); ++k) {
         FrameView const& now = views[k];
         View& v = views_[k];
-        bool const known = k < known_views && v.width == now.width && v.height == now.height;
-        v.width = now.width;
-        v.height = now.height;
-        v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
-        v.filter = now.filter.value_or(settings_.filter);
-        if (!known) v.earlier = v.rays;
+        v.follow(now, world_.origin, settings_.filter);
         if (std::ranges::equal(v.hides, now.hidden)) continue;
         v.hides.assign(now.hidden.begin(), now.hidden.end());
         v.hidden = upload<S>(v.hides);
-        v.hidden_pixels = v.hides.size() - std::size_t(std::ranges::count(v.hides, 0));
     }
 }
 
 template <Space S>
 void KernelRenderer<S>::prepare(std::uint32_t index)
 {
-    axes_.prepare(settings_.bounces + (meets_light() ? 1 : 0), index);
+    axes_.prepare(settings_.bounces + (meets_light(world_) ? 1 : 0), index);
     {
         StageTimer const timer(report_, "shadow maps");
         light_points_->refresh(index);
@@ -223,10 +199,10 @@ template <Space S>
 void KernelRenderer<S>::add_motion(std::size_t view, Picture& picture) const
 {
     View const& v = views_[view];
-    PrimaryMap map(soup_, cut_outs_, settings_, v.width, v.height);
+    PrimaryMap map(traced_.soup, traced_.cut_outs, settings_, v.width, v.height);
     map.set_filter(v.filter);
     map.take(v.eye, v.index, download(v.primary));
-    gi::add_motion(map, soup_, v.rays, v.earlier, earlier_, picture);
+    gi::add_motion(map, traced_.soup, v.rays, v.earlier, traced_.earlier, picture);
 }
 
 template <Space S>

@@ -9,7 +9,7 @@
 // and paths do not share vertices. For the limits of paths see path_kernel.h.
 
 #include "gi/hit_buffers/directions/frame_axes.h"
-#include "gi/methods/paths/motion.h"
+#include "gi/methods/paths/traced_world.h"
 #include "gi/methods/slhb/kernels/kernel_scene.h"
 #include "gi/render/accumulator.h"
 #include "gi/render/frame_renderer.h"
@@ -53,22 +53,16 @@ public:
     void report_work() const;
 
 private:
-    struct View {
-        CameraRays rays, earlier; ///< through the centre of the lens
-        int width = 0, height = 0;
+    struct View : TracedView {
         std::vector<std::uint8_t> hides; ///< the pixels that `hidden` was made from
         Buffer<std::uint8_t, S> hidden;  ///< as in FrameView
-        std::size_t hidden_pixels = 0;
-        PixelFilter filter = PixelFilter::box;
-        CameraRays eye{}; ///< of the last pass
+        CameraRays eye{};                ///< of the last pass
         std::uint32_t index = 0;
         Buffer<NearestTexel, S> primary; ///< of the last pass
         SumsOn<S> sums;
-        std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
     };
 
-    bool meets_light() const;
-    bool walks() const { return settings_.bounces > 0 || meets_light(); }
+    bool walks() const { return settings_.bounces > 0 || meets_light(world_); }
     void build_exact();
     void make_axes();
     void make_light_points();
@@ -78,16 +72,12 @@ private:
     World const& world_;
     RenderSettings settings_;
     SlhbSettings const& slhb_ = settings_.of<SlhbSettings>();
-    std::size_t first_moving_; ///< index of the first dynamic triangle
     Report& report_;
     std::vector<View> views_;
-    TriangleSoup soup_;
-    CutOuts cut_outs_;
+    TracedWorld traced_;
     KernelScene<S> scene_;
-    Bounds grid_bounds_; ///< of the hit buffers
     FrameAxes axes_;
     std::optional<LightPoints> light_points_;
-    EarlierCorners earlier_;
     std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0;
     std::uint64_t hidden_ = 0, pixels_ = 0; ///< pixels not traced because they are hidden; all pixels; over all
                                             ///< passes
