@@ -91,7 +91,7 @@ TEST(ManPages, HaveEveryOptionAndNoErrors)
     TemporaryFolder const folder;
     {
         Variable const man("LIGHTWELL_MAN", folder.path().string());
-        for (char const* const call : {"", "render", "view", "study", "study run", "ar"})
+        for (char const* const call : {"", "render", "bench", "view", "study", "study run", "ar"})
             EXPECT_EQ(outcome_of(call).code, 0) << call;
     }
     for (char const* const page : {"lightwell.1", "lightwell-render.1", "lightwell-bench.1", "lightwell-view.1",

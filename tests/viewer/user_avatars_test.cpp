@@ -1,6 +1,6 @@
 // Who has which avatar: by options, by display files, by recordings of now and of before further users had any.
 
-#include "viewer/offline/user_avatars.h"
+#include "viewer/app/user_avatars.h"
 
 #include "gi/core/error.h"
 #include "gi/scene/load/load.h"

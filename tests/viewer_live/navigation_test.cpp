@@ -1,5 +1,5 @@
 #include "gi/scene/model/projection.h"
-#include "viewer/engine/live/desktop_views.h"
+#include "viewer/displays/desktop_views.h"
 #include "viewer/engine/live/navigation.h"
 
 #include <gtest/gtest.h>

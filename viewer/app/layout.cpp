@@ -2,7 +2,7 @@
 
 #include "viewer/displays/blend.h"
 #include "viewer/displays/compose.h"
-#include "viewer/engine/live/desktop_views.h"
+#include "viewer/displays/desktop_views.h"
 
 #include <algorithm>
 

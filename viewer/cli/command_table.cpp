@@ -6,9 +6,9 @@
 namespace viewer {
 namespace {
 
-constexpr std::string_view kLauncher = "lightwell", kRender = "lightwell-render", kView = "lightwell-view",
-                           kStudy = "lightwell-study", kTrials = "lightwell-trials", kAr = "lightwell-ar",
-                           kBatch = "lightwell-batch";
+constexpr std::string_view kLauncher = "lightwell", kRender = "lightwell-render", kBench = "lightwell-bench",
+                           kView = "lightwell-view", kStudy = "lightwell-study", kTrials = "lightwell-trials",
+                           kAr = "lightwell-ar", kBatch = "lightwell-batch";
 
 /// In the order of --help. A subcommand belongs to the program of its group unless it has its own row.
 constexpr CommandRow kCommands[]{
@@ -31,7 +31,7 @@ constexpr CommandRow kCommands[]{
      "Render the stimuli of blocks with `stimuli: prepared` in advance; existing ones are kept."},
     {"study calibrate", kTrials, "Measure a display: luminance, gamma, size, distance; write its display model."},
     {"ar", kAr, "Augmented reality: add virtual objects to camera frames."},
-    {"bench", kRender, "Compare methods by time and error, and report the results."},
+    {"bench", kBench, "Compare methods by time and error, and report the results."},
     {"batch", kBatch, "Run many tasks of a manifest: on this machine, under mpirun, on HyperQueue."},
     {"help", kLauncher, "Show the help of a command: lightwell help render."},
     {"completion", kLauncher, "Print a script with which a shell completes commands, options and values."},

@@ -57,7 +57,6 @@ std::vector<SettingKey> make_keys()
                                      &S::compare)};
     keys[0].restarts = true;
     for (SettingKey& k : keys) { // also the methods of earlier versions
-        k.takes_other_words = true;
         k.set = [member = &k == &keys[0] ? &S::method : &S::compare](S& s, std::string const& text,
                                                                      std::string const&) {
             if (!text.empty() || member == &S::method) gi::find_method(text); // throws

@@ -3,7 +3,7 @@
 #include "gi/core/error.h"
 #include "gi/core/text.h"
 #include "viewer/base/arguments.h"
-#include "viewer/engine/live/desktop_views.h"
+#include "viewer/displays/desktop_views.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -21,37 +21,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Settings of stimuli that the viewer does not have.
-struct OwnSetting {
-    std::string_view key, kind, range, usual, meaning;
-    double low = 0, high = -1; ///< of a number; empty: it is none
-};
-constexpr OwnSetting kOwn[]{
-    {"scene", "word", "a scene file or a generated scene", "", "what is shown"},
-    {"camera", "word", "a camera of the scene, path:orbit", "", "where it is seen from, and how the camera moves"},
-    {"camera.raise", "number", "-1000 to 1000", "0", "height above the camera's own place, m", -kHighestRaise_m,
-     kHighestRaise_m},
-    {"camera.fov", "number", "1 to 170", "", "vertical field of view, degrees", kNarrowest_deg, kWidest_deg},
-    {"visibility", "word", "exact, slhb, imperfect, ao, directional_ao, none", "",
-     "method that approximates the visibility of indirect light"},
-    {"size", "length", "0.001 to 170 deg, or cm, px; one or width x height", "",
-     "of the picture; a number alone is in degrees", 1e-3, 170},
-    {"place", "2 lengths", "-80 to 80 deg, or cm, px", "0 0", "of the picture's centre: right, up"},
-    {"luminance", "number", "above 0", "", "with which a rendered 1 is shown, cd/m2", 0, kBrightest_cd_m2},
-    {"mean_luminance", "number", "above 0", "", "mean of the first picture, cd/m2", 0, kBrightest_cd_m2},
-    {"peak_luminance", "number", "above 0", "", "of the first picture, cd/m2", 0, kBrightest_cd_m2},
-    {"view", "word", "window, openxr", "window", "display that shows the stimulus"},
-    {"ar", "word", "a session file", "", "AR session instead of a scene; ar.KEY are its settings"},
-};
-constexpr bool takes_numbers(OwnSetting const& s) { return s.high >= s.low; }
-/// Settings of viewers that make no sense for stimuli: those of the device, and those of people at a panel.
-constexpr std::string_view kNotOfStimuli[]{"device", "panel", "font_scale", "refine"};
-
-OwnSetting const* find_own(std::string const& key)
+StimulusSetting const* find_own(std::string const& key)
 {
-    auto const found =
-        std::find_if(std::begin(kOwn), std::end(kOwn), [&](OwnSetting const& s) { return s.key == key; });
-    return found == std::end(kOwn) ? nullptr : found;
+    for (StimulusSetting const& s : stimulus_settings())
+        if (s.key == key) return &s;
+    return nullptr;
 }
 
 SettingKey const* find_of_viewer(std::string const& key)
@@ -102,7 +76,7 @@ void check_scene(std::string const& scene, std::filesystem::path const& folder)
 
 void check_own(std::string const& key, std::string const& value, std::filesystem::path const& folder)
 {
-    OwnSetting const& own = *find_own(key);
+    StimulusSetting const& own = *find_own(key);
     if (key == "scene") check_scene(value, folder);
     if (key == "camera" && value.starts_with("path:")) path_of(value.substr(5));
     if (key == "visibility") visibility_method(value);
@@ -112,7 +86,7 @@ void check_own(std::string const& key, std::string const& value, std::filesystem
         PhysicalStimulus stimulus;
         return set_physical(stimulus, key, value);
     }
-    if (!takes_numbers(own)) return;
+    if (!own.takes_numbers()) return;
     auto const number = gi::parse_finite(value);
     if (!number) throw gi::InputError(key + ": " + value, "a number is needed here", "write 1 or 0.5");
     check_number(key, *number, own.low, own.high);
@@ -128,59 +102,7 @@ void check_of_viewer(std::string const& key, Json const& value, MadeFor made)
     set(settings, current({key, value}, made));
 }
 
-/// Words may be numbers too: "16384" or "30%".
-bool takes_numbers(SettingKey const& k)
-{
-    if (k.type == gi::OptionType::yes_or_no) return false;
-    return k.type != gi::OptionType::word || k.takes_other_words;
-}
-
-/// What a setting of the viewer allows, for people.
-StudySetting of_viewer(SettingKey const& k)
-{
-    StudySetting s;
-    s.key = k.key;
-    s.kind = k.type == gi::OptionType::word           ? "word"
-             : k.type == gi::OptionType::number       ? "number"
-             : k.type == gi::OptionType::whole_number ? "whole number"
-                                                      : "yes or no";
-    bool const is_number = k.type == gi::OptionType::number || k.type == gi::OptionType::whole_number;
-    if (is_number) s.range = fmt::format("{:g} to {:g}", k.low, k.high);
-    if (k.type == gi::OptionType::yes_or_no) s.range = "true, false";
-    for (std::string const& word : k.words)
-        s.range += (s.range.empty() ? "" : ", ") + (word.empty() ? std::string("\"\"") : word);
-    s.usual = k.get(Settings{});
-    s.meaning = k.meaning;
-    s.can_vary = takes_numbers(k);
-    return s;
-}
-
-StudySetting of_edit(SceneEditKey const& k)
-{
-    StudySetting s;
-    s.key = pattern_of(k);
-    s.kind = k.count == 1 ? "number" : fmt::format("{} numbers{}", k.count, k.or_one ? " or one" : "");
-    s.range = fmt::format("{:g} to {:g}", k.low, k.high);
-    s.meaning = k.meaning;
-    s.can_vary = k.count == 1 || k.or_one;
-    return s;
-}
-
 } // namespace
-
-std::vector<StudySetting> study_settings()
-{
-    std::vector<StudySetting> all;
-    for (OwnSetting const& s : kOwn)
-        all.push_back({std::string(s.key), std::string(s.kind), std::string(s.range), std::string(s.usual),
-                       std::string(s.meaning), takes_numbers(s)});
-    for (SceneEditKey const& k : scene_edit_keys()) all.push_back(of_edit(k));
-    for (SettingKey const& k : setting_keys())
-        if (k.is_offered() &&
-            std::find(std::begin(kNotOfStimuli), std::end(kNotOfStimuli), k.key) == std::end(kNotOfStimuli))
-            all.push_back(of_viewer(k));
-    return all;
-}
 
 std::string visibility_method(std::string const& word)
 {
@@ -268,8 +190,8 @@ std::string look_up_varied(std::string const& written)
     std::string const key = study::plain_key(written);
     check_known(key);
     std::string takes;
-    if (OwnSetting const* const own = find_own(key))
-        takes = takes_numbers(*own) ? "" : own->kind == "word" ? "a word" : std::string(own->kind);
+    if (StimulusSetting const* const own = find_own(key))
+        takes = own->takes_numbers() ? "" : own->kind == "word" ? "a word" : std::string(own->kind);
     else if (is_scene_edit(key)) {
         SceneEditKey const& edit = find_scene_edit(key);
         if (edit.count > 1 && !edit.or_one) takes = fmt::format("{} numbers", edit.count);

@@ -1,10 +1,8 @@
 #pragma once
-// The settings of stimuli that scripts of experiments may have (docs/study/running.md): those of the viewer
-// (viewer/engine/settings.h), with or without the prefix "gi.", edits of the scene (viewer/engine/scene_edits.h),
-// and the scene, the camera, and the display of a stimulus. Looks them up without loading or rendering anything.
+// Looks up the settings of stimuli that scripts of experiments have, without loading or rendering anything.
 
-#include "viewer/engine/settings.h"
 #include "viewer/study/study_script.h"
+#include "viewer/study/study_settings.h"
 
 #include <set>
 
@@ -15,17 +13,6 @@ enum class StimulusPath {
     none,
     orbit ///< once around a small horizontal circle with fixed view direction: gives parallax at one place
 };
-inline constexpr double kHighestRaise_m = 1000, kNarrowest_deg = 1, kWidest_deg = 170;
-
-/// A setting of stimuli, for people.
-struct StudySetting {
-    std::string key, kind;    ///< kind: "number", "whole number", "word", "yes or no", "3 numbers or one"
-    std::string range, usual; ///< allowed values; the default, empty = that of the scene
-    std::string meaning;      ///< with the unit
-    bool can_vary = false;    ///< a procedure can choose its level: it takes a number
-};
-/// All settings, those of stimuli that viewers do not have first.
-std::vector<StudySetting> study_settings();
 
 /// The method that `gi.visibility: word` stands for. Throws InputError.
 std::string visibility_method(std::string const& word);

@@ -2,7 +2,7 @@
 // Pictures that were shown against converged ones of the same moments.
 
 #include "tests/bench/moving_view/walk.h"
-#include "viewer/offline/user_avatars.h"
+#include "viewer/app/user_avatars.h"
 
 namespace viewer {
 

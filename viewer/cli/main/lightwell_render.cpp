@@ -4,8 +4,10 @@
 int main(int argc, char** argv)
 {
     static constexpr viewer::AddedCommand kOwn[]{
-        {"render", viewer::add_render},     {"compare", viewer::add_compare}, {"info", viewer::add_info},
-        {"generate", viewer::add_generate}, {"bench", viewer::add_bench},
+        {"render", viewer::add_render},
+        {"compare", viewer::add_compare},
+        {"info", viewer::add_info},
+        {"generate", viewer::add_generate},
     };
     return viewer::run_program(argc, argv, kOwn);
 }

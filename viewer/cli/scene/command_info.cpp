@@ -17,7 +17,7 @@
 #include "viewer/offline/load_world.h"
 #include "viewer/offline/picture_memory.h"
 #include "viewer/offline/plan_json.h"
-#include "viewer/study/setting_lookup.h"
+#include "viewer/study/study_settings.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -5,6 +5,8 @@
 #include "viewer/app/cluster_link.h"
 #include "viewer/app/hmd_program.h"
 #include "viewer/app/layout.h"
+#include "viewer/app/replay.h"
+#include "viewer/app/user_avatars.h"
 #include "viewer/app/view_program.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/choices.h"
@@ -21,8 +23,6 @@
 #include "viewer/offline/rank_options.h"
 #include "viewer/offline/render_options.h"
 #include "viewer/offline/render_picture.h"
-#include "viewer/offline/replay.h"
-#include "viewer/offline/user_avatars.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

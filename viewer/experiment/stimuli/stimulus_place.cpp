@@ -1,7 +1,7 @@
 #include "viewer/experiment/stimuli/stimulus_place.h"
 
 #include "viewer/displays/compose.h"
-#include "viewer/engine/live/desktop_views.h"
+#include "viewer/displays/desktop_views.h"
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>

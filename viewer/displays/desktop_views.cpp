@@ -1,5 +1,6 @@
-#include "viewer/engine/live/desktop_views.h"
+#include "viewer/displays/desktop_views.h"
 
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace viewer {

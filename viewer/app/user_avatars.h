@@ -1,9 +1,9 @@
 #pragma once
 // Avatars of users, from options, display files and recordings, and scenes with these avatars.
 
+#include "viewer/app/replay.h"
 #include "viewer/displays/display.h"
 #include "viewer/offline/render_options.h"
-#include "viewer/offline/replay.h"
 
 namespace viewer {
 

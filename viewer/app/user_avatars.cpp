@@ -1,4 +1,4 @@
-#include "viewer/offline/user_avatars.h"
+#include "viewer/app/user_avatars.h"
 
 #include "gi/core/error.h"
 #include "gi/scene/load/load.h"

@@ -1,4 +1,4 @@
-#include "viewer/offline/replay.h"
+#include "viewer/app/replay.h"
 
 #include "gi/image_io/picture_file.h"
 #include "viewer/app/frame_hash.h"
