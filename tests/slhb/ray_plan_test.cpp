@@ -85,7 +85,8 @@ TEST(RayPlan, LampsInMirrors)
         StopRequest stop;
         Report report;
         double const truth = mean_of(render_reference(world, camera, s, stop, {}, report).picture).mean;
-        for (auto const& [name, render] : {std::pair{"slhb", render_slhb}, std::pair{"paths", render_paths}})
+        for (auto const& [name, render] : std::initializer_list<std::pair<char const*, RenderFunction>>{
+                 {"slhb", render_slhb}, {"paths", render_paths}})
             EXPECT_NEAR(mean_of(render(world, camera, s, stop, {}, report).picture).mean, truth, 0.01 * truth)
                 << name << ", bounces " << bounces;
     }

@@ -1,6 +1,7 @@
 // A picture whose light is that of a quarter of its size is close to one whose light has its own size.
 
 #include "gi/core/report.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/registry.h"
 #include "gi/metrics/flip.h"
 #include "gi/scene/generate/generate.h"

@@ -1,6 +1,7 @@
 // The light of few punctual lights on the surfaces that are seen is that which methods find, and a method that
 // leaves it out lacks just that.
 
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/registry.h"
 #include "tests/surfaces/seen_picture.h"
 

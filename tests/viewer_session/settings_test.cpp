@@ -1,6 +1,7 @@
 // One table of options for all front ends: values as text, former names, and what viewers make of them.
 
 #include "gi/core/error.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/paths/settings.h"
 #include "gi/methods/registry.h"
 #include "gi/methods/vpl/settings.h"

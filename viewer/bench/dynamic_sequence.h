@@ -3,6 +3,7 @@
 
 #include "gi/filter/denoise.h"
 #include "gi/filter/temporal.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/render/frame_renderer.h"
 #include "viewer/bench/dynamic.h"
 #include "viewer/engine/flat_triangles.h"

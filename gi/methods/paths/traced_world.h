@@ -11,12 +11,11 @@
 namespace gi {
 
 struct TracedWorld {
-    /// @param first_moving  index of the first dynamic triangle
-    TracedWorld(World const& world, TriangleSoup triangles, std::size_t first_moving)
-        : first_moving(first_moving),
+    TracedWorld(World const& world, TriangleSoup triangles, std::size_t first)
+        : first_moving(first),
           soup(std::move(triangles)),
           cut_outs(world),
-          grid_bounds(gi::grid_bounds(world, soup, first_moving))
+          grid_bounds(gi::grid_bounds(world, soup, first))
     {
     }
 
@@ -36,7 +35,7 @@ struct TracedWorld {
     }
     void end_frame() { earlier = {first_moving, {}}; }
 
-    std::size_t first_moving;
+    std::size_t first_moving; ///< index of the first dynamic triangle
     TriangleSoup soup;
     CutOuts cut_outs;
     Bounds grid_bounds; ///< of the hit buffers

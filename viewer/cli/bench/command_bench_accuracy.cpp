@@ -3,6 +3,7 @@
 // difference of two means has far less noise than either; several seeds give its standard error.
 
 #include "gi/core/durable_file.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/registry.h"
 #include "gi/metrics/metrics.h"
 #include "viewer/base/report_json.h"

@@ -1,4 +1,5 @@
 #include "gi/core/durable_file.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/methods/registry.h"
 #include "gi/metrics/metrics.h"
 #include "gi/scene/generate/generate.h"
