@@ -2,9 +2,9 @@
 
 namespace viewer {
 
-ar::TrackerSettings tracker_settings(ArPoseUse const& use)
+ar::PoseTrackerSettings tracker_settings(ArPoseUse const& use)
 {
-    ar::TrackerSettings settings = use.tracker;
+    ar::PoseTrackerSettings settings = use.tracker;
     settings.least_confidence = use.trust.least_confidence;
     return settings;
 }
@@ -17,7 +17,7 @@ ar::OfferedPose offered_pose(ArPoseUse const& use, ar::PoseTracker const& track,
     // Of an ambiguous estimate that jumps, the other pose may be the true one.
     bool const is_doubtful = taken == ar::Taken::jump && estimate.ambiguous;
     bool const is_confident = estimate.found() && estimate.confidence >= use.trust.least_confidence;
-    ar::TrackedPose const tracked = track.at(time_s);
+    ar::TrackedCamera const tracked = track.at(time_s);
     if (use.filtered && tracked.world_from_camera) {
         // An estimate refused as a jump is replaced, too: the newest accepted one is older.
         bool const stands = use.tracker.motion == ar::CameraMotion::tripod && estimate.found();

@@ -9,7 +9,7 @@
 namespace viewer {
 
 /// The tracker's settings, with the session's least confidence.
-ar::TrackerSettings tracker_settings(ArPoseUse const& use);
+ar::PoseTrackerSettings tracker_settings(ArPoseUse const& use);
 
 /// @param track  must already have the estimate  @param taken  its answer
 ar::OfferedPose offered_pose(ArPoseUse const& use, ar::PoseTracker const& track, double time_s,

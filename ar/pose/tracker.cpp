@@ -9,7 +9,7 @@
 namespace ar {
 namespace {
 
-void check(TrackerSettings const& s)
+void check(PoseTrackerSettings const& s)
 {
     auto const need = [](char const* name, double v) {
         if (v > 0 && std::isfinite(v)) return;
@@ -38,7 +38,7 @@ void check(TrackerSettings const& s)
 
 } // namespace
 
-PoseTracker::PoseTracker(TrackerSettings const& settings)
+PoseTracker::PoseTracker(PoseTrackerSettings const& settings)
     : settings_(settings), filter_(settings.position, settings.rotation), still_(settings.still)
 {
     check(settings);
@@ -102,20 +102,20 @@ Taken PoseTracker::add(double captured_s, PoseEstimate const& e)
     return Taken::taken;
 }
 
-TrackedPose PoseTracker::at(double time_s) const
+TrackedCamera PoseTracker::at(double time_s) const
 {
-    TrackedPose t;
+    TrackedCamera t;
     if (!newest_s_ || !std::isfinite(time_s)) return t;
     t.age_s = time_s - *newest_s_;
     if (settings_.motion == CameraMotion::tripod) {
         // The tripod stands still: if markers are covered for a while, the pose is only less certain, not lost.
-        t.state = t.age_s <= settings_.fresh_s ? TrackState::tracked : TrackState::predicted;
+        t.state = t.age_s <= settings_.fresh_s ? CameraTrackState::tracked : CameraTrackState::predicted;
         t.world_from_camera = still_.pose()->world_from_camera;
         t.confidence = confidence_;
         return t;
     }
     if (t.age_s > settings_.lost_after_s) return t;
-    t.state = t.age_s <= settings_.fresh_s ? TrackState::tracked : TrackState::predicted;
+    t.state = t.age_s <= settings_.fresh_s ? CameraTrackState::tracked : CameraTrackState::predicted;
     t.world_from_camera = filter_.moved_on(std::clamp(t.age_s, -settings_.predict_s, settings_.predict_s));
     double const stale = std::max(0.0, t.age_s - settings_.fresh_s);
     t.confidence =

@@ -10,7 +10,7 @@
 
 namespace ar {
 
-enum class TrackState {
+enum class CameraTrackState {
     lost,      ///< no pose: no estimate yet, or none for `lost_after_s`
     predicted, ///< extrapolated: more than a frame after the newest estimate
     tracked    ///< measured
@@ -18,7 +18,7 @@ enum class TrackState {
 
 enum class CameraMotion { moving, tripod };
 
-struct TrackerSettings {
+struct PoseTrackerSettings {
     CameraMotion motion = CameraMotion::moving;
     gi::OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
     gi::OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< in Hz per rad/s
@@ -34,8 +34,8 @@ struct TrackerSettings {
     StillSettings still; ///< of CameraMotion::tripod
 };
 
-struct TrackedPose {
-    TrackState state = TrackState::lost;
+struct TrackedCamera {
+    CameraTrackState state = CameraTrackState::lost;
     std::optional<Pose> world_from_camera; ///< unless lost
     double age_s = 0;                      ///< age of the newest estimate at that time
     double confidence = 0; ///< of the newest estimate; for predicted poses, falling to 0 at lost_after_s
@@ -62,11 +62,11 @@ struct TrackerCounts {
 class PoseTracker {
 public:
     /// @throws gi::InputError settings that are not finite or not positive
-    explicit PoseTracker(TrackerSettings const& settings = {});
+    explicit PoseTracker(PoseTrackerSettings const& settings = {});
 
     Taken add(double captured_s, PoseEstimate const& estimate);
     /// Filtered and predicted pose; for times before the newest estimate, extrapolated backwards equally far.
-    TrackedPose at(double time_s) const;
+    TrackedCamera at(double time_s) const;
     /// Expected pose at that time, for the argument `last` of `estimate_pose`.
     std::optional<Pose> expected(double time_s) const { return at(time_s).world_from_camera; }
     TrackerCounts const& counts() const { return counts_; }
@@ -77,7 +77,7 @@ private:
     bool is_jump(double captured_s, Pose const& pose) const;
     void begin(double captured_s, Pose const& pose);
 
-    TrackerSettings settings_;
+    PoseTrackerSettings settings_;
     OneEuroPose filter_;
     StillCamera still_;
     std::optional<double> newest_s_; ///< time of the newest estimate taken

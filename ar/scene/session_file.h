@@ -58,7 +58,7 @@ struct ArFinish {
 
 /// Processing of camera poses. Poses of trackers and files have no confidence and are not filtered.
 struct ArPoseUse {
-    ar::TrackerSettings tracker;
+    ar::PoseTrackerSettings tracker;
     ar::TrustSettings trust;
     std::filesystem::path features; ///< map of features instead of markers (ar/features); empty = markers
     bool fused = true;              ///< fuse the estimates of successive frames (ar/pose/fused.h)

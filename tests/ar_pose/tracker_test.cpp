@@ -131,28 +131,28 @@ TEST(Tracker, PredictsAWalk)
 
 TEST(Tracker, PredictsOnlySoFarAndThenIsLost)
 {
-    TrackerSettings settings;
+    PoseTrackerSettings settings;
     PoseTracker tracker(settings);
-    EXPECT_EQ(tracker.at(0).state, TrackState::lost);
+    EXPECT_EQ(tracker.at(0).state, CameraTrackState::lost);
     EXPECT_FALSE(tracker.at(0).world_from_camera);
     for (int i = 0; i <= 30; ++i) tracker.add(i / 30.0, found({{1, 0, 0, 0}, {i / 30.0, 0, 0}}));
-    EXPECT_EQ(tracker.at(1.0).state, TrackState::tracked);
-    EXPECT_EQ(tracker.at(1.09).state, TrackState::predicted);
+    EXPECT_EQ(tracker.at(1.0).state, CameraTrackState::tracked);
+    EXPECT_EQ(tracker.at(1.09).state, CameraTrackState::predicted);
     EXPECT_NEAR(tracker.at(1.09).world_from_camera->position_m.x, 1.09, 0.01);
     EXPECT_NEAR(tracker.at(1.4).world_from_camera->position_m.x, 1.1, 0.01);
     EXPECT_LT(tracker.at(1.4).confidence, 0.5);
-    EXPECT_EQ(tracker.at(1.6).state, TrackState::lost);
+    EXPECT_EQ(tracker.at(1.6).state, CameraTrackState::lost);
     for (int i = 31; i < 60; ++i) tracker.add(i / 30.0, nothing());
     EXPECT_EQ(tracker.counts().missed, 29u);
     Pose const elsewhere{{1, 0, 0, 0}, {-3, 0, 2}};
     tracker.add(2.0, found(elsewhere));
     EXPECT_EQ(tracker.counts().recoveries, 1u);
-    EXPECT_EQ(tracker.at(2.0).state, TrackState::tracked);
+    EXPECT_EQ(tracker.at(2.0).state, CameraTrackState::tracked);
     EXPECT_EQ(tracker.at(2.0).world_from_camera->position_m, elsewhere.position_m);
     tracker.add(1.5, found(elsewhere));
     tracker.add(std::numeric_limits<double>::quiet_NaN(), found(elsewhere));
     EXPECT_EQ(tracker.counts().late, 2u);
-    EXPECT_EQ(tracker.at(std::numeric_limits<double>::quiet_NaN()).state, TrackState::lost);
+    EXPECT_EQ(tracker.at(std::numeric_limits<double>::quiet_NaN()).state, CameraTrackState::lost);
 }
 
 TEST(Tracker, BelievesAJumpOnlyWhenItLasts)
@@ -174,7 +174,7 @@ TEST(Tracker, BelievesAJumpOnlyWhenItLasts)
 TEST(Tracker, OfATripodAveragesAndNoticesThatItWasMoved)
 {
     Noise noise;
-    TrackerSettings settings;
+    PoseTrackerSettings settings;
     settings.motion = CameraMotion::tripod;
     PoseTracker tracker(settings);
     Pose const first{gi::exp_rotation({0.1, 0.5, 0}), {1, 2, 3}},
@@ -196,12 +196,12 @@ TEST(Tracker, OfATripodAveragesAndNoticesThatItWasMoved)
     for (int i = 0; i < 60; ++i, t += 1 / 30.0) tracker.add(t, found(noise.on(second, 0.001, 0.05)));
     EXPECT_EQ(tracker.counts().moves, 1u);
     EXPECT_LT(glm::length(tracker.at(t).world_from_camera->position_m - second.position_m), 0.001);
-    EXPECT_EQ(tracker.at(t + 100).state, TrackState::predicted); // covered, not moved
+    EXPECT_EQ(tracker.at(t + 100).state, CameraTrackState::predicted); // covered, not moved
 }
 
 TEST(Tracker, RefusesSettingsThatMeanNothing)
 {
-    TrackerSettings s;
+    PoseTrackerSettings s;
     s.lost_after_s = 0;
     EXPECT_THROW(PoseTracker{s}, gi::InputError);
     s = {};

@@ -91,7 +91,7 @@ OneMarker circle(double least_confidence, Fusion fusion, double side_m, double a
 {
     CameraModel const camera = camera_640();
     std::mt19937 random(7);
-    TrackerSettings settings;
+    PoseTrackerSettings settings;
     settings.least_confidence = least_confidence;
     PoseTracker tracker(settings);
     PoseTrust trust({least_confidence, 0.1, 0.2});

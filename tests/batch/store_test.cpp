@@ -113,7 +113,7 @@ TEST_F(StoreTest, WhatWasPreparedIsPublishedLaterIfItIsWhole)
     std::set<std::string> left;
     for (auto const& entry : fs::directory_iterator(store.folder() / "work")) left.insert(entry.path().filename());
     EXPECT_EQ(left, (std::set{damaged, torn})) << "folders of tasks that are not done";
-    JournalReader journal(store.journal());
+    TaskJournalReader journal(store.journal());
     auto const events = journal.read();
     ASSERT_EQ(events.size(), 1u);
     EXPECT_EQ(events[0].task, whole);
@@ -139,7 +139,7 @@ TEST_F(StoreTest, WhatCannotBePublishedIsLeftAndKeepsNothingElseBack)
     EXPECT_TRUE(store.result(batch.tasks[2].key));
 
     EXPECT_THROW(work_on(store, batch, batch.tasks[0], {}, gi::StopRequest()), gi::InputError);
-    std::vector<Event> failed = JournalReader(store.journal()).read();
+    std::vector<Event> failed = TaskJournalReader(store.journal()).read();
     std::erase_if(failed, [](Event const& e) { return e.kind != EventKind::failed; });
     ASSERT_EQ(failed.size(), 1u);
     EXPECT_EQ(failed[0].task, key);
@@ -231,14 +231,14 @@ TEST_F(StoreTest, JournalOutlivesTornLines)
 {
     Event e;
     e.task = batch.tasks[0].key;
-    Journal(store.journal()).append(e);
+    TaskJournal(store.journal()).append(e);
     fs::path const file = fs::directory_iterator(store.journal())->path();
     std::string const line = test::file_text(file);
     for (std::size_t n = 0; n + 1 < line.size(); n += 11) { // with all but its line end it is whole
         std::ofstream(file, std::ios::binary) << line << line.substr(0, n);
-        JournalReader reader(store.journal());
+        TaskJournalReader reader(store.journal());
         EXPECT_EQ(reader.read().size(), 1u) << n;
-        Journal(store.journal()).append(e); // on a line of its own
+        TaskJournal(store.journal()).append(e); // on a line of its own
         EXPECT_EQ(reader.read().size(), 1u) << n;
         EXPECT_EQ(reader.damaged(), n == 0 ? 0u : 1u) << n;
         EXPECT_TRUE(reader.read().empty());
@@ -250,7 +250,7 @@ TEST_F(StoreTest, LinesOfManyProcessesStayWhole)
     std::vector<pid_t> children;
     for (int p = 0; p < 4; ++p)
         if (pid_t const child = fork(); child == 0) {
-            Journal journal(store.journal());
+            TaskJournal journal(store.journal());
             Event e;
             e.kind = EventKind::failed;
             e.task = batch.tasks[0].key;
@@ -261,7 +261,7 @@ TEST_F(StoreTest, LinesOfManyProcessesStayWhole)
             children.push_back(child);
         }
     for (pid_t const child : children) waitpid(child, nullptr, 0);
-    JournalReader reader(store.journal());
+    TaskJournalReader reader(store.journal());
     EXPECT_EQ(reader.read().size(), 400u);
     EXPECT_EQ(reader.damaged(), 0u);
 }
@@ -298,7 +298,7 @@ TEST_F(StoreTest, ClaimBelongsToOneProcessAndEndsWithIt)
 
 TEST_F(StoreTest, StateIsReadFromTheStoreAlone)
 {
-    Journal journal(store.journal());
+    TaskJournal journal(store.journal());
     auto const tell = [&](int task, EventKind kind) {
         Event e;
         e.kind = kind;

@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
         lines += !line.empty();
     }
     std::ofstream(folder / "machine.jsonl", std::ios::binary) << text;
-    viewer::batch::JournalReader reader(folder);
+    viewer::batch::TaskJournalReader reader(folder);
     std::size_t const events = reader.read().size();
     if (events + reader.damaged() != lines) std::abort();
     if (!reader.read().empty()) std::abort();

@@ -117,7 +117,7 @@ TEST(BenchTable, DamagedJsonIsRefused)
 
 TEST(Machine, IsKnown)
 {
-    Machine const machine = this_machine();
+    MachineFacts const machine = this_machine();
     EXPECT_FALSE(machine.cpu.empty());
     EXPECT_GE(machine.cores, 1);
     EXPECT_GT(machine.memory_gib, 0);

@@ -209,7 +209,7 @@ private:
     HyperQueueSettings const& settings_;
     gi::StopRequest const& stop_;
     ProgressView view_;
-    JournalReader journal_;
+    TaskJournalReader journal_;
     fs::path folder_; ///< of this process: the call, and an own server's files
     RunOutcome out_;
     std::map<std::string_view, std::size_t> by_key_;

@@ -64,7 +64,7 @@ std::optional<Event> event_of(std::string_view line, std::string const& host)
 
 } // namespace
 
-Journal::Journal(fs::path const& folder) : file_(folder / (gi::host_name() + ".jsonl"))
+TaskJournal::TaskJournal(fs::path const& folder) : file_(folder / (gi::host_name() + ".jsonl"))
 {
     fd_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (fd_ < 0)
@@ -72,9 +72,9 @@ Journal::Journal(fs::path const& folder) : file_(folder / (gi::host_name() + ".j
                              "make the store writable");
 }
 
-Journal::~Journal() { ::close(fd_); }
+TaskJournal::~TaskJournal() { ::close(fd_); }
 
-void Journal::append(Event event)
+void TaskJournal::append(Event event)
 {
     event.at_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
     event.process = getpid();
@@ -92,7 +92,7 @@ void Journal::append(Event event)
                              "free some space; finished tasks are kept");
 }
 
-std::vector<Event> JournalReader::read()
+std::vector<Event> TaskJournalReader::read()
 {
     std::vector<Event> events;
     std::error_code none;

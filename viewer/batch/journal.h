@@ -24,13 +24,13 @@ struct Event {
     int process = 0;      ///< that ran it
 };
 
-class Journal {
+class TaskJournal {
 public:
     /// @param folder of the journals; this machine's is made if it is missing
-    explicit Journal(std::filesystem::path const& folder);
-    ~Journal();
-    Journal(Journal const&) = delete;
-    Journal& operator=(Journal const&) = delete;
+    explicit TaskJournal(std::filesystem::path const& folder);
+    ~TaskJournal();
+    TaskJournal(TaskJournal const&) = delete;
+    TaskJournal& operator=(TaskJournal const&) = delete;
 
     /// One write to the file: other processes see the whole line or nothing. Time and process are filled in. An
     /// incomplete line that a killed process left before it is ended first.
@@ -42,9 +42,9 @@ private:
 };
 
 /// Reads the journals of all machines; each call goes on where the last one ended.
-class JournalReader {
+class TaskJournalReader {
 public:
-    explicit JournalReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    explicit TaskJournalReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
     /// In the order of each machine's file. A last line that is still being written is left for the next call.
     std::vector<Event> read();
     /// Lines that were incomplete or changed.

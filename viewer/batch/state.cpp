@@ -12,7 +12,7 @@ BatchState state_of(Store const& store, Batch const& batch)
     s.tasks.resize(batch.tasks.size());
     std::map<std::string_view, std::size_t> by_key;
     for (std::size_t i = 0; i < batch.tasks.size(); ++i) by_key.emplace(batch.tasks[i].key, i);
-    JournalReader reader(store.journal());
+    TaskJournalReader reader(store.journal());
     for (Event& event : reader.read()) {
         auto const found = by_key.find(event.task);
         if (found == by_key.end()) continue;

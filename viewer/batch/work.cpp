@@ -202,7 +202,7 @@ private:
     Task const& task_;
     WorkSettings const& settings_;
     gi::StopRequest const& stop_;
-    Journal journal_;
+    TaskJournal journal_;
 };
 
 void tell_failure(Store const& store, std::string const& key, std::string const& why)
@@ -211,7 +211,7 @@ void tell_failure(Store const& store, std::string const& key, std::string const&
     event.kind = EventKind::failed;
     event.task = key;
     event.why = why;
-    Journal(store.journal()).append(event);
+    TaskJournal(store.journal()).append(event);
 }
 
 bool is_key(std::string const& name)
@@ -229,7 +229,7 @@ bool recover(Store const& store, std::string const& key)
     event.task = key;
     event.attempt = result->attempts;
     event.seconds = result->seconds;
-    Journal(store.journal()).append(event);
+    TaskJournal(store.journal()).append(event);
     return true;
 }
 

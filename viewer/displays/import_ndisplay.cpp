@@ -453,7 +453,7 @@ UnrealViewport viewport_of(UnrealLine const& v, UnrealLine const& projection)
 
 Display parse_ndisplay(std::string const& text, std::string const& name, ImportLog log)
 {
-    Yaml const root = parse_json(text, name, "nDisplay file");
+    Yaml const root = parse_placed_json(text, name, "nDisplay file");
     Yaml const all = root.needed("nDisplay", "{scene: {...}, cluster: {...}}");
     lose_keys(
         all,

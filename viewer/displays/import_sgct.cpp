@@ -203,7 +203,7 @@ void read_scene(Yaml const& y, SgctConfig& config, ImportLog const& log)
 
 Display parse_sgct(std::string const& text, std::string const& name, ImportLog log)
 {
-    Yaml const root = parse_json(text, name, "SGCT");
+    Yaml const root = parse_placed_json(text, name, "SGCT");
     SgctConfig config;
     lose_others(root,
                 {"version", "masteraddress", "nodes", "users", "scene", "$schema", "title", "description",

@@ -6,7 +6,7 @@
 
 namespace viewer {
 
-gi::Yaml parse_json(std::string const& text, std::string const& file, std::string const& root)
+gi::Yaml parse_placed_json(std::string const& text, std::string const& file, std::string const& root)
 {
     try {
         return gi::Yaml::parse(text, file, root);

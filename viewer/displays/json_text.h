@@ -7,6 +7,6 @@ namespace viewer {
 
 /// JSON, with the place of every value. Throws InputError, with file:line:column, on other text.
 /// @param root  the name of the whole in messages
-gi::Yaml parse_json(std::string const& text, std::string const& file, std::string const& root);
+gi::Yaml parse_placed_json(std::string const& text, std::string const& file, std::string const& root);
 
 } // namespace viewer

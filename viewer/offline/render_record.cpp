@@ -116,7 +116,7 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
     j["schema"] = kSchema;
     j["program"] = version_text();
     j["command"] = normalised_command(o, s, amount, chosen);
-    Machine const machine = this_machine();
+    MachineFacts const machine = this_machine();
     j["machine"] = {{"cpu", machine.cpu}, {"cores", machine.cores}, {"memory_gib", machine.memory_gib}};
     j["settings"] = {{"scene", o.scene},
                      {"method", o.method},

@@ -28,9 +28,9 @@ std::string value_of(char const* file, std::string const& key)
 
 } // namespace
 
-Machine this_machine()
+MachineFacts this_machine()
 {
-    Machine machine;
+    MachineFacts machine;
     machine.cpu = value_of("/proc/cpuinfo", "model name");
     if (machine.cpu.empty()) machine.cpu = "unknown";
     cpu_set_t usable;
@@ -40,7 +40,7 @@ Machine this_machine()
     return machine;
 }
 
-std::string to_text(Machine const& m)
+std::string to_text(MachineFacts const& m)
 {
     return fmt::format("{} core{} of {}, {:.0f} GiB", m.cores, m.cores == 1 ? "" : "s", m.cpu, m.memory_gib);
 }

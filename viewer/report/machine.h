@@ -5,16 +5,16 @@
 
 namespace viewer {
 
-struct Machine {
+struct MachineFacts {
     std::string cpu; ///< model name
     int cores = 0;   ///< available to this process
     double memory_gib = 0;
 };
 
 /// Reads /proc; missing values are "unknown" or 0.
-Machine this_machine();
+MachineFacts this_machine();
 /// "12 cores of AMD EPYC 9554, 24 GiB"
-std::string to_text(Machine const& machine);
+std::string to_text(MachineFacts const& machine);
 /// "Debian GNU/Linux 12 (bookworm), Linux 6.1.0"
 std::string operating_system();
 /// Command line of this process, quoted for a shell, from /proc; the program's name without its folder.

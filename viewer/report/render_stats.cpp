@@ -64,7 +64,7 @@ RenderStats to_render_stats(StatsJson const& json)
     r.command = json.at("command");
     r.program = json.at("program");
     if (StatsJson const* const m = value_at(json, "machine"))
-        r.machine = to_text(Machine{m->at("cpu"), m->at("cores"), m->at("memory_gib")});
+        r.machine = to_text(MachineFacts{m->at("cpu"), m->at("cores"), m->at("memory_gib")});
     r.method = settings.at("method");
     r.denoise = settings.at("denoise");
     r.eye = text_at(settings, "eye");

@@ -19,7 +19,7 @@ struct BenchTable {
     std::string name; ///< file name: letters, digits, '-', '_'
     std::vector<std::string> columns;
     std::string title{}, program{}, command{}, date{};
-    Machine machine{};
+    MachineFacts machine{};
     std::vector<std::pair<std::string, std::string>> facts{}; ///< e.g. "bounces", "64"; facts about all rows
     std::vector<std::vector<Cell>> rows{};                    ///< each with one cell per column
 
