@@ -59,7 +59,7 @@ void set_options(gi::RenderSettings& s, py::dict const& options, std::string con
         bool const is_off = py::isinstance<py::bool_>(value) && !py::cast<bool>(value);
         if (!is_off) given.push_back(option->name);
     }
-    check_options(given, {{method, s}});
+    gi::check_options(given, {{method, s}});
     gi::check_device(s.space);
 }
 

@@ -3,6 +3,7 @@
 #include "viewer/batch/manifest.h"
 
 #include "tests/viewer/run_program.h"
+#include "viewer/batch/former_command.h"
 #include "viewer/batch/from_command.h"
 
 namespace viewer::batch {
@@ -16,7 +17,7 @@ std::vector<std::string> const kCommands{"render", "study", "bench"};
 struct ManifestTest : testing::Test {
     Batch read(std::string const& text)
     {
-        ReadManifest r = read_manifest(text, (folder / "m.yaml").string(), kCommands);
+        ReadManifest r = read_manifest("schema: batch/2\n" + text, (folder / "m.yaml").string(), kCommands);
         for (gi::InputError const& e : r.mistakes.in_order()) ADD_FAILURE() << e.what();
         r.batch.program = "p";
         give_keys(r.batch);
@@ -33,6 +34,26 @@ struct ManifestTest : testing::Test {
 
     TemporaryFolder folder;
 };
+
+/// Without a schema, or of batch/1: for version 0.1.
+TEST_F(ManifestTest, OfVersion01NameMethodsAsThatDid)
+{
+    using Words = std::vector<std::string>;
+    EXPECT_EQ(current_command({"render", "a", "--method", "slhb"}), (Words{"render", "a", "--method", "slhb_0_1"}));
+    EXPECT_EQ(current_command({"render", "a", "--method=lpv"}), (Words{"render", "a", "--method=lpv"}));
+    EXPECT_EQ(current_command({"render", "a"}), (Words{"render", "a", "--method", "reference"}));
+    EXPECT_EQ(current_command({"bench", "sweep", "--methods", "slhb:stored,reference,slhb,vpl_slhb"}),
+              (Words{"bench", "sweep", "--methods", "slhb_0_1:stored,reference,slhb_0_1,vpl_slhb"}));
+    std::string const rest = "batch: b\nsweeps:\n  s: {command: render cornell --out {p}.exr --seed {p}, over: {p: 1}, "
+                             "outputs: '{p}.exr'}\n";
+    auto const last = [&](std::string const& schema) {
+        return read_manifest(schema + rest, "m.yaml", kCommands).batch.tasks.at(0).command.back();
+    };
+    EXPECT_EQ(last(""), "reference");
+    EXPECT_EQ(last("schema: batch/1\n"), "reference");
+    EXPECT_EQ(last("schema: batch/2\n"), "1");
+    EXPECT_EQ(mistakes("schema: batch/3\n" + rest).size(), 1u);
+}
 
 TEST_F(ManifestTest, SweepIsTheProductOfItsParameters)
 {

@@ -31,6 +31,7 @@ struct Live {
     Live()
     {
         session.apply({"scene", "cornell"});
+        session.apply({"method", "slhb"});
         session.apply({"resolution", 64});
         session.apply({"directions", "icosahedron:80"});
         session.apply({"rate", 50});
@@ -285,7 +286,7 @@ TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
     gi::Report report;
     RenderSession again(cornell, 0, report);
     for (Change const& c : std::vector<Change>{
-             {"scene", "cornell"}, {"resolution", 64}, {"directions", "icosahedron:80"}, {"rate", 50}})
+             {"scene", "cornell"}, {"method", "slhb"}, {"resolution", 64}, {"directions", "icosahedron:80"}, {"rate", 50}})
         again.apply(c);
     ASSERT_GE(seen.size(), 10u);
     for (Seen const& s : seen) {
@@ -308,6 +309,7 @@ TEST(LiveRenderer, ChangesOfFramesThatFailAreInTheNextOne)
     gi::Report report;
     RenderSession session(walk, 0, report);
     session.apply({"scene", "walk"});
+    session.apply({"method", "slhb"});
     session.apply({"schedule", "stored"});
     std::vector<std::string> changed;
     LiveRenderer::Hooks hooks;
@@ -341,7 +343,7 @@ TEST(LiveRenderer, FewerDirectionsFollowWhatTakesTooLong)
     };
     for (std::string const schedule : {"auto", "stored"}) {
         std::vector<Change> const settings{
-            {"scene", "walk"}, {"resolution", 64}, {"rate", 1000}, {"schedule", schedule}};
+            {"scene", "walk"}, {"method", "slhb"}, {"resolution", 64}, {"rate", 1000}, {"schedule", schedule}};
         gi::Report report;
         SessionClock clock;
         RenderSession session(walk, 0, report), again(walk, 0, report);

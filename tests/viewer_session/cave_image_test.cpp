@@ -84,6 +84,7 @@ TEST(Cave, WallsAreContinuousAcrossTheirEdges)
         command.views.push_back(strip_along(view_of(e.other), e.other_side));
     }
     RenderSession session(room, 0, report);
+    session.apply({"method", "slhb"});
     session.apply({"directions", "icosahedron:1280"});
     session.apply({"denoise", "none"});
     session.apply({"bounces", 3}); // the noise of more would need more frames

@@ -36,6 +36,7 @@ RenderSession started(gi::Report& report, int threads = 0, char const* scene = "
 {
     RenderSession s(scene_of, threads, report);
     s.apply({"scene", scene});
+    s.apply({"method", "slhb"});
     s.apply({"resolution", 48});
     s.apply({"directions", "icosahedron:80"});
     return s;

@@ -66,6 +66,7 @@ protected:
     {
         for (RenderSession* s : {&masked, &whole}) {
             s->apply({"scene", "room"});
+            s->apply({"method", "slhb"});
             s->apply({"resolution", 48});
             s->apply({"directions", "icosahedron:80"});
         }

@@ -77,6 +77,7 @@ std::vector<std::vector<float>> walk_into(bool ready, Change const& set)
 {
     gi::Report report;
     RenderSession s(built_in, 0, report);
+    s.apply({"method", "slhb"});
     s.apply({"directions", "icosahedron:80"});
     s.apply({"scene", "cornell"});
     std::vector<std::vector<float>> seen{pixels_of(s, 0), pixels_of(s, 1)};

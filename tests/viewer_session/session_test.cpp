@@ -58,6 +58,7 @@ RenderSession started(gi::Report& report)
 {
     RenderSession s(scene_of, 0, report);
     s.apply({"scene", "room"});
+    s.apply({"method", "slhb"});
     s.apply({"resolution", 48});
     s.apply({"directions", "icosahedron:80"});
     return s;
@@ -122,6 +123,7 @@ TEST(RenderSession, WhatStandsStillConvergesToTheReference)
 {
     gi::Report report;
     RenderSession s = started(report), judge = started(report);
+    s.apply({"method", "slhb"});
     s.apply({"directions", "icosahedron:320"});
     s.apply({"resolution", 128});
     judge.apply({"method", "reference"});
@@ -244,6 +246,7 @@ TEST(RenderSession, EveryKeyCanBeSetToWhatItIs)
 {
     Settings s;
     for (SettingKey const& k : setting_keys()) {
+        if (!k.is_offered()) continue;
         set(s, {k.key, get(Settings{}, k.key)});
         EXPECT_EQ(get(s, k.key), get(Settings{}, k.key)) << k.key;
         EXPECT_FALSE(k.meaning.empty());

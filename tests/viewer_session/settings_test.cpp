@@ -98,6 +98,7 @@ TEST(RenderOptions, AShareOfPointsFollowsTheMap)
 TEST(Settings, FormerKeysAndValuesAreUnderstood)
 {
     Settings s;
+    s.method = "slhb";
     for (Change const& c : std::vector<Change>{
              {"resolution", 64}, {"lamps", 8}, {"fresh_lamps", 2}, {"followed", 16}, {"share_endings", false}})
         set(s, c);
@@ -112,6 +113,26 @@ TEST(Settings, FormerKeysAndValuesAreUnderstood)
     EXPECT_EQ(current_key("resolution"), "hit_buffer");
     EXPECT_EQ(current_key("nonsense"), "nonsense");
     EXPECT_FALSE(is_setting("threads")); // of the whole viewer
+}
+
+/// What version 0.1 called slhb is rays or look-ups by its options; files of that version have it.
+TEST(Settings, OfVersion01NameMethodsAsThatDid)
+{
+    EXPECT_EQ(made_for("lightwell 0.1.0 (git 1234567)"), MadeFor::version_0_1);
+    EXPECT_EQ(made_for("lightwell 0.2.0 (git 1234567)"), MadeFor::this_version);
+    EXPECT_EQ(first_settings(MadeFor::this_version).method, "auto");
+    Settings s = first_settings(MadeFor::version_0_1);
+    EXPECT_EQ(s.method, "slhb_0_1");
+    for (Change const& c : std::vector<Change>{{"look_ups", "all"}, {"shadows", "rays"}, {"compare", "slhb"}})
+        set(s, current(c, MadeFor::version_0_1));
+    EXPECT_EQ(s.compare, "slhb_0_1");
+    EXPECT_EQ(all_settings(s).at("look_ups"), "all");
+    set(s, current({"method", "reference"}, MadeFor::version_0_1));
+    EXPECT_EQ(s.method, "reference");
+    Settings now;
+    EXPECT_FALSE(all_settings(now).contains("look_ups"));
+    EXPECT_NE(refusal([&] { set(now, {"look_ups", "all"}); }).find("give --method slhb"), std::string::npos);
+    EXPECT_NE(refusal([&] { set(now, {"method", "slhp"}); }).find("slhb"), std::string::npos);
 }
 
 TEST(Settings, DifferencesMakeOneOfTheOther)

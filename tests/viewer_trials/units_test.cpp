@@ -409,6 +409,15 @@ TEST(Stimuli, SettingsOfTheScriptBecomeThoseOfTheRenderer)
     ASSERT_EQ(s.edits.size(), 1u);
     EXPECT_EQ(s.edits[0].value, nlohmann::json({1, 2, 3}));
     EXPECT_EQ(s.sha256.size(), 64u);
+    // Scripts of schema study/1 are of version 0.1.
+    auto const method_of = [](study::Patch const& patch, MadeFor made) {
+        return stimulus_settings(patch, "", {}, made).settings.method;
+    };
+    EXPECT_EQ(method_of({{"scene", "cornell"}, {"gi.method", "slhb"}, {"look_ups", "all"}}, MadeFor::version_0_1), "slhb_0_1");
+    EXPECT_EQ(method_of({{"scene", "cornell"}}, MadeFor::version_0_1), "slhb_0_1");
+    EXPECT_EQ(method_of({{"scene", "cornell"}}, MadeFor::this_version), "auto");
+    EXPECT_EQ(method_of({{"scene", "cornell"}, {"method", "slhb"}}, MadeFor::this_version), "slhb");
+    EXPECT_THROW(method_of({{"scene", "cornell"}, {"look_ups", "all"}}, MadeFor::this_version), gi::InputError);
     EXPECT_EQ(s.sha256, stimulus_settings({{"gi.scene", "atrium"},
                                            {"gi.denoise", "none"},
                                            {"camera", "arches"},

@@ -41,13 +41,13 @@ struct Variant {
 std::vector<Change> changes_of(std::string const& text)
 {
     std::size_t const slash = text.find('/');
-    if (slash == std::string::npos) return {{"schedule", text}};
+    if (slash == std::string::npos) return {{"method", "slhb"}, {"schedule", text}};
     auto const updated = gi::parse_number<int>(std::string_view(text).substr(slash + 1));
     if (text.substr(0, slash) != "stored" || !updated)
         throw gi::InputError("'" + text + "' is no schedule",
                              "only the stored schedule can update a part of its directions",
                              "give stored, stored/16, temporal or streamed");
-    return {{"schedule", "auto"}, {"updated_axes", *updated}};
+    return {{"method", "slhb"}, {"schedule", "auto"}, {"updated_axes", *updated}};
 }
 
 constexpr int kFirstMeasured = 4; ///< earlier frames build lasting structures and are not measured
