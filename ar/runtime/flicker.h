@@ -1,7 +1,7 @@
 #pragma once
-// Flicker: how much composites change while nothing does. The same camera frame, pose and moment again and again,
-// as from a camera on a tripod that looks at a still scene; its sensor noise, and what is added of it, stay the
-// same.
+// Flicker: how much composites change while nothing does. The same camera frame,
+// pose and moment again and again, as from a camera on a tripod that looks at a still scene;
+// its sensor noise, and what is added of it, stay the same.
 
 #include "ar/pipeline/pipeline.h"
 

@@ -27,8 +27,8 @@ std::string numbers(std::initializer_list<double> values)
     return text;
 }
 
-/// How the composite's codes follow from radiance: unit = vignetting(r) M radiance, code = the nearest by
-/// response.
+/// How the composite's codes follow from radiance: unit = vignetting(r) M radiance,
+/// code = the nearest by response.
 void add_response(std::map<std::string, std::string>& text, ar::Compositor const& compositor, PassFrame const& f)
 {
     ar::Photometry const& p = compositor.photometry();

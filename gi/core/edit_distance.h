@@ -5,8 +5,8 @@
 
 namespace gi {
 
-/// Insertions, deletions, replacements and exchanges of neighbours that make one word of the other (optimal string
-/// alignment).
+/// Insertions, deletions, replacements and exchanges of neighbours that make one word
+/// of the other (optimal string alignment).
 int edit_distance(std::string const& a, std::string const& b);
 
 /// The nearest known word, if its distance is at most half of the word's length, or one.

@@ -5,9 +5,9 @@
 
 namespace gi {
 
-/// Holds ".NAME.tmp", locked while this object exists, so that a file which a killed program left there is written
-/// anew by whoever writes NAME next. Where another process writes it now, or files cannot be locked, the name is
-/// ".NAME.tmp-PID".
+/// Holds ".NAME.tmp", locked while this object exists, so that a file which a killed program
+/// left there is written anew by whoever writes NAME next. Where another process writes it now,
+/// or files cannot be locked, the name is ".NAME.tmp-PID".
 class TemporaryFile {
 public:
     explicit TemporaryFile(std::filesystem::path const& file);

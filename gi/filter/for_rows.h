@@ -5,8 +5,8 @@
 
 namespace gi {
 
-/// Calls work(y) for all rows of a picture, in parallel. Throws Interrupted once a stop is requested; null =
-/// never.
+/// Calls work(y) for all rows of a picture, in parallel. Throws Interrupted once
+/// a stop is requested; null = never.
 template <class F>
 void for_rows(int height, StopRequest const* stop, F const& work)
 {

@@ -1,6 +1,6 @@
 #pragma once
-// A picture that is made while it is read, some rows at a time, so that large ones need not be in memory as a
-// whole.
+// A picture that is made while it is read, some rows at a time, so that large
+// ones need not be in memory as a whole.
 
 #include "gi/core/progress.h"
 #include "gi/image_io/picture.h"

@@ -46,8 +46,8 @@ public:
     /// Follows the world.
     void changed(Changes const& changes);
     /// Traces the photons of one more pass. Throws Interrupted, and then keeps what it had.
-    /// @param index  of the pass; the first decides which photons are traced  @param share  of the paths that the
-    /// settings ask for
+    /// @param index  of the pass; the first decides which photons are traced
+    /// @param share  of the paths that the settings ask for
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
                  Bounds const& focus, double share, BuildStop const& stop, PathCounts& counts);
     /// Null if the world has no smooth surface, no light reached one, or nothing is to be traced.

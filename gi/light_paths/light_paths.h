@@ -31,8 +31,8 @@ struct LightPaths {
     BuildStop const* stop = nullptr; ///< null = never; else trace_light_paths() throws Interrupted
 };
 
-/// Returns virtual lights in the order of the paths, for any number of threads. Empty if there are no lights or
-/// bounces == 0.
+/// Returns virtual lights in the order of the paths, for any number of threads.
+/// Empty if there are no lights or bounces == 0.
 std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const& bounds, PathRays const& rays,
                                            LightPaths const& settings, PathCounts& counts);
 

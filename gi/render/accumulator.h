@@ -32,8 +32,8 @@ struct PixelMeans {
 };
 static_assert(sizeof(PixelMeans) == 92);
 
-/// Allocator that leaves elements uninitialised, for large arrays in which every element is written before it is
-/// read.
+/// Allocator that leaves elements uninitialised, for large arrays in which every
+/// element is written before it is read.
 template <class T>
 struct Uninitialised : std::allocator<T> {
     static_assert(std::is_trivially_default_constructible_v<T>);
@@ -67,8 +67,8 @@ struct Accumulator {
     int width = 0, height = 0;
     std::uint32_t paths = 0;                                   ///< per pixel
     std::vector<PixelMeans, Uninitialised<PixelMeans>> pixels; ///< valid only if has_paths()
-    std::vector<std::uint32_t> further; ///< per pixel, paths besides those, of a pass that was interrupted; empty
-                                        ///< = none
+    /// Per pixel, paths besides those, of a pass that was interrupted; empty = none.
+    std::vector<std::uint32_t> further;
     PathCounts counts;                  ///< of all paths so far
     double seconds = 0;                 ///< spent on these paths
 
@@ -99,13 +99,13 @@ struct Accumulator {
     void add(Accumulator const& other);
     /// Variance of the mean per channel; 0 with fewer than two paths.
     static dvec3 variance_of_mean(PixelMeans const& p, std::uint32_t paths);
-    /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (m^2 + 0.01), where m is the
-    /// mean of 5 x 5 pixels. (With the noisy value of a single pixel as m, pixels that happen to be dark would
-    /// dominate.)
+    /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (m^2 + 0.01),
+    /// where m is the mean of 5 x 5 pixels. (With the noisy value of a single pixel as m,
+    /// pixels that happen to be dark would dominate.)
     double relative_mse() const;
-    /// Makes the picture of the rendered world: positions are absolute; if the world's background is transparent,
-    /// "alpha" is the fraction of paths that hit a surface, and the colours are already multiplied by it
-    /// (premultiplied).
+    /// Makes the picture of the rendered world: positions are absolute;
+    /// if the world's background is transparent, "alpha" is the fraction of paths that hit a surface,
+    /// and the colours are already multiplied by it (premultiplied).
     Picture picture(World const& world, PictureLayers layers = PictureLayers::all) const;
     /// Some rows of such a picture.
     Picture rows(PictureShape const& shape, int first, int count) const;

@@ -52,8 +52,8 @@ std::string trial_text(Script const& s, PlanStep const& step)
     return text;
 }
 
-/// "scene: arches 10, atrium 10": counts of main and catch trials of a pass. For pairs: how often shown, and how
-/// often first.
+/// "scene: arches 10, atrium 10": counts of main and catch trials of a pass. For pairs:
+/// how often shown, and how often first.
 std::string condition_counts(Script const& s, Plan const& plan, int block, int pass)
 {
     Block const& b = s.blocks[std::size_t(block)];

@@ -29,8 +29,8 @@ class Formula {
 public:
     /// @param names   of the values that it may use
     /// @param needed  the first ones that it must use
-    /// @throws FormulaError no formula, longer than 1000 characters, nested deeper than 25, or without a needed
-    /// value
+    /// @throws FormulaError no formula, longer than 1000 characters, nested deeper than 25,
+    /// or without a needed value
     Formula(std::string text, std::vector<std::string> names, std::size_t needed);
     /// P of x, threshold, slope, guess, lapse; it must use x and threshold.
     static Formula psychometric(std::string text);

@@ -32,9 +32,9 @@ struct Rating {
     double value = 0;
 };
 
-/// Quality that accounts for observers who rate lower than others or carelessly (Li, Bampis, Krasula, Janowski &
-/// Katsavounidis 2020, "A simple model for subject behavior in subjective experiments", HVEI; ITU-T P.910 Annex
-/// E):
+/// Quality that accounts for observers who rate lower than others or carelessly (Li, Bampis,
+/// Krasula, Janowski & Katsavounidis 2020, "A simple model for subject behavior in subjective
+/// experiments", HVEI; ITU-T P.910 Annex E):
 ///   u_jor = quality_j + bias_o + inconsistency_o e,  e standard normal, r-th rating,
 /// by maximum likelihood, alternating: bias, inconsistency, quality weighted by 1 / inconsistency^2. The biases
 /// have mean 0.

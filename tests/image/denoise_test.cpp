@@ -26,8 +26,8 @@ void add_up(Picture& p)
         set(p, "color", i, get(p, "L0", i) + get(p, "L1", i) + get(p, "L2", i));
 }
 
-/// A grey wall that faces the eye, pixels 1 cm apart, under light of 1 (direct) and 0.5 (indirect) with a large
-/// variance.
+/// A grey wall that faces the eye, pixels 1 cm apart, under light of 1 (direct) and
+/// 0.5 (indirect) with a large variance.
 Picture wall(int width, int height)
 {
     Picture p;

@@ -1,5 +1,5 @@
-// The threshold of a run by QUEST+'s posterior. Runs without trials have the prior, which is uniform over the
-// grids.
+// The threshold of a run by QUEST+'s posterior. Runs without trials have the prior,
+// which is uniform over the grids.
 
 #include "study/analysis/result_tables.h"
 #include "study/analysis/threshold_run.h"

@@ -1,10 +1,10 @@
 // Everything at random for a while: keys, mouse, sizes, scenes, settings, right and wrong requests. The program
 // goes on, keeps answering, needs no more and more memory, and ends in order.
 //
-// Memory is judged where the viewer is as it was at its beginning, which it is brought back to every half a
-// minute: the same scene, settings, size and time, and nothing is being rendered. What it holds then beyond what
-// it held before is what it has kept. Between these moments it depends on what came together by chance, and is
-// only printed.
+// Memory is judged where the viewer is as it was at its beginning, which it is brought back to
+// every half a minute: the same scene, settings, size and time, and nothing is being rendered.
+// What it holds then beyond what it held before is what it has kept. Between these moments it depends on what
+// came together by chance, and is only printed.
 //
 // LIGHTWELL_RANDOM_INPUT_S: seconds, 60 if it is not set (acceptance: 1800); LIGHTWELL_RANDOM_INPUT_SEED: another
 // walk; LIGHTWELL_RANDOM_INPUT_CSV: file for the resident memory, second by second.

@@ -3,8 +3,8 @@
 
 namespace viewer {
 
-/// Copy of the scene's data for the panel and the remote control, because the session belongs to the rendering
-/// thread.
+/// Copy of the scene's data for the panel and the remote control, because the session
+/// belongs to the rendering thread.
 struct SceneFacts {
     struct Named {
         std::string name;

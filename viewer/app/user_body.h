@@ -14,8 +14,8 @@ namespace viewer {
 
 class UserBody {
 public:
-    /// @param stance  where the avatar's feet stand; none (an avatar without legs) = feet that are not tracked are
-    /// not made up
+    /// @param stance  where the avatar's feet stand; none (an avatar without legs) = feet
+    /// that are not tracked are not made up
     explicit UserBody(std::optional<Stance> const& stance)
     {
         if (stance) feet_.emplace(*stance);

@@ -107,8 +107,9 @@ struct DisplayTracker {
     DisplayTrackerType type = DisplayTrackerType::fake;
     std::string address = "127.0.0.1"; ///< of the interface to listen on (osc, dtrack)
     int port = 0;
-    std::string body; ///< osc: /name or name; dtrack: number, flystick0; vrpn: number of the sensor; openxr: head,
-                      ///< left_hand, right_hand
+    /// Osc: /name or name; dtrack: number, flystick0; vrpn: number of the sensor;
+    /// openxr: head, left_hand, right_hand.
+    std::string body;
     std::string file; ///< recorded poses
     Placement room_from_tracker;
     double latency_ms = 0; ///< from motion to packet, measured
@@ -164,8 +165,8 @@ struct PixelRectangle {
 
     bool operator==(PixelRectangle const&) const = default;
 };
-/// The wall's part of its window. Fractional edges are rounded to the nearest pixel, so that neighbours share
-/// them.
+/// The wall's part of its window. Fractional edges are rounded to the nearest pixel,
+/// so that neighbours share them.
 PixelRectangle viewport_px(Wall const& wall, DisplayWindow const& window);
 
 } // namespace viewer

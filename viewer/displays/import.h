@@ -27,8 +27,8 @@ namespace viewer {
 
 enum class DisplayFormat { yaml, sgct, pvx, equalizer, vrui, ndisplay };
 char const* name_of(DisplayFormat format);
-/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay. Throws InputError for
-/// others.
+/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay.
+/// Throws InputError for others.
 DisplayFormat format_of(std::filesystem::path const& file);
 
 /// Something in a file that has no equivalent here, or that had to be assumed.

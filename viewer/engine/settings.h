@@ -44,8 +44,8 @@ struct Settings {
     double font_scale = 1; ///< of the letters in the panel, over the usual size on the monitor
 };
 
-/// The version of the program that wrote a file, or for whose schema a file was written. Methods had other names in 0.1
-/// (gi/methods/names.h).
+/// The version of the program that wrote a file, or for whose schema a file was written.
+/// Methods had other names in 0.1 (gi/methods/names.h).
 enum class MadeFor : std::uint8_t { version_0_1, this_version };
 /// By the program's name as files record it: "lightwell 0.1.0 (git ...)".
 MadeFor made_for(std::string const& program);

@@ -9,8 +9,8 @@
 
 namespace viewer {
 
-/// Triangles that cover the hidden area, in the plane one metre in front of the eye: x to the right, y up, as
-/// tangents.
+/// Triangles that cover the hidden area, in the plane one metre in front of the eye:
+/// x to the right, y up, as tangents.
 struct HiddenMask {
     std::vector<gi::vec2> points;         ///< finite
     std::vector<std::uint32_t> triangles; ///< three indices each

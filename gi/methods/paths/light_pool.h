@@ -64,13 +64,13 @@ public:
     ChosenLight choose(vec3 position, vec3 normal, float u, float pick) const;
 
 private:
-    /// Data for the probabilities, per group. (x, y, z) is a point if `near` is 1, else the direction to the
-    /// light.
+    /// Data for the probabilities, per group. (x, y, z) is a point if `near` is 1,
+    /// else the direction to the light.
     struct Group {
         using Row = std::array<float, kCandidates>;
         alignas(32) Row x, y, z, near;
-        alignas(32) Row power;                        ///< luminance / density (per area, per solid angle, or of
-                                                      ///< the choice)
+        /// Luminance / density (per area, per solid angle, or of the choice)
+        alignas(32) Row power;
         alignas(32) Row facing_x, facing_y, facing_z; ///< normal of the light; 0 = emits equally in all
                                                       ///< directions
         alignas(32) Row everywhere, back;             ///< cosine used if there is no normal; 1 if the back emits

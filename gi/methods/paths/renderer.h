@@ -38,8 +38,8 @@ public:
     /// Sets the views from the next pass on. Each continues the previous frame's view of the same index.
     void see(std::span<FrameView const> views);
     /// Traces one more path for every pixel. @param index  of the pass; selects the random numbers
-    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted: then there can be no further
-    ///   pass; null = never
+    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted:
+    ///   then there can be no further pass; null = never
     void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::exact,
               StopRequest const* stop = nullptr);
 

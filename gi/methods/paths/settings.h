@@ -1,6 +1,6 @@
 #pragma once
-// Settings of paths that start at the camera: of the method paths, and of those that find surfaces or shadows in other
-// ways (gi/methods/slhb).
+// Settings of paths that start at the camera: of the method paths, and of those that find surfaces or
+// shadows in other ways (gi/methods/slhb).
 
 #include <cstdint>
 

@@ -15,8 +15,8 @@
 //   normals: photons count by how near their surface's normal is, as the areas do:
 //       E(n) = sum_p F_p (1 + n . m_p) / sum_j A_j (1 + n . n_j)
 //     The two sides of a thin wall do not mix at all.
-// Sums over cells (smoothing, trilinear look-up) add numerators and denominators, so that cells count by their
-// area.
+// Sums over cells (smoothing, trilinear look-up) add numerators and denominators,
+// so that cells count by their area.
 //
 // Of nested lattices, a finer one counts by the photons that its cell is expected to hold, by its area and the
 // photons of the coarser one: few photons in the corner of a cell would be a bright dot.
@@ -37,8 +37,8 @@ enum class Frequency : std::uint8_t { low, middle, high };
 
 struct PhotonLatticeSettings {
     static constexpr int kMostCells = 512, kMostCascades = 8;
-    /// Smaller areas in a cell, of that of its face, count as this: one photon in its corner would be a bright
-    /// dot.
+    /// Smaller areas in a cell, of that of its face, count as this:
+    /// one photon in its corner would be a bright dot.
     static constexpr float kLeastArea = 0.01f;
 
     std::array<int, 3> cells{64, 128, 128}; ///< by Frequency, along the scene's longest side, 4 to kMostCells

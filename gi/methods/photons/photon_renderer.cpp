@@ -80,8 +80,8 @@ void PhotonRenderer::find_focus(std::span<FrameView const> views)
     surfaces_changed_ = true;
 }
 
-/// Lattices about the camera stay until it has moved by an eighth of the finest one's side, as a change begins all
-/// light anew.
+/// Lattices about the camera stay until it has moved by an eighth of the finest one's side,
+/// as a change begins all light anew.
 void PhotonRenderer::find_middle(std::span<FrameView const> views)
 {
     constexpr float kShare = 0.125f;

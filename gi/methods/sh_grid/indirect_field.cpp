@@ -105,8 +105,8 @@ void IndirectField::make_radiance_grids()
     photon_count_ = photons.size();
 }
 
-/// Cells where surfaces are now; those that stay keep their values. Of a coarse level, those deep in the fine one
-/// are not needed.
+/// Cells where surfaces are now; those that stay keep their values. Of a coarse level,
+/// those deep in the fine one are not needed.
 void IndirectField::place_cells(GridLevel& level)
 {
     GridFrame const& frame = level.blocks.frame;

@@ -61,10 +61,10 @@ private:
     vec3 ground_{0};
 };
 
-/// Returns a map of the whole sphere. Texels of sky and ground are means; those of the sun are chosen such that
-/// the bilinear map has the disc's power and horizontal irradiance at every size (with the sun overhead, the
-/// irradiance to 0.4 % at 64 x 32). The part of the disc below the horizon is left out. Throws InputError as Sky
-/// does.
+/// Returns a map of the whole sphere. Texels of sky and ground are means; those of the sun are chosen such
+/// that the bilinear map has the disc's power and horizontal irradiance at every size (with the sun overhead,
+/// the irradiance to 0.4 % at 64 x 32). The part of the disc below the horizon is left out.
+/// Throws InputError as Sky does.
 EnvironmentMap sky_map(SkyOptions const& options);
 
 } // namespace gi

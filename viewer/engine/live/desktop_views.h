@@ -3,8 +3,8 @@
 
 namespace viewer {
 
-/// Stereo on a desktop without a display file: the window is a virtual screen at the distance where both eyes'
-/// pictures coincide.
+/// Stereo on a desktop without a display file: the window is a virtual screen at the distance
+/// where both eyes' pictures coincide.
 struct DesktopStereo {
     bool on = false;
     double eye_distance_m = 0.063;

@@ -28,8 +28,8 @@ bool same_sizes(std::vector<ViewCommand> const& a, std::vector<ViewCommand> cons
 
 bool updates_axes(Settings const& s) { return gi::updates_axes(gi::find_method(s.method), s.render); }
 
-/// Looks (0.1 s each) that find nothing to render before memory is given back that the next frame would need
-/// again.
+/// Looks (0.1 s each) that find nothing to render before memory is given back
+/// that the next frame would need again.
 constexpr int kRestsBeforeTrim = 10;
 
 } // namespace

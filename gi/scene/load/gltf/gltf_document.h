@@ -46,8 +46,8 @@ struct GltfDocument {
         storage.push_back(std::make_unique<std::vector<unsigned char>>(std::move(bytes)));
         return *storage.back();
     }
-    /// Returns the bytes of a buffer view, decompressed if necessary. Throws InputError if it lies outside its
-    /// buffer.
+    /// Returns the bytes of a buffer view, decompressed if necessary.
+    /// Throws InputError if it lies outside its buffer.
     Bytes view_bytes(int view);
 };
 
