@@ -25,7 +25,7 @@ struct DenoiseSettings {
     int window = 4;     ///< discontinuity: width of the window in pixels, 1 to 32
     /// Discontinuity: windows averaged to each side for indirect light; window * reach <= kMaxReach.
     int reach = 0;
-    int threads = 0;    ///< 0 = all
+    int threads = 0; ///< 0 = all
     OidnQuality oidn_quality = OidnQuality::fast;
     StopRequest const* stop = nullptr; ///< once it is requested, denoise() throws Interrupted
 };

@@ -4,8 +4,8 @@
 //
 //   L D           shadow rays of the ray trees, which everything blocks, panes too
 //   L S+ D        photons here. No light seen in a mirror counts twice: field rays bring only what surfaces
-//   reflect L S* D+ S* D  the field: its photons have gone through any S, and its rays go on at S (panes, mirrors,
-//   glass)
+//   reflect L S* D+ S* D  the field: its photons have gone through any S, and its rays go on at S
+//                         (panes, mirrors, glass)
 //
 // What a camera sees of D by way of mirrors and glass are points of ray trees, which read all three.
 //

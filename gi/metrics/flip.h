@@ -13,8 +13,8 @@ struct FlipExposures {
     int count;
 };
 
-/// @param image, reference  width * height * 3 linear Rec. 709 values in [0,
-///   1] (decode display-encoded ones first)
+/// @param image, reference  width * height * 3 linear Rec. 709 values in [0, 1]
+///   (decode display-encoded ones first)
 /// @return one value per pixel
 std::vector<float> flip(std::vector<float> const& image, std::vector<float> const& reference, int width,
                         int height, float pixels_per_degree = kPixelsPerDegree);

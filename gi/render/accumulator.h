@@ -69,8 +69,8 @@ struct Accumulator {
     std::vector<PixelMeans, Uninitialised<PixelMeans>> pixels; ///< valid only if has_paths()
     /// Per pixel, paths besides those, of a pass that was interrupted; empty = none.
     std::vector<std::uint32_t> further;
-    PathCounts counts;                  ///< of all paths so far
-    double seconds = 0;                 ///< spent on these paths
+    PathCounts counts;  ///< of all paths so far
+    double seconds = 0; ///< spent on these paths
 
     Accumulator() = default;
     Accumulator(int w, int h) { start(w, h); }

@@ -55,8 +55,8 @@ private:
 
     /// The static or the dynamic geometry.
     struct Part {
-        std::uint32_t first = 0, last = 0;       ///< triangles of the world
-        std::uint32_t first_vertex = 0;          ///< in the world; Embree's vertex indices start here
+        std::uint32_t first = 0, last = 0; ///< triangles of the world
+        std::uint32_t first_vertex = 0;    ///< in the world; Embree's vertex indices start here
         /// Per geometry: indices of the world's triangles; empty = all, in order.
         std::vector<std::uint32_t> triangles[2];
         ScenePointer scene;

@@ -16,7 +16,7 @@ inline constexpr int kMostInterleaving = 4; ///< largest n chosen automatically 
 struct Interleaving {
     std::uint32_t n = 1; ///< 1 = every pixel computes indirect light in every pass
 
-    /// a prime above every n, so that each pixel of a block gets its turn.
+    /// A prime above every n, so that each pixel of a block gets its turn.
     static constexpr std::uint32_t kStride = 17;
 
     /// Returns the number of pixels for which this one computes indirect light in this pass: 0 or n^2.

@@ -92,7 +92,7 @@ GI_FN vec3 unshadowed_light(ShadingPoint const& at, vec3 wo, LightSample const& 
 
 /// Russian roulette: false if the path ends, otherwise its throughput is divided by the probability of continuing.
 /// @param roulette  see SlhbSettings; 0: all paths continue up to the fourth scattering,
-/// then with a probability of their throughput
+///   then with a probability of their throughput
 /// @param uniform   () -> a number in [0, 1); called only if needed
 template <class Uniform>
 GI_FN bool survives_roulette(PathState& s, float roulette, Uniform const& uniform)

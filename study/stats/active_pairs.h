@@ -38,8 +38,8 @@ public:
 
     /// The pair to show now, as in `allowed`. It depends only on the settings and on the calls so far.
     Pair next() const { return queue_.front(); }
-    /// The pair was shown.  @param first_wins  1: the first was chosen, 0: the second, 1/2:
-    /// neither; none = there was no valid answer
+    /// The pair was shown.  @param first_wins  1: the first was chosen, 0: the second,
+    /// 1/2: neither; none = there was no valid answer
     void shown(Pair pair, std::optional<double> first_wins);
 
     int answers() const { return answers_; }

@@ -1,6 +1,6 @@
 #pragma once
-// Formulas of psychometric functions as text: P(correct) of named values, such as x, threshold, slope, guess,
-// lapse in
+// Formulas of psychometric functions as text: P(correct) of named values, such as
+// x, threshold, slope, guess, lapse in
 //   guess + (1 - guess - lapse) * (1 - exp(-(x / threshold)^slope))
 // Operators + - * / ^ (right-associative, before the sign), parentheses, numbers, pi, and the functions exp, log
 // (natural), log2, log10, sqrt, abs, tanh, atan, erf, normal (the cumulative distribution), min(a, b), max(a, b).

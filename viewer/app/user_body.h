@@ -55,8 +55,8 @@ public:
     {
         for (auto& [user, body] : bodies_) body.step(controls, seconds);
     }
-    /// Writes the bodies of a display's users into the viewpoint. @param tracked  of a user  @param seconds  since
-    /// the last call
+    /// Writes the bodies of a display's users into the viewpoint. @param tracked  of a user
+    /// @param seconds  since the last call
     void put(Display const& display, std::function<Tracked(std::size_t user)> const& tracked, double seconds,
              Viewpoint& at);
 

@@ -1,7 +1,7 @@
 #pragma once
 // Hidden areas of a view, such as the parts of an eye's picture that the lens never shows
-// (XR_KHR_visibility_mask). They are not rendered. A mask is set by a Change with the key "hidden.VIEW" and the
-// value
+// (XR_KHR_visibility_mask). They are not rendered. A mask is set by a Change with the key "hidden.VIEW"
+// and the value
 //   {"points": [[x, y], ...], "triangles": [i, j, k, ...]}
 // where points are tangents as below; without triangles, nothing of that view is hidden.
 

@@ -200,8 +200,8 @@ RenderSettings choose_frame_settings(RenderSettings const& asked, World const& w
     SlhbSettings s = choose_look_ups(lasting, world, costs);
     // Each pass replaces only a few light points, and has at least as many as a window
     // of the discontinuity filter has pixels.
-    constexpr int kLightSamples = 16, kPasses = 4; // passes that replace as many light points as choose_settings
-                                                   // uses in one
+    // kPasses: passes that replace as many light points as choose_settings uses in one.
+    constexpr int kLightSamples = 16, kPasses = 4;
     int const fresh = asked.of<SlhbSettings>().fresh_light_samples > 0 ? asked.of<SlhbSettings>().fresh_light_samples
                                                          : std::max(1, s.light_samples / kPasses);
     if (asked.of<SlhbSettings>().light_samples == 0) s.light_samples = std::max(s.light_samples, kLightSamples);

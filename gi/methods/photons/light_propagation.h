@@ -10,8 +10,8 @@
 //   irradiance of a normal n = flux that propagation would send through a face of the cell with that normal / s^2
 // So the net flux through a plane along the grid is that of the propagation, and the walls of a closed room take
 // all light. In coefficients, degree 0 counts by 2/3 and degree 1 by 0.831 of intensity / s^2 (what a beam along
-// an axis leaves in a cell). 2/3 is also the mean over all directions of the ratio of a straight way to one from
-// cell to cell.
+// an axis leaves in a cell). 2/3 is also the mean over all directions of the ratio of a straight way
+// to one from cell to cell.
 //
 // Known errors (tests/photons/light_propagation_test.cpp): a surface in free space, four and more cells away from
 // a light, gets within a tenth of the right irradiance in the mean over the directions, but light loses its

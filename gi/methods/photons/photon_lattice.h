@@ -6,9 +6,8 @@
 // The paper projects flux by its directions and reads the sum at the normal; it does not say what of. We divide by
 // area, in one of two ways (IrradianceBy). Let photons p of a cell have flux F_p, come from directions w_p and lie
 // on surfaces of normal m_p; the cell's exposed surfaces have areas A_j and normals n_j.
-//   directions: each photon is a beam of radiance F_p / P(w_p), P(w) = sum_j A_j (1/4 + n_j . w / 2), the
-//   projected
-//     area to degree 1; irradiance is its convolution with the cosine, likewise to degree 1:
+//   directions: each photon is a beam of radiance F_p / P(w_p), P(w) = sum_j A_j (1/4 + n_j . w / 2),
+//     the projected area to degree 1; irradiance is its convolution with the cosine, likewise to degree 1:
 //       E(n) = sum_p F_p (1/4 + n . w_p / 2) / P(w_p)
 //     As both have the same kernel, E is exact for flat surfaces, whatever comes from where, and sum_j A_j E(n_j)
 //     is the flux of the photons.

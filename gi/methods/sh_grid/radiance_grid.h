@@ -1,6 +1,6 @@
 #pragma once
-// Light that leaves the surfaces in the cells of a grid (Chang, Park and Ihm, sec.
-// 3.3), and coarser grids of it (R-grid).
+// Light that leaves the surfaces in the cells of a grid (Chang, Park and Ihm, sec. 3.3),
+// and coarser grids of it (R-grid).
 //
 // The flux of photons is divided among six directions along the axes, by the squares of a direction's components;
 // divided by pi times the surfaces' exposed area, divided in the same way, it is a radiance.

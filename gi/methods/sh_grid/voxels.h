@@ -1,6 +1,6 @@
 #pragma once
-// Where the surfaces are: a fine grid of voxels (the paper's V-grid), stored in blocks of 4 x 4 x
-// 4 that are the cells of the coarser grids (SH-grid and R-grid; Chang, Park and Ihm, sec. 3.1).
+// Where the surfaces are: a fine grid of voxels (the paper's V-grid), stored in blocks of
+// 4 x 4 x 4 that are the cells of the coarser grids (SH-grid and R-grid; Chang, Park and Ihm, sec. 3.1).
 // Blocks without surfaces are not stored.
 
 #include "gi/core/progress.h"

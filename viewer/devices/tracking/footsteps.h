@@ -15,7 +15,7 @@ namespace viewer {
 
 /// Positions of a standing user's feet relative to the head, m. For an avatar, see OwnAvatar::stance.
 struct Stance {
-    gi::dvec3 head_joint_in_head{0, -0.08, 0.09};           ///< from the midpoint between the eyes
+    gi::dvec3 head_joint_in_head{0, -0.08, 0.09}; ///< from the midpoint between the eyes
     /// Soles, from the point below the head joint; -Z = forward.
     gi::dvec3 left_foot{-0.1, 0, 0}, right_foot{0.1, 0, 0};
 
@@ -38,8 +38,8 @@ public:
     /// Adds the missing feet to a body: on the floor of the room (y = 0), or above it while swinging.
     /// Without a head there are none, and the simulation restarts. Standing feet stay fixed in the world,
     /// up to rounding if the room moves.
-    /// @param body  in the room, finite  @param world_from_room  upright, with any scale  @param seconds  since
-    /// the last step
+    /// @param body  in the room, finite  @param world_from_room  upright, with any scale
+    /// @param seconds  since the last step
     void step(Tracked& body, gi::dmat4 const& world_from_room, double seconds);
 
 private:

@@ -23,7 +23,7 @@ struct FilterSettings {
 };
 
 struct PredictionSettings {
-    double latency_s = 0;    ///< from motion to the fastest packet's arrival: sensor, sender and network; measured
+    double latency_s = 0; ///< from motion to the fastest packet's arrival: sensor, sender and network; measured
     /// Constant velocity up to this time past the newest sample, then fading over the same time.
     double horizon_s = 0.1;
     double lost_after_s = 1; ///< no pose later than this after the newest sample

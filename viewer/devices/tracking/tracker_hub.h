@@ -19,7 +19,7 @@ inline constexpr std::size_t kBodies = kBodyMembers.size();
 
 /// Assignment of a tracker's bodies. Empty: the tracker has none.
 struct BodySettings {
-    std::string id;            ///< name used by the sender
+    std::string id; ///< name used by the sender
     /// Pose of the midpoint between the eyes, the grip, or the sole relative to the marker; m.
     RoomPose sensor_from_body;
 };

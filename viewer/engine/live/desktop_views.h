@@ -14,8 +14,8 @@ struct DesktopStereo {
 /// Returns one view for both eyes, or a left and a right view with off-axis frusta that share the screen. Each eye
 /// sees the whole screen; in half a window its picture is squeezed, and the display stretches it again. An
 /// orthographic camera has one view, with the window's pixels, whose aspect gives its width.
-/// @param middle  camera between the eyes, symmetric   @param window, eye  size of the window and of one eye's
-/// picture, pixels
+/// @param middle  camera between the eyes, symmetric
+/// @param window, eye  size of the window and of one eye's picture, pixels
 std::vector<ViewCommand> desktop_views(gi::Camera const& middle, DesktopStereo const& stereo, glm::ivec2 window,
                                        glm::ivec2 eye);
 
