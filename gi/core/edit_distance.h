@@ -1,4 +1,6 @@
 #pragma once
+// Suggests the known word that a mistyped one was probably meant to be, for messages.
+
 #include <optional>
 #include <string>
 #include <vector>

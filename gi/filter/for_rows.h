@@ -1,4 +1,6 @@
 #pragma once
+// A parallel loop over the rows of a picture, which can be stopped.
+
 #include "gi/core/progress.h"
 
 #include <tbb/parallel_for.h>

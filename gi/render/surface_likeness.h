@@ -1,4 +1,6 @@
 #pragma once
+// Weights by which a surface takes light from another one nearby.
+
 #include "gi/core/math.h"
 
 namespace gi {

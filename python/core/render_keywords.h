@@ -1,4 +1,6 @@
 #pragma once
+// Keyword arguments of Python's World.render as settings of the renderer.
+
 #include "gi/filter/denoise.h"
 #include "gi/render/render_settings.h"
 

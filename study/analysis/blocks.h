@@ -1,4 +1,6 @@
 #pragma once
+// The analysis of one block, by kind of task. Each function writes its results into `result`.
+
 #include "study/analysis/groups.h"
 
 namespace study {

@@ -1,4 +1,6 @@
 #pragma once
+// Thresholds from the runs of staircases and QUEST+: of single runs, observers and groups.
+
 #include "study/analysis/groups.h"
 #include "study/stats/group_threshold.h"
 #include "study/stats/shrunken_rates.h"

@@ -1,4 +1,6 @@
 #pragma once
+// The contents of the settings panel.
+
 #include "viewer/app/view_state.h"
 
 namespace viewer {

@@ -1,4 +1,6 @@
 #pragma once
+// What the panel and the remote control show of the loaded scene.
+
 #include "viewer/engine/render_session.h"
 
 namespace viewer {

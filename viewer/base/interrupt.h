@@ -1,4 +1,6 @@
 #pragma once
+// Stops work cleanly on Ctrl-C, SIGTERM and SIGHUP.
+
 #include "gi/core/progress.h"
 
 #include <csignal>

@@ -1,4 +1,6 @@
 #pragma once
+// A pose as display files write it, by translation and angles.
+
 #include "gi/core/math.h"
 #include "viewer/protocol/frame_command.h"
 

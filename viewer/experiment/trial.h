@@ -1,4 +1,6 @@
 #pragma once
+// One running trial of a TrialPresenter, and the layout of its pictures on the screen.
+
 #include "viewer/experiment/response.h"
 #include "viewer/experiment/trial_presenter.h"
 

@@ -91,10 +91,8 @@ private:
     void add_patch(ScreenContent& content, bool white) const;
     study::DisplayModel const* model() const { return options_.screen.model ? &*options_.screen.model : nullptr; }
     bool has_degrees() const { return model() && model()->screen && model()->screen->distance_cm > 0; }
-    study::ScreenGeometry const& gaze_screen() const
-    {
-        return *model()->screen;
-    } ///< for blocks with rules of gaze
+    /// For blocks with rules of gaze.
+    study::ScreenGeometry const& gaze_screen() const { return *model()->screen; }
     std::optional<GazeCircle> gaze_circle(study::GazeCircleRule const& rule);
     void keep_gaze_table();
 

@@ -1,4 +1,6 @@
 #pragma once
+// Writes video files.
+
 #include <filesystem>
 #include <memory>
 #include <span>

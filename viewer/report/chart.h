@@ -1,4 +1,6 @@
 #pragma once
+// Charts of error against time for reports.
+
 #include "gi/core/html/plot.h"
 
 namespace viewer {

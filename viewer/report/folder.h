@@ -1,4 +1,6 @@
 #pragma once
+// Reads the results of benchmarks from a folder.
+
 #include "viewer/report/render_stats.h"
 #include "viewer/report/table.h"
 

@@ -1,4 +1,6 @@
 #pragma once
+// The views of a desktop window: one, or two for stereo.
+
 #include "viewer/protocol/frame_command.h"
 
 namespace viewer {

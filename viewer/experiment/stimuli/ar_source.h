@@ -1,4 +1,6 @@
 #pragma once
+// Stimuli from AR sessions: composites of recorded camera frames.
+
 #include "viewer/experiment/stimuli/ar_pictures.h"
 
 #include <future>
