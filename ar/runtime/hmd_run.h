@@ -25,8 +25,8 @@ private:
 struct ArHmdOptions {
     PassThroughOptions pass_through;
     HmdOptions headset;
-    std::filesystem::path
-        eyes; ///< folder for the last pictures of both eyes, left.png and right.png; empty = none
+    /// Folder for the last pictures of both eyes, left.png and right.png; empty = none.
+    std::filesystem::path eyes;
 };
 
 struct ArHmdSummary {

@@ -25,8 +25,8 @@ struct PreparedScene {
     std::shared_ptr<gi::Scene const> scene;
     std::unique_ptr<gi::MovingWorld> world;
     Settings settings; ///< that the method was started with
-    std::unique_ptr<MethodRunner>
-        method; ///< refers to the world; null: it did not start, or `change` has no start
+    /// Refers to the world; null: it did not start, or `change` has no start.
+    std::unique_ptr<MethodRunner> method;
 };
 /// Chooses what a scene starts with, once its world is known.
 using ChooseStart = std::function<SceneStart(gi::World const&)>;

@@ -23,8 +23,8 @@ struct Settings {
     bool first_surfaces = true; ///< surfaces are shown at full size where light is computed at a smaller one
     bool share_eyes = true;     ///< each eye may reuse light computed for the other
     double exposure_ev = 0;
-    std::string auto_exposure =
-        "off"; ///< on: windows and headsets set exposure_ev by what is shown; hold: they did
+    /// On: windows and headsets set exposure_ev by what is shown; hold: they did.
+    std::string auto_exposure = "off";
     std::string tone = "srgb";
     // Settings of the interactive loop
     double rate_hz = 20;           ///< target frame rate

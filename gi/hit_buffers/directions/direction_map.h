@@ -81,8 +81,8 @@ public:
     std::uint32_t operator()(dvec3 d) const;
 
 private:
-    static constexpr std::uint32_t kAcross =
-        32; ///< even, so that the folds of the octahedron are diagonals of cells
+    /// Even, so that the folds of the octahedron are diagonals of cells.
+    static constexpr std::uint32_t kAcross = 32;
     DirectionSet const& directions_;
     std::vector<std::uint32_t> first_; ///< index of each cell's first entry in axes_, plus an end entry
     std::vector<std::uint32_t> axes_;  ///< ascending within a cell

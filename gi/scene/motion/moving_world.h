@@ -24,8 +24,8 @@ struct Changes {
     std::uint32_t moved_instances = 0,
                   moved_triangles = 0; ///< number that actually moved; data of others is unchanged
     std::uint64_t flat_triangles = 0;  ///< can move and currently have no area or a non-finite vertex
-    std::vector<std::string>
-        reasons; ///< for --stats: "3 of 4 moving instances, 2496 triangles (skin, clip 'walk')"
+    /// For --stats: "3 of 4 moving instances, 2496 triangles (skin, clip 'walk')".
+    std::vector<std::string> reasons;
 
     bool any() const
     {

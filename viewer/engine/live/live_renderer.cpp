@@ -380,8 +380,8 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
         command.views = hooks_.own_views(command);
     }
     gi::StepListener const listener([this](gi::Step const& step) {
-        bool const builds =
-            step.of > 0 || step.what.starts_with("build"); // of a method that starts: may take long
+        // Of a method that starts: may take long.
+        bool const builds = step.of > 0 || step.what.starts_with("build");
         if (quit_ && link_ == nullptr && builds) throw gi::Interrupted();
         if (hooks_.at_step) hooks_.at_step(step);
     });
