@@ -121,7 +121,8 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
 
 /// Interpolates the last frame's light by Catmull and Rom's cubics if all of 4 x 4 pixels showed the surface:
 /// bilinear means would blur it in every frame. Returns false if not.
-/// @param at  in the last frame, from the middle of its first pixel   @param shows  of a Surface
+/// @param at  in the last frame, from the middle of its first pixel
+/// @param shows  whether a Surface of the last frame is the one looked for
 template <class Shows>
 bool TemporalReuse::interpolate(vec2 at, int width, int height, Shows const& shows, Light& light) const
 {

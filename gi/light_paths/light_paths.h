@@ -12,7 +12,7 @@
 
 namespace gi {
 
-/// Where a point of a surface lies relative to a fine grid; `still`: of a triangle that does not move.
+/// Where a point of a surface lies relative to a fine grid, and whether its triangle moves.
 enum class GridSide : std::uint8_t { outside, inside_moving, inside_still };
 
 struct LightPaths {

@@ -55,7 +55,7 @@ struct Uninitialised : std::allocator<T> {
 
 enum class PictureLayers : std::uint8_t { all, color_and_depth };
 
-/// What a picture takes from its world besides the paths.
+/// Properties of a picture that its world determines, besides the radiance of its paths.
 struct PictureShape {
     dvec3 origin{0}; ///< of the world: added to positions
     bool has_alpha = false;

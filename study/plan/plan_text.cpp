@@ -22,7 +22,7 @@ std::string fixed_levels(Script const& s, std::vector<int> const& levels)
 
 std::string first_line(std::string const& text) { return gi::shortened(text.substr(0, text.find('\n')), 70); }
 
-/// Crossed levels that the stimuli's label does not contain.
+/// Names of the trial's levels of the crossed and nested factors.
 std::string cell_text(Script const& s, Block const& b, Trial const& t)
 {
     std::string text;

@@ -277,7 +277,7 @@ PsychometricPosterior psychometric_posterior(std::span<LevelCount const> counts,
         p.eta += f.weight * f.eta;
         p.functions.push_back(f);
     }
-    if (p.functions.empty()) // nearly nothing is left between the guess rate and 1
+    if (p.functions.empty()) // as with guess rates near 1
         refuse("a guess rate of " + std::to_string(settings.guess), "no psychometric function fits these answers",
                "leave the observer out");
     p.mean.scale = std::exp(p.mean.scale);

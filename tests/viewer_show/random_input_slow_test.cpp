@@ -26,8 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kAnswer(30); // also where a frame of the reference is being rendered
 constexpr std::chrono::seconds kFrame(300); // of the slowest method, which what needs a frame of its own waits for
-// Of the median in the last third over that in the middle third. What threads and drivers keep for use again comes
-// in the first minutes, so that only a rough limit holds for short walks.
+// Limits of memory growth: median of the last third over that of the middle third of a walk. Threads and drivers
+// allocate memory that they reuse in the first minutes, so the limit for short walks is loose.
 constexpr double kGrowth = 1.05, kGrowthOfShortWalks = 1.5, kShortWalk_s = 600;
 constexpr double kBetweenRests_s = 30; // or a twelfth of the walk
 constexpr int kStill = 20;             // tenths of a second: the viewer gives memory back after ten

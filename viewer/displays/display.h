@@ -118,7 +118,7 @@ struct DisplayTracker {
     std::string left_foot_body{}, right_foot_body{};
     std::optional<WandSettings> wand{}; ///< the body is a wand
     std::string device{};               ///< vrpn: Tracker0@host[:port]
-    /// Vrpn: device of the same server with the wand's buttons and analogs; empty = `device`'s.
+    /// Type vrpn: device of the same server with the wand's buttons and analogs; empty = `device`'s.
     std::string controls{};
 
     bool operator==(DisplayTracker const&) const = default;

@@ -64,8 +64,8 @@ public:
     ReceivedLight on_moving(LitPoint const& at) const;
     /// How moving surfaces change the light of a still one; exactly 0 where they hide nothing.
     ReceivedLight change_on_still(LitPoint const& at) const;
-    /// The light of a still surface without the moving ones. @param every  uses each so many-th direction, from
-    ///   `first` on, and all with much of the light
+    /// The light of a still surface without the moving ones.
+    /// @param every, first  uses every `every`-th direction from index `first`, plus all bright ones
     ReceivedLight on_still(LitPoint const& at, std::size_t every = 1, std::size_t first = 0) const;
     /// Light without anything in the way.
     ReceivedLight open_light(LitPoint const& at) const;

@@ -55,7 +55,8 @@ public:
     /// Throws InputError for settings out of range.
     explicit LightPropagation(PropagationSettings const& settings);
 
-    /// Throws Interrupted, and then keeps what it had. @param world  its bounds may be empty
+    /// Propagates the light of these photons. Keeps the earlier light if it throws Interrupted.
+    /// @param world  its bounds may be empty
     /// @param geometry  since the last call
     /// @param focus  what cameras show, if the world is much larger; else empty
     void update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,
