@@ -21,15 +21,15 @@ struct BoardView {
 /// Returns the sighting's points on board number `board` (index into map.boards).
 BoardView view_of(Sighting const& sighting, MarkerMap const& map, std::size_t board, std::string name);
 
-/// Detects a plain chessboard by cv::findChessboardCornersSB (Duda and Frese 2018); nothing unless it is fully
-/// visible.
+/// Detects a plain chessboard by cv::findChessboardCornersSB (Duda and Frese 2018);
+/// nothing unless it is fully visible.
 /// @param corners_x,corners_y inner corners, each at least 3. The origin is the lower left inner corner as
 /// printed, as far as the board's pattern determines its orientation
 std::optional<BoardView> find_chessboard(cv::Mat const& gray, int corners_x, int corners_y, double square_m,
                                          std::string name);
 
-/// Pose of the board by least squares of the reprojection error; nothing for fewer than four points or if no pose
-/// fits them.
+/// Pose of the board by least squares of the reprojection error; nothing for fewer than
+/// four points or if no pose fits them.
 std::optional<Pose> camera_from_board(CameraModel const& camera, BoardView const& view);
 
 /// Observed minus projected position in pixels; (1e3, 1e3) for points outside the camera's view.

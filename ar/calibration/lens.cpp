@@ -53,8 +53,8 @@ Fit fit(std::vector<BoardView const*> const& views, glm::ivec2 size_px, LensMode
     Fit out;
     try {
         if (lens == LensModel::fisheye) {
-            // Start from a lens whose half diagonal is 60 degrees: the initial guess of fisheye::calibrate often
-            // fails.
+            // Start from a lens whose half diagonal is 60 degrees:
+            // the initial guess of fisheye::calibrate often fails.
             double const f = 0.5 * std::hypot(size_px.x, size_px.y) / 1.05;
             k = (cv::Mat_<double>(3, 3) << f, 0, 0.5 * size_px.x - 0.5, 0, f, 0.5 * size_px.y - 0.5, 0, 0, 1);
             distortion = cv::Mat::zeros(4, 1, CV_64F);

@@ -31,8 +31,8 @@ struct LensCalibration {
 };
 
 struct LensOptions {
-    /// Views whose RMS error exceeds this multiple of the median are left out, one at a time, at most a third of
-    /// all; 0: none.
+    /// Views whose RMS error exceeds this multiple of the median are left out, one at a time,
+    /// at most a third of all; 0: none.
     double outlier_factor = 3;
     /// Views with an RMS error below this (pixels) are never left out.
     double outlier_floor_px = 0.25;

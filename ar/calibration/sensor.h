@@ -55,10 +55,10 @@ struct ColourFit {
 std::array<cv::Vec3f, 24> const& chart_linear_rgb();
 
 /// Least-squares fit from the patches' units (linear, by the response, vignetting corrected) to their true values.
-/// How brightly the chart was lit is no property of the camera, so the best-fitting overall brightness is divided
-/// out.
-/// @throws gi::InputError fewer than six patches, patches that do not span colours, or a mean ΔE that stays above
-/// 10
+/// How brightly the chart was lit is no property of the camera, so the best-fitting
+/// overall brightness is divided out.
+/// @throws gi::InputError fewer than six patches, patches that do not span colours,
+/// or a mean ΔE that stays above 10
 ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f const> chart);
 
 /// Where the centres of the 24 patches of a flat ColorChecker are in a picture, px, row by row from dark skin (1) to
@@ -66,8 +66,8 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
 /// distortion is applied again.
 /// @param corners_px  centres of the corner patches in order around the chart: dark skin (1), bluish green (6),
 /// black (24), white (19)
-/// @throws gi::InputError corners that, without distortion, form no convex quadrilateral, or a patch that the lens
-/// cannot see
+/// @throws gi::InputError corners that, without distortion, form no convex quadrilateral,
+/// or a patch that the lens cannot see
 std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners_px, CameraModel const& camera);
 
 /// Mean linear units of each patch of a picture. @param centres_px one per patch; @param half_px half the side

@@ -55,9 +55,9 @@ cv::Mat picture_of(Frame const& frame);
 /// sRGB with 1 as white.
 cv::Mat eight_bits_of(cv::Mat const& picture);
 
-/// Converts to RGB, CV_8UC3 (`eight_bits_of`), of the frame's size. RGB frames are not copied (the result is valid
-/// as long as the frame). YUV is BT.601 with limited range. @throws gi::InputError JPEG that cannot be decoded or
-/// has another size
+/// Converts to RGB, CV_8UC3 (`eight_bits_of`), of the frame's size.
+/// RGB frames are not copied (the result is valid as long as the frame). YUV is BT.601 with limited range.
+/// @throws gi::InputError JPEG that cannot be decoded or has another size
 cv::Mat rgb_of(Frame const& frame);
 /// Converts to luma, CV_8UC1; not copied if the format has a luma plane.
 cv::Mat gray_of(Frame const& frame);

@@ -20,8 +20,8 @@ glm::dvec3 operator*(Pose const& a_from_b, glm::dvec3 point_b);
 Pose operator*(Pose const& a_from_b, Pose const& b_from_c);
 Pose inverse(Pose const& a_from_b);
 
-/// Pose camera_from_object from the rotation vector (axis times angle in radians) and translation of OpenCV's
-/// solvePnP.
+/// Pose camera_from_object from the rotation vector (axis times angle in radians)
+/// and translation of OpenCV's solvePnP.
 Pose pose_of(cv::Vec3d const& rotation_vector, cv::Vec3d const& translation_m);
 cv::Vec3d rotation_vector(Pose const& p);
 

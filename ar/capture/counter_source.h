@@ -1,8 +1,8 @@
 #pragma once
 // Generates frames that show their own number in machine-readable form, so the output of a processing chain
 // identifies the input frame. The number is a row of 52 cells along the upper edge, a tenth of the picture high:
-// white, black, 32 bits (highest first, 1 = white), 16 bits of their CRC-16/CCITT, black, white. A moving pattern
-// fills the rest.
+// white, black, 32 bits (highest first, 1 = white), 16 bits of their CRC-16/CCITT, black, white.
+// A moving pattern fills the rest.
 
 #include "ar/capture/frame_source.h"
 #include "ar/capture/tally.h"

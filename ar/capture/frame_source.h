@@ -66,8 +66,8 @@ struct Controls {
     friend bool operator==(Controls const&, Controls const&) = default;
 };
 
-/// @throws gi::InputError values that are not finite or not positive, both automatic and set, or only one colour
-/// gain
+/// @throws gi::InputError values that are not finite or not positive, both automatic
+/// and set, or only one colour gain
 void check(Controls const& controls);
 
 class FrameSource {

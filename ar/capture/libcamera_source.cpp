@@ -193,8 +193,8 @@ private:
         camera_->release();
     }
 
-    /// If the driver cannot allocate memory (no dma-heap), anonymous files suffice for pipelines that write by
-    /// CPU.
+    /// If the driver cannot allocate memory (no dma-heap), anonymous files suffice
+    /// for pipelines that write by CPU.
     void make_buffers()
     {
         lc::StreamConfiguration const& config = config_->at(0);

@@ -11,8 +11,8 @@ namespace {
 /// Of the module, which the first source loads.
 OpenCvSources const& sources()
 {
-    void* const module =
-        dlopen("liblightwell_capture.so", RTLD_NOW | RTLD_LOCAL); // counted: loaded once, and stays
+    // Counted: loaded once, and stays.
+    void* const module = dlopen("liblightwell_capture.so", RTLD_NOW | RTLD_LOCAL);
     auto* const find = module != nullptr
                            ? reinterpret_cast<decltype(&lightwell_capture)>(dlsym(module, "lightwell_capture"))
                            : nullptr;

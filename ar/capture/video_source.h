@@ -28,9 +28,9 @@ struct LiveOptions {
 /// @throws gi::InputError no such camera, or it delivers no frame
 std::unique_ptr<FrameSource> open_device(int number, LiveOptions const& options = {});
 
-/// A GStreamer pipeline that ends in an appsink: "videotestsrc ! videoconvert ! appsink". Frames are bgr8 or gray8
-/// and stamped with their arrival (origin: arrival). A pipeline that stops has ended if it had a known length, and
-/// is lost otherwise.
+/// A GStreamer pipeline that ends in an appsink: "videotestsrc ! videoconvert ! appsink".
+/// Frames are bgr8 or gray8 and stamped with their arrival (origin: arrival).
+/// A pipeline that stops has ended if it had a known length, and is lost otherwise.
 /// @throws gi::InputError the pipeline cannot be built, or delivers no frame
 std::unique_ptr<FrameSource> open_pipeline(std::string const& pipeline, LiveOptions const& options = {});
 

@@ -2,9 +2,9 @@
 // Albedo of proxies from camera frames (inverse lighting; Yu et al. 1999 for the iteration, diffuse surfaces
 // only). Of a diffuse surface,
 //   radiance = albedo white,   white = irradiance / pi:
-// what the pixel would show if only its surface were white. `white` contains direct light of the known lights and
-// environment map, and indirect light from other proxies with the albedos found so far; so fitting and rendering
-// alternate.
+// what the pixel would show if only its surface were white. `white` contains direct light of the known
+// lights and environment map, and indirect light from other proxies with the albedos found so far;
+// so fitting and rendering alternate.
 
 #include <cstdint>
 #include <functional>

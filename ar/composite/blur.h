@@ -18,11 +18,11 @@ double missing_blur_px(double camera_px, double rendered_px = 0.289);
 /// Applies defocus blur. @param sigma_px  0 returns the pair unchanged. @throws gi::InputError outside 0..20
 RenderedPair defocused(RenderedPair const& pair, double sigma_px);
 
-/// Applies motion blur: the mean along each pixel's motion while the shutter is open (Potmesil and Chakravarty
-/// 1983); moving objects also spread beyond their own border (largest velocity in the neighbourhood, McGuire et
-/// al. 2012).
-/// @param velocity_px  CV_32FC2: motion of the pixel's content while the shutter is open, pixels; non-finite
-/// values count as 0
+/// Applies motion blur: the mean along each pixel's motion while the shutter is open (Potmesil
+/// and Chakravarty 1983); moving objects also spread beyond their own border (largest velocity in
+/// the neighbourhood, McGuire et al. 2012).
+/// @param velocity_px  CV_32FC2: motion of the pixel's content while the shutter is open, pixels;
+/// non-finite values count as 0
 /// @param longest_px   longer motions are shortened to this
 RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px, double longest_px = 48);
 

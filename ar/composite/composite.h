@@ -1,6 +1,6 @@
 #pragma once
-// Composites virtual objects into a camera's picture by differential rendering (Debevec 1998, section 5), in
-// linear light:
+// Composites virtual objects into a camera's picture by differential rendering (Debevec 1998,
+// section 5), in linear light:
 //   out = a with + (1 - a)(camera + with - without) = with + (1 - a)(camera - without)
 // a: share of the pixel that virtual objects cover. In antialiased pictures, with = a object + (1 - a) place, so
 // this equals a object + (1 - a)(camera + change of the place), which is exact at borders, too.
@@ -81,8 +81,8 @@ public:
     CompositeSettings const& settings() const { return settings_; }
     ResponseTable const& response(int channel) const { return response_[std::size_t(channel)]; }
     /// Matrix from radiance (linear BT.709) to the camera's linear RGB: diag(gains) inverse(colour) /
-    /// radiance_per_unit. The gains are those of the exposure relative to Photometry::reference. Vignetting is not
-    /// included.
+    /// radiance_per_unit. The gains are those of the exposure relative to Photometry::reference.
+    /// Vignetting is not included.
     cv::Matx33f unit_of_radiance(Exposure const& exposure) const;
     NoiseField const& noise() const { return noise_; }
 

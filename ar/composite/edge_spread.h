@@ -1,9 +1,9 @@
 #pragma once
-// Measures the sharpness of a camera's pictures at straight edges of known position: the sides of markers. Across
-// an edge,
-//   value(d) = dark + (bright - dark) Phi((d - offset - tilt t) / sigma),   Phi: the normal distribution's
-//   integral
-// d: distance to the line in pixels, t: place along it. Slanted-edge method (ISO 12233) with a Gaussian spread.
+// Measures the sharpness of a camera's pictures at straight edges of known position: the sides of markers.
+// Across an edge,
+//   value(d) = dark + (bright - dark) Phi((d - offset - tilt t) / sigma)
+// Phi: the normal distribution's integral, d: distance to the line in pixels, t: place along it.
+// Slanted-edge method (ISO 12233) with a Gaussian spread.
 
 #include <glm/glm.hpp>
 #include <opencv2/core.hpp>

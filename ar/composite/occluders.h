@@ -19,10 +19,9 @@ struct OcclusionCounts {
 
 /// Share of each pixel that a nearer real object takes, CV_32FC1, 0..1.
 /// @param measured_m  CV_32FC1: along the camera's axis; 0 and non-finite values are holes
-/// @param modelled_m  CV_32FC1: of virtual objects and the model of the place; 0 = nothing. There the nearest
-/// depth
-///   within 2 + ceil(3 soft_px) pixels counts (at the border of a virtual object); without one nothing is hidden,
-///   as nothing was added.
+/// @param modelled_m  CV_32FC1: of virtual objects and the model of the place; 0 = nothing.
+///   There the nearest depth within 2 + ceil(3 soft_px) pixels counts (at the border of a virtual object);
+///   without one nothing is hidden, as nothing was added.
 cv::Mat share_of_nearer(cv::Mat const& measured_m, cv::Mat const& modelled_m, DepthOcclusion const& settings);
 
 /// Takes out of a pair what is behind occluders: its composite is (1 - share) composite + share camera.

@@ -24,9 +24,8 @@ struct MatteCounts {
 };
 
 /// @param coverage    CV_32FC1: coverage by virtual objects, with occlusion by proxies
-/// @param unoccluded  CV_32FC1: coverage by virtual objects without occlusion; their borders against the
-/// background
-///                    are exact and kept
+/// @param unoccluded  CV_32FC1: coverage by virtual objects without occlusion;
+/// their borders against the background are exact and kept
 /// @param camera      CV_32FC3: the frame's radiance
 /// @return the refined coverage. @throws gi::InputError wrong types or sizes
 cv::Mat refined_coverage(cv::Mat const& coverage, cv::Mat const& unoccluded, cv::Mat const& camera,

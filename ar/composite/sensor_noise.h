@@ -1,6 +1,6 @@
 #pragma once
-// Simulates sensor noise for rendered light that is added to a camera's pictures. In units of the bytes, per
-// channel:
+// Simulates sensor noise for rendered light that is added to a camera's pictures.
+// In units of the bytes, per channel:
 //   variance(u) = constant + per_unit u
 // (read noise and photon noise; Healey and Kondepudy 1994), with grain: the correlation of neighbouring pixels
 // that demosaicking and compression cause.

@@ -5,9 +5,9 @@
 // is kept from frame to frame, reprojected to where the surface was (pose and depth), clamped to mean +- gamma
 // standard deviations of the new frame's neighbourhood (variance clipping, Salvi 2016), and blended:
 //   added' = history + weight (added - history).
-// The variance of noise that is independent between frames falls to weight / (2 - weight) where nothing is
-// clipped; a change of light is adopted to 63 % in about 1 / weight frames. Where nothing is added, the result is
-// exactly 0.
+// The variance of noise that is independent between frames falls to weight / (2 - weight)
+// where nothing is clipped; a change of light is adopted to 63 % in about 1 / weight frames.
+// Where nothing is added, the result is exactly 0.
 //
 // While objects and light are known to stay as they are and the camera moves by less than a fiftieth of a pixel,
 // differences are noise, even those of whole faces, whose pixels share light samples: then nothing is clipped, and
@@ -43,8 +43,8 @@ public:
     explicit TemporalFilter(CameraModel const& camera, TemporalSettings const& settings = {});
 
     /// @param pair    of this frame
-    /// @param depth   CV_32FC1, metres along the axis, of the visible surface (objects or proxies); 0 =
-    /// infinitely far
+    /// @param depth   CV_32FC1, metres along the axis, of the visible surface (objects
+    /// or proxies); 0 = infinitely far
     /// @return filtered pair with `without` and coverage unchanged. @throws gi::InputError wrong types or sizes
     RenderedPair operator()(RenderedPair const& pair, cv::Mat const& depth, Pose const& world_from_camera,
                             SceneChange change = SceneChange::unknown);

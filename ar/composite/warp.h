@@ -19,9 +19,9 @@ public:
     /// @param from  the pinhole that is rendered
     Warp(CameraModel const& to, CameraModel const& from);
 
-    /// Bilinear, to 1/32 of a pixel (cv::remap). Outside the view of `from` all pictures are 0, so composites keep
-    /// the camera's bytes. Equal pixels of `with` and `without` stay equal bit for bit. @throws gi::InputError
-    /// wrong size
+    /// Bilinear, to 1/32 of a pixel (cv::remap). Outside the view of `from` all pictures are 0,
+    /// so composites keep the camera's bytes. Equal pixels of `with` and `without` stay equal bit for bit.
+    /// @throws gi::InputError wrong size
     RenderedPair operator()(RenderedPair const& pair) const;
     /// Bilinear, for radiance and irradiance.
     cv::Mat smooth(cv::Mat const& picture) const;

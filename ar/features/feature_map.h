@@ -37,8 +37,8 @@ inline constexpr std::size_t kMostDescriptorsOfMap = (std::size_t(1) << 18) - 1;
 /// @param name  of the map, for the message. @throws gi::InputError more descriptors than can be matched
 void check_size(FeatureMap const& map, std::string const& name);
 
-/// @throws gi::InputError with file:line:column: another kind of file, wrong columns, no numbers, no points; as
-///   check_size
+/// @throws gi::InputError with file:line:column: another kind of file, wrong columns,
+///   no numbers, no points; as check_size
 FeatureMap parse_feature_map(std::string_view text, std::string const& file);
 /// @throws gi::InputError, also for files that cannot be read or above 1 GiB
 FeatureMap read_feature_map(std::filesystem::path const& file);

@@ -24,8 +24,8 @@ struct ClippedLight {
     cv::Vec3d as_measured;       ///< irradiance of a face turned there, a lower bound
     cv::Vec3d added{0, 0, 0};    ///< by the repair, likewise; 0 = not repaired
     bool repaired = false;
-    /// A face towards this normal receives clipped light (n.w > 0): unless repaired, its irradiance is a lower
-    /// bound.
+    /// A face towards this normal receives clipped light (n.w > 0): unless repaired,
+    /// its irradiance is a lower bound.
     bool lights(glm::dvec3 normal) const { return clipped_sr > 0 && glm::dot(normal, towards) > 0; }
 };
 

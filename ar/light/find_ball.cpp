@@ -146,8 +146,8 @@ BallSight find_ball(cv::Mat const& rgb, CameraModel const& camera)
 {
     CV_Assert(rgb.type() == CV_8UC3 || rgb.type() == CV_32FC3);
     cv::Mat grey = brightness(rgb), bytes;
-    double const to =
-        std::max(1.0, std::max(grey.cols, grey.rows) / 640.0); // circles are sought in a small picture
+    // Circles are sought in a small picture.
+    double const to = std::max(1.0, std::max(grey.cols, grey.rows) / 640.0);
     cv::resize(grey, grey, {}, 1 / to, 1 / to, cv::INTER_AREA);
     cv::normalize(grey, bytes, 0, 255, cv::NORM_MINMAX, CV_8U);
     cv::GaussianBlur(bytes, bytes, {0, 0}, 1.5);

@@ -1,6 +1,6 @@
 #pragma once
-// Extracts the sun and lamps of an environment map as separate lights, so that they are sampled and cast sharp
-// shadows.
+// Extracts the sun and lamps of an environment map as separate lights, so that they
+// are sampled and cast sharp shadows.
 //
 // A lamp is a connected region of texels many times brighter than the mean. (Median cut, Debevec 2005, assigns
 // every part of the sky to some light, which suits rendering with a few lights only. Here the rest remains a map,

@@ -49,8 +49,8 @@ struct FilledMap {
     int filled_texels = 0;
     double filled_share = 0; ///< of the sphere
 };
-/// Fills unmeasured texels by solving Laplace's equation on the sphere with the measured ones as boundary, from
-/// coarse to fine.
+/// Fills unmeasured texels by solving Laplace's equation on the sphere with the measured
+/// ones as boundary, from coarse to fine.
 /// @throws gi::InputError if nothing was measured at all
 FilledMap filled(PartialMap const& map);
 

@@ -23,8 +23,8 @@ public:
     /// Pairs of neighbours, each once: lower number first.
     std::vector<std::pair<int, int>> const& neighbours() const { return neighbours_; }
 
-    /// Lat-long picture of values, one row per direction (CV_32F, any number of channels): a weighted mean of the
-    /// directions nearby.
+    /// Lat-long picture of values, one row per direction (CV_32F, any number of channels):
+    /// a weighted mean of the directions nearby.
     cv::Mat spread(cv::Mat const& values, cv::Size size) const;
 
 private:

@@ -102,8 +102,8 @@ double LiveProbe::confidence_of(Texel const& t) const
     return t.confidence > 0 ? t.confidence * std::exp(-(now_s_ - t.seen_s) / settings_.forget_s) : 0;
 }
 
-/// Scale for this frame: matches known light of the same directions, else the scaled prior, else the previous
-/// frame's scale.
+/// Scale for this frame: matches known light of the same directions, else the scaled prior,
+/// else the previous frame's scale.
 double LiveProbe::frame_gain() const
 {
     std::vector<std::pair<double, double>> known, prior;

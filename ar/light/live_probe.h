@@ -1,7 +1,7 @@
 #pragma once
-// A coarse environment map that is updated from the camera's own frames. Directions that the camera never saw use
-// the map captured before (the prior), scaled by the ratio of current to captured brightness in the seen
-// directions.
+// A coarse environment map that is updated from the camera's own frames.
+// Directions that the camera never saw use the map captured before (the prior), scaled by the ratio of current to
+// captured brightness in the seen directions.
 //
 // Light is assumed to come from far away: only the camera's direction matters, not its position.
 //
@@ -49,8 +49,8 @@ struct ProbeUpdate {
 
 class LiveProbe {
 public:
-    /// @param prior a lat-long map of any size, resampled to settings.size; empty = grey with the mean of seen
-    /// light
+    /// @param prior a lat-long map of any size, resampled to settings.size;
+    /// empty = grey with the mean of seen light
     /// @throws gi::InputError as check_map, or if settings are not positive
     explicit LiveProbe(cv::Mat const& prior = {}, LiveProbeSettings const& settings = {});
 

@@ -32,8 +32,8 @@ double ball_distance_m(BallSight const& ball, double radius_m);
 
 /// Finds the rim to subpixel accuracy: the steepest change of luminance across the rim of `near` within
 /// +- `search` of its half angle, at 360 positions; then fits the cone by robust least squares.
-/// A perfect mirror in front of what it reflects at grazing angles has no visible rim; real balls are darker than
-/// their surround.
+/// A perfect mirror in front of what it reflects at grazing angles has no visible rim;
+/// real balls are darker than their surround.
 /// @param rgb CV_8UC3 or CV_32FC3
 /// @throws gi::InputError if fewer than 60 positions agree
 BallSight find_ball(cv::Mat const& rgb, CameraModel const& camera, BallSight const& near, double search = 0.15);

@@ -28,8 +28,8 @@ struct SearchSettings {
 /// A marker in a picture; pixel centres have integer coordinates.
 struct FoundMarker {
     int id = 0;
-    /// Upper left, upper right, lower right, lower left as printed (AprilTags: as in the pictures of their
-    /// makers).
+    /// Upper left, upper right, lower right, lower left as printed (AprilTags:
+    /// as in the pictures of their makers).
     std::array<cv::Point2f, 4> corners;
 };
 

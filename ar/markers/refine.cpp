@@ -145,8 +145,8 @@ double growth_of(cv::Mat const& gray, std::array<cv::Point2f, 4> const& corners,
     return std::clamp(gi::median(std::move(growths)), -1., 1.);
 }
 
-/// Crossing of two lines of a chessboard. The four arms end at these points; black is clockwise of the first
-/// and of the third.
+/// Crossing of two lines of a chessboard. The four arms end at these points;
+/// black is clockwise of the first and of the third.
 std::optional<cv::Point2d> saddle(cv::Mat const& gray, cv::Point2d at, std::array<cv::Point2d, 4> const& ends,
                                   double reach_px)
 {

@@ -18,8 +18,8 @@ gi::Camera gi_camera(ar::CameraModel const& pinhole, ar::Pose const& world_from_
 /// A copy of a layer: CV_32FC3 or CV_32FC1. @throws std::invalid_argument no such layer
 cv::Mat matrix_of(gi::Picture const& picture, std::string const& layer);
 
-/// Converts CV_32FC3, RGB, lat-long (the same convention in both modules). Negative and non-finite values become
-/// 0.
+/// Converts CV_32FC3, RGB, lat-long (the same convention in both modules).
+/// Negative and non-finite values become 0.
 gi::EnvironmentMap environment_of(cv::Mat const& lat_long);
 
 } // namespace viewer

@@ -50,8 +50,8 @@ void CameraBlur::follow(cv::Mat const& radiance, ar::Pose const& world_from_came
     counts_.no_exposure += !(exposure_s > 0);
     double moved_px = 0;
     if (before_ && time_s > before_->time_s) {
-        // Assumes constant motion since the previous frame; image motion from rotation, and translation at one
-        // metre.
+        // Assumes constant motion since the previous frame; image motion from rotation,
+        // and translation at one metre.
         double const share = exposure_s / (time_s - before_->time_s);
         ar::Pose const& b = before_->world_from_camera;
         double const turned = glm::radians(ar::angle_between_deg(b.rotation, world_from_camera.rotation));

@@ -1,6 +1,6 @@
 #pragma once
-// Estimates albedos of real surfaces from camera frames: ar/composite/albedo.h, with the incident light from the
-// reference renderer.
+// Estimates albedos of real surfaces from camera frames: ar/composite/albedo.h,
+// with the incident light from the reference renderer.
 
 #include "ar/composite/albedo.h"
 #include "ar/pipeline/pipeline.h"

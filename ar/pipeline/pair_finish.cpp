@@ -16,8 +16,8 @@ ar::CameraModel full_pinhole(ar::CameraModel const& rendered, ArSession const& s
     return ar::scaled(rendered, glm::ivec2(glm::round(glm::dvec2(rendered.size_px) / *s.render.resolution)));
 }
 
-/// Blur of a rendered pixel's mean and of the bilinear lookup through the lens: 1/12 and on average 1/6 square
-/// pixels.
+/// Blur of a rendered pixel's mean and of the bilinear lookup through the lens:
+/// 1/12 and on average 1/6 square pixels.
 constexpr double kRenderedSigma_px = 0.5;
 
 } // namespace

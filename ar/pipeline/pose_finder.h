@@ -11,8 +11,8 @@
 
 namespace viewer {
 
-/// A camera pose that is not estimated from the frame, but comes from a tracker or a file; nothing: that has none
-/// for this frame.
+/// A camera pose that is not estimated from the frame, but comes from a tracker or a file;
+/// nothing: that has none for this frame.
 struct KnownPose {
     explicit KnownPose(std::optional<ar::Pose> const& world_from_camera_) : world_from_camera(world_from_camera_)
     {

@@ -1,6 +1,6 @@
 #pragma once
-// What is known about a frame's pose: its own estimate, if it can be trusted, or the tracker's filtered or
-// predicted pose.
+// What is known about a frame's pose: its own estimate, if it can be trusted,
+// or the tracker's filtered or predicted pose.
 
 #include "ar/pose/tracker.h"
 #include "ar/pose/trust.h"

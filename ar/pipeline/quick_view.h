@@ -1,7 +1,7 @@
 #pragma once
-// Pictures of a scene for tests of tracking: rasterised, lit by a sky without shadows or interreflection. A frame
-// costs a small part of a second, where the reference renderer takes minutes; edges, textures and the lens are as
-// sharp.
+// Pictures of a scene for tests of tracking: rasterised, lit by a sky without shadows or interreflection.
+// A frame costs a small part of a second, where the reference renderer takes minutes;
+// edges, textures and the lens are as sharp.
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/pose.h"

@@ -135,8 +135,8 @@ cv::Mat synthetic_probe(gi::Scene const& scene, gi::dvec3 place_m, int height, S
             std::size_t best = 0;
             for (std::size_t f = 1; f < 6; ++f)
                 if (glm::dot(d, ahead[f]) > glm::dot(d, ahead[best])) best = f;
-            gi::dvec3 const local =
-                glm::transpose(glm::dmat3(cameras[best].world_from_camera)) * d; // looks along -z
+            // Looks along -z.
+            gi::dvec3 const local = glm::transpose(glm::dmat3(cameras[best].world_from_camera)) * d;
             double const px = 0.5 * face * (1 + local.x / -local.z) - 0.5,
                          py = 0.5 * face * (1 - local.y / -local.z) - 0.5;
             cv::Mat one;

@@ -83,8 +83,8 @@ class RealSurfaces {
 public:
     explicit RealSurfaces(gi::World const& world) : real_(world, Surfaces::still) {}
 
-    /// @param wanted  CV_8UC1, of the rendered size: guides are computed where it is nonzero and undefined
-    /// elsewhere
+    /// @param wanted  CV_8UC1, of the rendered size: guides are computed where it
+    /// is nonzero and undefined elsewhere
     void look(gi::Camera const& camera, cv::Size size, cv::Mat const& wanted);
     /// Valid until the next `look`, which reuses their memory.
     ar::SurfaceGuides const& guides() const { return guides_; }

@@ -56,9 +56,8 @@ double confidence_of(double fit, double likelihood, glm::dvec3 const& rotation_s
 /// Takes initial estimates from all points and from single markers (IPPE, SQPnP), and selects by the number of
 /// agreeing points. Then refines robustly, rejects whole markers and single points that disagree (by 5 sigmas;
 /// more, up to 25, if all points are worse than their sigmas suggest), and refines the rest by least squares.
-/// @param last recent camera pose: decides between two poses that fit the picture equally well (`ambiguous`), and
-/// is
-///             a further initial estimate
+/// @param last recent camera pose: decides between two poses that fit the picture equally well (`ambiguous`),
+///             and is a further initial estimate
 PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera,
                            std::optional<Pose> const& last = std::nullopt);
 

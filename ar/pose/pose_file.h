@@ -1,9 +1,9 @@
 #pragma once
 // Reads poses from a file: of a tracked camera, another program, or the viewer's recordings.
 //   CSV  first line time_s,x_m,y_m,z_m,qx,qy,qz,qw; the same columns in every line
-//   TUM  time x y z qx qy qz qw, separated by blanks, no header (TUM RGB-D benchmark, Sturm et al. 2012)
-// The format is detected from the first line that is neither empty nor begins with #: CSV has commas. Times must
-// increase.
+//   TUM  time x y z qx qy qz qw, separated by blanks, no header (TUM RGB-D benchmark,
+// Sturm et al. 2012) The format is detected from the first line that is neither empty nor begins with
+// #: CSV has commas. Times must increase.
 
 #include "ar/camera/pose.h"
 

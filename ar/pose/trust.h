@@ -1,7 +1,7 @@
 #pragma once
-// Decides for each frame whether a camera pose is trusted, and what is shown while none is: the last trusted pose
-// is kept for a while (held), then virtual objects fade out at it (fading). All times are seconds on the clock of
-// the frames.
+// Decides for each frame whether a camera pose is trusted, and what is shown while none is:
+// the last trusted pose is kept for a while (held), then virtual objects fade out at it (fading).
+// All times are seconds on the clock of the frames.
 //
 //   a trusted pose            tracked, and objects fade in if they were not fully shown
 //   else a predicted pose     predicted

@@ -26,9 +26,9 @@ public:
     /// @param report  counts frames of more than 8 bits, of which the window shows 8; must outlive the window
     ArWindow(ArWindowSettings const& settings, gi::Report& report);
 
-    /// Draws and swaps; sets `record.present_ms` and, for frames with times, `record.swapped_ms`: the time from
-    /// capture until the swap returned and the GPU had finished. Keys: S before and after side by side, H
-    /// panel, Escape ends.
+    /// Draws and swaps; sets `record.present_ms` and, for frames with times, `record.swapped_ms`:
+    /// the time from capture until the swap returned and the GPU had finished. Keys:
+    /// S before and after side by side, H panel, Escape ends.
     void show(ArFrameRecord& record, ArResult const& result);
     /// The frame's area of the window at the swap, read back: CV_8UC3 RGB.
     cv::Mat const& shown() const { return shown_; }

@@ -1,8 +1,8 @@
 #pragma once
-// End-to-end check of the displayed pictures: the frames show their own number, and a virtual ball is rendered
-// where a moving camera would see it. Number and ball are read only from the displayed picture; both must match
-// the record, and the ball must be where the camera of *that number's* frame sees it: otherwise virtual objects
-// would swim.
+// End-to-end check of the displayed pictures: the frames show their own number, and a virtual ball is
+// rendered where a moving camera would see it. Number and ball are read only from the displayed picture;
+// both must match the record, and the ball must be where the camera of *that number's* frame sees
+// it: otherwise virtual objects would swim.
 
 #include "ar/camera/camera_model.h"
 #include "ar/runtime/runner.h"
@@ -16,8 +16,8 @@ struct CounterSession {
     double rate_hz = 30;
 };
 
-/// The ball moves back and forth by 2 % of the picture's width per frame. Writes its files into an existing
-/// folder.
+/// The ball moves back and forth by 2 % of the picture's width per frame.
+/// Writes its files into an existing folder.
 /// @param size_px  at least 208 x 160
 CounterSession make_counter_session(std::filesystem::path const& folder, glm::ivec2 size_px, double rate_hz,
                                     gi::Report& report);

@@ -1,7 +1,7 @@
 #pragma once
-// Flicker: how much composites change while nothing does. The same camera frame, pose and moment again and again,
-// as from a camera on a tripod that looks at a still scene; its sensor noise, and what is added of it, stay the
-// same.
+// Flicker: how much composites change while nothing does. The same camera frame,
+// pose and moment again and again, as from a camera on a tripod that looks at a still scene;
+// its sensor noise, and what is added of it, stay the same.
 
 #include "ar/pipeline/pipeline.h"
 
@@ -11,8 +11,8 @@ struct Flicker {
     /// Per block of 8 x 8 pixels that virtual objects cover: standard deviation of its mean radiance over the
     /// frames, in per cent of its mean.
     std::vector<double> blocks_percent;
-    double bytes =
-        0; ///< standard deviation of 8-bit values over the frames, mean over the pixels that ever changed
+    /// Standard deviation of 8-bit values over the frames, mean over the pixels that ever changed.
+    double bytes = 0;
     int frames = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Errors per frame against the ground truth: a folder of pictures with the objects really there, and the camera's
-// true poses.
+// Errors per frame against the ground truth: a folder of pictures with the objects really there,
+// and the camera's true poses.
 
 #include "ar/pose/pose_file.h"
 #include "ar/runtime/pose_truth.h"

@@ -25,8 +25,8 @@ private:
 struct ArHmdOptions {
     PassThroughOptions pass_through;
     HmdOptions headset;
-    std::filesystem::path
-        eyes; ///< folder for the last pictures of both eyes, left.png and right.png; empty = none
+    /// Folder for the last pictures of both eyes, left.png and right.png; empty = none.
+    std::filesystem::path eyes;
 };
 
 struct ArHmdSummary {
@@ -41,8 +41,8 @@ struct ArHmdSummary {
     int losses = 0;
 };
 
-/// Runs until the frames end, or `stop`. @throws gi::InputError no runtime, no headset, or the session cannot be
-/// run
+/// Runs until the frames end, or `stop`.  @throws gi::InputError no runtime,
+/// no headset, or the session cannot be run
 /// @param summary  is filled even if an exception is thrown
 void run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
                    gi::Report& report, ArHmdSummary& summary);

@@ -27,8 +27,8 @@ std::string numbers(std::initializer_list<double> values)
     return text;
 }
 
-/// How the composite's codes follow from radiance: unit = vignetting(r) M radiance, code = the nearest by
-/// response.
+/// How the composite's codes follow from radiance: unit = vignetting(r) M radiance,
+/// code = the nearest by response.
 void add_response(std::map<std::string, std::string>& text, ar::Compositor const& compositor, PassFrame const& f)
 {
     ar::Photometry const& p = compositor.photometry();
@@ -116,8 +116,8 @@ gi::Picture PassLayers::picture(PassFrame const& f)
     text["colour_space"] = "linear BT.709 (sRGB primaries), D65";
     text["lens"] = ar::name_of(shown_.lens);
     text["focal_length_px"] = numbers({shown_.fx, shown_.fy});
-    text["principal_point_px"] =
-        numbers({shown_.cx, shown_.cy}); // pixel centres are whole numbers, from the top left
+    // Pixel centres are whole numbers, from the top left.
+    text["principal_point_px"] = numbers({shown_.cx, shown_.cy});
     std::string coefficients;
     for (int i = 0; i < ar::coefficient_count(shown_.lens); ++i)
         coefficients += (i > 0 ? " " : "") + fmt::format("{:.9g}", shown_.distortion[std::size_t(i)]);

@@ -45,8 +45,8 @@ struct PassThroughCounts {
 
 class PassThrough {
 public:
-    /// Opens cameras, loads scenes and starts. All arguments must outlive it. @throws gi::InputError,
-    /// gi::InputError
+    /// Opens cameras, loads scenes and starts. All arguments must outlive it.
+    /// @throws gi::InputError, gi::InputError
     PassThrough(ArSession const& session, PassThroughOptions const& options, gi::Report& report);
     ~PassThrough();
 

@@ -26,8 +26,8 @@ struct ArRunOptions {
     CompositeBy composite = CompositeBy::pipeline;
     /// Called before the first frame, by the caller's thread.
     std::function<void(ar::SourceDescription const&, ArPipeline const&)> opened;
-    /// Called with every original frame, including those later overtaken or refused, by the thread that takes
-    /// them.
+    /// Called with every original frame, including those later overtaken or refused,
+    /// by the thread that takes them.
     std::function<void(ar::Frame const&)> taken;
     std::function<void()> idle; ///< called by the caller's thread every 10 ms while there is nothing to show
 };

@@ -9,8 +9,7 @@
 namespace viewer {
 
 /// @param numbering  of frames that a file numbers instead of giving times; its rate is also that of the samples
-/// of
-///   an animated camera, whose first key is the first frame
+///   of an animated camera, whose first key is the first frame
 /// @throws gi::InputError as of read_poses; a scene file with no camera or several, or with `numbering.first`
 ar::PoseFile read_camera_poses(std::filesystem::path const& file, ar::FrameNumbering const& numbering,
                                gi::Report& report);

@@ -34,8 +34,8 @@ struct ArReal : ArPlaced {
 /// How virtual objects are lit.
 enum class PairLight {
     automatic,   ///< prefiltered where the scenes allow it
-    prefiltered, ///< by prefiltered light (ar/pipeline/prefiltered): no noise, real-time; matt and broadly glossy
-                 ///< surfaces
+    /// By prefiltered light (ar/pipeline/prefiltered): no noise, real-time; matt and broadly glossy surfaces.
+    prefiltered,
     paths        ///< by paths of ArRender::method
 };
 

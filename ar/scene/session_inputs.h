@@ -1,16 +1,16 @@
 #pragma once
-// Lists the input files of a session: none may be overwritten while it runs, and together they determine its
-// output.
+// Lists the input files of a session: none may be overwritten while it runs,
+// and together they determine its output.
 
 #include "ar/scene/session_file.h"
 
 namespace viewer {
 
-/// The session's own file and the files it references, directly or indirectly: pictures, recordings and videos of
-/// both cameras, calibrations, markers, scenes (for a mesh sequence its folder's files), light, proxies, estimated
-/// albedos with their textures, and the tracker's display. Missing files are listed by name; cameras and generated
-/// scenes have no files. Files referenced by scene files (textures, buffers) are not listed. The order is always
-/// the same.
+/// The session's own file and the files it references, directly or indirectly: pictures, recordings and videos
+/// of both cameras, calibrations, markers, scenes (for a mesh sequence its folder's files), light, proxies,
+/// estimated albedos with their textures, and the tracker's display. Missing files are listed by name;
+/// cameras and generated scenes have no files. Files referenced by scene files (textures, buffers) are not listed.
+/// The order is always the same.
 /// @throws gi::InputError, gi::InputError albedos, a display or a pattern that cannot be read
 std::vector<std::filesystem::path> files_read_by(ArSession const& session);
 

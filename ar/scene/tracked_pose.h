@@ -39,8 +39,8 @@ class TrackerHub;
 
 class TrackedCamera {
 public:
-    /// Reads the display and starts to listen. @throws gi::InputError no such tracker, or a tracker type without a
-    /// camera
+    /// Reads the display and starts to listen.  @throws gi::InputError no such tracker,
+    /// or a tracker type without a camera
     TrackedCamera(ArTracked const& tracked, gi::Report& report);
     /// Uses an existing hub, whose head is the sensor.
     TrackedCamera(ArTracked const& tracked, std::unique_ptr<TrackerHub> hub);
@@ -49,9 +49,9 @@ public:
     /// Poses of a recorded file, by seconds since the first frame, independent of clocks.
     std::vector<ar::TimedPose> const& recorded() const { return recorded_; }
     bool is_live() const { return hub_ != nullptr; }
-    /// Pose interpolated between the nearest samples, or predicted from the last ones; nothing if the tracker has
-    /// lost it, or the time is beyond the prediction limit. @param steady_s  of the exposure,
-    /// std::chrono::steady_clock
+    /// Pose interpolated between the nearest samples, or predicted from the last ones;
+    /// nothing if the tracker has lost it, or the time is beyond the prediction limit.
+    /// @param steady_s  of the exposure, std::chrono::steady_clock
     std::optional<ar::Pose> at(double steady_s);
     /// Lines of text with packets, losses and latency; empty for recorded poses.
     std::string describe() const;

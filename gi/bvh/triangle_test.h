@@ -25,8 +25,8 @@ struct RayShear {
     }
 };
 
-/// a b - c d with an error of 1.5 ulp, and so with the right sign. Explicitly fused, so that all compilers round
-/// alike.
+/// a b - c d with an error of 1.5 ulp, and so with the right sign. Explicitly fused,
+/// so that all compilers round alike.
 GI_FN inline float difference_of_products(float a, float b, float c, float d)
 {
     float const cd = c * d, error = std::fma(c, d, -cd);

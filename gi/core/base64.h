@@ -1,4 +1,6 @@
 #pragma once
+// Base64 (RFC 4648): bytes as printable text.
+
 #include <optional>
 #include <span>
 #include <string>

@@ -1,4 +1,6 @@
 #pragma once
+// CRC-32 checksums by zlib.
+
 #include <cstdint>
 #include <span>
 #include <string_view>

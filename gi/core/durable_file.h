@@ -11,9 +11,9 @@ namespace gi {
 /// systems that give a new name to data that is not on the disk also the file before it (not on ext4 and btrfs).
 enum class DiskWait : bool { no, yes };
 
-/// Writes a temporary file beside it, hands it to the disk (fsync), renames it, and makes the name durable. Where
-/// the file system can (O_TMPFILE), the temporary has no name, so that nothing stays of it if the program is
-/// killed.
+/// Writes a temporary file beside it, hands it to the disk (fsync), renames it, and makes the name durable.
+/// Where the file system can (O_TMPFILE), the temporary has no name, so that nothing
+/// stays of it if the program is killed.
 /// @throws InputError naming the file; then nothing has changed
 void write_durably(std::filesystem::path const& file, std::string_view text);
 /// The same of the parts one after the other.

@@ -1,12 +1,14 @@
 #pragma once
+// Suggests the known word that a mistyped one was probably meant to be, for messages.
+
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace gi {
 
-/// Insertions, deletions, replacements and exchanges of neighbours that make one word of the other (optimal string
-/// alignment).
+/// Insertions, deletions, replacements and exchanges of neighbours that make one word
+/// of the other (optimal string alignment).
 int edit_distance(std::string const& a, std::string const& b);
 
 /// The nearest known word, if its distance is at most half of the word's length, or one.

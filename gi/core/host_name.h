@@ -5,7 +5,7 @@
 
 namespace gi {
 
-/// Of this machine; "unknown" where it has none.
+/// Name of this machine; "unknown" if it has none.
 inline std::string host_name()
 {
     std::array<char, 256> name{};

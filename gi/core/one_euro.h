@@ -2,9 +2,9 @@
 // The one-euro filter (Casiez, Roussel, Vogel 2012, "1€ Filter: A Simple Speed-based Low-pass Filter for Noisy
 // Input in Interactive Systems", CHI): a low-pass of first order whose cutoff rises with speed,
 //   fc = min_cutoff + beta |v|,  tau = 1 / (2 pi fc),  alpha = dt / (dt + tau),  y += alpha (x - y).
-// Here v comes from successive inputs and not, as in the paper's listing, from input and last output: it then is
-// that of the motion and can be used to predict; its own cutoff rises likewise, so that noise at rest is not
-// extrapolated.
+// Here v comes from successive inputs and not, as in the paper's listing, from input and last output:
+// it then is that of the motion and can be used to predict; its own cutoff rises likewise,
+// so that noise at rest is not extrapolated.
 
 #include "gi/core/math.h"
 

@@ -1,4 +1,6 @@
 #pragma once
+// Rigid poses (position and rotation): composition, inverse, interpolation.
+
 #include "gi/core/rotation.h"
 
 namespace gi {

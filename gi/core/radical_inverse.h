@@ -3,8 +3,8 @@
 
 namespace gi {
 
-/// The digits of i in a base, mirrored at the point: 0..1, without 1. Of bases 2 and 3, Halton's points of a
-/// square.
+/// Radical inverse of i (its digits mirrored at the radix point), in [0, 1): bases 2 and 3 give Halton's points of
+/// a square.
 inline double radical_inverse(std::size_t i, std::size_t base)
 {
     double out = 0, digit = 1;

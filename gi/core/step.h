@@ -1,6 +1,6 @@
 #pragma once
-// Where long work is: what loads and builds says its steps, and whoever shows progress hears them, on the same
-// thread.
+// Where long work is: what loads and builds says its steps, and whoever shows
+// progress hears them, on the same thread.
 
 #include "gi/core/progress.h"
 

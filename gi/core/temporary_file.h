@@ -1,13 +1,13 @@
 #pragma once
-// A name beside a file under which its new contents are written until they replace it.
+// A temporary file beside a file, which replaces it atomically once it is complete.
 
 #include <filesystem>
 
 namespace gi {
 
-/// Holds ".NAME.tmp", locked while this object exists, so that a file which a killed program left there is written
-/// anew by whoever writes NAME next. Where another process writes it now, or files cannot be locked, the name is
-/// ".NAME.tmp-PID".
+/// The file is ".NAME.tmp", locked while this object exists. A file that a killed program left there is not
+/// locked, and is overwritten the next time NAME is written. If another process is writing it now, or if files
+/// cannot be locked, the file is ".NAME.tmp-PID".
 class TemporaryFile {
 public:
     explicit TemporaryFile(std::filesystem::path const& file);

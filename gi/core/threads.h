@@ -1,4 +1,6 @@
 #pragma once
+// How many threads a computation uses.
+
 #include <functional>
 
 namespace gi {

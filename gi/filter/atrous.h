@@ -13,8 +13,8 @@
 namespace gi {
 
 /// @param iterations  1 to kMaxIterations
-/// @param known  filtered light of the partner: left unchanged, and used as neighbours from the second iteration
-///   on
+/// @param known  filtered light of the partner: left unchanged, and used as
+///   neighbours from the second iteration on
 /// @return the filtered light; input.light is consumed
 Planes filter_atrous(FilterInput& input, int iterations, FilteredLight const& known);
 

@@ -23,9 +23,9 @@ struct DenoiseSettings {
     Denoiser denoiser = Denoiser::atrous;
     int iterations = 4; ///< atrous: 1 to 5; the last one reaches 2^iterations pixels to each side
     int window = 4;     ///< discontinuity: width of the window in pixels, 1 to 32
-    int reach = 0;      ///< discontinuity: windows averaged to each side for indirect light; window * reach <=
-                        ///< kMaxReach
-    int threads = 0;    ///< 0 = all
+    /// Discontinuity: windows averaged to each side for indirect light; window * reach <= kMaxReach.
+    int reach = 0;
+    int threads = 0; ///< 0 = all
     OidnQuality oidn_quality = OidnQuality::fast;
     StopRequest const* stop = nullptr; ///< once it is requested, denoise() throws Interrupted
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Which pixels a filter has to compute and which it reads for that: only few if most light is already known from
-// a partner.
+// Which pixels a filter has to compute and which it reads for that:
+// only few if most light is already known from a partner.
 
 #include "gi/filter/reused_light.h"
 #include "gi/filter/spans.h"
@@ -11,8 +11,7 @@ struct FilterArea {
     RowSpans wanted; ///< pixels that a filter has to compute
     RowSpans near;   ///< `wanted` and all pixels that the filter reads: at least one pixel around
 
-    /// True if all light that is near but not wanted is the partner's; the filter does not report on those
-    /// pixels.
+    /// True if all light that is near but not wanted is the partner's; the filter does not report on those pixels.
     bool takes = false;
 
     /// Calls `call` for every span of row y that is in `near` but not in `wanted`.
@@ -26,8 +25,8 @@ struct FilterArea {
 /// Area in which all surfaces are wanted: in each row, from the first to the last surface pixel.
 FilterArea whole_area(Picture const& picture);
 
-/// Area in which only surfaces that take no valid light from the partner are wanted. The pictures may differ in
-/// size.
+/// Area in which only surfaces that take no valid light from the partner are wanted.
+/// The pictures may differ in size.
 /// @param reach  radius of the filter, pixels; if at least the picture's size, every pixel is near
 FilterArea own_area(Picture const& picture, ReusedLight const& taken, int reach);
 

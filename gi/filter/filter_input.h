@@ -7,8 +7,7 @@
 
 namespace gi {
 
-/// Planes of the surfaces. All are 0 if a pixel has no surface or a black one; a normal of 0 agrees with no
-/// other.
+/// Planes of the surfaces. All are 0 if a pixel has no surface or a black one; a normal of 0 agrees with no other.
 namespace guide {
 enum : int {
     normal = 0,             ///< 3 planes
@@ -16,8 +15,8 @@ enum : int {
     inverse_footprint2 = 6, ///< 1 / (distance of neighbouring pixels)^2, 1/m2
     surface = 7,            ///< 1 if the pixel has a surface
     variance = 8,           ///< of the luminance of all light
-    albedo = 9,             ///< its luminance, offset so that surfaces with different channels too dark differ by
-                            ///< more than 1
+    /// Its luminance, offset so that surfaces with different channels too dark differ by more than 1.
+    albedo = 9,
     count = 10
 };
 } // namespace guide

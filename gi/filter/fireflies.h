@@ -19,8 +19,8 @@ namespace gi {
 /// A picture with the layers color, L0, L1, L2, albedo, normal and position.
 struct FireflyView {
     Picture const* picture = nullptr;
-    /// Source pixels as in ReusedLight: pixels with another picture's light are left alone; empty = all have their
-    /// own.
+    /// Source pixels as in ReusedLight: pixels with another picture's light are left alone;
+    /// empty = all have their own.
     std::span<std::uint32_t const> from{};
     /// The other eye's picture of the same moment; null = none.
     Picture const* other = nullptr;
@@ -42,8 +42,8 @@ struct FireflyCounts {
     void add(FireflyCounts const& more);
 };
 
-/// Finds the fireflies, in the order of pixels; does not depend on the number of threads. Throws InputError if a
-/// layer is missing.
+/// Finds the fireflies, in the order of pixels; does not depend on the number of threads.
+/// Throws InputError if a layer is missing.
 std::vector<Firefly> find_fireflies(FireflyView const& view, FireflyCounts& counts);
 
 /// Scales L1, L2 and the variances, if there are any, spreads what this takes over the similar pixels within 10

@@ -32,8 +32,8 @@ class OidnFilter {
 public:
     explicit OidnFilter(OidnSettings const& s) : settings(s), device_(lib_.new_device(lib_.device_cpu))
     {
-        lib_.set_device_bool(device_, "setAffinity", false); // it runs on TBB's threads, which other code uses
-                                                             // too
+        // It runs on TBB's threads, which other code uses too.
+        lib_.set_device_bool(device_, "setAffinity", false);
         if (s.threads > 0) lib_.set_device_int(device_, "numThreads", s.threads);
         lib_.commit_device(device_);
         check("start");

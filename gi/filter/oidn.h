@@ -10,9 +10,8 @@ namespace gi {
 /// Throws InputError if Open Image Denoise is not installed or does not start.
 void check_oidn();
 
-/// Replaces L1, L2 and color of all surfaces. Pixels with a value that is not finite keep their values; the
-/// filter gets the mean of their neighbours instead. Throws InputError like check_oidn, and if a layer is
-/// missing.
+/// Replaces L1, L2 and color of all surfaces. Pixels with a value that is not finite keep their values; the filter
+/// gets the mean of their neighbours instead. Throws InputError like check_oidn, and if a layer is missing.
 /// @param stop  once it is requested, throws Interrupted; null = never
 DenoiseReport filter_oidn(Picture& picture, OidnQuality quality, int threads, StopRequest const* stop);
 

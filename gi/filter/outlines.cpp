@@ -7,8 +7,8 @@
 namespace gi {
 namespace {
 
-constexpr float kLessVariance = 2;     // a neighbour counts if its variance is this many times less than the
-                                       // pixel's
+// A neighbour counts if its variance is this many times less than the pixel's.
+constexpr float kLessVariance = 2;
 constexpr float kRelativeNoise = 0.2f; // 1 / (standard deviation / mean)^2 from which on pixels are unchanged
 constexpr float kKnown = 1e-3f;        // (standard deviation / mean)^2: no light is assumed to be known better
 constexpr float kNoVariance = 1e-12f;  // variance of light without noise

@@ -71,8 +71,8 @@ private:
     }
 
     int count_, width_, height_;
-    std::size_t stride_; ///< an odd number of cache lines; otherwise all planes would compete for the same few
-                         ///< cache sets
+    /// An odd number of cache lines; otherwise all planes would compete for the same few cache sets.
+    std::size_t stride_;
     std::unique_ptr<float[]> values_;
 };
 

@@ -14,8 +14,8 @@ inline constexpr std::uint32_t kOwnLight = 0xffffffff;
 struct ReusedLight {
     /// Partner image at the same processing stage; null if none.
     Picture const* partner = nullptr;
-    std::span<std::uint32_t const> from{}; ///< source pixel per pixel: index in the partner, row by row, or
-                                           ///< kOwnLight
+    /// Source pixel per pixel: index in the partner, row by row, or kOwnLight.
+    std::span<std::uint32_t const> from{};
 };
 
 } // namespace gi

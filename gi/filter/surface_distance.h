@@ -1,19 +1,19 @@
 #pragma once
 // Difference between two pixels' surfaces; from 1 on they count as different.
-//   d^2 = (1 - cos) / (1 - cos 37 degrees) + (distance from the tangent plane / reach)^2 + (3 difference of
-//   albedos)^2
+//   d^2 = (1 - cos) / (1 - cos 37 degrees) + (distance from the tangent plane / reach)^2
+//         + (3 difference of albedos)^2
 
 #include "gi/filter/filter_input.h"
 
 namespace gi {
 
-inline constexpr float kBySurfaceNormal = 5; ///< 1 / (1 - cosine) of the angle from which on surfaces count as
-                                             ///< different
-inline constexpr float kBySurfaceAlbedo = 3; ///< 1 / difference of albedo luminances from which on they count as
-                                             ///< different
+/// 1 / (1 - cosine) of the angle from which on surfaces count as different.
+inline constexpr float kBySurfaceNormal = 5;
+/// 1 / difference of albedo luminances from which on surfaces count as different.
+inline constexpr float kBySurfaceAlbedo = 3;
 
-/// 1 / reach^2: pixels of distance from the tangent plane. Larger for larger steps, as surfaces curve more over a
-/// distance.
+/// 1 / reach^2: pixels of distance from the tangent plane. Larger for larger steps,
+/// as surfaces curve more over a distance.
 constexpr float plane_scale(int step)
 {
     float const reach = 1.5f * (1 + 0.2f * float(step));

@@ -69,9 +69,9 @@ void TemporalReuse::Light::take(Light const& there)
 
 void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
 {
-    // Standard errors of the mean difference in a window (a quarter of whose pixels are independent, since means
-    // are interpolated), and relative difference: below the first, light is unchanged; from the second on, it is
-    // new.
+    // Standard errors of the mean difference in a window (a quarter of whose pixels are independent,
+    // since means are interpolated), and relative difference: below the first, light is unchanged;
+    // from the second on, it is new.
     constexpr int kWindow = 7;
     constexpr float kIndependent = 0.25f;
     constexpr vec2 kErrors{1.5f, 3}, kRelative{0.01f, 0.03f};
@@ -121,7 +121,8 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
 
 /// Interpolates the last frame's light by Catmull and Rom's cubics if all of 4 x 4 pixels showed the surface:
 /// bilinear means would blur it in every frame. Returns false if not.
-/// @param at  in the last frame, from the middle of its first pixel   @param shows  of a Surface
+/// @param at  in the last frame, from the middle of its first pixel
+/// @param shows  whether a Surface of the last frame is the one looked for
 template <class Shows>
 bool TemporalReuse::interpolate(vec2 at, int width, int height, Shows const& shows, Light& light) const
 {
@@ -243,8 +244,8 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             if (!(here.depth > 0)) continue;
             ++local.surfaces;
             vec3 const was = rgb(motion, i);
-            // Neither the surface seen now nor the one seen before moves: probably an edge, seen through another
-            // subpixel position.
+            // Neither the surface seen now nor the one seen before moves: probably an edge,
+            // seen through another subpixel position.
             bool const still = glm::length(vec2(was)) < kStill, taken = partner && takes[i];
             lights_[i].still = still;
             if (taken && !still) continue;

@@ -62,14 +62,14 @@ public:
     /// such as a picture of another size. Forgotten if the next frame's light has changed.
     void begin_with(std::vector<KnownLight> light) { known_ = std::move(light); }
     bool is_new() const { return frames_ == 0; } ///< no frame was added yet
-    /// Replaces L0, L1, L2, color and albedo by means over frames, and adds the layers variance_direct and
-    /// variance_indirect: variances of these means' luminance of L1 and of L2 over the albedo, measured over
-    /// frames; negative if there was only one frame. With TemporalSettings::keep_normals, light_normal is the mean
-    /// of the normals whose light is in the mean of L1 and L2, with the same weights (but L1 is also clamped), so
-    /// that light which is linear in the normal stays so. Needs color, L0, L1, L2, albedo, normal, depth and
-    /// motion (throws InputError if one is missing). "motion" is as in gi/render/motion.h: x, y: offset in pixels
-    /// to the surface's previous position; z: its previous depth, m; NaN if there was none. All frames have one
-    /// size.
+    /// Replaces L0, L1, L2, color and albedo by means over frames, and adds the layers variance_direct
+    /// and variance_indirect: variances of these means' luminance of L1 and of L2 over the albedo,
+    /// measured over frames; negative if there was only one frame. With TemporalSettings::keep_normals,
+    /// light_normal is the mean of the normals whose light is in the mean of L1 and L2, with the same
+    /// weights (but L1 is also clamped), so that light which is linear in the normal stays so. Needs color,
+    /// L0, L1, L2, albedo, normal, depth and motion (throws InputError if one is missing).
+    /// "motion" is as in gi/render/motion.h: x, y: offset in pixels to the surface's previous position;
+    /// z: its previous depth, m; NaN if there was none. All frames have one size.
     /// @param partner, from  the partner's reuse, to which this frame has already been added, and the partner's
     ///   source pixels (ReusedLight::from): these pixels take the partner's motion-following means
     TemporalCounts add(Picture& frame, SceneChange change, TemporalReuse const* partner = nullptr,

@@ -42,8 +42,8 @@ struct ToneMap {
 std::vector<float> tone_map(Layer const& layer, ToneMapSettings const& settings);
 /// The same as bytes.
 std::vector<unsigned char> tone_map_bytes(Layer const& layer, ToneMapSettings const& settings);
-/// Returns R, G, B, A bytes. PNG stores colours without premultiplied alpha, so colours are divided by alpha; 0
-/// if alpha is 0.
+/// Returns R, G, B, A bytes. PNG stores colours without premultiplied alpha, so colours
+/// are divided by alpha; 0 if alpha is 0.
 /// @param color  multiplied by alpha  @param alpha  one channel, 0..1
 std::vector<unsigned char> tone_map_bytes(Layer const& color, Layer const& alpha, ToneMapSettings const& settings);
 

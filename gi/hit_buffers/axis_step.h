@@ -1,6 +1,6 @@
 #pragma once
-// Steps of a path by look-ups, the same on CPU and GPU: its start at the camera and its continuation along an
-// axis.
+// Steps of a path by look-ups, the same on CPU and GPU: its start at the camera
+// and its continuation along an axis.
 
 #include "gi/hit_buffers/directions/axis_set.h"
 #include "gi/hit_buffers/query.h"

@@ -43,8 +43,8 @@ void fill_hit_buffer(Fragments const& f, RasterGrid const& grid, std::uint32_t m
     std::size_t const texels = grid.texels();
     out.grid = grid;
     out.lost = 0;
-    // offset[t + 1] first counts the layers of t, then is the position of the next one to insert, and so finally
-    // their end.
+    // offset[t + 1] first counts the layers of t, then is the position of the next one
+    // to insert, and so finally their end.
     out.offset.assign(texels + 1, 0);
     std::uint32_t* const next = out.offset.data() + 1;
     for (std::size_t k = 0; k < f.count; ++k) ++next[f.texel[k]];

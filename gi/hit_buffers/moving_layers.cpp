@@ -23,8 +23,8 @@ void MovingLayers::merge(Source const& source, std::uint32_t cut_seed, AxisPool 
     out.lost = 0;
     for (std::size_t k = 0; k < f.count; ++k)
         if (count[f.texel[k]]++ == 0) out.texels.push_back(f.texel[k]);
-    std::ranges::sort(out.texels); // so that neighbours in space are neighbours in memory, as in the static
-                                   // buffer
+    // So that neighbours in space are neighbours in memory, as in the static buffer.
+    std::ranges::sort(out.texels);
     out.ends.clear();
     auto const stays = [&](std::uint32_t texel) {
         std::uint32_t const* const offset = &pool.offset[pool.first_offset[a] + texel];
@@ -33,8 +33,8 @@ void MovingLayers::merge(Source const& source, std::uint32_t cut_seed, AxisPool 
     std::uint32_t end = 0;
     for (std::uint32_t const t : out.texels) {
         std::uint32_t const fixed = std::uint32_t(stays(t).size());
-        std::uint32_t const all = fixed + std::exchange(count[t], end + fixed); // from now on: position of its
-                                                                                // next layer
+        // From now on: position of its next layer.
+        std::uint32_t const all = fixed + std::exchange(count[t], end + fixed);
         end += all;
         out.ends.push_back(end);
     }

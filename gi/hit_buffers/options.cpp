@@ -112,7 +112,7 @@ void check_hit_buffer_options(std::vector<std::string> const& given, RenderSetti
                          "leave one of them out");
     auto const check_part = [](char const* part, int fresh, char const* whole, int all) {
         if (all > 0 && fresh > all)
-            throw InputError(fmt::format("{} is larger than {}", part, whole), "it is the part that is new",
+            throw InputError(fmt::format("{} is larger than {}", part, whole), "it says how many of them are new",
                              fmt::format("give at most {}", all));
     };
     check_part("--fresh-axes", s.fresh_axes, "--axes", s.axes);

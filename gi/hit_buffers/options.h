@@ -1,4 +1,6 @@
 #pragma once
+// Command-line options of hit buffers and shadow maps.
+
 #include "gi/hit_buffers/settings.h"
 #include "gi/render/render_option.h"
 

@@ -1,10 +1,9 @@
 #pragma once
 // Nearest surface along the axis: a look-up in a layered hit buffer instead of a ray.
 //
-// A look-up starts on a triangle of the scene and leaves it along the axis (up) or against it. In the column
-// under the nearest texel centre it finds the layer of its own surface; the next layer is the hit. The hit
-// position is the point of the polygon at the texel centre (at any other point, this layer's depth would be off
-// the surface).
+// A look-up starts on a triangle of the scene and leaves it along the axis (up) or against it. In the column under
+// the nearest texel centre it finds the layer of its own surface; the next layer is the hit. The hit position is
+// the point of the polygon at the texel centre (at any other point, this layer's depth would be off the surface).
 //
 // The origin's own layer is that of its triangle; else, as the texel centre may lie beside the triangle, the
 // nearest layer with the same facing within `margin`, which is how much the depth of the origin's surface can
@@ -191,8 +190,8 @@ GI_FN inline LayerHit nearest_layer(AxisView const& axis, View<Surface const> su
     Column first;
     std::uint32_t first_i = i[0], first_j = j[0];
     for (int attempt = 0; attempt < 4; ++attempt) {
-        // The nearest centre; then the neighbour across the nearer border, the other neighbour, and the diagonal
-        // one.
+        // The nearest centre; then the neighbour across the nearer border,
+        // the other neighbour, and the diagonal one.
         int const to_x = attempt == 3 || (attempt == 1) == nearer_in_x ? int(attempt > 0) : 0;
         int const to_y = attempt == 3 || (attempt == 2) == nearer_in_x ? int(attempt > 0) : 0;
         std::uint32_t const ti = i[to_x], tj = j[to_y];

@@ -290,8 +290,8 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
         if (b.watched)
             for (std::size_t k = 0; k < queries_of(pair); ++k)
                 b.near_moving[first + k] = columns.moved[slot(pair) * lanes + k];
-        std::uint32_t const there =
-            queries_of(pair) < 32 ? (1u << queries_of(pair)) - 1 : ~0u; // a pair has up to 32 lanes
+        // A pair has up to 32 lanes.
+        std::uint32_t const there = queries_of(pair) < 32 ? (1u << queries_of(pair)) - 1 : ~0u;
         for (std::uint32_t bits = a.doubtful & there; bits != 0; bits &= bits - 1) {
             std::uint32_t const q = std::uint32_t(first) + std::uint32_t(std::countr_zero(bits));
             __builtin_prefetch(&surfaces[b.hit[q] & kPrimitiveMask]);

@@ -14,9 +14,9 @@ enum class Schedule : std::uint8_t {
     temporal, ///< a set in which some axes are replaced in every pass
 };
 
-/// Approximations of look-ups that are replaced by exact rays, to measure their bias: two renders with one seed that
-/// differ only in this setting share axes, light samples and random numbers, so that their difference has little
-/// noise.
+/// Approximations of look-ups that are replaced by exact rays, to measure their bias:
+/// two renders with one seed that differ only in this setting share axes, light samples and random numbers,
+/// so that their difference has little noise.
 struct ExactParts {
     bool queries = false;    ///< instead of look-ups in hit buffers
     bool shadows = false;    ///< instead of look-ups in shadow maps

@@ -14,8 +14,8 @@ inline constexpr std::string_view kMetadataPrefix = "lightwell:";
 
 InputError bad_exr(std::string const& name, std::string const& why);
 
-/// Throws InputError unless every attribute of every header has the size that its type requires and lies within
-/// the file.
+/// Throws InputError unless every attribute of every header has the size that its type
+/// requires and lies within the file.
 void check_exr_header(std::span<unsigned char const> bytes, std::string const& name);
 
 } // namespace gi

@@ -28,7 +28,7 @@ ExrOutput::~ExrOutput()
 void ExrOutput::fail(int error)
 {
     if (error_ == 0) error_ = error;
-    errno = error_; // for callers that tell of a full disk by it
+    errno = error_; // callers recognise a full disk by it
     throw std::system_error(error_, std::generic_category());
 }
 

@@ -39,9 +39,9 @@ std::optional<ExrAttributes::TimeCode> time_code_of(std::uint64_t frame, double 
 
 /// OpenEXR. "color" becomes the channels R, G, B(, A) of the first part; every other layer NAME becomes
 /// NAME.R/.G/.B (radiance-like), NAME.X/.Y/.Z ("normal", "position") or NAME.V (one channel).
-/// NAME.X, NAME.Y for "motion_*". Layers that need more accuracy than half floats ("depth*", "position",
-/// "variance*", "motion_*") are always single precision. Half values beyond +-65504 are clamped and counted in the
-/// report.
+/// NAME.X, NAME.Y for "motion_*". Layers that need more accuracy than half floats ("depth*",
+/// "position", "variance*", "motion_*") are always single precision. Half values beyond +-65504
+/// are clamped and counted in the report.
 void write_exr(std::filesystem::path const& file, Picture const& picture, PixelType type, Report& report,
                ExrAttributes const& attributes = {});
 /// The same picture, read kRowsAtOnce rows at a time: the same file, in little memory.

@@ -1,6 +1,6 @@
 #pragma once
-// A picture that is made while it is read, some rows at a time, so that large ones need not be in memory as a
-// whole.
+// A picture that is made while it is read, some rows at a time, so that large
+// ones need not be in memory as a whole.
 
 #include "gi/core/progress.h"
 #include "gi/image_io/picture.h"
@@ -14,8 +14,8 @@ inline constexpr int kRowsAtOnce = 64;
 
 struct PictureRows {
     int width = 0, height = 0;
-    std::function<Picture(int first, int count)>
-        read; ///< the same layers for all rows; empty = there is no picture
+    /// The same layers for all rows; empty = there is no picture.
+    std::function<Picture(int first, int count)> read;
     std::map<std::string, std::string> metadata = {};
 
     explicit operator bool() const { return bool(read); }

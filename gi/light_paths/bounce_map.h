@@ -89,7 +89,7 @@ GI_FN inline void start_at_texel(LightView const& view, std::uint32_t texel, Lig
     out.area = view.area;
 }
 
-/// Item = texel of a view. Lets its light meet the surface that is seen there.
+/// Item = texel of a view. Starts a light path at the surface visible in this texel.
 struct BounceTexels {
     WorldView world;
     LightView view;

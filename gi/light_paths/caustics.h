@@ -4,8 +4,8 @@
 //
 //   L D           shadow rays of the ray trees, which everything blocks, panes too
 //   L S+ D        photons here. No light seen in a mirror counts twice: field rays bring only what surfaces
-//   reflect L S* D+ S* D  the field: its photons have gone through any S, and its rays go on at S (panes, mirrors,
-//   glass)
+//   reflect L S* D+ S* D  the field: its photons have gone through any S, and its rays go on at S
+//                         (panes, mirrors, glass)
 //
 // What a camera sees of D by way of mirrors and glass are points of ray trees, which read all three.
 //
@@ -46,8 +46,8 @@ public:
     /// Follows the world.
     void changed(Changes const& changes);
     /// Traces the photons of one more pass. Throws Interrupted, and then keeps what it had.
-    /// @param index  of the pass; the first decides which photons are traced  @param share  of the paths that the
-    /// settings ask for
+    /// @param index  of the pass; the first decides which photons are traced
+    /// @param share  of the paths that the settings ask for
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
                  Bounds const& focus, double share, BuildStop const& stop, PathCounts& counts);
     /// Null if the world has no smooth surface, no light reached one, or nothing is to be traced.

@@ -1,6 +1,6 @@
 #pragma once
-// The arc that a ray covers as seen from a centre, and the cells of the cube about the centre that lie on it, one
-// after the other.
+// The arc that a ray covers as seen from a centre, and the cells of the cube about the centre
+// that lie on it, one after the other.
 
 #include "gi/light_paths/impostor_maps.h"
 
@@ -52,8 +52,8 @@ struct CellSteps {
     int n, i, j;
     float since, scale, next_u, next_v; ///< s at the start and at the edges ahead
 
-    /// Starts in the cell at s, which rounding cannot put outside of `many` columns from first_i on and as many
-    /// rows.
+    /// Starts in the cell at s, which rounding cannot put outside of `many` columns
+    /// from first_i on and as many rows.
     GI_FN CellSteps(FaceArc const& on, float s, int cells, int first_i, int first_j, int many)
         : arc(on), n(cells), since(s), scale(2 / float(cells))
     {

@@ -103,7 +103,7 @@ GI_FN inline std::uint32_t nearest_impostor(ImpostorsView const& maps, vec3 poin
     return best;
 }
 
-/// The nearest one of those that see the point, other than `but`; kNoImpostor if none does.
+/// The nearest impostor that sees the point, excluding `but`; kNoImpostor if there is none.
 /// @param side  if the point lies on a surface, its normal on the side from which it is to be seen, of any length
 GI_FN inline std::uint32_t nearest_seeing(ImpostorsView const& maps, vec3 point, std::uint32_t but = kNoImpostor,
                                           vec3 side = vec3{0})

@@ -7,8 +7,8 @@
 // into the open are as long as it is: a place high above a room's roof would show its walls in a few texels.
 // Places between two surfaces of a walk are candidates. They are chosen one by one: each time the one that adds
 // most to sum over surface points of max over chosen places of
-//     visible * cos(normal, place) / (1 + distance / mean free path) * clearance / (clearance + mean free path /
-//     8),
+//     visible * cos(normal, place) / (1 + distance / mean free path) * clearance
+//         / (clearance + mean free path / 8),
 // so that points which no place sees count most, then those that are seen badly. Clearance is the distance of the
 // place to the nearest surface, as a few rays tell. This greedy choice reaches at least 1 - 1/e of what is
 // possible (Nemhauser et al. 1978).

@@ -1,13 +1,12 @@
 #pragma once
-// A walk along a ray through the texels of a distance impostor. Seen from the centre the ray covers an arc, from
-// the direction of its origin to its own; the texels on the arc hold the surfaces that it can meet, as far as the
-// centre sees them.
-//  - The triangle of each texel is met exactly or not at all; the nearest one met ends the walk when the walk has
-//  come
-//    so far. This is right even where the surface is hidden from the centre at that place but seen at another.
-//  - Triangles smaller than texels are passed by. So a crossing counts as well: where the ray passes from before
-//  the
-//    surface to behind it, and neighbouring texels join.
+// A walk along a ray through the texels of a distance impostor. Seen from the centre the ray covers an arc,
+// from the direction of its origin to its own; the texels on the arc hold the surfaces that it can meet,
+// as far as the centre sees them.
+//  - The triangle of each texel is met exactly or not at all; the nearest one met ends the walk
+//    when the walk has come so far. This is right even where the surface is hidden from the centre
+//    at that place but seen at another.
+//  - Triangles smaller than texels are passed by. So a crossing counts as well:
+//    where the ray passes from before the surface to behind it, and neighbouring texels join.
 //  - Where they do not join, the ray passes behind something. Then another impostor that sees this place goes on.
 
 #include "gi/bvh/triangle_test.h"
@@ -331,8 +330,8 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
     return found;
 }
 
-/// The normal of the triangle that a ray leaves, on the side on which it leaves it, of any length; 0 = it leaves
-/// none.
+/// The normal of the triangle that a ray leaves, on the side on which it leaves it,
+/// of any length; 0 = it leaves none.
 GI_FN inline vec3 side_left(WorldView const& world, PathQuery const& path)
 {
     if (path.triangle == kNoTriangle) return vec3{0};
@@ -341,8 +340,8 @@ GI_FN inline vec3 side_left(WorldView const& world, PathQuery const& path)
     return glm::dot(normal, path.ray.ray.direction) > 0 ? normal : -normal;
 }
 
-/// True if a centre is on a side of a point. If none is, as on the outside of a closed room, nothing is known of
-/// what is there.
+/// True if a centre is on a side of a point. If none is, as on the outside of a closed room,
+/// nothing is known of what is there.
 GI_FN inline bool any_on_side(ImpostorsView const& maps, vec3 point, vec3 side)
 {
     for (vec3 const& centre : maps.centres)

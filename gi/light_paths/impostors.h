@@ -29,8 +29,8 @@ float impostor_near(World const& world, vec3 centre);
 class Impostors {
 public:
     /// @param centres  finite, in the world's coordinates; else InputError  @param resolution  texels along an
-    /// edge of a face, 1 to 4096  @param seed  of the random decisions about partial coverage  @param world  must
-    /// outlive it
+    /// edge of a face, 1 to 4096  @param seed  of the random decisions about partial coverage
+    /// @param world  must outlive it
     /// @param first_moving  index of the first triangle that may move; all later ones may move too
     /// @param stop  checked while they are drawn, which throws Interrupted
     Impostors(World const& world, std::vector<vec3> centres, std::uint32_t resolution, std::uint32_t seed = 0,

@@ -21,7 +21,7 @@ struct LightPath {
     bool from_outside = false, straight = true; ///< see LightPaths::grid_side
     bool by_delta = false;                      ///< since the last vertex
     bool narrow = false;                        ///< it leaves its triangle by a narrow lobe (narrow_lobes.h)
-    float paths = 1;                            ///< of this kind that are expected to come so far
+    float paths = 1;                            ///< expected number of such paths that reach this vertex
     float area = 0, solid_angle = 0;            ///< over which one of them is spread where it left, m^2, sr
     float length = 0;                           ///< since then, m
 };

@@ -12,7 +12,7 @@
 
 namespace gi {
 
-/// Where a point of a surface lies relative to a fine grid; `still`: of a triangle that does not move.
+/// Where a point of a surface lies relative to a fine grid, and whether its triangle moves.
 enum class GridSide : std::uint8_t { outside, inside_moving, inside_still };
 
 struct LightPaths {
@@ -31,8 +31,8 @@ struct LightPaths {
     BuildStop const* stop = nullptr; ///< null = never; else trace_light_paths() throws Interrupted
 };
 
-/// Returns virtual lights in the order of the paths, for any number of threads. Empty if there are no lights or
-/// bounces == 0.
+/// Returns virtual lights in the order of the paths, for any number of threads.
+/// Empty if there are no lights or bounces == 0.
 std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const& bounds, PathRays const& rays,
                                            LightPaths const& settings, PathCounts& counts);
 

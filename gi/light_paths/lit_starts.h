@@ -21,8 +21,9 @@ struct LitStarts {
 LitStarts start_on_surfaces(WorldView const& world, ExactVisibility const& visibility, StartTargets const& targets,
                             LightPathSet const& set, BuildStop const& stop, PathCounts& counts);
 
-/// Half of the paths then begin where others brought light. Chances that follow from random numbers need others
-/// afterwards, else there were a bias. @param light  per target  Returns false without light.
+/// Sets the probabilities of the targets: half of the paths then begin in proportion to the light that earlier
+/// paths brought there. Later paths must use other random numbers than those, or the result is biased.
+/// @param light  per target. Returns false if there is none.
 bool learn_chances(std::span<float const> light, StartTargets& targets);
 
 } // namespace gi

@@ -1,6 +1,6 @@
 #pragma once
-// How much memory light paths, what stores their light, and impostors may take: it is checked before any of it is
-// spent.
+// How much memory light paths, what stores their light, and impostors may take:
+// it is checked before any of it is spent.
 
 #include <cstdint>
 #include <string_view>

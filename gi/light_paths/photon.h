@@ -1,6 +1,6 @@
 #pragma once
-// Photons: light that has reached a surface, as photon maps store it (Jensen 1996; Norén and Sjölin 2010, table
-// 3).
+// Photons: light that has reached a surface, as photon maps store it (Jensen 1996;
+// Norén and Sjölin 2010, table 3).
 
 #include "gi/light_paths/light_paths.h"
 

@@ -11,7 +11,7 @@
 namespace gi {
 namespace {
 
-/// For comparisons in long sorts, which throw.
+/// Called by the comparisons of long sorts, so that a stop request ends them.
 void obey(BuildStop const& stop)
 {
     if (stop.given_up()) throw Interrupted();

@@ -41,8 +41,8 @@ struct PhotonKernel {
     }
 };
 
-/// Radiance that leaves a point towards wo, W/(m^2 sr), photon by photon: by all its non-delta lobes, or without
-/// the glossy one.
+/// Radiance that leaves a point towards wo, W/(m^2 sr), photon by photon:
+/// by all its non-delta lobes, or without the glossy one.
 struct PhotonSum {
     ShadingPoint const& at;
     vec3 wo; ///< unit, in at.frame

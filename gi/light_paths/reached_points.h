@@ -1,7 +1,7 @@
 #pragma once
-// Surface points that light reaches, and the space between them: random walks of exact rays from the lights and
-// the cameras, or from both sides of all surfaces where those meet nothing. In a closed room they are uniform over
-// its area.
+// Surface points that light reaches, and the space between them: random walks of exact rays
+// from the lights and the cameras, or from both sides of all surfaces where those meet nothing.
+// In a closed room they are uniform over its area.
 
 #include "gi/render/exact_visibility.h"
 

@@ -13,15 +13,15 @@ struct FlipExposures {
     int count;
 };
 
-/// @param image, reference  width * height * 3 linear Rec. 709 values in [0, 1] (decode display-encoded ones
-///   first)
+/// @param image, reference  width * height * 3 linear Rec. 709 values in [0, 1]
+///   (decode display-encoded ones first)
 /// @return one value per pixel
 std::vector<float> flip(std::vector<float> const& image, std::vector<float> const& reference, int width,
                         int height, float pixels_per_degree = kPixelsPerDegree);
 /// Returns the range of exposures from barely to fully exposed for the reference (linear radiance).
 FlipExposures flip_exposures(std::vector<float> const& reference);
-/// Returns the per-pixel maximum of FLIP over these exposures, tone-mapped by ACES. Linear radiance, any range >=
-/// 0.
+/// Returns the per-pixel maximum of FLIP over these exposures, tone-mapped by ACES.
+/// Linear radiance, any range >= 0.
 std::vector<float> hdr_flip(std::vector<float> const& image, std::vector<float> const& reference, int width,
                             int height, float pixels_per_degree = kPixelsPerDegree);
 

@@ -63,10 +63,7 @@ void take(Side const& side, std::string const& layer, std::vector<std::string>& 
         notes.push_back(
             fmt::format("the first {} of {} channels of the {} are compared", used, from.channels, side.name));
     Layer const* const variance = side.picture.find("variance");
-    if (variance != nullptr && layer == "color")
-        side.variance = three_channels(*variance); // the layer
-                                                   // "variance" belongs
-                                                   // to color
+    if (variance != nullptr && layer == "color") side.variance = three_channels(*variance); // of the layer "color"
 }
 
 void shrink(Side const& side, PicturePair& p)

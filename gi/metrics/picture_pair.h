@@ -13,8 +13,8 @@ struct PicturePair {
     std::vector<std::string> notes;                        ///< what was downsampled or omitted
 };
 
-/// Throws InputError if a picture lacks the layer, one size is not an integer multiple of the other, or no value
-/// is finite in both.
+/// Throws InputError if a picture lacks the layer, one size is not an integer multiple of the other,
+/// or no value is finite in both.
 PicturePair pair_up(Picture const& image, Picture const& reference, std::string const& layer);
 
 /// Returns the values clipped to [0, 1], for metrics of displayed pictures.

@@ -47,8 +47,8 @@ private:
     unsigned since_ = 0; ///< number of calls of release_spare_fragments() before
 };
 
-/// Frees the memory that waits for BorrowedFragments, and that of those in use when they end: the next ones may be
-/// far smaller.
+/// Frees the memory that waits for BorrowedFragments, and that of those in use when they end:
+/// the next ones may be far smaller.
 void release_spare_fragments();
 
 } // namespace gi

@@ -82,8 +82,8 @@ GI_FN inline HalfPlane half_plane(std::int32_t ax, std::int32_t ay, std::int32_t
     return {dx * (half - ay) - dy * (half - ax) - (owns_edge ? 0 : 1), -dy * subpixels, dx * subpixels};
 }
 
-/// Samples first..last whose centres lie within [low, high] subpixels, clamped to 0..count - 1; empty if
-/// first > last.
+/// Samples first..last whose centres lie within [low, high] subpixels, clamped to
+/// 0..count - 1; empty if first > last.
 struct SampleRange {
     std::int32_t first, last;
 };

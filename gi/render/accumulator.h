@@ -32,8 +32,8 @@ struct PixelMeans {
 };
 static_assert(sizeof(PixelMeans) == 92);
 
-/// Allocator that leaves elements uninitialised, for large arrays in which every element is written before it is
-/// read.
+/// Allocator that leaves elements uninitialised, for large arrays in which every
+/// element is written before it is read.
 template <class T>
 struct Uninitialised : std::allocator<T> {
     static_assert(std::is_trivially_default_constructible_v<T>);
@@ -55,7 +55,7 @@ struct Uninitialised : std::allocator<T> {
 
 enum class PictureLayers : std::uint8_t { all, color_and_depth };
 
-/// What a picture takes from its world besides the paths.
+/// Properties of a picture that its world determines, besides the radiance of its paths.
 struct PictureShape {
     dvec3 origin{0}; ///< of the world: added to positions
     bool has_alpha = false;
@@ -67,10 +67,10 @@ struct Accumulator {
     int width = 0, height = 0;
     std::uint32_t paths = 0;                                   ///< per pixel
     std::vector<PixelMeans, Uninitialised<PixelMeans>> pixels; ///< valid only if has_paths()
-    std::vector<std::uint32_t> further; ///< per pixel, paths besides those, of a pass that was interrupted; empty
-                                        ///< = none
-    PathCounts counts;                  ///< of all paths so far
-    double seconds = 0;                 ///< spent on these paths
+    /// Per pixel, paths besides those, of a pass that was interrupted; empty = none.
+    std::vector<std::uint32_t> further;
+    PathCounts counts;  ///< of all paths so far
+    double seconds = 0; ///< spent on these paths
 
     Accumulator() = default;
     Accumulator(int w, int h) { start(w, h); }
@@ -99,13 +99,13 @@ struct Accumulator {
     void add(Accumulator const& other);
     /// Variance of the mean per channel; 0 with fewer than two paths.
     static dvec3 variance_of_mean(PixelMeans const& p, std::uint32_t paths);
-    /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (m^2 + 0.01), where m is the
-    /// mean of 5 x 5 pixels. (With the noisy value of a single pixel as m, pixels that happen to be dark would
-    /// dominate.)
+    /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (m^2 + 0.01),
+    /// where m is the mean of 5 x 5 pixels. (With the noisy value of a single pixel as m,
+    /// pixels that happen to be dark would dominate.)
     double relative_mse() const;
-    /// Makes the picture of the rendered world: positions are absolute; if the world's background is transparent,
-    /// "alpha" is the fraction of paths that hit a surface, and the colours are already multiplied by it
-    /// (premultiplied).
+    /// Makes the picture of the rendered world: positions are absolute;
+    /// if the world's background is transparent, "alpha" is the fraction of paths that hit a surface,
+    /// and the colours are already multiplied by it (premultiplied).
     Picture picture(World const& world, PictureLayers layers = PictureLayers::all) const;
     /// Some rows of such a picture.
     Picture rows(PictureShape const& shape, int first, int count) const;

@@ -1,6 +1,6 @@
 #pragma once
-// Partly transparent surfaces met by rays: a random decision per ray and triangle, the same in any order of
-// traversal.
+// Partly transparent surfaces met by rays: a random decision per ray and triangle,
+// the same in any order of traversal.
 
 #include "gi/core/rng.h"
 #include "gi/scene/shading/shading_point.h"

@@ -55,10 +55,10 @@ private:
 
     /// The static or the dynamic geometry.
     struct Part {
-        std::uint32_t first = 0, last = 0;       ///< triangles of the world
-        std::uint32_t first_vertex = 0;          ///< in the world; Embree's vertex indices start here
-        std::vector<std::uint32_t> triangles[2]; ///< per geometry: indices of the world's triangles; empty = all,
-                                                 ///< in order
+        std::uint32_t first = 0, last = 0; ///< triangles of the world
+        std::uint32_t first_vertex = 0;    ///< in the world; Embree's vertex indices start here
+        /// Per geometry: indices of the world's triangles; empty = all, in order.
+        std::vector<std::uint32_t> triangles[2];
         ScenePointer scene;
         RTCGeometry geometries[2] = {}; ///< owned by the scene; null = none
         vec3* positions = nullptr;      ///< Embree's copy of the vertices

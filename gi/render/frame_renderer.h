@@ -1,6 +1,6 @@
 #pragma once
-// Renders successive frames of a world that moves. Structures that did not change since the previous frame are
-// kept.
+// Renders successive frames of a world that moves. Structures that did not change
+// since the previous frame are kept.
 
 #include "gi/render/accumulator.h"
 #include "gi/render/render_settings.h"
@@ -27,8 +27,8 @@ struct FrameView {
     int partner = -1; ///< index of an earlier view that sees nearly the same; light computed there may be reused
                       ///< where it is valid; -1 = none
     /// 1 for each pixel that is never seen, rows from the top; empty = all are seen. Must outlive the call.
-    /// Hidden pixels are black and have no surface. Some methods trace nothing for them; others render and then
-    /// hide them.
+    /// Hidden pixels are black and have no surface. Some methods trace nothing for them;
+    /// others render and then hide them.
     std::span<std::uint8_t const> hidden{};
     /// Instead of the settings' filter, where the method can.
     std::optional<PixelFilter> filter{};
@@ -36,8 +36,9 @@ struct FrameView {
 
 /// How indirect light at a path's last vertex is shared between paths.
 enum class VertexSharing : std::uint8_t {
-    none,  ///< each path computes its own, so that a path that hits no changed geometry keeps its value whatever
-           ///< other paths hit
+    /// Each path computes its own, so that a path that hits no changed geometry keeps
+    /// its value whatever other paths hit.
+    none,
     exact, ///< paths that end on the same layer share it
     cached ///< paths may end in cells of a radiance cache that is kept while light and geometry are unchanged:
            ///< much less work, a little blur
@@ -63,8 +64,8 @@ struct PairSettings {
 struct PairResult {
     RenderResult with, without;
     std::vector<float> coverage; ///< per pixel: fraction of the paths of `with` whose first surface is dynamic
-    std::vector<vec3> covered;   ///< radiance that those paths contribute to the pixel, at most its total
-                                 ///< radiance
+    /// Radiance that those paths contribute to the pixel, at most its total radiance.
+    std::vector<vec3> covered;
 };
 
 /// Sets all layers to 0 in hidden pixels, except "motion", which is not read where no surface is seen.
@@ -94,8 +95,8 @@ public:
     /// Renders all views of one moment; view-independent work is done once for all of them. Ignores budget, paths
     /// and size of the settings. Only this function supports hidden pixels.
     /// @param paths  per pixel, >= 1
-    /// @return one result per view, in order; `interrupted`, with fewer paths, if `stop` was requested before the
-    ///   end
+    /// @return one result per view, in order; `interrupted`, with fewer paths,
+    ///   if `stop` was requested before the end
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
                                             VertexSharing sharing, StopRequest const& stop) = 0;
 };
@@ -136,11 +137,11 @@ public:
 class PairFrames {
 public:
     virtual ~PairFrames() = default;
-    /// Renders one view with and without the dynamic geometry. Calls `turn` for the two sides alternately, `with`
-    /// first, and leaves the world at either side. With PairDifference::vanishing the world stays at `with` if
-    /// possible, light samples are tested by shadow maps, which show what dynamic geometry may affect, and of the
-    /// other picture only those paths are traced; the bounds of the world, and so the choice of lights, are those of
-    /// `with` in both.
+    /// Renders one view with and without the dynamic geometry.
+    /// Calls `turn` for the two sides alternately, `with` first, and leaves the world at either side.
+    /// With PairDifference::vanishing the world stays at `with` if possible, light samples are tested by shadow
+    /// maps, which show what dynamic geometry may affect, and of the other picture only those paths are traced;
+    /// the bounds of the world, and so the choice of lights, are those of `with` in both.
     virtual PairResult pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
                             StopRequest const& stop) = 0;
 };

@@ -16,8 +16,8 @@ inline constexpr int kMostInterleaving = 4; ///< largest n chosen automatically 
 struct Interleaving {
     std::uint32_t n = 1; ///< 1 = every pixel computes indirect light in every pass
 
-    static constexpr std::uint32_t kStride = 17; ///< a prime above every n, so that each pixel of a block gets
-                                                 ///< its turn
+    /// A prime above every n, so that each pixel of a block gets its turn.
+    static constexpr std::uint32_t kStride = 17;
 
     /// Returns the number of pixels for which this one computes indirect light in this pass: 0 or n^2.
     GI_FN std::uint32_t share(std::uint32_t pixel, std::uint32_t width, std::uint32_t pass) const
@@ -25,8 +25,8 @@ struct Interleaving {
         std::uint32_t const all = n * n, own = pixel % width % n + pixel / width % n * n;
         return own == turn(pass) ? all : 0;
     }
-    /// Returns the pixel of each n x n block that computes indirect light in this pass: its column plus n times
-    /// its row.
+    /// Returns the pixel of each n x n block that computes indirect light in this pass:
+    /// its column plus n times its row.
     GI_FN std::uint32_t turn(std::uint32_t pass) const
     {
         std::uint32_t const all = n * n;
@@ -43,8 +43,8 @@ void spread_indirect(std::span<PathSample> samples, int width, Interleaving cons
 
 /// Chooses n for the next frame from the time of the last one. Changes n by one step at a time, because fewer
 /// paths cost more each.
-/// @param frame_s, indirect_s  time of the last frame if it had had one pass, and the part of it spent on
-///   indirect light
+/// @param frame_s, indirect_s  time of the last frame if it had had one pass,
+///   and the part of it spent on indirect light
 int next_interleaving(int n, double budget_s, double frame_s, double indirect_s);
 
 /// Chooses n pass by pass, so that frames keep within their budget. If the budget is long, n falls to 1 within

@@ -26,10 +26,10 @@ public:
     /// Number of the next path of every pixel.
     std::uint32_t next_path() const { return first_path() + sums_.paths; }
 
-    /// Callback that traces `paths` more paths for every pixel and adds them to the sums. The first of them has
-    /// the number first_path() plus the number of paths already in the sums. If it throws Interrupted after a stop
-    /// request, what it added before is kept (also by TiledPass), and the render ends; where there is nothing,
-    /// run() throws it.
+    /// Callback that traces `paths` more paths for every pixel and adds them to the sums.
+    /// The first of them has the number first_path() plus the number of paths already in the sums.
+    /// If it throws Interrupted after a stop request, what it added before is kept (also by TiledPass),
+    /// and the render ends; where there is nothing, run() throws it.
     using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;
 
     /// Runs the passes in an arena of settings.threads and fills in all of the result except picture and rays.

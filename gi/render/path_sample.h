@@ -23,8 +23,8 @@ struct PathSample {
     vec3 albedo{0}, normal{0}, position{0};                  ///< at the first surface
     float depth = 0;                                         ///< m, along the camera's axis
     bool hit = false;
-    bool near_moving = false; ///< true if the path could differ without dynamic geometry; set only if the tracer
-                              ///< is asked for it
+    /// True if the path could differ without dynamic geometry; set only if the tracer is asked for it.
+    bool near_moving = false;
     IndirectTurn turn = IndirectTurn::each; ///< for its broad lobes
 };
 

@@ -14,8 +14,8 @@ namespace gi {
 /// What a path carries from surface to surface.
 struct PathState {
     vec3 throughput{1};
-    /// Probability density of the arrival direction, 1/sr; 0 = camera or delta lobe, which no other technique
-    /// samples.
+    /// Probability density of the arrival direction, 1/sr; 0 = camera or delta lobe,
+    /// which no other technique samples.
     float arrival_pdf = 0;
     int scatterings = 0; ///< non-delta, so far
 };
@@ -91,9 +91,8 @@ GI_FN vec3 unshadowed_light(ShadingPoint const& at, vec3 wo, LightSample const& 
 }
 
 /// Russian roulette: false if the path ends, otherwise its throughput is divided by the probability of continuing.
-/// @param roulette  see SlhbSettings; 0: all paths continue up to the fourth scattering, then with a probability
-/// of
-///                  their throughput
+/// @param roulette  see SlhbSettings; 0: all paths continue up to the fourth scattering,
+///   then with a probability of their throughput
 /// @param uniform   () -> a number in [0, 1); called only if needed
 template <class Uniform>
 GI_FN bool survives_roulette(PathState& s, float roulette, Uniform const& uniform)

@@ -29,8 +29,8 @@ struct Accumulator; // gi/render/accumulator.h
 /// The part of a picture's paths that one of several processes traces. Every path has its own random numbers, so
 /// shares that together cover 0 to RenderSettings::paths give the same picture, up to rounding of the sums.
 struct PathShare {
-    std::uint32_t first = 0, count = ~std::uint32_t(0); ///< paths of every pixel; limited to
-                                                        ///< RenderSettings::paths
+    /// Paths of every pixel; limited to RenderSettings::paths.
+    std::uint32_t first = 0, count = ~std::uint32_t(0);
     /// If set, called with the sums of this share before the picture is made, to add the sums of other shares.
     std::function<void(Accumulator&)> merge;
 };

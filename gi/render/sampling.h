@@ -15,8 +15,8 @@ GI_FN inline float power_heuristic(float pdf, float other)
     return 1.0f / (1.0f + ratio * ratio);
 }
 
-/// Filter importance sampling: where in the image plane the path of a pixel starts, relative to the pixel's
-/// centre (px).
+/// Filter importance sampling: where in the image plane the path of a pixel starts,
+/// relative to the pixel's centre (px).
 GI_FN inline vec2 filter_offset(PixelFilter filter, vec2 u)
 {
     if (filter == PixelFilter::box) return u - 0.5f;

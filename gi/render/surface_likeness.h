@@ -1,12 +1,13 @@
 #pragma once
+// Weights by which a surface takes light from another one nearby.
+
 #include "gi/core/math.h"
 
 namespace gi {
 
 /// Similarity of two surfaces that are near each other, 0..1, for taking light from one to the other.
-/// @param a, b  unit normals  @param off  distance of one from the other's plane, over that at which another
-/// surface
-///   begins
+/// @param a, b  unit normals  @param off  distance of one from the other's plane, over that at which
+///   another surface begins
 GI_FN inline float surface_likeness(vec3 a, vec3 b, float off)
 {
     float const cosine = glm::max(0.0f, glm::dot(a, b));

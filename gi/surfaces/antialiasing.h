@@ -15,8 +15,8 @@ class Antialiasing {
 public:
     /// Where the rays of the next picture pass its pixels, 0..1 from their top left corner.
     vec2 sample() const;
-    /// Returns the mean with earlier pictures: layers "color" and "depth", of a size that is at least the
-    /// picture's.
+    /// Returns the mean with earlier pictures: layers "color" and "depth",
+    /// of a size that is at least the picture's.
     /// @param picture  with the layer "motion" as in gi/render/motion.h, except that pixels without a surface may
     ///   have a motion, with depth 0. Sizes may change from frame to frame.
     Picture add(Picture const& picture, int width, int height);

@@ -6,9 +6,9 @@
 //
 // Irradiance is nearly linear in the normal (its spherical harmonics of order 0 and 1: Ramamoorthi and Hanrahan
 // 2001). So where the picture has the layer light_normal, means of normals made with the same weights as means
-// over frames of light (gi/filter/temporal.h), light is fitted as a linear function of them around each pixel, and
-// folds and reliefs that are finer than its pixels, or were blurred over frames, are shaded by the normals of the
-// other picture.
+// over frames of light (gi/filter/temporal.h), light is fitted as a linear function of them around each pixel,
+// and folds and reliefs that are finer than its pixels, or were blurred over frames,
+// are shaded by the normals of the other picture.
 
 #include "gi/image_io/picture.h"
 #include "gi/scene/model/projection.h"
@@ -19,16 +19,16 @@ namespace gi {
 
 struct FoundLight {
     vec3 direct{0}, indirect{0}; ///< L1 and L2 over the albedo
-    float likeness = 0; ///< of the most similar surface used, 0..1; below kUnlike the light is that of some
-                        ///< surface around
+    /// Of the most similar surface used, 0..1; below kUnlike the light is that of some surface around.
+    float likeness = 0;
 };
 
 class KeptLight {
 public:
     static constexpr float kUnlike = 0.01f;
 
-    /// Needs the layers L1, L2, albedo, normal and position (throws InputError if one is missing); uses
-    /// light_normal.
+    /// Needs the layers L1, L2, albedo, normal and position (throws InputError if
+    /// one is missing); uses light_normal.
     /// @param origin  of the world, from which camera and later positions are measured
     KeptLight(Picture const& picture, CameraRays const& camera, dvec3 origin);
 

@@ -1,6 +1,6 @@
 #pragma once
-// A picture of any size whose surfaces, textures and outlines are its own, and whose light is that of a smaller
-// one.
+// A picture of any size whose surfaces, textures and outlines are its own,
+// and whose light is that of a smaller one.
 
 #include "gi/surfaces/kept_light.h"
 #include "gi/surfaces/seen_surfaces.h"

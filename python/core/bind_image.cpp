@@ -92,7 +92,7 @@ void write_png(std::string const& file, py::buffer const& bytes)
                       info.itemsize == 1 && info.strides[2] == 1 && info.strides[1] == info.shape[2] &&
                       info.strides[0] == info.shape[1] * info.shape[2];
     if (!fits)
-        throw gi::InputError("this is no picture for a PNG", "it must be height x width x 3 or 4 contiguous uint8",
+        throw gi::InputError("PNG cannot hold this array", "it must be height x width x 3 or 4 contiguous uint8",
                              "give what tone_map returned");
     gi::write_png(file, int(info.shape[1]), int(info.shape[0]),
                   {static_cast<unsigned char const*>(info.ptr), std::size_t(info.size)});

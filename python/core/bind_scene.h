@@ -1,4 +1,6 @@
 #pragma once
+// Python bindings of scenes and cameras.
+
 #include "gi/scene/model/world.h"
 
 #include <pybind11/pybind11.h>

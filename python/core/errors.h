@@ -1,4 +1,6 @@
 #pragma once
+// Errors of the Python module.
+
 #include <pybind11/pybind11.h>
 
 namespace bindings {

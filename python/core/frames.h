@@ -1,6 +1,6 @@
 #pragma once
-// Sequences of frames rendered on demand: a viewer::RenderSession with its views, and the settings of an
-// experiment's stimulus.
+// Sequences of frames rendered on demand: a viewer::RenderSession with its views,
+// and the settings of an experiment's stimulus.
 
 #include "viewer/engine/governor.h"
 #include "viewer/engine/render_session.h"

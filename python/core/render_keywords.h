@@ -1,4 +1,6 @@
 #pragma once
+// Keyword arguments of Python's World.render as settings of the renderer.
+
 #include "gi/filter/denoise.h"
 #include "gi/render/render_settings.h"
 
@@ -14,8 +16,8 @@ namespace py = pybind11;
 /// @param options  of the method, by the names of the command line's options, with _ for -: axes, light_paths, ...
 gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::string const& method);
 
-/// Returns the settings of a filter named as in gi/filter/filter_names.h. Throws InputError if it is unknown or
-/// not installed.
+/// Returns the settings of a filter named as in gi/filter/filter_names.h.
+/// Throws InputError if it is unknown or not installed.
 gi::DenoiseSettings denoise_of(std::string const& name, gi::RenderSettings const& settings);
 
 } // namespace bindings

@@ -148,8 +148,8 @@ struct CurveResult {
     double eta = 0;                    ///< overdispersion
     Uncertain threshold;               ///< mean over the population of the level at `proportion`
     double deviation = kUnknown;       ///< of these levels between observers, in units of the scale
-    double scale_unit =
-        1; ///< a decade in units of the scale: log10 1, log2 3.32, db 20; 1 where levels are linear
+    /// A decade in units of the scale: log10 1, log2 3.32, db 20; 1 where levels are linear.
+    double scale_unit = 1;
     double proportion = kUnknown;
     PsychometricFit pooled; ///< one function through all trials, for its deviance
     std::string note, refused;

@@ -1,12 +1,14 @@
 #pragma once
+// The analysis of one block, by kind of task. Each function writes its results into `result`.
+
 #include "study/analysis/groups.h"
 
 namespace study {
 
-/// Analyses blocks of pairs: Thurstone's case V scale in JOD, with intervals and differences by errors over
-/// observers, ties (if allowed) by a threshold, the Bradley-Terry scale, goodness of fit, order effect, agreement.
-/// Adds circular triads and outlier scores to the summaries of observers, which are in the same order as
-/// `observers`.
+/// Analyses blocks of pairs: Thurstone's case V scale in JOD, with intervals and differences by
+/// errors over observers, ties (if allowed) by a threshold, the Bradley-Terry scale, goodness of fit,
+/// order effect, agreement. Adds circular triads and outlier scores to the summaries of observers,
+/// which are in the same order as `observers`.
 void analyze_pairs(Script const& script, std::vector<ObserverTrials> const& observers, int block,
                    AnalysisSettings const& settings, BlockResult& result, std::vector<ObserverSummary>& summaries);
 

@@ -16,8 +16,8 @@ struct Tally {
     double correct = 0, trials = 0, hits = 0, signals = 0, false_alarms = 0, noises = 0;
 };
 
-/// Rates for a task's d'. Hits: "yes" with a signal, "different" for different stimuli, "first" in ABX if
-/// X is the first.
+/// Rates for a task's d'. Hits: "yes" with a signal, "different" for different stimuli,
+/// "first" in ABX if X is the first.
 void count(Tally& t, Task task, TrialRow const& row)
 {
     bool const right = row.done->is_correct.value_or(false);

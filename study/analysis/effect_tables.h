@@ -1,4 +1,6 @@
 #pragma once
+// Result tables of hierarchical models and of tests between conditions and groups.
+
 #include "study/analysis/result_tables.h"
 
 namespace study {

@@ -159,7 +159,7 @@ void judge_differences(ScaleResult& scale, int reference, double level)
         for (ItemDifference const& d : scale.differences) {
             bool const straight = d.a == int(i) && d.b == best.against,
                        turned = d.b == int(i) && d.a == best.against;
-            // An item that is significantly better than the best to compare with is accepted too.
+            // Only items that are significantly worse than the best are refused: better ones are fine.
             double const value = turned ? -d.value.value : d.value.value;
             if ((!straight && !turned) || std::isnan(d.p_holm) || (d.p_holm < level && value < 0)) continue;
             best.item = int(i);

@@ -48,8 +48,8 @@ std::vector<Uncertain> render_times(std::vector<ObserverTrials> const& observers
 
 /// Mean and Student's interval over observers; NaN are ignored. One observer has no interval.
 Uncertain mean_of(std::vector<double> const& values, double confidence);
-/// p-value of Student's two-sided test of "the mean is 0"; NaN for fewer than two values. Without spread: 0, or 1
-/// if the mean is 0.
+/// p-value of Student's two-sided test of "the mean is 0"; NaN for fewer than two values.
+/// Without spread: 0, or 1 if the mean is 0.
 double mean_p(std::vector<double> const& values);
 /// p-values adjusted by Holm's step-down procedure (1979, Scand. J. Stat. 6:65). NaN are ignored.
 std::vector<double> holm(std::vector<double> const& p);

@@ -1,4 +1,6 @@
 #pragma once
+// Converts posteriors of hierarchical models (study/stats/hierarchical.h) to results with units.
+
 #include "study/analysis/analysis.h"
 #include "study/stats/hierarchical.h"
 

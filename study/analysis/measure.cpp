@@ -235,8 +235,8 @@ std::vector<Measure> detections(Script const& script, Block const& b, std::vecto
     return out;
 }
 
-/// One measure for each procedure, method of estimation and proportion correct; runs of one observer count as
-/// repetitions.
+/// One measure for each procedure, method of estimation and proportion correct;
+/// runs of one observer count as repetitions.
 std::vector<Measure> thresholds(Script const& script, Block const& b, std::vector<ObserverTrials> const& trials,
                                 int block, Conditions const& conditions, BlockResult const& result)
 {

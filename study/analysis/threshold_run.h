@@ -1,4 +1,6 @@
 #pragma once
+// Thresholds from the runs of staircases and QUEST+: of single runs, observers and groups.
+
 #include "study/analysis/groups.h"
 #include "study/stats/group_threshold.h"
 #include "study/stats/shrunken_rates.h"
@@ -28,10 +30,10 @@ struct GroupCurve {
 /// the group's function; the interval holds the thresholds at which such runs give this mean by chance.
 ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
                                     std::optional<GroupCurve> const& group, AnalysisSettings const& settings);
-/// "the interval is open above", say, of an interval with unknown ends; empty if there are none.
+/// "the interval is open above" (or below) if an end of the interval is unknown; empty if both are known.
 std::string open_ends(Interval const& interval);
-/// What to say of a posterior's interval with unknown ends; empty if there are none. @param tail  the probability
-/// beyond each end
+/// Note on a posterior's interval with an unknown end: "the interval is open above ..."; empty if both are known.
+/// @param tail  the probability beyond each end
 std::string note_of_open_ends(Interval const& interval, double tail);
 /// The threshold by the run's own trials: with the group's scale and lapse rate if there are three observers or
 /// more, otherwise with weak priors of both (psychometric_posterior.h).
@@ -39,8 +41,8 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& bloc
                                       PsychometricChoice const& function, std::optional<double> guess,
                                       double proportion, std::optional<GroupCurve> const& group,
                                       AnalysisSettings const& settings);
-/// The median and the quantiles of the level at which the proportion is reached, by the posterior of all
-/// parameters.
+/// The median and the quantiles of the level at which the proportion is reached,
+/// by the posterior of all parameters.
 ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
                                      double proportion, AnalysisSettings const& settings);
 

@@ -25,13 +25,13 @@ struct LuminanceFit {
     std::vector<std::string> warnings;
 };
 
-/// Least squares of relative errors (with a floor of 1/20000 of the peak, where photometers are dark-limited).
-/// Readings of one colour and value are averaged; a warning says where they differ by more than 5 %. Channels
-/// without readings of their own share white's curve; their peaks are then those of `colour`, or of sRGB's
-/// primaries.
-/// @throws gi::InputError  no white and not all three channels, fewer than three values of a colour, no value 1,
-///     luminance that does not rise, falls by more than a fifth to the highest value, or rises as no display's
-///     does
+/// Least squares of relative errors (with a floor of 1/20000 of the peak,
+/// where photometers are dark-limited). Readings of one colour and value are averaged;
+/// a warning says where they differ by more than 5 %. Channels without readings of their own share white's curve;
+/// their peaks are then those of `colour`, or of sRGB's primaries.
+/// @throws gi::InputError no white and not all three channels, fewer than three values of a colour,
+///     no value 1, luminance that does not rise, falls by more than a fifth to the highest value,
+///     or rises as no display's does
 LuminanceFit fit_luminance(std::vector<LuminanceReading> readings, std::optional<DisplayColour> const& colour);
 
 /// Gamma from matches; gain is 1, black is typed. @param white, black  cd/m2; none = unknown: relative

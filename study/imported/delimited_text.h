@@ -27,8 +27,8 @@ struct DelimitedText {
     static bool is_missing(std::string const& text);
 };
 
-/// Rows of several tables one after another, such as one file per participant; columns that a table does not have
-/// are empty there.
+/// Rows of several tables one after another, such as one file per participant;
+/// columns that a table does not have are empty there.
 DelimitedText joined(std::vector<DelimitedText> const& tables);
 /// One row per trial from a table with one row per value: all rows that agree in the other columns become one row,
 /// with a column for each name in `names` that has the text in `values`.

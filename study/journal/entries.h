@@ -23,8 +23,8 @@ struct SessionStarted {
     std::string version, git_hash, script_sha256, plan_sha256;
     std::uint64_t seed = 0;
     std::string consent_sha256; ///< of the consent text; empty = the script has none
-    std::vector<std::pair<std::string, std::string>>
-        about; ///< provenance: device, driver, display, host, scenes, ...
+    /// Provenance: device, driver, display, host, scenes, ...
+    std::vector<std::pair<std::string, std::string>> about;
     bool is_simulated = false;
     double gap_s = 0; ///< since the last entry of the previous part, by the wall clock; may be negative
 };
@@ -49,8 +49,8 @@ struct StimulusShown {
     std::string settings_sha256;
     // With a display model only:
     std::optional<double> mean_cd_m2{}, peak_cd_m2{}; ///< of its first frame, as shown
-    std::optional<int>
-        clipped_pixels{}; ///< of its first frame: brighter than the display or darker than its black
+    /// Of its first frame: brighter than the display or darker than its black.
+    std::optional<int> clipped_pixels{};
     std::optional<double> width_deg{}, height_deg{};
 };
 
@@ -89,8 +89,8 @@ struct TrialDone {
     double response_uncertainty_ms = 0; ///< of reaction_ms, including that of the onset
     std::string device;                 ///< input that gave the answer: "key:left"
     bool is_valid = true;
-    std::string
-        reason; ///< why not: dropped_frames, timeout, anticipation, too_slow, skipped, lost_focus, no_sound, ...
+    /// Why not: dropped_frames, timeout, anticipation, too_slow, skipped, lost_focus, no_sound, ...
+    std::string reason;
     std::string chosen;                ///< what was chosen when it came: a pair, "best/fair", or levels of further
                                        ///< varied settings, "camera.fov=40"; else empty
     std::vector<SoundPlayed> sounds{}; ///< in the order in which they were due
@@ -98,8 +98,8 @@ struct TrialDone {
     // Of gaze, while stimuli were visible; none if gaze was not recorded:
     std::optional<int> gaze_samples{}, gaze_valid{};
     std::optional<int> gaze_dropped{}; ///< missing between samples
-    std::optional<int>
-        gaze_fixating{}; ///< samples near the place of fixation; none without gaze.hold or gaze.start
+    /// Samples near the place of fixation; none without gaze.hold or gaze.start.
+    std::optional<int> gaze_fixating{};
 };
 
 /// Instructions, a rest or a walk has ended.

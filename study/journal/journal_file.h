@@ -1,4 +1,6 @@
 #pragma once
+// Reads the file of a session's journal, even one that ends within a line.
+
 #include "study/journal/entries.h"
 
 #include <filesystem>

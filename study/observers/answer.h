@@ -1,4 +1,6 @@
 #pragma once
+// How a model observer answers trials and questionnaires.
+
 #include "study/observers/observer.h"
 #include "study/run/presenter.h"
 

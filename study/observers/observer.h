@@ -40,8 +40,8 @@ struct ObserverModel {
     double lapse = 0.02;     ///< proportion of random answers
     double side_bias = 0.1;  ///< JOD in favour of the first stimulus
     double tie_width = 0.4;  ///< JOD; smaller differences are answered as ties, if the task allows them
-    double false_alarms =
-        0.1; ///< rate for yes_no and same_different if a setting is varied and there is nothing to find
+    /// Rate for yes_no and same_different if a setting is varied and there is nothing to find.
+    double false_alarms = 0.1;
     double rating_best = 0.8;                    ///< rating of quality 0, as a fraction of the scale
     double rating_span = 5;                      ///< JOD from one end of the scale to the other
     double rating_sd = 0.08;                     ///< of participants' rating offsets, as a fraction of the scale

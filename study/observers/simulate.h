@@ -1,4 +1,6 @@
 #pragma once
+// Simulates whole sessions with model observers, and keeps the true parameters beside the data.
+
 #include "study/observers/observer.h"
 #include "study/run/session.h"
 

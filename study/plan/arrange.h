@@ -14,8 +14,8 @@ namespace study {
 
 /// Properties of a trial that rules use.
 struct ArrangeItem {
-    std::vector<std::vector<int>>
-        tokens;    ///< by rule: the trial's values of the rule's subject; empty = the rule ignores the trial
+    /// By rule: the trial's values of the rule's subject; empty = the rule ignores the trial.
+    std::vector<std::vector<int>> tokens;
     int group = 0; ///< each place of the order belongs to a group and takes only items of this group
 };
 

@@ -97,8 +97,8 @@ void add_pairs(Script const& s, Block const& b, std::vector<std::vector<int>> co
     Pairs const& p = *b.pairs;
     if (p.is_active()) return add_open_pairs(s, b, cells, random, trials);
     std::vector<bool> const balanced = first_comes_first(p);
-    // Thue-Morse sequence: 0 1 1 0 1 0 0 1 ..., one of each in every two participants, not confounded with orders
-    // that alternate.
+    // Thue-Morse sequence: 0 1 1 0 1 0 0 1 ..., one of each in every two participants,
+    // not confounded with orders that alternate.
     std::size_t const side = std::size_t(std::popcount(unsigned(participant - 1))) % 2;
     for (int repeat = 0; repeat < b.repeats; ++repeat)
         for (std::size_t c = 0; c < cells.size(); ++c)

@@ -1,10 +1,10 @@
 #pragma once
 // Counterbalancing: which order, or which level, a participant gets.
 //
-// Participants are numbered from 1. The orders of a script are the digits of (number - 1) in a mixed-radix system,
-// the first one of the script varying fastest, so that they are fully crossed: with `alternate` for displays and
-// `williams` for three blocks, participants 1 to 12 get every combination of 2 display orders and 6 block orders
-// once.
+// Participants are numbered from 1. The orders of a script are the digits of (number - 1) in
+// a mixed-radix system, the first one of the script varying fastest, so that they are fully crossed:
+// with `alternate` for displays and `williams` for three blocks, participants 1 to 12 get every combination
+// of 2 display orders and 6 block orders once.
 
 #include "study/script/script.h"
 #include "study/stats/random.h"

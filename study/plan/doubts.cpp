@@ -13,8 +13,8 @@
 namespace study {
 namespace {
 
-/// True for QUEST+ if the function never falls to a half, where the threshold is, because all guess rates are >=
-/// 0.5.
+/// True for QUEST+ if the function never falls to a half, where the threshold is,
+/// because all guess rates are >= 0.5.
 bool never_reaches_half(Block const& b, Procedure const& p)
 {
     bool const goes_to_false_alarms = b.task == Task::yes_no || b.task == Task::same_different;

@@ -1,4 +1,6 @@
 #pragma once
+// Warnings about designs that are valid but probably not intended.
+
 #include "study/plan/plan.h"
 
 #include <string>

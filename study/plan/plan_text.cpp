@@ -22,7 +22,7 @@ std::string fixed_levels(Script const& s, std::vector<int> const& levels)
 
 std::string first_line(std::string const& text) { return gi::shortened(text.substr(0, text.find('\n')), 70); }
 
-/// Crossed levels that the stimuli's label does not contain.
+/// Names of the trial's levels of the crossed and nested factors.
 std::string cell_text(Script const& s, Block const& b, Trial const& t)
 {
     std::string text;
@@ -52,8 +52,8 @@ std::string trial_text(Script const& s, PlanStep const& step)
     return text;
 }
 
-/// "scene: arches 10, atrium 10": counts of main and catch trials of a pass. For pairs: how often shown, and how
-/// often first.
+/// "scene: arches 10, atrium 10": counts of main and catch trials of a pass. For pairs:
+/// how often shown, and how often first.
 std::string condition_counts(Script const& s, Plan const& plan, int block, int pass)
 {
     Block const& b = s.blocks[std::size_t(block)];

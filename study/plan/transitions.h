@@ -5,8 +5,8 @@
 
 namespace study {
 
-/// Transitions of a factor with one level per trial (or of the correct answers, or procedures) in one pass of a
-/// block.
+/// Transitions of a factor with one level per trial (or of the correct answers,
+/// or procedures) in one pass of a block.
 struct Transitions {
     int block = 0, pass = 0;
     std::string subject;

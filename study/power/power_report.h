@@ -1,4 +1,6 @@
 #pragma once
+// Results of a power study as table, JSON, text and HTML page.
+
 #include "study/power/power_study.h"
 #include "study/tables/table.h"
 

@@ -1,4 +1,6 @@
 #pragma once
+// Chooses the level of each trial by a staircase or by QUEST+.
+
 #include "study/script/script.h"
 #include "study/stats/questplus.h"
 #include "study/stats/staircase.h"

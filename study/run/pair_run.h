@@ -1,4 +1,6 @@
 #pragma once
+// Chooses the pairs of a block from the answers so far (active sampling).
+
 #include "study/plan/plan.h"
 #include "study/stats/active_pairs.h"
 

@@ -28,8 +28,8 @@ struct TrialRequest {
 struct QuestionnaireRequest {
     Questionnaire const* questionnaire = nullptr;
     int step = 0;
-    /// Answers before the session was interrupted, in the order in which items were left: the participant goes on
-    /// after the last one.
+    /// Answers before the session was interrupted, in the order in which items were left:
+    /// the participant goes on after the last one.
     std::vector<ItemAnswered> given{};
     /// Call it when the participant leaves an item, so that its answer is on the disk; a presenter that asks all
     /// items at once does not need it. Empty = there is no disk.
@@ -39,8 +39,8 @@ struct QuestionnaireRequest {
 /// The experimenter's command, which may come at any time.
 enum class ExperimenterAction { go_on, pause, skip, abort };
 
-/// Thrown from any call when the session is aborted during it. The reason, recorded in session.json, states by
-/// whom.
+/// Thrown from any call when the session is aborted during it. The reason,
+/// recorded in session.json, states by whom.
 struct Aborted : std::runtime_error {
     explicit Aborted(std::string const& reason = "aborted by the experimenter") : std::runtime_error(reason) {}
 };

@@ -32,9 +32,9 @@ inline constexpr int kMostAttempts = 3;
 ///   trial of the pass remains, its catch trials and breaks are dropped too.
 /// - Pairs that are chosen at the trial stay those of the trial when it is repeated. Only valid answers count for
 ///   the choice of later ones. The recorded pair counts, so that another machine resumes the same session.
-/// - After a gap longer than resume.max_gap_min, or of unknown length (the wall clock went back), the parts listed
-///   in resume.repeat are repeated for the current block: its instructions, or the last ones before it, and its
-///   practice.
+/// - After a gap longer than resume.max_gap_min, or of unknown length (the wall clock went back),
+///   the parts listed in resume.repeat are repeated for the current block: its instructions,
+///   or the last ones before it, and its practice.
 class Progress {
 public:
     /// Both must outlive this object. @throws ScriptError if a procedure cannot be run

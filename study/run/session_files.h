@@ -1,4 +1,6 @@
 #pragma once
+// Creates or reopens the folder and journal of a session.
+
 #include "study/run/journal.h"
 #include "study/run/session.h"
 

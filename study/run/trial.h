@@ -1,4 +1,6 @@
 #pragma once
+// A trial before and after it is shown: its request, whether its answer is correct, whether it counts.
+
 #include "study/run/presenter.h"
 #include "study/run/progress.h"
 

@@ -1,4 +1,6 @@
 #pragma once
+// Questions about the participant that a script asks, such as age, and the check of their answers.
+
 #include <string>
 #include <vector>
 

@@ -1,4 +1,6 @@
 #pragma once
+// The keys that a study script may have; others are errors.
+
 #include "gi/core/yaml.h"
 #include "study/script/task.h"
 

@@ -1,6 +1,6 @@
 #pragma once
-// Converts a script's procedures to settings of study/stats: for sessions that run them and analyses that replay
-// them.
+// Converts a script's procedures to settings of study/stats: for sessions that run
+// them and analyses that replay them.
 
 #include "study/script/script.h"
 #include "study/stats/questplus.h"

@@ -3,8 +3,8 @@
 // and those of scripts have the same form.
 //
 // ssq: Kennedy, Lane, Berbaum, Lilienthal 1993, Int. J. Aviation Psychology 3(3):203-220.
-// sus_presence: Slater, Usoh, Steed 1994, Presence 3(2):130-144; as six items Usoh et al. 2000, Presence
-// 9(5):497-503.
+// sus_presence: Slater, Usoh, Steed 1994, Presence 3(2):130-144;
+// as six items Usoh et al. 2000, Presence 9(5):497-503.
 // sus_usability: Brooke 1996, in Usability Evaluation in Industry, 189-194 (not related to sus_presence).
 // ipq: Schubert, Friedmann, Regenbrecht 2001, Presence 10(3):266-281; SP2, INV3 and REAL1 are reversed.
 // nasa_tlx: Hart, Staveland 1988, Advances in Psychology 52:139-183; the score is raw (unweighted).

@@ -1,7 +1,7 @@
 #pragma once
 // The parts of parse_script: each reads one kind of mapping. Parts that refer to others must be read after them.
-// What is wrong with a part that others do without is added to the Mistakes, and reading goes on; readers throw
-// where it cannot.
+// What is wrong with a part that others do without is added to the Mistakes, and reading
+// goes on; readers throw where it cannot.
 
 #include "study/script/keys.h"
 #include "study/script/mistakes.h"
@@ -21,8 +21,8 @@ int read_level(gi::Yaml const& name, Script const& s, int factor);
 int read_questionnaire_name(gi::Yaml const& name, Script const& s);
 /// {factor: level, ...}
 Choice read_choice(gi::Yaml const& y, Script const& s, Mistakes& m);
-/// Reads {factor: F, omit: [levels]} and returns the remaining levels, at least `least`. Unknown ones are not
-/// omitted.
+/// Reads {factor: F, omit: [levels]} and returns the remaining levels, at least `least`.
+/// Unknown ones are not omitted.
 std::vector<int> read_levels_of(gi::Yaml const& y, Script const& s, int factor, std::size_t least, Mistakes& m);
 
 /// Sets the members that the mapping gives. @param y defaults or a block

@@ -101,8 +101,8 @@ struct Device {
 };
 
 enum class Balance { fixed, alternate, latin, williams, random, between };
-/// How the order of a factor's levels or of a group of blocks is counterbalanced, or the level that a participant
-/// gets (between).
+/// How the order of a factor's levels or of a group of blocks is counterbalanced,
+/// or the level that a participant gets (between).
 struct Counterbalance {
     std::string name;
     int factor = -1;
@@ -187,8 +187,8 @@ struct Catch {
 };
 
 enum class RuleKind { max_run, min_gap, never_after, not_first };
-/// What a constraint on the trial order applies to: a factor, the pair of levels, the correct answer, the
-/// procedure.
+/// What a constraint on the trial order applies to: a factor, the pair of levels,
+/// the correct answer, the procedure.
 enum class Subject { factor, pair, answer, procedure };
 struct Constraint {
     RuleKind kind = RuleKind::max_run;

@@ -1,4 +1,6 @@
 #pragma once
+// Parses the text of a study script.
+
 #include "study/script/mistakes.h"
 #include "study/script/script.h"
 

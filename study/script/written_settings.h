@@ -1,6 +1,6 @@
 #pragma once
-// The settings of stimuli as a script writes them, with their places: to look each up in a renderer, which `study`
-// does not know.
+// The settings of stimuli as a script writes them, with their places:
+// to look each up in a renderer, which `study` does not know.
 
 #include "study/script/script.h"
 

@@ -1,7 +1,7 @@
 #pragma once
-// Compares the signal of a photodiode on the sync patch, or a recording of the sounds, with the onsets in a
-// session's journal: lag and jitter of the display or the sound device, missed and doubled flashes, drift between
-// the clocks.
+// Compares the signal of a photodiode on the sync patch, or a recording of the sounds,
+// with the onsets in a session's journal: lag and jitter of the display or the sound device,
+// missed and doubled flashes, drift between the clocks.
 
 #include <optional>
 #include <string>

@@ -136,7 +136,7 @@ void ActivePairs::shown(Pair pair, std::optional<double> first_wins)
     last_ = pair;
     if (first_wins) {
         posterior_.add({pair, *first_wins});
-        // Each answer changes all factors a little; as many answers as a tree has pairs, enough to look.
+        // Each answer changes all factors only a little: refine them once per n - 1 answers (the pairs of a tree).
         if (++answers_ % std::max(1, items_ - 1) == 0) posterior_.refine();
     }
     if (auto const found = std::find(queue_.begin(), queue_.end(), pair); found != queue_.end())

@@ -9,9 +9,9 @@
 // C is C - c c^T w / (1 + w v), c = the pair's column of C. For w the difference is taken one posterior standard
 // deviation nearer to 0 than m: otherwise pairs that seem far apart by chance are no longer shown, so that the
 // error stays, and scales whose items are all near each other come out worse than with random pairs.
-// In trees, the pairs are the edges of a spanning tree of all items, chosen one after the other as if the answers
-// before had been given, and shown in random order. Ties within 1e-9 are broken by the seed, so that rounding does
-// not decide.
+// In trees, the pairs are the edges of a spanning tree of all items, chosen one after the other as if
+// the answers before had been given, and shown in random order. Ties within 1e-9 are broken by the seed,
+// so that rounding does not decide.
 
 #include "study/stats/pair_posterior.h"
 #include "study/stats/random.h"
@@ -38,8 +38,8 @@ public:
 
     /// The pair to show now, as in `allowed`. It depends only on the settings and on the calls so far.
     Pair next() const { return queue_.front(); }
-    /// The pair was shown. @param first_wins  1: the first was chosen, 0: the second, 1/2: neither; none = there
-    /// was no valid answer
+    /// The pair was shown.  @param first_wins  1: the first was chosen, 0: the second,
+    /// 1/2: neither; none = there was no valid answer
     void shown(Pair pair, std::optional<double> first_wins);
 
     int answers() const { return answers_; }

@@ -23,8 +23,8 @@ KendallU kendall_u(Matrix const& wins);
 
 /// Are all items equally good? D = 4 (sum a_i^2 - m^2 n (n-1)^2 / 4) / (m n), chi-square with n - 1 degrees (David
 /// 1988, "The Method of Paired Comparisons"). Two scores further apart than `range` differ significantly:
-/// R = W sqrt(m n) / 2 + 1/4, W the 1 - level quantile of the range of n normal numbers (Starks & David 1961,
-/// Biometrika 48:95).
+/// R = W sqrt(m n) / 2 + 1/4, W the 1 - level quantile of the range of n normal numbers
+/// (Starks & David 1961, Biometrika 48:95).
 struct EqualityTest {
     std::vector<double> score; ///< wins of each item
     double d = 0;

@@ -36,9 +36,9 @@ std::vector<Met> met_pairs(Matrix const& wins)
     return met;
 }
 
-/// Minus the penalised log-likelihood, and its gradient; scores are relative to the first. a_c' depends on the
-/// counts of c' alone, which many pairs share, and swaps (i, j) with (j, i) if c' is turned round, so that r is
-/// the same for both.
+/// Minus the penalised log-likelihood, and its gradient; scores are relative to the first.
+/// a_c' depends on the counts of c' alone, which many pairs share, and swaps (i, j) with (j, i)
+/// if c' is turned round, so that r is the same for both.
 class PriorCost {
 public:
     explicit PriorCost(std::vector<Met> met) : met_(std::move(met)), log_p_(met_.size()), log_q_(met_.size())

@@ -11,8 +11,8 @@
 
 namespace study {
 
-/// Scores in JOD, mean 0. @throws std::invalid_argument as pairs_of; items that are not connected; no finite
-/// maximum
+/// Scores in JOD, mean 0.  @throws std::invalid_argument as pairs_of;
+/// items that are not connected; no finite maximum
 std::vector<double> scale_with_distance_prior(Matrix const& wins);
 
 } // namespace study

@@ -50,8 +50,8 @@ double oddity_dprime(double proportion_correct);
 
 /// Proportions correct for a given d': inverses of mafc_dprime and oddity_dprime.
 double mafc_proportion(double dprime, int m);
-double
-oddity_proportion(double dprime);  ///< 1 - 4 T(d'/sqrt 6, sqrt 3), T of Owen 1956, which is Frijters' integral
+/// 1 - 4 T(d'/sqrt 6, sqrt 3), T of Owen 1956, which is Frijters' integral.
+double oddity_proportion(double dprime);
 double oddity_miss(double dprime); ///< 1 - oddity_proportion, without cancellation
 
 } // namespace study

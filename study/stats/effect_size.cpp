@@ -38,8 +38,8 @@ Interval eta2_interval(double f, double df1, double df2, double confidence)
     if (!std::isfinite(f) || f < 0) return {std::nan(""), std::nan("")};
     double const tail = (1 - confidence) / 2;
     auto const eta2 = [&](double lambda) { return lambda / (lambda + df1 + df2 + 1); };
-    // Beyond, as where all observers give the same answer, only the denominator's chi squared varies in
-    // comparison.
+    // Beyond, as where all observers give the same answer, only the denominator's
+    // chi squared varies in comparison.
     constexpr double kLarge = 1e6;
     if (f * df1 > kLarge) {
         auto const lambda = [&](double share) { return f * df1 * (chi_square_quantile(share, df2) / df2); };

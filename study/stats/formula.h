@@ -1,6 +1,6 @@
 #pragma once
-// Formulas of psychometric functions as text: P(correct) of named values, such as x, threshold, slope, guess,
-// lapse in
+// Formulas of psychometric functions as text: P(correct) of named values, such as
+// x, threshold, slope, guess, lapse in
 //   guess + (1 - guess - lapse) * (1 - exp(-(x / threshold)^slope))
 // Operators + - * / ^ (right-associative, before the sign), parentheses, numbers, pi, and the functions exp, log
 // (natural), log2, log10, sqrt, abs, tanh, atan, erf, normal (the cumulative distribution), min(a, b), max(a, b).
@@ -29,8 +29,8 @@ class Formula {
 public:
     /// @param names   of the values that it may use
     /// @param needed  the first ones that it must use
-    /// @throws FormulaError no formula, longer than 1000 characters, nested deeper than 25, or without a needed
-    /// value
+    /// @throws FormulaError no formula, longer than 1000 characters, nested deeper than 25,
+    /// or without a needed value
     Formula(std::string text, std::vector<std::string> names, std::size_t needed);
     /// P of x, threshold, slope, guess, lapse; it must use x and threshold.
     static Formula psychometric(std::string text);

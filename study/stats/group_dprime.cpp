@@ -184,8 +184,8 @@ public:
     double loss(double mean)
     {
         last_[0] = mean;
-        // Where the best deviation is 0 its logarithm has no gradient, but farther off observers may seem to
-        // differ.
+        // Where the best deviation is 0 its logarithm has no gradient, but farther
+        // off observers may seem to differ.
         for (int const i : free_)
             if (i % 2 == 1) last_[std::size_t(i)] = std::max(last_[std::size_t(i)], kVisibleLogSd);
         return std::max(0.0, 2 * (most_ - maximise(last_, free_)));
@@ -208,8 +208,8 @@ private:
     double most_ = 0;
 };
 
-/// The variance of the mean by how observers' scores differ (the sandwich estimator: Huber 1967), by that of the
-/// likelihood.
+/// The variance of the mean by how observers' scores differ (the sandwich estimator:
+/// Huber 1967), by that of the likelihood.
 double variance_ratio(DetectionTask task, Fit& fit)
 {
     Population const& best = fit.best();

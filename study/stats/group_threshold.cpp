@@ -54,8 +54,8 @@ public:
     ThresholdMarginal const& marginal() const { return marginal_; }
 
     struct Errors {
-        /// The variance of the mean by how observers' scores differ (the sandwich estimator: Huber 1967), by that
-        /// of the likelihood.
+        /// The variance of the mean by how observers' scores differ (the sandwich estimator:
+        /// Huber 1967), by that of the likelihood.
         double variance_ratio = 1;
         double scale = 0; ///< standard error of the logarithm
     };

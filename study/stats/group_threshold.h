@@ -5,9 +5,9 @@
 // in group_dprime.h). A single run of 25 trials does not determine a slope, and its own best fit has a biased
 // threshold; all runs together do, and nobody's threshold needs to be averaged or left out.
 //
-// The threshold is the level at which a proportion of answers is right (or yes), lapses included. Intervals of the
-// mean are those of the profile likelihood. For thresholds of each observer see own_threshold.h and
-// hierarchical_psychometric.h.
+// The threshold is the level at which a proportion of answers is right (or yes), lapses included.
+// Intervals of the mean are those of the profile likelihood. For thresholds of each observer see
+// own_threshold.h and hierarchical_psychometric.h.
 
 #include "study/stats/binomial.h"
 #include "study/stats/psychometric.h"

@@ -156,8 +156,8 @@ Hierarchical hierarchical_psychometric(std::span<ObserverLevels const> observers
         threshold.variances.push_back(
             own_variance(curve ? level_likelihood(people[i], *curve, mean, false).information : 0));
     }
-    double const most_lapses =
-        std::min(0.2, 0.9 * (1 - s.proportion)); // so that every curve reaches the proportion
+    // So that every curve reaches the proportion.
+    double const most_lapses = std::min(0.2, 0.9 * (1 - s.proportion));
     auto const density = [&](std::span<double const> x, std::span<double> g) -> double {
         std::fill(g.begin(), g.end(), 0.0);
         double sum = threshold.log_prior(x, n, g) + scale.log_prior(x, n, g) + lapse.log_prior(x, n, g);

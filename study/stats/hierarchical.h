@@ -11,8 +11,8 @@
 // near the errors of observers' estimates. A half-normal density alone does not vanish, and takes observers who
 // differ by about those errors as too equal: 95 % intervals of observers held 93 %.
 //
-// d': d' and criterion of each observer; priors: means N(0, 2^2), standard deviations half-normal (2, of criteria
-// 1).
+// d': d' and criterion of each observer; priors: means N(0, 2^2), standard deviations
+// half-normal (2, of criteria 1).
 // Psychometric function: threshold (at a proportion correct), log scale and logit of the lapse rate of each
 // observer, a common overdispersion; in units of the range of levels: mean threshold N(0, 1) from the middle, its
 // standard deviation half-normal (1); log scale N(log 1/8, 1), half-normal (0.5); lapse rate L logistic(y), L =

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kScorePrior = 2, kSdPrior = 0.7, kTiePrior = 0.3;
 
-/// Parameters: scores of items 1, 2, ... relative to item 0; log sd; log t if there are ties; z by observer and
-/// item.
+/// Parameters: scores of items 1, 2, ... relative to item 0; log sd; log t if there are ties;
+/// z by observer and item.
 struct HierarchyLayout {
     std::size_t items = 0, observers = 0;
     bool has_ties = false;

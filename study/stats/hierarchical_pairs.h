@@ -1,9 +1,8 @@
 #pragma once
 // Scores from pairs with observers as random effects, by a Bayesian model:
 //   P(o chooses i over j) = Phi(s_oi - s_oj - t),  s_oi = mu_i + sd z_oi,  z_oi ~ N(0, 1),
-// with the threshold t of ties if there are any (Glenn & David 1960), else 0. Priors are weak: mu_i - mu_0 ~ N(0,
-// 2^2), sd half normal with 0.7, log t ~ N(log 0.3, 1), in units of one trial's noise. Draws are those of
-// sampler.h.
+// with the threshold t of ties if there are any (Glenn & David 1960), else 0. Priors are weak: mu_i - mu_0 ~ N(0, 2^2),
+// sd half normal with 0.7, log t ~ N(log 0.3, 1), in units of one trial's noise. Draws are those of sampler.h.
 //
 // mu is the mean over observers of their own scales. The scale of pooled choices (pair_scale.h) is smaller by
 // 1 / sqrt(1 + 2 sd^2), because observers who differ agree less.

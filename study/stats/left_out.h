@@ -1,7 +1,7 @@
 #pragma once
-// How a scale of pairs changes by leaving out one observer's choices (the jackknife: Miller 1974, Biometrika
-// 61:1). Unlike influences, which are derivatives, such changes know that far-off choices weigh more, the farther
-// off.
+// How a scale of pairs changes by leaving out one observer's choices (the jackknife:
+// Miller 1974, Biometrika 61:1). Unlike influences, which are derivatives, such changes know that
+// far-off choices weigh more, the farther off.
 
 #include "study/stats/pair_likelihood.h"
 

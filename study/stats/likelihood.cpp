@@ -9,9 +9,9 @@ namespace study {
 namespace {
 
 constexpr double kConverged = 1e-13; ///< threshold on the predicted gain in log-likelihood of a step
-/// The same where the iterations end: estimates are then within 0.015 standard errors of the maximum. Scoring by
-/// the expected information gains little per step where it differs from the curvature, as with lapse rates near
-/// their bounds.
+/// The same where the iterations end: estimates are then within 0.015 standard errors of the maximum.
+/// Scoring by the expected information gains little per step where it differs from the curvature,
+/// as with lapse rates near their bounds.
 constexpr double kNearEnough = 1e-4;
 
 /// Free parameters: all except those that the gradient pushes against a bound.

@@ -141,7 +141,7 @@ ObserverScale scale_observers(std::vector<std::vector<PairCount>> const& observe
     double squares = 0;
     for (std::size_t o = 0; o < observers.size(); ++o) {
         Eigen::MatrixXd const leverage = root * information[o] * root;
-        // An observer who alone determines a score leaves no residual of it: the correction is bounded.
+        // A score that one observer alone determines has no residual, so the correction is limited.
         constexpr double kLeastRest = 0.05;
         Eigen::MatrixXd const rest = Eigen::MatrixXd::Identity(n, n) - leverage;
         Eigen::MatrixXd const lifted = n > 0 ? power(rest, -0.5, kLeastRest) : leverage;

@@ -53,10 +53,10 @@ struct ObserverScale {
     PairScale fit;     ///< maximum likelihood of all trials
     PairScale reduced; ///< with Jeffreys' prior
     int observers = 0;
-    double dispersion =
-        1; ///< variance over observers by that of independent trials, mean over scores; at least 1/2
-    std::vector<std::vector<double>>
-        influence; ///< by observer: change of each score by his or her choices, unit of F
+    /// Variance over observers by that of independent trials, mean over scores; at least 1/2.
+    double dispersion = 1;
+    /// By observer: change of each score by his or her choices, unit of F.
+    std::vector<std::vector<double>> influence;
     std::vector<std::vector<double>> left_out; ///< the same by fits without his or her choices
     std::vector<Matrix> expected;              ///< by observer: covariance of that for independent trials
     Matrix modelled;                           ///< covariance of the scores by the model of how observers differ

@@ -22,8 +22,8 @@ std::vector<PairCount> without_order(std::span<PairCount const> pairs);
 /// n x n, ties as half a win for each.
 Matrix wins_of(std::span<PairCount const> pairs, int items);
 
-/// @throws std::invalid_argument no items, an item out of range or compared with itself, a count that is negative
-/// or NaN
+/// @throws std::invalid_argument no items, an item out of range or compared with itself,
+/// a count that is negative or NaN
 void check_pairs(std::span<PairCount const> pairs, int items);
 
 /// Connected component of the graph of comparisons for each item, numbered from 0. Scores of items in different

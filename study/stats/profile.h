@@ -55,8 +55,8 @@ double profile_end(ProfileSearch const& s, Loss const& loss)
 /// @param n      1: chi-square's limit
 double profile_limit(double confidence, double n, double ratio);
 
-/// p of a value with this loss: 1 - the confidence whose limit is the loss, so that intervals exclude the value
-/// where p is smaller.
+/// p of a value with this loss: 1 - the confidence whose limit is the loss, so that intervals
+/// exclude the value where p is smaller.
 double profile_p(double loss, double n, double ratio);
 
 /// Few observers, and few answers that are not as expected (nearly perfect observers all seem equal), tell little

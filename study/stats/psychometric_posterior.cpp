@@ -172,8 +172,8 @@ VectorXd mode_of(PosteriorModel const& m)
     return VectorXd::Map(found.data(), Index(found.size()));
 }
 
-/// Square root of the covariance by the curvature at the mode; directions that the data leave open get a deviation
-/// of up to 2.
+/// Square root of the covariance by the curvature at the mode; directions that the data
+/// leave open get a deviation of up to 2.
 MatrixXd spread_at(PosteriorModel const& m, VectorXd const& mode)
 {
     Index const n = mode.size();
@@ -198,8 +198,8 @@ MatrixXd spread_at(PosteriorModel const& m, VectorXd const& mode)
     return solver.eigenvectors() * deviation.asDiagonal();
 }
 
-/// Points that follow Student's distribution with kTailDegrees in each number of dimensions, the same for all
-/// fits.
+/// Points that follow Student's distribution with kTailDegrees in each number
+/// of dimensions, the same for all fits.
 MatrixXd const& student_points(Index dimensions)
 {
     static std::array<MatrixXd, 6> const all = [] {
@@ -277,7 +277,7 @@ PsychometricPosterior psychometric_posterior(std::span<LevelCount const> counts,
         p.eta += f.weight * f.eta;
         p.functions.push_back(f);
     }
-    if (p.functions.empty()) // nearly nothing is left between the guess rate and 1
+    if (p.functions.empty()) // as with guess rates near 1
         refuse("a guess rate of " + std::to_string(settings.guess), "no psychometric function fits these answers",
                "leave the observer out");
     p.mean.scale = std::exp(p.mean.scale);

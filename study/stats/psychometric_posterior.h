@@ -8,9 +8,8 @@
 //
 // Priors: threshold even within the range, falling beyond it like a normal distribution of a quarter of its width;
 // log scale normal, centred at an eighth of the range, standard deviation 1; lapse rate and overdispersion eta
-// Beta(1, 10); guess rate, where fitted, Beta(1, 1), to which trials without a signal are added.
-// Overdispersion: answers of a level are beta-binomial, with variance n p q (1 + (n - 1) eta^2): thresholds that
-// drift.
+// Beta(1, 10); guess rate, where fitted, Beta(1, 1), to which trials without a signal are added. Overdispersion:
+// answers of a level are beta-binomial, with variance n p q (1 + (n - 1) eta^2): thresholds that drift.
 
 #include "study/stats/psychometric.h"
 

@@ -27,8 +27,8 @@ struct QuestParameters {
 
 struct QuestSettings {
     QuestFunction function = QuestFunction::weibull_db;
-    Direction direction =
-        Direction::rising; ///< falling: larger x are harder, F(threshold - x) and (threshold / x)
+    /// Falling: larger x are harder, F(threshold - x) and (threshold / x)
+    Direction direction = Direction::rising;
     std::vector<double> stimuli;
     std::vector<double> threshold, slope, guess{0.5}, lapse{0.02};
     /// Prior weights of the values above, not necessarily normalised; empty = uniform.

@@ -39,8 +39,8 @@ public:
     /// Index of the next stimulus on the grid; the first dimension varies slowest.
     std::size_t next() const;
     std::vector<double> stimulus(std::size_t index) const;
-    /// The index of a stimulus on the grid, whose values differ by at most 1e-6 of their size; none = it is not on
-    /// it.
+    /// The index of a stimulus on the grid, whose values differ by at most 1e-6 of their size;
+    /// none = it is not on it.
     std::optional<std::size_t> index_of(std::span<double const> stimulus) const;
     /// @throws std::invalid_argument a response that all remaining parameters exclude
     void respond(std::size_t stimulus, bool correct);

@@ -29,8 +29,8 @@ struct PlackettLuce {
 };
 
 /// Fits by maximum likelihood; if that is infinite, with Jeffreys' prior (likelihood.h), and `note` reports it.
-/// @throws std::invalid_argument no items, an item out of range or twice in a choice, items not connected by a
-/// chain of choices
+/// @throws std::invalid_argument no items, an item out of range or twice in a choice,
+/// items not connected by a chain of choices
 PlackettLuce fit_plackett_luce(std::span<ChoiceAmong const> choices, int items);
 
 } // namespace study

@@ -32,12 +32,12 @@ struct Rating {
     double value = 0;
 };
 
-/// Quality that accounts for observers who rate lower than others or carelessly (Li, Bampis, Krasula, Janowski &
-/// Katsavounidis 2020, "A simple model for subject behavior in subjective experiments", HVEI; ITU-T P.910 Annex
-/// E):
+/// Quality that accounts for observers who rate lower than others or carelessly (Li, Bampis,
+/// Krasula, Janowski & Katsavounidis 2020, "A simple model for subject behavior in subjective
+/// experiments", HVEI; ITU-T P.910 Annex E):
 ///   u_jor = quality_j + bias_o + inconsistency_o e,  e standard normal, r-th rating,
-/// by maximum likelihood, alternating: bias, inconsistency, quality weighted by 1 / inconsistency^2. The biases
-/// have mean 0.
+/// by maximum likelihood, alternating: bias, inconsistency, quality weighted by 1 / inconsistency^2.
+/// The biases have mean 0.
 ///
 /// With few ratings of each observer this often runs to where quality equals the ratings of one, whose likelihood
 /// is infinite (inconsistency below a fiftieth of that of all). Then the fit is `shrunken`: the mean square of all

@@ -184,8 +184,8 @@ private:
         return p;
     }
 
-    /// Joins `later`, which continues `p` in the direction. @param is_biased towards the later part, at the top
-    /// level
+    /// Joins `later`, which continues `p` in the direction.
+    /// @param is_biased towards the later part, at the top level
     void join(Path& p, Path&& later, double direction, bool is_biased)
     {
         double const total = log_add(p.log_weight, later.log_weight);

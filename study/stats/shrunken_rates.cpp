@@ -17,8 +17,8 @@ std::vector<double> shrunken_rates(std::span<RateCount const> observers)
     }
     if (!(trials > 0)) refuse("a rate without trials", "nothing was answered", "leave the condition out");
     double const mean = (yes + 0.5) / (trials + 1);
-    // The squared differences by those of chance, and how they grow with the correlation of one observer's
-    // answers.
+    // The squared differences by those of chance, and how they grow with
+    // the correlation of one observer's answers.
     double found = 0, chance = 0, growth = 0;
     for (RateCount const& o : observers) {
         if (!(o.trials > 0)) continue;

@@ -16,8 +16,8 @@ double log_normal_cdf(double z);
 /// z with Phi(z) = p: -infinity at 0, infinity at 1, NaN outside [0, 1].
 double normal_quantile(double p);
 
-/// Owen's T (1956): the probability that a standard normal number exceeds h and another one lies between 0 and a
-/// times it.
+/// Owen's T (1956): the probability that a standard normal number exceeds h and another
+/// one lies between 0 and a times it.
 double owens_t(double h, double a);
 
 double inverse_logit(double x); ///< 1 / (1 + exp(-x))

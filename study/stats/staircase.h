@@ -71,9 +71,9 @@ private:
     std::vector<Reversal> reversals_;
 };
 
-/// The proportion correct at which steps up and down balance: with p_d, the probability that a run of `down`
-/// correct responses comes before a run of `up` wrong ones, where p_d = up_ratio / (1 + up_ratio). 0.7071 for
-/// 1-up-2-down.
+/// The proportion correct at which steps up and down balance: with p_d, the probability that a run
+/// of `down` correct responses comes before a run of `up` wrong ones, where p_d = up_ratio / (1 + up_ratio).
+/// 0.7071 for 1-up-2-down.
 double staircase_target(StaircaseSettings const& settings);
 
 /// Mean level of the last reversals; an early one is dropped if needed to make their number even, so that peaks

@@ -16,8 +16,8 @@ namespace study {
 
 constexpr double kLeastThresholdSd = 0.002; ///< between observers, in ranges
 
-/// All in units of the range from its centre: mean and log deviation of thresholds, log scale, logits of lapse,
-/// eta, guess.
+/// All in units of the range from its centre: mean and log deviation of thresholds,
+/// log scale, logits of lapse, eta, guess.
 struct ThresholdPart {
     enum Index { kMean, kSpread, kScale, kLapse, kEta, kGuess, kCount };
 };
@@ -60,8 +60,8 @@ public:
 private:
     void add(ObserverLevels const& o);
     std::optional<LevelCurve> curve_of(Thresholds const& at, double guess) const;
-    /// One observer's log-likelihood by Gauss-Hermite quadrature around the mode; sets what is known of the
-    /// observer.
+    /// One observer's log-likelihood by Gauss-Hermite quadrature around the mode;
+    /// sets what is known of the observer.
     double integrate(ThresholdPerson& p, Thresholds const& at, LevelCurve const& c) const;
 
     GroupThresholdSettings s_;

@@ -21,8 +21,8 @@ std::string session_folder(SessionStarted const& start);
 /// Blocks without trials have no file.
 std::vector<TextFile> session_files(Script const& script, RecordedSession const& session);
 
-/// "sub-P001/ses-01/beh/sub-P001_ses-01_task-session_recording-eye1_physio": of its samples of gaze (.tsv.gz,
-/// .json).
+/// "sub-P001/ses-01/beh/sub-P001_ses-01_task-session_recording-eye1_physio":
+/// of its samples of gaze (.tsv.gz, .json).
 std::string gaze_stem(Script const& script, RecordedSession const& session);
 /// Its sidecar (BIDS eye tracking). @param start_s  of the first sample, since the beginning of the session
 TextFile gaze_sidecar(Script const& script, RecordedSession const& session, double rate_hz, double start_s);

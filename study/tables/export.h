@@ -27,8 +27,8 @@ std::string lme4_script(Script const& script, std::string const& trials_file);
 /// The text of analysis.py: the same models with statsmodels, as far as it has them.
 std::string statsmodels_script(Script const& script, std::string const& trials_file);
 
-/// @throws ScriptError if the file exists and is not an SQLite database, so that a wrong file name destroys
-/// nothing
+/// @throws ScriptError if the file exists and is not an SQLite database,
+/// so that a wrong file name destroys nothing
 void check_may_become_sqlite(std::filesystem::path const& file);
 /// Writes a database with these tables to `file`, which must not exist. Columns whose cells are all numbers are
 /// numeric, missing values are NULL. @throws std::runtime_error with SQLite's message

@@ -47,7 +47,7 @@ TEST(Counter, SurvivesJpegScalingNoiseAndGrey)
 TEST(Counter, IsNotReadWhereThereIsNone)
 {
     int read = 0;
-    for (int i = 0; i < 400; ++i) { // white and black at their ends, chance between: the check bits tell
+    for (int i = 0; i < 400; ++i) { // only the CRC can reject these random cells
         cv::Mat picture(200, 520, CV_8UC1, cv::Scalar(0));
         cv::RNG rng(std::uint64_t(i) + 1);
         for (int c = 0; c < 52; ++c) picture.colRange(10 * c, 10 * c + 10).setTo(rng.uniform(0, 2) * 255);

@@ -1,4 +1,6 @@
 #pragma once
+// Temporary folders and noise pictures for tests.
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -189,8 +189,8 @@ TEST(ImageVelocity, IsThatOfStandingThings)
 
 TEST(Noise, HasTheVarianceOfTheSensor)
 {
-    // An object of 0.3 over a noisy frame of 0.5: fully, by half, and a shadow: variances as the camera's would
-    // be.
+    // An object of 0.3 over a noisy frame of 0.5: fully, by half, and a shadow:
+    // variances as the camera's would be.
     cv::Size const size(256, 256);
     Photometry p = srgb_photometry();
     for (auto& channel : p.unit_of_byte)

@@ -125,8 +125,8 @@ TEST(Composite, IsDebevecsEquation)
 
 TEST(Composite, OfAntialiasedBordersIsExact)
 {
-    // Truth: half a pixel of an object of 0.6, half a place whose light fell from 0.4 to 0.3; the model has 0.5 ->
-    // 0.4.
+    // Truth: half a pixel of an object of 0.6, half a place whose light fell from 0.4 to 0.3;
+    // the model has 0.5 -> 0.4.
     Photometry const p = srgb_photometry();
     cv::Mat const camera(1, 1, CV_8UC3, cv::Scalar::all(170));
     float const seen = p.unit_of_byte[0][170];

@@ -10,9 +10,9 @@
 
 namespace ar::test {
 
-/// CV_8UC1: 255 where objects are seen, or where with and without differ by more than `threshold` of without (of
-/// its largest channel, at least 1e-3 of the picture's mean); grown by `dilate_px`. What is not finite is
-/// affected.
+/// CV_8UC1: 255 where objects are seen, or where with and without differ by more than `threshold`
+/// of without (of its largest channel, at least 1e-3 of the picture's mean); grown by `dilate_px`.
+/// What is not finite is affected.
 inline cv::Mat affected_region(RenderedPair const& pair, double threshold = 0.02, int dilate_px = 2)
 {
     check(pair);

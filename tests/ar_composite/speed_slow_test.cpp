@@ -1,4 +1,4 @@
-// How long composites take, printed; nothing depends on it but bytes.
+// Prints how long composites take; checks only their bytes.
 
 #include "ar/composite/blur.h"
 #include "ar/composite/composite.h"

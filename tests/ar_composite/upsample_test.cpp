@@ -12,8 +12,8 @@
 namespace ar::test {
 namespace {
 
-/// A floor and a wall that meet along a slanted line, a chequered texture on both, a soft shadow on the floor
-/// alone.
+/// A floor and a wall that meet along a slanted line, a chequered texture on both,
+/// a soft shadow on the floor alone.
 struct Scene {
     RenderedPair pair;
     SurfaceGuides guides;

@@ -79,8 +79,8 @@ inline cv::Mat irradiance_map(cv::Mat const& map, cv::Size size = {64, 32},
     return out;
 }
 
-/// Mean over the sphere and channels of (x - r)^2 / (r^2 + 0.01 m^2), m = the mean of r: of two irradiance maps of
-/// one size.
+/// Mean over the sphere and channels of (x - r)^2 / (r^2 + 0.01 m^2), m = the mean of r:
+/// of two irradiance maps of one size.
 inline double relative_error2(cv::Mat const& x, cv::Mat const& r)
 {
     CV_Assert(x.size() == r.size() && x.type() == CV_32FC3 && r.type() == CV_32FC3);

@@ -36,8 +36,8 @@ Shot shot(double distance, double turn_rad, LensModel lens = LensModel::radial_t
     return s;
 }
 
-/// What the camera sees of a ball at the origin: 3 x 3 rays per pixel, one reflection, the surround behind or a
-/// sheet of paper.
+/// What the camera sees of a ball at the origin: 3 x 3 rays per pixel, one reflection,
+/// the surround behind or a sheet of paper.
 cv::Mat traced(Shot const& s, Environment const& light, double reflectivity, bool sheet)
 {
     int const n = 3;

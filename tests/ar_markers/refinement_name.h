@@ -1,4 +1,6 @@
 #pragma once
+// Names of the ways to refine marker corners, for test names.
+
 #include "ar/markers/aruco.h"
 
 #include <array>

@@ -102,7 +102,7 @@ OneMarker circle(double least_confidence, Fusion fusion, double side_m, double a
     int last_k = 0;
     for (int k = 0; k < 150; ++k) {
         double const t = k / 30.0, turn = 0.6 * t;
-        // From above, where its two poses are close together, to the side and back.
+        // From above, where the two poses that fit a marker are nearly the same, to the side and back.
         double const tilt = glm::radians(6 + 30 * std::pow(std::sin(0.5 * t), 2));
         Pose const truth = looking(
             away_m * glm::dvec3(std::sin(tilt) * std::sin(turn), std::cos(tilt), std::sin(tilt) * std::cos(turn)),

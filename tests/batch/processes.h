@@ -1,4 +1,6 @@
 #pragma once
+// Finds running processes by their command lines, to test what a batch starts and ends.
+
 #include "tests/viewer/run_program.h"
 #include "viewer/batch/worker_process.h"
 

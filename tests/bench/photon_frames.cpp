@@ -3,8 +3,8 @@
 //   bench_photon_frames [--frames N] [--size N] [--photons N] [--budget S] [--reference-paths N] [--methods A,B]
 //                       [SCENE...]
 // Scenes keep their surfaces alone: a point light circles between the camera and what it looks at. Flicker is the
-// mean of |L(t - 1) - 2 L(t) + L(t + 1)| over the mean of L, of layer L2: 0 for light that follows the lamp
-// evenly.
+// mean of |L(t - 1) - 2 L(t) + L(t + 1)| over the mean of L, of layer L2:
+// 0 for light that follows the lamp evenly.
 
 #include "gi/core/quantile.h"
 #include "gi/core/text.h"

@@ -160,8 +160,8 @@ TEST(Bvh, HoldsUnusableTriangles)
     expect_exact(m, none, 1, rng);
 }
 
-/// Sizes of 1e-15 to 1e17 m in one tree (products of smaller ones are not floats), and a room of 1 m far from its
-/// origin.
+/// Sizes of 1e-15 to 1e17 m in one tree (products of smaller ones are not floats),
+/// and a room of 1 m far from its origin.
 TEST(Bvh, SpansAllSizes)
 {
     Pcg32 rng(3, 1);

@@ -1,5 +1,5 @@
-// Any text as a table of measurements or as statistics of a render: what it says, or an InputError. A table comes
-// back as it was.
+// Any text as a table of measurements or as statistics of a render: what it says, or an InputError.
+// A table comes back as it was.
 
 #include "gi/core/error.h"
 #include "viewer/report/render_stats.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What every parser of tracker packets promises of its samples.
+// Checks what must hold for the samples of every parser of tracker packets.
 
 #include "gi/core/pose.h"
 #include "viewer/devices/tracking/tracker_sample.h"

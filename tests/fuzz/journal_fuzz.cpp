@@ -1,6 +1,6 @@
-// Any text as a journal: entries or a ScriptError, never anything else. Lines get the checksum that fits them, or
-// nothing would pass it. What was read is written as the same entries, and a session takes them up or says why it
-// cannot.
+// Any text as a journal: entries or a ScriptError, never anything else.
+// Lines get the checksum that fits them, or nothing would pass it. What was read is written as the same entries,
+// and a session takes them up or says why it cannot.
 
 #include "gi/core/crc32.h"
 #include "study/journal/entry_line.h"

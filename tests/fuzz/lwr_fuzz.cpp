@@ -1,5 +1,5 @@
-// Any bytes as a recording: frames and an end, or an InputError. Checksums are made right, since chance never
-// would.
+// Any bytes as a recording: frames and an end, or an InputError.
+// Checksums are made right, since chance never would.
 
 #include "gi/core/crc32.h"
 #include "gi/core/error.h"

@@ -1,5 +1,5 @@
-// The seeds of every target of libFuzzer, each whole and in damaged copies: a target traps where its parser breaks
-// a promise.
+// The seeds of every target of libFuzzer, each whole and in damaged copies:
+// a target traps where its parser breaks a promise.
 
 #include "tests/fuzz/targets.h"
 

@@ -1,4 +1,6 @@
 #pragma once
+// The table of all fuzz targets.
+
 #include <cstddef>
 #include <span>
 

@@ -26,8 +26,8 @@ void add_up(Picture& p)
         set(p, "color", i, get(p, "L0", i) + get(p, "L1", i) + get(p, "L2", i));
 }
 
-/// A grey wall that faces the eye, pixels 1 cm apart, under light of 1 (direct) and 0.5 (indirect) with a large
-/// variance.
+/// A grey wall that faces the eye, pixels 1 cm apart, under light of 1 (direct) and
+/// 0.5 (indirect) with a large variance.
 Picture wall(int width, int height)
 {
     Picture p;
@@ -378,7 +378,7 @@ TEST_P(AllFilters, TheResultDoesNotDependOnThreads)
 TEST_P(AllFilters, TheErrorOfACornellBoxFalls)
 {
     Picture const reference = cornell(512, 1), noisy = cornell(8, 2);
-    // Without L0: no filter touches the edges of the lamp.
+    // L0 is left out: no filter changes the edges of the lamp.
     auto const lit = [](Picture const& p) {
         std::vector<float> sum = p.find("L1")->data;
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += p.find("L2")->data[i];

@@ -1,5 +1,5 @@
-// Light paths against closed forms: flux in closed rooms, form factors, path density; by rays, bounce maps and
-// look-ups.
+// Light paths against closed forms: flux in closed rooms, form factors, path density;
+// by rays, bounce maps and look-ups.
 
 #include "gi/kernel/launch.h"
 #include "gi/light_paths/bounce_map.h"
@@ -101,8 +101,8 @@ TEST(LightPathsAnalytic, FluxInClosedRooms)
     }
 }
 
-/// Share of a plate's light that reaches a parallel one, and a perpendicular one: by photons within three standard
-/// errors.
+/// Share of a plate's light that reaches a parallel one, and a perpendicular one:
+/// by photons within three standard errors.
 TEST(LightPathsAnalytic, FormFactors)
 {
     // Squares of side 1 at distance 1; squares of side 1 with a common edge.
@@ -252,8 +252,8 @@ TEST(LightPathsAnalytic, PathDensityWithFocus)
     }
 }
 
-/// With a focus, the sky's light is the same by bounce maps as by rays: on a floor under a half open roof, the
-/// focus below.
+/// With a focus, the sky's light is the same by bounce maps as by rays:
+/// on a floor under a half open roof, the focus below.
 TEST(LightPathsAnalytic, SkyWithFocus)
 {
     Scene scene;

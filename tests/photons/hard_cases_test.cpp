@@ -67,8 +67,8 @@ TEST(PhotonMethods, OneLightPath)
         }
 }
 
-/// One triangle, lit from the front: all that it reflects leaves. In a lattice in which light propagates a little
-/// comes back to it.
+/// One triangle, lit from the front: all that it reflects leaves. In a lattice in which light
+/// propagates a little comes back to it.
 TEST(PhotonMethods, OneTriangle)
 {
     Scene scene;
@@ -311,8 +311,8 @@ TEST(PhotonStops, AfterTracing)
     for (Stage const& stage : stages)
         for (PhotonMethod const& m : kPhotonMethods) {
             if (std::string_view(m.name) != stage.method) continue;
-            // How long a run takes to the stage, and in it; by the last one that ended, as machines do other work,
-            // too.
+            // How long a run takes to the stage, and in it; by the last one that ended,
+            // as machines do other work, too.
             double before = 0, in_stage = 0;
             auto const run = [&](StopRequest const& stop) {
                 Report report;

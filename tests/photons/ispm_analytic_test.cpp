@@ -53,8 +53,8 @@ TEST(Ispm, Furnace)
         }
 }
 
-/// As photons grow, noise and blur fall together, with a power of -1/3 (the mean squared error, -2/3): away from
-/// edges and at them.
+/// As photons grow, noise and blur fall together, with a power of -1/3 (the mean squared error, -2/3):
+/// away from edges and at them.
 TEST(Ispm, ConvergesWithPhotons)
 {
     for (bool const sphere : {true, false}) {
@@ -154,8 +154,8 @@ TEST(Ispm, SplattingIsThePhotonMap)
     }
 }
 
-/// Lists of more than 2^32 entries are counted, not made; of kernels about the camera's plane only those count
-/// that can be seen.
+/// Lists of more than 2^32 entries are counted, not made; of kernels about the camera's
+/// plane only those count that can be seen.
 TEST(Ispm, ListsTooLongForMemory)
 {
     Camera const camera = look_at({0, 0, 0}, {0, 0, -1}, 60);

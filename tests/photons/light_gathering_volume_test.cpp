@@ -1,5 +1,5 @@
-// Lattices as multi_image uses them: gathering, nested about a focus, with moving triangles; and the formula of
-// the paper.
+// Lattices as multi_image uses them: gathering, nested about a focus, with moving triangles;
+// and the formula of the paper.
 
 #include "tests/photons/traced_scene.h"
 
@@ -74,8 +74,8 @@ TEST(LightGatheringVolume, GatheringKeepsFlux)
     }
 }
 
-/// A dim room of 2 m with walls of 0.1 m in a bright hall of 16 m. Coarse cells mix the two; lattices about the
-/// room do not.
+/// A dim room of 2 m with walls of 0.1 m in a bright hall of 16 m. Coarse cells mix the two;
+/// lattices about the room do not.
 TEST(LightGatheringVolume, ARoomInALargeWorld)
 {
     Scene scene;

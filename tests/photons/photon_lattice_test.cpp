@@ -18,9 +18,9 @@ void turn(Scene& scene)
 
 char const* name(IrradianceBy by) { return by == IrradianceBy::normals ? "normals" : "directions"; }
 
-/// Where everything glows evenly with radiance 1 and reflects a half, light of one and more scatterings has an
-/// irradiance of pi: closed rooms, and one with a closed box that stands on its floor and another against its
-/// wall.
+/// Where everything glows evenly with radiance 1 and reflects a half, light of one and more
+/// scatterings has an irradiance of pi: closed rooms, and one with a closed box that stands on
+/// its floor and another against its wall.
 TEST(PhotonLattices, Furnace)
 {
     char const* const shapes[] = {"box", "turned box", "sphere", "furnished box", "turned furnished box"};

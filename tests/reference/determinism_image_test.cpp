@@ -1,5 +1,5 @@
-// The same seed gives the same bits, however the work is divided; another seed gives another sample of the same
-// mean.
+// The same seed gives the same bits, however the work is divided;
+// another seed gives another sample of the same mean.
 
 #include "gi/core/error.h"
 #include "gi/methods/reference/reference.h"

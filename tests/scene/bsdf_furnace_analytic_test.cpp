@@ -1,5 +1,5 @@
-// How much of the light of a uniform sky a surface sends on: directional albedo by quadrature and its closed
-// forms.
+// How much of the light of a uniform sky a surface sends on: directional albedo
+// by quadrature and its closed forms.
 
 #include "tests/support/bsdf_cases.h"
 #include "tests/support/scenes.h"
@@ -121,9 +121,9 @@ TEST(BsdfFurnace, RoughestMetalFromAboveHasItsClosedForm)
     EXPECT_NEAR(rough_albedo(make_bsdf(white_metal(1)), {0, 0, 1}, 0), 1 - std::log(2.0), 1e-5);
 }
 
-/// Single scattering loses what bounces twice among the microfacets: from above a white metal of roughness 0.3
-/// keeps 0.991, of 0.5 0.916, of 0.7 0.698, of 1 0.307. The judge is an independent quadrature over microfacet
-/// normals.
+/// Single scattering loses what bounces twice among the microfacets:
+/// from above a white metal of roughness 0.3 keeps 0.991, of 0.5 0.916, of 0.7 0.698, of 1 0.307.
+/// The judge is an independent quadrature over microfacet normals.
 TEST(BsdfFurnace, WhiteMetalLosesWhatIsMultiplyScattered)
 {
     auto const independent = [](double alpha, double cos_o) {

@@ -95,8 +95,8 @@ struct Plain {
     std::vector<double> reach; ///< the sum of the sizes of what was added up for a position, m
 };
 
-/// The same in doubles, written down as plainly as it goes: linear blending, or DLB of maps that are rigid but for
-/// one scale.
+/// The same in doubles, written down as plainly as it goes: linear blending,
+/// or DLB of maps that are rigid but for one scale.
 Plain plain_deform(Rig const& rig, double joint_scale)
 {
     Mesh const& mesh = rig.scene.meshes[0];

@@ -193,9 +193,9 @@ struct RealMap {
 
 class RealMaps : public testing::TestWithParam<RealMap> {};
 
-/// The paper: 1 % on average and 9 % at most. Of the brightest surface that holds for all three; relative to what
-/// a surface gets itself it does not, on the side that looks away from a sun (kloppenheim) or a bright sky
-/// (dresden).
+/// The paper: 1 % on average and 9 % at most. Of the brightest surface that holds for all three;
+/// relative to what a surface gets itself it does not, on the side that looks away from a sun
+/// (kloppenheim) or a bright sky (dresden).
 TEST_P(RealMaps, IrradianceAgainstIntegration)
 {
     std::string const file = std::string("envmaps/") + GetParam().file;

@@ -129,8 +129,8 @@ TEST(GltfNodes, FurtherJointsAreCountedAndBadJointsRefused)
     Report report;
     b.parse(report);
     EXPECT_EQ(lost(report, "joints beyond the fourth of a vertex ignored"), 1u);
-    attributes["JOINTS_0"] =
-        b.add_accessor(b.add_view(std::vector<std::uint16_t>(12, 7)), kUshort, 3, "VEC4"); // the skin has one
+    // The skin has one.
+    attributes["JOINTS_0"] = b.add_accessor(b.add_view(std::vector<std::uint16_t>(12, 7)), kUshort, 3, "VEC4");
     EXPECT_THROW(b.parse(), InputError);
 }
 

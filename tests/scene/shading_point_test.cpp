@@ -162,8 +162,8 @@ TEST(ShadingPoint, MapsMultiplyTheirFactors)
     m.roughness = 0.9f;
     m.emission = vec3{10};
     m.base_color_map.texture = m.metallic_roughness_map.texture = m.emissive_map.texture = 0;
-    ShadingPoint const at =
-        shade(world_with(mesh, m, {{51, 102, 204, 255}}), {0.2f, 0.2f}, {0, 0, -1}); // 0.2 0.4 0.8
+    // Bytes for sRGB 0.2, 0.4, 0.8.
+    ShadingPoint const at = shade(world_with(mesh, m, {{51, 102, 204, 255}}), {0.2f, 0.2f}, {0, 0, -1});
     EXPECT_NEAR(at.bsdf.alpha, 0.36 * 0.36, 1e-5) << "roughness: green";
     float const metallic = 0.8f * 0.8f; // blue
     expect_near(at.bsdf.diffuse, (1 - metallic) * vec3{0.1f, 0.4f, 0.8f});

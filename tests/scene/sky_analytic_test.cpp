@@ -1,5 +1,5 @@
-// The sky of Preetham et al. against its published polynomials (numbers of another program), and the map against
-// the model.
+// The sky of Preetham et al. against its published polynomials (numbers of another program),
+// and the map against the model.
 
 #include "gi/core/error.h"
 #include "gi/scene/model/sky.h"
@@ -110,8 +110,8 @@ TEST(Sky, NeverNegativeAndFinite)
 
 TEST(Sky, TheSunIsThatOfADay)
 {
-    // About 133 klx outside the atmosphere; 80 to 110 reach the ground from a high sun in clear air. Blue goes
-    // first.
+    // About 133 klx outside the atmosphere; 80 to 110 reach the ground from a high
+    // sun in clear air. Blue goes first.
     double const solid_angle = 2 * M_PI * (1 - std::cos(kSunRadiusRad));
     EXPECT_NEAR(solid_angle, M_PI * std::pow(0.533 / 2 * M_PI / 180, 2), 1e-9);
     auto const illuminance = [&](double turbidity, double elevation) {

@@ -156,8 +156,8 @@ TEST(NearestDirections, AnswerAsAllOfThemDo)
     }
 }
 
-/// sum over axes of |cos| times solid angle: the table's estimate of it has to be right for every normal, by its
-/// mean.
+/// sum over axes of |cos| times solid angle: the table's estimate of it has to be
+/// right for every normal, by its mean.
 TEST(CosineTables, EstimatesAreThoseOfTheDiscreteSet)
 {
     for (char const* name : {"icosahedron:80", "halton:144", "uv_grid:128"}) {

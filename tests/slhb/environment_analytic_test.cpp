@@ -107,8 +107,8 @@ TEST(EnvironmentLight, TurningTheMapIsTurningTheScene)
     turned_scene.environment = map;
     World const a = world_of(turned_map), b = world_of(turned_scene);
     for (Method const m : kMethods) {
-        // Pixels of slhb share their axes and lamps: means over independent seeds are compared, of all and of
-        // quarters.
+        // Pixels of slhb share their axes and lamps: means over independent seeds are
+        // compared, of all and of quarters.
         constexpr int kSeeds = 6, kSize = 24, kParts = 5;
         RunningMean mean_a[2][kParts], mean_b[2][kParts];
         for (int seed = 0; seed < kSeeds; ++seed) {

@@ -117,8 +117,8 @@ TEST(SlhbRadiometry, PointAndParallelLight)
 
 TEST(SlhbRadiometry, FormFactorOfParallelSquares)
 {
-    // Irradiance at the middle of a square from an equal one above at distance a: F = 4 / (2 pi) * ... (Howell
-    // C-11).
+    // Irradiance at the middle of a square from an equal one above at distance a:
+    // F = 4 / (2 pi) * ... (Howell C-11).
     Scene scene;
     add_quad(scene, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, add_material(scene, lambert(vec3{0.5f})));
     add_quad(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, add_material(scene, emitter(vec3{1})));

@@ -17,8 +17,8 @@ namespace {
 constexpr int kFrameSize = 32;
 constexpr std::uint32_t kWall = 0, kBlock = 1, kLamp = 2, kBall = 3; // materials
 
-/// A room with a block, a lamp of triangles, a small one of none, and a smooth ball with a box on it that is moved
-/// from outside.
+/// A room with a block, a lamp of triangles, a small one of none, and a smooth ball with
+/// a box on it that is moved from outside.
 std::shared_ptr<Scene const> frame_room()
 {
     Scene scene = box_with_block_and_lamp(), object;

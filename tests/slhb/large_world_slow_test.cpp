@@ -76,7 +76,7 @@ World room_on_terrain()
     return world_of(std::move(scene));
 }
 
-/// The Cornell box of one metre, open to the front, its lamp its own.
+/// A terrain with a Cornell box of 1 m, open to the front and lit by its own lamp.
 World box_on_terrain()
 {
     Scene scene;

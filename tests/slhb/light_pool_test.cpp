@@ -8,8 +8,8 @@
 namespace gi::test {
 namespace {
 
-/// Lights of every kind about the origin: surfaces that shine to one and to both sides, a point, parallel light, a
-/// sky.
+/// Lights of every kind about the origin: surfaces that shine to one and to both sides,
+/// a point, parallel light, a sky.
 Scene lights_of_all_kinds()
 {
     Scene scene;

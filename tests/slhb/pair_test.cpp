@@ -1,5 +1,5 @@
-// A view with and without what moves: each picture is that of its world, and paths that see no difference are
-// equal in every bit.
+// A view with and without what moves: each picture is that of its world, and paths that see
+// no difference are equal in every bit.
 
 #include "gi/core/error.h"
 #include "gi/hit_buffers/settings.h"

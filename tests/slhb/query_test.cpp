@@ -16,8 +16,8 @@ struct Walks {
     double hits = 0, count = 0, farthest_false_hit = 0; ///< texels from what they hit to where they start
 };
 
-/// Straight up from everywhere on the floor, in many grids; what they may meet lies over a square about the
-/// middle.
+/// Straight up from everywhere on the floor, in many grids; what they may meet
+/// lies over a square about the middle.
 Walks walk_up(Scene scene, float half_width, std::uint32_t resolution)
 {
     World const world = world_of(std::move(scene));

@@ -115,9 +115,9 @@ TEST(SlhbStability, SliversDegenerateTrianglesAndTJunctions)
 
 TEST(SlhbStability, ThinWallsKeepLightOut)
 {
-    // Two rooms with a common wall of 0.1 texel; a lamp in one of them. Direct light never passes; of indirect
-    // light what columns confuse within a texel of the wall, where the two floors are one plane (measured: 0.13
-    // %).
+    // Two rooms with a common wall of 0.1 texel; a lamp in one of them. Direct light never passes;
+    // of indirect light what columns confuse within a texel of the wall, where the two floors
+    // are one plane (measured: 0.13 %).
     Scene scene;
     int const grey = add_material(scene, lambert(vec3{0.8f}));
     float const half = 0.05f * 4 / 128;

@@ -1,5 +1,5 @@
-// The threshold of a run by QUEST+'s posterior. Runs without trials have the prior, which is uniform over the
-// grids.
+// The threshold of a run by QUEST+'s posterior. Runs without trials have the prior,
+// which is uniform over the grids.
 
 #include "study/analysis/result_tables.h"
 #include "study/analysis/threshold_run.h"
@@ -72,7 +72,8 @@ TEST(QuestPlusEstimate, KnowsOnWhichSideAFlatFunctionLies)
                                   harder)
                 .note;
         };
-        bool const rises = harder == "down"; // thresholds are at 5, 6.6, 8.4 and 1e8, then at 10, 7.6, 6 and 5e-7
+        // The four functions have thresholds 5, 6.6, 8.4 and 1e8, or 10, 7.6, 6 and 5e-7.
+        bool const rises = harder == "down";
         EXPECT_TRUE(
             note(rises ? "x / threshold^4" : "threshold^4 / x").starts_with("the interval is open above:"));
         EXPECT_TRUE(note(rises ? "x * threshold^4 / 50" : "50 / (x * threshold^4)")

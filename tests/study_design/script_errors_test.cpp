@@ -52,7 +52,7 @@ struct Case {
     char const *what, *by, *place, *mentions;
 };
 
-/// Reading goes on behind a mistake: what it leaves unknown must not be used.
+/// Parsing continues after a mistake; values that the mistake left unknown must not be used.
 TEST(ScriptErrors, WhatAMistakeLeavesUnknownIsNotUsed)
 {
     // A factor without levels, which the reference names.

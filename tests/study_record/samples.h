@@ -4,7 +4,7 @@
 
 namespace study::test {
 
-/// One entry of every kind, every field set.
+/// One journal entry of every kind, with every field set.
 inline std::vector<JournalEntry> entries_of_every_kind()
 {
     SessionStarted started{"bounces", "P003",

@@ -46,8 +46,8 @@ blocks:
                         "mixed.yaml");
 }
 
-/// 1 JOD is 10 points of the rating; dusk costs 0.5 JOD, and 1 JOD more for `bad`; thresholds are 1 higher at
-/// dusk.
+/// 1 JOD is 10 points of the rating; dusk costs 0.5 JOD, and 1 JOD more for `bad`;
+/// thresholds are 1 higher at dusk.
 ObserverModel mixed_observers(Script const& s)
 {
     return read_observers(R"(quality: {method: {good: -0.5, bad: -1}, light: {dusk: -0.5}}

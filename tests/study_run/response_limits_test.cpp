@@ -1,5 +1,5 @@
-// Answers outside of min_response_ms and max_response_ms: invalid, with a reason, repeated, and not for
-// procedures.
+// Answers outside of min_response_ms and max_response_ms: invalid, with a reason,
+// repeated, and not for procedures.
 
 #include "study/run/trial.h"
 #include "tests/study_run/support.h"

@@ -1,4 +1,6 @@
 #pragma once
+// Small scripts, noiseless observer models and tolerances for tests of simulated answers.
+
 #include "study/observers/answer.h"
 #include "study/observers/simulate.h"
 #include "study/run/progress.h"

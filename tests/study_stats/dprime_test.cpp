@@ -11,9 +11,9 @@
 namespace study::test {
 namespace {
 
-/// What psyphy finds by iteration misses its own equations by up to 3e-5 (R's uniroot stops at 1.2e-4): for two
-/// alternatives and p = 0.6 it has 0.358264, sqrt(2) z(0.6) is 0.358287. Ours solve them, as the tests below
-/// check.
+/// What psyphy finds by iteration misses its own equations by up to 3e-5 (R's uniroot stops at 1.2e-4):
+/// for two alternatives and p = 0.6 it has 0.358264, sqrt(2) z(0.6) is 0.358287.
+/// Ours solve them, as the tests below check.
 constexpr double kUniroot = 3e-5;
 
 TEST(DPrime, YesNoIsTheClosedForm)

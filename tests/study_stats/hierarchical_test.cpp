@@ -28,8 +28,8 @@ double expected_deviation(std::vector<double> const& y, double v)
 
 TEST(Hierarchical, HasTheReferencePriorOfHowObserversDiffer)
 {
-    // 500 trials each; d' that differ by less than, by about as much as, and by more than the error of an
-    // estimate.
+    // 500 trials each; d' that differ by less than, by about as much as,
+    // and by more than the error of an estimate.
     for (double const sd : {0.05, 0.11, 0.3}) {
         std::vector<DetectionCounts> people;
         std::vector<double> y;

@@ -109,7 +109,7 @@ TEST(MixedAnova, RefusesWhatItCannotSeparate)
     EXPECT_THROW(mixed_anova(Matrix(8, 2, 1), {{{"c", 2}}, {}}), std::invalid_argument);
 }
 
-/// As where all observers give the same answer, but for rounding.
+/// F is huge where all observers give the same answer up to rounding.
 TEST(EffectSize, OfHugeRatiosGoesOnAsThatOfLargeOnes)
 {
     for (bool const high : {false, true}) {

@@ -163,8 +163,8 @@ TEST(PsychometricPosterior, IsThatOfPsignifit)
     PosteriorSettings settings;
     settings.low = 0.001;
     settings.high = 0.01;
-    // psignifit 4.3 (PyPI), experiment_type 2AFC, sigmoid norm: means of its posterior, and its interval of the
-    // threshold.
+    // psignifit 4.3 (PyPI), experiment_type 2AFC, sigmoid norm: means of its posterior,
+    // and its interval of the threshold.
     PsychometricPosterior const all = psychometric_posterior(psignifit_example(), settings);
     EXPECT_NEAR(all.mean.threshold, 0.0046245, 5e-6);
     EXPECT_NEAR(all.mean.scale, 0.0046977 / (2 * 1.6448536), 8e-5); // its width is that from 5 % to 95 %

@@ -11,8 +11,8 @@ std::filesystem::path shared_data();
 
 } // namespace gi::test
 
-/// Skips the test, visibly, where the file or folder is not there. @param path absolute, or relative to
-/// shared_data()
+/// Skips the test, visibly, where the file or folder is not there.
+/// @param path absolute, or relative to shared_data()
 #define LIGHTWELL_NEED_DATA(path)                                                                                 \
     do {                                                                                                          \
         if (gi::test::shared_data().empty() || !std::filesystem::exists(gi::test::shared_data() / (path)))        \

@@ -127,8 +127,8 @@ TEST(SeenLight, CoarseShadowsAreThoseOfEveryPixel)
     EXPECT_LT(unlike_by_rays(world_of(scene), eye(), 120), std::size_t(120 * 120) / 200); // slivers of shadow
 }
 
-/// A sun low over fine grooves, whose one side faces away from it: where pixels around face away, that says
-/// nothing.
+/// A sun low over fine grooves, whose one side faces away from it: where pixels
+/// around face away, that says nothing.
 TEST(SeenLight, OfSurfacesBesideOthersThatFaceAway)
 {
     Scene scene;

@@ -1,5 +1,5 @@
-// The surfaces of a picture are those that exact rays meet; mirrors and panes show what is seen in them, where it
-// seems to be.
+// The surfaces of a picture are those that exact rays meet; mirrors and panes show what
+// is seen in them, where it seems to be.
 
 #include "tests/surfaces/seen_picture.h"
 
@@ -216,8 +216,8 @@ TEST(SeenSurfaces, WhatShinesByItselfIsSeenBesideWhatItMirrors)
     EXPECT_EQ(s.depth, 0);
 }
 
-/// A thin pane reflects 2 F / (1 + F) with F = 0.04: of a lamp behind the eye that is light besides what is behind
-/// it.
+/// A thin pane reflects 2 F / (1 + F) with F = 0.04: of a lamp behind the eye that
+/// is light besides what is behind it.
 TEST(SeenSurfaces, APaneReflectsLampsToo)
 {
     Scene scene;

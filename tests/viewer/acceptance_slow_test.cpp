@@ -1,5 +1,5 @@
-// What the program promises on large or long work: against a render of another program, and on a million
-// triangles.
+// What the program promises on large or long work: against a render of another program,
+// and on a million triangles.
 
 #include "tests/support/data.h"
 #include "tests/viewer/run_program.h"

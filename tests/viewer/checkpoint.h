@@ -14,8 +14,8 @@ struct KilledRender {
     std::string picture;              ///< at the end
 };
 
-/// Runs `call --out a.exr --checkpoint INTERVAL --quiet`, kills it, and goes on with --resume until it is
-/// complete.
+/// Runs `call --out a.exr --checkpoint INTERVAL --quiet`, kills it, and goes on
+/// with --resume until it is complete.
 inline KilledRender render_with_kills(std::string const& call, std::string const& interval, int kills,
                                       double most_seconds, std::uint32_t seed)
 {

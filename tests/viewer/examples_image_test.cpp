@@ -1,5 +1,5 @@
-// Every example that the program, the README and docs/*.md give is run as it stands, all in one folder, as
-// newcomers do.
+// Every example that the program, the README and docs/*.md give is run as it stands,
+// all in one folder, as newcomers do.
 
 #include "tests/viewer/run_program.h"
 

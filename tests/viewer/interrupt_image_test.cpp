@@ -1,4 +1,4 @@
-// Ctrl-C keeps what is done; --resume makes of it the very file that an undisturbed render writes.
+// Ctrl-C keeps the paths rendered so far; --resume then makes the same file as an uninterrupted render.
 
 #include "tests/viewer/run_program.h"
 

@@ -1,5 +1,5 @@
-// What commands print with --json against docs/schemas, by Python's jsonschema (of Debian, by scripts/setup
-// --tests).
+// What commands print with --json against docs/schemas, by Python's jsonschema (of Debian,
+// by scripts/setup --tests).
 
 #include "tests/viewer/run_program.h"
 

@@ -1,6 +1,5 @@
-// Analyses of experiments beside those of psignifit, questplus, choix, statsmodels and scipy (from PyPI, by
-// scripts/setup
-// --tests), from the same tables.
+// Analyses of experiments beside those of psignifit, questplus, choix, statsmodels and scipy (from PyPI,
+// by scripts/setup --tests), from the same tables.
 
 #include "tests/viewer/run_program.h"
 

@@ -103,8 +103,8 @@ TEST(PrefilteredLights, FacesOfABoxUnderRealMaps)
 
 TEST(PrefilteredLights, ASquareAboveTheFloorHidesItsFormFactor)
 {
-    // A black square of 1 m, 0.5 m above a floor under a uniform sky: beneath its middle remains 1 - F of the
-    // light.
+    // A black square of 1 m, 0.5 m above a floor under a uniform sky:
+    // beneath its middle remains 1 - F of the light.
     gi::SceneBuilder b;
     b.quad(b.add_material("square", matt(0)), {-0.5f, 0.5f, 0.5f}, {1, 0, 0}, {0, 0, -1});
     Place const place(floor(4, matt(0.5f)), b.finish("square"), environment(uniform(1)));

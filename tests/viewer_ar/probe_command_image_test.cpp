@@ -1,5 +1,5 @@
-// lightwell ar probe: brackets of a traced mirror ball beside a board, from two sides, to the light that was
-// there.
+// lightwell ar probe: brackets of a traced mirror ball beside a board, from two sides,
+// to the light that was there.
 
 #include "ar/calibration/calibration_file.h"
 #include "ar/light/irradiance.h"

@@ -8,8 +8,8 @@
 namespace viewer::test {
 namespace {
 
-/// A camera that moves from (0, 1, 2) to (1, 1, 2) in a second, under a node that turns it to look along +x and
-/// doubles its scale.
+/// A camera that moves from (0, 1, 2) to (1, 1, 2) in a second, under a node that turns it
+/// to look along +x and doubles its scale.
 std::string scene(std::string const& more = "", std::string const& roots = "0")
 {
     return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [)" + roots + R"(]}],

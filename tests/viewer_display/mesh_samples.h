@@ -1,6 +1,6 @@
 #pragma once
-// Warp meshes as their definition says (viewer/displays/warp_mesh.h): where a point of the viewport is in the
-// picture.
+// Warp meshes as their definition says (viewer/displays/warp_mesh.h):
+// where a point of the viewport is in the picture.
 
 #include "viewer/displays/warp_mesh.h"
 

@@ -1,5 +1,5 @@
-// Surfaces that are not flat: points and directions computed by hand, the faces of cubes that they need, and the
-// resampled picture.
+// Surfaces that are not flat: points and directions computed by hand, the faces of cubes that
+// they need, and the resampled picture.
 
 #include "tests/viewer_display/display_samples.h"
 #include "viewer/displays/views.h"
@@ -39,8 +39,8 @@ TEST(Surface, FisheyeIsEquidistant)
 
 TEST(Surface, ADomeIsSeenFromWhereTheEyeIs)
 {
-    // Radius 5 m about (0, 1, 0). The zenith point is (0, 6, 0): from the eye at (3, 2, 0) its direction is
-    // (-3, 4, 0) / 5.
+    // Radius 5 m about (0, 1, 0). The zenith point is (0, 6, 0): from the eye at (3, 2,
+    // 0) its direction is (-3, 4, 0) / 5.
     Surface s;
     s.place = {{0, 1, 0}, {90, 0, 0}};
     s.radius_m = 5;

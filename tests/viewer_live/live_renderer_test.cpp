@@ -77,8 +77,8 @@ private:
     std::optional<gi::DynamicUpdate> dynamic_update_;
 };
 
-/// While the head turns, pictures of smaller light show more than the view, unless there is time for the least
-/// only.
+/// While the head turns, pictures of smaller light show more than the view,
+/// unless there is time for the least only.
 TEST(LiveRenderer, PicturesHaveMarginsWhileTheHeadTurns)
 {
     Live live;
@@ -295,8 +295,8 @@ TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
     }
 }
 
-/// Frames fail while a setting cannot be used with the scene. The first frame after them says all that was
-/// changed.
+/// Frames fail while a setting cannot be used with the scene.
+/// The first frame after them says all that was changed.
 TEST(LiveRenderer, ChangesOfFramesThatFailAreInTheNextOne)
 {
     LoadScene const walk = [](std::string const&, gi::Report&) {

@@ -163,7 +163,7 @@ TEST(Recorder, RefusesWhatCouldNotBeReplayed)
     EXPECT_EQ(reader.end().state, RecordingState::finished);
 }
 
-/// In a child, since the limit cannot be raised again: 0 = as expected.
+/// Runs in a child process, as the limit of file sizes cannot be raised again. Returns 0 if all went as expected.
 int record_onto_a_full_disk(std::filesystem::path const& file)
 {
     signal(SIGXFSZ, SIG_IGN);

@@ -1,5 +1,5 @@
-// An avatar in the room with the mirror: seen there, never before its user's eyes, the same bits from the same
-// orders.
+// An avatar in the room with the mirror: seen there, never before its user's eyes,
+// the same bits from the same orders.
 
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/load/load.h"

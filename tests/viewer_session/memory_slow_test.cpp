@@ -1,4 +1,4 @@
-// A session that runs for hours: what methods, sizes and scenes that are left behind took is given back.
+// A session of many changes frees the memory of methods, sizes and scenes that it no longer uses.
 
 #include "gi/scene/generate/generate.h"
 #include "viewer/base/kept_memory.h"

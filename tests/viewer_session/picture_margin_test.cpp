@@ -37,9 +37,9 @@ TEST(PictureMargin, RaysOfTheViewStay)
     EXPECT_EQ(with_margin(off.camera, {640, 480}, {0, 0}), off.camera);
 }
 
-/// A head that turns by 2 degrees sees, at the corners of 640x480 pixels and 60 degrees, up to 31 pixels more at
-/// one side: tan(atan(0.7698) + 2 deg) is 0.8267, and 0.0569 of 1.5396 of a half's width are 23.7 pixels in the
-/// middle of the edge.
+/// A head that turns by 2 degrees sees, at the corners of 640x480 pixels and 60 degrees,
+/// up to 31 pixels more at one side: tan(atan(0.7698) + 2 deg) is 0.8267, and 0.0569 of 1.5396 of a half's width
+/// are 23.7 pixels in the middle of the edge.
 TEST(PictureMargin, IsWhatTheHeadTurnsTo)
 {
     glm::ivec2 const turned = margin_for(view_of(), view_of(2).camera),

@@ -382,8 +382,8 @@ TEST(Picking, FindsTheNearestObject)
     EXPECT_FALSE(pick(gi::World{}, camera, 1, {0.5, 0.5}).has_value());
 }
 
-/// A second eye whose light, past and filter are the first one's has no more error than one that has all of its
-/// own.
+/// A second eye whose light, past and filter are the first one's has no more error
+/// than one that has all of its own.
 TEST(RenderSession, ASecondEyeIsAsRightAsTheFirst)
 {
     gi::Report report;

@@ -1,10 +1,10 @@
 // Everything at random for a while: keys, mouse, sizes, scenes, settings, right and wrong requests. The program
 // goes on, keeps answering, needs no more and more memory, and ends in order.
 //
-// Memory is judged where the viewer is as it was at its beginning, which it is brought back to every half a
-// minute: the same scene, settings, size and time, and nothing is being rendered. What it holds then beyond what
-// it held before is what it has kept. Between these moments it depends on what came together by chance, and is
-// only printed.
+// Memory is judged where the viewer is as it was at its beginning, which it is brought back to
+// every half a minute: the same scene, settings, size and time, and nothing is being rendered.
+// What it holds then beyond what it held before is what it has kept. Between these moments it depends on what
+// came together by chance, and is only printed.
 //
 // LIGHTWELL_RANDOM_INPUT_S: seconds, 60 if it is not set (acceptance: 1800); LIGHTWELL_RANDOM_INPUT_SEED: another
 // walk; LIGHTWELL_RANDOM_INPUT_CSV: file for the resident memory, second by second.
@@ -26,8 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kAnswer(30); // also where a frame of the reference is being rendered
 constexpr std::chrono::seconds kFrame(300); // of the slowest method, which what needs a frame of its own waits for
-// Of the median in the last third over that in the middle third. What threads and drivers keep for use again comes
-// in the first minutes, so that only a rough limit holds for short walks.
+// Limits of memory growth: median of the last third over that of the middle third of a walk. Threads and drivers
+// allocate memory that they reuse in the first minutes, so the limit for short walks is loose.
 constexpr double kGrowth = 1.05, kGrowthOfShortWalks = 1.5, kShortWalk_s = 600;
 constexpr double kBetweenRests_s = 30; // or a twelfth of the walk
 constexpr int kStill = 20;             // tenths of a second: the viewer gives memory back after ten

@@ -1,5 +1,5 @@
-// A user's avatar in a scene: its head and hands are where the trackers are, and it never stands in its user's
-// view.
+// A user's avatar in a scene: its head and hands are where the trackers are,
+// and it never stands in its user's view.
 
 #include "gi/core/pose.h"
 #include "viewer/devices/tracking/own_avatar.h"

@@ -1,4 +1,5 @@
 #pragma once
+// Comparisons of poses and rotations for tests.
 
 #include "gi/core/pose.h"
 

@@ -80,8 +80,8 @@ TEST(Udp, TheKernelSaysWhenItCame)
     UdpReceiver receiver("127.0.0.1", 0);
     UdpSender const sender("127.0.0.1", receiver.port());
     unsigned char const byte[] = {42};
-    // Linux begins to stamp packets a moment after the first socket has asked for it; those before get the time of
-    // their reading.
+    // Linux begins to stamp packets a moment after the first socket has asked for it; those
+    // before get the time of their reading.
     timespec const begins{0, 300'000'000};
     nanosleep(&begins, nullptr);
     double const before = steady_seconds();

@@ -1,5 +1,5 @@
-// Sessions on a calibrated display: luminance and size of what is shown, gaze that decides, markers that other
-// programs read.
+// Sessions on a calibrated display: luminance and size of what is shown, gaze that decides,
+// markers that other programs read.
 
 #include "tests/viewer_trials/measured_session.h"
 

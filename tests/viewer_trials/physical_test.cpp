@@ -171,8 +171,8 @@ TEST(GazeChannels, SamplesAreMovedToTheWindow)
     c.x = 0;
     c.y = 1;
     GazePlace const place{{400, 300}, {500, 200}, {1600, 900}, {100, 0}};
-    study::GazeSample const s =
-        gaze_sample(c, {0.5, 0.5}, 7, place); // (800, 450) of the monitor, (900, 450) on the desktop
+    // (800, 450) of the monitor, (900, 450) on the desktop.
+    study::GazeSample const s = gaze_sample(c, {0.5, 0.5}, 7, place);
     EXPECT_TRUE(s.is_valid);
     EXPECT_NEAR(s.x_px, 900 - (500 + 200), 1e-9);
     EXPECT_NEAR(s.y_px, 450 - (200 + 150), 1e-9);

@@ -82,8 +82,8 @@ protected:
         display = ":" + words(x_server_->out()).at(0);
     }
 
-    /// The head at (0, 1.6, 0) turned about +Y (positive: to the left); views wider than the display, each
-    /// lopsided.
+    /// The head at (0, 1.6, 0) turned about +Y (positive: to the left);
+    /// views wider than the display, each lopsided.
     static void look(RemoteDriver& remote, double heading_rad)
     {
         float const s = float(std::sin(heading_rad / 2)), c = float(std::cos(heading_rad / 2));
@@ -92,8 +92,8 @@ protected:
                          RemoteEye{{-0.95f, 1.05f, 0.9f, -1.05f}, {{0, 0, 0, 1}, {0.03f, 0, 0}}}});
         remote.send_all();
     }
-    /// Across the display of an eye, which shows 85 degrees of what the picture holds: something at a tangent to
-    /// the right, 0 to 1.
+    /// Across the display of an eye, which shows 85 degrees of what the picture holds:
+    /// something at a tangent to the right, 0 to 1.
     static double across(double tangent) { return 0.5 + 0.5 * tangent / std::tan(glm::radians(42.5)); }
     bool shows_picture(Child& client)
     {
@@ -178,8 +178,8 @@ TEST_F(Composited, PicturesFollowTheHeadWhileNoneIsDrawn)
     }
 }
 
-/// The runtime moves its space under a picture that was drawn before; the head has not moved, so nothing is to be
-/// seen of it.
+/// The runtime moves its space under a picture that was drawn before; the head has not moved,
+/// so nothing is to be seen of it.
 TEST_F(Composited, PicturesStayWhereTheRuntimeRecentres)
 {
     int const port = free_port();

@@ -1,5 +1,5 @@
-// lightwell view --hmd with a real runtime: what its lenses hide is not rendered, and a replay leaves out the
-// same.
+// lightwell view --hmd with a real runtime: what its lenses hide is not rendered,
+// and a replay leaves out the same.
 
 #include "tests/viewer_xr/monado.h"
 

@@ -1,5 +1,5 @@
-// A machine without a runtime: one clear message, nothing on stderr from the loader, nothing that ends the
-// program.
+// A machine without a runtime: one clear message, nothing on stderr from the loader,
+// nothing that ends the program.
 
 #include "gi/core/error.h"
 #include "viewer/devices/xr/session.h"

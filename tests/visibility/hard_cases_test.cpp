@@ -53,8 +53,8 @@ TEST(VisibilityHardCases, LampOutsideAClosedBoxLightsNothingInIt)
         if (kind == VisibilityKind::exact) {
             EXPECT_EQ(mean, 0);
         }
-        // Surfaces outside face away from those inside, but for the lamp's own black quad: nothing leaks even
-        // here.
+        // Surfaces outside face away from those inside, but for the lamp's own black quad:
+        // nothing leaks even here.
         EXPECT_LT(mean, 1e-6) << int(kind);
     }
 }

@@ -1,5 +1,5 @@
-// Ray trees: what is seen directly and direct light are those of the reference, and mirrors and glass obey closed
-// forms.
+// Ray trees: what is seen directly and direct light are those of the reference,
+// and mirrors and glass obey closed forms.
 
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/whitted/whitted.h"

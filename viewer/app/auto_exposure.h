@@ -8,9 +8,9 @@
 
 namespace viewer {
 
-/// Exposure, stops, that puts the light of the pictures in the middle of the tone curve: the geometric mean of the
-/// luminance of their pixels, without the darkest and brightest twentieth, becomes 0.18 (Reinhard et al. 2002). In
-/// -16..16.
+/// Exposure, stops, that puts the light of the pictures in the middle of the tone curve:
+/// the geometric mean of the luminance of their pixels, without the darkest and brightest twentieth,
+/// becomes 0.18 (Reinhard et al. 2002). In -16..16.
 /// @return nothing if the pictures are black
 std::optional<double> metered_exposure_ev(std::vector<ViewPicture> const& views);
 

@@ -70,8 +70,8 @@ private:
 /// An axis of a stick; 0 in its dead zone, where it rests.
 double live(double axis);
 
-/// What a key or a movement of the mouse does, for people: the help overlay, `lightwell view --help`,
-/// docs/viewer.md.
+/// What a key or a movement of the mouse does, for people: the help overlay,
+/// `lightwell view --help`, docs/viewer.md.
 struct KeyMeaning {
     char const* keys;    ///< "W A S D, arrows"
     char const* meaning; ///< "move"

@@ -1,4 +1,6 @@
 #pragma once
+// Opens the windows of a display file.
+
 #include "viewer/app/shown_window.h"
 #include "viewer/displays/display.h"
 

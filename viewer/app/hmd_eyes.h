@@ -1,6 +1,6 @@
 #pragma once
-// The two eye pictures of a frame for a headset, reprojected to the current eye poses, in textures for the
-// runtime.
+// The two eye pictures of a frame for a headset, reprojected to the current eye poses,
+// in textures for the runtime.
 
 #include "gi/light_paths/settings.h"
 #include "viewer/devices/gl/display_pass.h"

@@ -1,4 +1,6 @@
 #pragma once
+// Measures the error of the live picture against a second method's.
+
 #include "viewer/engine/live/live_renderer.h"
 
 #include <future>

@@ -1,4 +1,6 @@
 #pragma once
+// What the viewer draws over its window while it loads: progress, help, messages.
+
 #include "viewer/app/controls.h"
 #include "viewer/engine/live/scene_loader.h"
 

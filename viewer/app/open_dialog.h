@@ -22,8 +22,8 @@ public:
     bool is_open() const { return open_; }
     /// Opens it at the folder of this scene, or closes it.
     void toggle(std::string const& scene);
-    /// Draws it between Panel::begin and finish, if it is open. @return the scene that the user chose, which
-    /// closes it
+    /// Draws it between Panel::begin and finish, if it is open.
+    /// @return the scene that the user chose, which closes it
     std::optional<std::string> draw();
     RecentScenes const& recent() const { return recent_; }
 

@@ -1,7 +1,6 @@
 #pragma once
 // Scene files that the user opened, the newest first, kept in $XDG_STATE_HOME/lightwell/recent_scenes (by default
-// below
-// ~/.local/state), one absolute path a line.
+// below ~/.local/state), one absolute path a line.
 
 #include <filesystem>
 #include <string>
@@ -20,8 +19,8 @@ public:
 
     /// Those that still exist. A file that cannot be read counts as empty.
     std::vector<std::string> read() const;
-    /// Puts a scene first. Names of generated scenes are left out. @return why it could not be kept; empty = it
-    /// was
+    /// Puts a scene first. Names of generated scenes are left out.
+    /// @return why it could not be kept; empty = it was
     std::string add(std::string const& scene) const;
 
 private:

@@ -20,8 +20,8 @@ public:
     }
     /// As RemoteServer::Handler.
     std::optional<nlohmann::json> handle(RemoteRequest const& request);
-    /// Answers requests that waited for a frame to be shown. @param shown_s  when the window showed the current
-    /// frame
+    /// Answers requests that waited for a frame to be shown.
+    /// @param shown_s  when the window showed the current frame
     /// @param shot  the windows' or eyes' picture; empty if it was not asked for
     void presented(double shown_s, Snapshot const& shot);
     /// The windows' picture cannot be had: refuses requests for it. @param why  empty = it can

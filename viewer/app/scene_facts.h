@@ -1,10 +1,12 @@
 #pragma once
+// What the panel and the remote control show of the loaded scene.
+
 #include "viewer/engine/render_session.h"
 
 namespace viewer {
 
-/// Copy of the scene's data for the panel and the remote control, because the session belongs to the rendering
-/// thread.
+/// Copy of the scene's data for the panel and the remote control, because the session
+/// belongs to the rendering thread.
 struct SceneFacts {
     struct Named {
         std::string name;

@@ -1,4 +1,6 @@
 #pragma once
+// Pictures read back from windows, and their combination into one.
+
 #include <glm/vec2.hpp>
 #include <span>
 #include <vector>

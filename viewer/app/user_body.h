@@ -14,8 +14,8 @@ namespace viewer {
 
 class UserBody {
 public:
-    /// @param stance  where the avatar's feet stand; none (an avatar without legs) = feet that are not tracked are
-    /// not made up
+    /// @param stance  where the avatar's feet stand; none (an avatar without legs) = feet
+    /// that are not tracked are not made up
     explicit UserBody(std::optional<Stance> const& stance)
     {
         if (stance) feet_.emplace(*stance);
@@ -55,8 +55,8 @@ public:
     {
         for (auto& [user, body] : bodies_) body.step(controls, seconds);
     }
-    /// Writes the bodies of a display's users into the viewpoint. @param tracked  of a user  @param seconds  since
-    /// the last call
+    /// Writes the bodies of a display's users into the viewpoint. @param tracked  of a user
+    /// @param seconds  since the last call
     void put(Display const& display, std::function<Tracked(std::size_t user)> const& tracked, double seconds,
              Viewpoint& at);
 

@@ -194,8 +194,8 @@ void ViewCore::start(FrameLink* link, std::function<double()> pixels, std::funct
         if (!recorder_) return;
         FrameCommand command = f.command;
         if (!f.ordered.empty()) command.views = f.ordered;
-        // A rank of a cluster renders only its own views, a replay renders all walls, so pixel hashes would
-        // differ.
+        // A rank of a cluster renders only its own views, a replay renders all walls,
+        // so pixel hashes would differ.
         recorder_->append({command, f.ordered.empty() ? std::optional(frame_hash(f.result)) : std::nullopt, {}});
     };
     hooks.at_step = [this](gi::Step const& step) {

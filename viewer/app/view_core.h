@@ -26,8 +26,8 @@ public:
     /// @param pixels  of all views of a frame, about; the method's start is planned for them
     void start(FrameLink* link, std::function<double()> pixels, std::function<void()> published,
                std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views = {});
-    /// Handles answers from the rendering thread, tapped keys and sockets. Returns false when the viewer should
-    /// end.
+    /// Handles answers from the rendering thread, tapped keys and sockets.
+    /// Returns false when the viewer should end.
     bool poll(gi::StopRequest const& stop);
     /// Passes the users' views on to the rendering thread.
     void look(Viewpoint viewpoint);

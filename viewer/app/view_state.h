@@ -1,6 +1,6 @@
 #pragma once
-// State shared by the parts of the main loop: current settings, scene data, selection, and functions to change
-// them.
+// State shared by the parts of the main loop: current settings, scene data,
+// selection, and functions to change them.
 
 #include "viewer/app/live_error.h"
 #include "viewer/app/open_dialog.h"

@@ -1,4 +1,6 @@
 #pragma once
+// The values that options can take, for shell completion.
+
 #include <string>
 #include <vector>
 

@@ -1,4 +1,6 @@
 #pragma once
+// Stops work cleanly on Ctrl-C, SIGTERM and SIGHUP.
+
 #include "gi/core/progress.h"
 
 #include <csignal>
@@ -11,9 +13,9 @@ int interrupted_code();
 /// True once a signal requested a stop.
 bool was_interrupted();
 
-/// While this object lives, Ctrl-C, SIGTERM and a closed terminal (SIGHUP, unless nohup ignores it) request a
-/// stop; a second Ctrl-C or SIGTERM ends the program at once. SIGHUP often comes twice, from the kernel and the
-/// shell.
+/// While this object lives, Ctrl-C, SIGTERM and a closed terminal (SIGHUP,
+/// unless nohup ignores it) request a stop; a second Ctrl-C or SIGTERM ends the program at once.
+/// SIGHUP often comes twice, from the kernel and the shell.
 class InterruptGuard {
 public:
     explicit InterruptGuard(gi::StopRequest& stop);

@@ -1,4 +1,6 @@
 #pragma once
+// Checks of output files before any work starts.
+
 #include <string>
 #include <vector>
 

@@ -1,4 +1,6 @@
 #pragma once
+// Reports (gi/core/report.h) as JSON and as messages.
+
 #include "gi/core/report.h"
 
 #include <nlohmann/json.hpp>

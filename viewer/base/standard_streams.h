@@ -1,4 +1,6 @@
 #pragma once
+// Guards against closed or broken standard streams.
+
 #include <string>
 
 namespace viewer {

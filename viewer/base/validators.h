@@ -1,4 +1,6 @@
 #pragma once
+// Checks of option values, for CLI11.
+
 #include "gi/core/text.h"
 #include "gi/core/threads.h"
 

@@ -1,4 +1,6 @@
 #pragma once
+// Version of the program and commit that it was built from.
+
 #include <string>
 
 namespace viewer {

@@ -117,8 +117,8 @@ StartedChild start(ChildCall const& call, int messages)
     }
     if (child < 0) error = errno;
     ::close(messages);
-    int const fd =
-        error == 0 ? int(::syscall(SYS_pidfd_open, child, 0)) : -1; // Debian 12's function is for C only
+    // Debian 12's function is for C only.
+    int const fd = error == 0 ? int(::syscall(SYS_pidfd_open, child, 0)) : -1;
     if (fd >= 0) return {child, fd};
     if (error == 0) error = errno;
     if (child > 0) {

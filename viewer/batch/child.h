@@ -32,9 +32,9 @@ struct ChildEnd {
     bool is_good() const { return reason == Reason::exited && code == 0; }
 };
 
-/// Runs a process to its end. What exceeds a limit is killed, with all that it started; after a stop request it
-/// gets SIGTERM, and SIGKILL 0.15 s later. Memory is looked at ten times a second. Must be called from the main
-/// thread.
+/// Runs a process to its end. What exceeds a limit is killed, with all that it started;
+/// after a stop request it gets SIGTERM, and SIGKILL 0.15 s later. Memory is looked at ten times a second.
+/// Must be called from the main thread.
 /// @throws InputError the program cannot be started
 ChildEnd run_child(ChildCall const& call, gi::StopRequest const& stop);
 

@@ -1,8 +1,8 @@
 #pragma once
-// The right to run a task: at most one process on any machine has it. It is a lock on one byte of a file in the
-// store, which the kernel releases when its holder ends in whatever way, so that none is left behind. A store that
-// machines share therefore has to be on a file system that locks for all of them (NFS 4, Lustre with -o flock,
-// ...).
+// The right to run a task: at most one process on any machine has it. It is a lock on one byte of a file in
+// the store, which the kernel releases when its holder ends in whatever way, so that none is left behind.
+// A store that machines share therefore has to be on a file system that locks for all of them
+// (NFS 4, Lustre with -o flock, ...).
 
 #include <filesystem>
 #include <string>

@@ -1,4 +1,6 @@
 #pragma once
+// What identifies the content of a file: its SHA-256 and the time of its last change.
+
 #include <cstdint>
 #include <filesystem>
 #include <string>

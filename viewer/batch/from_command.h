@@ -10,8 +10,8 @@ namespace viewer::batch {
 /// @param words after `lightwell` @throws InputError options that need all frames in one process
 Batch batch_of_render(std::vector<std::string> const& words, int frames_per_task);
 
-/// `bench sweep --scene A,B ...` or `bench pictures --scenes A,B ...`: a task per scene, which has a machine to
-/// itself.
+/// `bench sweep --scene A,B ...` or `bench pictures --scenes A,B ...`:
+/// a task per scene, which has a machine to itself.
 Batch batch_of_bench(std::vector<std::string> const& words);
 
 } // namespace viewer::batch

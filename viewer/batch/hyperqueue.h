@@ -19,8 +19,8 @@ struct HyperQueueSettings {
 RunOutcome run_on_hyperqueue(Store const& store, std::string const& id, Batch const& batch,
                              HyperQueueSettings const& settings, gi::StopRequest const& stop);
 
-/// The Python interpreter whose packages are used: LIGHTWELL_PYTHON, or build/python beside the program, or
-/// python3.
+/// The Python interpreter whose packages are used: LIGHTWELL_PYTHON, or build/python
+/// beside the program, or python3.
 std::string python_program();
 
 } // namespace viewer::batch

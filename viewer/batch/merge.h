@@ -1,6 +1,6 @@
 #pragma once
-// One file of the tables, or of the lines of JSON, that tasks made; each row begins with the parameters of its
-// task.
+// One file of the tables, or of the lines of JSON, that tasks made;
+// each row begins with the parameters of its task.
 
 #include "viewer/batch/task.h"
 

@@ -30,8 +30,8 @@ struct BatchState {
 /// A task that was started, has no result, and that nobody runs is waiting: it was killed or interrupted.
 BatchState state_of(Store const& store, Batch const& batch);
 
-/// Seconds that the unfinished tasks take one after another, by the mean of the finished ones of their group; 0 =
-/// unknown.
+/// Seconds that the unfinished tasks take one after another, by the mean of the finished
+/// ones of their group; 0 = unknown.
 double seconds_left(Batch const& batch, BatchState const& state);
 
 } // namespace viewer::batch

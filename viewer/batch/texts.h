@@ -1,4 +1,6 @@
 #pragma once
+// Text files that are compiled into the program.
+
 namespace viewer::batch {
 
 extern char const* const kHyperQueueScript; ///< hyperqueue.py

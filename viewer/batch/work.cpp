@@ -118,8 +118,8 @@ private:
         journal_.append(std::move(event));
     }
 
-    /// A folder with links to the inputs, folders for outputs, and what an attempt that was cut has left to go on
-    /// from.
+    /// A folder with links to the inputs, folders for outputs, and what an attempt
+    /// that was cut has left to go on from.
     /// @return whether there is something of that
     bool make_folder(Begin begin)
     {

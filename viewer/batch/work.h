@@ -23,8 +23,8 @@ enum class Publish { here, elsewhere };
 struct WorkSettings {
     std::filesystem::path program; ///< the launcher, lightwell
     IfTaken if_taken = IfTaken::wait;
-    /// Called when a kill of all processes no longer costs the task, before its outputs are published: the next
-    /// one may start.
+    /// Called when a kill of all processes no longer costs the task, before its outputs are published:
+    /// the next one may start.
     std::function<Publish()> prepared;
 };
 

@@ -18,11 +18,11 @@ struct WorkerProcess {
     pid_t pid = -1;
     int pipe = -1; ///< readable: it has told something; closed: it has ended
 
-    /// Runs `work` in a copy of this process, which must have no other threads, without the time that starting a
-    /// program takes.
+    /// Runs `work` in a copy of this process, which must have no other threads,
+    /// without the time that starting a program takes.
     /// @param share its processors and GPUs; without any it may use those of this process
-    /// @param work  gets its end of the pipe, returns the exit code; 2 where it throws an InputError, which is
-    /// told
+    /// @param work  gets its end of the pipe, returns the exit code;
+    /// 2 where it throws an InputError, which is told
     static WorkerProcess start(Share const& share, std::function<int(int pipe)> const& work);
     /// Runs a program, found as a shell finds it, that ends with this process.
     static WorkerProcess start_program(std::vector<std::string> words);

@@ -16,8 +16,8 @@ public:
 
     /// Adds layer color of frame `frame` with seed number `seed`, with and without reuse, through the same filter.
     void add(std::size_t seed, std::size_t frame, gi::Picture const& reused, gi::Picture const& alone);
-    /// Mean of squared error / (truth^2 + 0.01), as in relMSE; may be slightly negative by chance. NaN with fewer
-    /// than 2 seeds.
+    /// Mean of squared error / (truth^2 + 0.01), as in relMSE; may be slightly negative by chance.
+    /// NaN with fewer than 2 seeds.
     double relmse(std::size_t frame, gi::Picture const& truth) const;
 
 private:

@@ -33,9 +33,9 @@ struct PicturesResult {
     bool interrupted = false;     ///< the tables hold what was finished before
 };
 
-/// Writes tables, pictures and the page to the folder as they are finished. Throws InputError before rendering if
-/// the call is invalid; scenes and filters that are not available are skipped, which is reported on stderr and in
-/// the tables.
+/// Writes tables, pictures and the page to the folder as they are finished.
+/// Throws InputError before rendering if the call is invalid; scenes and filters that are not available are
+/// skipped, which is reported on stderr and in the tables.
 PicturesResult run_pictures(PicturesOptions const& options);
 
 /// Renders consecutive frames of every sequence, with the same temporal reuse for all methods. Rows are the scored

@@ -27,9 +27,9 @@ enum class Listed : std::uint8_t { scenes, sequences };
 /// Throws InputError with file:line:column.
 std::vector<ListedScene> read_scene_list(std::filesystem::path const& file, RenderOptions const& common,
                                          Listed which = Listed::scenes);
-/// Returns the scenes with these names, in this order; all if no name is given. A name that is not in the list can
-/// be a built-in scene or a file, as for lightwell render. Throws InputError if it is neither, listing the names
-/// of the list.
+/// Returns the scenes with these names, in this order; all if no name is given.
+/// A name that is not in the list can be a built-in scene or a file, as for lightwell render.
+/// Throws InputError if it is neither, listing the names of the list.
 std::vector<ListedScene> choose_scenes(std::vector<ListedScene> list, std::vector<std::string> const& names,
                                        RenderOptions const& common);
 

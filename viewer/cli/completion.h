@@ -1,7 +1,7 @@
 #pragma once
-// Completion of command lines by shells. A short script in the shell calls the program that has the command with
-// the words so far, and offers what that prints: so completion knows what the program knows, and is never out of
-// date.
+// Completion of command lines by shells. A short script in the shell calls
+// the program that has the command with the words so far, and offers what that prints:
+// so completion knows what the program knows, and is never out of date.
 
 #include <span>
 #include <string>

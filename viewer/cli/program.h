@@ -1,4 +1,6 @@
 #pragma once
+// Builds the command line of a program from its commands, and runs it.
+
 #include <span>
 #include <string_view>
 

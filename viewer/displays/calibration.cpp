@@ -31,8 +31,8 @@ struct Canvas {
         };
         return {pixel(u, width()), pixel(1 - v, height())};
     }
-    /// Letters of size 1 have a height of 4.5 % of the shorter side; text wider than the share `room` of the width
-    /// is reduced.
+    /// Letters of size 1 have a height of 4.5 % of the shorter side;
+    /// text wider than the share `room` of the width is reduced.
     void text(std::string const& words, double u, double v, double size, Colour colour, double room = 0.9) const
     {
         double const scale = size * 0.045 * std::min(width(), height()) / 22.0;

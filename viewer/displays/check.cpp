@@ -344,7 +344,7 @@ Fault tracker_fault(DisplayTracker const& t, std::size_t i)
     return {};
 }
 
-/// Trackers of one protocol may share a port.
+/// Trackers of different protocols at the same address and port; those of one protocol may share it.
 Fault ports_fault(Display const& d)
 {
     auto const is_network = [](DisplayTracker const& t) {

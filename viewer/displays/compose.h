@@ -28,8 +28,8 @@ std::vector<unsigned char> compose_stereo(StereoMode mode, std::span<unsigned ch
                                           std::span<unsigned char const> right, glm::ivec2 window_px,
                                           glm::ivec2 on_screen_px = {0, 0});
 
-/// Matrices for red/cyan glasses, on linear light; row = channel of the result, column = channel of the eye's
-/// picture.
+/// Matrices for red/cyan glasses, on linear light; row = channel of the result,
+/// column = channel of the eye's picture.
 /// E. Dubois, "Conversion of a Stereo Pair to Anaglyph with the Least-Squares Projection Method", 2009; the
 /// method: "A projection method to generate anaglyph stereo images", ICASSP 2001. The left eye
 /// looks through red. Results beyond 0..1 are clipped.

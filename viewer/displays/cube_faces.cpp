@@ -7,7 +7,7 @@ namespace viewer {
 namespace {
 
 constexpr int kProbes = 33;          ///< along each side of the viewport
-constexpr double kQuantum = 1.0 / 8; ///< of the tangents of a part's edges, to which they are rounded outward
+constexpr double kQuantum = 1.0 / 8; ///< tangents of a part's edges are rounded outward to it
 constexpr double kMargin_px = 2;     ///< beyond each edge, for filtering
 constexpr int kLeastFace_px = 16, kMostFace_px = 8192;
 

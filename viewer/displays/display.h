@@ -107,8 +107,9 @@ struct DisplayTracker {
     DisplayTrackerType type = DisplayTrackerType::fake;
     std::string address = "127.0.0.1"; ///< of the interface to listen on (osc, dtrack)
     int port = 0;
-    std::string body; ///< osc: /name or name; dtrack: number, flystick0; vrpn: number of the sensor; openxr: head,
-                      ///< left_hand, right_hand
+    /// Osc: /name or name; dtrack: number, flystick0; vrpn: number of the sensor;
+    /// openxr: head, left_hand, right_hand.
+    std::string body;
     std::string file; ///< recorded poses
     Placement room_from_tracker;
     double latency_ms = 0; ///< from motion to packet, measured
@@ -117,8 +118,8 @@ struct DisplayTracker {
     std::string left_foot_body{}, right_foot_body{};
     std::optional<WandSettings> wand{}; ///< the body is a wand
     std::string device{};               ///< vrpn: Tracker0@host[:port]
-    std::string
-        controls{}; ///< vrpn: device of the same server with the wand's buttons and analogs; empty = `device`'s
+    /// Type vrpn: device of the same server with the wand's buttons and analogs; empty = `device`'s.
+    std::string controls{};
 
     bool operator==(DisplayTracker const&) const = default;
 };
@@ -164,8 +165,8 @@ struct PixelRectangle {
 
     bool operator==(PixelRectangle const&) const = default;
 };
-/// The wall's part of its window. Fractional edges are rounded to the nearest pixel, so that neighbours share
-/// them.
+/// The wall's part of its window. Fractional edges are rounded to the nearest pixel,
+/// so that neighbours share them.
 PixelRectangle viewport_px(Wall const& wall, DisplayWindow const& window);
 
 } // namespace viewer

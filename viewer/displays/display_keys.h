@@ -1,4 +1,6 @@
 #pragma once
+// The keys that a display file may have; others are errors.
+
 #include "gi/core/yaml.h"
 
 #include <map>

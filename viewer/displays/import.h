@@ -9,8 +9,8 @@
 // - Equalizer .eqc: bottom_left, bottom_right, top_left; our frame, m.
 // - Vrui .cfg: origin, horizontalAxis, verticalAxis, width, height; forwardDirection becomes -Z, upDirection +Y;
 //   inchScale or meterScale. Patch files need the configuration that they change.
-// - nDisplay .ndisplay (JSON, cm) and its older .cfg (m): x forward, y to the right, z up; screens by centre and
-// size.
+// - nDisplay .ndisplay (JSON, cm) and its older .cfg (m): x forward, y to the right, z up;
+//   screens by centre and size.
 //
 // Viewports of SGCT and Equalizer count from the window's lower left corner, ours from the top left corner.
 
@@ -27,8 +27,8 @@ namespace viewer {
 
 enum class DisplayFormat { yaml, sgct, pvx, equalizer, vrui, ndisplay };
 char const* name_of(DisplayFormat format);
-/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay. Throws InputError for
-/// others.
+/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay.
+/// Throws InputError for others.
 DisplayFormat format_of(std::filesystem::path const& file);
 
 /// Something in a file that has no equivalent here, or that had to be assumed.

@@ -1,8 +1,8 @@
-// nDisplay of Unreal Engine: .ndisplay (JSON, versions 4.26 to 5, lengths in cm) and the older .cfg (a line per
-// part,
-// "[screen] id=front loc="X=1.5,Y=0,Z=1.5" ...", lengths in m). Screens are rectangles about their centre, seen
-// along +X of their frame; places are relative to a parent. Axes: x forward, y to the right, z up (left-handed).
-// Viewports with the projection policy "simple" become walls; the calibrated ones need files of other companies.
+// nDisplay of Unreal Engine: .ndisplay (JSON, versions 4.26 to 5, lengths in cm) and the older
+// .cfg (a line per part, "[screen] id=front loc="X=1.5,Y=0,Z=1.5" ...", lengths in m). Screens are
+// rectangles about their centre, seen along +X of their frame; places are relative to a parent. Axes:
+// x forward, y to the right, z up (left-handed). Viewports with the projection policy "simple" become walls;
+// the calibrated ones need files of other companies.
 
 #include "gi/core/text.h"
 #include "gi/core/yaml.h"

@@ -1,5 +1,5 @@
-// SGCT 3, JSON (its sgct.schema.json). Parsed as YAML, of which JSON is a subset, so that every value has its
-// line.
+// SGCT 3, JSON (its sgct.schema.json). Parsed as YAML, of which JSON is a subset,
+// so that every value has its line.
 
 #include "gi/core/yaml.h"
 #include "viewer/displays/import_common.h"

@@ -10,8 +10,8 @@
 namespace viewer {
 
 /// @param aspect  width / height of the viewport
-/// Throws InputError, with the line, on other formats, on an .obj that is not a grid, and on meshes that cannot be
-/// drawn.
+/// Throws InputError, with the line, on other formats, on an .obj that is not a grid,
+/// and on meshes that cannot be drawn.
 WallMesh load_mesh_file(std::filesystem::path const& file, double aspect);
 /// @param name  its extension is the format
 WallMesh parse_mesh_file(std::string const& text, std::string const& name, double aspect);

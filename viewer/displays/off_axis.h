@@ -21,15 +21,15 @@ struct WallCorners {
 
 /// Shorter edges have no reliable direction; farther coordinates have too little precision.
 inline constexpr double kShortestEdge_m = 1e-6, kFarthestCorner_m = 1e7;
-/// Largest deviation of the lower left corner's angle from 90 degrees: the error of a tape measure on a wall of 3
-/// m.
+/// Largest deviation of the lower left corner's angle from 90 degrees:
+/// the error of a tape measure on a wall of 3 m.
 inline constexpr double kSkew_deg = 0.25;
 /// An eye nearer to the plane than this share of the longer edge gets no picture, because tangents beyond 1/this
 /// are too large for rays in floats.
 inline constexpr double kNearestEye = 1e-4;
 
-/// Axes and size of a wall. up is exactly perpendicular to right, even if the corners were skewed (up to
-/// kSkew_deg).
+/// Axes and size of a wall. up is exactly perpendicular to right, even if the corners
+/// were skewed (up to kSkew_deg).
 struct WallFrame {
     gi::dvec3 lower_left{0}, right{1, 0, 0}, up{0, 1, 0},
         normal{0, 0, 1}; ///< unit; normal points to the viewer's side

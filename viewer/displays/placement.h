@@ -1,4 +1,6 @@
 #pragma once
+// A pose as display files write it, by translation and angles.
+
 #include "gi/core/math.h"
 #include "viewer/protocol/frame_command.h"
 
@@ -11,7 +13,7 @@ struct Placement {
     bool operator==(Placement const&) const = default;
 };
 RoomPose pose_of(Placement const& placement);
-/// The placement of a pose, with y within 90 degrees of 0.
+/// The placement of a pose. The angle about y is within +-90 degrees.
 Placement placement_of(RoomPose const& pose);
 
 } // namespace viewer

@@ -8,8 +8,7 @@
 // elevations positive upward.
 //
 // fisheye (equidistant): the circle in the viewport shows the directions within fov / 2 of -Z; a point at the
-// share
-//   r of the circle's radius is r * fov / 2 from -Z, above the centre where it is above it in the viewport.
+//   share r of the circle's radius is r * fov / 2 from -Z, above the centre where it is above it in the viewport.
 // cylindrical: u goes over the azimuths, v over the heights on a cylinder about the frame's y axis.
 // equirectangular: u goes over the azimuths, v over the elevations of a sphere.
 // spherical_mirror: a projector lights a mirrored ball, which lights a sphere from within (P. Bourke, "Using a

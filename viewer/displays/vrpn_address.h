@@ -1,4 +1,6 @@
 #pragma once
+// Addresses of VRPN trackers.
+
 #include <optional>
 #include <string>
 #include <string_view>

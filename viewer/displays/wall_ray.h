@@ -13,8 +13,8 @@ struct WallHit {
     double distance_m = 0;
 };
 
-/// The nearest wall whose front is met by the ray from a wand's position along its -Z. @param rank  whose walls
-/// count; -1 = all
+/// The nearest wall whose front is met by the ray from a wand's position along its -Z.
+/// @param rank  whose walls count; -1 = all
 std::optional<WallHit> hit_wall(Display const& display, RoomPose const& wand, int rank = -1);
 /// Where the ray meets this wall's plane from the front, also beside the wall: u and v may be outside 0 to 1.
 std::optional<WallHit> hit_plane(Display const& display, int wall, RoomPose const& wand);
@@ -29,8 +29,8 @@ struct WallRectangle {
     glm::dvec2 inside(WallHit const& hit) const { return {(hit.u - left) / width, 1 - (hit.v - bottom) / height}; }
 };
 
-/// A rectangle of at most 0.75 m x 0.95 m and 80 % of the wall's edges, centred at the point as far as the wall
-/// allows.
+/// A rectangle of at most 0.75 m x 0.95 m and 80 % of the wall's edges, centred at
+/// the point as far as the wall allows.
 WallRectangle menu_place(WallFrame const& wall, double u, double v);
 
 } // namespace viewer

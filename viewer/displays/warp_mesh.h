@@ -2,9 +2,9 @@
 // Grid that warps a picture for a surface that is not flat or not viewed straight: the pixel at `picture` in the
 // wall's picture goes to `place` in its viewport. Both count from the lower left corner, 0 to 1.
 //
-// Nodes are stored row by row from below, each row from the left: node (i, j) is nodes[j * columns + i]. Each cell
-// is two triangles that share the diagonal from its lower left to its upper right node, with linear interpolation
-// within each.
+// Nodes are stored row by row from below, each row from the left: node (i, j) is nodes[j * columns + i].
+// Each cell is two triangles that share the diagonal from its lower left to its upper right node,
+// with linear interpolation within each.
 
 #include "gi/core/math.h"
 

@@ -139,8 +139,8 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         views.push_back(
             {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
         if (hidden[k]) views.back().hidden = *hidden[k];
-        // A smaller picture is of light only: nobody sees its outlines, and their pixels show one surface for
-        // longer.
+        // A smaller picture is of light only: nobody sees its outlines, and their
+        // pixels show one surface for longer.
         if (small) views.back().filter = gi::PixelFilter::centre;
     }
     // The blur of a radiance cache would stay in the mean of a still picture.

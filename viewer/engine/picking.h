@@ -1,4 +1,6 @@
 #pragma once
+// Finds the surface under the mouse.
+
 #include "gi/scene/model/camera.h"
 #include "gi/scene/model/world.h"
 

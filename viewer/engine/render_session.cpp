@@ -217,8 +217,8 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& view = command.views[k];
         HiddenPixels const hidden = hidden_surfaces_.pixels(scaled(view, command.surface_scale));
-        // Beyond the edges of a view with hidden pixels, more are hidden. A thin mask hides some at full size
-        // only.
+        // Beyond the edges of a view with hidden pixels, more are hidden.
+        // A thin mask hides some at full size only.
         bool const hides = hidden || frame.views[k].hidden;
         glm::ivec2 const margin = hides ? glm::ivec2(0) : glm::ivec2(view.margin_x, view.margin_y);
         ViewCommand whole_view = view;

@@ -25,8 +25,8 @@ struct PreparedScene {
     std::shared_ptr<gi::Scene const> scene;
     std::unique_ptr<gi::MovingWorld> world;
     Settings settings; ///< that the method was started with
-    std::unique_ptr<MethodRunner>
-        method; ///< refers to the world; null: it did not start, or `change` has no start
+    /// Refers to the world; null: it did not start, or `change` has no start.
+    std::unique_ptr<MethodRunner> method;
 };
 /// Chooses what a scene starts with, once its world is known.
 using ChooseStart = std::function<SceneStart(gi::World const&)>;
@@ -52,7 +52,7 @@ struct SessionFrame {
 
 /// Stage of SessionFrame::stages_s in which surfaces of another size than light are drawn.
 inline constexpr char const* kSurfacesStage = "first surfaces";
-/// A view of the same camera with sides of so many times the pixels, at least 1.
+/// The view with width and height multiplied by `scale`, at least 1 pixel.
 ViewCommand scaled(ViewCommand view, double scale);
 /// False if a view is orthographic or has a lens: then light has the size of the views.
 bool has_own_surfaces(FrameCommand const& command);

@@ -23,8 +23,8 @@ struct Settings {
     bool first_surfaces = true; ///< surfaces are shown at full size where light is computed at a smaller one
     bool share_eyes = true;     ///< each eye may reuse light computed for the other
     double exposure_ev = 0;
-    std::string auto_exposure =
-        "off"; ///< on: windows and headsets set exposure_ev by what is shown; hold: they did
+    /// On: windows and headsets set exposure_ev by what is shown; hold: they did.
+    std::string auto_exposure = "off";
     std::string tone = "srgb";
     // Settings of the interactive loop
     double rate_hz = 20;           ///< target frame rate
@@ -44,8 +44,8 @@ struct Settings {
     double font_scale = 1; ///< of the letters in the panel, over the usual size on the monitor
 };
 
-/// The version of the program that wrote a file, or for whose schema a file was written. Methods had other names in 0.1
-/// (gi/methods/names.h).
+/// The version of the program that wrote a file, or for whose schema a file was written.
+/// Methods had other names in 0.1 (gi/methods/names.h).
 enum class MadeFor : std::uint8_t { version_0_1, this_version };
 /// By the program's name as files record it: "lightwell 0.1.0 (git ...)".
 MadeFor made_for(std::string const& program);

@@ -45,7 +45,7 @@ private:
     double frame_s_ = 0;                ///< time between frames
     gi::DynamicUpdate dynamic_update_;  ///< of the last frame in which something moved
     std::size_t level_ = 0, shown_ = 0; ///< level while something moves; level of the next frame
-    int calm_ = 0, quiet_ = 0; ///< successive frames: with time for more; in which nothing moved although it might
+    int calm_ = 0, quiet_ = 0; ///< successive frames with time for the next level; in which nothing moved
     bool may_move_ = true;     ///< in the current frame
 };
 

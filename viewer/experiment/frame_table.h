@@ -1,6 +1,6 @@
 #pragma once
-// Times of swaps and viewpoints: rows are kept in memory while stimuli are shown, and appended to two files
-// between trials.
+// Times of swaps and viewpoints: rows are kept in memory while stimuli are shown,
+// and appended to two files between trials.
 
 #include "viewer/devices/gl/swap_timer.h"
 #include "viewer/protocol/frame_command.h"

@@ -1,7 +1,7 @@
 #pragma once
-// Event markers for recording devices (EEG, heart rate, skin conductance): a line of JSON in a UDP packet and, if
-// liblsl is installed, a sample of a Lab Streaming Layer stream of type Markers. docs/study/running.md lists the events
-// and their fields.
+// Event markers for recording devices (EEG, heart rate, skin conductance): a line of JSON in a UDP packet and,
+// if liblsl is installed, a sample of a Lab Streaming Layer stream of type Markers.
+// docs/study/running.md lists the events and their fields.
 
 #include "gi/core/report.h"
 
@@ -22,9 +22,8 @@ struct MarkerSession {
 
 class Markers {
 public:
-    /// @param wanted  from the script: "udp", "lsl"   @param port  destination port on 127.0.0.1
-    /// Throws InputError on another word, or if no socket can be opened. A missing library is counted in the
-    /// report.
+    /// @param wanted  from the script: "udp", "lsl"  @param port  destination port on 127.0.0.1 Throws InputError
+    /// on another word, or if no socket can be opened. A missing library is counted in the report.
     Markers(std::vector<std::string> const& wanted, int port, MarkerSession const& session, gi::Report& report);
     ~Markers();
     Markers(Markers const&) = delete;

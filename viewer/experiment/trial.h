@@ -1,4 +1,6 @@
 #pragma once
+// One running trial of a TrialPresenter, and the layout of its pictures on the screen.
+
 #include "viewer/experiment/response.h"
 #include "viewer/experiment/trial_presenter.h"
 
@@ -7,8 +9,8 @@ namespace viewer {
 /// Places for `count` pictures side by side, with room for text below.
 std::vector<ScreenPane> panes_for(std::size_t count, glm::ivec2 screen_px, float text_px);
 
-/// View of a stimulus in a block that shows `together` stimuli at a time. @param model  for sizes in degrees; null
-/// = none
+/// View of a stimulus in a block that shows `together` stimuli at a time.
+/// @param model  for sizes in degrees; null = none
 StimulusView view_of(study::Block const& block, StimulusSettings const& stimulus, std::size_t together,
                      glm::ivec2 screen_px, float font_px, study::DisplayModel const* model = nullptr);
 

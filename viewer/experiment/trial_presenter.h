@@ -69,16 +69,16 @@ private:
     class Trial; ///< the running trial
 
     ScreenSwap present(ScreenContent content);
-    /// Switches to another viewer if it is not the current one; asks the participant to put a headset on or take
-    /// it off.
+    /// Switches to another viewer if it is not the current one; asks the participant
+    /// to put a headset on or take it off.
     void see_in(StimulusViewer viewer);
     void between_frames();
     /// Function that returns the walls' views for a source; empty in a window.
     std::function<std::vector<ViewCommand>(gi::Camera const&)> on_walls();
     bool should_end() const { return experimenter_.wants_end(); }
     StimulusSource& source(std::size_t number, study::Stimuli kind, StimulusSettings const& stimulus);
-    /// Shows text, 30 times per second, until `done` or `over` returns true. Returns false if the experimenter
-    /// ends it.
+    /// Shows text, 30 times per second, until `done` or `over` returns true.
+    /// Returns false if the experimenter ends it.
     bool page(std::function<void(glm::vec2)> const& text, std::function<bool(InputEvent const&)> const& done,
               std::function<bool()> const& over = {});
     bool heed_window(InputEvent const& event);
@@ -91,10 +91,8 @@ private:
     void add_patch(ScreenContent& content, bool white) const;
     study::DisplayModel const* model() const { return options_.screen.model ? &*options_.screen.model : nullptr; }
     bool has_degrees() const { return model() && model()->screen && model()->screen->distance_cm > 0; }
-    study::ScreenGeometry const& gaze_screen() const
-    {
-        return *model()->screen;
-    } ///< for blocks with rules of gaze
+    /// For blocks with rules of gaze.
+    study::ScreenGeometry const& gaze_screen() const { return *model()->screen; }
     std::optional<GazeCircle> gaze_circle(study::GazeCircleRule const& rule);
     void keep_gaze_table();
 

@@ -1,4 +1,6 @@
 #pragma once
+// Chooses the camera of `render` from the options, the scene's cameras, or a view of the whole scene.
+
 #include "gi/scene/model/world.h"
 
 #include <glm/vec2.hpp>

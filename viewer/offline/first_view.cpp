@@ -97,8 +97,8 @@ private:
         }
     }
 
-    /// How far the rays of view_from_outside come into the detailed part, relative to their way through it: the
-    /// median.
+    /// How far the rays of view_from_outside come into the detailed part,
+    /// relative to their way through it: the median.
     float depth_from_outside(double fov_deg) const
     {
         constexpr int kSide = 32;

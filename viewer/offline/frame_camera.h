@@ -1,4 +1,6 @@
 #pragma once
+// The camera of each frame of a sequence.
+
 #include "gi/scene/model/camera_path.h"
 #include "viewer/offline/choose_camera.h"
 

@@ -1,4 +1,6 @@
 #pragma once
+// Options of frame sequences: --frames, --camera-path, --turntable.
+
 #include "viewer/offline/frame_camera.h"
 #include "viewer/base/frame_range.h"
 #include "viewer/offline/render_options.h"

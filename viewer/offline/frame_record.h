@@ -1,4 +1,6 @@
 #pragma once
+// Statistics of the frames of a sequence.
+
 #include "gi/core/report.h"
 #include "gi/filter/temporal.h"
 #include "gi/render/render_settings.h"

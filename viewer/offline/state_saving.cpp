@@ -11,9 +11,9 @@ StateSaving::StateSaving(gi::RenderResult& result, gi::DiskWait wait)
     : save_(std::exchange(result.save_state, nullptr)), wait_(wait), has_state_(save_ != nullptr)
 {
     if (!has_state_) return;
-    // The files need memory as large as they are for what waits for the disk. The system gives it faster from what
-    // this process has freed than from pages that were never used, which a virtual machine has to ask its host
-    // for.
+    // The files need memory as large as they are for what waits for the disk.
+    // The system gives it faster from what this process has freed than from pages that were never used,
+    // which a virtual machine has to ask its host for.
     malloc_trim(0);
     try {
         running_ = std::async(std::launch::async, [this] { save(); });

@@ -1,4 +1,6 @@
 #pragma once
+// Writes video files.
+
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -12,8 +14,8 @@ class VideoStream;
 /// and .mp4 (H.264), even sizes, 0.01 to 1000 frames per second. Writes nothing.
 void check_video(std::filesystem::path const& file, int width, int height, double fps);
 
-/// Writes a video under a hidden name beside `file`; finish() checks it and renames it to `file`. An unfinished
-/// video is removed.
+/// Writes a video under a hidden name beside `file`; finish() checks it and renames it to `file`.
+/// An unfinished video is removed.
 class VideoWriter {
 public:
     /// Throws InputError as check_video does, or if the codec is missing or the file cannot be written.

@@ -13,8 +13,8 @@ namespace viewer {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Thrown by ByteReader with the reason why the bytes cannot be read. A caller that knows their source turns it
-/// into an InputError.
+/// Thrown by ByteReader with the reason why the bytes cannot be read.
+/// A caller that knows their source turns it into an InputError.
 struct BadBytes : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

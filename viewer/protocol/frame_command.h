@@ -46,8 +46,8 @@ struct ViewCommand {
     std::string name;          ///< "left wall, right eye"
     gi::Camera camera;         ///< in the world
     int width = 0, height = 0; ///< pixels to render
-    int partner = -1; ///< an earlier view of this frame that sees nearly the same, whose light is reused; -1 =
-                      ///< none
+    /// An earlier view of this frame that sees nearly the same, whose light is reused; -1 = none.
+    int partner = -1;
     int margin_x = 0, margin_y = 0; ///< pixels beyond each edge that the picture shows too, because the head turns
                                     ///< while it is seen; only where light_scale is below 1
 

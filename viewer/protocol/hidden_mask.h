@@ -1,7 +1,7 @@
 #pragma once
 // Hidden areas of a view, such as the parts of an eye's picture that the lens never shows
-// (XR_KHR_visibility_mask). They are not rendered. A mask is set by a Change with the key "hidden.VIEW" and the
-// value
+// (XR_KHR_visibility_mask). They are not rendered. A mask is set by a Change with the key "hidden.VIEW"
+// and the value
 //   {"points": [[x, y], ...], "triangles": [i, j, k, ...]}
 // where points are tangents as below; without triangles, nothing of that view is hidden.
 
@@ -9,8 +9,8 @@
 
 namespace viewer {
 
-/// Triangles that cover the hidden area, in the plane one metre in front of the eye: x to the right, y up, as
-/// tangents.
+/// Triangles that cover the hidden area, in the plane one metre in front of the eye:
+/// x to the right, y up, as tangents.
 struct HiddenMask {
     std::vector<gi::vec2> points;         ///< finite
     std::vector<std::uint32_t> triangles; ///< three indices each

@@ -1,4 +1,6 @@
 #pragma once
+// Charts of error against time for reports.
+
 #include "gi/core/html/plot.h"
 
 namespace viewer {
@@ -11,8 +13,8 @@ struct Chart {
     std::string level_label;
 };
 
-/// Draws the chart as a figure. Points without a logarithm are left out; a note below the chart gives their
-/// number.
+/// Draws the chart as a figure. Points without a logarithm are left out;
+/// a note below the chart gives their number.
 std::string to_figure(Chart const& chart);
 
 } // namespace viewer

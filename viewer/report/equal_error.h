@@ -25,8 +25,8 @@ struct TimeAtError {
     Reached reached = Reached::never;
 };
 
-/// First time at which the curve is at or below `error`. Points may be in any order; those without a logarithm are
-/// ignored.
+/// First time at which the curve is at or below `error`. Points may be in any order;
+/// those without a logarithm are ignored.
 TimeAtError time_at_error(std::vector<ErrorAtTime> curve, double error);
 
 } // namespace viewer

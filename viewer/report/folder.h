@@ -1,4 +1,6 @@
 #pragma once
+// Reads the results of benchmarks from a folder.
+
 #include "viewer/report/render_stats.h"
 #include "viewer/report/table.h"
 
@@ -13,8 +15,8 @@ struct BenchFolder {
     std::vector<RenderStats> renders;
 };
 
-/// Reads every *.json of the folder, sorted by name. Throws InputError if there is none, or if one is damaged or
-/// of another kind.
+/// Reads every *.json of the folder, sorted by name. Throws InputError if there is none,
+/// or if one is damaged or of another kind.
 BenchFolder read_bench_folder(std::filesystem::path const& folder);
 
 } // namespace viewer

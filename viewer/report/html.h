@@ -1,4 +1,6 @@
 #pragma once
+// Column names and embedded pictures in HTML reports.
+
 #include <filesystem>
 #include <string>
 #include <string_view>

@@ -261,7 +261,7 @@ void throw_first(study::Mistakes const& mistakes)
     if (all.size() == 1) throw first;
     throw gi::InputError(
         first.where(), first.problem(), first.why(),
-        fmt::format("{} (and {} more: lightwell study check tells all)", first.suggestion(), all.size() - 1));
+        fmt::format("{} (and {} more: lightwell study check lists all)", first.suggestion(), all.size() - 1));
 }
 
 } // namespace viewer

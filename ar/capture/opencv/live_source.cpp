@@ -116,8 +116,8 @@ public:
     }
 
 private:
-    /// The capture allows one thread at a time: the reader yields to threads that set controls before its next
-    /// frame.
+    /// The capture allows one thread at a time: the reader yields to threads that
+    /// set controls before its next frame.
     class Turn {
     public:
         explicit Turn(LiveSource& source) : source_(source)

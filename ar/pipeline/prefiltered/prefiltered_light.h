@@ -5,11 +5,11 @@
 //
 //   E(p, n) = E_map(n) sum_k V_k F_k c_k / sum_k F_k c_k  +  pi sum_k (1 - V_k) L_k w_k c_k / sum_k w_k c_k
 //
-// k: parts of the sphere (environment_cells.h), F_k their light, w_k their solid angle, c_k the cosine, V_k
-// visibility, L_k the radiance of what hides the part. E_map is exact to the map's texels, so an open surface has
-// no error of sampling, whatever its normal; only shadows have one. L_k is kept for the still surfaces in small
-// patches, with two bounces between them; of moving surfaces it is their albedo times what a white ball in their
-// middle would show.
+// k: parts of the sphere (environment_cells.h), F_k their light, w_k their solid angle,
+// c_k the cosine, V_k visibility, L_k the radiance of what hides the part.
+// E_map is exact to the map's texels, so an open surface has no error of sampling, whatever its normal;
+// only shadows have one. L_k is kept for the still surfaces in small patches, with two bounces between them;
+// of moving surfaces it is their albedo times what a white ball in their middle would show.
 
 #include "ar/pipeline/prefiltered/environment_cells.h"
 #include "ar/pipeline/prefiltered/glossy_table.h"
@@ -57,15 +57,15 @@ public:
     /// at once: sharp shadows follow in this frame, others some frames later.
     /// @throws gi::Interrupted as relight
     void moved(gi::StopRequest const& stop = {});
-    /// Draws maps that are not yet up to date; call in frames in which nothing moves. @return false: there were
-    /// none
+    /// Draws maps that are not yet up to date; call in frames in which nothing moves.
+    /// @return false: there were none
     bool settle();
 
     ReceivedLight on_moving(LitPoint const& at) const;
     /// How moving surfaces change the light of a still one; exactly 0 where they hide nothing.
     ReceivedLight change_on_still(LitPoint const& at) const;
-    /// The light of a still surface without the moving ones. @param every  uses each so many-th direction, from
-    ///   `first` on, and all with much of the light
+    /// The light of a still surface without the moving ones.
+    /// @param every, first  uses every `every`-th direction from index `first`, plus all bright ones
     ReceivedLight on_still(LitPoint const& at, std::size_t every = 1, std::size_t first = 0) const;
     /// Light without anything in the way.
     ReceivedLight open_light(LitPoint const& at) const;

@@ -12,8 +12,8 @@
 
 namespace viewer {
 
-/// Why a world cannot be lit by prefiltered light; empty: it can. It knows matt and broadly glossy surfaces under
-/// an environment map.
+/// Why a world cannot be lit by prefiltered light; empty: it can. It knows matt and broadly
+/// glossy surfaces under an environment map.
 std::string needs_paths(gi::World const& world);
 
 class PrefilteredPairs {

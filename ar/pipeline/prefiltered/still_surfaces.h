@@ -42,8 +42,7 @@ public:
                      gi::BuildStop const& stop);
 
     /// The patch that a point sees in direction k; kOpen: none; kUnknown: one that the maps do not show.
-    /// @param normal  unit, of the triangle  @param triangle  that holds the point; kNoPrimitive = a point in
-    /// space
+    /// @param normal  unit, of the triangle  @param triangle  that holds the point; kNoPrimitive = a point in space
     std::uint32_t in_the_way(std::size_t k, gi::vec3 p, gi::vec3 normal, std::uint32_t triangle) const;
     std::vector<SurfacePatch> const& patches() const { return patches_; }
     /// The same for a patch, of directions in front of it.

@@ -1,4 +1,6 @@
 #pragma once
+// The axes of plots: their ends, ticks and labels.
+
 #include <string>
 #include <vector>
 

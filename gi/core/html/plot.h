@@ -1,6 +1,6 @@
 #pragma once
-// Plots as inline SVG. Colours, fonts and line widths are those of the page's style sheet: a "style" is a class
-// there.
+// Plots as inline SVG. Colours, fonts and line widths are those of the page's style sheet:
+// a "style" is a class there.
 
 #include "gi/core/html/axis.h"
 

@@ -131,8 +131,8 @@ std::size_t AxisSet::update_some_axes(std::uint32_t sequences, std::uint32_t cou
     few_.assign(sequences, {});
     std::vector<std::uint8_t> updated(n, 0);
     for (std::uint32_t s = 0; s < sequences; ++s) {
-        // Every n-th axis: axes of a subdivided solid are ordered by location, so that each part covers the whole
-        // sphere.
+        // Every n-th axis: axes of a subdivided solid are ordered by location,
+        // so that each part covers the whole sphere.
         std::vector<std::uint32_t> order(parts);
         std::iota(order.begin(), order.end(), 0u);
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0xf0110, s, turn / parts);

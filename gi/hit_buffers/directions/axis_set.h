@@ -13,9 +13,9 @@
 
 namespace gi {
 
-/// Arrays for choosing among few axes: the cosines of all are computed, so that the probability is exact. The
-/// integral over the hemisphere is estimated by the sum over the axes, each weighted by 2 pi / count times its
-/// `share`.
+/// Arrays for choosing among few axes: the cosines of all are computed, so that the probability is exact.
+/// The integral over the hemisphere is estimated by the sum over the axes, each weighted
+/// by 2 pi / count times its `share`.
 struct FewAxes {
     static constexpr std::size_t kMost = 64;
 
@@ -108,9 +108,9 @@ public:
     /// Builds all axes of the set once, randomly rotated by the seed, so that the set's error has no preferred
     /// direction and mean zero.
     void store(DirectionSet const& directions);
-    /// Number of bounces with separate axes. Axes from one low-discrepancy sequence must not be combined along a
-    /// path: they avoid each other, which gives a bias that does not vanish. Bounce b uses the same axes as b +
-    /// kSequences.
+    /// Number of bounces with separate axes. Axes from one low-discrepancy sequence must not be
+    /// combined along a path: they avoid each other, which gives a bias that does not vanish.
+    /// Bounce b uses the same axes as b + kSequences.
     static constexpr std::uint32_t kSequences = 3;
 
     /// Prepares for each of `sequences` bounces `count` axes (up to FewAxes::kMost) from a scrambled Sobol

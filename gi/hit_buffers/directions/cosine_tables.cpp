@@ -19,8 +19,8 @@ CosineTables make_cosine_tables(DirectionSet const& directions, std::uint32_t bi
     t.entries.resize(bins * n);
     tbb::parallel_for(std::size_t(0), bins, [&](std::size_t bin) {
         std::vector<float> weights(n, 0.0f);
-        // Mean over the normals of the bin, so that every axis with a positive cosine to one of them has a
-        // positive probability.
+        // Mean over the normals of the bin, so that every axis with a positive cosine to one
+        // of them has a positive probability.
         for (int k = 0; k < kNormals * kNormals; ++k) {
             vec2 const within{(float(k % kNormals) + 0.5f) / kNormals, (float(k / kNormals) + 0.5f) / kNormals};
             vec2 const corner{float(bin % bins_across), float(bin / bins_across)};

@@ -1,6 +1,6 @@
 #pragma once
-// Finds the nearest of a set of directions in constant time, with a table over the sphere (Yu 2012, sec. 5.3.1
-// and fig. 5.4).
+// Finds the nearest of a set of directions in constant time, with a table over the sphere
+// (Yu 2012, sec. 5.3.1 and fig. 5.4).
 
 #include "gi/core/view.h"
 #include "gi/hit_buffers/directions/directions.h"
@@ -54,8 +54,8 @@ struct DirectionMapView {
         auto const y = glm::min(std::uint32_t(uv.y * float(height)), height - 1);
         return y * width + x;
     }
-    /// Returns the index of a direction; it may not be the nearest if a border between two cells crosses the
-    /// texel.
+    /// Returns the index of a direction; it may not be the nearest if a border
+    /// between two cells crosses the texel.
     GI_FN std::uint32_t look_up(vec3 direction) const { return nearest[texel(direction)]; }
 };
 
@@ -81,8 +81,8 @@ public:
     std::uint32_t operator()(dvec3 d) const;
 
 private:
-    static constexpr std::uint32_t kAcross =
-        32; ///< even, so that the folds of the octahedron are diagonals of cells
+    /// Even, so that the folds of the octahedron are diagonals of cells.
+    static constexpr std::uint32_t kAcross = 32;
     DirectionSet const& directions_;
     std::vector<std::uint32_t> first_; ///< index of each cell's first entry in axes_, plus an end entry
     std::vector<std::uint32_t> axes_;  ///< ascending within a cell

@@ -1,4 +1,6 @@
 #pragma once
+// Draws a set of directions as a picture, to judge how evenly they cover the sphere.
+
 #include "gi/hit_buffers/directions/directions.h"
 
 #include <cstdint>

@@ -17,9 +17,9 @@ struct DirectionQuality {
 DirectionQuality measure(DirectionSet const& directions, std::size_t samples);
 
 struct MapQuality {
-    double wrong_share = 0;        ///< fraction of directions for which the map does not return the nearest
-    double largest_excess_rad = 0; ///< largest additional angle to the returned direction, compared with the
-                                   ///< nearest
+    double wrong_share = 0; ///< fraction of directions for which the map does not return the nearest
+    /// Largest additional angle to the returned direction, compared with the nearest.
+    double largest_excess_rad = 0;
     double mean_excess_rad = 0;
 };
 MapQuality measure(DirectionMapView const& map, DirectionSet const& directions, std::size_t samples);

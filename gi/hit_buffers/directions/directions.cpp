@@ -67,8 +67,8 @@ std::vector<Triangle> tetrahedron()
 
 std::vector<Triangle> icosahedron()
 {
-    // Corners are the cyclic permutations of (0, +-1, +-golden); three of them form a face if they are nearest
-    // neighbours.
+    // Corners are the cyclic permutations of (0, +-1, +-golden);
+    // three of them form a face if they are nearest neighbours.
     double const golden = 0.5 * (1 + std::sqrt(5.0));
     std::vector<dvec3> v;
     for (double const a : {1.0, -1.0})

@@ -25,8 +25,8 @@ struct LightPoint {
 };
 
 struct LightPointSettings {
-    std::uint32_t count = 1; ///< per pass; if all lights are point or parallel lights and there are no more than
-                             ///< this, all of them
+    /// Per pass; if all lights are point or parallel lights and there are no more than this, all of them.
+    std::uint32_t count = 1;
     std::uint32_t fresh = 1; ///< of these, points replaced in every pass
     std::uint32_t resolution = 64; ///< texels per side of a shadow map
     std::uint64_t seed = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// The shadow map of a light point: a cube of six pinhole views around a point, or one orthographic view along a
-// direction.
+// The shadow map of a light point: a cube of six pinhole views around a point,
+// or one orthographic view along a direction.
 //
 // Look-up: the depth of the lit surface's plane is compared with the stored depth at the same texel centre, so
 // that flat and convex surfaces never shadow themselves. A surface only a few texels nearer to the light, such as
@@ -44,8 +44,8 @@ struct ShadowView {
 /// True if all directions of a face point behind a one-sided light, where it emits nothing.
 bool sees_only_dark(ShadowView const& view, PerspectiveGrid const& face);
 
-/// Per face: the texels overwritten by moving triangles, with their previous content, so that these triangles can
-/// be removed again.
+/// Per face: the texels overwritten by moving triangles, with their previous content,
+/// so that these triangles can be removed again.
 using TakenTexels = std::array<std::vector<std::pair<std::uint32_t, NearestTexel>>, 6>;
 
 /// Builds shadow maps; the faces of a map are independent of each other.

@@ -14,8 +14,8 @@ namespace gi {
 
 class LightRays {
 public:
-    /// All arguments must outlive it. Throws InputError if the settings ask for impostors beyond
-    /// check_impostors().
+    /// All arguments must outlive it. Throws InputError if the settings ask for
+    /// impostors beyond check_impostors().
     /// @param first_moving  index of the first triangle that may move
     /// @param stop  checked while hit buffers are built; null = never
     LightRays(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,

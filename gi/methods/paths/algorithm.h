@@ -6,8 +6,8 @@
 
 namespace gi {
 
-/// What finds the next surface of a path that leaves by a broad lobe; mirrors, glass and narrow lobes always take
-/// exact rays.
+/// What finds the next surface of a path that leaves by a broad lobe;
+/// mirrors, glass and narrow lobes always take exact rays.
 enum class SurfacesBy : std::uint8_t {
     rays,    ///< each path in its own direction
     look_ups ///< in hit buffers, along axes that all paths of a pass share

@@ -23,8 +23,8 @@ double cores_of(RenderSettings const& s)
 
 std::size_t physical_bytes() { return std::size_t(sysconf(_SC_PHYS_PAGES)) * std::size_t(sysconf(_SC_PAGE_SIZE)); }
 
-/// Depth complexity of a scene: mean number of layers over non-empty texels, in a coarse buffer along an oblique
-/// direction.
+/// Depth complexity of a scene: mean number of layers over non-empty texels,
+/// in a coarse buffer along an oblique direction.
 double layers_per_texel(World const& world, TriangleSoup const& soup)
 {
     HitBuffer const b = make_hit_buffer(
@@ -198,10 +198,10 @@ RenderSettings choose_frame_settings(RenderSettings const& asked, World const& w
     if (moves && wanted.schedule == Schedule::automatic && wanted.axes == 0 && wanted.fresh_axes == 0)
         wanted.schedule = Schedule::stored;
     SlhbSettings s = choose_look_ups(lasting, world, costs);
-    // Each pass replaces only a few light points, and has at least as many as a window of the discontinuity
-    // filter has pixels.
-    constexpr int kLightSamples = 16, kPasses = 4; // passes that replace as many light points as choose_settings
-                                                   // uses in one
+    // Each pass replaces only a few light points, and has at least as many as a window
+    // of the discontinuity filter has pixels.
+    // kPasses: passes that replace as many light points as choose_settings uses in one.
+    constexpr int kLightSamples = 16, kPasses = 4;
     int const fresh = asked.of<SlhbSettings>().fresh_light_samples > 0 ? asked.of<SlhbSettings>().fresh_light_samples
                                                          : std::max(1, s.light_samples / kPasses);
     if (asked.of<SlhbSettings>().light_samples == 0) s.light_samples = std::max(s.light_samples, kLightSamples);

@@ -198,8 +198,8 @@ private:
         return both;
     }
 
-    /// True if the picture without dynamic geometry can be made from the world with it, as the lights are the
-    /// same.
+    /// True if the picture without dynamic geometry can be made from the world with it,
+    /// as the lights are the same.
     bool can_leave_out() const
     {
         World const& world = world_.world();
@@ -228,8 +228,8 @@ private:
     {
         sums_.resize(2);
         for (Accumulator& s : sums_) s.start(view.width, view.height);
-        // Each pass begins with the side with which the previous one ended, so that the world changes only once
-        // per pass.
+        // Each pass begins with the side with which the previous one ended,
+        // so that the world changes only once per pass.
         PairSide now = PairSide::with;
         for (std::uint32_t i = 0; i < settings.paths && !(i > 0 && stop.requested()); ++i, ++passes_)
             for (int half = 0; half < 2; ++half) {

@@ -59,22 +59,22 @@ public:
 
     /// Chooses a sample from one or several groups, with probability roughly proportional to its unoccluded
     /// contribution to a diffuse surface: luminance times the cosines over the squared distance.
-    /// @param normal  unit, on the viewer's side  @param u, pick  select the group and the sample within it; in
-    ///   [0, 1)
+    /// @param normal  unit, on the viewer's side
+    /// @param u, pick  select the group and the sample within it; in [0, 1)
     ChosenLight choose(vec3 position, vec3 normal, float u, float pick) const;
 
 private:
-    /// Data for the probabilities, per group. (x, y, z) is a point if `near` is 1, else the direction to the
-    /// light.
+    /// Data for the probabilities, per group. (x, y, z) is a point if `near` is 1,
+    /// else the direction to the light.
     struct Group {
         using Row = std::array<float, kCandidates>;
         alignas(32) Row x, y, z, near;
-        alignas(32) Row power;                        ///< luminance / density (per area, per solid angle, or of
-                                                      ///< the choice)
-        alignas(32) Row facing_x, facing_y, facing_z; ///< normal of the light; 0 = emits equally in all
-                                                      ///< directions
-        alignas(32) Row everywhere, back;             ///< cosine used if there is no normal; 1 if the back emits
-                                                      ///< too
+        /// Luminance / density (per area, per solid angle, or of the choice).
+        alignas(32) Row power;
+        /// Normal of the light; 0 = emits equally in all directions.
+        alignas(32) Row facing_x, facing_y, facing_z;
+        /// Cosine used if there is no normal; 1 if the back emits too.
+        alignas(32) Row everywhere, back;
     };
     static void weigh(Group const& from, vec3 position, vec3 normal, float* weight);
 

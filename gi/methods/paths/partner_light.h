@@ -23,10 +23,10 @@ public:
     {
     }
 
-    /// Finds the partner's pixel that shows the surface a path starts at; the partner's first surfaces must be
-    /// ready.
-    /// @param sample  receives the pixel's own values (L0, albedo, normal, position, depth) if a partner pixel is
-    ///   found
+    /// Finds the partner's pixel that shows the surface a path starts at; the partner's
+    /// first surfaces must be ready.
+    /// @param sample  receives the pixel's own values (L0, albedo, normal, position,
+    ///   depth) if a partner pixel is found
     /// @return the partner's pixel, else kOwnLight
     std::uint32_t find(PathStart const& start, PathSample& sample) const;
 

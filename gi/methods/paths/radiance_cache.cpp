@@ -23,8 +23,8 @@ constexpr float kTeaching = 0.05f, kLeastTeaching = 0.03f, kMostTeaching = 0.3f;
 constexpr float kSplit = 64;
 /// The estimate of the wider cell has the weight of this many notes.
 constexpr float kPrior = 8;
-/// After this many passes, paths no longer end in the widest cells; after kSlower times as many, nor in the next
-/// ones.
+/// After this many passes, paths no longer end in the widest cells;
+/// after kSlower times as many, nor in the next ones.
 constexpr std::uint32_t kPassesOfWidest = 16, kSlower = 8;
 /// Cells are separate by the number of scatterings that may follow; larger numbers than this share cells.
 constexpr int kMostFurther = 16;

@@ -1,9 +1,9 @@
 #pragma once
-// Outgoing radiance of surfaces, kept between passes in spatial cells: a path that has scattered ends where its
-// cell is known, while some paths continue to teach the cell. The cells are hashed, as in the caches of games
-// (Binder et al. 2019; Gautron 2020), but their width depends on the path's footprint and not on the distance
-// from the eye, and a pass reads the state before the pass (or before its turn), so that threads do not affect
-// the picture.
+// Outgoing radiance of surfaces, kept between passes in spatial cells:
+// a path that has scattered ends where its cell is known, while some paths continue to teach the cell.
+// The cells are hashed, as in the caches of games (Binder et al. 2019; Gautron 2020),
+// but their width depends on the path's footprint and not on the distance from the eye,
+// and a pass reads the state before the pass (or before its turn), so that threads do not affect the picture.
 //
 // Error: paths that end in a cell and paths that teach it are chosen at random from one distribution and weighted
 // by their throughput, so that the mean over many pixels keeps its expectation. Within a pixel, light at second

@@ -232,8 +232,7 @@ void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Verte
 void PathsRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts)
 {
     if (!std::exchange(shadow_maps_, true))
-        make_light_points(); // shadow maps show which paths dynamic geometry may
-                             // affect
+        make_light_points(); // shadow maps show which paths change
     PassStop const never(nullptr);
     prepare(index, Sides::pair, never);
     StageTimer const timer(report_, "paths");

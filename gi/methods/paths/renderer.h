@@ -37,8 +37,8 @@ public:
     /// Sets the views from the next pass on. Each continues the previous frame's view of the same index.
     void see(std::span<FrameView const> views);
     /// Traces one more path for every pixel. @param index  of the pass; selects the random numbers
-    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted: then there can be no further
-    ///   pass; null = never
+    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted:
+    ///   then there can be no further pass; null = never
     void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::exact,
               StopRequest const* stop = nullptr);
 
@@ -63,16 +63,10 @@ public:
     }
     /// From the next pass on, see FrameRenderer::leave_out_punctual.
     void leave_out_punctual(bool on) { leaves_out_punctual_ = on; }
-    double indirect_share() const
-    {
-        return paths_.indirect_share();
-    } ///< fraction of the path time of the last
-      ///< pass
-    double rays() const
-    {
-        return paths_.rays();
-    } ///< number of look-ups and exact rays so
-      ///< far
+    /// Fraction of the last pass's path time that went into indirect light.
+    double indirect_share() const { return paths_.indirect_share(); }
+    /// Number of look-ups and exact rays so far.
+    double rays() const { return paths_.rays(); }
     /// Number of layers beyond a texel's limit, so far.
     std::uint64_t lost_layers() const { return axes_.lost(); }
     /// Number of notes for which the radiance cache had no room, so far.

@@ -1,6 +1,6 @@
 #pragma once
-// Settings of paths that start at the camera: of the method paths, and of those that find surfaces or shadows in other
-// ways (gi/methods/slhb).
+// Settings of paths that start at the camera: of the method paths, and of those that find surfaces or
+// shadows in other ways (gi/methods/slhb).
 
 #include <cstdint>
 
@@ -15,10 +15,11 @@ enum class RadianceCaching : std::uint8_t {
 
 struct PathsSettings {
     RadianceCaching cache = RadianceCaching::automatic;
-    float roulette = -1; ///< paths continue with a probability of this times their throughput; 0 = always up to
-                         ///< the fourth scattering, then as in the reference; -1 = chosen by the plan
-    int interleave = 0;  ///< n: compute indirect light for one pixel in each n x n block per pass, weighted by
-                         ///< n^2; 1 = for all
+    /// Paths continue with a probability of this times their throughput; 0 = always up to the fourth scattering,
+    /// then as in the reference; -1 = chosen by the plan.
+    float roulette = -1;
+    /// n: compute indirect light for one pixel in each n x n block per pass, weighted by n^2; 1 = for all.
+    int interleave = 0;
 };
 
 } // namespace gi

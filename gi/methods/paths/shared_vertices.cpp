@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint32_t kOdd = 0x9e3779b1;
 constexpr std::uint32_t inverse_of(std::uint32_t odd)
 {
-    std::uint32_t x = odd; // Newton: each step doubles the number of correct bits, initially three for an odd
-                           // number
+    // Newton: each step doubles the number of correct bits, initially three for an odd number.
+    std::uint32_t x = odd;
     for (int i = 0; i < 4; ++i) x *= 2 - odd * x;
     return x;
 }

@@ -1,7 +1,6 @@
 #pragma once
 // Paths of one pass that end on the same side of the same layer share the light from there: it is computed once,
-// by continuing one of them, and added to all. The expectation of each pixel is unchanged, but pixels share
-// noise.
+// by continuing one of them, and added to all. The expectation of each pixel is unchanged, but pixels share noise.
 
 #include "gi/methods/paths/tracer.h"
 
@@ -9,15 +8,15 @@ namespace gi {
 
 class SharedVertices {
 public:
-    /// @param paths  of the pass  @param layers  number of layers on which they may end; 0 = no sharing in this
-    ///   pass
+    /// @param paths  of the pass  @param layers  number of layers on which they may end;
+    ///   0 = no sharing in this pass
     void start(std::size_t paths, std::size_t layers, std::uint32_t pass);
     /// Registers the end of a path; called once per path, from several threads.
     void note(std::uint32_t path, SharedVertex const& shared);
     /// Registers a path without a shared vertex.
     void note_none(std::uint32_t path) { start_of_[path] = kNone; }
-    /// Call after all paths are registered: makes the starts of the continuing paths, in an order independent of
-    /// threads.
+    /// Call after all paths are registered: makes the starts of the continuing paths,
+    /// in an order independent of threads.
     /// @param shared_vertices  one per path; ignored for paths registered without one
     void collect(std::vector<SharedVertex> const& shared_vertices);
 

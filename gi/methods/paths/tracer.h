@@ -4,10 +4,10 @@
 // mirror, glass or narrow lobe with an exact ray. Paths of a block advance together, one surface at a time: all
 // shading, then all look-ups.
 //
-// Estimators. Axis k is drawn with probability p_k proportional to solid angle times cosine; the factor of a path
-// is f cos w_k / p_k, times the balance heuristic against narrow lobes, if any (one-sample model, Veach 1997,
-// sec. 9.2.4). Lights are found only by light sampling, except on exact rays; the sky is found by both, with the
-// power heuristic.
+// Estimators. Axis k is drawn with probability p_k proportional to solid angle times cosine;
+// the factor of a path is f cos w_k / p_k, times the balance heuristic against narrow lobes, if any
+// (one-sample model, Veach 1997, sec. 9.2.4). Lights are found only by light sampling, except on exact rays;
+// the sky is found by both, with the power heuristic.
 
 #include "gi/core/rqmc.h"
 #include "gi/hit_buffers/axis_step.h"
@@ -28,8 +28,8 @@ namespace gi {
 /// Work done, for --stats.
 struct PathsWork {
     std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0, shadow_rays = 0, cache_reads = 0;
-    double direct_s = 0, indirect_s = 0; ///< summed over threads: first surfaces with direct light; all later
-                                         ///< vertices
+    /// Summed over threads: first surfaces with direct light; all later vertices.
+    double direct_s = 0, indirect_s = 0;
 };
 
 /// Start of a path: a surface that the camera sees, or a layer hit by several paths.
@@ -40,8 +40,8 @@ struct PathStart {
     bool on_layer = false;  ///< starts on a layer, after the first scattering
 };
 
-/// End of a path on a diffuse surface, where the outgoing light is the same for all paths that hit the same side
-/// of a layer.
+/// End of a path on a diffuse surface, where the outgoing light is the same for all paths
+/// that hit the same side of a layer.
 struct SharedVertex {
     std::uint32_t triangle = kNoLayerHit; ///< kNoLayerHit = no shared vertex
     std::uint32_t layer = kNoLayerHit;    ///< index in the pool
@@ -74,8 +74,8 @@ public:
         std::uint32_t first_watched = kNoPrimitive;
         RayWorld exact_world = RayWorld::all;
         std::span<SkyAlong const> sky = {}; ///< per axis direction; may be empty
-        LightPool const* lights = nullptr;  ///< light samples tested by exact rays; null = `light_points` are
-                                            ///< used
+        /// Light samples tested by exact rays; null = `light_points` are used.
+        LightPool const* lights = nullptr;
         bool smooth = false;                ///< the world contains a mirror or glass
         bool look_ups = true;               ///< else exact rays
         RadianceCache* cache = nullptr;     ///< paths may end in its cells; null = no cache
@@ -101,8 +101,7 @@ public:
     }
 
     /// @param samples  one per start, overwritten
-    /// @param shared_vertices  empty, or one per start: paths end on the first diffuse layer, which is stored
-    ///   here
+    /// @param shared_vertices  empty, or one per start: paths end on the first diffuse layer, which is stored here
     /// @param notes   notes for the radiance cache are appended here
     void trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
                std::span<SharedVertex> shared_vertices, std::vector<CacheNote>& notes, PathCounts& paths,

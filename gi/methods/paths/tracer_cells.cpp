@@ -17,8 +17,7 @@ CacheKeys PathsTracer::cache_keys(Pass const& pass, State const& s) const
         return {};
     vec3 const& t = s.throughput;
     if (!(std::min({t.x, t.y, t.z}) > 1e-3f * max_component(t)))
-        return {}; // channels with almost no throughput
-                   // cannot teach
+        return {}; // no estimate from channels without throughput
     vec3 const position =
         s.has_position ? s.position : shading_detail::SurfacePoint{surface, s.barycentric}.position();
     return pass.cache->keys(surface, position, s.direction, s.footprint, bounces_ - s.scatterings);

@@ -18,8 +18,8 @@ constexpr std::size_t kBlock = 4096;
 /// The same for few paths, and with exact rays, where only paths and no buffers have to stay in the cache.
 constexpr std::size_t kSmallBlock = 256;
 
-/// First surfaces of pixels first..last - 1 by exact rays, each path through its own sample point on pixel and
-/// lens.
+/// First surfaces of pixels first..last - 1 by exact rays, each path through its
+/// own sample point on pixel and lens.
 void exact_hits(PathsTracer::Pass const& pass, SeenView const& view, RenderSettings const& s, std::size_t first,
                 std::size_t last, std::vector<PathStart>& out)
 {

@@ -80,11 +80,11 @@ private:
     std::vector<PathSample> without_;                     ///< their paths without dynamic geometry
     PathsWork done_;
     double indirect_share_ = 0;
-    std::uint64_t taken_ = 0, taking_ = 0;  ///< pixels that reused a partner's light; pixels that could
-    std::uint64_t hidden_ = 0, pixels_ = 0; ///< pixels not traced because they are hidden; all pixels; over all
-                                            ///< passes
-    std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< paths of pairs with dynamic geometry; of these, traced
-                                                       ///< again without it
+    std::uint64_t taken_ = 0, taking_ = 0; ///< pixels that reused a partner's light; pixels that could
+    /// Pixels not traced because they are hidden; all pixels; over all passes.
+    std::uint64_t hidden_ = 0, pixels_ = 0;
+    /// Paths of pairs with dynamic geometry; of these, traced again without it.
+    std::uint64_t pair_paths_ = 0, without_paths_ = 0;
 };
 
 } // namespace gi

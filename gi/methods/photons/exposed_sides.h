@@ -19,13 +19,13 @@ public:
     /// @param first_moving  index of the first triangle that may move
     ExposedSides(World const& world, GridFrame const& frame, std::size_t first_moving,
                  ExactVisibility const& visibility, BuildStop const& stop);
-    /// Sends rays again from the triangles that may move; what the others meet stays what it was. Throws
-    /// Interrupted.
+    /// Sends rays again from the triangles that may move; what the others meet stays what it was.
+    /// Throws Interrupted.
     void moved(World const& world, std::size_t first_moving, ExactVisibility const& visibility,
                BuildStop const& stop);
 
-    /// Adds what light has reached. Returns true if shares have changed. Throws Interrupted; shares are then those
-    /// from before.
+    /// Adds what light has reached. Returns true if shares have changed. Throws Interrupted;
+    /// shares are then those from before.
     bool add(std::span<Photon const> photons, bool sky_shines, BuildStop const& stop = BuildStop(nullptr));
     GridFrame const& frame() const { return frame_; }
     /// Share of the area of sides in a cell, 0 to 1. @param side  see ReachedSides::side_index()

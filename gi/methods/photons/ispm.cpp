@@ -33,7 +33,7 @@ protected:
         for (Photon const& p : photons) box = joined(box, {p.position, p.position});
         float const largest = box.empty() ? 0 : kLargest * max_component(box.high - box.low);
         if (!(largest > 0)) photons.clear(); // they all lie at one point: no area to spread them over
-        // As many photons in a kernel as make noise and blur fall at the same pace: a power of 2/3 of all.
+        // Photons per kernel grow as (number of paths)^(2/3): noise and blur then decrease at the same rate.
         float const each = 24 * std::pow(float(set.paths) / 65536, kAlpha);
         std::vector<float> radii = settings_.of<PhotonSettings>().kernel_by == KernelBy::density
                                        ? radii_by_density(photons, largest, std::size_t(std::max(1.0f, each)),

@@ -10,8 +10,8 @@
 //   irradiance of a normal n = flux that propagation would send through a face of the cell with that normal / s^2
 // So the net flux through a plane along the grid is that of the propagation, and the walls of a closed room take
 // all light. In coefficients, degree 0 counts by 2/3 and degree 1 by 0.831 of intensity / s^2 (what a beam along
-// an axis leaves in a cell). 2/3 is also the mean over all directions of the ratio of a straight way to one from
-// cell to cell.
+// an axis leaves in a cell). 2/3 is also the mean over all directions of the ratio of a straight way
+// to one from cell to cell.
 //
 // Known errors (tests/photons/light_propagation_test.cpp): a surface in free space, four and more cells away from
 // a light, gets within a tenth of the right irradiance in the mean over the directions, but light loses its
@@ -55,7 +55,8 @@ public:
     /// Throws InputError for settings out of range.
     explicit LightPropagation(PropagationSettings const& settings);
 
-    /// Throws Interrupted, and then keeps what it had. @param world  its bounds may be empty
+    /// Propagates the light of these photons. Keeps the earlier light if it throws Interrupted.
+    /// @param world  its bounds may be empty
     /// @param geometry  since the last call
     /// @param focus  what cameras show, if the world is much larger; else empty
     void update(World const& world, Geometry geometry, std::span<Photon const> photons, vec3 camera,

@@ -1,7 +1,7 @@
 #pragma once
 // Methods whose indirect light comes from photons, at the points of ray trees (gi/methods/whitted):
-//   ispm         image-space photon mapping (McGuire and Luebke 2009): photons splatted over the surfaces on
-//   screen
+//   ispm         image-space photon mapping (McGuire and Luebke 2009): photons splatted
+//                over the surfaces on screen
 //   lpv          light propagation volumes (Kaplanyan and Dachsbacher 2010): virtual lights, whose light goes from
 //                cell to cell of a lattice
 //   multi_image  multi-image-based photon tracing (Fei and Wang): light paths through distance impostors, a light

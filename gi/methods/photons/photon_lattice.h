@@ -6,17 +6,16 @@
 // The paper projects flux by its directions and reads the sum at the normal; it does not say what of. We divide by
 // area, in one of two ways (IrradianceBy). Let photons p of a cell have flux F_p, come from directions w_p and lie
 // on surfaces of normal m_p; the cell's exposed surfaces have areas A_j and normals n_j.
-//   directions: each photon is a beam of radiance F_p / P(w_p), P(w) = sum_j A_j (1/4 + n_j . w / 2), the
-//   projected
-//     area to degree 1; irradiance is its convolution with the cosine, likewise to degree 1:
+//   directions: each photon is a beam of radiance F_p / P(w_p), P(w) = sum_j A_j (1/4 + n_j . w / 2),
+//     the projected area to degree 1; irradiance is its convolution with the cosine, likewise to degree 1:
 //       E(n) = sum_p F_p (1/4 + n . w_p / 2) / P(w_p)
 //     As both have the same kernel, E is exact for flat surfaces, whatever comes from where, and sum_j A_j E(n_j)
 //     is the flux of the photons.
 //   normals: photons count by how near their surface's normal is, as the areas do:
 //       E(n) = sum_p F_p (1 + n . m_p) / sum_j A_j (1 + n . n_j)
 //     The two sides of a thin wall do not mix at all.
-// Sums over cells (smoothing, trilinear look-up) add numerators and denominators, so that cells count by their
-// area.
+// Sums over cells (smoothing, trilinear look-up) add numerators and denominators,
+// so that cells count by their area.
 //
 // Of nested lattices, a finer one counts by the photons that its cell is expected to hold, by its area and the
 // photons of the coarser one: few photons in the corner of a cell would be a bright dot.
@@ -37,8 +36,8 @@ enum class Frequency : std::uint8_t { low, middle, high };
 
 struct PhotonLatticeSettings {
     static constexpr int kMostCells = 512, kMostCascades = 8;
-    /// Smaller areas in a cell, of that of its face, count as this: one photon in its corner would be a bright
-    /// dot.
+    /// Smaller areas in a cell, of that of its face, count as this:
+    /// one photon in its corner would be a bright dot.
     static constexpr float kLeastArea = 0.01f;
 
     std::array<int, 3> cells{64, 128, 128}; ///< by Frequency, along the scene's longest side, 4 to kMostCells

@@ -80,8 +80,8 @@ void PhotonRenderer::find_focus(std::span<FrameView const> views)
     surfaces_changed_ = true;
 }
 
-/// Lattices about the camera stay until it has moved by an eighth of the finest one's side, as a change begins all
-/// light anew.
+/// Lattices about the camera stay until it has moved by an eighth of the finest one's side,
+/// as a change begins all light anew.
 void PhotonRenderer::find_middle(std::span<FrameView const> views)
 {
     constexpr float kShare = 0.125f;
@@ -112,7 +112,7 @@ void PhotonRenderer::update(std::uint32_t index, std::span<FrameView const> view
         else
             trace_set(views, stop, counts);
     } catch (Interrupted const&) {
-        // A first pass goes on with the light of the small sets that a budget begins with.
+        // If the first pass is stopped, the light of the small sets traced so far is used.
         if (!has_light_ || frames() || index != *first_index_) throw;
     }
 }

@@ -122,8 +122,8 @@ struct Propagate {
     View<vec3 const> scales;
     GridFrame corners;     ///< see OpenFaces
     View<vec3 const> open; ///< none = nothing blocks
-    DenseView<ShColor>
-        around; ///< of the coarser grid: all light that ever was in a cell; comes in over the border
+    /// Of the coarser grid: all light that ever was in a cell; comes in over the border.
+    DenseView<ShColor> around;
     Reprojection by;
     View<ShColor> moved, total; ///< per cell: the step's light; its sum over the steps
 

@@ -19,8 +19,8 @@ struct ScreenSurface {
 
     /// Longest way over the surface within the pixel, about, m.
     GI_FN float length() const { return area / width; }
-    /// True if a point belongs to this surface, in this pixel or next to it. @param normal_there  on the side
-    /// asked for
+    /// True if a point belongs to this surface, in this pixel or next to it.
+    /// @param normal_there  on the side asked for
     GI_FN bool holds(vec3 point, vec3 normal_there) const
     {
         if (!(area > 0) || !(glm::dot(normal, normal_there) > kSameWay)) return false;

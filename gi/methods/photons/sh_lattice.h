@@ -49,8 +49,8 @@ inline bool same(GridFrame const& a, GridFrame const& b)
     return a.low == b.low && a.cell == b.cell && a.size == b.size;
 }
 
-/// Weight of a nested grid at a point: 1 inside, 0 outside and in the outer half of its border cells, linear over
-/// a cell in between.
+/// Weight of a nested grid at a point: 1 inside, 0 outside and in the outer half of its border cells,
+/// linear over a cell in between.
 GI_FN inline float weight_in(GridFrame const& frame, vec3 position)
 {
     vec3 const at = (position - frame.low) / frame.cell;
@@ -80,8 +80,8 @@ std::vector<GridFrame> nested_frames(Bounds const& bounds, vec3 center, int cell
 /// cells: for light that is kept where surfaces are.
 std::vector<GridFrame> frames_off_walls(Bounds const& bounds, vec3 center, int cells, int cascades);
 
-/// Number of nested grids about the centre of a focus of which the finest just holds it, at most `most`; 1 if it
-/// is empty.
+/// Number of nested grids about the centre of a focus of which the finest just holds it,
+/// at most `most`; 1 if it is empty.
 int nested_cascades(Bounds const& bounds, Bounds const& focus, int most);
 /// The centre of a focus, or a point if it is empty.
 inline vec3 center_of(Bounds const& focus, vec3 otherwise) { return focus.empty() ? otherwise : focus.center(); }

@@ -22,8 +22,8 @@ struct PathTracer {
     }
 
 private:
-    /// Flattened into one function, so that vectors stay in registers: measured to save 3 to 16 % of a path's
-    /// time.
+    /// Flattened into one function, so that vectors stay in registers:
+    /// measured to save 3 to 16 % of a path's time.
     [[gnu::flatten]] bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const
     {
         return steps.advance(p, hit, vertex, counts);

@@ -1,6 +1,6 @@
 #pragma once
-// The reference path tracer: slow and simple, used to validate the other methods. See path_tracer.h for the
-// estimator.
+// The reference path tracer: slow and simple, used to validate the other methods.
+// See path_tracer.h for the estimator.
 
 #include "gi/render/frame_renderer.h"
 
@@ -11,8 +11,7 @@ namespace gi {
 RenderResult render_reference(World const& world, Camera const& camera, RenderSettings const& settings,
                               StopRequest const& stop, RenderProgress const& progress, Report& report);
 
-/// See StartFrames. Every frame has its own paths and the layer "motion"; the BVH of dynamic geometry is
-/// refitted.
+/// See StartFrames. Every frame has its own paths and the layer "motion"; the BVH of dynamic geometry is refitted.
 std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const& camera,
                                                       RenderSettings const& settings, Report& report);
 

@@ -23,8 +23,8 @@ struct FieldCell {
     vec3 radiance[kMost] = {};             ///< coefficients at index l^2 + l + m
     float distance[kMost] = {};            ///< coefficients, in cells
     vec2 near[kNear * kNear] = {};         ///< distance and its square, about the directions of texels, in cells
-    /// Share of directions that end at a side which light can reach, or in a sky that shines: 0 inside of
-    /// something closed.
+    /// Share of directions that end at a side which light can reach, or in a sky that shines:
+    /// 0 inside of something closed.
     float open = 1;
 };
 

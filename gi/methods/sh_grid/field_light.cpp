@@ -42,8 +42,8 @@ vec2 near_surfaces(FieldCell const& cell, vec3 direction)
     return sum;
 }
 
-/// Upper bound of the probability that nothing is between a cell's centre and a point. @param from_center  in
-/// cells
+/// Upper bound of the probability that nothing is between a cell's centre and a point.
+/// @param from_center  in cells
 float visibility(FieldCell const& cell, vec3 from_center)
 {
     float const distance = glm::length(from_center);

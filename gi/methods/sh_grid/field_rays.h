@@ -14,9 +14,9 @@ struct FieldTarget {
     PatchesView patches;
 };
 
-/// Traces all directions from the centres of some cells. At mirrors and glass a ray goes on by one of their
-/// directions, chosen at random by its weight, and light from there gets their tint; the light of lamps is none of
-/// what they bring.
+/// Traces all directions from the centres of some cells. At mirrors and glass a ray goes on by
+/// one of their directions, chosen at random by its weight, and light from there gets their tint;
+/// the light of lamps is none of what they bring.
 /// @param levels  grids of all levels, the finest first: a hit belongs to the first that has its patch
 /// @param frame  of `cells`  @param hits  per cell, by direction
 void trace_field_rays(World const& world, ExactVisibility const& visibility, std::span<FieldTarget const> levels,

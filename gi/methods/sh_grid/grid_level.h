@@ -1,6 +1,6 @@
 #pragma once
-// What sh_grid keeps of one grid: where surfaces are, which of them light can reach, their radiance, and the
-// field.
+// What sh_grid keeps of one grid: where surfaces are, which of them light can reach,
+// their radiance, and the field.
 
 #include "gi/methods/sh_grid/field.h"
 

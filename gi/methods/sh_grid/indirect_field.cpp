@@ -105,8 +105,8 @@ void IndirectField::make_radiance_grids()
     photon_count_ = photons.size();
 }
 
-/// Cells where surfaces are now; those that stay keep their values. Of a coarse level, those deep in the fine one
-/// are not needed.
+/// Cells where surfaces are now; those that stay keep their values. Of a coarse level,
+/// those deep in the fine one are not needed.
 void IndirectField::place_cells(GridLevel& level)
 {
     GridFrame const& frame = level.blocks.frame;
@@ -179,8 +179,8 @@ void IndirectField::update_cells(ExactVisibility const& visibility, int part, in
                              .which = {},
                              .field = cells.values};
         for (std::uint32_t k = 0; k < levels_.size(); ++k) project.light[k] = to_levels(levels_[k]);
-        std::size_t const together =
-            std::clamp<std::size_t>((1 << 20) / n, 16, 1024); // bounds memory, and the time to a stop
+        // Bounds memory, and the time to a stop.
+        std::size_t const together = std::clamp<std::size_t>((1 << 20) / n, 16, 1024);
         std::vector<FieldHit> hits(std::min(together, which.size()) * n);
         std::vector<std::uint32_t> of;
         for (std::size_t first = 0; first < which.size(); first += together) {

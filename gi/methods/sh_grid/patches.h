@@ -59,15 +59,14 @@ struct Patches {
     std::size_t count() const { return cell_of_patch.size(); }
 };
 
-/// Patches of the pieces in a grid, numbered from all.count(). Those of less than a twentieth of a cell's
-/// face are joined with the others of their cell that face the same way: else single photons would make them
-/// glare.
+/// Patches of the pieces in a grid, numbered from all.count(). Those of less than a twentieth of a cell's face are
+/// joined with the others of their cell that face the same way: else single photons would make them glare.
 /// @param all  cells and voxels of theirs are appended  @param of_piece  overwritten: the patch of each piece
 PatchTable find_patches(World const& world, VoxelGrid const& grid, Patches& all,
                         std::vector<std::uint32_t>& of_piece);
 
-/// The patch that a point on a triangle belongs to, also where rounding moved the point to the next cell, or
-/// kNoCell.
+/// The patch that a point on a triangle belongs to, also where rounding moved
+/// the point to the next cell, or kNoCell.
 GI_FN inline std::uint32_t patch_at(CellsView<BlockVoxels> const& blocks, PatchesView const& patches, vec3 point,
                                     std::uint32_t triangle)
 {

@@ -1,13 +1,13 @@
 #pragma once
-// Light that leaves the surfaces in the cells of a grid (Chang, Park and Ihm, sec. 3.3), and coarser grids of it
-// (R-grid).
+// Light that leaves the surfaces in the cells of a grid (Chang, Park and Ihm, sec. 3.3),
+// and coarser grids of it (R-grid).
 //
 // The flux of photons is divided among six directions along the axes, by the squares of a direction's components;
-// divided by pi times the surfaces' exposed area, divided in the same way, it is a radiance. The direction is the
-// surface's normal, or, as in the paper, that in which the photon leaves: then areas count by the mean of the
-// squares over their cosine lobes, (1 + n . e)^2 / 8. (The paper divides by the area of the cell's face, and
-// scales by the cosine when it reads: up to twice too dark for a wall along the grid. And the two sides of a thin
-// wall mix.)
+// divided by pi times the surfaces' exposed area, divided in the same way, it is a radiance.
+// The direction is the surface's normal, or, as in the paper, that in which the photon leaves:
+// then areas count by the mean of the squares over their cosine lobes, (1 + n . e)^2 / 8.
+// (The paper divides by the area of the cell's face, and scales by the cosine when it reads:
+// up to twice too dark for a wall along the grid. And the two sides of a thin wall mix.)
 
 #include "gi/methods/sh_grid/exposure.h"
 

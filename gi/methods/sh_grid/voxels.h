@@ -1,7 +1,7 @@
 #pragma once
-// Where the surfaces are: a fine grid of voxels (the paper's V-grid), stored in blocks of 4 x 4 x 4 that are the
-// cells of the coarser grids (SH-grid and R-grid; Chang, Park and Ihm, sec. 3.1). Blocks without surfaces are not
-// stored.
+// Where the surfaces are: a fine grid of voxels (the paper's V-grid), stored in blocks of
+// 4 x 4 x 4 that are the cells of the coarser grids (SH-grid and R-grid; Chang, Park and Ihm, sec. 3.1).
+// Blocks without surfaces are not stored.
 
 #include "gi/core/progress.h"
 #include "gi/methods/sh_grid/grid.h"
@@ -38,8 +38,8 @@ std::uint64_t count_voxels(SparseCells<BlockVoxels> const& blocks);
 VoxelGrid empty_voxel_grid(Bounds const& bounds, int voxels);
 
 /// Adds triangles first to last - 1. Conservative: marks every voxel that a triangle overlaps or touches, and none
-/// that is 1e-3 voxels or more away. Left out are triangles without area, not finite, beyond
-/// kFarthest, or of which light is only mirrored and refracted: rays pass those. Throws Interrupted.
+/// that is 1e-3 voxels or more away. Leaves out triangles that have no area, are not
+/// finite, lie beyond kFarthest, or are pure mirrors or glass (rays pass these). Throws Interrupted.
 void add_triangles(World const& world, std::size_t first, std::size_t last, VoxelGrid& grid,
                    BuildStop const& stop = BuildStop(nullptr));
 

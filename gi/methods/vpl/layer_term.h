@@ -1,7 +1,7 @@
 #pragma once
-// Visibility by layered hit buffers (gi/methods/slhb): a connection is tested by a walk along the stored axis
-// nearest to its direction (Yu 2012, sec. 5.3.1); it is blocked if the walk hits a surface before it passes the
-// far end.
+// Visibility by layered hit buffers (gi/methods/slhb):
+// a connection is tested by a walk along the stored axis nearest to its direction (Yu 2012, sec. 5.3.1);
+// it is blocked if the walk hits a surface before it passes the far end.
 //
 // The walk starts at the receiver if the axis leaves it on the lit side, else at the virtual light if the axis
 // leaves that. If the axis leaves neither end (both nearly edge-on), the connection is treated as unblocked and
@@ -18,8 +18,8 @@ namespace gi {
 
 class LayerTerm : public VisibilityTerm {
 public:
-    /// Builds the hit buffers: SlhbSettings::directions, resolution, most_layers. Throws InputError on unknown
-    /// directions.
+    /// Builds the hit buffers: SlhbSettings::directions, resolution, most_layers.
+    /// Throws InputError on unknown directions.
     explicit LayerTerm(TermSource const& source);
 
     void prepare(std::span<LightVertex const> lights, std::uint32_t, PassStop const&) override

@@ -1,6 +1,6 @@
 #pragma once
-// Surfaces as points (Ritschel et al. 2008, sec. 3.1): each point represents the same area, as a disk in its
-// surface.
+// Surfaces as points (Ritschel et al. 2008, sec. 3.1): each point represents
+// the same area, as a disk in its surface.
 
 #include "gi/methods/vpl/settings.h"
 #include "gi/render/render_settings.h"
@@ -11,8 +11,8 @@
 namespace gi {
 
 struct PointCloud {
-    /// A power of two. Any 2^k points that start at a multiple of 2^k are evenly distributed over the area
-    /// (Sobol).
+    /// A power of two. Any 2^k points that start at a multiple of 2^k are evenly
+    /// distributed over the area (Sobol).
     static constexpr std::uint32_t kCount = std::uint32_t(kMostPoints);
 
     std::vector<vec3> position; ///< kCount points, or none without surfaces

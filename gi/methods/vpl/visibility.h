@@ -1,7 +1,7 @@
 #pragma once
-// The methods vpl_*: indirect light from virtual point lights. They differ only in the visibility between virtual
-// lights and the surfaces that these illuminate (see visibility_term.h; equations and sources in
-// docs/methods/vpl.md).
+// The methods vpl_*: indirect light from virtual point lights. They differ only in the visibility
+// between virtual lights and the surfaces that these illuminate (see visibility_term.h;
+// equations and sources in docs/methods/vpl.md).
 
 #include "gi/methods/vpl/visibility_term.h"
 #include "gi/render/frame_renderer.h"

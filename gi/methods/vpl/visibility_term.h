@@ -1,6 +1,6 @@
 #pragma once
-// The estimate of the visibility between a surface and a virtual light: the only difference between the methods
-// vpl_*.
+// The estimate of the visibility between a surface and a virtual light:
+// the only difference between the methods vpl_*.
 
 #include "gi/core/report.h"
 #include "gi/light_paths/light_paths.h"

@@ -1,9 +1,9 @@
 #pragma once
-// Ray trees from the camera (Whitted 1980): at each surface, direct light by shadow rays, and one ray for each
-// mirror or glass direction, down to a recursion limit and a cut-off weight. Light that has scattered before at
-// another surface that is neither mirror nor glass is left to a SurfaceLight; without one it is missing. With one,
-// the first glossy lobe along a ray that is narrow gets a ray in a random direction, too (Cook, Porter and
-// Carpenter 1984).
+// Ray trees from the camera (Whitted 1980): at each surface, direct light by shadow rays,
+// and one ray for each mirror or glass direction, down to a recursion limit and a cut-off weight.
+// Light that has scattered before at another surface that is neither mirror nor glass is left to a SurfaceLight;
+// without one it is missing. With one, the first glossy lobe along a ray that is narrow gets a ray in a random
+// direction, too (Cook, Porter and Carpenter 1984).
 //
 // Trees advance together, one generation at a time: all nearest hits, then all surfaces, then all shadow rays.
 

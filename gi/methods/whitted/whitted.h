@@ -1,6 +1,6 @@
 #pragma once
-// The method whitted: ray tracing with mirrors, glass and shadows (see tree_tracer.h), without diffuse
-// interreflection.
+// The method whitted: ray tracing with mirrors, glass and shadows (see tree_tracer.h),
+// without diffuse interreflection.
 
 #include "gi/methods/whitted/tree_tracer.h"
 #include "gi/render/pass_renderer.h"

@@ -25,8 +25,8 @@ public:
     void quad(int material, vec3 corner, vec3 u, vec3 v, float uv_per_m = 1, int nu = 1, int nv = 1);
     /// Adds an axis-aligned box whose front faces point outwards.
     void box(int material, vec3 low, vec3 high, float uv_per_m = 1);
-    /// Adds a surface of revolution: a profile of (radius, height) from bottom to top, about the vertical axis
-    /// through `foot`.
+    /// Adds a surface of revolution: a profile of (radius, height) from bottom to top,
+    /// about the vertical axis through `foot`.
     void lathe(int material, vec3 foot, std::vector<vec2> const& profile, int segments);
     void sphere(int material, vec3 center, float radius, int segments);
     void add_camera(std::string const& name, dvec3 from, dvec3 at, double yfov_deg);

@@ -30,8 +30,8 @@ Scene generate_ring();
 /// an avatar with `lightwell view --avatar`.
 Scene generate_avatar();
 
-/// `count` triangles (rounded to whole boxes of 12) as randomly rotated boxes on a grid inside a closed room with
-/// an area light.
+/// `count` triangles (rounded to whole boxes of 12) as randomly rotated boxes on a grid
+/// inside a closed room with an area light.
 Scene generate_boxes(std::uint32_t triangles, std::uint64_t seed);
 
 /// A displaced sphere of about `triangles` triangles in the same room.

@@ -1,4 +1,6 @@
 #pragma once
+// Building parts of generated scenes: arched walls, columns, barrel vaults.
+
 #include "gi/scene/generate/builder.h"
 
 namespace gi {

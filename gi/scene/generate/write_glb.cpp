@@ -126,8 +126,8 @@ private:
         }
     }
 
-    /// Computes KHR_texture_transform from the matrix: the scale from the columns' lengths, the rotation from
-    /// their directions.
+    /// Computes KHR_texture_transform from the matrix: the scale from the columns' lengths,
+    /// the rotation from their directions.
     json texture_info(TextureRef const& t)
     {
         json j{{"index", t.texture}};

@@ -5,8 +5,8 @@
 
 namespace gi {
 
-/// Converts clips with their channels. The matrices of moving nodes are split into translation, rotation and
-/// scale.
+/// Converts clips with their channels. The matrices of moving nodes are split
+/// into translation, rotation and scale.
 void convert_animations(aiScene const& source, NodeOfName const& node_of, Scene& scene, Report& report);
 
 } // namespace gi

@@ -43,8 +43,8 @@ public:
     }
 
 private:
-    /// FBX states its unit in centimetres and does not convert its numbers, so all nodes are placed below a
-    /// scaling node.
+    /// FBX states its unit in centimetres and does not convert its numbers,
+    /// so all nodes are placed below a scaling node.
     void add_unit_node()
     {
         float centimetres = 100;
@@ -80,8 +80,8 @@ private:
         }
     }
 
-    /// True if a material is from the file: for formats without materials, Assimp adds one with a default or empty
-    /// name.
+    /// True if a material is from the file: for formats without materials,
+    /// Assimp adds one with a default or empty name.
     bool of_the_file(unsigned material) const
     {
         if (material >= scene_.material_names.size()) return false;

@@ -8,8 +8,8 @@ struct aiScene;
 
 namespace gi {
 
-/// Converts nodes, meshes, materials, bones, clips, cameras and lights. @param file textures are searched beside
-/// it
+/// Converts nodes, meshes, materials, bones, clips, cameras and lights.
+/// @param file textures are searched beside it
 Scene convert_assimp(aiScene const& source, std::filesystem::path const& file, Report& report);
 
 } // namespace gi

@@ -1,4 +1,6 @@
 #pragma once
+// Imports model files by the Assimp library, with limits of time and memory.
+
 #include "gi/core/report.h"
 
 #include <filesystem>

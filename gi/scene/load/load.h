@@ -12,8 +12,8 @@
 
 namespace gi {
 
-/// Loads or generates a scene. Throws InputError for invalid input; repairs and omissions are counted in the
-/// report.
+/// Loads or generates a scene. Throws InputError for invalid input;
+/// repairs and omissions are counted in the report.
 Scene load_scene(std::string const& file_or_name, Report& report);
 
 /// Names of the generated scenes that load_scene knows.
@@ -39,8 +39,8 @@ Scene parse_scene_file(std::string const& text, std::filesystem::path const& fol
 /// Loads the keys of a camera path; messages give the line and column in the text.
 CameraPath load_camera_path(std::filesystem::path const& yaml);
 CameraPath parse_camera_path(std::string const& text, std::string const& name);
-/// Decodes an image and appends it to the pool; the caller avoids duplicates. Throws InputError if it cannot be
-/// decoded.
+/// Decodes an image and appends it to the pool; the caller avoids duplicates.
+/// Throws InputError if it cannot be decoded.
 std::int32_t add_texture(TexturePool& pool, unsigned char const* bytes, std::size_t size, bool srgb,
                          std::string const& name);
 /// Loads a lat-long map from HDR or EXR; negative and non-finite pixels are set to 0 and counted.

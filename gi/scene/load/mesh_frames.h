@@ -25,8 +25,8 @@ struct SequenceFrame {
 /// Throws InputError if the file cannot be read or has non-finite vertices.
 SequenceFrame read_sequence_frame(std::filesystem::path const& file);
 
-/// Throws InputError, naming the file, if its number of meshes or vertices or its faces differ from the first
-/// file.
+/// Throws InputError, naming the file, if its number of meshes or vertices or
+/// its faces differ from the first file.
 void check_topology(SequenceFrame const& first, std::filesystem::path const& first_file,
                     SequenceFrame const& frame, std::filesystem::path const& file);
 

@@ -24,8 +24,8 @@ struct Rectangle {
     dvec3 corner, u, v;
 };
 
-/// Reads a rectangle from its corner and edges, or from its centre, size and direction (then the first edge is
-/// horizontal).
+/// Reads a rectangle from its corner and edges, or from its centre, size and direction
+/// (then the first edge is horizontal).
 Rectangle read_rectangle(Yaml const& l)
 {
     auto const need = [&](char const* key) {

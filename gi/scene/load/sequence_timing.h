@@ -1,4 +1,6 @@
 #pragma once
+// When each frame of a mesh sequence is shown.
+
 #include "gi/core/report.h"
 
 #include <filesystem>

@@ -49,8 +49,8 @@ struct CameraRays {
     bool orthographic;
 
     GI_FN bool has_lens() const { return focus > 0; }
-    /// Returns the pinhole camera at a point of the lens (given in the unit disk); it has the same view of the
-    /// plane in focus.
+    /// Returns the pinhole camera at a point of the lens (given in the unit disk);
+    /// it has the same view of the plane in focus.
     GI_FN CameraRays at_lens(vec2 disk) const
     {
         CameraRays rays = *this;

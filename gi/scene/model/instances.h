@@ -24,8 +24,8 @@ struct Instance {
     bool moves() const { return !why_moving.empty(); }
 };
 
-/// Returns all instances, static ones first, with first_vertex set. Throws InputError if a count overflows 32
-/// bits.
+/// Returns all instances, static ones first, with first_vertex set.
+/// Throws InputError if a count overflows 32 bits.
 std::vector<Instance> find_instances(Scene const& scene);
 
 /// Resizes the vertex arrays and writes the time-independent attributes: texture coordinates, colours, and zeros

@@ -6,9 +6,9 @@
 namespace gi {
 
 enum class MaterialModel : std::uint8_t {
-    metal_rough, ///< glTF 2: Lambert + GGX, metal, KHR specular / ior / transmission. Mirror: metallic 1,
-                 ///< roughness 0
-    phong,       ///< Lambert base_color + normalised Phong lobe (Chang et al., sec. 4.3)
+    /// glTF 2: Lambert + GGX, metal, KHR specular / ior / transmission. Mirror: metallic 1, roughness 0.
+    metal_rough,
+    phong, ///< Lambert base_color + normalised Phong lobe (Chang et al., sec. 4.3)
 };
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };

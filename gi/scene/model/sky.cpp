@@ -48,8 +48,8 @@ dvec3 to_rec709(LuminanceXy const& v)
     return into_gamut(xyz_to_rec709(v.luminance * xyz));
 }
 
-// Solar radiance outside the atmosphere, W / (cm2 um sr) (the paper's table 2), and absorption of ozone and water
-// vapour, 1/cm.
+// Solar radiance outside the atmosphere, W / (cm2 um sr) (the paper's table 2),
+// and absorption of ozone and water vapour, 1/cm.
 constexpr std::array kSun{1655.9,  1623.37, 2112.75, 2588.82, 2582.91, 2423.23, 2676.05, 2965.83, 3054.54, 3005.75,
                           3066.37, 2883.04, 2871.21, 2782.5,  2710.06, 2723.36, 2636.13, 2550.38, 2506.02, 2531.16,
                           2535.59, 2513.42, 2463.15, 2417.32, 2368.53, 2321.21, 2282.77, 2233.98, 2197.02, 2152.67,

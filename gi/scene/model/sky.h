@@ -2,8 +2,8 @@
 // A clear sky and its sun: Preetham, Shirley, Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999.
 //
 //   Sky (appendix A.2): for each of Y, x, y, the value in direction (theta, gamma) is
-//     zenith * F(theta, gamma) / F(0, theta_sun),  F = (1 + A e^(B / cos theta)) (1 + C e^(D gamma) + E cos^2
-//     gamma)
+//     zenith * F(theta, gamma) / F(0, theta_sun),  F = (1 + A e^(B / cos theta)) 
+//              (1 + C e^(D gamma) + E cos^2 gamma)
 //   with theta from the zenith and gamma from the sun. Zenith and A..E are polynomials of turbidity and theta_sun.
 //   Sun (appendix A.1): the sun's radiance outside the atmosphere times the transmittance of air, aerosols, ozone
 //   and water vapour along the path through the atmosphere.
@@ -61,10 +61,10 @@ private:
     vec3 ground_{0};
 };
 
-/// Returns a map of the whole sphere. Texels of sky and ground are means; those of the sun are chosen such that
-/// the bilinear map has the disc's power and horizontal irradiance at every size (with the sun overhead, the
-/// irradiance to 0.4 % at 64 x 32). The part of the disc below the horizon is left out. Throws InputError as Sky
-/// does.
+/// Returns a map of the whole sphere. Texels of sky and ground are means; those of the sun are chosen such
+/// that the bilinear map has the disc's power and horizontal irradiance at every size (with the sun overhead,
+/// the irradiance to 0.4 % at 64 x 32). The part of the disc below the horizon is left out.
+/// Throws InputError as Sky does.
 EnvironmentMap sky_map(SkyOptions const& options);
 
 } // namespace gi

@@ -14,8 +14,8 @@ struct Spectrum {
     double at(double nm) const;
 };
 
-/// Colour matching functions x, y, z of the CIE 1931 observer: the fit of Wyman et al. 2013, within 2 % of the
-/// peak.
+/// Colour matching functions x, y, z of the CIE 1931 observer:
+/// the fit of Wyman et al. 2013, within 2 % of the peak.
 dvec3 cie_observer(double nm);
 /// Returns linear Rec. 709 (white point D65); colours outside the gamut have negative channels.
 dvec3 xyz_to_rec709(dvec3 xyz);

@@ -73,16 +73,16 @@ struct World {
     std::vector<Bsdf> bsdfs;         ///< per material, without its textures
     std::vector<Light> lights;       ///< in this frame
     std::vector<Camera> cameras;     ///< world_from_camera without origin removed (absolute, double)
-    std::shared_ptr<EnvironmentMap const>
-        environment;                    ///< null = none; its rotation and scale are replaced by the next two
+    /// Null = none; its rotation and scale are replaced by the next two.
+    std::shared_ptr<EnvironmentMap const> environment;
     float environment_rotation_rad = 0; ///< as EnvironmentMap::rotation_rad
     vec3 environment_scale{1};
 
     // Light selection, see light_sampling.h
     std::vector<std::uint32_t> emitters; ///< triangles that emit
-    std::vector<float>
-        emitter_pdf;         ///< per triangle of the world: probability that select picks it; empty = no emitters
-    AliasTable light_select; ///< over lights, then emitters, then (last, if any) the environment
+    /// Per triangle of the world: probability that select picks it; empty = no emitters.
+    std::vector<float> emitter_pdf;
+    AliasTable light_select;       ///< over lights, then emitters, then (last, if any) the environment
     AliasTable environment_select; ///< over texels of the environment map
     float environment_pdf = 0;     ///< probability that select picks the environment
 };

@@ -144,8 +144,8 @@ void sample_channel(AnimationChannel const& channel, double time_s, std::size_t 
         double const t = k.fraction, t2 = t * t, t3 = t2 * t;
         for (std::size_t i = 0; i < count; ++i) {
             double const leave = k.span * double(a[count + i]); // out-tangent of the first key
-            double const arrive =
-                k.span * double(b[std::ptrdiff_t(i) - std::ptrdiff_t(count)]); // in-tangent of the second
+            // In-tangent of the second.
+            double const arrive = k.span * double(b[std::ptrdiff_t(i) - std::ptrdiff_t(count)]);
             out[i] = float((2 * t3 - 3 * t2 + 1) * double(a[i]) + (t3 - 2 * t2 + t) * leave +
                            (3 * t2 - 2 * t3) * double(b[i]) + (t3 - t2) * arrive);
         }

@@ -50,8 +50,8 @@ Avatar::Arm make_arm(Scene const& scene, Pose const& rest, ArmJoints const& join
             arm.wrist.push_back(std::int32_t(n));
     }
     if (glm::length(fingers) < 1e-3 * near) fingers = wrist - elbow;
-    // Palms face down when the arms are spread, and face the body when they hang: "up" is then nearly along the
-    // fingers.
+    // Palms face down when the arms are spread, and face the body when they hang:
+    // "up" is then nearly along the fingers.
     dvec3 back = body * dvec3{0.3 * outward, 1, 0};
     if (double const length = glm::length(fingers); length > 0)
         back -= glm::dot(back, fingers) / (length * length) * fingers;

@@ -38,8 +38,8 @@ struct AvatarTargets {
     std::optional<dmat4> left_foot{}, right_foot{}; ///< at the ankle; -Z = along the toes, +Y = up
 };
 
-/// Analyses the scene at rest, where the avatar stands upright. Throws InputError if both shoulders are at the
-/// same position.
+/// Analyses the scene at rest, where the avatar stands upright. Throws InputError if both
+/// shoulders are at the same position.
 Avatar make_avatar(Scene const& scene, AvatarJoints const& joints);
 
 /// Overwrites the pose of the avatar's joints and all nodes below them. With a tracked head, the whole avatar

@@ -11,8 +11,8 @@ namespace {
 
 enum class Side { none, left, right };
 
-/// A parsed joint name: "mixamorig:LeftForeArm", "LowerArm.L", "b_RightUpperArm_06" -> forearm, lowerarm, upperarm
-/// and their sides.
+/// A parsed joint name: "mixamorig:LeftForeArm", "LowerArm.L", "b_RightUpperArm_06" -> forearm,
+/// lowerarm, upperarm and their sides.
 struct JointName {
     Side side = Side::none;
     std::string part;

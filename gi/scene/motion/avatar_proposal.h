@@ -2,13 +2,11 @@
 // Proposes which joints of a skinned model are its head, arms and legs: by the names of usual rigs, else by the
 // skeleton's tree and its shape at rest (T or A pose, upright, +Y up):
 //
-//   head       on the chain from where the arms branch off to the topmost joint that moves vertices: the last
-//   joint
-//              that moves most of what is above the neck
+//   head       on the chain from where the arms branch off to the topmost joint that moves vertices:
+//              the last joint that moves most of what is above the neck
 //   legs       the two chains that mirror each other and end lowest; arms: the longest other two
-//   limbs      of a chain, the three joints with long bones of nearly equal length between them; a foot is where
-//   the
-//              leg turns level
+//   limbs      of a chain, the three joints with long bones of nearly equal length between them;
+//              a foot is where the leg turns level
 //   left       names with a side; else by the toes, which point forward; else the model is taken to face +Z
 
 #include "gi/scene/motion/avatar_joints.h"

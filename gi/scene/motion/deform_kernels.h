@@ -8,9 +8,9 @@
 // place), wherever the origin lies. Explicit fused multiply-adds make host and device give the same positions, bit
 // for bit, because hit buffers depend on them.
 //
-// Normals are multiplied by the cofactor matrix, which exists even for singular transforms, and negated together
-// with the winding if the instance is mirrored; tangents are multiplied by the matrix itself. Vectors without
-// length become zero.
+// Normals are multiplied by the cofactor matrix, which exists even for singular transforms,
+// and negated together with the winding if the instance is mirrored; tangents are multiplied by the matrix itself.
+// Vectors without length become zero.
 
 #include "gi/core/math.h"
 #include "gi/core/view.h"

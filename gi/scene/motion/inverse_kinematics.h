@@ -11,14 +11,14 @@ struct TwoBones {
     dvec3 middle, end;
 };
 
-/// Returns the limb from `root` with bones of length upper_m and lower_m (>= 0) whose end is at `target`, bent
-/// towards the direction `pole` (of any length; if it is zero or along the limb, the side is arbitrary). All
-/// inputs must be finite. A target out of reach is approached: if it is farther than upper + lower, the limb is
-/// straight towards it; if nearer than |upper - lower|, the limb is folded back along it. For a target at the root
-/// and equal bones, the middle joint lies along the pole. Bones keep their lengths, and reachable targets are
-/// reached to rounding (1e-12 of the limb). The middle joint moves continuously with the target except where the
-/// line to the target passes the pole's direction; near a straight limb it moves like the square root of the
-/// distance.
+/// Returns the limb from `root` with bones of length upper_m and lower_m (>= 0) whose end is at `target`,
+/// bent towards the direction `pole` (of any length; if it is zero or along the limb, the side is arbitrary).
+/// All inputs must be finite. A target out of reach is approached: if it is farther than upper + lower,
+/// the limb is straight towards it; if nearer than |upper - lower|, the limb is folded back
+/// along it. For a target at the root and equal bones, the middle joint lies along the pole.
+/// Bones keep their lengths, and reachable targets are reached to rounding (1e-12 of the limb). The middle
+/// joint moves continuously with the target except where the line to the target passes the pole's direction;
+/// near a straight limb it moves like the square root of the distance.
 TwoBones reach(dvec3 root, double upper_m, double lower_m, dvec3 target, dvec3 pole);
 
 /// Returns the shortest rotation from one direction to another; for a half turn, by way of `hint`. Directions need

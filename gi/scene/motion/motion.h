@@ -1,6 +1,6 @@
 #pragma once
-// Determines which parts of a scene can move and why; the world stores them separately from static parts
-// (world.h).
+// Determines which parts of a scene can move and why; the world stores them
+// separately from static parts (world.h).
 
 #include "gi/scene/model/scene.h"
 
@@ -15,8 +15,8 @@ struct Motion {
     std::vector<std::string> morph; ///< per node: reason why its morph weights change
 };
 
-/// A node moves if it or an ancestor is driven, or if a channel of a playing clip gives it values that change over
-/// time.
+/// A node moves if it or an ancestor is driven, or if a channel of a playing clip
+/// gives it values that change over time.
 Motion find_motion(Scene const& scene);
 
 /// Returns why a mesh at a node can move; empty = it cannot. A skinned mesh moves with the joints of its skin.

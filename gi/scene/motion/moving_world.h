@@ -24,8 +24,8 @@ struct Changes {
     std::uint32_t moved_instances = 0,
                   moved_triangles = 0; ///< number that actually moved; data of others is unchanged
     std::uint64_t flat_triangles = 0;  ///< can move and currently have no area or a non-finite vertex
-    std::vector<std::string>
-        reasons; ///< for --stats: "3 of 4 moving instances, 2496 triangles (skin, clip 'walk')"
+    /// For --stats: "3 of 4 moving instances, 2496 triangles (skin, clip 'walk')".
+    std::vector<std::string> reasons;
 
     bool any() const
     {
@@ -50,13 +50,13 @@ public:
 
     /// Advances to the pose of the playing clips at this time.
     Changes advance(double time_s);
-    /// Advances to a pose of the same scene from another source; only driven nodes and those that clips move may
-    /// differ.
+    /// Advances to a pose of the same scene from another source;
+    /// only driven nodes and those that clips move may differ.
     Changes advance(Pose const& pose);
 
     /// @param k  index into World::lights. Position and direction last only if the light's node cannot move;
-    /// otherwise the next advance() resets them to the node's. Throws InputError if there is no such light, or if
-    /// it is not finite.
+    /// otherwise the next advance() resets them to the node's. Throws InputError if there is
+    /// no such light, or if it is not finite.
     Changes set_light(std::size_t k, Light const& light);
     /// The intensity that the scene gives light k, whatever set_light() did.
     vec3 authored_intensity(std::size_t k) const { return authored_[parts_.light_place[k]]; }

@@ -56,8 +56,8 @@ void make_dual_quaternions(std::vector<dmat4> const& maps, std::vector<dvec3> co
         glm::dmat3 const stretch = glm::transpose(rotation) * linear;
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r) even &= std::abs(stretch[c][r] - (c == r ? shared : 0)) < 1e-6 * shared;
-        // x -> stretch (x - center) + shared center, then the rotation, then the translation to the mapped
-        // position.
+        // x -> stretch (x - center) + shared center, then the rotation,
+        // then the translation to the mapped position.
         to.stretches.push_back(to_affine(stretch, shared * centers[j] - stretch * centers[j]));
         dvec3 const moved = dvec3(maps[j] * glm::dvec4(centers[j], 1)) - rotation * (shared * centers[j]);
         dquat const q = glm::normalize(glm::quat_cast(rotation));

@@ -8,8 +8,8 @@
 
 namespace gi {
 
-/// Placement of one instance at one time; equal placements of one mesh give equal vertices. Placing it again
-/// reuses its memory.
+/// Placement of one instance at one time; equal placements of one mesh give equal vertices.
+/// Placing it again reuses its memory.
 struct InstancePlacement {
     enum class Kind : std::uint8_t { rigid, linear, dual_quaternion } kind = Kind::rigid;
     Affine node;
@@ -23,8 +23,8 @@ struct InstancePlacement {
     bool operator==(InstancePlacement const&) const = default;
 };
 
-/// Returns the point that DeformVertices subtracts from a mesh's positions, m: their centre if they are far from
-/// zero, else 0.
+/// Returns the point that DeformVertices subtracts from a mesh's positions, m: their centre
+/// if they are far from zero, else 0.
 vec3 center_of(Mesh const& mesh);
 
 /// Places an instance. Joints replace the node's own transform (glTF 2, sec. 3.7.3.3), which applies only to

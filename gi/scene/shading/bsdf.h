@@ -51,8 +51,8 @@ struct BsdfSample {
 
 struct BsdfValue {
     vec3 f{0}; ///< of all non-delta lobes, 1/sr
-    float pdf =
-        0; ///< density with which `sample` draws wi through one of them (with its selection probability), 1/sr
+    /// Density with which `sample` draws wi through one of them (with its selection probability), 1/sr.
+    float pdf = 0;
 };
 
 GI_FN BsdfValue evaluate(Bsdf const& bsdf, vec3 wo, vec3 wi);

@@ -30,8 +30,8 @@ struct EnvironmentHarmonics {
     std::array<dvec3, kMost> coefficients{}; ///< at index(l, m); 0 beyond the degree
     dvec3 squared{0};                        ///< integral of the squared radiance of the whole map, per channel
 
-    /// Fraction of `squared`, over all channels, in degrees up to `up_to`; 1 = the map has no finer detail, or is
-    /// black.
+    /// Fraction of `squared`, over all channels, in degrees up to `up_to`;
+    /// 1 = the map has no finer detail, or is black.
     double energy_share(int up_to = kMostDegree) const;
 };
 
@@ -39,9 +39,9 @@ struct EnvironmentHarmonics {
 std::array<double, EnvironmentHarmonics::kMost> spherical_harmonics(dvec3 direction);
 
 /// Projects the bilinearly interpolated map (the one used everywhere; constant between the poles and the centres
-/// of the first and last row) by exact integration along rows and quadrature across them (error 1e-10). The map's
-/// own rotation and scale are ignored in favour of the arguments. Throws std::invalid_argument for unsupported
-/// degrees.
+/// of the first and last row) by exact integration along rows and quadrature across them (error 1e-10).
+/// The map's own rotation and scale are ignored in favour of the arguments.
+/// Throws std::invalid_argument for unsupported degrees.
 EnvironmentHarmonics project(EnvironmentMap const& map, double rotation_rad, dvec3 scale, int degree = 2);
 /// Projects a world's environment with its rotation and scale; all 0 without one.
 EnvironmentHarmonics project(World const& world, int degree = 2);
@@ -55,8 +55,8 @@ dvec3 irradiance(EnvironmentHarmonics const& h, dvec3 normal);
 /// Returns the unit normal, to 1 degree, for which the luminance of irradiance() is highest.
 dvec3 brightest_normal(EnvironmentHarmonics const& h);
 
-/// Irradiance by numerical integration instead of harmonics, over at least 1024 x 512 points of the map; includes
-/// sharp peaks.
+/// Irradiance by numerical integration instead of harmonics, over at least 1024 x 512 points of the map;
+/// includes sharp peaks.
 std::vector<dvec3> integrate_irradiance(World const& world, std::span<dvec3 const> normals);
 
 } // namespace gi

@@ -98,9 +98,9 @@ GI_FN inline MapPoint map_point(WorldView const& world, vec3 direction)
     return {{u * float(world.environment_width), v * float(world.environment_height)}, sin_theta};
 }
 
-/// Density per solid angle with which sample_environment draws a point of the map, over all texels: it chooses a
-/// texel by its mean luminance times its solid angle (at the texel centre), and the point in the texel by the
-/// luminance there.
+/// Density per solid angle with which sample_environment draws a point of the map, over all texels:
+/// it chooses a texel by its mean luminance times its solid angle (at the texel centre),
+/// and the point in the texel by the luminance there.
 /// @param texel_row, sin_theta of the point
 GI_FN inline float map_pdf(WorldView const& world, float luminance_there, std::uint32_t texel_row, float sin_theta)
 {
@@ -139,8 +139,8 @@ GI_FN inline vec3 map_radiance(WorldView const& world, vec2 position)
     return world.environment_scale * glm::mix(top, bottom, v.weight);
 }
 
-/// Samples a point in a texel by the luminance of the bilinear map, so that a small sun has equal weight wherever
-/// it is sampled.
+/// Samples a point in a texel by the luminance of the bilinear map, so that a small sun has
+/// equal weight wherever it is sampled.
 GI_FN inline vec2 sample_texel(WorldView const& world, std::uint32_t x, std::uint32_t y, vec2 u)
 {
     std::uint32_t const w = world.environment_width, h = world.environment_height;

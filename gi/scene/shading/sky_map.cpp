@@ -53,8 +53,8 @@ void add_sun(Sky const& sky, double azimuth, EnvironmentMap& map)
     double const row = kPiD / map.height, column = 2 * kPiD / map.width;
     auto const strips = int(std::clamp(std::ceil(8 * r / row), 32.0, 4096.0));
     dvec3 const radiance = sky.sun_radiance();
-    // The disc is divided into strips of equal theta and these into pieces, each smaller than an eighth of a
-    // texel.
+    // The disc is divided into strips of equal theta and these into pieces,
+    // each smaller than an eighth of a texel.
     struct Piece {
         double theta, phi, solid_angle;
     };

@@ -33,8 +33,8 @@ GI_FN inline vec3 square_to_cosine_hemisphere(vec2 u)
     return {d.x, d.y, std::sqrt(glm::max(0.0f, 1 - glm::dot(d, d)))};
 }
 
-/// Uniform point in a triangle, as weights of vertices 1 and 2 (Heitz 2019, "A Low-Distortion Map Between Triangle
-/// and Square").
+/// Uniform point in a triangle, as weights of vertices 1 and 2 (Heitz 2019, "A Low-Distortion
+/// Map Between Triangle and Square").
 GI_FN inline vec2 square_to_triangle(vec2 u)
 {
     float const half = 0.5f * glm::min(u.x, u.y);

@@ -68,8 +68,8 @@ void capture(int frames)
     print("grown_mib", resident_mib() - first_mib);
 }
 
-/// All buffers kept: the camera waits. One given back: one more frame. They stay readable after the source is
-/// gone.
+/// All buffers kept: the camera waits. One given back: one more frame.
+/// They stay readable after the source is gone.
 void keep()
 {
     auto source = ar::open_libcamera({.delivery = ar::Delivery::every});

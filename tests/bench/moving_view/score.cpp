@@ -70,7 +70,7 @@ void score(Options const& o, RecordedScenes const& scenes, std::vector<Seen> con
         std::vector<std::vector<unsigned char>> right;
         double flip_of_moment = 0;
         for (std::size_t e = 0; e < std::size_t(o.eyes); ++e) {
-            // Moments of different runs differ by some ms: the truth is made for each.
+            // Runs show slightly different moments (by some ms), so each has its own reference picture.
             if (!exact) {
                 exact = std::make_unique<RenderSession>(scenes.load, 0, truth_report);
                 if (scenes.drive) exact->drive_bodies(scenes.drive);

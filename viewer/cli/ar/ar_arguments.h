@@ -1,6 +1,6 @@
 #pragma once
-// Arguments shared by the commands of `lightwell ar`: frame sources, printed boards, pictures and their exposure
-// times.
+// Arguments shared by the commands of `lightwell ar`: frame sources, printed boards,
+// pictures and their exposure times.
 
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map.h"

@@ -1,6 +1,6 @@
 #pragma once
-// Runs the generated counter session through the whole AR pipeline, once per frame size
-// (ar/runtime/counter_check.h).
+// Runs the generated counter session through the whole AR pipeline, once per frame
+// size (ar/runtime/counter_check.h).
 
 #include "gi/core/progress.h"
 #include "gi/core/report.h"

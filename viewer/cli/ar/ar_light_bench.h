@@ -1,6 +1,6 @@
 #pragma once
-// Errors of light estimated from frames of the synthetic desk under given environment maps
-// (ar/runtime/light_check.h).
+// Errors of light estimated from frames of the synthetic desk under given environment
+// maps (ar/runtime/light_check.h).
 
 #include "gi/core/progress.h"
 #include "gi/core/report.h"

@@ -18,8 +18,8 @@ struct WorkOptions {
     std::vector<std::size_t> indices;
 };
 
-/// Runs one task after the other. A copy of this process publishes the outputs of each beside the next one; the
-/// claim goes with it.
+/// Runs one task after the other. A copy of this process publishes the outputs of each beside the next one;
+/// the claim goes with it.
 int run_work(WorkOptions const& o)
 {
     prctl(PR_SET_NAME, batch::kWorkerName);

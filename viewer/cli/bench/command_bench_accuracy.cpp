@@ -214,8 +214,8 @@ private:
 
 void Bench::add_rows(char const* schedule, std::string const& directions)
 {
-    // Streamed axes are uniform: their bias is 0 by construction. Not measuring it avoids the noise of axes that
-    // all pixels share.
+    // Streamed axes are uniform: their bias is 0 by construction. Not measuring it avoids
+    // the noise of axes that all pixels share.
     bool const streamed = directions.empty();
     Lights const of_directions =
         streamed ? Lights{} : differences(render_exactly(directions, false, o_.direction_paths).lights, free_);

@@ -75,8 +75,8 @@ Scene random_closed_mesh(Pcg32& rng, bool convex)
     return scene;
 }
 
-/// Counts texels with different numbers of entering and leaving layers, and texels of convex meshes with neither
-/// 0 nor 2 layers.
+/// Counts texels with different numbers of entering and leaving layers, and texels of convex
+/// meshes with neither 0 nor 2 layers.
 void check_watertight(RasterOptions const& o, BenchTable& table)
 {
     Pcg32 rng(2026, 1);

@@ -181,8 +181,8 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
         throw InputError("no ray of '" + scene + "' hits anything", "the camera sees nothing",
                          "choose another view");
 
-    // Errors of the look-ups against exact rays along the same axes: escapes that should hit, and hits that should
-    // escape.
+    // Errors of the look-ups against exact rays along the same axes:
+    // escapes that should hit, and hits that should escape.
     std::vector<RayQuery> same;
     for (std::size_t k = 0; k < n; ++k) {
         vec3 const axis = pool.grids[random.axis[k]].axis;

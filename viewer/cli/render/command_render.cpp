@@ -43,8 +43,8 @@ trace(RenderOptions const& o, RankWork& work, std::unique_ptr<InterruptGuard>& g
 }
 
 /// Makes the picture while it writes it, as that takes half of the memory.
-/// @param stop  throws Interrupted; null = never, and the picture is not compressed, which would take longer than
-///   all else
+/// @param stop  throws Interrupted; null = never, and the picture is not compressed,
+///   which would take longer than all else
 void write_files(RenderOptions const& o, gi::PictureRows const& picture, gi::StopRequest const* stop,
                  gi::Report& report)
 {

@@ -227,8 +227,8 @@ int run(InfoOptions const& o)
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
     }
-    std::string text =
-        o.scene + "\n"; // written at once, so that an error is found at the end, as for all commands
+    // Written at once, so that an error is found at the end, as for all commands.
+    std::string text = o.scene + "\n";
     for (gi::SummaryLine const& line : text_lines(summary))
         text += fmt::format("  {:<22} {}\n", line.what, line.value);
     auto const add_plan = [&](std::string const& title, std::vector<gi::PlanItem> const& items) {

@@ -1,7 +1,7 @@
 #pragma once
-// Composites virtual objects into a camera frame on the GPU: ar/composite's equation with its tables
-// (docs/methods/ar-light.md). Unchanged pixels keep the camera's bytes; others differ from the CPU result by at most one,
-// due to rounding.
+// Composites virtual objects into a camera frame on the GPU:
+// ar/composite's equation with its tables (docs/methods/ar-light.md). Unchanged pixels keep the camera's bytes;
+// others differ from the CPU result by at most one, due to rounding.
 
 #include "ar/composite/composite.h"
 #include "viewer/devices/gl/draw_target.h"

@@ -51,8 +51,8 @@ public:
 
     /// Fills the target. Pictures of size eye_size() keep their pixels, others are stretched to it (bilinear).
     /// Modes off and two_windows show only `left`: for the second window pass the right eye's view as `left`.
-    /// Throws InputError on quad_buffer with a target without left and right buffers, and on views without
-    /// pictures.
+    /// Throws InputError on quad_buffer with a target without left and right buffers,
+    /// and on views without pictures.
     void draw(DrawTarget const& target, EyeView const& left, EyeView const& right,
               DisplaySettings const& settings);
 

@@ -1,6 +1,6 @@
 #pragma once
-// GLFW, initialised once per process. It belongs to the main thread, where windows must be created, polled and
-// closed.
+// GLFW, initialised once per process. It belongs to the main thread, where windows
+// must be created, polled and closed.
 
 #include <memory>
 

@@ -21,10 +21,10 @@ public:
     PanelPicture& operator=(PanelPicture const&) = delete;
 
     glm::ivec2 size_px() const { return size_px_; }
-    /// Needs no context. Not while another thread draws. @param pointer_px  from the top left corner; none =
-    /// nowhere
-    /// @param pressed  the trigger is held  @param scroll  steps of a wheel, upward  @param seconds  since the
-    /// last
+    /// Needs no context. Not while another thread draws.
+    /// @param pointer_px  from the top left corner; none = nowhere
+    /// @param pressed  the trigger is held  @param scroll  steps of a wheel, upward  
+    /// @param seconds  since the last
     void begin(std::optional<glm::dvec2> pointer_px, bool pressed, double scroll, double seconds);
     void finish();
     /// R, G, B bytes of the finished panel, rows from the top. Waits for the GPU.

@@ -8,9 +8,9 @@
 // (Bowles et al. 2012, "Iterative Image Warping"); the nearer solution hides the other. Pure rotation (c = 0)
 // needs no search. 1/depth of a plane is linear in the picture, so planes are found between pixels.
 //
-// Regions that A did not see (occluded or outside its picture) are filled from neighbouring pixels of A: the first
-// farther pixel along the translation, or the stretched edge of the picture. View-dependent light (mirrors) moves
-// with its surface.
+// Regions that A did not see (occluded or outside its picture) are filled from neighbouring pixels
+// of A: the first farther pixel along the translation, or the stretched edge of the picture.
+// View-dependent light (mirrors) moves with its surface.
 
 #include "gi/light_paths/settings.h"
 #include "gi/scene/model/camera.h"

@@ -6,8 +6,8 @@
 
 namespace viewer {
 
-/// Joins the current drawable to a group, and the group to a barrier if that is > 0. A GLX context must be
-/// current.
+/// Joins the current drawable to a group, and the group to a barrier if that
+/// is > 0. A GLX context must be current.
 /// @return  why it failed; empty = joined
 std::string join_swap_group(int group, int barrier);
 

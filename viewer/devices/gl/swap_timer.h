@@ -19,8 +19,8 @@ enum class GlSwapMethod {
 struct SwapTime {
     using Clock = std::chrono::steady_clock;
     Clock::time_point time; ///< best estimate
-    Clock::time_point
-        seen; ///< when it was known to be done; its intervals are regular if swaps wait for the display
+    /// When the program noticed the swap; regular intervals if swaps wait for the display.
+    Clock::time_point seen;
     double uncertainty_ms = 0; ///< the swap took place within time +- this
     GlSwapMethod method = GlSwapMethod::fence;
 };

@@ -6,9 +6,8 @@ namespace viewer {
 
 class ArrivalClock {
 public:
-    /// @return the sample's estimated time, s, on the clock of received_s; larger than the previous one. Restarts
-    /// after
-    ///   a pause of kPause.
+    /// @return the sample's estimated time, s, on the clock of received_s; larger than the previous one.
+    /// Restarts after a pause of kPause.
     double note(double received_s);
     double last_s() const { return time_s_; }
     /// Reliability of the order and spacing of samples, 0..1: 1 if arrivals deviate by less than a quarter of a

@@ -24,8 +24,8 @@ ClockNote OneWayClockOffset::note(double measured_s, double received_s)
         piece_end_s_ = received_s + 1;
     }
     if (received_s >= piece_end_s_) {
-        piece_ = (piece_ + 1) % kWindow; // advance by one piece after any pause, so that a pause does not discard
-                                         // the estimate
+        // Advance by one piece after any pause, so that a pause does not discard the estimate.
+        piece_ = (piece_ + 1) % kWindow;
         least_[piece_] = std::numeric_limits<double>::infinity();
         piece_end_s_ = received_s + 1;
     }

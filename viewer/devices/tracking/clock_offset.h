@@ -1,7 +1,7 @@
 #pragma once
 // Estimates the offset between the sender's clock and ours from packets with varying delay, by a minimum filter:
-// the fastest packet of the last seconds counts. Its own delay cannot be known from one side and is a setting
-// (PredictionSettings::latency_s).
+// the fastest packet of the last seconds counts. Its own delay cannot be known from one side and is
+// a setting (PredictionSettings::latency_s).
 
 #include <array>
 #include <cstdint>

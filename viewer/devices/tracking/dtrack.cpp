@@ -97,8 +97,7 @@ void read_bodies(std::string_view rest, LineForm form, TrackerPacket& packet)
     std::string_view const first = gi::take_word(rest);
     auto count = gi::parse_number<std::uint64_t>(first);
     if (count && form == LineForm::flystick2)
-        count = gi::parse_number<std::uint64_t>(gi::take_word(rest)); // number defined, then number
-                                                                      // in the line
+        count = gi::parse_number<std::uint64_t>(gi::take_word(rest)); // defined, then in this line
     if (!count || *count > kMostPacketBodies) {
         ++packet.malformed;
         return;

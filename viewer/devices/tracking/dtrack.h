@@ -17,11 +17,10 @@
 
 namespace viewer {
 
-/// Parses any bytes; never throws because of them. Bodies are named "0", "1", ... and flysticks "flystick0", ...
-/// measured_s is the time stamp, if any. Positions are converted to m; axes stay the tracker's. A body with
-/// quality
-/// -1 or a zero matrix is not visible. A matrix that is not a rotation (to 1 %) makes the rest of its line
-/// malformed; lines with other identifiers are ignored and counted.
+/// Parses any bytes; never throws because of them. Bodies are named "0", "1", ... and flysticks "flystick0",
+/// ... measured_s is the time stamp, if any. Positions are converted to m; axes stay the tracker's.
+/// A body with quality -1 or a zero matrix is not visible. A matrix that is not a rotation (to 1 %) makes the rest
+/// of its line malformed; lines with other identifiers are ignored and counted.
 TrackerPacket parse_dtrack(std::string_view packet);
 
 /// The packet that a DTrack controller would send for these samples: fr, ts if samples have a time, 6dcal, 6d,

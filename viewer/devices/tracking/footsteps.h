@@ -1,7 +1,7 @@
 #pragma once
-// Simulated feet of a user whose feet are not tracked: they stand on the floor until the user has moved away, and
-// then step to follow, one at a time. They are generated together with frame commands, which hold them like
-// tracked bodies.
+// Simulated feet of a user whose feet are not tracked: they stand on the floor until the user has moved away,
+// and then step to follow, one at a time. They are generated together with frame commands,
+// which hold them like tracked bodies.
 //
 // A foot's target is below its hip and, while the user walks, ahead of it by half a step's time. The foot stands
 // fixed in the world until it is farther from its target than kStray_m or kStray_rad. Then it swings to the target
@@ -15,9 +15,9 @@ namespace viewer {
 
 /// Positions of a standing user's feet relative to the head, m. For an avatar, see OwnAvatar::stance.
 struct Stance {
-    gi::dvec3 head_joint_in_head{0, -0.08, 0.09};           ///< from the midpoint between the eyes
-    gi::dvec3 left_foot{-0.1, 0, 0}, right_foot{0.1, 0, 0}; ///< soles, from the point below the head joint; -Z =
-                                                            ///< forward
+    gi::dvec3 head_joint_in_head{0, -0.08, 0.09}; ///< from the midpoint between the eyes
+    /// Soles, from the point below the head joint; -Z = forward.
+    gi::dvec3 left_foot{-0.1, 0, 0}, right_foot{0.1, 0, 0};
 
     bool operator==(Stance const&) const = default;
 };
@@ -35,11 +35,11 @@ public:
 
     explicit Footsteps(Stance const& stance) : stance_(stance) {}
 
-    /// Adds the missing feet to a body: on the floor of the room (y = 0), or above it while swinging. Without a
-    /// head there are none, and the simulation restarts. Standing feet stay fixed in the world, up to rounding if
-    /// the room moves.
-    /// @param body  in the room, finite  @param world_from_room  upright, with any scale  @param seconds  since
-    /// the last step
+    /// Adds the missing feet to a body: on the floor of the room (y = 0), or above it while swinging.
+    /// Without a head there are none, and the simulation restarts. Standing feet stay fixed in the world,
+    /// up to rounding if the room moves.
+    /// @param body  in the room, finite  @param world_from_room  upright, with any scale
+    /// @param seconds  since the last step
     void step(Tracked& body, gi::dmat4 const& world_from_room, double seconds);
 
 private:

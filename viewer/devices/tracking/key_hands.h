@@ -1,6 +1,6 @@
 #pragma once
-// Hands of a user with a keyboard only: they hang in front of the hips, and rise beside the head while a key is
-// held.
+// Hands of a user with a keyboard only: they hang in front of the hips,
+// and rise beside the head while a key is held.
 
 #include "viewer/protocol/frame_command.h"
 

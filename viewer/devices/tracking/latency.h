@@ -8,8 +8,8 @@
 
 namespace viewer {
 
-/// Statistics of the last kLatencyWindow packets. Delays are relative to the fastest of them, whose own delay is
-/// unknown.
+/// Statistics of the last kLatencyWindow packets. Delays are relative to the fastest of them,
+/// whose own delay is unknown.
 struct Latency {
     std::uint64_t packets = 0;
     bool has_sender_time = false; ///< if false, delays are 0

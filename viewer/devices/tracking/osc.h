@@ -1,6 +1,6 @@
 #pragma once
-// Poses in OSC 1.0 packets: single messages and bundles. A list of patterns defines the recognised addresses and
-// arguments.
+// Poses in OSC 1.0 packets: single messages and bundles. A list of patterns defines
+// the recognised addresses and arguments.
 
 #include "viewer/devices/tracking/tracker_sample.h"
 
@@ -31,8 +31,8 @@ std::vector<OscPattern> const& default_osc_patterns();
 /// Throws InputError on an invalid pattern.
 void check(OscPattern const& pattern);
 
-/// Parses any bytes; never throws because of them. Position and rotation of one body in one bundle become one
-/// sample.
+/// Parses any bytes; never throws because of them. Position and rotation of one
+/// body in one bundle become one sample.
 TrackerPacket parse_osc(std::span<unsigned char const> packet,
                         std::vector<OscPattern> const& patterns = default_osc_patterns());
 

@@ -68,8 +68,8 @@ gi::dmat4 hanging(gi::Avatar::Arm const& arm, gi::Pose const& standing, gi::dvec
             glm::dvec4(shoulder + kHangingReach * length * way, 1)};
 }
 
-/// Poses legs and back as at the start of an idle clip. The clip does not play, because then the picture would
-/// never be still.
+/// Poses legs and back as at the start of an idle clip. The clip does not play,
+/// because then the picture would never be still.
 void stand_idle(gi::Scene& avatar)
 {
     avatar.playbacks.clear();

@@ -21,8 +21,8 @@ double reach_before_head_m(gi::Scene const& scene, gi::Avatar const& avatar);
 
 class OwnAvatar {
 public:
-    /// @param avatar  upright at rest, +Y up, feet at y = 0; any length unit. Its lights, cameras and sky are
-    /// ignored;
+    /// @param avatar  upright at rest, +Y up, feet at y = 0; any length unit.
+    /// Its lights, cameras and sky are ignored;
     ///   its clips do not play, but it takes the pose at the start of a clip with "idle" in its name
     /// @param eye_height_m  of the standing user, 0.3 to 3
     /// @param user  index in the display

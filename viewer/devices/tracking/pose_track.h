@@ -14,8 +14,8 @@
 namespace viewer {
 
 struct FilterSettings {
-    bool enabled = true;                            ///< false: unfiltered samples; velocities still come from the
-                                                    ///< filter
+    /// False: unfiltered samples; velocities still come from the filter.
+    bool enabled = true;
     gi::OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
     gi::OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< betas in Hz per rad/s
 
@@ -23,9 +23,9 @@ struct FilterSettings {
 };
 
 struct PredictionSettings {
-    double latency_s = 0;    ///< from motion to the fastest packet's arrival: sensor, sender and network; measured
-    double horizon_s = 0.1;  ///< constant velocity up to this time past the newest sample, then fading over the
-                             ///< same time
+    double latency_s = 0; ///< from motion to the fastest packet's arrival: sensor, sender and network; measured
+    /// Constant velocity up to this time past the newest sample, then fading over the same time.
+    double horizon_s = 0.1;
     double lost_after_s = 1; ///< no pose later than this after the newest sample
     double smooth_s = 0.02;  ///< time constant for applying a new sample's correction; 0 = at once
     double recover_s = 0.2;  ///< duration of the transition from a held pose back to the tracked one
@@ -46,8 +46,8 @@ enum class TrackState {
 struct TrackedPose {
     TrackState state = TrackState::never;
     std::optional<RoomPose> pose; ///< only if tracked or held
-    double age_s = 0;             ///< of the newest sample at the requested time; negative if that time is before
-                                  ///< the sample
+    /// Of the newest sample at the requested time; negative if that time is before the sample.
+    double age_s = 0;
 };
 
 struct TrackCounts {

@@ -6,8 +6,8 @@
 
 namespace viewer {
 
-/// Measures of a person and an avatar. Frames of bodies: -Z forward (hands: along the fingers), +Y up (hands: back
-/// of the hand).
+/// Measures of a person and an avatar. Frames of bodies: -Z forward (hands:
+/// along the fingers), +Y up (hands: back of the hand).
 struct PuppetMeasures {
     gi::dvec3 head_joint_in_head{0, -0.08, 0.09}; ///< m, from the midpoint between the eyes; at the user's scale
     RoomPose left_wrist_in_hand{{0, 0, 0.06}, {1, 0, 0, 0}}; ///< from the controller's grip
@@ -24,9 +24,9 @@ struct PuppetMeasures {
 double height_scale(gi::Scene const& scene, gi::Avatar const& avatar, double user_eye_height_m,
                     PuppetMeasures const& measures = {});
 
-/// Targets in the world. Heights are scaled by avatar_per_user, and offsets of hands and feet from the head
-/// likewise; the head stays on its vertical line. A scale in world_from_room scales positions; the targets stay
-/// rigid.
+/// Targets in the world. Heights are scaled by avatar_per_user, and offsets of hands and feet from
+/// the head likewise; the head stays on its vertical line. A scale in world_from_room scales positions;
+/// the targets stay rigid.
 gi::AvatarTargets puppet_targets(Tracked const& tracked, gi::dmat4 const& world_from_room,
                                  PuppetMeasures const& measures = {});
 

@@ -19,9 +19,9 @@ inline constexpr std::size_t kBodies = kBodyMembers.size();
 
 /// Assignment of a tracker's bodies. Empty: the tracker has none.
 struct BodySettings {
-    std::string id;            ///< name used by the sender
-    RoomPose sensor_from_body; ///< pose of the midpoint between the eyes, the grip, or the sole relative to the
-                               ///< marker; m
+    std::string id; ///< name used by the sender
+    /// Pose of the midpoint between the eyes, the grip, or the sole relative to the marker; m.
+    RoomPose sensor_from_body;
 };
 
 struct TrackerSettings {
@@ -80,8 +80,8 @@ enum class Polling { by_caller, by_thread };
 /// Safe to call from any thread. If several trackers have a body, the first with a pose of it is used.
 class TrackerHub {
 public:
-    /// Binds sockets and reads files. Trackers of one protocol at one address and port share a socket. Throws
-    /// InputError.
+    /// Binds sockets and reads files. Trackers of one protocol at one address and port
+    /// share a socket. Throws InputError.
     TrackerHub(std::vector<TrackerSettings> const& settings, Polling polling);
     /// With given sources, one per settings entry (whose type, address and file are then ignored).
     TrackerHub(std::vector<TrackerSettings> const& settings, std::vector<std::unique_ptr<Tracker>> sources,
@@ -97,8 +97,8 @@ public:
     BodiesAt at(double time_s) const;
     /// Poses from one tracker only; index in the settings, from 0.
     BodiesAt of_tracker(std::size_t tracker, double time_s) const;
-    /// Statistics per tracker; counts include everything received on its port. @param now_s for the states and
-    /// ages
+    /// Statistics per tracker; counts include everything received on its port.
+    /// @param now_s for the states and ages
     std::vector<TrackerReport> report(double now_s) const;
 
 private:

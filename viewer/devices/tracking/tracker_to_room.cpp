@@ -27,8 +27,8 @@ RoomPose to_room(TrackerToRoom const& t, RoomPose const& pose, RoomPose const& s
 {
     glm::dmat3 const c = room_from(t.axes);
     RoomPose p{c * pose.position * t.metres_per_unit, pose.rotation};
-    // A rotation about an axis a becomes, in the new axes, a rotation about C a, in the opposite sense if C
-    // mirrors.
+    // A rotation about an axis a becomes, in the new axes, a rotation about C a,
+    // in the opposite sense if C mirrors.
     gi::dvec3 const axis = glm::determinant(c) * (c * gi::dvec3{p.rotation.x, p.rotation.y, p.rotation.z});
     p.rotation = glm::normalize(gi::dquat(p.rotation.w, axis.x, axis.y, axis.z));
     return t.room_from_tracker * p * sensor_from_body;

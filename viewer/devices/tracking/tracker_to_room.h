@@ -13,8 +13,8 @@ enum class TrackerAxes {
     left_handed_z_up, ///< +y right, +z up, +x forward (Unreal)
 };
 
-/// Applied once to each sample, in this order: axes and units, then the rigid transform, then the body's own
-/// frame.
+/// Applied once to each sample, in this order: axes and units, then the rigid transform,
+/// then the body's own frame.
 struct TrackerToRoom {
     TrackerAxes axes = TrackerAxes::y_up;
     double metres_per_unit = 1; ///< of the samples as parsed; DTrack's are m already

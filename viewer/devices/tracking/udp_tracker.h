@@ -19,8 +19,8 @@ public:
     using Parse = std::function<TrackerPacket(std::span<unsigned char const>)>;
 
     /// @param name  of the protocol, for messages
-    /// @param frame_rate_hz  for senders that count frames but send no time: measured_s = frame / rate; 0 =
-    /// unknown
+    /// @param frame_rate_hz  for senders that count frames but send no time:
+    /// measured_s = frame / rate; 0 = unknown
     UdpTracker(std::string name, std::string const& address, int port, Parse parse, double frame_rate_hz = 0);
 
     void poll(double now_s, std::vector<TrackerSample>& samples) override;

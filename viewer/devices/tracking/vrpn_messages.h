@@ -49,10 +49,8 @@ public:
 
     bool greeted() const { return greeted_; }           ///< the server's greeting was right
     std::string const& fault() const { return fault_; } ///< why the stream is not VRPN
-    bool hears_device() const
-    {
-        return hears_device_;
-    } ///< of the tracker; a server names any that clients ask for
+    /// True once the tracker itself has sent something; a server names any device that clients ask for.
+    bool hears_device() const { return hears_device_; }
 
 private:
     /// Reads one whole message; returns its padded length, 0 if bytes are missing, -1 if the length is impossible.

@@ -112,8 +112,8 @@ void VrpnTracker::connected(double now_s)
 void VrpnTracker::send(std::vector<unsigned char> const& bytes, double now_s)
 {
     if (socket_ < 0) return;
-    // A few hundred bytes fit into any socket's buffer; one that takes less belongs to a server that reads
-    // nothing.
+    // A few hundred bytes fit into any socket's buffer; one that takes less belongs
+    // to a server that reads nothing.
     if (::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != ssize_t(bytes.size()))
         drop(now_s, "the server does not take requests");
 }

@@ -8,8 +8,8 @@
 
 namespace viewer {
 
-/// Best format offered by the runtime for display colours: sRGB-encoded, else linear with more bits. 0 if there is
-/// none.
+/// Best format offered by the runtime for display colours: sRGB-encoded, else linear
+/// with more bits. 0 if there is none.
 std::int64_t choose_format(std::vector<std::int64_t> const& offered);
 
 class EyeImages {
@@ -20,8 +20,8 @@ public:
     EyeImages(EyeImages const&) = delete;
     EyeImages& operator=(EyeImages const&) = delete;
 
-    /// Acquires an image and waits until the runtime has finished reading it, at most 0.5 s. False: not yet; call
-    /// again.
+    /// Acquires an image and waits until the runtime has finished reading it,
+    /// at most 0.5 s. False: not yet; call again.
     bool acquire();
     EyePass::Target target() const;
     /// Releases the image, which is shown from now on.

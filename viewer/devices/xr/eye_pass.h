@@ -1,6 +1,6 @@
 #pragma once
-// Draws a finished picture into an image of the runtime: any size, top or bottom row first, linear or
-// sRGB-encoded.
+// Draws a finished picture into an image of the runtime: any size, top or bottom
+// row first, linear or sRGB-encoded.
 
 #include "viewer/devices/xr/frame.h"
 

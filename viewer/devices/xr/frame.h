@@ -68,13 +68,13 @@ struct HmdFrame {
     std::optional<HmdGaze> gaze; ///< none without eye tracking, or while the session has no focus
 };
 
-/// Encoding of texture values: linear or sRGB. Textures of format GL_SRGB8_ALPHA8 are `linear`, because reading
-/// decodes them.
+/// Encoding of texture values: linear or sRGB. Textures of format GL_SRGB8_ALPHA8 are `linear`,
+/// because reading decodes them.
 enum class TextureValues { linear, srgb };
 enum class FirstRow { bottom, top };
 
-/// A finished picture of both eyes and the views that it was drawn for, which may be older than the frame that it
-/// is submitted to.
+/// A finished picture of both eyes and the views that it was drawn for, which may be older
+/// than the frame that it is submitted to.
 struct HmdPicture {
     std::array<HmdView, 2> views;
     std::array<unsigned, 2> textures{}; ///< GL names of 2D textures of any size, values 0 to 1, alpha ignored

@@ -7,8 +7,8 @@ namespace viewer {
 
 class HmdKeeper {
 public:
-    /// Creates the first session; throws InputError as HmdSession does. The context must outlive this; nullptr =
-    /// poses only.
+    /// Creates the first session; throws InputError as HmdSession does.
+    /// The context must outlive this; nullptr = poses only.
     HmdKeeper(GlContext const* context, HmdOptions const& options);
 
     /// Polls the session. After a loss, destroys it and tries to create another, at most once per second. Returns

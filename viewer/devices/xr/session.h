@@ -89,8 +89,8 @@ public:
     std::optional<std::array<HmdView, 2>> latest_views(HmdFrame const& frame);
     /// Ends the frame with a new picture, which is copied, so the textures can be reused.
     void end_frame(HmdPicture const& picture);
-    /// Ends the frame with the last picture and the pose that it was drawn for; without a picture if there was
-    /// none.
+    /// Ends the frame with the last picture and the pose that it was drawn for;
+    /// without a picture if there was none.
     void repeat_frame();
     /// Ends the frame without a picture.
     void end_frame();

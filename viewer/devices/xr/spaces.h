@@ -24,8 +24,8 @@ public:
     void remember_head(XrTime asked, XrTime time);
     /// Stores a pending change of the runtime until it takes effect; false if it concerns another space.
     bool take(XrEventDataReferenceSpaceChangePending const& change);
-    /// Applies changes up to this time. They reset this program's own recentring, because the user recentred in
-    /// the runtime.
+    /// Applies changes up to this time. They reset this program's own recentring,
+    /// because the user recentred in the runtime.
     void apply_until(XrTime time);
     /// Number of changes applied so far.
     std::uint64_t moves() const { return moves_.size(); }

@@ -28,8 +28,8 @@ bool same_sizes(std::vector<ViewCommand> const& a, std::vector<ViewCommand> cons
 
 bool updates_axes(Settings const& s) { return gi::updates_axes(gi::find_method(s.method), s.render); }
 
-/// Looks (0.1 s each) that find nothing to render before memory is given back that the next frame would need
-/// again.
+/// Looks (0.1 s each) that find nothing to render before memory is given back
+/// that the next frame would need again.
 constexpr int kRestsBeforeTrim = 10;
 
 } // namespace
@@ -231,7 +231,7 @@ void LiveRenderer::choose_updated_axes(bool may_move)
     changes_.push_back(change);
 }
 
-/// How long after its beginning a frame will have been seen for half of its time, s.
+/// Time from a frame's start to the middle of its display interval, s.
 double LiveRenderer::seen_after_s() const { return std::min(1.5 * frame_s_, Anticipation::kFarthest_s); }
 
 /// Lets pictures show what their viewers turn to, where there is time for it. @param last  where they will be when
@@ -380,8 +380,8 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
         command.views = hooks_.own_views(command);
     }
     gi::StepListener const listener([this](gi::Step const& step) {
-        bool const builds =
-            step.of > 0 || step.what.starts_with("build"); // of a method that starts: may take long
+        // A method that starts may take long to build its structures.
+        bool const builds = step.of > 0 || step.what.starts_with("build");
         if (quit_ && link_ == nullptr && builds) throw gi::Interrupted();
         if (hooks_.at_step) hooks_.at_step(step);
     });

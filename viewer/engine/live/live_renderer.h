@@ -85,16 +85,16 @@ public:
         std::function<void()> published;                ///< a newer frame is available
         std::function<void(gi::Step const&)> at_step;   ///< where the current frame is; may be empty
         std::function<void(std::string const&)> failed; ///< a frame could not be rendered; rendering continues
-        std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views; ///< views of this rank; empty =
-                                                                                ///< all
+        /// Views of this rank; empty = all.
+        std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views;
     };
 
     /// @param session, clock, link  must outlive it; link may be null
     LiveRenderer(RenderSession& session, SessionClock const& clock, FrameLink* link, Hooks hooks);
     ~LiveRenderer();
 
-    /// Queues a change, from any thread. `done` is called on the rendering thread with the error message, empty if
-    /// there was none.
+    /// Queues a change, from any thread. `done` is called on the rendering thread with the error
+    /// message, empty if there was none.
     void post(Change change, std::function<void(std::string const& error)> done = {});
     /// Whether recordings and other ranks have a scene from their start, or need the change "scene".
     enum class SceneKnown { no, yes };
@@ -114,8 +114,8 @@ public:
 
     /// Newest frame; null before the first.
     std::shared_ptr<LiveFrame const> newest() const;
-    /// True if no frame is being rendered or due: `newest` stays until something changes. Always false on a
-    /// follower.
+    /// True if no frame is being rendered or due: `newest` stays until something changes.
+    /// Always false on a follower.
     bool rests() const;
     /// Waits for a frame that began after this call, and so includes all earlier posts; null on timeout or stop.
     std::shared_ptr<LiveFrame const> next_frame(double timeout_s);

@@ -31,8 +31,8 @@ public:
     /// Height of the eyes above the floor when walking, m; > 0.
     void set_eye_height(double m) { eye_height_m_ = m; }
     double eye_height_m() const { return eye_height_m_; }
-    /// Jumps to a pose, at any height; the next step while walking leads back to the floor. Roll about the view
-    /// axis is removed.
+    /// Jumps to a pose, at any height; the next step while walking leads back to the floor.
+    /// Roll about the view axis is removed.
     void go_to(gi::dmat4 const& world_from_camera);
     /// @param seconds  since the last step; at most 0.1 counts
     void step(NavigationInput const& input, double seconds);

@@ -12,8 +12,8 @@
 namespace viewer {
 namespace {
 
-/// Steps in their order, with the share of the time at their beginning (a scene of 25 textures and 260,000
-/// triangles).
+/// Steps in their order, with the share of the time at their beginning (a scene
+/// of 25 textures and 260,000 triangles).
 struct Share {
     std::string_view step;
     double begins, ends;

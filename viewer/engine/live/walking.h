@@ -22,9 +22,9 @@ struct WalkStance {
 /// low, the eyes are 0.1 m below it.
 std::optional<WalkStance> stand_below(Ground const& ground, gi::dvec3 eyes, double eye_height_m);
 
-/// Walks a horizontal way in steps of 0.1 m: slides along walls, goes up and down as the limits allow, and stops
-/// at an edge that exceeds them or where the ceiling is lower than the body. Walls lower than climb_m count as
-/// floor.
+/// Walks a horizontal way in steps of 0.1 m: slides along walls, goes up and down as the limits allow,
+/// and stops at an edge that exceeds them or where the ceiling is lower than the body.
+/// Walls lower than climb_m count as floor.
 WalkStance walk(Ground const& ground, WalkStance const& from, gi::dvec3 way_m, WalkLimits const& limits = {});
 
 } // namespace viewer

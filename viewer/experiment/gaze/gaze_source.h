@@ -26,9 +26,8 @@ public:
 };
 
 /// Not "openxr", which is the screen's (screen_gaze.h).
-/// @param what  "lsl", "lsl:NAME", or the file of a table (study::read_gaze_csv: px from the window's top left
-/// corner),
-///     which is replayed from the start of the session at its own pace, again and again
+/// @param what  "lsl", "lsl:NAME", or the file of a table (study::read_gaze_csv: px from the window's
+///     top left corner), which is replayed from the start of the session at its own pace, again and again
 /// Throws InputError: no such stream within 5 s, liblsl is missing, channels without known names, a bad file.
 std::unique_ptr<GazeSource> open_gaze(std::string const& what, double now_s);
 

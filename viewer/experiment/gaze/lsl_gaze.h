@@ -1,4 +1,6 @@
 #pragma once
+// Gaze from an eye tracker by the Lab Streaming Layer (LSL).
+
 #include "viewer/experiment/gaze/gaze_source.h"
 
 namespace viewer {

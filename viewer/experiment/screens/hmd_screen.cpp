@@ -59,8 +59,8 @@ std::vector<std::pair<std::string, std::string>> HmdScreen::about() const
             {"opengl", context_.gl().description()}};
 }
 
-/// Next frame that will be visible; none if no frame is visible for a while (headset not worn). Reads input
-/// meanwhile.
+/// Next frame that will be visible; none if no frame is visible for a while (headset not worn).
+/// Reads input meanwhile.
 std::optional<HmdFrame> HmdScreen::next_frame(HmdSession*& session)
 {
     auto const begun = Clock::now();

@@ -1,6 +1,6 @@
 #pragma once
-// Checks the timing of a display: refreshes estimated from swap times. Times in seconds, durations in
-// milliseconds.
+// Checks the timing of a display: refreshes estimated from swap times.
+// Times in seconds, durations in milliseconds.
 
 #include "study/journal/entries.h"
 #include "study/script/script.h"

@@ -19,8 +19,8 @@ struct ScreenPane {
     DisplayLight light{}; ///< of a calibrated display
 };
 
-/// A circle that follows the participant's gaze: pictures are visible only within it, or everywhere else; the rest
-/// is the background.
+/// A circle that follows the participant's gaze: pictures are visible only within it, or everywhere else;
+/// the rest is the background.
 struct GazeCircle {
     bool is_window = true;            ///< else a mask
     glm::vec2 centre_px{};            ///< from the window's top left corner
@@ -70,8 +70,8 @@ public:
     virtual std::vector<study::GazeSample> take_gaze() { return {}; }
     virtual std::vector<std::pair<std::string, std::string>> gaze_about() const { return {}; }
 
-    /// True if the screen defines its own views (walls or headset eyes, from tracked heads). Then it shows one
-    /// stimulus at a time.
+    /// True if the screen defines its own views (walls or headset eyes, from tracked heads).
+    /// Then it shows one stimulus at a time.
     virtual bool has_own_views() const = 0;
     /// The screen's own views for the head poses predicted for a time.
     /// @param world_from_camera  camera at the first user's resting head; of its rotation only the yaw counts

@@ -1,4 +1,6 @@
 #pragma once
+// Where an experiment is shown: its window or display, and the calibration of the monitor.
+
 #include "viewer/devices/gl/window.h"
 #include "viewer/displays/display.h"
 #include "viewer/experiment/screens/screen.h"

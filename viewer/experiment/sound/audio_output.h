@@ -2,10 +2,10 @@
 // A sound device that plays sounds at given times and says when their first samples left it, by PortAudio.
 //
 // The device's stream runs from construction to destruction, silent between sounds, so that its timing is steady.
-// For each buffer PortAudio says when its first sample reaches the converter (outputBufferDacTime), by the
-// device's clock. That clock is mapped to the steady clock by the least difference seen in the last seconds, and
-// the buffers' times are smoothed by their median relative to the count of samples: single late or wrong reports
-// do not count.
+// For each buffer PortAudio says when its first sample reaches the converter (outputBufferDacTime),
+// by the device's clock. That clock is mapped to the steady clock by the least difference seen in
+// the last seconds, and the buffers' times are smoothed by their median relative to the count of samples:
+// single late or wrong reports do not count.
 
 #include "viewer/experiment/sound/sound_samples.h"
 

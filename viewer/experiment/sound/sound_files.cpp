@@ -63,8 +63,8 @@ SoundSamples make_tone(study::Sound const& tone, int rate_hz)
     out.samples.reserve(2 * frames);
     for (std::size_t i = 0; i < frames; ++i) {
         double const to_end = double(std::min(i, frames - 1 - i)) + 0.5;
-        double const rise =
-            to_end < ramp ? 0.5 - 0.5 * std::cos(std::numbers::pi * to_end / ramp) : 1; // 0 to 1 over the ramp
+        // 0 to 1 over the ramp.
+        double const rise = to_end < ramp ? 0.5 - 0.5 * std::cos(std::numbers::pi * to_end / ramp) : 1;
         auto const v =
             float(amplitude * rise * std::sin(2 * std::numbers::pi * tone.tone_hz * double(i) / rate_hz));
         out.samples.push_back(tone.channel == study::SoundChannel::right ? 0 : v);

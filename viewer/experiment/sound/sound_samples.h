@@ -4,7 +4,7 @@
 
 namespace viewer {
 
-/// Two channels, interleaved: left, right.
+/// A stereo sound: two channels, interleaved left, right.
 struct SoundSamples {
     std::vector<float> samples; ///< -1 to 1
     int rate_hz = 48000;

@@ -1,7 +1,7 @@
 #pragma once
-// Pictures of a stimulus from an AR session. They are made one after the other, starting at the stimulus's first
-// frame (or `warmup_frames` before it), ahead of presentation, so that the stimulus does not depend on the
-// machine's speed.
+// Pictures of a stimulus from an AR session. They are made one after the other,
+// starting at the stimulus's first frame (or `warmup_frames` before it), ahead of presentation,
+// so that the stimulus does not depend on the machine's speed.
 
 #include "ar/camera/pose.h"
 #include "gi/core/progress.h"

@@ -48,7 +48,7 @@ std::vector<ArPicture> read_pictures(fs::path const& folder)
     return pictures;
 }
 
-/// Radiance that sRGB encoding turns into these bytes.
+/// Linear radiance of each sRGB byte.
 std::array<float, 256> const& radiance_of_bytes()
 {
     static std::array<float, 256> const table = [] {

@@ -1,4 +1,6 @@
 #pragma once
+// Stimuli from AR sessions: composites of recorded camera frames.
+
 #include "viewer/experiment/stimuli/ar_pictures.h"
 
 #include <future>
@@ -14,8 +16,8 @@ bool prepare_ar_stimulus(StimulusSettings const& stimulus, StimulusView const& v
 /// play once; if a stimulus stays until the answer, its first view.duration_s repeat.
 class ArSource : public StimulusSource {
 public:
-    /// @param prepared  folder of `study prepare`; empty = composite in the background   @param report  must
-    /// outlive this
+    /// @param prepared  folder of `study prepare`; empty = composite in the background
+    /// @param report  must outlive this
     ArSource(std::filesystem::path prepared, std::string version, gi::Report& report);
     ~ArSource() override;
 

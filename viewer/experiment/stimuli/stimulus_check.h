@@ -15,7 +15,7 @@ namespace viewer {
 /// The distinct stimuli of plans, by the sha256 of their settings; those of AR sessions are left out.
 class StimulusCollection {
 public:
-    /// @param wrong  settings that are told already: stimuli are checked without them
+    /// @param wrong  settings already reported as wrong; ignored when checking stimuli
     StimulusCollection(study::Script const& script, std::set<std::pair<std::string, std::string>> wrong)
         : script_(script), wrong_(std::move(wrong))
     {

@@ -1,4 +1,6 @@
 #pragma once
+// The views that show a stimulus.
+
 #include "viewer/experiment/stimuli/stimulus_source.h"
 
 namespace viewer {

@@ -172,8 +172,8 @@ void Cluster::finish()
         auto const is_missing = [&s](int r) { return s.living(r) && !s.peers[std::size_t(r)].said_goodbye; };
         s.await([&] { return std::none_of(others.begin(), others.end(), is_missing); }, is_missing,
                 s.settings.silence_s, "at the end");
-        // No rank is lost from here on. The last message says whether all ranks may wait for each other in
-        // MPI_Finalize.
+        // No rank is lost from here on. The last message says whether all ranks may
+        // wait for each other in MPI_Finalize.
         s.send_to_others(Writer(MessageKind::go).put(std::uint64_t(s.others_living())).put(now_s()));
     } else {
         s.await([&s] { return s.is_ended; }, [](int who) { return who == 0; }, s.settings.silence_s, "at the end");

@@ -1,10 +1,10 @@
 #pragma once
-// Several processes, started by mpirun, that show or render together: rank 0 leads, the others follow its frame
-// commands. No rank waits forever: a rank that dies or stalls is reported by name, and the others stop or
-// continue.
+// Several processes, started by mpirun, that show or render together: rank 0 leads,
+// the others follow its frame commands. No rank waits forever: a rank that dies or stalls is reported by name,
+// and the others stop or continue.
 //
-// Without mpirun, or with a single rank, all calls do nothing and return at once. (mpirun is detected by
-// OMPI_COMM_WORLD_SIZE.)
+// Without mpirun, or with a single rank, all calls do nothing and return at once.
+// (mpirun is detected by OMPI_COMM_WORLD_SIZE.)
 //
 // All calls must come from one thread, not necessarily the main thread: MPI is initialised with
 // MPI_THREAD_SERIALIZED, by the thread that creates the Cluster, and finalised by the thread that destroys it. A
@@ -104,8 +104,8 @@ public:
     // Other work, in pieces of at most 1 GiB.
     /// Follower: sends data to the leader; waits until the leader calls take().
     void give(std::vector<std::uint8_t> bytes);
-    /// Leader: the next data that the rank gives; none if it is lost. Waits as long as that rank shows signs of
-    /// life.
+    /// Leader: the next data that the rank gives; none if it is lost.
+    /// Waits as long as that rank shows signs of life.
     std::optional<std::vector<std::uint8_t>> take(int from);
 
     /// Follower: what it tells the leader when it ends in order, e.g. its losses; called then, on any thread.
@@ -128,8 +128,8 @@ private:
 /// work that may take longer than ClusterSettings::silence_s: loading a scene, a picture of many paths.
 class KeepAlive {
 public:
-    /// @param on_loss  called from the other thread if the cluster must stop; the next Cluster call throws
-    /// RankLoss
+    /// @param on_loss  called from the other thread if the cluster must stop;
+    /// the next Cluster call throws RankLoss
     explicit KeepAlive(Cluster& cluster, std::function<void()> on_loss = {});
     ~KeepAlive();
     KeepAlive(KeepAlive const&) = delete;

@@ -7,8 +7,8 @@
 
 namespace viewer {
 
-/// Statistics of the intervals between swaps, in ms. Percentiles (gi/core/quantile.h) are accurate to 0.25 %, the
-/// other values exact.
+/// Statistics of the intervals between swaps, in ms. Percentiles (gi/core/quantile.h) are accurate
+/// to 0.25 %, the other values exact.
 struct FrameSummary {
     std::uint64_t frames = 0;
     double mean_ms = 0, p50_ms = 0, p95_ms = 0, p99_ms = 0, max_ms = 0; ///< 0 with fewer than two frames

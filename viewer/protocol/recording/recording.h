@@ -1,6 +1,6 @@
 #pragma once
-// Recordings (.lwr) of everything that determines the pixels of every frame: enough to render a session again,
-// bit by bit.
+// Recordings (.lwr) of everything that determines the pixels of every frame:
+// enough to render a session again, bit by bit.
 //
 //   0  8 bytes   "\x89LWR\r\n\x1a\n"
 //   8  u32       version of the format: 1
@@ -82,8 +82,8 @@ public:
     RecordingHeader const& header() const { return header_; }
     std::string const& name() const { return name_; }
     std::uint64_t bytes() const { return size_; }
-    /// The next frame; none at the end, which end() then describes. A damaged record ends the recording; it is not
-    /// an error.
+    /// The next frame; none at the end, which end() then describes.
+    /// A damaged record ends the recording; it is not an error.
     std::optional<RecordedFrame> next();
     /// Valid after next() has returned none.
     RecordingEnd const& end() const { return end_; }

@@ -212,7 +212,7 @@ bool RemoteServer::take_token(std::uint64_t number, Client& client, nlohmann::js
     bool const is_token_line = line.contains("token") && !line.contains("do");
     if (client.trust == Trust::full) {
         if (is_token_line) send(number, client, {{"id", id_of(line)}, {"result", nlohmann::json::object()}});
-        return is_token_line; // not needed here, so that clients may always send theirs
+        return is_token_line; // this client needs no token, but may send one
     }
     if (!is_token_line || !line["token"].is_string()) {
         refuse_stranger(number, client, id_of(line), "the first line is no token");

@@ -1,7 +1,7 @@
 #pragma once
-// Remote control of a running program. Requests arrive as lines of JSON from many clients and are passed to one
-// handler, between frames and without blocking. A client cannot stop the program, whatever it sends or leaves
-// unread.
+// Remote control of a running program. Requests arrive as lines of JSON from many clients and are
+// passed to one handler, between frames and without blocking. A client cannot stop the program,
+// whatever it sends or leaves unread.
 
 #include "gi/core/report.h"
 #include "viewer/protocol/remote/remote_token.h"
@@ -34,8 +34,8 @@ struct RemoteOptions {
 
 class RemoteServer {
 public:
-    /// Returns the result of a request; none = RemoteServer::answer follows later. Throws gi::InputError to reject
-    /// the request.
+    /// Returns the result of a request; none = RemoteServer::answer follows later.
+    /// Throws gi::InputError to reject the request.
     using Handler = std::function<std::optional<nlohmann::json>(RemoteRequest const&)>;
 
     /// Throws InputError if it cannot listen. @param report  receives dropped clients; must outlive this
@@ -45,8 +45,8 @@ public:
     RemoteServer(RemoteServer const&) = delete;
     RemoteServer& operator=(RemoteServer const&) = delete;
 
-    /// Accepts clients, reads requests, calls the handler and sends answers; waits at most `timeout` for the first
-    /// event.
+    /// Accepts clients, reads requests, calls the handler and sends answers;
+    /// waits at most `timeout` for the first event.
     void poll(std::chrono::milliseconds timeout = {});
     /// Answers a request whose handler returned no result. @return false if the client is gone or already answered
     bool answer(std::uint64_t token, nlohmann::json const& result);

@@ -10,8 +10,8 @@
 
 namespace viewer {
 
-/// remote-PORT.token in the user's runtime folder (XDG_RUNTIME_DIR, else a folder of mode 0700 in the one for
-/// temporary files).
+/// remote-PORT.token in the user's runtime folder (XDG_RUNTIME_DIR, else a folder of mode
+/// 0700 in the one for temporary files).
 std::filesystem::path default_token_file(int port);
 
 /// Writes a new token and removes it at the end, unless another program has replaced it by then.

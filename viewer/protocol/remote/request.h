@@ -1,6 +1,6 @@
 #pragma once
-// Requests of the remote protocol: one JSON object per line. All are listed in one table, which docs/remote.md
-// shows.
+// Requests of the remote protocol: one JSON object per line. All are listed in one table,
+// which docs/remote.md shows.
 
 #include <nlohmann/json.hpp>
 #include <span>

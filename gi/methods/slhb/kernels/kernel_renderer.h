@@ -1,7 +1,7 @@
 #pragma once
-// Counterpart of PathsRenderer that runs the passes of slhb as kernels in one space, and keeps structures between
-// passes and frames. Light points, axes and random numbers are the same, so that both trace the same paths up to
-// rounding.
+// Counterpart of PathsRenderer that runs the passes of slhb as kernels in one space,
+// and keeps structures between passes and frames. Light points, axes and random numbers are the same,
+// so that both trace the same paths up to rounding.
 //
 // Hit buffers are built from all triangles: after motion, the buffers used by paths and all shadow maps are
 // rebuilt (dynamic geometry is not added to static buffers as on the CPU). The BVH for exact rays, built if some
@@ -79,8 +79,8 @@ private:
     FrameAxes axes_;
     std::optional<LightPoints> light_points_;
     std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0;
-    std::uint64_t hidden_ = 0, pixels_ = 0; ///< pixels not traced because they are hidden; all pixels; over all
-                                            ///< passes
+    /// Pixels not traced because they are hidden; all pixels; over all passes.
+    std::uint64_t hidden_ = 0, pixels_ = 0;
     std::uint64_t earlier_maps_ = 0;        ///< built for earlier light points that no longer exist
 };
 

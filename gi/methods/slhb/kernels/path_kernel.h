@@ -107,7 +107,7 @@ protected:
     GI_FN void go_on(std::size_t pixel, State const& s) const;
     /// Continues the path to the next surface. Returns false if it ends.
     GI_FN bool scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
-    /// The same by a mirror, glass or a narrow lobe.
+    /// As scatter(), through a mirror, glass or a narrow lobe, by an exact ray.
     GI_FN bool scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
                               PathKernelCounts& local) const;
     GI_FN bool scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,

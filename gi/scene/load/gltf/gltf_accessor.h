@@ -24,8 +24,8 @@ struct GltfArray {
     }
 };
 
-/// Reads floats; integers of a normalized accessor become -1..1 or 0..1. Throws InputError if anything is out of
-/// range.
+/// Reads floats; integers of a normalized accessor become -1..1 or 0..1.
+/// Throws InputError if anything is out of range.
 /// @param components required number of components; 0 = any
 GltfArray read_floats(GltfDocument& document, int accessor, std::size_t components);
 /// Reads unsigned integers, one component for indices, four for joints.

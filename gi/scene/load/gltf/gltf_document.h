@@ -27,8 +27,8 @@ struct GltfDocument {
     tinygltf::Model model;
     std::vector<Bytes> buffers;
     std::vector<GltfImage> images;
-    std::vector<std::unique_ptr<std::vector<unsigned char>>>
-        storage;                        ///< owns data that was decoded or read from other files
+    /// Owns data that was decoded or read from other files.
+    std::vector<std::unique_ptr<std::vector<unsigned char>>> storage;
     std::map<int, Bytes> decoded_views; ///< decoded by EXT_meshopt_compression
     std::vector<std::string> files;     ///< other files that were read
     std::size_t file_bytes = 0;         ///< including all buffers
@@ -46,8 +46,8 @@ struct GltfDocument {
         storage.push_back(std::make_unique<std::vector<unsigned char>>(std::move(bytes)));
         return *storage.back();
     }
-    /// Returns the bytes of a buffer view, decompressed if necessary. Throws InputError if it lies outside its
-    /// buffer.
+    /// Returns the bytes of a buffer view, decompressed if necessary.
+    /// Throws InputError if it lies outside its buffer.
     Bytes view_bytes(int view);
 };
 

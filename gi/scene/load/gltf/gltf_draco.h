@@ -1,4 +1,6 @@
 #pragma once
+// Decodes Draco-compressed meshes of glTF files (KHR_draco_mesh_compression).
+
 #include "gi/scene/load/gltf/gltf_accessor.h"
 
 namespace gi {

@@ -1,4 +1,6 @@
 #pragma once
+// Reads the meshes of a glTF file, with morph targets.
+
 #include "gi/scene/load/gltf/gltf_document.h"
 #include "gi/scene/model/scene.h"
 

@@ -4,7 +4,7 @@
 
 namespace gi {
 
-/// %41 becomes A; what is not an escape stays.
+/// Decodes percent escapes of a URI: %41 becomes A; text that is not an escape stays.
 std::string decode_percent(std::string_view text);
 
 } // namespace gi
