@@ -5,35 +5,38 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
-#include <limits>
 #include <string>
 
 namespace gi {
 
-/// Stops a long computation at its next safe point. Set by the command line's signal handler.
+/// Stops a long computation at its next safe point. Set by the command line's signal handler. Tests override when
+/// it is requested and by which clock (tests/support/stop_at_ask.h).
 class StopRequest {
 public:
+    virtual ~StopRequest() = default;
     void request()
     {
-        std::int64_t none = kNever;
-        at_.compare_exchange_strong(none, now(), std::memory_order_relaxed);
+        auto none = kNever.count();
+        at_.compare_exchange_strong(none, now().count(), std::memory_order_relaxed);
     }
-    bool requested() const { return at_.load(std::memory_order_relaxed) != kNever; }
+    bool requested() const { return requested_at() != kNever; }
     /// True some time after it was requested first.
     bool requested_before(std::chrono::nanoseconds time) const
     {
-        std::int64_t const at = at_.load(std::memory_order_relaxed);
-        return at != kNever && now() - at > time.count();
+        std::chrono::nanoseconds const at = requested_at();
+        return at != kNever && now() - at > time;
+    }
+    virtual std::chrono::nanoseconds now() const { return std::chrono::steady_clock::now().time_since_epoch(); }
+
+protected:
+    static constexpr std::chrono::nanoseconds kNever = std::chrono::nanoseconds::min();
+    virtual std::chrono::nanoseconds requested_at() const
+    {
+        return std::chrono::nanoseconds(at_.load(std::memory_order_relaxed));
     }
 
 private:
-    static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
-    static std::int64_t now()
-    {
-        return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-    }
-
-    std::atomic<std::int64_t> at_{kNever}; ///< ns of the steady clock
+    std::atomic<std::int64_t> at_{kNever.count()}; ///< ns of now()
     static_assert(std::atomic<std::int64_t>::is_always_lock_free, "signal handlers may set nothing else");
 };
 
@@ -49,17 +52,20 @@ public:
 class BuildStop {
 public:
     /// @param stop  must outlive this object; null = never abandon
-    explicit BuildStop(StopRequest const* stop) : stop_(stop) {}
+    explicit BuildStop(StopRequest const* stop) : stop_(stop)
+    {
+        if (stop != nullptr) start_ = stop->now();
+    }
     bool given_up() const
     {
         constexpr auto kBegun = std::chrono::milliseconds(150), kLeft = std::chrono::milliseconds(80);
         return stop_ != nullptr && stop_->requested() &&
-               (stop_->requested_before(kLeft) || std::chrono::steady_clock::now() - start_ > kBegun);
+               (stop_->requested_before(kLeft) || stop_->now() - start_ > kBegun);
     }
 
 private:
     StopRequest const* stop_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::chrono::nanoseconds start_{}; ///< by the request's clock
 };
 
 /// "8 s", "1 min 20 s", "2 h 5 min": rounded as estimates are.

@@ -79,8 +79,8 @@ TEST(EnvironmentLight, OneBrightTexelIsAParallelLight)
     add_light(with_light, light);
     World const map = world_of(with_map), light_point = world_of(with_light);
     for (Method const m : kMethods) {
-        RenderSettings s = small_settings(32, m == Method::reference ? 512 : 256, 3);
-        s.of<SlhbSettings>().shadow_resolution = 512;
+        RenderSettings s = small_settings(24, m == Method::reference ? 512 : 96, 3);
+        s.of<SlhbSettings>().shadow_resolution = 256;
         s.of<SlhbSettings>().light_samples = 8;
         s.of<SlhbSettings>().axes = 8;
         s.of<SlhbSettings>().resolution = 128;

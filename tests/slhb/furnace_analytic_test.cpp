@@ -43,7 +43,7 @@ TEST(SlhbFurnace, ClosedSphereThatGlows)
         add_sphere(scene, vec3{0}, 1, 3, add_material(scene, wall), false);
         World const world = world_of(scene);
         for (int const bounces : {0, 3, 32}) {
-            RenderSettings s = small_settings(8, 1024, bounces);
+            RenderSettings s = small_settings(8, 256, bounces);
             s.of<SlhbSettings>().shadow_resolution = 128;
             s.of<SlhbSettings>().resolution = 64;
             s.of<SlhbSettings>().axes = 8;
@@ -60,7 +60,7 @@ TEST(SlhbFurnace, SchedulesAgree)
 {
     World const world = world_of(box_with_block_and_lamp());
     Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
-    RenderSettings s = small_settings(24, 512, 3);
+    RenderSettings s = small_settings(16, 512, 3);
     double const streamed = mean_of(render_small(world, camera, s).result.picture, "L2").mean;
     for (Schedule const other : {Schedule::stored, Schedule::temporal}) {
         s.of<SlhbSettings>().schedule = other;
