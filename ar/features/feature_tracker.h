@@ -13,7 +13,7 @@ namespace ar {
 struct FeatureTrackerSettings {
     int look_every = 5;         ///< pictures between searches for the map's features
     std::size_t followed = 200; ///< at most
-    std::size_t fewest = 12;    ///< features of a pose; below, they are recognised anew
+    std::size_t fewest = 12;    ///< features of a pose; with fewer, the map is searched again
     double near_px = 8;         ///< where a predicted feature is looked for
     int alike_bits = 64;        ///< descriptors farther apart are of other features
     double trusted_flow_s = 2;  ///< confidence falls to exp(-1) if nothing was recognised for this long

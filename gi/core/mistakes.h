@@ -1,5 +1,5 @@
 #pragma once
-// Everything that is wrong with a YAML file. Reading goes on after a mistake, so that all are told at once.
+// Everything that is wrong with a YAML file. Parsing continues after a mistake, so that all are reported at once.
 
 #include "gi/core/yaml.h"
 

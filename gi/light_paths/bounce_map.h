@@ -37,7 +37,7 @@ struct LightView {
 };
 
 enum class Bounce : std::uint8_t {
-    none,      ///< nothing was met, or the light was absorbed
+    none,      ///< no surface was hit, or the light was absorbed
     scattered, ///< by a Lambertian or glossy lobe
     mirrored,
     transmitted
@@ -54,7 +54,7 @@ struct BounceTexel {
     Bounce bounce = Bounce::none;
 };
 
-/// Power of a texel's light, W. @param out  its path, to be met with a surface
+/// Power of a texel's light, W.  @param out  its path, before its first surface
 GI_FN inline void start_at_texel(LightView const& view, std::uint32_t texel, LightPath& out)
 {
     std::uint32_t const i = texel % view.width(), j = texel / view.width();
@@ -96,8 +96,8 @@ struct BounceTexels {
     LightPathSet set;
     LightPathRules rules;
     View<NearestTexel const> seen;
-    View<BounceTexel> texels;   ///< what the bounce map holds; may be empty: paths go on without it
-    View<LightPath> paths;      ///< how they go on; power 0 = they have ended
+    View<BounceTexel> texels;   ///< contents of the bounce map; may be empty, as paths do not need it
+    View<LightPath> paths;      ///< continuations of the paths; power 0 = ended
     View<LightVertex> vertices; ///< of the reflective shadow map
     View<std::uint8_t> has_vertex;
 

@@ -7,7 +7,7 @@
 
 namespace gi {
 
-/// What finds the surfaces that photons meet.
+/// How the surfaces that photons hit are found.
 enum class PhotonRays : std::uint8_t { exact, look_ups, impostors };
 /// How the light of lamps finds its first surfaces.
 enum class FirstBounce : std::uint8_t { rays, map };

@@ -14,8 +14,8 @@ inline constexpr std::string_view kDefaultMethod = "auto";
 /// or look-ups, as its options said.
 constexpr std::string_view method_of_0_1(std::string_view name) { return name == "slhb" ? "slhb_0_1" : name; }
 
-/// True if a picture by this method that is interrupted and resumed is that of an uninterrupted one, bit for bit. Light
-/// of the others starts anew.
+/// True if an interrupted and resumed picture by this method equals an uninterrupted one bit for bit.
+/// The other methods start their light afresh.
 constexpr bool resumes_exactly(std::string_view method)
 {
     constexpr std::array kMethods{"auto",      "paths",   "paths_shadow_maps", "slhb", "slhb_shadow_rays", "slhb_0_1",

@@ -10,7 +10,7 @@ namespace {
 
 /// Distance from the plane of a surface at which another one begins, relative to the depth.
 constexpr float kOfDepth = 0.005f;
-/// A surface that faces otherwise than those whose light it takes has at least and at most so many times as much.
+/// Limits of the factor by which light changes if it is taken by a surface that faces another way.
 constexpr float kLeastTurned = 0.2f, kMostTurned = 4;
 
 } // namespace

@@ -525,7 +525,7 @@ private:
     ErrorMeter meter_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
     bool dirty_ = true, fallback_told_ = false, had_messages_ = false;
-    std::string message_; ///< the last one, told until message_until_s_
+    std::string message_; ///< the last message, shown until message_until_s_
     double message_until_s_ = 0;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
     double draw_s_ = 0; ///< that the last reprojected picture took

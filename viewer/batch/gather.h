@@ -16,7 +16,8 @@ struct Gathered {
     std::vector<std::string> damaged; ///< outputs whose content in the store is not what it was
 };
 
-/// Each output is checked against its hash on the way. A damaged one is forgotten, so that resuming makes it anew.
+/// Each output is checked against its hash while it is copied. A damaged one is removed from the store,
+/// so that resuming makes it again.
 /// @throws InputError a file of another content is there, two tasks made different files of one name, or the
 /// tables of a group have different columns
 Gathered gather(Store const& store, Batch const& batch, std::filesystem::path const& folder, Placing placing,

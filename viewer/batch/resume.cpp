@@ -6,7 +6,7 @@
 namespace viewer::batch {
 namespace {
 
-/// The light of the other methods, and of a radiance cache, starts anew when a picture is resumed.
+/// The other methods, and radiance caches, start their light afresh when a picture is resumed.
 bool resumes_exactly(CommandWords const& words)
 {
     std::string const method = words.value("--method").value_or(std::string(gi::kDefaultMethod));

@@ -16,7 +16,7 @@ inline constexpr char const* kWorkerName = "batch work";
 /// A process in a session of its own: Ctrl-C in a terminal and the end of its starter do not reach it.
 struct WorkerProcess {
     pid_t pid = -1;
-    int pipe = -1; ///< readable: it has told something; closed: it has ended
+    int pipe = -1; ///< readable: it has sent a message; closed: it has ended
 
     /// Runs `work` in a copy of this process, which must have no other threads,
     /// without the time that starting a program takes.

@@ -343,7 +343,7 @@ ReceivedLight PrefilteredLight::on_moving(LitPoint const& at) const
     for_directions(at.normal, gi::vec3(0), -1, [&](std::size_t k, float c) {
         LightDirection const& d = directions_[k];
         gather.include(d, c);
-        // Behind the triangle, though not behind the smooth surface: nothing can tell.
+        // Behind the triangle but not behind the smooth surface: counts as not hidden.
         std::uint32_t blocker = gi::kNoPrimitive;
         float const hidden = glm::dot(at.geometric, d.towards) > 0 ? moving_in_the_way(k, at, blocker) : 0;
         if (hidden > 0) gather.add_radiance(d, c, hidden, moving_radiance(k, blocker));

@@ -29,7 +29,8 @@ struct ShGridSettings {
     FieldRays field_rays = FieldRays::exact;
     RadianceBy radiance_by = RadianceBy::normal;
     Switch multilevel = Switch::off;   ///< read coarser grids of radiance where directions are sparse
-    Switch leak_weights = Switch::on;  ///< weigh cells by what may lie between them and the surface
+    /// Weigh cells by the probability that nothing lies between them and the surface.
+    Switch leak_weights = Switch::on;
     Switch field_glyphs = Switch::off; ///< draw the field's cells
 };
 

@@ -79,7 +79,7 @@ void limit_to(AssimpTrial const& trial)
     _exit(0);
 }
 
-/// Takes the first reason that a child has told, if it is complete.
+/// Takes the first reason for failure that a child has reported, if it is complete.
 std::optional<std::string> take_reason(std::string& told)
 {
     std::uint32_t length = 0;

@@ -86,7 +86,7 @@ private:
     std::set<std::tuple<int, int, std::string>> told_;
 };
 
-/// Each size, place and luminance alone, so that all that are wrong are told at their places.
+/// Checks each size, place and luminance alone, so that all wrong ones are reported at their lines.
 void check_measures(PlannedStimulus const& stimulus, ShownOn shown_on, Teller& teller)
 {
     shown_on.has_own_views |= stimulus.settings.view == StimulusViewer::headset;
