@@ -34,7 +34,7 @@ public:
     /// @param stop  null = none; after a request, nothing is recognised anew
     PoseEstimate next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected, Sighting& seen,
                       gi::StopRequest const* stop = nullptr);
-    /// Time since features were last recognised rather than followed (s).
+    /// Time since features were last recognised in the map instead of tracked from the previous frame (s).
     double flow_s() const { return flow_s_; }
     FeatureTrackerCounts const& counts() const { return counts_; }
 

@@ -10,8 +10,8 @@ namespace gi {
 /// The method of renders, viewers, studies and AR sessions that name none: the plan chooses.
 inline constexpr std::string_view kDefaultMethod = "auto";
 
-/// Of a file that version 0.1 of the program wrote, or that follows a schema of that version: its `slhb` was exact rays
-/// or look-ups, as its options said.
+/// Name of the method in a file written by version 0.1 of the program or following a schema of that version:
+/// its `slhb` was exact rays or look-ups, depending on its options.
 constexpr std::string_view method_of_0_1(std::string_view name) { return name == "slhb" ? "slhb_0_1" : name; }
 
 /// True if an interrupted and resumed picture by this method equals an uninterrupted one bit for bit.

@@ -42,7 +42,7 @@ void read_sampling(gi::Yaml const& y, Pairs& p, Mistakes& m)
     p.order = PairOrder::random;
 }
 
-/// Adds pairs that are there twice, and, of active sampling, levels that no pairs connect.
+/// Reports pairs that are listed twice and, for active sampling, levels that no pairs connect.
 void check_pair_list(gi::Yaml const& list, Pairs const& p, Script const& s, Mistakes& m)
 {
     for (std::size_t i = 0; i < p.pairs.size(); ++i)

@@ -22,7 +22,8 @@ struct QuestGrid {
 
 struct QuestManySettings {
     std::vector<QuestGrid> stimulus, parameters;
-    std::shared_ptr<Formula const> formula; ///< its names: those of stimulus, then those of parameters
+    /// Of values with these names: those of stimulus, then those of parameters.
+    std::shared_ptr<Formula const> formula;
     double tie_tolerance = 1e-10;           ///< bits; see QuestSettings
 };
 

@@ -17,11 +17,11 @@ constexpr glm::ivec2 kSize{320, 240};
 constexpr double kEyeDistance_m = 0.063; // what the viewer starts with
 constexpr double kCornellBack_m = 0.5592;
 
-/// The window's pow and the CPU's are not the same to the last bit: where a value lies this near to the border
-/// between two bytes, of a step between bytes, either is right. (Seen: 1 to 4 of 230,400 bytes.)
+/// The GPU's pow and the CPU's differ in the last bits: a value this near to the border between two bytes,
+/// in units of a byte, may become either. (Seen: 1 to 4 of 230,400 bytes.)
 constexpr float kEitherByte = 0.01f;
 
-/// A picture in bytes as the display has them; low and high differ where either is right.
+/// A picture in the display's bytes; low and high are the two bytes allowed, where both are.
 struct Eye {
     Bytes low, nearest, high;
 };

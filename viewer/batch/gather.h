@@ -1,5 +1,5 @@
 #pragma once
-// Puts the outputs of a batch where people look for them: FOLDER/GROUP/NAME, and joins tables.
+// Copies the outputs of a batch from the store to FOLDER/GROUP/NAME, and joins tables.
 
 #include "viewer/batch/store.h"
 
@@ -13,7 +13,7 @@ struct Gathered {
     std::size_t tasks = 0;            ///< whose outputs are there
     std::size_t missing = 0;          ///< tasks without a result
     std::vector<std::string> merged;  ///< files
-    std::vector<std::string> damaged; ///< outputs whose content in the store is not what it was
+    std::vector<std::string> damaged; ///< outputs whose content in the store has changed
 };
 
 /// Each output is checked against its hash while it is copied. A damaged one is removed from the store,

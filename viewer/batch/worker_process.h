@@ -24,7 +24,7 @@ struct WorkerProcess {
     /// @param work  gets its end of the pipe, returns the exit code;
     /// 2 where it throws an InputError, which is told
     static WorkerProcess start(Share const& share, std::function<int(int pipe)> const& work);
-    /// Runs a program, found as a shell finds it, that ends with this process.
+    /// Runs a program, found by PATH, that ends when this process ends.
     static WorkerProcess start_program(std::vector<std::string> words);
 };
 
