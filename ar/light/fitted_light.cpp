@@ -19,7 +19,7 @@ std::optional<FittedLamp> dominant_lamp(LightFit const& fit)
         sum += luminance(l.irradiance) * l.direction;
         all.irradiance += l.irradiance;
         all.gain += l.gain;
-        // Discs side by side are alternatives: the error of their sum is no larger than that of one.
+        // Discs side by side are alternatives for one lamp: the error of their sum is no larger than that of one.
         for (int c = 0; c < 3; ++c) all.sigma[c] = std::max(all.sigma[c], l.sigma[c]);
     }
     if (glm::length(sum) > 0) all.direction = glm::normalize(sum);

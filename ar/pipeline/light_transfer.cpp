@@ -29,7 +29,7 @@ gi::RayQuery leaving(ReceivingPoint const& p, gi::vec3 towards)
     return q;
 }
 
-/// Cosine to a direction; 0 where the surface itself is in the way.
+/// Cosine to a direction; 0 if the surface itself blocks it.
 float cosine_of(ReceivingPoint const& p, gi::vec3 towards)
 {
     float const cosine = glm::dot(p.normal, towards);

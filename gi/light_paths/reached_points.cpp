@@ -81,7 +81,8 @@ Reached walk_on(World const& world, ExactVisibility const& visibility, std::vect
         std::size_t const points = reached.points.size();
         for (std::size_t k = 0; k < hits.size(); ++k) {
             Ray const& ray = queries[k].ray;
-            // Flights from lights afar and from cameras are no measure of the space between surfaces.
+            // The lengths of first rays from distant lights and from cameras say nothing
+            // about the space between surfaces.
             if (bounce > 0) {
                 float const length = hits[k].triangle != kNoTriangle ? hits[k].distance : kInf;
                 reached.flights.push_back({ray.origin, ray.direction, length, reached.points[left + k].triangle});

@@ -21,7 +21,7 @@ struct KeptLight::Sum {
 
     void add(Texel const& t, vec3 normal, float weight, float like)
     {
-        // What was fitted to a surface says nothing of another one that faces elsewhere.
+        // A fit for one surface is not valid for one that faces another way.
         float const change = like < kUnlike ? 0 : glm::dot(t.slope, normal - t.mean_normal),
                     turned = std::clamp(1 + change, kLeastTurned, kMostTurned);
         vec3 w{weight * (like + kLeastLikeness)};

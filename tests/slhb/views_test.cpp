@@ -157,7 +157,7 @@ TEST(Views, TellWhoseLightTheyTook)
     }
 }
 
-/// A view that changes its size, goes and comes back starts without motion vectors.
+/// A view that changes its size, or returns after frames without it, starts without motion vectors.
 TEST(Views, MayChangeFromFrameToFrame)
 {
     Report report;

@@ -61,7 +61,7 @@ TEST(ScriptErrors, WhatAMistakeLeavesUnknownIsNotUsed)
                            "{quality: best}",
                            "  light: {}\nreference: {quality: best, light: day}"));
     EXPECT_NE(empty.find("factor 'light' has 0 levels"), std::string::npos) << empty;
-    // A key of QUEST+ that is misspelt: its grid is not there.
+    // A misspelt key of QUEST+: its grid is missing.
     std::string const grid =
         message_of(spoiled("  rate:\n    task: rating\n    scale: {min: 1, max: 7}\n    cross: "
                            "[scene, quality]",
@@ -225,7 +225,7 @@ std::vector<std::string> mistakes_of(std::string const& text)
     return all;
 }
 
-/// Each mistake of a script is told, at its place, and no other.
+/// Each mistake of a script is reported at its place, and nothing else.
 struct Told {
     std::string body;
     std::vector<std::string> begin;

@@ -142,7 +142,7 @@ TEST(LiveRenderer, GoesByTheSlowestRank)
     }
 }
 
-/// Its hit buffers are on the other ranks, and so is what it says of them.
+/// The other ranks have the hit buffers, and so the facts about them.
 TEST(LiveRenderer, ALeaderWithoutWallsSaysWhatOthersDo)
 {
     Live live;

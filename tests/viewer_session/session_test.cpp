@@ -292,7 +292,7 @@ TEST(RenderSession, FewerDirectionsMayFollowWhatMoves)
     EXPECT_LT(times(kAll + 1, kFrames), 1.1);
 }
 
-/// Who names a schedule has it: then nothing else decides how many follow.
+/// A schedule named by the user is used; nothing else then decides how many axes are updated.
 TEST(RenderSession, AScheduleThatIsNamedStays)
 {
     gi::Report report;

@@ -16,7 +16,7 @@ namespace {
 constexpr float kFiltered = 48, kUnfiltered = 1024; // paths per pixel
 /// Where light does not change, temporal reuse averages over this many times the frames of the setting.
 constexpr int kUnchanged = 8;
-/// Likewise, light is reused from the other eye only at first.
+/// Light is reused from the other eye only in this many frames after a change.
 constexpr int kSharedFrames = 16;
 
 /// Orthographic cameras have no motion vectors: no temporal reuse while anything moves.

@@ -13,7 +13,7 @@ constexpr double kLampShare = 0.003; ///< of the light, in one texel: too much t
 constexpr std::ptrdiff_t kMostLamps = 24;
 constexpr float kSharpShare = 0.03f; ///< of the light, in one direction
 constexpr std::uint32_t kMovingTexels = 64, kSharpMovingTexels = 256;
-/// Of the light that moving surfaces would receive without each other, roughly what they do receive.
+/// Estimated share of light that reaches moving surfaces in spite of each other.
 constexpr float kOpenness = 0.8f;
 constexpr int kBounces = 2; ///< between still surfaces
 

@@ -124,7 +124,7 @@ bool has_end_of_header(std::string_view text)
     return false;
 }
 
-/// Searches the header of a PLY file, whose reader loops where it does not end.
+/// True if the header of a PLY file has no end: Assimp's reader then loops forever.
 bool lacks_end_of_header(fs::path const& file)
 {
     std::ifstream in(file, std::ios::binary);
