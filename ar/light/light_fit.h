@@ -39,8 +39,8 @@ struct LightFitSettings {
     double ground_albedo = 0.25;
     /// Prior: standard deviation of the difference of neighbours, relative to the expected light.
     double neighbour_spread = 1.2;
-    double mean_spread = 6;        ///< prior: difference from what is expected, relative to it
-    double seen_sigma = 0.1;       ///< relative, of light seen by the camera: cells are not uniform
+    double mean_spread = 6;  ///< prior: difference from what is expected, relative to it
+    double seen_sigma = 0.1; ///< relative, of light seen by the camera: cells are not uniform
     int most_lamps = 3;
     int candidates = 1500;     ///< directions where lamps are searched first
     double least_gain = 0.03;  ///< a lamp must lower the sum of squared residuals by this share

@@ -15,8 +15,8 @@
 namespace gi {
 
 struct SeenSurface {
-    vec3 albedo{0};   ///< times what mirrors and panes on the way leave of the light
-    vec3 normal{0};   ///< of shading, unit, as mirrored
+    vec3 albedo{0}; ///< times what mirrors and panes on the way leave of the light
+    vec3 normal{0}; ///< of shading, unit, as mirrored
     /// M, from the world's origin; on the pixel's ray, at the distance that light
     /// has travelled (longer via mirrors).
     vec3 position{0};

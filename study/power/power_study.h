@@ -17,9 +17,9 @@ struct PowerSettings {
     std::string test;
     /// Factors by which effects of the observers' model (`scaled`) are multiplied; 0 = no effect.
     std::vector<double> effects{1};
-    std::vector<int> scaled;        ///< factors of the script; empty = all, and interactions
-    std::vector<int> participants;  ///< numbers; rising
-    std::vector<int> repeats;       ///< of the block; empty = the script's
+    std::vector<int> scaled;       ///< factors of the script; empty = all, and interactions
+    std::vector<int> participants; ///< numbers; rising
+    std::vector<int> repeats;      ///< of the block; empty = the script's
     int simulations = 200;
     double alpha = 0.05;
     std::uint64_t seed = 1;

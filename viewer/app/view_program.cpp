@@ -28,7 +28,7 @@ namespace {
 
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
 constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture,
-constexpr double kDrawings = 5; // at most 1/5 of the time, as software drivers slow the renderer
+constexpr double kDrawings = 5;         // at most 1/5 of the time, as software drivers slow the renderer
 constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
 double steady_s()
