@@ -31,7 +31,7 @@ public:
     /// The pose in the next picture; its confidence falls with the time since features were last recognised.
     /// @param gray  CV_8UC1 of the camera's size  @param expected  pose, if it can be predicted
     /// @param[out] seen  the map's points in the picture
-    /// @param stop  null = none; after a request, nothing is recognised anew
+    /// @param stop  null = none; after a request, the map is not searched again
     PoseEstimate next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected, Sighting& seen,
                       gi::StopRequest const* stop = nullptr);
     /// Time since features were last recognised in the map instead of tracked from the previous frame (s).

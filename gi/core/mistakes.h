@@ -34,7 +34,7 @@ public:
     template <class Read>
     bool need(Yaml const& map, char const* key, char const* example, Read const& read)
     {
-        if (map.is_map() && !map.has(key) && suggests_key(map, key)) return false; // told: it is written otherwise
+        if (map.is_map() && !map.has(key) && suggests_key(map, key)) return false; // reported as a misspelling
         return attempt([&] { read(map.needed(key, example)); });
     }
     /// Entries of a map; those that are wrong are added and left out.

@@ -1,7 +1,7 @@
 #pragma once
 // Bounce maps (McGuire and Luebke 2009; Norén and Sjölin 2010, sec. 5.1): the first surfaces of light paths are
 // not found by rays but rasterised as seen from points of the lights. Each texel is a light path; what it has met
-// is a reflective shadow map (Dachsbacher and Stamminger 2005), how it goes on is the bounce map.
+// is a reflective shadow map (Dachsbacher and Stamminger 2005), its continuation is the bounce map.
 //
 // A set has a few dozen views: from points drawn on the lights (cubes in random turns), along directions of
 // parallel lights and the sky; with a focus, half of these show its surroundings alone. So paths of one view share

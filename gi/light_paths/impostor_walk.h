@@ -7,7 +7,7 @@
 //    at that place but seen at another.
 //  - Triangles smaller than texels are passed by. So a crossing counts as well:
 //    where the ray passes from before the surface to behind it, and neighbouring texels join.
-//  - Where they do not join, the ray passes behind something. Then another impostor that sees this place goes on.
+//  - Where they do not join, the ray passes behind something. Then an impostor that sees this place continues.
 
 #include "gi/bvh/triangle_test.h"
 #include "gi/light_paths/impostor_arc.h"
@@ -88,7 +88,7 @@ struct MapWalk {
     bool leaving;        ///< it is still where it starts, at a place that the centre sees
     bool before = false; ///< it is clearly before the surface
     int more = 2;        ///< texels to walk after a crossing, for a triangle that is met there exactly
-    std::uint32_t next = kNoImpostor; ///< that goes on
+    std::uint32_t next = kNoImpostor; ///< that continues the walk
     float next_from = 0;              ///< distance along the ray, m
 
     GI_FN MapWalk(ImpostorScene const& scene_, RayQuery const& q_, RayShear const& shear_,

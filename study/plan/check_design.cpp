@@ -73,7 +73,7 @@ private:
 
     void check_per(SequenceItem const& item, std::vector<bool> fixed)
     {
-        if (item.index < 0) return walk(item.items, fixed); // told: no factor of that name
+        if (item.index < 0) return walk(item.items, fixed); // reported: no factor of that name
         std::size_t const f = std::size_t(item.index);
         if (fixed[f]) // reported; the rest is checked nevertheless
             fail(item.place, fmt::format("per: {} where its level is fixed already", name(item.index)),
@@ -298,7 +298,7 @@ private:
     std::function<bool(std::string const&)> const& mentions_;
     bool was_sound_;                                          ///< the script was read without mistakes
     std::vector<std::pair<int, ScriptError>> without_level_;  ///< by factor
-    std::set<std::pair<std::string, std::string>> ambiguous_; ///< told: input and answer
+    std::set<std::pair<std::string, std::string>> ambiguous_; ///< reported: input and answer
     std::vector<bool> factor_used_, block_used_, balance_used_, questionnaire_used_;
 };
 

@@ -150,7 +150,7 @@ TEST(CubeFaces, ShowEveryDirectionWhereItIs)
     }
 }
 
-/// A colour that tells the direction.
+/// A colour that encodes the direction.
 glm::dvec3 colour_of(gi::dvec3 direction) { return 127.5 + 127.5 * direction; }
 
 TEST(CubeFaces, AFisheyeOfColouredDirections)

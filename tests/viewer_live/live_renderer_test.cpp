@@ -51,7 +51,7 @@ struct Live {
     }
 };
 
-/// The leader of ranks of which another one takes as long as told.
+/// The leader of a cluster in which another rank takes a given time.
 class SlowestRank : public FrameLink {
 public:
     explicit SlowestRank(double seconds, std::optional<gi::DynamicUpdate> dynamic_update = {})

@@ -201,7 +201,7 @@ TEST_F(Stereo, InterlaceFollowsTheWindowOverTheScreen)
     view->quit();
 }
 
-/// Nobody asks for a picture: the one in the window has to have been drawn anew by itself.
+/// Nobody asks for a picture: the window must have been redrawn by itself.
 TEST_F(Stereo, InterlaceIsDrawnAnewWhenTheWindowMoves)
 {
     set_mode(StereoMode::rows);
@@ -350,7 +350,7 @@ TEST_P(EyesInMode, AreWhereTheGeometrySays)
                     EXPECT_NEAR(seen, back, 1e-5) << x << ", " << y << " of eye " << number;
                     ++on_back;
                 }
-                // Only this one tells where the eye is sideways: the wall at x = 0.
+                // Only this one depends on the sideways position of the eye: the wall at x = 0.
                 if (right(x) > 0 && up(y + 1) > 0) {
                     double const far = (middle.x - aside) / right(x), near = (middle.x - aside) / right(x + 1);
                     if (near + middle.z > 0.02 && far + middle.z < 0.54 && middle.y + up(y) * far < 0.53) {

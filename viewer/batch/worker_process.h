@@ -22,7 +22,7 @@ struct WorkerProcess {
     /// without the time that starting a program takes.
     /// @param share its processors and GPUs; without any it may use those of this process
     /// @param work  gets its end of the pipe, returns the exit code;
-    /// 2 where it throws an InputError, which is told
+    /// 2 where it throws an InputError, which is reported
     static WorkerProcess start(Share const& share, std::function<int(int pipe)> const& work);
     /// Runs a program, found by PATH, that ends when this process ends.
     static WorkerProcess start_program(std::vector<std::string> words);

@@ -56,7 +56,7 @@ Change current(Change change, MadeFor made_for);
 
 struct SettingKey : gi::Option<Settings> {
     std::string group;     ///< heading in the panel; empty for those of the viewer itself and of all methods
-    bool restarts = false; ///< a change begins the methods anew
+    bool restarts = false; ///< a change restarts the methods
     gi::RenderOption const* option = nullptr; ///< of which it is the setting
 
     /// False for what only files of earlier versions have.

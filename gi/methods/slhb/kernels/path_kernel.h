@@ -47,7 +47,7 @@ struct PathOnWay {
     vec3 position, direction;
 };
 
-/// Paths that go on.
+/// Paths that continue.
 struct PathsOnWay {
     ColumnView<PathOnWay> paths;
     ColumnView<RayQuery> queries; ///< of those whose surface an exact ray finds; no_query() for the others
