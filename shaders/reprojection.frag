@@ -19,7 +19,7 @@ const float kSnap = 1.0 / 256; // px: as near to a pixel's middle as this is at 
 
 vec2 inside(vec2 x) { return clamp(x, vec2(0.5), vec2(textureSize(picture, 0)) - 0.5); }
 
-/// Pixel whose middle is left of and above x, and how far x is beyond it, 0 where it is hardly.
+/// Pixel whose centre is left of and above x, and the distance of x from it; 0 if x hardly differs from it.
 ivec2 cell(vec2 x, out vec2 f)
 {
     vec2 u = x - 0.5, whole = floor(u + kSnap);
@@ -39,7 +39,7 @@ float w_at(vec2 x)
 {
     vec2 f;
     ivec2 a = cell(inside(x), f);
-    // At the corner that the four share, half a pixel from where others would be meant.
+    // At the corner shared by the four pixels, half a pixel away from where rounding would choose others.
     vec4 w = textureGather(picture, (vec2(a) + 1.0) / vec2(textureSize(picture, 0)), 3).wzxy;
     f = weights(f, w);
     return mix(mix(w.x, w.y, f.x), mix(w.z, w.w, f.x), f.y);

@@ -152,7 +152,7 @@ NoiseFit noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& response
                     bin.rounding += slope * slope / 12;
                     ++bin.count;
                 }
-    // Least squares of variances; a variance of n values is off by sqrt(2 / n) of itself.
+    // Weighted least squares of variances; the relative standard error of a variance of n values is sqrt(2 / n).
     struct Point {
         double unit, variance, count;
     };

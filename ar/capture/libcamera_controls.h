@@ -1,5 +1,5 @@
 #pragma once
-// For libcamera_source.cpp only, the one place that knows libcamera.
+// Only for libcamera_source.cpp, the only file that depends on libcamera.
 
 #include "ar/capture/frame_source.h"
 

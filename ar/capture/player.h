@@ -12,7 +12,8 @@ class Player {
 public:
     explicit Player(Pace pace) : pace_(pace) {}
 
-    /// Waits until the frame at `film_s` is due (seconds of the film, or of the recording machine's clock).
+    /// Waits until the playback time of the frame at `film_s` (seconds of the film,
+    /// or of the recording machine's clock).
     /// @return the steady time at which it is due; nothing if that is later than `until_s`
     std::optional<double> wait_for(double film_s, double until_s)
     {

@@ -23,7 +23,7 @@ constexpr std::array kFormats{PixelFormat::rgb8, PixelFormat::bgr8,  PixelFormat
 constexpr std::array kOrigins{TimestampOrigin::sensor, TimestampOrigin::driver, TimestampOrigin::file,
                               TimestampOrigin::arrival};
 
-/// What is wrong with a value, as text for whoever reads the whole.
+/// The mistake in a value; the reader of the whole line reports it.
 struct Wrong : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -24,7 +24,7 @@ struct CompositePasses {
 /// @throws gi::InputError wrong types or sizes
 CompositePasses passes_of(Compositor& compositor, cv::Mat const& camera, cv::Mat const& written,
                           RenderedPair const& pair, Exposure const& exposure);
-/// Of a frame without virtual objects, for example without a camera pose.
+/// Passes of a frame without virtual objects, for example one without a camera pose.
 CompositePasses passes_of_nothing(Photometry const& photometry, cv::Mat const& camera, Exposure const& exposure);
 
 } // namespace ar

@@ -150,7 +150,7 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
                     }
                 cv::Vec3f light(0, 0, 0);
                 if (!guides.depth.empty() && !(guides.depth.at<float>(y, x) > 0)) {
-                    // Nothing is known of what is there, so nothing changes.
+                    // No pixel gives a value here, so nothing changes.
                 } else if (guided_weight > 1e-6f)
                     light = guided * (1 / guided_weight);
                 else if (plain_weight > 0) {

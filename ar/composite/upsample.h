@@ -31,7 +31,8 @@ struct UpsampleCounts {
     std::size_t no_sample = 0;     ///< pixels with objects in all low-resolution pixels around: change unknown
 };
 
-/// The centre of output pixel (x, y) lies at ((x + 0.5) low / full - 0.5) in the low-resolution pictures.
+/// Upsamples rendered light. The centre of output pixel (x, y) lies at ((x + 0.5) low / full -
+/// 0.5) in the low-resolution pictures.
 /// @param low         with, without, coverage at the low resolution; pixels covered by objects are left out,
 /// except for their uncovered part if `direct` is given and at least a quarter of the pixel is uncovered
 /// @param low_guides  at the low resolution. @throws gi::InputError if one is empty that `guides` has

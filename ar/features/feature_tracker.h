@@ -13,7 +13,7 @@ namespace ar {
 struct FeatureTrackerSettings {
     int look_every = 5;         ///< pictures between searches for the map's features
     std::size_t followed = 200; ///< at most
-    std::size_t fewest = 12;    ///< features of a pose; below, they are recognised anew
+    std::size_t fewest = 12;    ///< features of a pose; with fewer, the map is searched again
     double near_px = 8;         ///< where a predicted feature is looked for
     int alike_bits = 64;        ///< descriptors farther apart are of other features
     double trusted_flow_s = 2;  ///< confidence falls to exp(-1) if nothing was recognised for this long
@@ -31,10 +31,10 @@ public:
     /// The pose in the next picture; its confidence falls with the time since features were last recognised.
     /// @param gray  CV_8UC1 of the camera's size  @param expected  pose, if it can be predicted
     /// @param[out] seen  the map's points in the picture
-    /// @param stop  null = none; after a request, nothing is recognised anew
+    /// @param stop  null = none; after a request, the map is not searched again
     PoseEstimate next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected, Sighting& seen,
                       gi::StopRequest const* stop = nullptr);
-    /// Time since features were last recognised rather than followed (s).
+    /// Time since features were last recognised in the map instead of tracked from the previous frame (s).
     double flow_s() const { return flow_s_; }
     FeatureTrackerCounts const& counts() const { return counts_; }
 

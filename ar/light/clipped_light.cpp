@@ -31,7 +31,7 @@ ClippedLight repair_clipped(cv::Mat& map, cv::Mat const& clipped, std::optional<
     if (!(light > 0) || !(glm::length(sum) > 0)) return out;
     out.towards = glm::normalize(sum);
     if (!face || glm::dot(face->normal, out.towards) < kLeastCosine) return out;
-    // As much of each texel as it has of the clipped light already: the shape stays.
+    // In proportion to the clipped light that each texel has already, so that its shape stays the same.
     double reach = 0; // mean cosine
     for (int j = 0; j < map.rows; ++j)
         for (int i = 0; i < map.cols; ++i)

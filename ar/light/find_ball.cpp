@@ -42,7 +42,8 @@ struct Rim {
     double rad_per_px = 0; ///< across the rim, on average
 };
 
-/// The steepest step across the rim in each place. Its top is that of the parabola through three differences.
+/// Finds the steepest step across the rim at each position; its maximum is that
+/// of the parabola through three differences.
 Rim rim_points(cv::Mat const& grey, CameraModel const& camera, BallSight const& near, double search)
 {
     glm::dvec3 const any = std::abs(near.axis.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);

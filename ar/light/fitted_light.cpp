@@ -19,7 +19,7 @@ std::optional<FittedLamp> dominant_lamp(LightFit const& fit)
         sum += luminance(l.irradiance) * l.direction;
         all.irradiance += l.irradiance;
         all.gain += l.gain;
-        // Discs side by side are alternatives: the error of their sum is no larger than that of one.
+        // Discs side by side are alternatives for one lamp: the error of their sum is no larger than that of one.
         for (int c = 0; c < 3; ++c) all.sigma[c] = std::max(all.sigma[c], l.sigma[c]);
     }
     if (glm::length(sum) > 0) all.direction = glm::normalize(sum);
@@ -30,7 +30,8 @@ cv::Mat map_of(LightBasis const& basis, LightFit const& fit, cv::Size size)
 {
     cv::Mat map = basis.spread(fit.radiance, size);
     for (FittedLamp const& lamp : fit.lamps) {
-        // Texels count by how much of a grid of points in them the disc covers; a disc that covers none has one.
+        // Weight of a texel: the share of a grid of points in it that the disc covers.
+        // A disc that covers no point lies in one texel.
         double const texel = std::numbers::pi / size.height;
         double const limit = std::cos(std::max(lamp.half_angle_rad, 0.75 * texel));
         constexpr int n = 4;

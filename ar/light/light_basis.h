@@ -1,6 +1,6 @@
 #pragma once
-// The directions of an estimated environment: points of a Fibonacci lattice on the sphere (Gonzalez 2010), each of
-// which stands for the same solid angle.
+// The directions of an estimated environment: points of a Fibonacci lattice on the sphere (Gonzalez 2010).
+// Each represents the same solid angle.
 
 #include "ar/light/lat_long.h"
 

@@ -276,7 +276,7 @@ private:
         return s.share > 0.8 && !s.clipped && of(s.radiance, grey) < 4 * mean_;
     }
 
-    /// Rates lamps by what they would add to the solution of now.
+    /// Rates lamps by how much they would improve the present solution.
     class Rating {
     public:
         explicit Rating(Fitter const& fitter) : fitter_(fitter)
@@ -338,7 +338,7 @@ private:
         return climbed(best, 0.25 * fine.cell_radius_rad(), rate);
     }
 
-    /// Each lamp again, now that the others are known.
+    /// Fits each lamp again with the others fixed.
     void settle_lamps()
     {
         for (int turn = 0; turn < 2; ++turn)

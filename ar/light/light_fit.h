@@ -37,9 +37,10 @@ struct LightFitSettings {
     /// Prior: the radiance expected in a direction is the mean one above the horizon, and below it that of the
     /// ground: as the camera sees it, else of ground of this albedo, which reflects the upward irradiance.
     double ground_albedo = 0.25;
-    double neighbour_spread = 1.2; ///< prior: difference of neighbours, relative to what is expected, 1 sigma
-    double mean_spread = 6;        ///< prior: difference from what is expected, relative to it
-    double seen_sigma = 0.1;       ///< relative, of light seen by the camera: cells are not uniform
+    /// Prior: standard deviation of the difference of neighbours, relative to the expected light.
+    double neighbour_spread = 1.2;
+    double mean_spread = 6;  ///< prior: difference from what is expected, relative to it
+    double seen_sigma = 0.1; ///< relative, of light seen by the camera: cells are not uniform
     int most_lamps = 3;
     int candidates = 1500;     ///< directions where lamps are searched first
     double least_gain = 0.03;  ///< a lamp must lower the sum of squared residuals by this share

@@ -6,7 +6,7 @@
 namespace viewer {
 
 std::string describe(FrameLight const& light);
-/// Sentences about numbers that must not be relied on; empty = none.
+/// Warnings about numbers that are unreliable; empty = none.
 std::vector<std::string> warnings_of(FrameLight const& light);
 /// Writes the map as OpenEXR: R, G, B, and the layer "known" (1 = determined by the frames, 0 = a guess).
 void write_light(std::filesystem::path const& file, FrameLight const& light, gi::Report& report);

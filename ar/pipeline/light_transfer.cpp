@@ -29,7 +29,7 @@ gi::RayQuery leaving(ReceivingPoint const& p, gi::vec3 towards)
     return q;
 }
 
-/// Cosine to a direction; 0 where the surface itself is in the way.
+/// Cosine to a direction; 0 if the surface itself blocks it.
 float cosine_of(ReceivingPoint const& p, gi::vec3 towards)
 {
     float const cosine = glm::dot(p.normal, towards);
@@ -61,7 +61,7 @@ cv::Mat LightTransfer::direct(std::vector<ReceivingPoint> const& points) const
         std::vector<std::pair<int, float>> which;
         auto const radius = float(basis_.cell_radius_rad());
         for (int j = 0; j < k; ++j) {
-            // Any direction of the cell stands for it: neighbouring points average over it.
+            // A random direction in the cell: neighbouring points average over the cell.
             gi::vec3 const d(basis_.direction(j));
             auto const [side, up] = across(d);
             float const turn = 2 * std::numbers::pi_v<float> * rng.uniform(),

@@ -32,7 +32,7 @@ public:
     gi::ExactVisibility const& visibility() const { return visibility_; }
 
 private:
-    /// A place that represents what a ray has met, and the albedo there.
+    /// A surface point that represents those hit by rays nearby, and the albedo there.
     struct MetPlace {
         int place;
         gi::vec3 albedo;

@@ -169,7 +169,7 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
     Lap lap(r.done_s);
     r.times.wait_ms = lap();
     if (r.used.world_from_camera) {
-        // Only a measured pose tells which direction a pixel is light from.
+        // Only a measured pose says from which direction the light of a pixel comes.
         if (r.used.state == ar::PoseState::tracked)
             if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
                                          *r.used.world_from_camera, time_s, stop, report_)) {

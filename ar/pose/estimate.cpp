@@ -116,7 +116,8 @@ Agreed agree(CameraModel const& camera, SightedPoints const& points, Pose const&
 {
     Agreed a;
     Pose pose = guess;
-    // Of fewer than 6 points, any 3 fit exactly with the others as outliers: robust weights would find such.
+    // With fewer than 6 points, any 3 fit exactly if the others count as outliers:
+    // robust weights would choose such a pose.
     if (points.size() < 6)
         pose = refine(camera, points, pose).world_from_camera;
     else

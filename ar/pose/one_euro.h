@@ -25,7 +25,7 @@ public:
         position_ = gi::step(position_settings_, position_, pose.position_m, dt_s);
         rotation_ = gi::step(rotation_settings_, rotation_, pose.rotation, dt_s);
     }
-    /// The filtered pose moved on at constant velocity by `ahead_s`, and by its lag with it.
+    /// The filtered pose extrapolated at constant velocity by `ahead_s` and by the lag of the filter.
     Pose moved_on(double ahead_s) const
     {
         return {

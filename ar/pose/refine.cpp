@@ -89,7 +89,7 @@ Pose moved(Pose const& p, Vec6 const& d)
             p.position_m + glm::dvec3(d[0], d[1], d[2])};
 }
 
-/// Of a symmetric matrix with units so unlike that its rows are brought to 1 first.
+/// Inverse of a symmetric matrix. Its units differ so much that rows and columns are scaled to 1 first.
 std::optional<cv::Matx66d> inverted(cv::Matx66d const& a)
 {
     Vec6 s;

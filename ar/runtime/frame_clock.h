@@ -9,8 +9,8 @@
 
 namespace viewer {
 
-/// Pictures read as fast as possible are timed by their numbers, since the clock does not reflect the time that
-/// passes in them. Recordings keep their recorded times.
+/// Times of frames. Pictures read as fast as possible are timed by their numbers, as the clock does not show
+/// the time that passes in them. Recordings keep their recorded times.
 class FrameClock {
 public:
     /// @param source  name for ar::open_source  @param is_timed  frames come at their own pace

@@ -37,7 +37,7 @@ struct ArRunOptions {
 struct ArFrameRecord {
     std::uint64_t sequence = 0;
     double captured_s = 0; ///< since the first frame
-    /// On this machine's steady clock, if frames come at their own pace.
+    /// The same on this machine's steady clock; none for files read as fast as possible.
     std::optional<double> captured_steady_s;
     std::uint64_t overtaken = 0; ///< frames discarded for newer ones since the previous record
     double read_ms = 0;          ///< reading time, for files read as fast as possible

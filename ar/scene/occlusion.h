@@ -1,5 +1,5 @@
 #pragma once
-// What a session says of real objects in front of virtual ones: pictures of depths and mattes, one a frame.
+// Settings of a session for real objects in front of virtual ones: pictures of depths and mattes, one per frame.
 
 #include "ar/camera/pose.h"
 #include "ar/composite/occluders.h"

@@ -168,7 +168,7 @@ struct JoinPairs {
     }
 };
 
-/// The best cuts of the inner nodes from `first` on; those of their children are known.
+/// Finds the best cuts of the inner nodes from `first` on; those of their children are known.
 struct FindCuts {
     View<BinaryNode const> inner;
     View<Box const> node_boxes;

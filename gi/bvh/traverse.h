@@ -140,7 +140,7 @@ GI_FN void trace_scalar(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Acce
         }
         return kNoBvhTriangle;
     };
-    // All nodes up to a leaf in a loop of their own: threads that step together then meet leaves together.
+    // Walks inner nodes in a loop of their own, so that the threads of a warp reach leaves together.
     for (;;) {
         while ((at & kIsLeaf) == 0) {
             MetChildren const met = meet_children(bvh.nodes[at], ray, hit.distance);

@@ -16,7 +16,7 @@ enum class DiskWait : bool { no, yes };
 /// stays of it if the program is killed.
 /// @throws InputError naming the file; then nothing has changed
 void write_durably(std::filesystem::path const& file, std::string_view text);
-/// The same of the parts one after the other.
+/// The same; writes the parts one after the other.
 void write_durably(std::filesystem::path const& file, std::span<std::string_view const> parts,
                    DiskWait wait = DiskWait::yes);
 /// Makes the names in a folder durable; no harm where that cannot be had.

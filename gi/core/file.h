@@ -11,7 +11,7 @@
 namespace gi {
 
 /// Call `write` with a temporary path beside `file`, then rename it to `file`. On any exception the
-/// temporary is removed and the exception goes on; a target folder that does not exist, is read-only or full
+/// temporary is removed and the exception rethrown; a target folder that does not exist, is read-only or full
 /// throws InputError naming the file.
 void write_by_rename(std::filesystem::path const& file,
                      std::function<void(std::filesystem::path const&)> const& write);

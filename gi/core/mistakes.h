@@ -1,5 +1,5 @@
 #pragma once
-// Everything that is wrong with a YAML file. Reading goes on after a mistake, so that all are told at once.
+// Everything that is wrong with a YAML file. Parsing continues after a mistake, so that all are reported at once.
 
 #include "gi/core/yaml.h"
 
@@ -34,7 +34,7 @@ public:
     template <class Read>
     bool need(Yaml const& map, char const* key, char const* example, Read const& read)
     {
-        if (map.is_map() && !map.has(key) && suggests_key(map, key)) return false; // told: it is written otherwise
+        if (map.is_map() && !map.has(key) && suggests_key(map, key)) return false; // reported as a misspelling
         return attempt([&] { read(map.needed(key, example)); });
     }
     /// Entries of a map; those that are wrong are added and left out.

@@ -1,6 +1,6 @@
 #pragma once
-// Where long work is: what loads and builds says its steps, and whoever shows
-// progress hears them, on the same thread.
+// Progress of long work: code that loads or builds announces its steps,
+// and a listener on the same thread shows them.
 
 #include "gi/core/progress.h"
 
@@ -17,8 +17,8 @@ struct Step {
     bool operator==(Step const&) const = default;
 };
 
-/// Hears the steps of this thread while it exists; an earlier listener hears nothing meanwhile. What it throws
-/// (Interrupted, when the work should end) leaves the work.
+/// Receives the steps of this thread while it exists, instead of an earlier listener.
+/// An exception that it throws (Interrupted, to end the work) propagates out of the work.
 class StepListener {
 public:
     /// @param stop  of the work, must outlive this object; null = it cannot be stopped between steps

@@ -57,7 +57,7 @@ struct TextLine {
 std::size_t first_character(std::string_view text);
 /// Length of UTF-8 in characters.
 std::size_t characters(std::string_view text);
-/// At most so many bytes of UTF-8: cut between characters, "..." at its end.
+/// Shortens UTF-8 to at most `bytes` bytes: cut between characters, with "..." at the end.
 std::string shortened(std::string const& text, std::size_t bytes);
 /// Lines of columns that are as wide as their widest cells, without blanks at the ends of lines.
 /// @param right which columns are aligned at the right @param gap blanks between columns

@@ -23,7 +23,7 @@ DenoiseSettings find_filter(std::string_view name);
 
 /// Throws InputError if the filter is not installed; call it before rendering starts.
 void check_filter(DenoiseSettings const& settings);
-/// The same, and throws if it cannot work with so many paths per pixel.
+/// The same; throws InputError if the filter cannot work with this number of paths per pixel.
 void check_filter(DenoiseSettings const& settings, std::uint32_t paths, bool has_reuse);
 /// False for atrous if no variance is available: fewer than two paths and no temporal reuse.
 bool can_filter(DenoiseSettings const& settings, std::uint32_t paths, bool has_reuse = false);

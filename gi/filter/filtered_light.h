@@ -15,8 +15,8 @@ struct FilteredLight {
     std::optional<Planes> light;
 };
 
-/// Replaces L1, L2 and color of all surfaces that are not wanted by the partner's light over albedo times the
-/// picture's own albedo.
+/// Replaces L1, L2 and color of all unwanted surfaces by the partner's light,
+/// rescaled to the picture's own albedo.
 /// @param report  counts pixels that keep their values because the partner's light is not finite
 /// @return the partner's light
 Planes take_filtered(Picture& picture, ReusedLight const& taken, FilterArea const& area, DenoiseReport& report);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kFireflyReach = 3; // pixels to each side of a window
 constexpr int kFireflyWindow = (2 * kFireflyReach + 1) * (2 * kFireflyReach + 1);
-constexpr float kBrighter = 2;    // light of a pixel over that of those which support it
-constexpr float kSupport = 0.06f; // of a window's pixels, which have to support a pixel
+constexpr float kBrighter = 2;    // ratio of a pixel's light to that of the pixels that support it
+constexpr float kSupport = 0.06f; // share of a window's pixels that must support a pixel
 constexpr int kGiveReach = 10;    // pixels to each side that get the light of a firefly
 constexpr int kFewest = 6;        // similar pixels that a window needs
 constexpr float kUnseen = 0.5f;   // light below this share of the light around is not worth clamping

@@ -13,7 +13,8 @@ using S = SlhbSettings;
 
 using Methods = std::vector<std::string_view>;
 
-/// Who reads options of both, of look-ups alone, of shadow maps alone, and of stored axes alone.
+/// Methods that read options of both look-ups and shadow maps, of look-ups alone,
+/// of shadow maps alone, and of stored axes alone.
 Methods const kBoth{"slhb", "slhb_shadow_rays", "paths_shadow_maps", "slhb_0_1"},
     kLookUps{"slhb", "slhb_shadow_rays", "slhb_0_1"}, kMaps{"slhb", "paths_shadow_maps", "slhb_0_1"};
 Methods with_stored_axes_too(Methods more)

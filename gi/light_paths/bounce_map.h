@@ -1,7 +1,7 @@
 #pragma once
 // Bounce maps (McGuire and Luebke 2009; Norén and Sjölin 2010, sec. 5.1): the first surfaces of light paths are
 // not found by rays but rasterised as seen from points of the lights. Each texel is a light path; what it has met
-// is a reflective shadow map (Dachsbacher and Stamminger 2005), how it goes on is the bounce map.
+// is a reflective shadow map (Dachsbacher and Stamminger 2005), its continuation is the bounce map.
 //
 // A set has a few dozen views: from points drawn on the lights (cubes in random turns), along directions of
 // parallel lights and the sky; with a focus, half of these show its surroundings alone. So paths of one view share
@@ -37,7 +37,7 @@ struct LightView {
 };
 
 enum class Bounce : std::uint8_t {
-    none,      ///< nothing was met, or the light was absorbed
+    none,      ///< no surface was hit, or the light was absorbed
     scattered, ///< by a Lambertian or glossy lobe
     mirrored,
     transmitted
@@ -54,7 +54,7 @@ struct BounceTexel {
     Bounce bounce = Bounce::none;
 };
 
-/// Power of a texel's light, W. @param out  its path, to be met with a surface
+/// Power of a texel's light, W.  @param out  its path, before its first surface
 GI_FN inline void start_at_texel(LightView const& view, std::uint32_t texel, LightPath& out)
 {
     std::uint32_t const i = texel % view.width(), j = texel / view.width();
@@ -96,8 +96,8 @@ struct BounceTexels {
     LightPathSet set;
     LightPathRules rules;
     View<NearestTexel const> seen;
-    View<BounceTexel> texels;   ///< what the bounce map holds; may be empty: paths go on without it
-    View<LightPath> paths;      ///< how they go on; power 0 = they have ended
+    View<BounceTexel> texels;   ///< contents of the bounce map; may be empty, as paths do not need it
+    View<LightPath> paths;      ///< continuations of the paths; power 0 = ended
     View<LightVertex> vertices; ///< of the reflective shadow map
     View<std::uint8_t> has_vertex;
 

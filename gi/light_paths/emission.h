@@ -16,7 +16,7 @@ struct EmittedLight {
     float range = 0; ///< m, of a punctual light (see Light); 0 = unlimited
     /// Area and solid angle over which samples of this light are spread about this one, m^2 and sr.
     float area = 0, solid_angle = 0;
-    std::uint32_t triangle = 0xffffffffu; ///< that emits it; the greatest number = none
+    std::uint32_t triangle = 0xffffffffu; ///< the triangle that emits it; 0xffffffff = none
 };
 
 namespace emission_detail {

@@ -9,15 +9,15 @@
 
 namespace gi {
 
-/// A point of a surface, and its side that a ray met.
+/// A surface point, and the side that a ray hit.
 struct ShownPoint {
     vec3 position; ///< m
     std::uint32_t triangle;
     bool front; ///< the counter-clockwise side
 };
 
-/// What rays from the cameras meet, and rays that go on from there in random directions. The same rays for the
-/// same cameras. @param side  rays across and down each view  @param surfaces  along a ray
+/// Surface points hit by rays from the cameras and by their continuations in random directions. The same rays for
+/// the same cameras.  @param side  number of rays across and down each view  @param surfaces  number along a ray
 std::vector<ShownPoint> shown_surfaces(World const& world, ExactVisibility const& visibility,
                                        std::span<FrameView const> views, int side, int surfaces);
 /// Positions of the first two surfaces of 1,024 rays a view, m.

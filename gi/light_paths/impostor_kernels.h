@@ -11,7 +11,7 @@ struct StoreImpostorFace {
     PerspectiveGrid grid;
     View<NearestTexel const> drawn;
     View<ImpostorTexel> face; ///< in blocks
-    bool keep_nearer = false; ///< what is there already stays if it is nearer
+    bool keep_nearer = false; ///< existing texels stay if they are nearer
 
     GI_FN void operator()(std::size_t k) const
     {

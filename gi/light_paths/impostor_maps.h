@@ -75,7 +75,7 @@ struct ImpostorsView {
     GI_FN int column(float at) const { return glm::clamp(int(at), 0, int(resolution) - 1); }
 };
 
-/// True if an impostor sees a point: nothing nearer is in its direction, as far as texels tell.
+/// True if an impostor sees a point: at its texels' resolution, nothing nearer lies in the point's direction.
 GI_FN inline bool sees(ImpostorsView const& maps, std::uint32_t impostor, vec3 point)
 {
     vec3 const to = point - maps.centres[impostor];

@@ -21,7 +21,7 @@ void keep_some(std::vector<T>& items, std::size_t most, Pcg32& rng)
     if (items.size() > most) items.resize(most);
 }
 
-/// Distance to the nearest surface, as rays in a few directions tell, m.
+/// Distance to the nearest surface, estimated by rays in a few directions, m.
 float clearance_about(ExactVisibility const& visibility, vec3 place, float farthest)
 {
     constexpr int kRays = 26;

@@ -114,7 +114,7 @@ GI_FN inline float first_guess(ImpostorsView const& maps, std::uint32_t impostor
 {
     float const distance = maps.look(impostor, ray.direction).distance;
     float const t = distance - glm::dot(ray.origin - maps.centres[impostor], ray.direction);
-    // In front of the sky the guess starts at the origin.
+    // If the impostor shows the sky, the first guess is the origin.
     return distance < kFarthest ? glm::max(t, 0.0f) : glm::length(ray.origin - maps.centres[impostor]);
 }
 

@@ -7,7 +7,7 @@
 //    at that place but seen at another.
 //  - Triangles smaller than texels are passed by. So a crossing counts as well:
 //    where the ray passes from before the surface to behind it, and neighbouring texels join.
-//  - Where they do not join, the ray passes behind something. Then another impostor that sees this place goes on.
+//  - Where they do not join, the ray passes behind something. Then an impostor that sees this place continues.
 
 #include "gi/bvh/triangle_test.h"
 #include "gi/light_paths/impostor_arc.h"
@@ -29,7 +29,7 @@ struct Walk {
     std::uint32_t tested_too = kNoTriangle; ///< the one before
 };
 
-/// Tests a triangle and keeps it if it is met nearer than the others.
+/// Tests a triangle and keeps the hit if it is the nearest so far.
 GI_FN inline void meet(ImpostorScene const& scene, RayQuery const& q, RayShear const& shear,
                        std::uint32_t triangle, Walk& walk)
 {
@@ -53,11 +53,12 @@ GI_FN inline float on_plane(Surface const& s, Ray const& ray, float t, float aro
     return std::abs(at - t) <= around ? at : t;
 }
 
-/// How far from a triangle the guess may be that it goes on there, of the distance from the impostor's centre.
+/// How far from a triangle the guessed hit may be for its surface to be assumed to continue there,
+/// relative to the distance from the impostor's centre.
 inline constexpr float kGoesOn = 0.3f;
 
-/// True if a hit's point of its triangle and its point of the ray are so near to each other, m: where a ray meets
-/// the plane of a triangle, but far from the triangle, it is not known to meet anything.
+/// True if a hit's point on its triangle and its point on the ray are close, m. Where a ray crosses the plane
+/// of a triangle far from the triangle, a hit is uncertain.
 GI_FN inline bool on_surface(ImpostorScene const& scene, Ray const& ray, Hit const& hit, float within)
 {
     if (hit.triangle == kNoTriangle) return false;
@@ -87,7 +88,7 @@ struct MapWalk {
     bool leaving;        ///< it is still where it starts, at a place that the centre sees
     bool before = false; ///< it is clearly before the surface
     int more = 2;        ///< texels to walk after a crossing, for a triangle that is met there exactly
-    std::uint32_t next = kNoImpostor; ///< that goes on
+    std::uint32_t next = kNoImpostor; ///< that continues the walk
     float next_from = 0;              ///< distance along the ray, m
 
     GI_FN MapWalk(ImpostorScene const& scene_, RayQuery const& q_, RayShear const& shear_,
@@ -144,7 +145,7 @@ private:
                             end_length > block.farthest * (1 - end) && !passes_within(block.farthest, end);
         if (in_front || behind) {
             if (found.crossing.triangle != kNoTriangle) return false;
-            if (behind) { // one of the triangles that hide it may go on there
+            if (behind) { // one of the triangles that hide it may continue here
                 meet(scene, q, shear, maps.look(k, arc.at(0.5f * (s + end))).triangle, found);
                 set_limit();
             }
@@ -207,8 +208,8 @@ private:
         return found.crossing.triangle == kNoTriangle || more-- > 0;
     }
 
-    /// True if the ray at s is beyond the plane of a triangle as seen from the centre: where a surface is seen at
-    /// a small angle, this tells more than the distance at the middle of its texel.
+    /// True if the ray at s is beyond the plane of a triangle as seen from the centre:
+    /// for surfaces seen at a small angle, this is more accurate than the distance at the middle of the texel.
     GI_FN bool passed(std::uint32_t triangle, float at) const
     {
         Surface const& surface = scene.world.surfaces[triangle];
@@ -231,7 +232,8 @@ private:
         found.crossing = on_triangle(texel.triangle, arc.distance(where), join);
     }
 
-    /// The ray is in front of the last texel's surface and behind this one's. False if another impostor goes on.
+    /// The ray is in front of the last texel's surface and behind this one's.
+    /// Returns false if another impostor is to continue the walk.
     GI_FN bool enter_behind(ImpostorTexel const& texel, float join)
     {
         ImpostorTexel const last = scene.maps.look(k, arc.at(s - kProbe));
@@ -242,13 +244,13 @@ private:
         return vanish();
     }
 
-    /// The ray is hidden from here on. False if another impostor goes on.
+    /// The ray is hidden from here on. Returns false if another impostor is to continue the walk.
     GI_FN bool vanish()
     {
         before = leaving = false;
         float const here = arc.distance(s);
         ImpostorTexel const last = scene.maps.look(k, arc.at(s - kProbe));
-        // What was behind the ray may go on there.
+        // The surface that was behind the ray may continue here.
         meet(scene, q, shear, last.triangle, found);
         set_limit();
         if (may_change) {
@@ -260,7 +262,7 @@ private:
         if (last.triangle == kNoTriangle) {
             found.to_sky = true;
         } else {
-            // Where its plane goes on. A ray that goes away from it meets it nowhere.
+            // On the continued plane of its triangle. A ray that leads away from the plane hits it nowhere.
             Hit const on = on_triangle(last.triangle, here, kFarthest);
             if (on.distance >= here && on_surface(scene, q.ray, on, goes_on_at(on.distance))) found.hidden = on;
         }
@@ -273,7 +275,7 @@ private:
         return kGoesOn * glm::length(q.ray.origin + t * q.ray.direction - scene.maps.centres[k]);
     }
 
-    /// The triangle at distance t, or where the ray meets its plane if that is within `around`, m.
+    /// The hit on the triangle at distance t, or on its plane if that is within `around`, m.
     GI_FN Hit on_triangle(std::uint32_t triangle, float t, float around) const
     {
         Surface const& surface = scene.world.surfaces[triangle];
@@ -282,8 +284,8 @@ private:
     }
 };
 
-/// For a ray that was hidden all along, or went on too near to the surface it left: where it would meet the plane
-/// of what lies in its direction.
+/// For a ray that was hidden all along, or stayed too near to the surface it left:
+/// its hit on the plane of the surface that the impostor shows in its direction.
 GI_FN inline Hit at_end(ImpostorScene const& scene, std::uint32_t k, RayQuery const& q)
 {
     ImpostorTexel const texel = scene.maps.look(k, q.ray.direction);
@@ -316,7 +318,7 @@ GI_FN inline ImpostorHit search_walk(ImpostorScene const& scene, RayQuery const&
         ++found.maps;
     }
     vec3 const centre = maps.centres[k];
-    // A crossing and a triangle met so near to it are the same surface.
+    // A crossing and a triangle hit close to it are the same surface.
     float const same =
         2 * maps.texel_width() *
         glm::length(q.ray.origin + glm::min(walk.crossing.distance, kFarthest) * q.ray.direction - centre);
@@ -340,8 +342,8 @@ GI_FN inline vec3 side_left(WorldView const& world, PathQuery const& path)
     return glm::dot(normal, path.ray.ray.direction) > 0 ? normal : -normal;
 }
 
-/// True if a centre is on a side of a point. If none is, as on the outside of a closed room,
-/// nothing is known of what is there.
+/// True if the centre of some impostor is on this side of a point. If none is, as on the outside of a closed room,
+/// no impostor shows what is there.
 GI_FN inline bool any_on_side(ImpostorsView const& maps, vec3 point, vec3 side)
 {
     for (vec3 const& centre : maps.centres)
@@ -360,7 +362,7 @@ GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& pat
     RayQuery q = path.ray;
     vec3 const side = side_left(scene.world, path);
     bool const known = path.triangle == kNoTriangle || any_on_side(scene.maps, q.ray.origin, side);
-    // A walk may come out of a nook; the others have no way to tell.
+    // A walk may start hidden and become visible later; the other searches cannot detect that.
     if (!known && settings.search != ImpostorSearch::walk) return {};
     float const start = q.start;
     q.ray.origin += start * q.ray.direction;

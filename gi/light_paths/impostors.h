@@ -22,7 +22,7 @@ std::uint64_t impostor_bytes(int count, int texels, bool moves);
 /// Throws InputError for more than kMostBytes (memory_limit.h), those by hand too.
 void check_impostors(PhotonSettings const& settings, bool moves);
 
-/// Distance at which the faces' views begin, m: as near as floats can tell from the centre.
+/// Distance of the faces' near planes, m: as near to the centre as the precision of floats allows.
 float impostor_near(World const& world, vec3 centre);
 
 /// Impostors in host memory, which follow moving geometry.

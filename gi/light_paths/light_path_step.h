@@ -77,7 +77,7 @@ struct LightPathRules {
     bool delta_only; ///< see LightPaths
 };
 
-/// Lets a path meet a surface and choose its way on.
+/// Moves a path to a surface and samples its next direction.
 /// @param keep  (position, triangle) -> false if the path ends there without a vertex
 /// @param vertex, has_vertex  what it leaves there
 /// Returns false if the path ends.

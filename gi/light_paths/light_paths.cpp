@@ -35,7 +35,7 @@ bool advance(WorldView const& world, LightPaths const& s, TracedPath& p, Hit con
     return goes_on;
 }
 
-/// Sends a ray from the sky, or of a parallel light, through the sphere around the focus, or lets it pass beside.
+/// Makes a ray of the sky or of a parallel light go through the sphere around the focus, or miss it.
 void focus_light(LightPaths const& s, Bounds const& bounds, bool through, LightPath& p)
 {
     EmittedLight& light = p.light;

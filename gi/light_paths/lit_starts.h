@@ -1,6 +1,6 @@
 #pragma once
-// Light paths that begin on surfaces with the light that comes to them: a point there, a sample of the lights, a
-// shadow ray between the two. So however small a part of the lights' power they get, paths meet them.
+// Light paths that begin on lit surfaces: a surface point, a light sample, a shadow ray between the two.
+// So surfaces are reached however small their share of the lights' power is.
 
 #include "gi/core/alias_table.h"
 #include "gi/light_paths/light_paths.h"

@@ -18,8 +18,8 @@ std::vector<float> radii_by_density(std::span<Photon const> photons, float large
 /// not see how curved mirrors and glass focus, nor how lights share a surface.
 std::vector<float> radii_by_footprint(std::span<Photon const> photons, float largest, float photons_each);
 
-/// Where a photon's light lies: on what is on the same surface as it. Kernels are flat, else the light of a table
-/// would lie on the paper on it.
+/// The area over which a photon's light is spread: other points of the same surface.
+/// Kernels are flat, otherwise the light of a table would lie on the paper on it.
 struct PhotonKernel {
     static constexpr float kSameWay = 0.8f;   ///< least cosine between normals
     static constexpr float kFromPlane = 0.2f; ///< greatest distance from the plane, radii
@@ -78,7 +78,7 @@ public:
     /// @param radius  of searches, m, > 0, as large as that of any kernel
     PhotonCells(std::span<PhotonKernel const> kernels, float radius);
 
-    /// Calls f(kernel) for those that may reach a position, and some others.
+    /// Calls f(kernel) for all kernels that reach a position, and for some others nearby.
     template <class F>
     void search(vec3 position, F const& f) const;
 

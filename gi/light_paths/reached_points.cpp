@@ -53,14 +53,14 @@ std::vector<Ray> from_surfaces(World const& world, std::size_t n, Pcg32& rng)
         area.push_back(sum += double(glm::length(glm::cross(s.edge1, s.edge2))));
     std::vector<Ray> rays;
     for (std::size_t k = 0; k < n && !area.empty(); ++k) {
-        // Without any area, as floats tell, all triangles are alike.
+        // If all areas are 0 in floats, all triangles have equal probability.
         auto const at = std::size_t(std::ranges::upper_bound(area, rng.uniform_double() * sum) - area.begin());
         Surface const& s = world.surfaces[sum > 0 ? std::min(at, area.size() - 1) : k % area.size()];
         vec2 const w = square_to_triangle(rng.uniform2());
         vec3 const normal = shading_detail::triangle_normal(s) * (rng.uniform() < 0.5f ? -1.0f : 1.0f);
         vec3 const direction = Frame::about(normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
         vec3 const position = s.corner + w.x * s.edge1 + w.y * s.edge2;
-        // Backwards onto the surface, so that it is met as others are.
+        // A ray back onto the surface, so that its hit is computed like others.
         float const off = 16 * s.clearance;
         rays.push_back({position + off * direction, -direction});
     }
@@ -81,7 +81,8 @@ Reached walk_on(World const& world, ExactVisibility const& visibility, std::vect
         std::size_t const points = reached.points.size();
         for (std::size_t k = 0; k < hits.size(); ++k) {
             Ray const& ray = queries[k].ray;
-            // Flights from lights afar and from cameras are no measure of the space between surfaces.
+            // The lengths of first rays from distant lights and from cameras say nothing
+            // about the space between surfaces.
             if (bounce > 0) {
                 float const length = hits[k].triangle != kNoTriangle ? hits[k].distance : kInf;
                 reached.flights.push_back({ray.origin, ray.direction, length, reached.points[left + k].triangle});

@@ -10,7 +10,7 @@
 namespace gi {
 
 struct ReachedPoint {
-    vec3 position, normal; ///< m; unit, geometric, on the side that was met
+    vec3 position, normal; ///< m; unit, geometric, on the side that was hit
     float clearance;       ///< m, see ShadingPoint
     std::uint32_t triangle;
     float free = kInf; ///< m; length of the flight that left it, kInf = into the open

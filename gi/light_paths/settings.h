@@ -7,7 +7,7 @@
 
 namespace gi {
 
-/// What finds the surfaces that photons meet.
+/// How the surfaces that photons hit are found.
 enum class PhotonRays : std::uint8_t { exact, look_ups, impostors };
 /// How the light of lamps finds its first surfaces.
 enum class FirstBounce : std::uint8_t { rays, map };
@@ -24,7 +24,8 @@ enum class ImpostorSearch : std::uint8_t {
     first_guess, ///< iteration in the nearest impostor
     all,         ///< iteration in every impostor; the one of least energy counts
     cascaded,    ///< guess by the fan of the nearest impostor, then iteration in that nearest to the guess
-    walk ///< along the ray through the texels of an impostor, and of others where the ray is hidden from it
+    /// Along the ray through the texels of an impostor, and of other impostors where the ray is hidden from it.
+    walk
 };
 
 /// Settings of light paths and photons: sh_grid and the methods of gi/methods/photons.

@@ -10,15 +10,15 @@ namespace gi {
 /// The method of renders, viewers, studies and AR sessions that name none: the plan chooses.
 inline constexpr std::string_view kDefaultMethod = "auto";
 
-/// Of a file that version 0.1 of the program wrote, or that follows a schema of that version: its `slhb` was exact rays
-/// or look-ups, as its options said.
+/// Name of the method in a file written by version 0.1 of the program or following a schema of that version:
+/// its `slhb` was exact rays or look-ups, depending on its options.
 constexpr std::string_view method_of_0_1(std::string_view name) { return name == "slhb" ? "slhb_0_1" : name; }
 
 /// The method of viewers, studies and AR sessions of version 0.1 that name none.
 inline constexpr std::string_view kDefaultMethodOf01 = method_of_0_1("slhb");
 
-/// True if a picture by this method that is interrupted and resumed is that of an uninterrupted one, bit for bit. Light
-/// of the others starts anew.
+/// True if an interrupted and resumed picture by this method equals an uninterrupted one bit for bit.
+/// The other methods start their light afresh.
 constexpr bool resumes_exactly(std::string_view method)
 {
     constexpr std::array kMethods{"auto",      "paths",   "paths_shadow_maps", "slhb", "slhb_shadow_rays", "slhb_0_1",

@@ -45,7 +45,7 @@ struct Method {
     bool offered = true; ///< to people; else only for files of earlier versions
     /// FrameRenderer::views may be stopped after any path: frames with as many paths are then the same.
     bool ends_frames_early = false;
-    /// The option whose value may stand behind the name in measurements: "slhb:stored"; empty = none.
+    /// The option whose value is appended to the name in measurements, such as "slhb:stored"; empty = none.
     std::string_view variant = {};
     /// How the key `visibility` of studies names it; empty = not at all.
     std::string_view visibility = {};

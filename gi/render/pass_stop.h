@@ -5,8 +5,8 @@
 
 namespace gi {
 
-/// After a stop request, the first pass goes on as BuildStop says, so that there is a picture to keep; a later one
-/// ends at once. Once given up, it stays so.
+/// After a stop request, the first pass continues as BuildStop says, so that there is a picture to keep;
+/// a later one ends at once. Once given up, it remains so.
 class PassStop {
 public:
     enum class Pass : bool { first, later };

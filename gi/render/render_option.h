@@ -18,7 +18,7 @@ struct RenderOption : Option<RenderSettings> {
     std::vector<std::string_view> methods; ///< that read it, a last * for any ending; empty = all
     std::function<std::optional<Unused>(RenderSettings const&)> unused = {};
     bool live = true;     ///< viewers and AR sessions have it
-    bool restarts = true; ///< in viewers, a change begins the methods anew
+    bool restarts = true; ///< in viewers, a change restarts the methods
     std::string replaced_by = {}; ///< only in files of earlier versions; what to give instead. Empty = offered to people
 
     bool read_by(std::string_view method) const;

@@ -1,6 +1,6 @@
 #pragma once
-// A pass of a render over the tiles of a picture, in parallel. Where it is interrupted, the tiles keep what they
-// have (Accumulator::further), and a later pass goes on from there.
+// A pass of a render over the tiles of a picture, in parallel. Where it is interrupted, tiles keep their paths
+// (Accumulator::further), and a later pass continues from there.
 
 #include "gi/render/accumulator.h"
 #include "gi/render/pass_stop.h"
@@ -72,7 +72,7 @@ public:
     bool given_up() const { return stop_.given_up(); }
     /// Paths that all tiles have.
     std::uint32_t done() const { return *std::ranges::min_element(done_); }
-    /// Instead of run(), after so many paths of all tiles were traced in another way.
+    /// Call instead of run() if `n` paths of all tiles were traced in another way.
     void set_done(std::uint32_t n) { std::ranges::fill(done_, n); }
     /// Call it last: counts the paths. Throws Interrupted if the pass was given up.
     void end()

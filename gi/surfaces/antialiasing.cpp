@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Weight of the earlier samples, at most.
 constexpr float kMost = 4;
-/// Earlier colours are held within the mean +- so many standard deviations of 3 x 3 pixels.
+/// Earlier colours are clamped to the mean +- this many standard deviations of 3 x 3 pixels.
 constexpr float kSpread = 2;
 /// Share of the difference from the four pixels around that is added again to what is shown.
 constexpr float kSharpness = 0.2f;

@@ -10,7 +10,7 @@ namespace {
 
 /// Distance from the plane of a surface at which another one begins, relative to the depth.
 constexpr float kOfDepth = 0.005f;
-/// A surface that faces otherwise than those whose light it takes has at least and at most so many times as much.
+/// Limits of the factor by which light changes if it is taken by a surface that faces another way.
 constexpr float kLeastTurned = 0.2f, kMostTurned = 4;
 
 } // namespace
@@ -21,7 +21,7 @@ struct KeptLight::Sum {
 
     void add(Texel const& t, vec3 normal, float weight, float like)
     {
-        // What was fitted to a surface says nothing of another one that faces elsewhere.
+        // A fit for one surface is not valid for one that faces another way.
         float const change = like < kUnlike ? 0 : glm::dot(t.slope, normal - t.mean_normal),
                     turned = std::clamp(1 + change, kLeastTurned, kMostTurned);
         vec3 w{weight * (like + kLeastLikeness)};

@@ -20,7 +20,7 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
                     std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before = nullptr,
                     vec2 margin = vec2{0});
 
-/// What a method's picture says of pixels that show a mirror or a pane.
+/// Layers of a method's picture for pixels that show a mirror or a pane.
 struct MirrorLayers {
     std::vector<std::uint32_t> pixels;
     std::vector<std::array<vec3, 3>> layers; ///< albedo, normal, position

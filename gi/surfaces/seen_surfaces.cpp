@@ -32,7 +32,7 @@ struct SeenSurfaces::Way {
     mat3 image{1};       ///< from directions where the way is, to their images
     float length_m = 0;  ///< up to the last piece
     int mirrors = 0;
-    bool aside = false; ///< of a pane's other lobe: only what shines by itself counts
+    bool aside = false; ///< ray of a pane's other lobe: only emitters count
 };
 
 /// Light on its way to a surface.

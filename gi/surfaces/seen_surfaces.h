@@ -15,9 +15,11 @@
 namespace gi {
 
 struct SeenSurface {
-    vec3 albedo{0};   ///< times what mirrors and panes on the way leave of the light
-    vec3 normal{0};   ///< of shading, unit, as mirrored
-    vec3 position{0}; ///< m, from the world's origin; on the pixel's ray, as far away as light has travelled
+    vec3 albedo{0}; ///< times what mirrors and panes on the way leave of the light
+    vec3 normal{0}; ///< of shading, unit, as mirrored
+    /// M, from the world's origin; on the pixel's ray, at the distance that light
+    /// has travelled (longer via mirrors).
+    vec3 position{0};
     vec3 emitted{
         0}; ///< radiance of emission, or of the background; times the same as the albedo. Plus what mirrors and
             ///< panes on the way bring of it by their other lobes (a lamp reflected in a window)

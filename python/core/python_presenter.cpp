@@ -76,7 +76,7 @@ study::ParticipantAsked PythonPresenter::ask_participant(std::vector<study::Aske
 {
     return call<study::ParticipantAsked>([&] {
         study::ParticipantAsked asked;
-        py::list given; // a plain question is its id, as a typed one is a dict
+        py::list given; // a question without a type is given by its id, others by a dict
         for (study::AskedQuestion const& q : questions)
             if (q.type == study::AskedType::text && q.text == q.id)
                 given.append(q.id);

@@ -30,8 +30,8 @@ struct AnalysisSettings {
     bool has_outliers = true;               ///< outlier scores of observers of pairs: a scale without each of them
     bool has_hierarchy = false;             ///< hierarchical models of pairs, too: a second or so for each
     std::optional<double> guess{}, lapse{}; ///< fixed rates of psychometric functions; none = as the task requires
-    /// Called often while a hierarchical model is drawn: which one, the share of it that is done. From several
-    /// threads, but never by two at once.
+    /// Called often while a hierarchical model is sampled, with its name and the share that is done.
+    /// May be called from several threads, but never by two at once.
     std::function<void(std::string const&, double)> progress{};
 };
 

@@ -81,7 +81,7 @@ Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessi
     a.experiment = script.id;
     a.title = script.title.empty() ? script.id : script.title;
     a.settings = settings;
-    a.settings.progress = {}; // its owner may be gone before the results are
+    a.settings.progress = {}; // the callback may refer to something that no longer exists
     a.planned = script.participants.count;
     std::vector<ObserverTrials> observers; // all of them
     std::vector<RecordedSession const*> used;

@@ -18,7 +18,7 @@ constexpr std::string_view kRoles[] = {
     "correct_count", "wrong_count", "yes_count", "no_count", "percent", "reaction_s", "reaction_ms"};
 
 constexpr int kMostImportedTrials = 2'000'000;
-constexpr double kLargestValue = 1e15; ///< up to which whole numbers are exact, and squares far from overflow
+constexpr double kLargestValue = 1e15; ///< whole numbers are exact up to it, and squares do not overflow
 
 std::string lower_case(std::string text)
 {

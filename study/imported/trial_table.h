@@ -16,7 +16,7 @@ struct ColumnRoles {
     /// no_count, percent, reaction_s, reaction_ms.
     std::map<std::string, std::string> column{};
     std::vector<std::string> factors{}; ///< columns with the conditions of a trial, or the groups of participants
-    /// Column -> value: only rows with this text count (such as without practice).
+    /// Column -> value: uses only rows with this text (such as without practice).
     std::vector<std::pair<std::string, std::string>> only{};
     std::optional<Task> task{};  ///< none = by the roles: pair, rating, 2ifc with levels, yes_no with signals
     Scale scale = Scale::linear; ///< of levels

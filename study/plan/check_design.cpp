@@ -73,9 +73,9 @@ private:
 
     void check_per(SequenceItem const& item, std::vector<bool> fixed)
     {
-        if (item.index < 0) return walk(item.items, fixed); // told: no factor of that name
+        if (item.index < 0) return walk(item.items, fixed); // reported: no factor of that name
         std::size_t const f = std::size_t(item.index);
-        if (fixed[f]) // told, and the rest is checked nevertheless
+        if (fixed[f]) // reported; the rest is checked nevertheless
             fail(item.place, fmt::format("per: {} where its level is fixed already", name(item.index)),
                  "an outer 'per' or 'between' chose it", "remove one of them");
         for (std::size_t i = 0; i < s_.counterbalances.size(); ++i)
@@ -103,7 +103,7 @@ private:
         for (std::size_t f = 0; f < known.size(); ++f) {
             if (known[f]) continue;
             has_all = false;
-            // Told only of factors that are used: else it is told that they are not.
+            // Reported only for factors that are used; the others are reported as unused.
             without_level_.emplace_back(
                 int(f), error(where, fmt::format("factor '{}' has no level in {}", name(int(f)), what),
                               "the stimuli are not fully defined",
@@ -298,7 +298,7 @@ private:
     std::function<bool(std::string const&)> const& mentions_;
     bool was_sound_;                                          ///< the script was read without mistakes
     std::vector<std::pair<int, ScriptError>> without_level_;  ///< by factor
-    std::set<std::pair<std::string, std::string>> ambiguous_; ///< told: input and answer
+    std::set<std::pair<std::string, std::string>> ambiguous_; ///< reported: input and answer
     std::vector<bool> factor_used_, block_used_, balance_used_, questionnaire_used_;
 };
 

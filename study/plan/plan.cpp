@@ -20,7 +20,8 @@ std::string id_of(std::string const& pattern, int participant)
 
 class Planner {
 public:
-    /// @param broken  blocks left out; those that cannot be planned are added, and why to `m`. Null: throw.
+    /// @param broken  blocks to leave out. Blocks that cannot be planned are added to it, and the reason to `m`;
+    /// if `m` is null, it is thrown.
     Planner(Script const& s, int participant, std::vector<bool>* broken, Mistakes* m)
         : s_(s), broken_(broken), mistakes_(m), digits_(digits(s, participant)), passes_(s.blocks.size())
     {

@@ -131,7 +131,8 @@ public:
     }
 
 private:
-    static constexpr int kLarge = 20; ///< times the largest number of participants, for the truth
+    /// Participants of the simulation for the true values: this times the largest number.
+    static constexpr int kLarge = 20;
 
     bool goes_on()
     {
@@ -181,7 +182,7 @@ private:
                 }
                 ++done_;
             }
-        // A simulation counts only as a whole, so that all points have the same number.
+        // Interrupted simulations are discarded, so that all points have the same number of them.
         for (auto const& [point, found] : results) count(point, found);
         is_known_ = true;
         return true;

@@ -15,10 +15,11 @@ struct PowerSettings {
     /// An effect of the table `effects` ("display x scene" or "display:scene"), or "A - B", two items whose scores
     /// are compared; blanks do not matter.
     std::string test;
-    std::vector<double> effects{1}; ///< factors on what the observers' model says of `scaled`; 0 = no effect
-    std::vector<int> scaled;        ///< factors of the script; empty = all, and interactions
-    std::vector<int> participants;  ///< numbers; rising
-    std::vector<int> repeats;       ///< of the block; empty = the script's
+    /// Factors by which effects of the observers' model (`scaled`) are multiplied; 0 = no effect.
+    std::vector<double> effects{1};
+    std::vector<int> scaled;       ///< factors of the script; empty = all, and interactions
+    std::vector<int> participants; ///< numbers; rising
+    std::vector<int> repeats;      ///< of the block; empty = the script's
     int simulations = 200;
     double alpha = 0.05;
     std::uint64_t seed = 1;

@@ -28,8 +28,8 @@ struct TrialRequest {
 struct QuestionnaireRequest {
     Questionnaire const* questionnaire = nullptr;
     int step = 0;
-    /// Answers before the session was interrupted, in the order in which items were left:
-    /// the participant goes on after the last one.
+    /// Answers given before the session was interrupted, in their order;
+    /// the participant continues after the last one.
     std::vector<ItemAnswered> given{};
     /// Call it when the participant leaves an item, so that its answer is on the disk; a presenter that asks all
     /// items at once does not need it. Empty = there is no disk.

@@ -353,7 +353,8 @@ private:
     }
     void write_summary() const { gi::write_durably(files_.folder / "session.json", session_summary(record_)); }
 
-    /// Updates the files that depend on the whole journal, also if the process was killed before it did so.
+    /// Updates the files that depend on the whole journal, even if the process was
+    /// killed before it did so the last time.
     void finish() const
     {
         std::string const summary = session_summary(record_);

@@ -11,7 +11,7 @@ namespace study {
 
 enum class SessionStart {
     begin, ///< starts a new session; existing records are never overwritten
-    go_on, ///< resumes an existing session after its last entry; starts it if nothing has happened yet
+    go_on, ///< resumes an existing session after its last entry; starts it if it has no entries yet
 };
 
 struct SessionSettings {

@@ -1,5 +1,5 @@
 #pragma once
-// Everything that is wrong with a script. Reading goes on after a mistake, so that all are told at once.
+// Everything that is wrong with a script. Parsing continues after a mistake, so that all are reported at once.
 
 #include "gi/core/mistakes.h"
 #include "study/script/script_error.h"
@@ -8,7 +8,7 @@ namespace study {
 
 class Mistakes : public gi::Mistakes {
 public:
-    /// As attempt(), for what others do without: it does not count as grave.
+    /// As attempt(), for parts that others do not need: a mistake in them does not count as grave.
     template <class Read>
     bool attempt_aside(Read const& read)
     {

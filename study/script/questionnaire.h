@@ -32,7 +32,7 @@ struct QuestionnaireItem {
     bool is_reversed = false;        ///< scored low + high - answer
 
     ItemType type = ItemType::scale;
-    bool is_required = false; ///< the participant cannot go on without an answer
+    bool is_required = false; ///< the participant cannot continue without an answer
     // Of a text:
     int lines = 1;        ///< its height in the window; line ends can be typed if more than one
     int max_chars = 1000; ///< Unicode characters

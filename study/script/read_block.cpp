@@ -42,7 +42,7 @@ void read_sampling(gi::Yaml const& y, Pairs& p, Mistakes& m)
     p.order = PairOrder::random;
 }
 
-/// Adds pairs that are there twice, and, of active sampling, levels that no pairs connect.
+/// Reports pairs that are listed twice and, for active sampling, levels that no pairs connect.
 void check_pair_list(gi::Yaml const& list, Pairs const& p, Script const& s, Mistakes& m)
 {
     for (std::size_t i = 0; i < p.pairs.size(); ++i)
@@ -144,7 +144,7 @@ FurtherSetting read_further(gi::Yaml const& key, gi::Yaml const& y, Mistakes& m)
             throw range.error(fmt::format("a range from {:g}", f.low), "a logarithmic scale begins above 0",
                               "start above 0 or write scale: linear");
     });
-    if (!has_range) { // told; nothing else seems to be outside of it
+    if (!has_range) { // the missing range is reported; no value counts as outside of it
         f.low = f.scale == Scale::linear ? -1e12 : 1e-12;
         f.high = 1e12;
     }
@@ -490,7 +490,7 @@ void read_rest_of_block(gi::Yaml const& y, Script const& s, Block& b, Mistakes& 
     });
 }
 
-/// The index in kTasks. A misspelt task is told, and the nearest one taken.
+/// The index in kTasks. A misspelt task is reported, and the nearest one taken.
 std::size_t read_task(gi::Yaml const& y, Mistakes& m)
 {
     std::vector<std::string> names;

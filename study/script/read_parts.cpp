@@ -172,7 +172,7 @@ void read_trial_timing(gi::Yaml const& y, TrialTiming& timing, Mistakes& m)
     auto const optional = [&](char const* key, char const* word, std::optional<double>& value) {
         m.take(y, key, [&](gi::Yaml const& v) {
             if (v.is_text() && v.text() == word) return value.reset();
-            value = kHour_ms; // if it is none: there is a value, so that nothing else seems to lack it
+            value = kHour_ms; // placeholder after a mistake, so that a missing value is not reported as well
             value = read_number_or(v, {word}, 1, kHour_ms);
         });
     };

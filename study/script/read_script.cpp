@@ -362,8 +362,8 @@ Script read_whole(gi::Yaml const& y, std::string const& file, Mistakes& m)
     return s;
 }
 
-/// Adds a quoted text that goes on in lines which are not indented further than its own: its quote was forgotten,
-/// and it has swallowed what follows.
+/// Reports a quoted text that continues in lines which are not indented further than its own:
+/// its closing quote is missing, and the following lines became part of it.
 void check_quote(gi::Yaml const& y, std::vector<std::string> const& lines, Mistakes& m)
 {
     std::size_t line = std::size_t(y.place().line) - 1, at = std::size_t(y.place().column) - 1;

@@ -20,7 +20,7 @@ struct ReadScript {
     Mistakes mistakes;
     bool is_whole = false; ///< its parts were read; false: it is not YAML, or no map
 };
-/// As parse_script(), but goes on after mistakes. Blocks that cannot be planned are broken.
+/// As parse_script(), but continues after mistakes. Blocks that cannot be planned are marked as broken.
 ReadScript read_script(std::string const& text, std::string const& name);
 
 /// Throws ScriptError for the first Markdown file that the script names and `folder` lacks.

@@ -67,8 +67,8 @@ Line line_through(std::vector<double> const& x, std::vector<double> const& y)
     return l;
 }
 
-/// The offset (recorder - session) with which most of the first onsets have a flash: every difference of the first
-/// ones votes, and neighbours within the tolerance count together.
+/// The offset (recorder - session) for which most of the first onsets have a flash.
+/// Every difference between the first flashes and onsets votes; differences within the tolerance count together.
 double first_offset(std::vector<Flash> const& flashes, std::vector<ReportedOnset> const& onsets)
 {
     constexpr std::size_t kFirst = 40;

@@ -153,7 +153,7 @@ Posterior posterior(Draws const& draws, std::function<double(std::span<double co
 
 void look_at(SamplerReport& report, Convergence const& c)
 {
-    // Chains that never moved have no R-hat: nothing is known of what they should have found.
+    // Chains that never moved have no R-hat.
     bool const first = report.worst_r_hat == 0, is_known = std::isfinite(c.r_hat);
     double const bulk = is_known ? c.bulk : 0, tail = is_known ? c.tail : 0;
     report.worst_r_hat =

@@ -11,7 +11,7 @@
 namespace study {
 namespace {
 
-constexpr double kLargest = 40; ///< beyond it proportions are 1 within rounding
+constexpr double kLargest = 40; ///< above it, proportions are 1 within rounding
 constexpr double kSqrt2 = std::numbers::sqrt2;
 
 void check_rate(double rate, char const* name)

@@ -55,7 +55,7 @@ struct RandomEffect {
     }
 };
 
-/// The variance of an observer's own estimate, bounded where answers tell nothing, as around d' = 0.
+/// The variance of an observer's own estimate, bounded where answers have no information, as around d' = 0.
 double own_variance(double information) { return 1 / (std::fmax(information, 0) + 1); }
 
 /// Population and observers from the draws, with their diagnostics.

@@ -16,7 +16,7 @@ constexpr int kThresholdSteps = 600;         // over three ranges
 
 double place_of(int step) { return -1.5 + 3.0 * step / kThresholdSteps; }
 
-/// Of one trial at a level, about the threshold.
+/// Fisher information of one trial at a level, about the threshold.
 double information_at(LevelCurve const& curve, double level, double threshold)
 {
     LevelAnswers const one{level, 0, 1};

@@ -27,7 +27,8 @@ struct PsychometricShape {
     Sigmoid sigmoid = Sigmoid::gaussian;
     Axis axis = Axis::linear;
     Direction direction = Direction::rising;
-    /// If set, replaces F: P of the level, the threshold as a level, the slope (= scale), guess and lapse.
+    /// If set, replaces F. It gives P as a function of the level, the threshold (a level),
+    /// the slope (= scale), guess and lapse rates.
     std::shared_ptr<Formula const> formula{};
 };
 

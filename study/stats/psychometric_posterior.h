@@ -52,7 +52,7 @@ struct PosteriorLevel {
     double never = 0; ///< probability that the function never reaches the proportion; ends may then be infinite
 };
 
-/// One level is enough, as are data that are all right or all wrong: the priors then tell how little is known.
+/// One level is enough, as are data that are all right or all wrong: the priors then give wide intervals.
 /// @throws std::invalid_argument no trials, invalid counts, levels or rates, a range without width, or
 /// no function that fits (a guess rate of nearly 1)
 PsychometricPosterior psychometric_posterior(std::span<LevelCount const> counts,

@@ -22,8 +22,9 @@ struct QuestGrid {
 
 struct QuestManySettings {
     std::vector<QuestGrid> stimulus, parameters;
-    std::shared_ptr<Formula const> formula; ///< its names: those of stimulus, then those of parameters
-    double tie_tolerance = 1e-10;           ///< bits; see QuestSettings
+    /// Of values with these names: those of stimulus, then those of parameters.
+    std::shared_ptr<Formula const> formula;
+    double tie_tolerance = 1e-10; ///< bits; see QuestSettings
 };
 
 /// The names that a formula of these dimensions and parameters takes, in its order.

@@ -152,7 +152,7 @@ private:
         return step;
     }
 
-    /// Whether the path still moves apart at both ends.
+    /// True while both ends of the path move apart (no U-turn).
     bool goes_on(std::vector<double> const& momenta, std::vector<double> const& left,
                  std::vector<double> const& right) const
     {

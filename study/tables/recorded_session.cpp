@@ -38,7 +38,7 @@ void fill_chosen(Script const& script, RecordedSession& session)
     for (JournalEntry const& entry : session.record.entries) {
         auto const* const done = std::get_if<TrialDone>(&entry);
         if (done == nullptr || done->chosen.empty()) continue;
-        if (done->step < 0 || done->step >= int(session.plan.steps.size())) continue; // told by trial_rows
+        if (done->step < 0 || done->step >= int(session.plan.steps.size())) continue; // reported by trial_rows
         PlanStep& step = session.plan.steps[std::size_t(done->step)];
         if (!step.trial.is_open_pair) continue;
         Block const& block = script.blocks[std::size_t(step.block)];

@@ -8,7 +8,7 @@
 
 namespace study {
 
-/// What is known of the trials: tables of other programs may have sums only.
+/// How detailed the records of trials are: tables of other programs may have only sums.
 enum class TrialDetail {
     trials, ///< each trial, in its order
     counts, ///< not their order

@@ -84,7 +84,8 @@ TEST(Upsampling, LeavesBordersOfObjectsSharp)
     cv::Size const full(64, 48), half(32, 24);
     Scene const truth = scene(full);
     Scene low = scene(half);
-    // The object is at the left at both resolutions, very bright; low pixels of it say nothing of the place.
+    // The object is at the left at both resolutions, and very bright:
+    // its low-resolution pixels must not affect the place.
     DirectlySeen seen{cv::Mat::zeros(full, CV_32FC3), cv::Mat::zeros(full, CV_32FC1)};
     seen.coverage.colRange(0, 31) = 1;
     seen.coverage.col(31) = 0.25;

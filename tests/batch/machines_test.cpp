@@ -103,7 +103,7 @@ TEST(BatchOnHyperQueue, ServerThatRunsIsUsedAndKeepsItsTasks)
     ASSERT_TRUE(wait_until([&] { return !(p.starts().size() < 2); }));
     program.send(SIGINT);
     EXPECT_EQ(program.wait().code, 130);
-    ASSERT_TRUE(wait_until([&] { return !(p.starts().size() < 6); })); // its tasks go on
+    ASSERT_TRUE(wait_until([&] { return !(p.starts().size() < 6); })); // its tasks continue
     EXPECT_EQ(p.run("batch resume m.batch" + options).code, 0);
     expect_each_once(p, 6);
     kill(server, SIGKILL);

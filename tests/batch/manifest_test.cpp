@@ -1,4 +1,4 @@
-// Manifests: what they make, and what is told of their mistakes.
+// Manifests: the tasks that they give, and the reports of their mistakes.
 
 #include "viewer/batch/manifest.h"
 

@@ -1,4 +1,4 @@
-// What attempts that were cut leave, and how the next ones go on from it.
+// Files left by interrupted attempts, and how the next attempts continue from them.
 
 #include "tests/batch/fake_programs.h"
 #include "viewer/batch/resume.h"

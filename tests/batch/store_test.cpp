@@ -169,7 +169,7 @@ TEST_F(StoreTest, WithdrawnResultTakesItsNewObjectsAlong)
 }
 
 /// Nobody knows whether the disk has the content of a result that could not be published: others that have it too
-/// count as not done, and make it anew.
+/// count as not done, and make it again.
 TEST_F(StoreTest, ContentOfAWithdrawnResultIsMadeAnewByOthersThatHaveIt)
 {
     Task const &first = batch.tasks[0], &second = batch.tasks[1];

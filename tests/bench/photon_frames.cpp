@@ -146,7 +146,7 @@ void measure(std::string const& name, Options const& o)
         };
         double all = 0;
         std::string shares;
-        auto const counts = [](std::string const& stage) { // the rest are parts of stages, or sums of them
+        auto const counts = [](std::string const& stage) { // the other stages are parts or sums of these
             return stage != "trace" && !stage.ends_with("thread seconds");
         };
         for (auto const& [stage, time_s] : report.times())

@@ -1,4 +1,4 @@
-// Any text as the manifest of a batch: tasks, or mistakes that are told, never anything else.
+// Any text as the manifest of a batch: tasks, or reported mistakes, never anything else.
 
 #include "gi/core/error.h"
 #include "viewer/batch/manifest.h"

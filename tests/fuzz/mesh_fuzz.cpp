@@ -1,5 +1,5 @@
-// Any bytes as a model that Assimp reads, the first says in which format: a scene or an InputError, never anything
-// else, whatever becomes of the child process that tries it first.
+// Any bytes as a model for Assimp; the first byte selects the format. The result must be a scene or an InputError,
+// even if the child process that tries the file first crashes.
 
 #include "gi/core/error.h"
 #include "gi/scene/load/load.h"

@@ -1,6 +1,6 @@
-// Any bytes as a recorded session: session.json, the index and the frames' bytes, between zeros.
-// Frames come out that are as large as they say, or an InputError. Lines get the checksum that
-// fits them, or nothing would pass it.
+// Any bytes as a recorded session: session.json, the index and the frames' bytes, separated by zeros.
+// The result must be frames of the stated sizes or an InputError. The lines of the index get valid checksums,
+// otherwise all would be rejected.
 
 #include "ar/capture/session_reader.h"
 #include "gi/core/error.h"

@@ -301,7 +301,8 @@ TEST(Temporal, WhatWasHiddenStartsAfresh)
     TemporalReuse reuse({});
     Picture close = picture([&](int, int) { return Values{.l2 = vec3{7}, .depth = 1}; });
     reuse.add(close, SceneChange::motion);
-    // The near wall is gone; where it was, the far one appears. Then one that is turned, then one from nowhere.
+    // The near wall disappears, and the far one appears behind it. Then a surface that faces another way,
+    // then one without a previous position.
     Values const cases[] = {{.l2 = vec3{1}, .motion = {0, 0, 2}},
                             {.l2 = vec3{1}, .normal = {1, 0, 0}},
                             {.l2 = vec3{1}, .motion = vec3{std::numeric_limits<float>::quiet_NaN()}, .depth = 2},

@@ -72,7 +72,7 @@ TEST(ImpostorSearch, FanFindsWhatTheFirstGuessMisses)
         }
         auto const of = [&](ImpostorSettings const& s) { return accuracy(world, impostors, s, visibility, rays); };
         EXPECT_EQ(of({.search = ImpostorSearch::first_guess}).wrong, 1);
-        // The other centre is of use for two of the rays, of none for the third.
+        // The other centre helps two of the rays, but not the third.
         EXPECT_EQ(of({.search = ImpostorSearch::all}).wrong, from.x < 1 ? 1 : 0);
         EXPECT_EQ(of({.search = ImpostorSearch::cascaded}).wrong, 0);
         EXPECT_LT(of({.search = ImpostorSearch::cascaded}).error, 0.01);

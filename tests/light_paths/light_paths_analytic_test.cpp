@@ -188,8 +188,8 @@ TEST(LightPathsAnalytic, PathDensity)
     EXPECT_GT(image, 400);
 }
 
-/// Of bounce maps each texel has the density of its own solid angle: the footprints on a part of a plane add up to
-/// its area, of a point and of a lamp that shines to one side.
+/// Texels of bounce maps have the density of their own solid angle: their footprints on a part of a plane add up
+/// to its area, for a point light and for a one-sided lamp.
 TEST(LightPathsAnalytic, PathDensityOfBounceMaps)
 {
     for (bool const lamp : {false, true}) {
@@ -324,7 +324,7 @@ TEST(LightPathsAnalytic, NarrowLobesKeepTheirDirection)
     EXPECT_GT(broad, 1000);
 }
 
-/// Of each texel how its path goes on: by mirror, glass, matt surface, or not at all.
+/// How the path of each texel continues: by a mirror, glass, a matt surface, or not at all.
 TEST(LightPathsAnalytic, BounceMap)
 {
     Scene scene;

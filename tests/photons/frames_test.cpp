@@ -155,7 +155,7 @@ TEST(PhotonFrames, LatticesFollowTheCamera)
 }
 
 /// A room at the border of a large world: the part that is shown does not change with each step of the camera, and
-/// light is not traced anew.
+/// light is not traced again.
 TEST(PhotonFrames, FocusAtTheBorderOfTheWorldStays)
 {
     Scene scene;

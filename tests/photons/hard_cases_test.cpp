@@ -241,8 +241,8 @@ TEST(PhotonStops, WhileLightPathsAreTraced)
         }
 }
 
-/// Requests a stop a while after the first pass; returns the seconds from then to the end of the render. Of a
-/// render that throws Interrupted the result is empty.
+/// Requests a stop some time after the first pass. Returns the seconds from then to the end of the render,
+/// or nothing if it throws Interrupted.
 double stop_after_first_pass(PhotonMethod const& m, World const& world, Camera const& camera,
                              RenderSettings const& s, double after_s, RenderResult& result)
 {

@@ -65,7 +65,7 @@ void check_propagation()
                          moved.view(),
                          total.view()});
         std::vector<ShColor> const found = download(moved);
-        // What each cell gets, light by light: the sum over its neighbours of what passes between them.
+        // Light that each cell receives: the sum over its neighbours of the flux between them.
         std::vector<vec3> const is_open = download(open);
         for (std::size_t i = 0; i < lights.size(); ++i) {
             glm::ivec3 const at = frame.cell_of(std::uint32_t(i));

@@ -106,7 +106,7 @@ TEST(LightGatheringVolume, ARoomInALargeWorld)
     EXPECT_NEAR(of_hall[true].mean, 1, 0.03);
 }
 
-/// When only a box has moved, what belongs to the room stays; light is that of lattices placed anew.
+/// When only a box has moved, the room's part is kept; light equals that of newly placed lattices.
 TEST(LightGatheringVolume, AMovingBox)
 {
     auto const room_with_box_at = [](float x) {

@@ -142,9 +142,8 @@ FreeSpaceError free_space_error(LightPropagation const& light, GridFrame const& 
     return {mean / exact, worst};
 }
 
-/// Free space: the flux through shells is kept. The irradiance of surfaces that
-/// face the light is about right in the mean, but far too even over the directions;
-/// with cosine lobes it is several times too high, as light turns back.
+/// Free space: the flux through shells is conserved. The irradiance of surfaces that face the light is right on
+/// average but too even over directions; with cosine lobes it is several times too high, as light turns back.
 TEST(LightPropagation, FreeSpace)
 {
     GridFrame const frame = cube(33, 3.3f);

@@ -1,4 +1,4 @@
-// What pictures say about how they were made, and which checkpoints they go on with.
+// What pictures say about how they were made, and the checkpoints from which they continue.
 
 #include "gi/hit_buffers/settings.h"
 #include "gi/light_paths/options.h"

@@ -1,4 +1,4 @@
-// The deep rasteriser: watertight by exact arithmetic, and one answer in all its forms.
+// The deep rasteriser: watertight by exact arithmetic; all its variants give the same result.
 
 #include "gi/raster/deep_raster.h"
 #include "tests/raster/plain_raster.h"

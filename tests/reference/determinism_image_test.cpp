@@ -106,7 +106,7 @@ TEST(Determinism, ResumedEqualsUninterrupted)
     std::filesystem::remove(state);
 }
 
-/// A pass may take longer than a person waits. What its tiles have is kept.
+/// A pass may take longer than a user wants to wait: after a stop, the paths of its finished tiles are kept.
 TEST(Determinism, APassIsInterruptedBetweenItsTiles)
 {
     World const world = room();

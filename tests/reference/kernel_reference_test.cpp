@@ -279,7 +279,7 @@ void check_budget()
 }
 LIGHTWELL_TEST_BOTH(KernelReference, BudgetsOfFrames, check_budget);
 
-/// Passes end between launches; a state goes on to the same bits.
+/// Passes end between launches; a resumed state gives the same bits.
 template <Space S>
 void check_interruptions()
 {

@@ -1,4 +1,4 @@
-// Legs of avatars: feet where they are told, else on the floor.
+// Legs of avatars: feet at given positions, else on the floor.
 
 #include "tests/scene/avatar_figure.h"
 

@@ -1,4 +1,4 @@
-// Avatars driven by trackers: heads and hands where they are told; real ones with their feet too.
+// Avatars driven by trackers: heads and hands at given poses; real ones with their feet too.
 
 #include "gi/scene/load/load.h"
 #include "tests/scene/avatar_figure.h"

@@ -43,7 +43,7 @@ void expect_finite(std::vector<dvec3> const& p)
     for (dvec3 const& v : p) ASSERT_TRUE(std::isfinite(glm::length(v)));
 }
 
-/// Every clip: finite at several times, the same a period later, somewhere not as at its start.
+/// Every clip gives finite vertices, equal ones a period later, and moves something.
 void expect_plays(std::filesystem::path const& file, std::size_t clips)
 {
     Report report;

@@ -1,4 +1,4 @@
-// A world taken from moment to moment is the world built afresh, bit for bit, and what cannot move is not touched.
+// A world that is advanced step by step equals a newly built one bit for bit; static parts are not touched.
 
 #include "gi/core/error.h"
 #include "gi/scene/generate/figure.h"

@@ -38,7 +38,8 @@ Flux luminous_flux(EnvironmentMap map)
     scene.environment = std::move(map);
     World const world = world_of(std::move(scene));
     WorldView const v = view(world);
-    // Two Gauss points in the height of every part: near the poles also what is linear times sin(theta) is exact.
+    // Two Gauss points across every part's height, so that near the poles functions linear times
+    // sin(theta) are integrated exactly too.
     constexpr std::uint32_t kParts = 2; // of a texel; a multiple of two: kinks lie between them
     Flux flux;
     for (std::uint32_t y = 0; y < 2 * h * kParts; ++y) {

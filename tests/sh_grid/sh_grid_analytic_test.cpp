@@ -72,7 +72,7 @@ TEST(ShGrid, Furnace)
                     EXPECT_NEAR(mean, 1, 0.005);
                     EXPECT_LT(off, 0.008);
                 }
-                // What the photons carry is what the grid holds, and what walls that glow and reflect must give.
+                // The grid holds all the power of the photons, which is that emitted and reflected by the walls.
                 auto const& counts = report.counts();
                 double const carried = counts.at("flux of the photons, W (luminance)");
                 EXPECT_NEAR(counts.at("grid: flux held, W (luminance)") / carried, 1, 1e-4);
@@ -200,7 +200,7 @@ TEST(ShGrid, ClosedFormIsTheLimitOfSamples)
     EXPECT_NEAR(closed / sampled, 1, 0.03);
 }
 
-/// When lights go out, the field follows within three frames; nothing that moves with a camera makes it anew.
+/// When lights go out, the field follows within three frames. A moving camera does not restart it.
 TEST(ShGrid, FollowsLights)
 {
     Scene scene;

@@ -42,7 +42,7 @@ RunningMean over_seeds(int seeds, RenderSettings s, Render const& render)
 
 struct Sky {
     char const* file;
-    int stored_seeds; ///< what a stored set lacks, all its passes lack: it takes many
+    int stored_seeds; ///< errors of a stored set are the same in all passes, so many sets are averaged
 };
 
 class RealSky : public testing::TestWithParam<Sky> {};

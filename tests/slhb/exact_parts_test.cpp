@@ -49,7 +49,7 @@ TEST(SlhbExactParts, WithoutLookUpsThereIsNoBias)
 
 TEST(SlhbExactParts, NothingIsLookedUp)
 {
-    // Open, under a sky and parallel light: render_with_slhb checks that all is finite.
+    // Open, under a sky and parallel light: render_small checks that all is finite.
     Scene scene;
     add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0.5f})));
     add_sphere(scene, {0, 0.4f, 0}, 0.4f, 2, add_material(scene, lambert(vec3{0.8f})), true);

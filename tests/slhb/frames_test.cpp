@@ -34,7 +34,7 @@ RenderSettings few_pixels(Schedule schedule)
 
 class Frames : public testing::TestWithParam<Schedule> {};
 
-/// The third frame of a walk is, bit for bit, the picture that everything built anew gives.
+/// The third frame of a walk is, bit for bit, the picture of newly built structures.
 TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
 {
     auto const scene = walk();

@@ -33,8 +33,8 @@ TEST(SlhbFurnace, SphereUnderAUniformSky)
 
 TEST(SlhbFurnace, ClosedSphereThatGlows)
 {
-    // Inside of a sphere every point sees every other with the same form factor: little noise. The truth is that
-    // of all that is closed and uniform, however few its triangles are.
+    // Inside a sphere all form factors are equal, so there is little noise.
+    // The result holds for every closed uniform surface, however few its triangles are.
     for (float const rho : {0.5f, 0.9f}) {
         Scene scene;
         Material wall = lambert(vec3{rho});

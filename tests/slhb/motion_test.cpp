@@ -151,7 +151,7 @@ TEST(MotionVectors, OfOtherMethodsAreThoseOfTheReference)
     }
 }
 
-/// Views go, come back and change their size without motion that was not.
+/// Views that disappear, return or change their size get no false motion vectors.
 TEST(MotionVectors, OfViewsOfTheReferenceStartWithNone)
 {
     Report report;

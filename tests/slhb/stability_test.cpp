@@ -1,4 +1,4 @@
-// Hard inputs: the right picture or a message, and never a value that is not finite (render_with_slhb checks).
+// Hard inputs: the right picture or a message, and never a value that is not finite (render_small checks).
 
 #include "gi/core/error.h"
 #include "gi/hit_buffers/settings.h"

@@ -116,7 +116,7 @@ TEST(Views, MirrorsAreTracedForEachEye)
     EXPECT_GT(relmse_of(*a[1].picture.find("color"), *a[0].picture.find("color")), 1e-3); // they do differ
 }
 
-/// Which pixels took their light is told, for all paths of a frame; where they did, albedos and light agree.
+/// Pixels that took light from the partner are listed for all paths of a frame; there, albedos and light agree.
 TEST(Views, TellWhoseLightTheyTook)
 {
     Report report;
@@ -157,7 +157,7 @@ TEST(Views, TellWhoseLightTheyTook)
     }
 }
 
-/// A view that changes its size, goes and comes back starts without motion vectors.
+/// A view that changes its size, or returns after frames without it, starts without motion vectors.
 TEST(Views, MayChangeFromFrameToFrame)
 {
     Report report;

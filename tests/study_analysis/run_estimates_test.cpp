@@ -83,7 +83,7 @@ TEST(QuestPlusEstimate, KnowsOnWhichSideAFlatFunctionLies)
 
 TEST(LikelihoodEstimate, SaysWhereItsIntervalIsOpen)
 {
-    // Without trials that have no signal the false alarm rate may be above a half.
+    // Without no-signal trials, the false alarm rate is unknown and may be above a half.
     auto const estimate = [](std::string const& harder) {
         Script const s = yes_no_script(harder, "{method: constant, levels: 1..100/5, trials_per_level: 2}");
         Block const& b = s.blocks.at(0);

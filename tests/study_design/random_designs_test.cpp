@@ -65,7 +65,7 @@ Design random_design(Random& random)
     return d;
 }
 
-/// What a trial has of a subject, found anew from names.
+/// Value of a subject in a trial, looked up independently by names.
 std::set<std::string> things(Script const& s, std::string const& task, Trial const& t, std::string const& subject)
 {
     auto const level = [&](std::size_t stimulus, std::size_t factor) {

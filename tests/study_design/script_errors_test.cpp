@@ -61,7 +61,7 @@ TEST(ScriptErrors, WhatAMistakeLeavesUnknownIsNotUsed)
                            "{quality: best}",
                            "  light: {}\nreference: {quality: best, light: day}"));
     EXPECT_NE(empty.find("factor 'light' has 0 levels"), std::string::npos) << empty;
-    // A key of QUEST+ that is misspelt: its grid is not there.
+    // A misspelt key of QUEST+: its grid is missing.
     std::string const grid =
         message_of(spoiled("  rate:\n    task: rating\n    scale: {min: 1, max: 7}\n    cross: "
                            "[scene, quality]",
@@ -69,7 +69,7 @@ TEST(ScriptErrors, WhatAMistakeLeavesUnknownIsNotUsed)
                            "    procedure: {method: questplus, threshold: 1..64/9, slope: 3, "
                            "gess: 0.5, lapse: 0.02, stop: {trials: 9}}"));
     EXPECT_NE(grid.find("did you mean 'guess'?"), std::string::npos) << "\n" << grid;
-    // What is compared is wrong: that is told first, not that nothing is varied.
+    // The mistake in what is compared is reported first, not that nothing is varied.
     std::string const compare =
         message_of(spoiled("  rate:\n    task: rating\n    scale: {min: 1, max: 7}\n    cross: "
                            "[scene, quality]",
@@ -216,7 +216,7 @@ TEST(ScriptErrors, OfProceduresSayWhy)
     }
 }
 
-/// All mistakes as `study check` tells them, but for the name of the file: "8:5: problem (why) suggestion".
+/// All mistakes as `study check` reports them, without the name of the file: "8:5: problem (why) suggestion".
 std::vector<std::string> mistakes_of(std::string const& text)
 {
     std::vector<std::string> all;
@@ -225,7 +225,7 @@ std::vector<std::string> mistakes_of(std::string const& text)
     return all;
 }
 
-/// Each mistake of a script is told, at its place, and no other.
+/// Each mistake of a script is reported at its place, and nothing else.
 struct Told {
     std::string body;
     std::vector<std::string> begin;

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 struct ChildResult {
     std::set<std::pair<int, int>> kept; ///< step and attempt of trials that were said to be on the disk
-    std::string message;                ///< of the refusal; empty = the session is complete
+    std::string message;                ///< error message; empty = the session is complete
 };
 
 /// Runs a session in a child process, after `prepare`.

@@ -1,4 +1,4 @@
-// Sessions that were cut off, and what they must not go on with.
+// Interrupted sessions, and changes after which they must not be resumed.
 
 #include "gi/core/durable_file.h"
 #include "tests/study_run/support.h"

@@ -19,7 +19,8 @@ TEST(Random, GivesThePublishedNumbersOfPcg32)
 TEST(Random, BelowIsUnbiasedWhereTheModulusWouldNotBe)
 {
     Random random(1);
-    std::uint32_t const n = 3u << 30; // plain remainders would fall below 2^30 half of the time, and not a third
+    // Plain remainders would give values below 2^30 half of the time instead of a third.
+    std::uint32_t const n = 3u << 30;
     int low = 0;
     int const draws = 30000;
     for (int i = 0; i < draws; ++i) low += random.below(n) < (1u << 30);

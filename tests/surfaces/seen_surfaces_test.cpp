@@ -233,7 +233,7 @@ TEST(SeenSurfaces, APaneReflectsLampsToo)
     EXPECT_NEAR(s.albedo.x, 0.5f * (1 - 0.08f / 1.04f), 0.005f);
 }
 
-/// A wall that comes 0.1 m nearer to the mirror comes 0.1 m nearer in it, from the other side.
+/// A wall that moves 0.1 m towards the mirror also moves 0.1 m towards it in the reflection, from the other side.
 TEST(SeenSurfaces, WhatMovesMovesInTheMirrorToo)
 {
     auto scene = std::make_shared<Scene>();

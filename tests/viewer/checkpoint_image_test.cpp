@@ -1,4 +1,4 @@
-// A killed render goes on from its last state, to the very picture of an undisturbed one.
+// A killed render continues from its last state to the same picture as an uninterrupted one.
 
 #include "tests/viewer/checkpoint.h"
 

@@ -1,4 +1,4 @@
-// Where people start in scenes without a camera.
+// Where viewers start in scenes without a camera.
 
 #include "viewer/offline/first_view.h"
 

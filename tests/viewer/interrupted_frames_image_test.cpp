@@ -37,7 +37,7 @@ TEST(InterruptedFrames, WhileOneIsWritten)
     expect_to_go_on(call, folder);
 }
 
-/// Of a running program, s; 0 if it has ended.
+/// Processor time of a running program, s; 0 if it has ended.
 double processor_s(pid_t pid)
 {
     std::string const text = file_text("/proc/" + std::to_string(pid) + "/stat");
@@ -75,8 +75,8 @@ private:
     int fd_;
 };
 
-/// Of a frame's processor time, the paths take the first 60 %, and the filter most of the rest. It is given up,
-/// and nothing is begun after it.
+/// Paths take the first 60 % of a frame's processor time, and the filter most of the rest.
+/// The filter is abandoned, and nothing is started after it.
 TEST(InterruptedFrames, WhileOneIsDenoised)
 {
     std::string const call =

@@ -1,4 +1,4 @@
-// The state of an interrupted render is saved, whatever becomes of its picture, and the other way round.
+// The state of an interrupted render is saved even if writing its picture fails, and vice versa.
 
 #include "viewer/offline/state_saving.h"
 

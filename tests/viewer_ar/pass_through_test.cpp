@@ -1,4 +1,4 @@
-// Composites for two eyes: of each camera from where it is, at the same moment.
+// Composites for two eyes: each from its own camera, both of the same moment.
 
 #include "ar/runtime/hmd_run.h"
 

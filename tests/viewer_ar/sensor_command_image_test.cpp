@@ -143,7 +143,7 @@ TEST(ArSensor, IsThatOfThePicturesForIt)
     EXPECT_EQ(again.photometry->colour, c.photometry->colour);
     EXPECT_EQ(again.provenance.size(), c.provenance.size());
 
-    // What a camera without a response is taken to be is told.
+    // The response assumed for a camera without a measured one is reported.
     ar::Calibration bare;
     bare.camera = sensor_camera();
     ar::write_calibration(folder / "bare.yaml", bare);

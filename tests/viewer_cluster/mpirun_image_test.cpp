@@ -66,7 +66,7 @@ protected:
         }
         return log;
     }
-    /// Once a rank has rendered so many frames. @return its name
+    /// Waits until a rank has rendered this number of frames. @return its name
     std::string signal_at(int rank, std::size_t frame, int signal)
     {
         auto const limit = Clock::now() + std::chrono::seconds(60);
@@ -203,7 +203,7 @@ TEST_F(Ranks, OthersGoOnWithoutAStalledFollower)
 
 TEST_F(Ranks, FollowersStopWithoutTheirLeader)
 {
-    auto const mpirun = start(100000, "5 continue", kRecovery); // without a leader nobody can go on
+    auto const mpirun = start(100000, "5 continue", kRecovery); // without a leader no rank can continue
     std::string const victim = signal_at(0, 20, SIGKILL);
     expect_all_say(victim, 0, "has died", 5);
     EXPECT_NE(log(1).all_said().find("it was the leader"), std::string::npos);

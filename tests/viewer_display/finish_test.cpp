@@ -1,4 +1,4 @@
-// Blending makes one of what overlaps; meshes that fold are refused.
+// Edge blending makes overlapping pictures as bright as a single one; meshes that fold are refused.
 
 #include "tests/viewer_display/display_samples.h"
 #include "tests/viewer_display/mesh_samples.h"

@@ -578,7 +578,7 @@ TEST(ImportNDisplay, OlderText)
     EXPECT_NE(message("[screen] id=\"x").find("a quote is not closed"), std::string::npos);
     EXPECT_NE(message("[screen] id=x loc=\"X=one\"").find("X is no number"), std::string::npos);
     EXPECT_NE(message("[cluster_node] id=a window=b").find("there is no [window] id=b"), std::string::npos);
-    // By its first line it is told apart from Vrui's.
+    // Its first line distinguishes it from Vrui's.
     auto const file = std::filesystem::temp_directory_path() / "lightwell_ndisplay_test.cfg";
     gi::write_text(file, text);
     std::vector<SkippedPart> parts;

@@ -94,7 +94,7 @@ TEST(Surface, SphericalMirrorByReflection)
     EXPECT_NEAR(glm::length(p->at), 10, 1e-9);
     expect_at(glm::normalize(p->at - n), away, 1e-9);
     EXPECT_FALSE(surface_point(s, 1, {0.95, 0.5})) << "beside the ball";
-    // Straight at the ball: back to where it came from.
+    // A ray through the ball's centre returns to its origin.
     expect_at(surface_point(s, 1, {0.5, 0.5})->at, {0, 0, 10});
     s.fov_deg = 180; // only what is before the frame
     EXPECT_FALSE(surface_point(s, 1, {0.5, 0.5}));
@@ -150,7 +150,7 @@ TEST(CubeFaces, ShowEveryDirectionWhereItIs)
     }
 }
 
-/// A colour that tells the direction.
+/// A colour that encodes the direction.
 glm::dvec3 colour_of(gi::dvec3 direction) { return 127.5 + 127.5 * direction; }
 
 TEST(CubeFaces, AFisheyeOfColouredDirections)

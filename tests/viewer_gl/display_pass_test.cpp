@@ -266,7 +266,7 @@ TEST_F(Display, TimesAreStated)
     std::cout << "\n";
 }
 
-/// As programs take memory, and a session may go through all modes.
+/// Compiled shaders take memory, and a session may use all modes.
 TEST_F(Display, KeepsAFewPrograms)
 {
     glm::ivec2 const size{16, 8};

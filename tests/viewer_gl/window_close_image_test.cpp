@@ -1,4 +1,4 @@
-// What a window manager sends when its user closes a window.
+// The message that a window manager sends when its user closes a window.
 
 #include "tests/viewer_gl/on_xvfb.h"
 

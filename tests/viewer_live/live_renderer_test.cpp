@@ -52,7 +52,7 @@ struct Live {
     }
 };
 
-/// The leader of ranks of which another one takes as long as told.
+/// The leader of a cluster in which another rank takes a given time.
 class SlowestRank : public FrameLink {
 public:
     explicit SlowestRank(double seconds, std::optional<gi::DynamicUpdate> dynamic_update = {})
@@ -143,7 +143,7 @@ TEST(LiveRenderer, GoesByTheSlowestRank)
     }
 }
 
-/// Its hit buffers are on the other ranks, and so is what it says of them.
+/// The other ranks have the hit buffers, and so the facts about them.
 TEST(LiveRenderer, ALeaderWithoutWallsSaysWhatOthersDo)
 {
     Live live;

@@ -73,7 +73,7 @@ TEST(FrameCommand, ComesBackInAllItsBits)
     for (FrameCommand const& o : {FrameCommand{}, desktop_order(), cave_order()}) {
         FrameCommand const back = command_from_bytes(to_bytes(o));
         EXPECT_EQ(back, o);
-        EXPECT_EQ(to_bytes(back), to_bytes(o)); // also tells -0 from 0
+        EXPECT_EQ(to_bytes(back), to_bytes(o)); // also distinguishes -0 from 0
     }
     EXPECT_TRUE(std::signbit(command_from_bytes(to_bytes(cave_order())).world_from_room[3].y));
 }

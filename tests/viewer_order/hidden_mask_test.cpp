@@ -1,4 +1,4 @@
-// What a lens hides, as pixels and as a change of the session.
+// Hidden areas of lenses, as pixels and as changes of a session.
 
 #include "viewer/protocol/hidden_mask.h"
 

@@ -217,7 +217,7 @@ TEST(FirstSurfaces, AChangeOfSizeKeepsWhatWasAveraged)
     for (double const after : {0.75, 1.0}) EXPECT_LT(change_to(after), 1.2 * same) << after; // lost: 1.6 times
 }
 
-/// Without reuse there is no history either, and a picture that stands still is still.
+/// Without reuse nothing of earlier frames is kept, and successive pictures of a still view are equal.
 TEST(FirstSurfaces, AStillPictureIsStillWithSmallLightAndWithoutReuse)
 {
     gi::Report report;

@@ -218,13 +218,13 @@ TEST(RenderSession, RefusesWhatCannotBeAndKeepsAll)
     EXPECT_THROW(RenderSession(scene_of, 0, report).render(command(0), {}), gi::InputError);
 }
 
-/// Where there is no device it is refused, and the session goes on as it was.
+/// Without a device the setting is refused, and the session continues unchanged.
 TEST(RenderSession, RendersByKernelsWhereThereIsADevice)
 {
     gi::Report report;
     RenderSession s = started(report), fresh = started(report);
     EXPECT_EQ(color(s.render(command(0), {})), color(fresh.render(command(0), {})));
-    s.apply({"device", "cpu"}); // begins anew
+    s.apply({"device", "cpu"}); // restarts the method
     fresh.apply({"device", "cpu"});
     if (gi::device_present()) {
         s.apply({"device", "cuda"});
@@ -295,7 +295,7 @@ TEST(RenderSession, FewerDirectionsMayFollowWhatMoves)
     EXPECT_LT(times(kAll + 1, kFrames), 1.1);
 }
 
-/// Who names a schedule has it: then nothing else decides how many follow.
+/// A schedule named by the user is used; nothing else then decides how many axes are updated.
 TEST(RenderSession, AScheduleThatIsNamedStays)
 {
     gi::Report report;

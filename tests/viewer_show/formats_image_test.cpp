@@ -116,7 +116,7 @@ TEST_F(FormatsOfView, FrameLogAndRecording)
     EXPECT_NE(o.out.find("recorded to walk.lwr"), std::string::npos) << o.out;
 }
 
-/// While it lives, programs that are started find disks full after so many bytes of a file.
+/// While it exists, started programs find the disk full after this number of bytes of a file.
 class FullDisk {
 public:
     explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN))

@@ -169,7 +169,7 @@ TEST_F(Input, ConvergedScreenshotOfAPictureThatRests)
     view->quit();
 }
 
-/// The recording tells which camera the frame had.
+/// The recording contains the camera of the frame.
 TEST_F(Input, ScreenshotsShowWhatWasAskedBeforeThem)
 {
     view.emplace("cornell --size 64x48 --record walk.lwr --set reproject=false");

@@ -17,11 +17,11 @@ constexpr glm::ivec2 kSize{320, 240};
 constexpr double kEyeDistance_m = 0.063; // what the viewer starts with
 constexpr double kCornellBack_m = 0.5592;
 
-/// The window's pow and the CPU's are not the same to the last bit: where a value lies this near to the border
-/// between two bytes, of a step between bytes, either is right. (Seen: 1 to 4 of 230,400 bytes.)
+/// The GPU's pow and the CPU's differ in the last bits: a value this near to the border between two bytes,
+/// in units of a byte, may become either. (Seen: 1 to 4 of 230,400 bytes.)
 constexpr float kEitherByte = 0.01f;
 
-/// A picture in bytes as the display has them; low and high differ where either is right.
+/// A picture in the display's bytes; low and high are the two bytes allowed, where both are.
 struct Eye {
     Bytes low, nearest, high;
 };
@@ -201,7 +201,7 @@ TEST_F(Stereo, InterlaceFollowsTheWindowOverTheScreen)
     view->quit();
 }
 
-/// Nobody asks for a picture: the one in the window has to have been drawn anew by itself.
+/// Nobody asks for a picture: the window must have been redrawn by itself.
 TEST_F(Stereo, InterlaceIsDrawnAnewWhenTheWindowMoves)
 {
     set_mode(StereoMode::rows);
@@ -350,7 +350,7 @@ TEST_P(EyesInMode, AreWhereTheGeometrySays)
                     EXPECT_NEAR(seen, back, 1e-5) << x << ", " << y << " of eye " << number;
                     ++on_back;
                 }
-                // Only this one tells where the eye is sideways: the wall at x = 0.
+                // Only this one depends on the sideways position of the eye: the wall at x = 0.
                 if (right(x) > 0 && up(y + 1) > 0) {
                     double const far = (middle.x - aside) / right(x), near = (middle.x - aside) / right(x + 1);
                     if (near + middle.z > 0.02 && far + middle.z < 0.54 && middle.y + up(y) * far < 0.53) {

@@ -1,4 +1,4 @@
-// What buttons and axes of a wand ask for.
+// Commands from the buttons and axes of a wand.
 
 #include "viewer/app/wand_input.h"
 

@@ -8,7 +8,7 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-/// Every pixel tells its eye and its place: (eye, x, y).
+/// Every pixel encodes its eye and its place: (eye, x, y).
 Bytes eye_picture(int eye, glm::ivec2 size)
 {
     Bytes out;

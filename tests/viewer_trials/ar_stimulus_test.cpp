@@ -91,7 +91,7 @@ TEST_F(ArStimuli, CompositesAreThoseOfArRunAndTheSameAgain)
         EXPECT_TRUE(first[f].world_from_camera);
     }
     EXPECT_GT(cv::norm(first[0].rgb, picture(desk() / "frames/000000.png"), cv::NORM_INF), 20);
-    // Frames before the stimulus warm filters up, and are part of what decides it.
+    // Frames before the stimulus initialise filters, and so determine its pictures.
     auto const warm = made({{"ar.poses", "poses.csv"}, {"ar.frame", "2"}}, 6, 2);
     ASSERT_EQ(warm.size(), 1u);
     EXPECT_EQ(cv::norm(warm[0].rgb, first[2].rgb, cv::NORM_INF), 0);

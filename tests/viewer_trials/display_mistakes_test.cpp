@@ -1,4 +1,4 @@
-// What a display cannot show, told at its place in the script.
+// Settings that a display cannot show are reported at their place in the script.
 
 #include "gi/core/file.h"
 #include "tests/viewer/run_program.h"

@@ -1,4 +1,4 @@
-// Sixty mistakes of scripts (data/mistakes.yaml): each is told alone, and all are told at once.
+// Sixty mistakes of scripts (data/mistakes.yaml): each is reported alone, and all are reported at once.
 
 #include "gi/core/file.h"
 #include "tests/viewer/run_program.h"

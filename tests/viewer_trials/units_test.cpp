@@ -291,7 +291,7 @@ TEST(Response, ADecimalCommaIsAPoint)
     EXPECT_DOUBLE_EQ(*r.value(), 5.5);
 }
 
-/// What a client is told by an experiment that runs.
+/// Messages of a running experiment to its clients.
 nlohmann::json asked(Experimenter& experimenter, std::filesystem::path const& socket,
                      nlohmann::json const& request)
 {

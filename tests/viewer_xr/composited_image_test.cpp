@@ -1,4 +1,4 @@
-// What a runtime with a real compositor shows of the pictures of both eyes: its window under Xvfb, photographed.
+// Both eyes' pictures as shown by an OpenXR runtime with a real compositor: screenshots of its window under Xvfb.
 
 #include "gi/image_io/picture_file.h"
 #include "tests/viewer_xr/monado.h"

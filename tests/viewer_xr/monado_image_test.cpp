@@ -34,7 +34,7 @@ TEST_F(Monado, ShowsThePictureBeforeWhereTheNextIsLate)
     EXPECT_GT(repeated, 5 * pictures);
     EXPECT_GE(pictures, 8);
     expect_nothing_lost(r);
-    // Poses go on, and are of a time that is still to come, later from frame to frame.
+    // Poses continue, and are predicted for times in the future that increase from frame to frame.
     auto const log = read_log(folder / "log.csv");
     ASSERT_GE(log.size(), 60u);
     for (std::size_t i = 1; i < log.size(); ++i) {

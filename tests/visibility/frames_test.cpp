@@ -27,7 +27,7 @@ TEST(VisibilityFrames, AStillFrameIsTheRenderOfAsManyPaths)
     }
 }
 
-/// Frames that follow a walking figure are what renderers begun at that moment give.
+/// Successive frames of a walking figure equal those of renderers started at that moment.
 TEST(VisibilityFrames, FollowWhatMoves)
 {
     Scene scene = generate_sphere(2000, 0);

@@ -63,7 +63,7 @@ TEST(Whitted, ShowsWhatTheReferenceShowsDirectly)
     }
 }
 
-/// In a closed box of mirrors every ray goes on until the limit.
+/// In a closed box of mirrors every ray continues until the limit.
 TEST(Whitted, RecursionLimitCutsAndCounts)
 {
     Scene scene;

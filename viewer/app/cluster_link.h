@@ -10,7 +10,7 @@ namespace viewer {
 /// FrameLink between the ranks of mpirun: frames in lock step; lost ranks are reported by name.
 class ClusterLink : public FrameLink {
 public:
-    /// @param farewell  what a follower tells the leader at the end; called on any thread
+    /// @param farewell  message from a follower to the leader at the end; called on any thread
     ClusterLink(ClusterIdentity identity, ClusterSettings const& settings,
                 std::function<std::string()> farewell = {})
         : identity_(std::move(identity)), settings_(settings), farewell_(std::move(farewell))

@@ -21,7 +21,7 @@ bool is_scene(fs::path const& file)
     return file.filename() == "sequence.json" || std::ranges::find(endings, ending) != endings.end();
 }
 
-/// A clickable line; true if it was clicked. @param shown  may differ from the name that tells lines apart
+/// A clickable line; true if it was clicked. @param shown  may differ from the name that identifies the line
 bool line(std::string const& shown, std::string const& id)
 {
     return ImGui::Selectable((shown + "##" + id).c_str());

@@ -23,7 +23,7 @@ public:
     /// Opens it at the folder of this scene, or closes it.
     void toggle(std::string const& scene);
     /// Draws it between Panel::begin and finish, if it is open.
-    /// @return the scene that the user chose, which closes it
+    /// @return the scene that the user chose; choosing closes the dialog
     std::optional<std::string> draw();
     RecentScenes const& recent() const { return recent_; }
 

@@ -5,7 +5,7 @@
 
 namespace viewer {
 
-/// What a user may wonder about the frame: why it does not refine, what limits it, how it is exposed.
+/// Notes on the frame: why it does not refine, what limits it, how it is exposed.
 std::vector<std::string> frame_notes(ViewState const& state, LiveFrame const& frame);
 
 /// Draws the contents of the panel, between Panel::begin and end. Every entry of the settings

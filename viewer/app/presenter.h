@@ -29,7 +29,7 @@ struct Pane {
     bool right_alone = false;              ///< shows only the right eye: second of two windows
     int of_wall = -1;                      ///< wall of the display that it shows; -1 = none
     int wall = -1;                         ///< index into the walls' settings; -1 = flat, without a wall pass
-    PaneFaces left_faces{}, right_faces{}; ///< instead of left and right, for a wall with a surface
+    PaneFaces left_faces{}, right_faces{}; ///< replace left and right on a wall with a curved surface
 };
 
 /// A picture on a part of a wall, at the wall's distance for both eyes.

@@ -19,7 +19,7 @@ public:
 
     /// Those that still exist. A file that cannot be read counts as empty.
     std::vector<std::string> read() const;
-    /// Puts a scene first. Names of generated scenes are left out.
+    /// Puts a scene first in the list. Names of generated scenes are left out.
     /// @return why it could not be kept; empty = it was
     std::string add(std::string const& scene) const;
 

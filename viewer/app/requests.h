@@ -28,7 +28,7 @@ public:
     void no_picture(std::string const& why) { no_picture_ = why; }
     /// Call before input is read: releases tapped keys.
     void step();
-    /// A scene is there: handles the requests that waited for it.
+    /// Call when a scene is loaded: handles the requests that waited for it.
     void begin();
     void answer_with(RemoteServer* server) { server_ = server; }
     /// True if the next call of presented() needs the window's bytes.

@@ -28,7 +28,7 @@ namespace {
 
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
 constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture,
-constexpr double kDrawings = 5; // but at most a fifth of the time: software drivers take it from the renderer
+constexpr double kDrawings = 5;         // at most 1/5 of the time, as software drivers slow the renderer
 constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
 double steady_s()
@@ -525,7 +525,7 @@ private:
     ErrorMeter meter_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
     bool dirty_ = true, fallback_told_ = false, had_messages_ = false;
-    std::string message_; ///< the last one, told until message_until_s_
+    std::string message_; ///< the last message, shown until message_until_s_
     double message_until_s_ = 0;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
     double draw_s_ = 0; ///< that the last reprojected picture took

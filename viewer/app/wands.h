@@ -19,7 +19,7 @@ public:
     NavigationInput step(std::vector<WandState> const& states, ViewCore& core, gi::dmat4 const& world_from_room,
                          double seconds);
     bool menu_is_open() const { return menu_.has_value(); }
-    /// The menu has changed, or is due again, since it was last prepared.
+    /// True if the menu has changed since it was last drawn, or must be drawn again.
     bool wants_picture(double now_s) const;
     /// Fills the open menu. On the thread of input; not while another thread draws.
     void prepare(ViewState& state, double frames_per_s, double now_s);

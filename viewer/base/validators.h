@@ -25,7 +25,7 @@ inline CLI::Validator in_range(double low, double high)
         "FLOAT in " + range);
 }
 
-/// For options of threads: more than there are become as many as there are, which is said on stderr.
+/// For options of threads: reduces a number above the available threads to these, with a note on stderr.
 inline CLI::Validator as_many_threads_as_there_are()
 {
     return CLI::Validator(

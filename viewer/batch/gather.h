@@ -1,5 +1,5 @@
 #pragma once
-// Puts the outputs of a batch where people look for them: FOLDER/GROUP/NAME, and joins tables.
+// Copies the outputs of a batch from the store to FOLDER/GROUP/NAME, and joins tables.
 
 #include "viewer/batch/store.h"
 
@@ -13,10 +13,11 @@ struct Gathered {
     std::size_t tasks = 0;            ///< whose outputs are there
     std::size_t missing = 0;          ///< tasks without a result
     std::vector<std::string> merged;  ///< files
-    std::vector<std::string> damaged; ///< outputs whose content in the store is not what it was
+    std::vector<std::string> damaged; ///< outputs whose content in the store has changed
 };
 
-/// Each output is checked against its hash on the way. A damaged one is forgotten, so that resuming makes it anew.
+/// Each output is checked against its hash while it is copied. A damaged one is removed from the store,
+/// so that resuming makes it again.
 /// @throws InputError a file of another content is there, two tasks made different files of one name, or the
 /// tables of a group have different columns
 Gathered gather(Store const& store, Batch const& batch, std::filesystem::path const& folder, Placing placing,

@@ -14,7 +14,7 @@ struct HyperQueueSettings {
     bool shows_progress = true;
 };
 
-/// An own server that dies is started again, and gets what is missing.
+/// If a server started by this program ends early, it is started again and gets the missing tasks.
 /// @throws InputError Python has no package hyperqueue, or the server cannot be reached
 RunOutcome run_on_hyperqueue(Store const& store, std::string const& id, Batch const& batch,
                              HyperQueueSettings const& settings, gi::StopRequest const& stop);

@@ -41,7 +41,7 @@ private:
     int fd_ = -1;
 };
 
-/// Reads the journals of all machines; each call goes on where the last one ended.
+/// Reads the journals of all machines; each call continues where the last one ended.
 class TaskJournalReader {
 public:
     explicit TaskJournalReader(std::filesystem::path folder) : folder_(std::move(folder)) {}

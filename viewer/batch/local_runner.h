@@ -18,7 +18,7 @@ struct LocalSettings {
 struct RunOutcome {
     Counts counts;            ///< at the end
     std::size_t was_done = 0; ///< before it began
-    int lost_workers = 0;     ///< processes that were killed, whose task was begun anew
+    int lost_workers = 0;     ///< processes that were killed, whose task was restarted
     bool is_interrupted = false;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a machine has for tasks, and who occupies it.
+// Resources of a machine (processors, GPUs, memory), and which of them tasks occupy.
 
 #include "viewer/batch/task.h"
 

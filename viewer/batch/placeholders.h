@@ -1,5 +1,5 @@
 #pragma once
-// {name} in texts of a manifest stands for the value of a parameter; {{ and }} are braces.
+// {name} in texts of a manifest is replaced by the value of a parameter; {{ and }} are braces.
 
 #include "gi/core/yaml.h"
 #include "viewer/batch/task.h"

@@ -6,7 +6,7 @@
 namespace viewer::batch {
 namespace {
 
-/// The light of the other methods, and of a radiance cache, starts anew when a picture is resumed.
+/// The other methods, and radiance caches, start their light afresh when a picture is resumed.
 bool resumes_exactly(CommandWords const& words)
 {
     std::string const method = words.value("--method").value_or(std::string(gi::kDefaultMethod));
@@ -21,7 +21,7 @@ std::vector<std::string> resumable_files(Task const& task)
     CommandWords const words(task.command);
     if (task.command.empty() || task.command.front() != "render") return {};
     // A budget counts for each call, motion blur is rendered in one go, frames of a chain differ in their noise,
-    // and what is told of frames is only of those that a call rendered.
+    // and reports of frames are only of those that a call rendered.
     for (char const* const option :
          {"--resume", "--budget", "--shutter", "--reuse", "--video", "--stats", "--json"})
         if (words.has(option)) return {};

@@ -25,7 +25,7 @@ struct Attempt {
     bool may_pass = true;
 };
 
-/// What is wrong with an input now; empty = it is as it was planned.
+/// How an input differs from the one that was planned; empty = it does not.
 std::string change_of(InputFile const& file)
 {
     std::error_code failed;
@@ -104,7 +104,7 @@ private:
             if (settings_.prepared && settings_.prepared() == Publish::elsewhere) return WorkEnd::passed_on;
             store_.publish(task_.key);
         } catch (gi::InputError const& e) {
-            store_.withdraw(result); // what is told as failed is not published later
+            store_.withdraw(result); // a task reported as failed is not published later
             event.kind = EventKind::failed;
             event.why = e.what();
         }
@@ -118,8 +118,8 @@ private:
         journal_.append(std::move(event));
     }
 
-    /// A folder with links to the inputs, folders for outputs, and what an attempt
-    /// that was cut has left to go on from.
+    /// Makes a folder with links to the inputs, folders for outputs, and what an
+    /// interrupted attempt left to resume from.
     /// @return whether there is something of that
     bool make_folder(Begin begin)
     {
@@ -219,7 +219,7 @@ bool is_key(std::string const& name)
     return name.size() == kKeyLength && name.find_first_not_of("0123456789abcdef") == name.npos;
 }
 
-/// Publishes what was prepared before its process was killed. The journal tells of the end that it had.
+/// Publishes results that were prepared before their process was killed, and reports its end to the journal.
 bool recover(Store const& store, std::string const& key)
 {
     auto const result = store.recover(key);

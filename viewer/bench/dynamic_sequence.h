@@ -14,7 +14,7 @@ namespace viewer {
 struct Structure {
     std::string_view name;
     gi::Schedule schedule;
-    bool moves, anew; ///< moves: the animation runs; anew: everything is rebuilt for every frame
+    bool moves, anew; ///< moves: the animation runs; anew: everything is rebuilt in every frame
 };
 
 /// Throws InputError listing the known structures.

@@ -46,7 +46,7 @@ std::array<double, 3> bias_errors(gi::Picture const& reference)
     std::array<double, 3> errors{kUnknown, kUnknown, kUnknown};
     gi::Layer const* const variance = reference.find("variance");
     if (variance == nullptr) return errors;
-    // Pixels are independent; the variance of a mean over channels is at most the mean of their variances.
+    // Assumes independent pixels; the variance of a mean over channels is at most the mean of their variances.
     double sum = 0;
     for (float const v : variance->data) sum += double(v);
     double const pixels = double(reference.pixels()), channels = double(variance->channels);

@@ -47,7 +47,7 @@ std::string suggest(std::string const& word, std::vector<std::string> const& kno
     return gi::nearest_word(word, known) ? gi::suggest(word, known) + " " + help : help;
 }
 
-/// What is wrong with an invalid call. Unknown words are reported before missing arguments.
+/// Describes an invalid call. Unknown words are reported before missing arguments.
 gi::InputError describe(CLI::ParseError const& e, CLI::App const& app)
 {
     std::string const help = "see lightwell " + path_of_given(app) + "--help", misfit = "the call is not valid";

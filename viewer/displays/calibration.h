@@ -1,6 +1,6 @@
 #pragma once
-// Calibration pictures for setting up a display, as pure functions of it. Each
-// pattern's comment lists what to check.
+// Calibration pictures for setting up a display, computed from its description alone.
+// Each pattern's comment lists what to check.
 
 #include "viewer/displays/views.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a monitor says of itself (VESA E-EDID 1.4).
+// Data by which a monitor describes itself (VESA E-EDID 1.4).
 
 #include <filesystem>
 #include <optional>

@@ -41,7 +41,7 @@ struct EyePasses {
     bool left = true, right = true, cyclop = true;
 };
 
-/// What a compound says of a segment that it draws. Canvas, segment and layout by name or index.
+/// Settings of a compound for a segment that it draws. Canvas, segment and layout by name or index.
 struct SegmentUse {
     std::string canvas = "0", segment = "0", layout;
     EyePasses eyes{};

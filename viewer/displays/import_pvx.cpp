@@ -1,7 +1,7 @@
 // ParaView's display configuration (vtkDisplayConfiguration): one Machine element per process,
 // in <pvx> or in its <Process Type="server"> (otherwise the last Process), as ParaView chooses. Walls have
 // LowerLeft, LowerRight and UpperRight; files from before version 5 have UpperLeft instead of UpperRight.
-// Viewers are told apart by ViewerId.
+// Viewers are distinguished by ViewerId.
 
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"

@@ -121,7 +121,7 @@ void merge(TextNode& base, TextNode const& change)
     }
 }
 
-/// True if anything in the environment changes what is not there: the file is a patch of another.
+/// True if the file changes settings that it does not define, and so is a patch of another file.
 bool is_patch(TextNode const& environment)
 {
     bool const has_nodes =

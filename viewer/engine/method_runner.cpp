@@ -14,9 +14,9 @@ namespace {
 /// A still picture is filtered while it has few paths, then less and less, so that it converges to the method's
 /// own result without a leap.
 constexpr float kFiltered = 48, kUnfiltered = 1024; // paths per pixel
-/// Where light does not change, temporal reuse averages over so many times the frames of the setting.
+/// Where light does not change, temporal reuse averages over this many times the frames of the setting.
 constexpr int kUnchanged = 8;
-/// Likewise, light is reused from the other eye only at first.
+/// Light is reused from the other eye only in this many frames after a change.
 constexpr int kSharedFrames = 16;
 
 /// Orthographic cameras have no motion vectors: no temporal reuse while anything moves.
@@ -27,7 +27,7 @@ void without_motion(gi::Picture& picture)
     std::fill(motion.data.begin(), motion.data.end(), std::numeric_limits<float>::quiet_NaN());
 }
 
-/// Light that an earlier picture, of another size or from elsewhere, knows of the surfaces of this one.
+/// Light for the surfaces of this picture from an earlier picture of another size or viewpoint.
 /// @param punctual  share of the light of punctual lights that it lacks
 std::vector<gi::KnownLight> known_light(gi::KeptLight const& before, gi::Picture const& picture, gi::dvec3 origin,
                                         float punctual, gi::SeenSurfaces* seen, gi::CameraRays const& rays)
@@ -148,7 +148,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     if (auto* const live = gi::ask<gi::LiveSettings>(*renderer_)) live->follow(settings.render);
     if (auto* const axes = gi::ask<gi::FollowingAxes>(*renderer_)) axes->update_axes(gi::updates_axes(method_, settings.render) ? settings.updated_axes : 0);
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
-    // Of the paths that were traced: where the frame was stopped, a replay is told only these.
+    // Counts the paths actually traced: for a stopped frame, a replay is given only these.
     still_paths_ = (anything_moved ? 0 : still_paths_) + results[0].paths;
     std::vector<gi::MirrorLayers> mirrors;
     for (std::size_t k = 0; k < results.size(); ++k)

@@ -63,7 +63,7 @@ private:
     /// Light that a view has taken from another of the same frame.
     gi::ReusedLight taken(std::size_t view, int partner, Results const& results) const;
     /// Averages a view over frames, if there is temporal reuse. The partner must have been averaged already.
-    /// @return what pixels that show mirrors were
+    /// @return surfaces and light of pixels that show mirrors
     gi::MirrorLayers reuse(std::size_t view, Results& results, int partner, gi::SceneChange change,
                            Settings const& settings, gi::SeenSurfaces* seen);
     /// The views of this frame are filtered.

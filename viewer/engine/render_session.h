@@ -68,7 +68,7 @@ public:
     /// Makes a scene ready; may run on any thread while the session is in use. The steps (gi/core/step.h) are
     /// those of reading, "world", "start" and of the method. Throws InputError if there is no such scene.
     PreparedScene prepare(std::string const& name, Settings const& settings, ChooseStart const& choose) const;
-    /// Shows it from now on, as apply(prepared.change) does.
+    /// Makes it the current scene, as apply(prepared.change) does.
     void adopt(PreparedScene prepared);
     /// Renders a frame command, whose changes must have been applied already. Throws InputError without a scene.
     SessionFrame render(FrameCommand const& command, gi::StopRequest const& stop);

@@ -25,7 +25,7 @@ struct PlacedObject {
 /// One kind of edit: KIND.NAME.PROPERTY, without NAME for the environment.
 struct SceneEditKey {
     std::string_view kind, what; ///< "light", "intensity"
-    std::string_view name;       ///< stands for the name in texts: "N"; empty = there is one only
+    std::string_view name;       ///< placeholder for the name in texts: "N"; empty = there is one only
     int count;                   ///< of its numbers
     bool or_one;                 ///< one number stands for all of them
     double low, high;            ///< of each number

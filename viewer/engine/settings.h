@@ -56,7 +56,7 @@ Change current(Change change, MadeFor made_for);
 
 struct SettingKey : gi::Option<Settings> {
     std::string group;     ///< heading in the panel; empty for those of the viewer itself and of all methods
-    bool restarts = false; ///< a change begins the methods anew
+    bool restarts = false; ///< a change restarts the methods
     gi::RenderOption const* option = nullptr; ///< of which it is the setting
 
     /// False for what only files of earlier versions have.
@@ -68,7 +68,7 @@ std::string label_of(SettingKey const& key);
 bool is_setting(std::string const& key);
 /// The current name of a key: older recordings and scripts may use a former one.
 std::string current_key(std::string const& key);
-/// True if a change of the setting begins the methods anew.
+/// True if a change of the setting restarts the methods.
 bool restarts_methods(std::string const& key);
 
 /// Throws InputError if the key is unknown, or the value has the wrong type or is out of range.

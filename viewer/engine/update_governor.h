@@ -45,8 +45,8 @@ private:
     double frame_s_ = 0;                ///< time between frames
     gi::DynamicUpdate dynamic_update_;  ///< of the last frame in which something moved
     std::size_t level_ = 0, shown_ = 0; ///< level while something moves; level of the next frame
-    int calm_ = 0, quiet_ = 0; ///< successive frames with time for the next level; in which nothing moved
-    bool may_move_ = true;     ///< in the current frame
+    int calm_ = 0, quiet_ = 0;          ///< successive frames with time for the next level; in which nothing moved
+    bool may_move_ = true;              ///< in the current frame
 };
 
 /// A sentence that names the schedule in use and why. @param updated  the frame's setting `updated_axes`

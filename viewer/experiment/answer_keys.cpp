@@ -114,7 +114,7 @@ void find_wrong_devices(study::Script const& script, study::Mistakes& mistakes)
                                             "devices: " + d.answer + ": " + input,
                                             "digits are typed as answers in " + typed_in, "choose another key"));
     std::size_t const before = mistakes.count();
-    study::Script one; // with one input at a time, so that each mistake is told
+    study::Script one; // with one input at a time, so that each mistake is reported
     one.file = script.file;
     for (study::Device const& d : script.devices)
         for (std::string const& input : d.inputs) {

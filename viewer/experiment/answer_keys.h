@@ -20,8 +20,8 @@ struct GivenAnswer {
 
 class AnswerKeys {
 public:
-    /// Throws InputError, with its place in the script, on an unknown input, or if an answer has none left. Inputs
-    /// are key:NAME, pad:NAME, mouse:NAME, xr:left/trigger.
+    /// Throws InputError, with its line in the script, if an input is unknown or an answer has no input left.
+    /// Inputs are key:NAME, pad:NAME, mouse:NAME, xr:left/trigger.
     explicit AnswerKeys(study::Script const& script);
 
     /// The answer, if the event presses an input of one of these answers.

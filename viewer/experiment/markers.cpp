@@ -24,7 +24,7 @@ struct Markers::Stream {
         lsl = LslLibrary::open();
         if (!lsl) return false;
         constexpr int kBuffered_s = 360;
-        // The source's name stays the same when a session is resumed, so that recorders go on with its stream.
+        // The source's name stays the same when a session is resumed, so that recorders continue its stream.
         std::string const source =
             fmt::format("lightwell-{}-{}-{:02}", session.experiment, session.participant, session.session);
         info = lsl->create_streaminfo("Lightwell", "Markers", 1, 0, LslLibrary::kStringFormat, source.c_str());

@@ -14,7 +14,7 @@ namespace viewer {
 
 inline constexpr int kMarkerPort = 20261;
 
-/// What all markers of a stream belong to, for its description.
+/// Facts common to all markers of a stream, for its description.
 struct MarkerSession {
     std::string experiment, participant;
     int session = 1;

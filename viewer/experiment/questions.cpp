@@ -127,7 +127,7 @@ study::QuestionnaireDone TrialPresenter::ask(study::QuestionnaireRequest const& 
     return done;
 }
 
-/// A text; enter goes on, control and enter if enter begins a line. @return 1 = to the next item, -1 = back, 0 =
+/// A text; Enter continues, or Ctrl+Enter if Enter begins a line. @return 1 = to the next item, -1 = back, 0 =
 /// skipped by the experimenter
 int TrialPresenter::type_item(study::Questionnaire const& q, std::size_t i, std::vector<PageLine> const& lines,
                               std::string& text)

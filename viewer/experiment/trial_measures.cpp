@@ -1,4 +1,4 @@
-// What a trial measures of its stimuli and of the participant's gaze, and what others are told of it.
+// Measurements of a trial: its stimuli and the participant's gaze, and the messages about them to other programs.
 
 #include "viewer/engine/picture_margin.h"
 #include "viewer/experiment/page.h"

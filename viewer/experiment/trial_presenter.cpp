@@ -173,7 +173,7 @@ void TrialPresenter::add_patch(ScreenContent& content, bool white) const
     content.patch_is_white = white;
 }
 
-/// None = nothing is known of the gaze: a mask hides nothing then, a window everything.
+/// None = the gaze is unknown: a mask then hides nothing, a window everything.
 std::optional<GazeCircle> TrialPresenter::gaze_circle(study::GazeCircleRule const& rule)
 {
     gaze_.poll(screen_->gaze_place(), now()); // what has come until this frame

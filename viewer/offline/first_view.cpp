@@ -78,7 +78,7 @@ private:
     /// The walls of a room have few triangles: what encloses the detailed part belongs to it.
     void add_room()
     {
-        constexpr std::size_t kShare = 20; // one in so many hits on each side may be far off, behind a window
+        constexpr std::size_t kShare = 20; // one in this many hits on each side may be far off, behind a window
         vec3 const middle = part_.center(), half = 0.55f * (part_.high - part_.low);
         std::vector<vec3> met;
         for (int k = 0; k < 27; ++k) {

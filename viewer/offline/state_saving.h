@@ -1,5 +1,5 @@
 #pragma once
-// Saves the state of an unfinished render beside what is still made of its picture.
+// Saves the state of an unfinished render while its picture is still being filtered and written.
 
 #include "gi/core/report.h"
 #include "gi/render/render_settings.h"
@@ -31,7 +31,7 @@ private:
     bool const has_state_;
     double seconds_ = 0;
     std::string error_;         ///< why it could not be saved
-    std::future<void> running_; ///< the last member: waits before the others go
+    std::future<void> running_; ///< the last member, so that it is waited for before the others are destroyed
 };
 
 } // namespace viewer

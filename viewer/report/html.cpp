@@ -14,7 +14,7 @@ namespace {
 
 constexpr char const* kNotMarked = "something else";
 
-/// Whole files that have `mark` at byte `at`. @return why not; empty = read
+/// Reads whole files that have `mark` at byte `at`.  @return why not; empty = read
 std::string read_marked(std::filesystem::path const& file, std::string_view mark, std::size_t at,
                         std::size_t least, std::vector<unsigned char>& bytes)
 {

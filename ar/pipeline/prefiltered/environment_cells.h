@@ -41,8 +41,8 @@ class EnvironmentCells {
 public:
     explicit EnvironmentCells(CellSettings const& settings = {}) : settings_(settings) {}
 
-    /// Takes the light of a new map of the same size into the parts there are; cuts them anew only if a part
-    /// would have more than three times its share of the weight. @return true if they were cut anew
+    /// Updates the parts with the light of a new map of the same size. Divides the map again only if a part would
+    /// have more than three times its share of the weight.  @return true if it was divided again
     bool update(EnvironmentTexels const& texels);
     std::vector<EnvironmentCell> const& cells() const { return cells_; }
 

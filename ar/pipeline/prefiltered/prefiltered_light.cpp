@@ -13,7 +13,7 @@ constexpr double kLampShare = 0.003; ///< of the light, in one texel: too much t
 constexpr std::ptrdiff_t kMostLamps = 24;
 constexpr float kSharpShare = 0.03f; ///< of the light, in one direction
 constexpr std::uint32_t kMovingTexels = 64, kSharpMovingTexels = 256;
-/// Of the light that moving surfaces would receive without each other, roughly what they do receive.
+/// Estimated share of light that reaches moving surfaces in spite of each other.
 constexpr float kOpenness = 0.8f;
 constexpr int kBounces = 2; ///< between still surfaces
 
@@ -343,7 +343,7 @@ ReceivedLight PrefilteredLight::on_moving(LitPoint const& at) const
     for_directions(at.normal, gi::vec3(0), -1, [&](std::size_t k, float c) {
         LightDirection const& d = directions_[k];
         gather.include(d, c);
-        // Behind the triangle, though not behind the smooth surface: nothing can tell.
+        // Behind the triangle but not behind the smooth surface: counts as not hidden.
         std::uint32_t blocker = gi::kNoPrimitive;
         float const hidden = glm::dot(at.geometric, d.towards) > 0 ? moving_in_the_way(k, at, blocker) : 0;
         if (hidden > 0) gather.add_radiance(d, c, hidden, moving_radiance(k, blocker));

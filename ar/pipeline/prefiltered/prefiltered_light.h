@@ -53,8 +53,8 @@ public:
     /// The environment has changed; call moved() after it.
     /// @throws gi::Interrupted; then this object is of no use any more
     void relight(gi::StopRequest const& stop = {});
-    /// Moving triangles have moved, or the directions have changed. Of very many triangles, not all maps are drawn
-    /// at once: sharp shadows follow in this frame, others some frames later.
+    /// Call after moving triangles have moved or directions have changed. With very many triangles,
+    /// not all maps are drawn at once: those of sharp shadows in this frame, others some frames later.
     /// @throws gi::Interrupted as relight
     void moved(gi::StopRequest const& stop = {});
     /// Draws maps that are not yet up to date; call in frames in which nothing moves.

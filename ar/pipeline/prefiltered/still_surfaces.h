@@ -14,7 +14,7 @@ struct LightDirection {
     gi::vec3 towards{0, 1, 0}; ///< unit, towards the light; world
     gi::vec3 light{0};         ///< irradiance of a face turned to the part, W/m^2
     float solid_angle_sr = 0;  ///< of the part
-    bool sharp = false;        ///< much of all light: its shadows have an edge
+    bool sharp = false;        ///< has a large share of all light: its shadows have sharp edges
 };
 
 /// A part of still surfaces that is treated as one point.

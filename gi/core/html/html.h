@@ -50,7 +50,7 @@ std::string html_table(std::vector<HtmlColumn> const& columns, std::vector<std::
 
 struct ShadedCell {
     std::string text;
-    double share = 0; ///< of the colour of what is shown, -1 to 1; another colour below 0
+    double share = 0; ///< strength of the cell's colour, -1 to 1; negative values have another colour
 };
 /// A matrix with the same names at its rows and columns, or without names. @param cells row by row
 std::string html_matrix(std::string_view caption, std::vector<std::string> const& names,

@@ -311,7 +311,7 @@ private:
     std::optional<FrameInterleaving> interleaving_; ///< none with kernels
     std::vector<Accumulator> sums_;                 ///< of the views
     PairSums pair_sums_;
-    RadianceCaching cache_ = RadianceCaching::automatic; ///< as the user has it now; automatic: as callers request it
+    RadianceCaching cache_ = RadianceCaching::automatic; ///< as set by the user; automatic: as callers request it
     bool leaves_out_punctual_ = false;
     std::uint32_t passes_ = 0, updated_axes_ = 0;
     std::uint64_t lost_ = 0, refused_ = 0; ///< layers and cache notes already reported as lost

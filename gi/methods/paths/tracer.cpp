@@ -218,7 +218,7 @@ void PathsTracer::trace(Pass const& pass, std::span<PathStart const> starts, std
 {
     using Clock = std::chrono::steady_clock;
     auto const begun = Clock::now();
-    auto turned = begun; // time of the change from direct to indirect light
+    auto turned = begun; // time at which direct light ended and indirect light began
     bool const from_camera = starts.empty() || !starts[0].on_layer;
     thread_local std::vector<State> states;
     thread_local std::vector<Vertex> vertices;

@@ -6,7 +6,7 @@ namespace gi {
 namespace {
 
 constexpr int kExposureCells = 48; // along the longest side
-/// Few rays tell. Less than this share counts as none, else as at least the other one.
+/// Shares are estimated by few rays: a share below the first counts as 0, others as at least the second.
 constexpr float kLeastShare = 0.02f, kSurelyExposed = 0.2f;
 
 } // namespace

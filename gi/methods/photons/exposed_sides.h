@@ -19,8 +19,7 @@ public:
     /// @param first_moving  index of the first triangle that may move
     ExposedSides(World const& world, GridFrame const& frame, std::size_t first_moving,
                  ExactVisibility const& visibility, BuildStop const& stop);
-    /// Sends rays again from the triangles that may move; what the others meet stays what it was.
-    /// Throws Interrupted.
+    /// Traces the rays of triangles that may move again; the results of the others are kept. Throws Interrupted.
     void moved(World const& world, std::size_t first_moving, ExactVisibility const& visibility,
                BuildStop const& stop);
 

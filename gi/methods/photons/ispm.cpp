@@ -18,7 +18,8 @@ protected:
     void take(PhotonSet&& set) override
     {
         constexpr float kAlpha = 2.0f / 3; // Knaus and Zwicker 2011: how slowly kernels shrink
-        constexpr float kLargest = 0.05f;  // radius over the longest side of what photons reach
+        // Largest radius, relative to the longest side of the box of all photons.
+        constexpr float kLargest = 0.05f;
         screens_.clear();
         cameras_.clear();
         map_ = {};

@@ -1,4 +1,4 @@
-// The methods lpv and isllpm: what their lattices send from the points of ray trees.
+// The methods lpv and isllpm: ray trees take indirect light from their lattices.
 
 #include "gi/light_paths/memory_limit.h"
 #include "gi/methods/photons/limits.h"

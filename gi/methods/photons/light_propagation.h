@@ -1,7 +1,7 @@
 #pragma once
 // Light propagation volumes (Kaplanyan and Dachsbacher 2010, "Cascaded Light Propagation Volumes for Real-Time
 // Indirect Illumination"; Noren and Sjolin, sec. 4): surface points that light has reached scatter it as virtual
-// lights into the cells of a lattice; from there it goes on from cell to cell, and surfaces in between block it.
+// lights into the cells of a lattice; from there it moves from cell to cell, and surfaces in between block it.
 // Nested lattices, finer near the camera or what it shows, each with light of its own virtual lights, and what
 // comes in over its border from the coarser one.
 //

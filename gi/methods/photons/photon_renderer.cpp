@@ -63,8 +63,8 @@ SurfaceLight const* PhotonRenderer::prepare(std::uint32_t index, std::span<Frame
     return any || (frozen && has_light_) ? light(views, caustics_.map(), given_up) : nullptr;
 }
 
-/// A room in a large world gets half of the light from afar. Stays while it holds most of what cameras show, as a
-/// change begins all light anew.
+/// A room in a large world gets half of the light from afar. It is kept while it holds most of what the cameras
+/// show, because a new one discards all light so far.
 void PhotonRenderer::find_focus(std::span<FrameView const> views)
 {
     constexpr int kCells = 64;
@@ -80,8 +80,8 @@ void PhotonRenderer::find_focus(std::span<FrameView const> views)
     surfaces_changed_ = true;
 }
 
-/// Lattices about the camera stay until it has moved by an eighth of the finest one's side,
-/// as a change begins all light anew.
+/// Lattices around the camera are kept until it has moved by an eighth of the finest one's side,
+/// because moving them discards all light so far.
 void PhotonRenderer::find_middle(std::span<FrameView const> views)
 {
     constexpr float kShare = 0.125f;

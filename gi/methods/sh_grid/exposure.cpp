@@ -13,8 +13,8 @@
 namespace gi {
 namespace {
 
-/// Few rays tell whether pieces are exposed. So of the area along an axis, less than kLeastExposed counts as none,
-/// else as at least kSurelyExposed; and none counts that is less than kLeastOfCell of the cell's largest.
+/// Exposure is estimated by few rays. Of the area along an axis, less than kLeastExposed counts as 0,
+/// more as at least kSurelyExposed; less than kLeastOfCell of the cell's largest counts as 0.
 constexpr float kLeastExposed = 0.02f, kSurelyExposed = 0.2f, kLeastOfCell = 1e-3f;
 
 /// See kLeastExposed. @param whole  area, exposed or not  @param largest  in the cell

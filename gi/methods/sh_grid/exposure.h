@@ -12,7 +12,7 @@
 
 namespace gi {
 
-/// A piece of a patch that stands for a part of it, and what a few rays from its two sides meet.
+/// A sample of a patch, which represents a part of it, and what a few rays from its two sides hit.
 struct PatchSample {
     static constexpr std::size_t kRays = 3; ///< per side, cosine-distributed
     static constexpr std::uint32_t
@@ -23,7 +23,7 @@ struct PatchSample {
     std::uint32_t patch, triangle;
     vec3 point, normal; ///< of the piece
     float area;         ///< of the part, m^2
-    /// 16 x cell + ReachedSides::side_index() of the side that is met, or one of the above.
+    /// 16 x cell + ReachedSides::side_index() of the side that is hit, or one of the above.
     std::array<std::array<std::uint32_t, kRays>, 2> met;
 };
 

@@ -66,7 +66,7 @@ struct PackedTint {
 /// @param tint  >= 0; below 1e-30 and above 1e30 it is cut off
 PackedTint packed(vec3 tint);
 
-/// What a ray from a cell's centre meets, by way of mirrors and glass.
+/// Hit of a ray from a cell's centre, after mirrors and glass.
 struct FieldHit {
     static constexpr std::uint32_t kSky = 0xffffffffu, kNothing = 0xfffffffeu; ///< kNothing: all is dark
     std::uint32_t what;     ///< kSky, kNothing, or 2 x patch + side; of a walk through voxels the place of a cell

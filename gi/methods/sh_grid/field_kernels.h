@@ -39,7 +39,7 @@ GI_FN inline SeenLight seen_light(RadianceLevels const& levels, FieldHit const& 
     return a;
 }
 
-/// What rays meet by a walk through the voxels. Normals are not known: surfaces count as facing the ray.
+/// Finds the hits of rays by a walk through the voxels. Normals are unknown: surfaces count as facing the ray.
 struct WalkVoxels {
     CellsView<BlockVoxels> blocks;
     View<FieldDirection const> directions;
@@ -66,7 +66,7 @@ struct WalkVoxels {
     }
 };
 
-/// Projects what the rays of cells met on spherical harmonics.
+/// Projects the light found by the rays of cells on spherical harmonics.
 struct ProjectLight {
     RadianceLevels light[2]; ///< by level
     View<FieldDirection const> directions;

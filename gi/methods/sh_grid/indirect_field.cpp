@@ -10,7 +10,8 @@
 namespace gi {
 namespace {
 
-constexpr double kLeastShown = 0.9; ///< share of what is shown that a fine grid holds before it is placed anew
+/// A fine grid that holds less than this share of what is shown is placed again.
+constexpr double kLeastShown = 0.9;
 
 RadianceLevels to_levels(GridLevel const& of)
 {

@@ -86,7 +86,7 @@ std::vector<InnerPaths::Start> InnerPaths::trace_block(InnerWorld const& world, 
         Hit const& hit = hits[k];
         if (hit.triangle == kNoTriangle) continue; // the sky: by samples of the lights
         MetSurface const at = met_surface(world.world, hit.triangle, hit.barycentric, rays[k].ray.direction);
-        if (world.is_inside(at.position, hit.triangle)) continue; // by paths that go on from there
+        if (world.is_inside(at.position, hit.triangle)) continue; // counted by paths that continue there
         std::uint32_t const patch = patch_at(world.coarse, world.coarse_patches, at.position, hit.triangle);
         if (patch == kNoCell) continue;
         Start& start = seeing[k];

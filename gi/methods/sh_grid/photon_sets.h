@@ -28,7 +28,8 @@ public:
     void restart(std::uint32_t light_paths, std::uint32_t first_index);
     /// Traces a whole set. Throws Interrupted.
     void trace_all(Trace const& trace);
-    /// Lets trace_next() trace the first set again (after motion: the same photons do not flicker), or the next.
+    /// Makes trace_next() trace the first set again (after motion:
+    /// the same photons do not flicker), or the next one.
     void begin_parts(bool first_set);
     /// Traces one more part. Throws Interrupted.
     void trace_next(Trace const& trace);

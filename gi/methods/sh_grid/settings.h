@@ -28,8 +28,9 @@ struct ShGridSettings {
     int field_passes = 3;      ///< passes over which the field follows a change of the scene
     FieldRays field_rays = FieldRays::exact;
     RadianceBy radiance_by = RadianceBy::normal;
-    Switch multilevel = Switch::off;   ///< read coarser grids of radiance where directions are sparse
-    Switch leak_weights = Switch::on;  ///< weigh cells by what may lie between them and the surface
+    Switch multilevel = Switch::off; ///< read coarser grids of radiance where directions are sparse
+    /// Weigh cells by the probability that nothing lies between them and the surface.
+    Switch leak_weights = Switch::on;
     Switch field_glyphs = Switch::off; ///< draw the field's cells
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Visibility by imperfect shadow maps, one for every virtual light of a pass.
+// Visibility by imperfect shadow maps, one per virtual light of a pass.
 
 #include "gi/methods/vpl/imperfect_map.h"
 #include "gi/methods/vpl/settings.h"

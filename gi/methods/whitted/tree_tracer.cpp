@@ -47,7 +47,8 @@ void TreeTracer::aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int 
 /// Continues along a random direction of the glossy lobe.
 void TreeTracer::reflect_glossy(TreeRay& r, ShadingPoint const& at, vec3 wo, std::vector<TreeRay>& next) const
 {
-    constexpr float kRoulette = 0.1f; // rays that bring less of their light are traced less often
+    // Rays that contribute less than this share of the light are traced by Russian roulette.
+    constexpr float kRoulette = 0.1f;
     TreeRay child = r;
     child.rng = Pcg32::for_path(std::uint64_t(r.rng.next()) << 32 | r.rng.next(), 3, 0);
     vec3 const wi = bsdf_detail::sample_specular(at.bsdf, wo, child.rng.uniform2());

@@ -79,7 +79,7 @@ void limit_to(AssimpTrial const& trial)
     _exit(0);
 }
 
-/// Takes the first reason that a child has told, if it is complete.
+/// Takes the first reason for failure that a child has reported, if it is complete.
 std::optional<std::string> take_reason(std::string& told)
 {
     std::uint32_t length = 0;
@@ -124,7 +124,7 @@ bool has_end_of_header(std::string_view text)
     return false;
 }
 
-/// Searches the header of a PLY file, whose reader loops where it does not end.
+/// True if the header of a PLY file has no end: Assimp's reader then loops forever.
 bool lacks_end_of_header(fs::path const& file)
 {
     std::ifstream in(file, std::ios::binary);

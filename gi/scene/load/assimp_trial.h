@@ -20,7 +20,7 @@ struct AssimpTrial {
 
 /// Outcomes of trials, which import_assimp asks on this thread while this object lives (an inner one first). One
 /// child process tries all files, as starting one takes longer than importing a small file, and is ahead of who
-/// asks. After a file that ends the child, another child goes on with the next.
+/// asks. After a file that ends the child, another child continues with the next.
 class AssimpTrials {
 public:
     /// Files that are missing, empty or no regular files are left out.

@@ -125,7 +125,7 @@ private:
         return generate_atrium(o);
     }
 
-    /// The model files that Assimp will read, as far as they can be told; add_model reports what is wrong.
+    /// The model files that Assimp will probably read; add_model reports what is wrong with them.
     std::vector<fs::path> files_of(std::vector<Yaml> const& models) const
     {
         std::vector<fs::path> files;

@@ -22,7 +22,7 @@ struct Figure {
     PlanNumber number;
     std::string text;
 };
-Figure figure(std::string key, double value, int digits); ///< with so many significant digits
+Figure figure(std::string key, double value, int digits); ///< @param digits  significant ones
 template <class T>
 requires std::is_integral_v<T> Figure figure(std::string key, T value)
 {

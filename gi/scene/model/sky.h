@@ -2,7 +2,7 @@
 // A clear sky and its sun: Preetham, Shirley, Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999.
 //
 //   Sky (appendix A.2): for each of Y, x, y, the value in direction (theta, gamma) is
-//     zenith * F(theta, gamma) / F(0, theta_sun),  F = (1 + A e^(B / cos theta)) 
+//     zenith * F(theta, gamma) / F(0, theta_sun),  F = (1 + A e^(B / cos theta))
 //              (1 + C e^(D gamma) + E cos^2 gamma)
 //   with theta from the zenith and gamma from the sun. Zenith and A..E are polynomials of turbidity and theta_sun.
 //   Sun (appendix A.1): the sun's radiance outside the atmosphere times the transmittance of air, aerosols, ozone

@@ -36,7 +36,7 @@ struct AvatarNames {
     LegNames left_leg{}, right_leg{};
 };
 
-/// Side that a joint's name tells: +1 left, -1 right, 0 none.
+/// Side in a joint's name: +1 left, -1 right, 0 none.
 int joint_side(std::string const& name);
 
 /// Finds joints by the names of common skeletons: Mixamo ("mixamorig:LeftForeArm"), Quaternius and Blender

@@ -15,7 +15,7 @@ GI_FN inline bool may_mirror(Bsdf const& b)
     return b.clear > 0 || (!bsdf_detail::is_matt(b) && b.f90.x > 0 && bsdf_detail::specular_is_delta(b));
 }
 
-/// Finds the lobe that a mirror or pane shows, and the others, which only add light to that.
+/// Finds the lobe by which a mirror or pane shows other surfaces; its other lobes only add light.
 /// @param wo  local  @return number of lobes, the one that is shown first; 0: the surface itself is seen
 GI_FN inline int find_mirror(ShadingPoint const& at, vec3 wo, BsdfSample lobes[3])
 {

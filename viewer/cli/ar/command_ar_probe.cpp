@@ -220,7 +220,7 @@ nlohmann::ordered_json json_of(cv::Mat const& map, ar::ClippedLight const& c, do
     return j;
 }
 
-/// OpenEXR files say in their header where their light is from.
+/// Notes the origin of the light in the header of OpenEXR files.
 void write_probe_map(std::string const& file, cv::Mat const& map, ar::ClippedLight const& c)
 {
     ar::write_map(file, map);

@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using batch::TaskState;
 
-constexpr std::size_t kMostFailures = 10; ///< told on the terminal
+constexpr std::size_t kMostFailures = 10; ///< shown on the terminal
 
 char const* name_of(TaskState state)
 {

@@ -68,7 +68,7 @@ int number_of(char const* variable, int otherwise)
     return text == nullptr ? otherwise : std::max(0, std::atoi(text));
 }
 
-/// @param told before: each failure is told once
+/// @param told  failures reported before: each is reported once
 void settle(batch::Store const& store, std::set<std::string>& told)
 {
     for (std::string const& failure : settle_leftovers(store))

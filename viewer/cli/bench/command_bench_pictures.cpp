@@ -41,7 +41,7 @@ int run(PicturesOptions const& o)
     return interrupted_code();
 }
 
-/// Defaults differ as each frame needs its own reference.
+/// Defaults of moving views, where every frame needs its own reference.
 void set_interactive_defaults(CLI::App const& command, PicturesOptions& o)
 {
     auto const is_given = [&](char const* name) { return command.get_option(name)->count() > 0; };

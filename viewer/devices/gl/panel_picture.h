@@ -23,7 +23,7 @@ public:
     glm::ivec2 size_px() const { return size_px_; }
     /// Needs no context. Not while another thread draws.
     /// @param pointer_px  from the top left corner; none = nowhere
-    /// @param pressed  the trigger is held  @param scroll  steps of a wheel, upward  
+    /// @param pressed  the trigger is held  @param scroll  steps of a wheel, upward
     /// @param seconds  since the last
     void begin(std::optional<glm::dvec2> pointer_px, bool pressed, double scroll, double seconds);
     void finish();

@@ -20,8 +20,8 @@ struct ShownFace {
 class SurfacePass {
 public:
     explicit SurfacePass(Surface const& surface);
-    /// Fills the target; black where nothing of the surface is lit or its face is missing. A target of another
-    /// size than the last one costs the surface's points anew.
+    /// Fills the target; black where the surface is not lit or its face is missing.
+    /// If the size of the target has changed, the surface's points are computed again.
     /// @param eye_m  in the room
     void draw(DrawTarget const& target, std::span<ShownFace const> faces, gi::dvec3 eye_m);
 

@@ -24,7 +24,7 @@ struct MonitorInfo {
 std::vector<MonitorInfo> monitors();
 
 enum class QuadBuffer { no, wanted };
-/// Name of the loss where a driver has none.
+/// Name in the report if the driver has no quad-buffer stereo.
 inline constexpr char const* kNoQuadBuffer = "windows without the requested quad-buffer stereo";
 enum class Visibility { shown, hidden };
 

@@ -26,7 +26,7 @@ struct PredictionSettings {
     double latency_s = 0; ///< from motion to the fastest packet's arrival: sensor, sender and network; measured
     /// Constant velocity up to this time past the newest sample, then fading over the same time.
     double horizon_s = 0.1;
-    double lost_after_s = 1; ///< no pose later than this after the newest sample
+    double lost_after_s = 1; ///< no pose is predicted beyond this time after the newest sample
     double smooth_s = 0.02;  ///< time constant for applying a new sample's correction; 0 = at once
     double recover_s = 0.2;  ///< duration of the transition from a held pose back to the tracked one
 

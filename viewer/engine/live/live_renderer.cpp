@@ -234,8 +234,8 @@ void LiveRenderer::choose_updated_axes(bool may_move)
 /// Time from a frame's start to the middle of its display interval, s.
 double LiveRenderer::seen_after_s() const { return std::min(1.5 * frame_s_, Anticipation::kFarthest_s); }
 
-/// Lets pictures show what their viewers turn to, where there is time for it. @param last  where they will be when
-/// the next picture comes
+/// Adds margins to the pictures in the direction in which viewers turn, if there is time for it.
+/// @param last  expected viewpoint when the next picture is shown
 void LiveRenderer::add_margins(FrameCommand& command, Viewpoint const& last) const
 {
     bool const has_time = command.light_scale > Governor::kLeastScale;

@@ -98,8 +98,8 @@ public:
     void post(Change change, std::function<void(std::string const& error)> done = {});
     /// Whether recordings and other ranks have a scene from their start, or need the change "scene".
     enum class SceneKnown { no, yes };
-    /// Queues a scene that is ready. Nothing is rendered from then on until `resume`, so that the new scene is not
-    /// seen from the old one's camera; followers do not wait. `done` as that of post, with the scene adopted.
+    /// Queues a loaded scene. Nothing is rendered from then on until `resume`, so that the new scene is not seen
+    /// from the old one's camera; followers do not wait. `done` is called as for post, after the scene is adopted.
     void adopt(std::shared_ptr<PreparedScene> scene, SceneKnown known,
                std::function<void(RenderSession const&, std::uint64_t scene)> done);
     /// Call after the first `look` at the new scene.
@@ -160,7 +160,7 @@ private:
     int stored_ = 0; ///< stored axes in the last measured frame
     std::vector<Change> changes_;
     FrameCommand last_;
-    Viewpoint last_look_;                         ///< that the last frame was made for, before it was moved on
+    Viewpoint last_look_;                         ///< of the last frame, before extrapolation
     std::uint64_t adopted_ = 0;                   ///< number of scenes so far
     bool has_last_ = false, awaits_look_ = false; ///< awaits_look_: at a new scene
     double scene_s_ = 0, last_begun_s_ = 0;

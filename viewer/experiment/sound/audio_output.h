@@ -44,7 +44,7 @@ public:
     /// None if too many sounds are playing.
     std::optional<SoundTicket> start(std::shared_ptr<SoundSamples const> sound, double at_s);
     SoundReport report(SoundTicket ticket) const;
-    /// Gives the ticket back: what plays goes on to its end, what has not begun never will.
+    /// Gives the ticket back: a sound that plays ends normally; one that has not begun is never played.
     void release(SoundTicket ticket);
 
     bool is_running() const; ///< false: the device was lost

@@ -24,7 +24,7 @@ public:
     void start(study::CueMoment moment, bool is_first, std::string const& at, double planned_s);
     /// The last moment came then.
     void came(double onset_s);
-    /// At the end of the trial: what was played. Sounds that play go on; what is due later is not played.
+    /// Returns the sounds played, at the end of the trial. Sounds that play continue; later ones are not played.
     std::vector<study::SoundPlayed> take(double now_s);
 
 private:

@@ -20,7 +20,7 @@ struct Close {
 
 double gain(study::Sound const& s) { return std::pow(10, s.level_db / 20); }
 
-/// Rate of the files, told where one differs from the first.
+/// Sampling rate of the files; reports files whose rate differs from the first.
 int common_rate(study::Script const& script, std::vector<SoundSamples> const& files, study::Mistakes& m)
 {
     int rate_hz = 0;

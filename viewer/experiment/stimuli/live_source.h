@@ -28,7 +28,7 @@ private:
     SceneAccess const& scenes_;
     SessionClock const& clock_;
     RenderSession session_;
-    Settings posted_;   ///< settings that the session has, or will have soon
+    Settings posted_;   ///< settings posted to the session, applied now or soon
     std::string scene_; ///< likewise
     bool edited_ = false;
     StimulusSettings stimulus_;

@@ -1,6 +1,6 @@
 #pragma once
-// Everything that can be wrong with an experiment before a participant comes: the script, its plans, its settings,
-// its stimuli. All is told at once.
+// Checks an experiment before participants come: the script, its plans, settings and stimuli.
+// All mistakes are reported at once.
 
 #include "viewer/experiment/stimuli/stimulus_check.h"
 #include "viewer/study/study_script.h"
@@ -19,7 +19,8 @@ struct CheckedScript {
     bool needs_display_model = false; ///< stimuli have physical units
 };
 
-/// Adds blocks whose rules of gaze cannot be met. @param is_measured  gaze is   @param model  null = none
+/// Adds blocks whose rules of gaze cannot be fulfilled.
+/// @param is_measured  true if gaze is measured  @param model  null = none
 void find_wrong_gaze(study::Script const& script, bool is_measured, study::DisplayModel const* model,
                      study::Mistakes& m);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr glm::ivec2 kTiny_px{16, 16};
 
-/// Loads each scene once, although edits can only be undone by setting the scene anew.
+/// Loads each scene once, although edits can only be undone by setting the scene again.
 class OneScene {
 public:
     explicit OneScene(LoadScene load) : load_(std::move(load)) {}
@@ -86,7 +86,7 @@ private:
     std::set<std::tuple<int, int, std::string>> told_;
 };
 
-/// Each size, place and luminance alone, so that all that are wrong are told at their places.
+/// Checks each size, place and luminance alone, so that all wrong ones are reported at their lines.
 void check_measures(PlannedStimulus const& stimulus, ShownOn shown_on, Teller& teller)
 {
     shown_on.has_own_views |= stimulus.settings.view == StimulusViewer::headset;
@@ -160,7 +160,7 @@ std::vector<study::Stimulus> at_ends(study::Block const& block, study::Stimulus 
 
 void StimulusCollection::add(int index, study::Stimulus const& stimulus, study::Mistakes& m)
 {
-    if (std::ranges::any_of(stimulus.levels, [](int level) { return level < 0; })) return; // told
+    if (std::ranges::any_of(stimulus.levels, [](int level) { return level < 0; })) return; // reported
     if (!seen_.emplace(index, stimulus.levels, stimulus.is_varied, stimulus.level, stimulus.also).second) return;
     study::Block const block = index >= 0 ? script_.blocks[std::size_t(index)] : plain_block(script_);
     study::Patch patch = settings_of(script_, block, stimulus);

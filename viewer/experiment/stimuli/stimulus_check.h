@@ -50,7 +50,7 @@ struct StimulusCheckResult {
     std::size_t scenes = 0, stimuli = 0, rendered = 0;
 };
 
-/// Throws gi::Interrupted within 0.2 s of a stop request. A scene that cannot be loaded is told once.
+/// Throws gi::Interrupted within 0.2 s of a stop request. A scene that cannot be loaded is reported once.
 StimulusCheckResult find_wrong_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes,
                                        StimulusCheckOptions const& options, study::Mistakes& m);
 

@@ -34,7 +34,7 @@ bool has_place(std::string const& message)
 
 void ArStimulusCheck::add(study::Block const& block, study::Stimulus const& stimulus)
 {
-    if (std::any_of(stimulus.levels.begin(), stimulus.levels.end(), [](int l) { return l < 0; })) return; // told
+    if (std::any_of(stimulus.levels.begin(), stimulus.levels.end(), [](int l) { return l < 0; })) return; // known
     study::Patch patch = settings_of(loaded_.script, block, stimulus);
     if (is_ar(patch)) patches_.emplace(std::move(patch), block.camera);
 }
@@ -49,7 +49,7 @@ void ArStimulusCheck::add(study::Plan const& plan)
         std::vector<study::Stimulus> stimuli;
         if (!walks) stimuli = possible_stimuli(block, step.trial);
         if (walks) {
-            if (std::ranges::any_of(step.levels, [](int l) { return l < 0; })) continue; // told
+            if (std::ranges::any_of(step.levels, [](int l) { return l < 0; })) continue; // reported
             stimuli = {study::Stimulus{step.levels, false, {}}};
             study::Patch const patch = settings_of(s, block, stimuli[0]);
             for (auto const& [key, value] : patch)

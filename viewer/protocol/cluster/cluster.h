@@ -108,7 +108,7 @@ public:
     /// Waits as long as that rank shows signs of life.
     std::optional<std::vector<std::uint8_t>> take(int from);
 
-    /// Follower: what it tells the leader when it ends in order, e.g. its losses; called then, on any thread.
+    /// Follower: its message to the leader when it ends normally, e.g. its losses; called then, on any thread.
     void set_farewell(std::function<std::string()> farewell);
     /// Leader: of the other ranks.
     std::vector<RankEnd> ends() const;

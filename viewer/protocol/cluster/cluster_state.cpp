@@ -118,7 +118,7 @@ void Cluster::State::watch_processes()
         bool const matters = leads() || r == 0;
         Peer const& p = peers[std::size_t(r)];
         if (!matters || !living(r) || p.said_goodbye || state_of(p.process, here) != ProcessState::ended) continue;
-        // Its last message explains the end better, and takes a moment to arrive through shared memory.
+        // The rank's last message explains its end better, and takes a moment to arrive through shared memory.
         for (double const end = now_s() + 0.05; now_s() < end; pause(1)) take_messages();
         if (living(r) && !p.said_goodbye)
             lose(r, fmt::format("has died (its process {} has ended)", p.process.number));

@@ -36,7 +36,7 @@ std::string random_token()
 /// Folder where only this user can write; throws if somebody else made it first.
 void make_private(fs::path const& folder)
 {
-    if (::mkdir(folder.c_str(), 0700) == 0 || errno != EEXIST) return; // opening the file tells what is wrong
+    if (::mkdir(folder.c_str(), 0700) == 0 || errno != EEXIST) return; // opening the file reports what is wrong
     struct stat about {};
     bool const ours =
         ::lstat(folder.c_str(), &about) == 0 && S_ISDIR(about.st_mode) && about.st_uid == ::geteuid();

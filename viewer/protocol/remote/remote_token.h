@@ -36,7 +36,8 @@ private:
 /// None if there is no such file. Throws InputError if it holds something else or cannot be read.
 std::optional<std::string> read_token(std::filesystem::path const& file);
 
-/// Takes the same time for any text of the same length, so that nobody can find a token digit by digit.
+/// Takes the same time for all texts of the same length, so that response times do not
+/// reveal a token character by character.
 bool is_token(std::string_view given, std::string_view right);
 
 } // namespace viewer

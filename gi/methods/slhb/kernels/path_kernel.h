@@ -47,7 +47,7 @@ struct PathOnWay {
     vec3 position, direction;
 };
 
-/// Paths that go on.
+/// Paths that continue.
 struct PathsOnWay {
     ColumnView<PathOnWay> paths;
     ColumnView<RayQuery> queries; ///< of those whose surface an exact ray finds; no_query() for the others
@@ -90,7 +90,7 @@ protected:
         vec3 direction{0};           ///< of arrival
         float distance = 0;          ///< m, from the last surface
         int vertex = 0;              ///< number of surfaces before, delta lobes included
-        RayQuery query = no_query(); ///< of the exact ray that the path needs now
+        RayQuery query = no_query(); ///< the exact ray that the path needs now
 
         GI_FN std::uint32_t dimension(PathDimension d) const { return dimension_of(std::uint32_t(vertex), d); }
         GI_FN float number(PathDimension d) const { return random.sample(dimension(d)); }

@@ -80,7 +80,7 @@ private:
         }
     }
 
-    /// Numbers of faces and vertices, and which channels all corners that have them have rightly.
+    /// Counts faces and vertices, and finds the channels that are valid in all corners that have them.
     void count(aiMesh& out)
     {
         std::size_t faces = 0, vertices = 0;

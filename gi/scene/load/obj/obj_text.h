@@ -9,7 +9,7 @@
 
 namespace gi {
 
-/// Lines without blanks at their ends. One that ends with a backslash goes on in the next.
+/// Lines without blanks at their ends. A line that ends with a backslash continues in the next.
 class ObjLines {
 public:
     explicit ObjLines(std::string_view text);
