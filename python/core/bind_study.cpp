@@ -52,13 +52,15 @@ py::dict outcome_dict(std::string const& id, study::SessionOutcome const& o)
     d["trials"] = o.trials;
     d["bad_trials"] = o.bad_trials;
     d["steps"] = o.steps;
+    d["plan_remark"] = o.plan_remark;
     return d;
 }
 
 py::dict run(LoadedScript const& loaded, int participant, py::object const& steps, std::string const& dir,
              int session, bool resume, std::vector<std::pair<std::string, std::string>> const& about)
 {
-    std::string const id = plan_of(loaded, participant).participant_id;
+    check_range("participant", participant, 1, loaded.script.participants.count);
+    std::string const id = participant_id(loaded.script, participant);
     study::SessionSettings settings = settings_of(loaded, dir, session, resume);
     settings.about = about;
     PythonPresenter presenter(steps);
@@ -79,7 +81,8 @@ py::dict simulate(LoadedScript const& loaded, int participant, std::string const
                   std::optional<std::uint64_t> const& given_seed, int session, bool resume, double gap_s)
 {
     study::Script const& s = loaded.script;
-    std::string const id = plan_of(loaded, participant).participant_id;
+    check_range("participant", participant, 1, s.participants.count);
+    std::string const id = participant_id(s, participant);
     study::SessionSettings const settings = settings_of(loaded, dir, session, resume);
     std::uint64_t const seed = given_seed.value_or(s.seed);
     study::SessionOutcome outcome;

@@ -254,6 +254,8 @@ struct Analysis {
     std::string experiment, title;
     AnalysisSettings settings;
     int participants = 0, sessions = 0, complete = 0, simulated = 0, planned = 0;
+    int other_plans = 0;   ///< sessions whose recorded plan is not the one that this version makes
+    int assumed_plans = 0; ///< sessions whose recorded plan is lost
     std::vector<Exclusion> exclusions;
     std::vector<ObserverSummary> observers;
     std::vector<BlockResult> blocks;

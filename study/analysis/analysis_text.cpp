@@ -85,6 +85,8 @@ std::string to_json(Analysis const& a)
            {"sessions", a.sessions},
            {"sessions_complete", a.complete},
            {"sessions_simulated", a.simulated},
+           {"sessions_with_another_plan", a.other_plans},
+           {"sessions_with_an_assumed_plan", a.assumed_plans},
            {"settings",
             {{"excluded", a.settings.exclude},
              {"replicates", a.settings.replicates},

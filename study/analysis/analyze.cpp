@@ -90,6 +90,8 @@ Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessi
         ++a.sessions;
         a.complete += is_complete(session);
         a.simulated += start.is_simulated;
+        a.other_plans += session.plan_source == PlanSource::recorded;
+        a.assumed_plans += session.plan_source == PlanSource::assumed;
         std::string const& id = start.participant_id;
         auto it = std::find_if(observers.begin(), observers.end(),
                                [&](ObserverTrials const& o) { return o.participant == id; });

@@ -36,8 +36,7 @@ SessionOutcome simulate_session(Script const& script, int participant, Observer 
     auto const now = std::chrono::system_clock::now().time_since_epoch();
     double start_s = std::chrono::duration<double>(now).count();
     fs::path const journal =
-        session_folder(settings.dir, make_plan(script, participant).participant_id, settings.session) /
-        "journal.jsonl";
+        session_folder(settings.dir, participant_id(script, participant), settings.session) / "journal.jsonl";
     std::error_code ignored;
     if (settings.start == SessionStart::go_on && fs::exists(journal, ignored))
         if (auto const last = last_unix_time(read_journal(journal).record)) start_s = *last + gap_s;

@@ -9,15 +9,6 @@
 namespace study {
 namespace {
 
-std::string id_of(std::string const& pattern, int participant)
-{
-    auto const open = pattern.find('{'), close = pattern.find('}');
-    std::size_t const width = close - open > 3 ? std::size_t(pattern[close - 1] - '0') : 0; // {n:03}
-    std::string digits = std::to_string(participant);
-    if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
-    return pattern.substr(0, open) + digits + pattern.substr(close + 1);
-}
-
 class Planner {
 public:
     /// @param broken  blocks left out; those that cannot be planned are added, and why to `m`. Null: throw.
@@ -25,7 +16,7 @@ public:
         : s_(s), broken_(broken), mistakes_(m), digits_(digits(s, participant)), passes_(s.blocks.size())
     {
         plan_.participant = participant;
-        plan_.participant_id = id_of(s.participants.id, participant);
+        plan_.participant_id = study::participant_id(s, participant);
     }
 
     Plan make()
@@ -182,6 +173,23 @@ std::string_view name_of(PlanStepKind kind)
 {
     constexpr std::string_view kNames[] = {"instructions", "questionnaire", "trial", "break", "free_walk"};
     return kNames[std::size_t(kind)];
+}
+
+std::string participant_id(Script const& script, int participant)
+{
+    std::string const& pattern = script.participants.id;
+    auto const open = pattern.find('{'), close = pattern.find('}');
+    std::size_t const width = close - open > 3 ? std::size_t(pattern[close - 1] - '0') : 0; // {n:03}
+    std::string digits = std::to_string(participant);
+    if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
+    return pattern.substr(0, open) + digits + pattern.substr(close + 1);
+}
+
+int compared_factor(Block const& block)
+{
+    if (block.pairs) return block.pairs->factor;
+    if (block.rank >= 0) return block.rank;
+    return block.compare ? block.compare->factor : -1;
 }
 
 std::vector<int> levels_of_pairs(Pairs const& pairs)

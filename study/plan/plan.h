@@ -60,6 +60,11 @@ std::vector<int> levels_of_pairs(Pairs const& pairs);
 /// that a procedure chooses are left open.
 std::vector<Stimulus> possible_stimuli(Block const& block, Trial const& trial);
 
+/// "P001", as the script's pattern has it.
+std::string participant_id(Script const& script, int participant);
+/// The factor whose levels are paired, ranked or compared by a block; -1 = none.
+int compared_factor(Block const& block);
+
 inline constexpr int kMostTrialsOfBlock = 5000, kMostTrials = 50000;
 
 /// @param participant from 1
@@ -75,6 +80,12 @@ void find_plan_mistakes(Script const& script, int participants, Mistakes& m,
 
 /// The table plan.tsv: a line of column names, then one per step; UTF-8, tab-separated, n/a = missing.
 std::string plan_table(Script const& script, Plan const& plan);
+/// The plan of such a table, whichever version wrote it. Columns that are not known are ignored.
+/// @param file name in messages @throws ScriptError if a column is missing, or a row does not fit the script
+Plan read_plan(Script const& script, int participant, std::string_view table, std::string const& file);
+/// What differs between two such tables: "12 of 80 steps differ, the first is step 5 (order, answer)"; empty =
+/// nothing.
+std::string plan_difference(std::string_view recorded, std::string_view made);
 
 /// Label of a stimulus in tables, such as "similarity: visibility=ism_5": the level of the factor that a block
 /// compares, or of the setting that it varies; for ratings and similar tasks their crossed levels.

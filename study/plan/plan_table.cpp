@@ -1,5 +1,6 @@
+#include "study/plan/plan_columns.h"
+
 #include "gi/core/text.h"
-#include "study/plan/plan.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -8,14 +9,6 @@ namespace study {
 namespace {
 
 std::string or_none(std::string const& text) { return text.empty() ? "n/a" : text; }
-
-/// One line of at most 60 bytes, without tabs.
-std::string one_line(std::string text)
-{
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    return gi::shortened(text, 60);
-}
 
 std::string seconds(std::int64_t us) { return fmt::format("{}.{:06}", us / 1000000, us % 1000000); }
 std::string milliseconds(double ms) { return fmt::format("{:.9g}", ms); }
@@ -29,8 +22,7 @@ void add_levels(std::vector<std::string>& row, Script const& s, PlanStep const& 
         bool is_compared = false;
         if (step.kind == PlanStepKind::trial) {
             level = step.trial.stimuli[0].levels[f];
-            is_compared = (b->pairs && b->pairs->factor == int(f)) ||
-                          (b->compare && b->compare->factor == int(f)) || b->rank == int(f);
+            is_compared = compared_factor(*b) == int(f);
         }
         row.push_back(level < 0 || is_compared ? "n/a" : s.factors[f].levels[std::size_t(level)].name);
     }
@@ -74,7 +66,7 @@ std::vector<std::string> row_of(Script const& s, PlanStep const& step, std::size
     row.push_back(is_trial ? seconds(step.onset_us) : seconds(step.start_us));
     row.push_back(seconds(step.duration_us));
     row.push_back(step.questionnaire >= 0 ? s.questionnaires[std::size_t(step.questionnaire)].name
-                                          : or_none(one_line(step.text)));
+                                          : or_none(plan_content(step.text)));
     return row;
 }
 
@@ -102,7 +94,7 @@ std::string stimulus_label(Script const& s, Block const& b, Stimulus const& stim
     return label.empty() ? "n/a" : label;
 }
 
-std::string plan_table(Script const& script, Plan const& plan)
+std::vector<std::string> plan_columns(Script const& script)
 {
     std::vector<std::string> columns{"step", "kind", "block", "pass", "trial", "phase", "task", "repeat"};
     for (Factor const& f : script.factors) {
@@ -115,7 +107,19 @@ std::string plan_table(Script const& script, Plan const& plan)
             if (column == name) column = "factor_" + column;
         columns.emplace_back(name);
     }
-    std::string table = joined(columns);
+    return columns;
+}
+
+std::string plan_content(std::string text)
+{
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    return gi::shortened(text, 60);
+}
+
+std::string plan_table(Script const& script, Plan const& plan)
+{
+    std::string table = joined(plan_columns(script));
     for (std::size_t i = 0; i < plan.steps.size(); ++i) table += joined(row_of(script, plan.steps[i], i));
     return table;
 }

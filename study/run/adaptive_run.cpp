@@ -30,7 +30,7 @@ AdaptiveRun::Chooser AdaptiveRun::method_for(Procedure const& p, Compare const& 
 
 AdaptiveRun::AdaptiveRun(Procedure const& p, Compare const& c, std::string const& file)
 try : scale_(c.scale), sign_(harder_sign(c)), method_(method_for(p, c)) {
-    choose();
+    choose_next();
 } catch (std::invalid_argument const& e) {
     throw ScriptError(file, p.place, "procedure '" + p.name + "' cannot be run", e.what(), "");
 }
@@ -47,10 +47,35 @@ void AdaptiveRun::respond(bool is_correct)
         q.quest.respond(q.next, is_correct);
         --q.left;
     }
-    choose();
+    choose_next();
 }
 
-void AdaptiveRun::choose()
+void AdaptiveRun::choose(double level, std::vector<double> const& also)
+{
+    std::invalid_argument const impossible(level_text(level) + " is no level of the procedure");
+    if (auto* const staircase = std::get_if<Staircase>(&method_)) {
+        double const at = sign_ * to_scale(scale_, level), low = staircase->settings().low,
+                     high = staircase->settings().high, tolerance = 1e-6 * (high - low);
+        if (!(at >= low - tolerance && at <= high + tolerance)) throw impossible;
+        staircase->move_to(at);
+    } else if (auto* const many = std::get_if<QuestMany>(&method_)) {
+        std::vector<double> stimulus{level};
+        stimulus.insert(stimulus.end(), also.begin(), also.end());
+        auto const index = many->quest.index_of(stimulus);
+        if (!index) throw impossible;
+        many->next = *index;
+    } else {
+        Quest& q = std::get<Quest>(method_);
+        auto const at = std::find_if(q.levels.begin(), q.levels.end(),
+                                     [&](double known) { return level_text(known) == level_text(level); });
+        if (at == q.levels.end()) throw impossible;
+        q.next = std::size_t(at - q.levels.begin());
+    }
+    level_ = level;
+    also_ = also;
+}
+
+void AdaptiveRun::choose_next()
 {
     if (auto const* const staircase = std::get_if<Staircase>(&method_)) {
         is_finished_ = staircase->finished();

@@ -23,6 +23,9 @@ public:
     std::vector<double> const& also() const { return also_; }
     /// Call after a valid trial at level().
     void respond(bool is_correct);
+    /// Takes the levels that a trial had for those of the next one, where a version with other rules chose them.
+    /// @throws std::invalid_argument if the procedure cannot have them
+    void choose(double level, std::vector<double> const& also);
 
 private:
     struct Quest {
@@ -38,7 +41,7 @@ private:
     };
     using Chooser = std::variant<Staircase, Quest, QuestMany>;
     static Chooser method_for(Procedure const& procedure, Compare const& compare);
-    void choose();
+    void choose_next();
 
     Scale scale_;
     double sign_; ///< of the staircase's axis: -1 if a higher level is harder

@@ -15,7 +15,7 @@ constexpr double kClockNoise_s = 60; ///< smaller backward jumps of clocks are i
 bool is_same_level(std::optional<double> a, std::optional<double> b)
 {
     if (!a || !b) return !a && !b;
-    return std::abs(*a - *b) <= 1e-9 * std::max(std::abs(*a), std::abs(*b));
+    return std::abs(*a - *b) <= 1e-8 * std::max(std::abs(*a), std::abs(*b)); // plan.tsv has nine digits
 }
 
 bool is_adaptive_block(Block const& b)
@@ -152,14 +152,7 @@ void Progress::apply_trial(TrialDone const& t)
     bool const is_trial = due && at(due->step).kind == PlanStepKind::trial && !due->is_questionnaire_of_trial;
     expect(t.step, is_trial && t.attempt == due->attempt, "a trial");
     bool const is_refresh = !refresh_.empty();
-    if (t.reason != "skipped" && !is_same_level(t.level, due->level))
-        throw std::invalid_argument(fmt::format("a trial of step {} at level {} although {} is due", t.step + 1,
-                                                t.level ? level_text(*t.level) : "none",
-                                                due->level ? level_text(*due->level) : "none"));
-    if (t.reason != "skipped" && !due->also.empty() &&
-        t.chosen != further_text(*script_.blocks[std::size_t(at(t.step).block)].compare, due->also))
-        throw std::invalid_argument(
-            fmt::format("a trial of step {} with '{}', which is not due", t.step + 1, t.chosen));
+    if (t.reason != "skipped") check_levels(t, *due);
     pass(t.step);
     attempts_[std::size_t(t.step)] = t.attempt;
     if (pair_run_of_step_[std::size_t(t.step)] != nullptr) apply_pair(t, !pair_of_step_.contains(t.step));
@@ -173,6 +166,21 @@ void Progress::apply_trial(TrialDone const& t)
     bool const comes_again = script_.timing.on_bad_trial == BadTrial::repeat_at_end && t.attempt < kMostAttempts &&
                              s.trial.phase != Phase::practice && t.reason != "skipped";
     if (comes_again) again_.push_back(t.step);
+}
+
+void Progress::check_levels(TrialDone const& t, NextStep const& due)
+{
+    auto const& compare = script_.blocks[std::size_t(at(t.step).block)].compare;
+    bool const is_due =
+        is_same_level(t.level, due.level) && (due.also.empty() || t.chosen == further_text(*compare, due.also));
+    if (is_due) return;
+    AdaptiveRun* const run = run_of_step_[std::size_t(t.step)];
+    if (run == nullptr || !t.level)
+        throw std::invalid_argument(fmt::format("a trial of step {} at level {} although {} is due", t.step + 1,
+                                                t.level ? level_text(*t.level) : "none",
+                                                due.level ? level_text(*due.level) : "none"));
+    run->choose(*t.level, further_of_text(*compare, t.chosen));
+    ++levels_not_due_;
 }
 
 void Progress::apply_pair(TrialDone const& t, bool is_first)

@@ -30,6 +30,7 @@ inline constexpr int kMostAttempts = 3;
 ///   experimenter skipped are not repeated.
 /// - Procedures receive only valid trials. When a run has finished, its remaining trials are dropped; if no main
 ///   trial of the pass remains, its catch trials and breaks are dropped too.
+/// - The recorded level of a trial counts, also where a procedure would choose another one now.
 /// - Pairs that are chosen at the trial stay those of the trial when it is repeated. Only valid answers count for
 ///   the choice of later ones. The recorded pair counts, so that another machine resumes the same session.
 /// - After a gap longer than resume.max_gap_min, or of unknown length (the wall clock went back), the parts listed
@@ -48,11 +49,16 @@ public:
     bool was_asked() const { return was_asked_; } ///< the questions about the participant
     int trials_planned() const { return trials_planned_; }
     int trials_done() const { return trials_done_; } ///< of the plan, valid or not, each counted once
+    int levels_not_due() const
+    {
+        return levels_not_due_;
+    } ///< trials at levels that a procedure chooses otherwise now
 
 private:
     using RunKey = std::tuple<int, int, int, int, std::vector<int>>; ///< block, pass, procedure, repeat, cell
 
     void add_pair_run(std::size_t step);
+    void check_levels(TrialDone const& trial, NextStep const& due);
     void apply_pair(TrialDone const& trial, bool is_first);
     void apply_started(SessionStarted const& started);
     void apply_trial(TrialDone const& trial);
@@ -77,7 +83,7 @@ private:
     std::deque<int> again_;     ///< invalid trials, in the order in which they will be repeated
     std::deque<int> refresh_;   ///< steps repeated after a gap
     int questionnaire_of_ = -1; ///< step of the trial whose questionnaire is due
-    int trials_planned_ = 0, trials_done_ = 0;
+    int trials_planned_ = 0, trials_done_ = 0, levels_not_due_ = 0;
     bool was_asked_ = false;
 };
 

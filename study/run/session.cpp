@@ -6,6 +6,7 @@
 #include "study/journal/moments.h"
 #include "study/journal/session_summary.h"
 #include "study/run/session_files.h"
+#include "study/run/session_plan.h"
 #include "study/run/stopwatch.h"
 #include "study/run/trial.h"
 
@@ -47,7 +48,8 @@ public:
         : s_(script),
           p_(presenter),
           settings_(settings),
-          plan_(make_plan(script, participant)),
+          planned_(plan_to_run(script, participant, settings)),
+          plan_(planned_.plan),
           texts_(read_texts(script, plan_, settings.script_folder)),
           progress_(script, plan_),
           files_(open_session(plan_.participant_id, settings))
@@ -57,6 +59,7 @@ public:
     SessionOutcome run()
     {
         outcome_.torn_bytes = files_.found.torn_bytes;
+        outcome_.plan_remark = planned_.remark;
         started_ = now_started();
         try {
             take_up();
@@ -83,7 +86,6 @@ public:
 
 private:
     double unix_s() const { return settings_.unix_s ? settings_.unix_s() : machine_unix_s(); }
-    std::string plan_text() const { return plan_table(s_, plan_); }
 
     std::string const& text_of(std::string const& text) const
     {
@@ -101,7 +103,7 @@ private:
         e.version = settings_.version;
         e.git_hash = settings_.git_hash;
         e.script_sha256 = gi::sha256(settings_.script_text);
-        e.plan_sha256 = gi::sha256(plan_text());
+        e.plan_sha256 = gi::sha256(planned_.table);
         e.seed = s_.seed;
         if (!s_.participants.consent.empty()) e.consent_sha256 = gi::sha256(text_of(s_.participants.consent));
         e.is_simulated = settings_.is_simulated;
@@ -121,7 +123,8 @@ private:
                 progress_.apply(entry);
             } catch (std::invalid_argument const& e) {
                 throw ScriptError(file.string(), {number, 1}, "the journal does not follow its plan", e.what(),
-                                  "restore it from a copy, nothing of it has been changed");
+                                  "restore it from a copy, nothing of it has been changed, or resume it with the "
+                                  "version that wrote it");
             }
             if (auto const* const before = std::get_if<SessionStarted>(&entry)) {
                 started_.part = before->part + 1;
@@ -160,6 +163,11 @@ private:
         if (outcome_.torn_bytes > 0)
             note("warning", fmt::format("{} bytes of an incomplete line were cut off the journal's end",
                                         outcome_.torn_bytes));
+        if (!planned_.remark.empty()) note("warning", planned_.remark);
+        if (int const n = progress_.levels_not_due(); n > 0)
+            note("warning", fmt::format("{} trials have other levels than this version's procedures choose; the "
+                                        "recorded ones count",
+                                        n));
         if (started_.gap_s < 0)
             note("clock_changed", fmt::format("by the wall clock this part begins {:.3f} s before the end of "
                                               "the previous part",
@@ -344,12 +352,12 @@ private:
     }
     void note(std::string const& kind, std::string const& text) { keep(NoteTaken{p_.now(), kind, text}); }
 
-    /// Writes plan.tsv if it is missing; take_up has checked that the plan is the same.
+    /// Writes plan.tsv if it is missing.
     void keep_plan() const
     {
         auto const file = files_.folder / "plan.tsv";
         std::error_code ignored;
-        if (!std::filesystem::exists(file, ignored)) gi::write_durably(file, plan_text());
+        if (!std::filesystem::exists(file, ignored)) gi::write_durably(file, planned_.table);
     }
     void write_summary() const { gi::write_durably(files_.folder / "session.json", session_summary(record_)); }
 
@@ -391,7 +399,8 @@ private:
     Script const& s_;
     Presenter& p_;
     SessionSettings const& settings_;
-    Plan plan_;
+    SessionPlan planned_;
+    Plan const& plan_;                         ///< of planned_
     std::map<std::string, std::string> texts_; ///< by file name
     Progress progress_;
     SessionFiles files_;

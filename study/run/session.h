@@ -37,6 +37,8 @@ struct SessionOutcome {
     std::string reason;                        ///< why not
     int trials = 0, bad_trials = 0, steps = 0; ///< of this part
     std::size_t torn_bytes = 0;                ///< cut off the journal's end before resuming
+    std::string
+        plan_remark; ///< what differs between the recorded plan and the one of this version; empty = nothing
     /// Time between two trials for journal and choice of the next step; with and without waiting for the disk.
     std::vector<double> bookkeeping_ms, unsynced_ms;
 };
@@ -45,8 +47,8 @@ struct SessionOutcome {
 /// sessions of another script
 void check_is_new(std::string const& participant_id, SessionSettings const& settings);
 
-/// Runs a session. Its folder gets plan.tsv (the whole order, before the first trial), journal.jsonl (the
-/// authoritative record) and session.json (a summary).
+/// Runs a session; resumed ones with the plan that was recorded (session_plan.h). Its folder gets plan.tsv (the
+/// whole order, before the first trial), journal.jsonl (the authoritative record) and session.json (a summary).
 /// @throws ScriptError if the session cannot start or resume, with nothing written: it exists already, another
 /// process runs it, it or other sessions in the folder have another script, the display fails the test that the
 /// script requires; also if the disk fails, after which the journal has all earlier entries

@@ -114,9 +114,6 @@ void check_record(SessionRecord const& record, SessionStarted const& now, fs::pa
         refuse("the script is not the one with which the session began",
                fmt::format("its sha256 was {:.12}..., it is {:.12}...", then->script_sha256, now.script_sha256),
                "use the original script, or start another session with --session");
-    if (then->plan_sha256 != now.plan_sha256)
-        refuse("the plan is not the one with which the session began",
-               "this version makes another plan of the same script", "use version " + then->version);
     if (then->is_simulated != now.is_simulated)
         refuse(then->is_simulated ? "this session was simulated" : "this session is a person's",
                "the two are not mixed", "choose another folder");

@@ -21,7 +21,7 @@ struct SessionFiles {
 /// @throws ScriptError as run_session does
 SessionFiles open_session(std::string const& participant_id, SessionSettings const& settings);
 
-/// @throws ScriptError if the record belongs to another experiment, participant, seed, script or plan
+/// @throws ScriptError if the record belongs to another experiment, participant, seed or script
 void check_record(SessionRecord const& record, SessionStarted const& now, std::filesystem::path const& file);
 
 } // namespace study

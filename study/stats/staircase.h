@@ -53,6 +53,8 @@ public:
     bool finished() const;
     /// @throws std::logic_error after it has finished
     void respond(bool correct);
+    /// Sets the level of the next trial, for responses that were recorded at other levels.
+    void move_to(double level) { level_ = level; }
 
     StaircaseSettings const& settings() const { return settings_; }
     std::vector<double> const& levels() const { return levels_; }    ///< of the trials so far

@@ -7,6 +7,7 @@
 #include "study/script/script_file.h"
 
 #include <fmt/format.h>
+#include <map>
 
 namespace study {
 namespace {
@@ -67,6 +68,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
 {
     Dataset d;
     std::string hash;
+    std::map<PlanSource, std::vector<std::string>> plans; ///< remarks about them
     for (fs::path const& file : journals(dir, d.remarks)) {
         JournalText journal = read_journal(file);
         if (journal.torn_bytes > 0)
@@ -91,16 +93,18 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
         if (start.participant < 1 || start.participant > d.script.participants.count)
             throw ScriptError(file.string(), {}, fmt::format("participant {}", start.participant),
                               "the script has no such participant", "name the right script with --script");
-        Plan plan = make_plan(d.script, start.participant);
-        if (!start.plan_sha256.empty() && start.plan_sha256 != gi::sha256(plan_table(d.script, plan)))
-            throw ScriptError(file.string(), {}, "the session had another plan",
-                              fmt::format("version {} made another plan of this script", start.version),
-                              "use that version of the program");
-        d.sessions.push_back({std::move(plan), std::move(journal.record)});
+        SessionPlan planned = recorded_plan(d.script, journal.record, file.parent_path());
+        if (!planned.remark.empty())
+            plans[planned.source].push_back(file.parent_path().parent_path().lexically_relative(dir).string() +
+                                            ": " + planned.remark);
+        d.sessions.push_back({std::move(planned.plan), std::move(journal.record), {}, planned.source});
         fill_chosen(d.script, d.sessions.back());
     }
     if (d.sessions.empty())
         throw ScriptError(dir.string(), {}, "no session has started", "all journals are empty", "run one first");
+    for (auto const& [source, remarks] : plans)
+        d.remarks.push_back(fmt::format("plans of {} of {} sessions; {}{}", remarks.size(), d.sessions.size(),
+                                        remarks.front(), remarks.size() > 1 ? "; the others likewise" : ""));
     return d;
 }
 

@@ -14,10 +14,11 @@ struct Dataset {
     std::vector<std::string> remarks;      ///< such as folders without a journal, incomplete lines
 };
 
-/// Reads DIR/sub-*/ses-*/beh/journal.jsonl and recomputes the plan of each session.
+/// Reads DIR/sub-*/ses-*/beh/journal.jsonl with the recorded plan of each session. Where this version makes
+/// another one, a remark says so.
 /// @param script file; empty = DIR/code/*.yaml, the script with which the sessions were recorded
 /// @throws ScriptError if there is no session or no script, a journal belongs to another script, is damaged or in
-/// the folder of another session, or a file cannot be read
+/// the folder of another session, its plan is lost, or a file cannot be read
 Dataset read_dataset(std::filesystem::path const& dir, std::filesystem::path const& script);
 
 /// File in which read_dataset looks for the script: DIR/code/ID.yaml.

@@ -139,13 +139,6 @@ Stimulus const* stimulus_of(Trial const& trial, char letter)
     return letter >= 'a' && i < trial.stimuli.size() ? &trial.stimuli[i] : nullptr;
 }
 
-int compared_factor(Block const& block)
-{
-    if (block.pairs) return block.pairs->factor;
-    if (block.rank >= 0) return block.rank;
-    return block.compare ? block.compare->factor : -1;
-}
-
 std::string compared_label(Script const& script, Block const& block, Trial const& trial)
 {
     std::string label = stimulus_label(script, block, trial.stimuli.front());

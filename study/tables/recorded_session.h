@@ -3,6 +3,7 @@
 
 #include "study/journal/entries.h"
 #include "study/plan/plan.h"
+#include "study/run/session_plan.h"
 
 #include <span>
 
@@ -19,10 +20,10 @@ struct RecordedSession {
     Plan plan;
     SessionRecord record;
     TrialDetail detail = TrialDetail::trials;
+    PlanSource plan_source = PlanSource::same;
 };
 
-/// Sets the pairs that were chosen during the session in the plan's trials. Call after the plan was checked
-/// against the journal's hash.
+/// Sets the pairs that were chosen during the session in the plan's trials.
 void fill_chosen(Script const& script, RecordedSession& session);
 
 /// The first entry of the journal. @throws ScriptError if there is none, or it belongs to another experiment or
@@ -69,8 +70,6 @@ std::vector<TrialRow> trial_rows(Script const& script, RecordedSession const& se
 Stimulus const* stimulus_of(Trial const& trial, char letter);
 /// The level of a factor that all stimuli of a trial share; -1 = none, because the block compares this factor.
 int shared_level(Block const& block, Trial const& trial, int factor);
-/// The factor whose levels are paired, ranked or compared by a block; -1 = none.
-int compared_factor(Block const& block);
 /// The level of that factor; in blocks of pairs both: "a vs b".
 std::string compared_label(Script const& script, Block const& block, Trial const& trial);
 /// Letter of the chosen stimulus, for tasks that choose one of the stimuli: 'b' for order "ba" and response

@@ -110,6 +110,7 @@ TEST(RandomDesigns, KeepTheirRulesOrAreRefusedWithTheReason)
             Script const s = parse_script(d.text, "r.yaml");
             int const participant = 1 + int(random.below(8));
             Plan const plan = make_plan(s, participant);
+            expect_same(read_plan(s, participant, plan_table(s, plan), "plan.tsv"), plan);
             for (std::vector<Trial> const& run : {run_of(plan), trials_of(plan, Phase::practice)})
                 for (Rule const& rule : d.rules)
                     EXPECT_TRUE(keeps(s, d.task, run, rule)) << d.text << "participant " << participant;

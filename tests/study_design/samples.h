@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <iterator>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace study::test {
@@ -61,6 +62,31 @@ inline std::vector<Trial> run_of(Plan const& plan, int block = 0)
             step.trial.phase != Phase::practice)
             out.push_back(step.trial);
     return out;
+}
+
+/// Equal in all but the levels of trials that the sequence fixes: those of their stimuli are all there.
+inline void expect_same(Plan const& a, Plan const& b)
+{
+    EXPECT_EQ(a.participant_id, b.participant_id);
+    EXPECT_EQ(a.duration_us, b.duration_us);
+    ASSERT_EQ(a.steps.size(), b.steps.size());
+    for (std::size_t i = 0; i < a.steps.size(); ++i) {
+        PlanStep const &x = a.steps[i], &y = b.steps[i];
+        SCOPED_TRACE("step " + std::to_string(i + 1));
+        EXPECT_EQ(std::tie(x.kind, x.block, x.pass, x.text, x.questionnaire, x.number, x.start_us, x.duration_us,
+                           x.onset_us),
+                  std::tie(y.kind, y.block, y.pass, y.text, y.questionnaire, y.number, y.start_us, y.duration_us,
+                           y.onset_us));
+        EXPECT_NEAR(x.seconds, y.seconds, 1e-6);
+        Trial const &t = x.trial, &u = y.trial;
+        EXPECT_EQ(std::tie(t.phase, t.repeat, t.stimuli, t.order, t.reference, t.answer, t.procedure, t.level,
+                           t.is_noise, t.is_open_pair),
+                  std::tie(u.phase, u.repeat, u.stimuli, u.order, u.reference, u.answer, u.procedure, u.level,
+                           u.is_noise, u.is_open_pair));
+        if (x.kind != PlanStepKind::trial) {
+            EXPECT_EQ(x.levels, y.levels);
+        }
+    }
 }
 
 } // namespace study::test

@@ -192,6 +192,26 @@ TEST(Progress, QuestPlusAsksForItsLevels)
     EXPECT_GT(std::set<double>(levels.begin(), levels.end()).size(), 3u);
 }
 
+/// As of a version whose procedures chose otherwise.
+TEST(Progress, RecordedLevelsCountWhereAProcedureChoosesOthersNow)
+{
+    Walk w(adaptive_script());
+    std::map<int, std::vector<double>> levels; // by procedure
+    w.go([&](NextStep const& due, TrialDone& t) {
+        Trial const& trial = w.at(due.step).trial;
+        if (trial.procedure < 0 || trial.phase != Phase::main) return;
+        auto& of_run = levels[trial.procedure];
+        of_run.push_back(*due.level);
+        if (of_run.size() == 1) t.level = trial.procedure == 0 ? 64 : 1;
+        t.is_correct = true;
+    });
+    EXPECT_EQ(w.progress.levels_not_due(), 2);
+    ASSERT_GT(levels[0].size(), 1u);
+    EXPECT_EQ(levels[0][0], 16);
+    EXPECT_EQ(levels[0][1], 256) << "a step of 2 beyond the recorded level";
+    EXPECT_EQ(levels[1].size(), 12u);
+}
+
 TEST(Progress, RefusesEntriesThatDoNotFollow)
 {
     Walk w(adaptive_script());
@@ -203,7 +223,7 @@ TEST(Progress, RefusesEntriesThatDoNotFollow)
     t.attempt = 2;
     EXPECT_THROW(w.progress.apply(t), std::invalid_argument);
     t = w.trial(due);
-    t.level = *due.level * 2;
+    t.level = 2048; // the script has none above 1024
     EXPECT_THROW(w.progress.apply(t), std::invalid_argument);
     t.level.reset();
     EXPECT_THROW(w.progress.apply(t), std::invalid_argument);

@@ -37,6 +37,7 @@ protected:
                 record_session(s, participant, [](auto const&, TrialDone& t) { t.response = "first"; });
             auto& start = std::get<SessionStarted>(r.record.entries.front());
             start.script_sha256 = gi::sha256(kText);
+            start.plan_sha256 = gi::sha256(plan_table(s, r.plan));
             std::string text;
             int line = 0;
             for (JournalEntry const& e : r.record.entries) text += entry_line(e, ++line) + "\n";

@@ -22,6 +22,12 @@ std::vector<double> levels_of(study::Script const& script, study::Block const& b
     return levels;
 }
 
+bool has_prepared(study::Script const& script)
+{
+    return std::any_of(script.blocks.begin(), script.blocks.end(),
+                       [](study::Block const& b) { return b.stimuli == study::Stimuli::prepared; });
+}
+
 } // namespace
 
 std::map<std::string, PreparedStimulus> prepared_list(study::Script const& script, glm::ivec2 screen_px,
@@ -29,9 +35,18 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
                                                       study::DisplayModel const* model)
 {
     std::map<std::string, PreparedStimulus> list;
-    bool const is_any = std::any_of(script.blocks.begin(), script.blocks.end(),
-                                    [](study::Block const& b) { return b.stimuli == study::Stimuli::prepared; });
-    if (!is_any) return list;
+    if (!has_prepared(script)) return list;
+    for (int participant = 1; participant <= script.participants.count; ++participant)
+        list.merge(prepared_list(script, make_plan(script, participant), screen_px, font_px, version, model));
+    return list;
+}
+
+std::map<std::string, PreparedStimulus> prepared_list(study::Script const& script, study::Plan const& plan,
+                                                      glm::ivec2 screen_px, float font_px,
+                                                      std::string const& version, study::DisplayModel const* model)
+{
+    std::map<std::string, PreparedStimulus> list;
+    if (!has_prepared(script)) return list;
     auto const add = [&](study::Block const& block, study::Trial const& trial, study::Stimulus const& stimulus) {
         PreparedStimulus p;
         p.stimulus = stimulus_settings(script, block, stimulus);
@@ -41,26 +56,25 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
         p.where = script.file + ": block " + block.name + ", " + stimulus_label(script, block, stimulus);
         list.emplace(prepared_key(p, version), p);
     };
-    for (int participant = 1; participant <= script.participants.count; ++participant)
-        for (study::PlanStep const& step : make_plan(script, participant).steps) {
-            if (step.kind != study::PlanStepKind::trial) continue;
-            study::Block const& block = script.blocks[std::size_t(step.block)];
-            if (block.stimuli != study::Stimuli::prepared) continue;
-            if (block.task == study::Task::adjustment)
-                throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
-                                     "adjusted stimuli are rendered while they are shown", "write stimuli: live");
-            for (study::Stimulus s : possible_stimuli(block, step.trial)) {
-                bool const has_levels = block.compare && !block.compare->vary.empty();
-                if (!s.is_varied || s.level || !has_levels) {
-                    add(block, step.trial, s);
-                    continue;
-                }
-                for (double const level : levels_of(script, block, step.trial)) {
-                    s.level = level;
-                    add(block, step.trial, s);
-                }
+    for (study::PlanStep const& step : plan.steps) {
+        if (step.kind != study::PlanStepKind::trial) continue;
+        study::Block const& block = script.blocks[std::size_t(step.block)];
+        if (block.stimuli != study::Stimuli::prepared) continue;
+        if (block.task == study::Task::adjustment)
+            throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
+                                 "adjusted stimuli are rendered while they are shown", "write stimuli: live");
+        for (study::Stimulus s : possible_stimuli(block, step.trial)) {
+            bool const has_levels = block.compare && !block.compare->vary.empty();
+            if (!s.is_varied || s.level || !has_levels) {
+                add(block, step.trial, s);
+                continue;
+            }
+            for (double const level : levels_of(script, block, step.trial)) {
+                s.level = level;
+                add(block, step.trial, s);
             }
         }
+    }
     return list;
 }
 

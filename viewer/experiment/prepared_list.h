@@ -12,5 +12,10 @@ namespace viewer {
 std::map<std::string, PreparedStimulus> prepared_list(study::Script const& script, glm::ivec2 screen_px,
                                                       float font_px, std::string const& version,
                                                       study::DisplayModel const* model = nullptr);
+/// The same for one session's plan.
+std::map<std::string, PreparedStimulus> prepared_list(study::Script const& script, study::Plan const& plan,
+                                                      glm::ivec2 screen_px, float font_px,
+                                                      std::string const& version,
+                                                      study::DisplayModel const* model = nullptr);
 
 } // namespace viewer

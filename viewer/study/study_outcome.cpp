@@ -27,6 +27,7 @@ nlohmann::ordered_json session_json(std::string const& id, study::SessionOutcome
             {"trials", s.trials},
             {"bad_trials", s.bad_trials},
             {"torn_bytes", s.torn_bytes},
+            {"plan_remark", s.plan_remark},
             {"bookkeeping_ms",
              {{"median", gi::quantile(s.bookkeeping_ms, 0.5)},
               {"p99", gi::quantile(s.bookkeeping_ms, 0.99)},
@@ -40,6 +41,7 @@ void print_session(std::string const& id, study::SessionOutcome const& s)
                                s.torn_bytes)
                        .c_str(),
                    stderr);
+    if (!s.plan_remark.empty()) std::fputs(fmt::format("{}: {}\n", id, s.plan_remark).c_str(), stderr);
     fmt::print("{}: {} trials, {} bad, {}{}\n", id, s.trials, s.bad_trials, s.is_complete ? "complete" : s.reason,
                pause_text(s));
 }

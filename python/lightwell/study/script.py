@@ -25,6 +25,8 @@ class Outcome:
         folder: folder of its records; empty if nothing is recorded because the participant did not consent.
         is_complete, reason: True if every step of the plan is done; otherwise why not.
         trials, bad_trials, steps: numbers in this part of the session, since it was started or resumed.
+        plan_remark: how the recorded plan of a resumed session differs from the one that this version makes; empty if
+            it does not.
     """
 
     participant_id: str
@@ -34,6 +36,7 @@ class Outcome:
     trials: int
     bad_trials: int
     steps: int
+    plan_remark: str
 
 
 class Script:

@@ -1,8 +1,8 @@
 #include "gi/core/error.h"
 #include "gi/core/host_name.h"
 #include "study/display/model_file.h"
-#include "study/plan/plan.h"
 #include "study/run/session.h"
+#include "study/run/session_plan.h"
 #include "study/script/setting_place.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
@@ -61,10 +61,11 @@ void check_stimuli(LoadedScript const& loaded, study::Plan const& plan, SceneAcc
     throw_first(m);
 }
 
-void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o,
-                    study::DisplayModel const* model)
+void check_prepared(study::Script const& script, study::Plan const& plan, glm::ivec2 screen_px,
+                    RunOptions const& o, study::DisplayModel const* model)
 {
-    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text(), model)) {
+    auto const list = prepared_list(script, plan, screen_px, float(o.font_px), version_text(), model);
+    for (auto const& [key, wanted] : list) {
         std::filesystem::path const folder = std::filesystem::path(o.prepared) / key;
         if (!std::filesystem::exists(folder))
             throw gi::InputError(
@@ -138,7 +139,6 @@ int run(RunOptions const& o)
     if (o.participant > script.participants.count)
         throw gi::InputError(fmt::format("participant {} of {}", o.participant, script.participants.count),
                              "the script has no more", "name a smaller number, or raise participants.count");
-    study::Plan const plan = study::make_plan(script, o.participant);
     gi::Report report;
     TrialOptions trials;
     trials.scenes = study_scenes();
@@ -151,7 +151,9 @@ int run(RunOptions const& o)
     settings.start = o.resume ? study::SessionStart::go_on : study::SessionStart::begin;
     settings.version = version_number();
     settings.git_hash = git_hash();
-    if (!o.resume) check_is_new(plan.participant_id, settings);
+    std::string const participant = participant_id(script, o.participant);
+    if (!o.resume) check_is_new(participant, settings);
+    study::Plan const plan = plan_to_run(script, o.participant, settings).plan;
 
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
@@ -186,9 +188,9 @@ int run(RunOptions const& o)
     trials.screen.window.swap_interval = o.no_vsync ? 0 : 1;
     trials.screen.font_px = float(o.font_px);
     trials.threads = o.threads;
-    trials.folder = study::session_folder(settings.dir, plan.participant_id, o.session);
-    trials.participant = plan.participant_id;
-    trials.stem = fmt::format("sub-{}_ses-{:02}", plan.participant_id, o.session);
+    trials.folder = study::session_folder(settings.dir, participant, o.session);
+    trials.participant = participant;
+    trials.stem = fmt::format("sub-{}_ses-{:02}", participant, o.session);
     trials.remote.socket = o.remote;
     trials.remote.port = o.remote_port;
     trials.remote.token = o.remote_token;
@@ -207,15 +209,15 @@ int run(RunOptions const& o)
     study::SessionOutcome outcome;
     {
         TrialPresenter presenter(script, trials, report);
-        check_prepared(script, presenter.screen_px(), o, model);
+        check_prepared(script, plan, presenter.screen_px(), o, model);
         outcome = study::run_session(script, o.participant, presenter, settings);
     }
     if (!outcome.folder.empty()) keep_tables(settings.dir, o.script);
     print_losses(report);
     if (o.json)
-        std::fputs(to_text(session_json(plan.participant_id, outcome)).c_str(), stdout);
+        std::fputs(to_text(session_json(participant, outcome)).c_str(), stdout);
     else
-        print_session(plan.participant_id, outcome);
+        print_session(participant, outcome);
     return outcome.is_complete ? 0 : 1;
 }
 

@@ -62,13 +62,13 @@ int run_simulate(SimulateOptions const& o)
     settings.version = version_number();
     settings.git_hash = git_hash();
     if (!o.resume)
-        for (int const p : participants) check_is_new(study::make_plan(s, p).participant_id, settings);
+        for (int const p : participants) check_is_new(participant_id(s, p), settings);
     study::keep_truth(settings.dir, study::truth_text(s, model, seed));
 
     auto sessions = nlohmann::ordered_json::array();
     bool are_complete = true;
     for (int const p : participants) {
-        std::string const id = study::make_plan(s, p).participant_id;
+        std::string const id = participant_id(s, p);
         if (o.each) settings.on_kept = [&](study::JournalEntry const& entry) { print_kept(id, entry); };
         study::SessionOutcome const outcome =
             study::simulate_session(s, p, study::draw_observer(model, seed, p), settings, o.gap_min * 60);
