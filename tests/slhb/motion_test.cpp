@@ -31,6 +31,9 @@ RenderSettings one_path()
     s.bounces = 1;
     s.slhb.schedule = Schedule::streamed;
     s.slhb.resolution = 48;
+    s.photons.paths = s.photons.caustic_paths = 1024; // motion does not depend on light
+    s.sh_grid.voxels = 16;
+    s.vpl.light_paths = 16;
     return s;
 }
 
