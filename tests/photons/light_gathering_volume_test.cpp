@@ -84,7 +84,7 @@ TEST(LightGatheringVolume, ARoomInALargeWorld)
     add_box(scene, vec3{-8}, vec3{8}, add_material(scene, bright), true);
     add_box(scene, vec3{-1}, vec3{1}, add_material(scene, dim), true);
     add_box(scene, vec3{-1.1f}, vec3{1.1f}, add_material(scene, lambert(vec3{0.5f})), false);
-    TracedScene const traced(scene, 2000000, 12);
+    TracedScene const traced(scene, 1000000, 12);
     auto const inside = [](Photon const& p) { return max_component(glm::abs(p.position)) < 1.01f; };
     auto const outside = [](Photon const& p) { return max_component(glm::abs(p.position)) > 1.05f; };
     PhotonLattices light({.cells = {16, 16, 4}, .smooth = {}, .gathers = 1});

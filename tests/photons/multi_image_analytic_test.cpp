@@ -69,7 +69,7 @@ TEST(MultiImage, LightByAMirror)
     }
     RenderSettings s;
     s.width = s.height = 32;
-    s.paths = 16;
+    s.paths = 4;
     s.bounces = 1;
     s.of<PhotonSettings>().caustic_paths = 262144;
     // 0.4 m of the floor, from 4 m above; in front of it the lamp is no surface.

@@ -5,12 +5,12 @@
 #include "gi/methods/reference/reference.h"
 #include "gi/render/checkpoint.h"
 #include "tests/support/scenes.h"
+#include "tests/support/stop_at_ask.h"
 
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <thread>
 
 namespace gi::test {
 namespace {
@@ -113,22 +113,15 @@ TEST(Determinism, APassIsInterruptedBetweenItsTiles)
     std::filesystem::path const state =
         std::filesystem::temp_directory_path() / ("lightwell_tiles_" + std::to_string(getpid()) + ".state");
     RenderSettings s = settings();
-    s.width = 333; // the last tiles are cut
-    s.height = 205;
+    s.width = 77; // the last tiles are cut
+    s.height = 45;
     s.paths = 12;
     Picture const whole = render(world, s).picture;
     s.checkpoint = state;
     bool is_met = false;
-    for (int wait_ms = 1; !is_met && wait_ms < 1000; wait_ms *= 2) {
-        StopRequest stop;
-        std::jthread later;
-        auto const in_the_next_pass = [&](RenderStatus const&) {
-            if (!later.joinable())
-                later = std::jthread([&] {
-                    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
-                    stop.request();
-                });
-        };
+    for (std::uint64_t asks = 1; !is_met && asks < 100'000; asks *= 2) {
+        StopAtAsk stop;
+        auto const in_the_next_pass = [&](RenderStatus const&) { stop.request_after(asks); };
         Report report;
         s.resume = false;
         if (render_reference(world, eye(), s, stop, in_the_next_pass, report).end != RenderEnd::interrupted) break;
@@ -152,18 +145,14 @@ TEST(Determinism, AFirstPassIsInterruptedBetweenItsTiles)
     std::filesystem::path const state =
         std::filesystem::temp_directory_path() / ("lightwell_first_" + std::to_string(getpid()) + ".state");
     RenderSettings s = settings();
-    s.width = 900;
-    s.height = 600;
+    s.width = 90;
+    s.height = 60;
     s.paths = 2;
     Picture const whole = render(world, s).picture;
     s.checkpoint = state;
     bool is_met = false;
-    for (int wait_ms = 20; !is_met && wait_ms < 10'000; wait_ms += wait_ms / 4) {
-        StopRequest stop;
-        std::jthread const later([&] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
-            stop.request();
-        });
+    for (std::uint64_t asks = 1; !is_met && asks < 100'000; asks += 1 + asks / 4) {
+        StopAtAsk const stop(asks);
         s.resume = false;
         Report report;
         RenderResult part;
@@ -273,7 +262,7 @@ TEST(Determinism, AResumedRenderKnowsItsErrorBeforeItStops)
     World const world = room();
     RenderSettings s = settings();
     s.paths = 1u << 20;
-    s.until_relmse = 1e-3;
+    s.until_relmse = 4e-3;
     s.checkpoint =
         std::filesystem::temp_directory_path() / ("lightwell_until_" + std::to_string(getpid()) + ".state");
     s.budget_s = 0;
@@ -282,7 +271,7 @@ TEST(Determinism, AResumedRenderKnowsItsErrorBeforeItStops)
     RenderResult const r = render(world, s);
     EXPECT_EQ(r.end, RenderEnd::error_target);
     EXPECT_GT(r.relmse, 0);
-    EXPECT_LT(r.relmse, 1e-3);
+    EXPECT_LT(r.relmse, 4e-3);
 }
 
 TEST(Determinism, SeedsDifferWithinTheirVariance)
@@ -311,7 +300,7 @@ TEST(Determinism, StopsAtErrorTargetAndBudget)
     s.budget_s = 0.2;
     RenderResult const timed = render(world, s);
     EXPECT_EQ(timed.end, RenderEnd::budget);
-    EXPECT_LT(timed.seconds, 1.0);
+    EXPECT_LT(timed.seconds, 5.0); // its passes take milliseconds
 }
 
 TEST(Determinism, LayersAddUp)

@@ -7,6 +7,7 @@
 #include "gi/methods/sh_grid/settings.h"
 #include "gi/scene/load/load.h"
 #include "tests/support/data.h"
+#include "tests/support/processor_time.h"
 #include "tests/support/scenes.h"
 
 #include <fstream>
@@ -14,7 +15,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sys/resource.h>
 
 namespace gi::test {
 namespace {
@@ -26,20 +26,6 @@ constexpr double kSoon_s = 120; // no limit on memory holds there, and fresh pag
 #else
 constexpr double kSoon_s = 5;
 #endif
-
-/// Processor time of all threads of this process and of the children that have ended. Other programs that take the
-/// processor do not count; what waits for ever meets the time limit of the test.
-double processor_s()
-{
-    double sum_s = 0;
-    for (int const whose : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-        rusage used{};
-        getrusage(whose, &used);
-        for (timeval const& t : {used.ru_utime, used.ru_stime})
-            sum_s += double(t.tv_sec) + 1e-6 * double(t.tv_usec);
-    }
-    return sum_s;
-}
 
 /// Fails when the step that ends here took more than kSoon_s of processor time.
 class Soon {

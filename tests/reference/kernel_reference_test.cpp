@@ -8,10 +8,10 @@
 #include "gi/scene/motion/animation.h"
 #include "tests/support/on_device.h"
 #include "tests/support/scenes.h"
+#include "tests/support/stop_at_ask.h"
 
 #include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
-#include <thread>
 #include <unistd.h>
 
 namespace gi::test {
@@ -284,20 +284,16 @@ template <Space S>
 void check_interruptions()
 {
     World const world = world_of(lit_room());
-    RenderSettings s = few_paths(4, 300);
-    s.width = 120;
-    s.height = 100;
+    RenderSettings s = few_paths(4, 60);
+    s.width = 60;
+    s.height = 50;
     Picture const whole = by_kernels(S, world, room_eye(), s).picture;
     s.checkpoint =
         std::filesystem::temp_directory_path() / ("lightwell_kernels_" + std::to_string(getpid()) + ".state");
     int interrupted = 0;
-    for (int wait_ms = 5; interrupted < 3 && wait_ms < 2000; wait_ms += 1 + wait_ms / 4) {
+    for (std::uint64_t asks = 1; interrupted < 3 && asks < 100'000; asks *= 2) {
         s.resume = false;
-        StopRequest stop;
-        std::jthread const later([&] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
-            stop.request();
-        });
+        StopAtAsk const stop(asks);
         Report report;
         try {
             RenderResult const part = render_reference_by_kernels(S, world, room_eye(), s, stop, {}, report);

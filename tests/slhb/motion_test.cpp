@@ -1,7 +1,10 @@
 // Motion vectors of the reference path tracer against those of slhb.
 
+#include "gi/light_paths/settings.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/registry.h"
+#include "gi/methods/sh_grid/settings.h"
+#include "gi/methods/vpl/settings.h"
 #include "tests/slhb/slhb_render.h"
 #include "gi/methods/paths/motion.h"
 #include "gi/scene/generate/figure.h"
@@ -31,6 +34,9 @@ RenderSettings one_path()
     s.bounces = 1;
     s.of<SlhbSettings>().schedule = Schedule::streamed;
     s.of<SlhbSettings>().resolution = 48;
+    s.of<PhotonSettings>().paths = s.of<PhotonSettings>().caustic_paths = 1024; // motion does not depend on light
+    s.of<ShGridSettings>().voxels = 16;
+    s.of<VirtualLightSettings>().light_paths = 16;
     return s;
 }
 

@@ -1,6 +1,5 @@
 // What the method auto chooses between look-ups and exact rays, and that its choice is right where look-ups were not.
 
-#include "gi/hit_buffers/settings.h"
 #include "gi/methods/automatic/automatic.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/registry.h"
@@ -8,8 +7,7 @@
 #include "gi/scene/generate/generate.h"
 #include "gi/methods/paths/look_up_trust.h"
 #include "tests/slhb/slhb_render.h"
-
-#include <chrono>
+#include "tests/support/stop_at_ask.h"
 
 namespace gi::test {
 namespace {
@@ -59,7 +57,7 @@ TEST(RayPlan, RoomOnAWidePlane)
 {
     for (float const reach : {10.0f, 5000.0f}) {
         World const world = world_of(room_on_a_plane(reach));
-        RenderSettings s = small_settings(48, 256, 3);
+        RenderSettings s = small_settings(32, 256, 3);
         StopRequest stop;
         Report report;
         Picture const truth = render_reference(world, kInRoom, s, stop, {}, report).picture;
@@ -81,7 +79,7 @@ TEST(RayPlan, LampsInMirrors)
     World const world = world_of(std::move(scene));
     Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
     for (int const bounces : {0, 1}) {
-        RenderSettings s = small_settings(32, 1024, bounces);
+        RenderSettings s = small_settings(24, 512, bounces);
         StopRequest stop;
         Report report;
         double const truth = mean_of(render_reference(world, camera, s, stop, {}, report).picture).mean;
@@ -168,22 +166,12 @@ TEST(RayPlan, LongBuildingCanBeInterrupted)
     Report report;
     RenderSettings s = small_settings(8, 4, 2);
     s.of<SlhbSettings>().schedule = Schedule::stored;
-    s.of<SlhbSettings>().resolution = 16; // takes no time: there is a picture
-    std::uint32_t paths = 0;
-    auto const last = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (paths == 0 && std::chrono::steady_clock::now() < last) { // again where the machine is busy for 80 ms
-        StopRequest at_once;
-        at_once.request();
-        try {
-            paths = render_as_set(world, camera, s, at_once, {}, report).paths;
-        } catch (Interrupted const&) {
-        }
-    }
-    EXPECT_EQ(paths, 1u);
-    StopRequest stop;
-    stop.request();
-    s.of<SlhbSettings>().resolution = 1024; // takes seconds
-    EXPECT_THROW(render_as_set(world, camera, s, stop, {}, report), Interrupted);
+    s.of<SlhbSettings>().resolution = 64;
+    StopAtAsk while_time_stands(1, {});
+    EXPECT_EQ(render_as_set(world, camera, s, while_time_stands, {}, report).paths, 1u) << "a picture to keep";
+    StopAtAsk after_long(while_time_stands.asks() / 4);
+    EXPECT_THROW(render_as_set(world, camera, s, after_long, {}, report), Interrupted);
+    EXPECT_LE(after_long.asks(), while_time_stands.asks() / 4 + asks_until_noticed());
 }
 
 } // namespace

@@ -3,6 +3,8 @@
 
 #include "tests/viewer/run_program.h"
 
+#include <set>
+
 namespace viewer::test {
 namespace {
 
@@ -21,14 +23,16 @@ TemporaryFolder const& folder()
     return one;
 }
 
-/// Runs all lines that start with `prefix`, in order.
+/// Runs all lines that start with `prefix`, in order. What several texts give alike is run once.
 /// @return how many there were
 int run_examples(std::vector<std::string> const& text, std::string const& prefix)
 {
+    static std::set<std::vector<std::string>> done;
     int count = 0;
     for (std::string const& line : text) {
         if (!line.starts_with(prefix)) continue;
-        run_well(line.substr(prefix.size(), line.find('#') - prefix.size()), folder().path());
+        std::string const call = line.substr(prefix.size(), line.find('#') - prefix.size());
+        if (done.insert(words(call)).second) run_well(call, folder().path());
         ++count;
     }
     return count;

