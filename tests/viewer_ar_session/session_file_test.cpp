@@ -56,8 +56,8 @@ TEST(ArSessions, OfAnEarlierVersionAreRead)
         file_text(std::filesystem::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old/0d0c255/ar_session.yaml"),
         "s.yaml");
     EXPECT_EQ(s.render.paths, 4u);
-    EXPECT_EQ(s.render.settings.slhb.light_samples, 8);
-    EXPECT_EQ(s.render.settings.slhb.fresh_light_samples, 2);
+    EXPECT_EQ(s.render.settings.of<gi::SlhbSettings>().light_samples, 8);
+    EXPECT_EQ(s.render.settings.of<gi::SlhbSettings>().fresh_light_samples, 2);
     EXPECT_EQ(s.composite.clipped, ar::ClippedBytes::model);
     ASSERT_TRUE(s.hmd);
     EXPECT_EQ(s.hmd->plane_m, 1);
