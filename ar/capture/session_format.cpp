@@ -303,7 +303,9 @@ SessionHeader parse_session_header(std::string const& source, std::string const&
         if (text(at(json, "what"), "what") != "recorded frames")
             throw Wrong("it is no session of recorded frames");
         if (std::uint64_t const v = count(at(json, "version"), "version"); v != kSessionVersion)
-            throw Wrong(fmt::format("it has version {}, known here is {}", v, kSessionVersion));
+            throw gi::InputError(name + ": the session has format " + std::to_string(v),
+                                 fmt::format("this version reads {}", kSessionVersion),
+                                 "use the version of the program that recorded it");
         h.created = text(at(json, "created"), "created");
         h.calibration = text(at(json, "calibration"), "calibration");
         h.note = text(at(json, "note"), "note");

@@ -91,13 +91,19 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
     CheckpointHeader header;
     CheckpointHeader const expected;
     in.read(reinterpret_cast<char*>(&header), sizeof header);
-    if (!in || std::memcmp(header.magic, expected.magic, sizeof expected.magic) != 0)
-        throw InputError("'" + file.string() + "' is not a checkpoint of this version",
-                         "it does not start like one", "delete it to start afresh");
+    char const format = header.magic[7], known = expected.magic[7];
+    if (!in || std::memcmp(header.magic, expected.magic, 7) != 0 || format < '0' || format > '9')
+        throw InputError("'" + file.string() + "' is not a checkpoint", "it does not start like one",
+                         "delete it to start afresh");
+    if (format != known)
+        throw InputError("'" + file.string() + "' is a checkpoint of another version",
+                         fmt::format("its format is {}, this version reads {}", format, known),
+                         "finish the picture with the version that began it, or delete the file to start afresh");
     if (header.fingerprint != fingerprint || header.width != a.width || header.height != a.height)
         throw InputError("'" + file.string() + "' belongs to another render",
-                         "scene, camera or settings differ from when it was written",
-                         "delete it or drop --resume to start afresh");
+                         "scene, camera, settings or method differ from when it was written, or another version "
+                         "wrote it",
+                         "delete it or drop --resume to start afresh; the version that wrote it can finish it");
     a.further.assign(header.has_further == 1 ? a.pixels.size() : 0, 0);
     if (header.pixel_bytes != sizeof(PixelMeans) || header.has_further > 1 ||
         std::filesystem::file_size(file) != checkpoint_bytes(a.width, a.height) + further_bytes(a.further))

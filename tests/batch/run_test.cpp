@@ -255,6 +255,40 @@ TEST(BatchRun, WrongCallsAreToldInOneLine)
     }
 }
 
+/// tests/data/old/7d477989/store is that of an earlier version, whose task is done.
+TEST(BatchRun, StoreOfAnEarlierVersionIsShownAndGathered)
+{
+    FakePrograms const p;
+    fs::copy(fs::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old/7d477989/store", p / "s",
+             fs::copy_options::recursive);
+    auto const status = json_of(p.run("batch status s --json"));
+    EXPECT_EQ(status["batches"].size(), 1u) << status;
+    Outcome const o = p.run("batch gather s --out r");
+    EXPECT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(fs::file_size(p / "r/s/r-1.exr"), 5620u);
+    Outcome const resumed = p.run("batch resume s");
+    EXPECT_EQ(resumed.code, 2);
+    EXPECT_NE(resumed.err.find("planned by another version of the program (it was lightwell 0.1.0 (git 7d477989)"),
+              std::string::npos)
+        << resumed.err;
+    EXPECT_NE(resumed.err.find("use that one, or call lightwell batch with the manifest again"),
+              std::string::npos);
+    EXPECT_TRUE(p.starts().empty());
+}
+
+TEST(BatchRun, StoreOfAnotherFormatIsRefusedWithTheWayOut)
+{
+    FakePrograms const p;
+    batch::Store::open_or_make(p / "s");
+    p.write("s/format", "batch-store/2\n");
+    Outcome const o = p.run("batch status s");
+    EXPECT_EQ(o.code, 2);
+    EXPECT_NE(o.err.find("is a store of another version (its format is 'batch-store/2') use the version that made "
+                         "it, or another store"),
+              std::string::npos)
+        << o.err;
+}
+
 TEST(BatchRun, PlanOfAnotherVersionIsRefused)
 {
     FakePrograms const p;

@@ -210,6 +210,34 @@ TEST(Accumulator, ACheckpointHoldsAll)
     EXPECT_FALSE(load_checkpoint(file, b, 99));
 }
 
+TEST(Accumulator, ACheckpointOfAnEarlierVersionIsReadOrRefusedWithTheWayOut)
+{
+    std::filesystem::path const old = std::filesystem::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old";
+    auto const refusal = [&](char const* file, int width, int height, std::uint64_t print) -> std::string {
+        Accumulator a(width, height);
+        try {
+            EXPECT_TRUE(load_checkpoint(old / file, a, print)) << "there is no " << file;
+        } catch (InputError const& e) {
+            return e.what();
+        }
+        return {};
+    };
+    std::string const format_2 = refusal("0d0c255/cornell.exr.state", 4, 3, 0x1234);
+    EXPECT_NE(
+        format_2.find("is a checkpoint of another version (its format is 2, this version reads 5) finish the "
+                      "picture with the version that began it, or delete the file to start afresh"),
+        std::string::npos)
+        << format_2;
+    std::uint64_t print = 0; // after the 8 bytes of the format
+    std::ifstream(old / "7d477989/cornell.exr.state", std::ios::binary)
+        .ignore(8)
+        .read(reinterpret_cast<char*>(&print), sizeof print);
+    EXPECT_EQ(refusal("7d477989/cornell.exr.state", 8, 6, print), "");
+    std::string const foreign = refusal("7d477989/cornell.exr.state", 8, 6, print + 1);
+    EXPECT_NE(foreign.find("belongs to another render"), std::string::npos) << foreign;
+    EXPECT_NE(foreign.find("the version that wrote it can finish it"), std::string::npos) << foreign;
+}
+
 TEST(Accumulator, AnyDamagedByteOfACheckpointIsNoticed)
 {
     std::filesystem::path const file =

@@ -48,6 +48,43 @@ TEST(RecordingCommand, ExportsWhatIsLeftOfADamagedOne)
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"walk.csv", "walk.lwr"}));
 }
 
+TEST(RecordingCommand, RecordingsOfEarlierVersionsAreReplayed)
+{
+    TemporaryFolder const folder;
+    for (std::string const commit : {"0d0c255", "7d477989"}) {
+        Outcome const o =
+            run("view --replay " LIGHTWELL_SOURCE_DIR "/tests/data/old/" + commit + "/cornell.lwr", folder.path());
+        EXPECT_LT(o.code, 2) << o.err; // 1: other pixels than those of that version
+        EXPECT_NE(o.out.find(" frames replayed"), std::string::npos) << o.out;
+    }
+}
+
+TEST(RecordingCommand, UnknownSettingsOfARecordingAreCountedAndRefusedOnesHaveAWayOut)
+{
+    TemporaryFolder const folder;
+    auto const record = [&](char const* key, nlohmann::json const& value) {
+        std::filesystem::remove(folder / "one.lwr");
+        RecordingHeader header;
+        header.scene = "cornell";
+        header.settings = {{"settings", {{"method", "reference"}, {key, value}}}};
+        RecordedFrame f;
+        f.command.views.emplace_back().width = f.command.views[0].height = 8;
+        gi::Report report;
+        Recorder(folder / "one.lwr", header, report).append(f);
+    };
+    record("wings", 2);
+    Outcome const unknown = run_well("view --replay one.lwr", folder.path());
+    EXPECT_NE(unknown.err.find("recorded settings that this version does not know: pixels may differ"),
+              std::string::npos)
+        << unknown.err;
+    record("tone", "sepia");
+    Outcome const refused = run("view --replay one.lwr", folder.path());
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("the recorded setting 'tone' is refused"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("choose another value with --set tone=VALUE"), std::string::npos) << refused.err;
+    EXPECT_EQ(run("view --replay one.lwr --set tone=srgb", folder.path()).code, 0);
+}
+
 /// On a walk that the test makes: view, which makes theirs, needs a display.
 TEST(RecordingCommand, RunsTheExamplesOfItsHelp)
 {

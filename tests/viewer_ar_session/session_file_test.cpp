@@ -1,6 +1,7 @@
 #include "ar/scene/session_file.h"
 
 #include "gi/core/error.h"
+#include "tests/viewer/run_program.h"
 
 namespace viewer::test {
 namespace {
@@ -43,6 +44,20 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
     ArSession const least = parse_ar_session(kLeastSession, "s.yaml");
     EXPECT_TRUE(least.real.scene.empty());
     EXPECT_TRUE(least.light.empty());
+}
+
+/// The example of the documentation of an earlier version: its keys are still understood.
+TEST(ArSessions, OfAnEarlierVersionAreRead)
+{
+    ArSession const s = parse_ar_session(
+        file_text(std::filesystem::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old/0d0c255/ar_session.yaml"),
+        "s.yaml");
+    EXPECT_EQ(s.render.paths, 4u);
+    EXPECT_EQ(s.render.settings.slhb.light_samples, 8);
+    EXPECT_EQ(s.render.settings.slhb.fresh_light_samples, 2);
+    EXPECT_EQ(s.composite.clipped, ar::ClippedBytes::model);
+    ASSERT_TRUE(s.hmd);
+    EXPECT_EQ(s.hmd->plane_m, 1);
 }
 
 TEST(ArSessions, TakeOptionsOfSlhb)

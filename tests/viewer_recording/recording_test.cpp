@@ -65,6 +65,33 @@ TEST(Recording, ComesBackAsItWas)
     }
 }
 
+TEST(Recording, OfAnEarlierVersionIsRead)
+{
+    for (std::string const commit : {"0d0c255", "7d477989"}) {
+        RecordingReader reader(std::filesystem::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old" / commit /
+                               "cornell.lwr");
+        EXPECT_EQ(reader.header().program, "lightwell 0.1.0 (git " + commit + ")");
+        EXPECT_EQ(reader.header().scene, "cornell");
+        auto const first = reader.next();
+        ASSERT_TRUE(first) << commit;
+        EXPECT_EQ(first->command.views.at(0).width, 16);
+        while (reader.next()) {
+        }
+        EXPECT_EQ(describe_loss(reader.end()), "") << commit;
+        EXPECT_EQ(reader.end().frames, commit == "0d0c255" ? 2u : 31u) << commit;
+    }
+}
+
+TEST(Recording, OfALaterFormatIsRefusedWithTheWayOut)
+{
+    std::string bytes = recorded(1, true);
+    bytes[8] = 2;
+    std::string const why = why_unreadable(bytes);
+    EXPECT_NE(why.find("its format is 2, this version reads 1) use the version of the program that recorded it"),
+              std::string::npos)
+        << why;
+}
+
 TEST(Recording, EveryCutKeepsTheFramesBeforeIt)
 {
     std::string const whole = recorded(6, true);

@@ -70,6 +70,25 @@ void save(std::string const& pattern, std::uint64_t frame, gi::Picture const& pi
         gi::write_png(file, picture.width, picture.height, gi::tone_map_bytes(*picture.find("color"), tone));
 }
 
+bool is_known(std::string const& key)
+{
+    return key == "scene" || is_setting(key) || is_scene_edit(key) || is_hidden_mask(key);
+}
+
+/// Applies what another version may have recorded.
+void apply_recorded(RenderSession& session, Change const& c, gi::Report& report)
+{
+    if (!is_known(c.key))
+        return report.lose("recorded settings that this version does not know: pixels may differ", 1, c.key);
+    try {
+        session.apply(c);
+    } catch (gi::InputError const& e) { // e.g. a device that is missing here
+        if (!is_setting(c.key)) throw;
+        throw gi::InputError("the recorded setting '" + c.key + "' is refused", e.what(),
+                             "choose another value with --set " + c.key + "=VALUE");
+    }
+}
+
 } // namespace
 
 bool as_recorded(ReplayOptions const& o) { return o.settings.empty() && o.paths == 0 && !o.size; }
@@ -90,8 +109,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     if (!settings.contains("first_surfaces") && !overridden.contains("first_surfaces"))
         session.apply({"first_surfaces", false}); // recorded before there were any
     for (auto const& [key, value] : settings.items())
-        if (!overridden.contains(current_key(key)))
-            session.apply({key, value}); // e.g. a device that is missing here
+        if (!overridden.contains(current_key(key))) apply_recorded(session, {key, value}, report);
     for (Change const& c : o.settings) session.apply(c);
     SceneChange scene{header.scene, {}};
     if (header.settings.contains("start")) scene.start = start_from_json(header.settings.at("start"));
@@ -105,7 +123,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
         }
         FrameCommand& command = frame->command;
         for (Change const& c : command.changes)
-            if (!overridden.contains(current_key(c.key))) session.apply(c);
+            if (!overridden.contains(current_key(c.key))) apply_recorded(session, c, report);
         if (o.paths > 0) command.paths = o.paths;
         for (ViewCommand& v : command.views)
             if (o.size) {

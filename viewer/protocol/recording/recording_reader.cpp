@@ -97,9 +97,9 @@ void RecordingReader::read_header()
         from.take(kRecordingMagic.size());
         std::uint32_t const version = from.u32();
         if (version != kRecordingVersion)
-            throw no_recording(
-                name_, fmt::format("its format is version {}, only {} is known", version, kRecordingVersion),
-                "use the version of lightwell that recorded it");
+            throw no_recording(name_,
+                               fmt::format("its format is {}, this version reads {}", version, kRecordingVersion),
+                               "use the version of the program that recorded it");
         at_ = start.size();
         Record const record = read_record();
         if (record.type != kHeaderRecord) throw BadBytes("its first record is not a header");
