@@ -84,7 +84,7 @@ vec2 search(vec2 r, vec2 c, out bool found)
             bool good = residual < kConverged, ends = residual <= kClose || n > kSteps;
             w = there;
             if (ends && state == kFar) {
-                // Nothing is so much nearer that it would lie elsewhere.
+                // No surface is near enough to be shifted by more than the tolerance.
                 state = good && shift * (near - w) < kConverged ? kDone : kNear;
                 far_w = w;
                 far_good = good;

@@ -223,7 +223,7 @@ private:
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
     }
 
-    /// While the headset shows nothing (put aside, lost), screenshots have the eyes as they were rendered last.
+    /// While the headset shows nothing (taken off, lost), screenshots use the last rendered pictures of the eyes.
     void shoot_unseen()
     {
         auto const newest = core_.renderer->newest();
