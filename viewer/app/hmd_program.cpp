@@ -24,7 +24,7 @@ WindowSettings hidden()
     return settings;
 }
 
-/// Of both eyes, before the runtime says their sizes; the method's start is planned for them.
+/// Pixels of both eyes assumed until the runtime reports their sizes; the method's start is planned for them.
 constexpr double kEyesPixels = 2.0 * 1440 * 1600;
 
 /// Compares bit by bit, so that NaN equals itself.

@@ -450,7 +450,7 @@ void read_canvas(TextNode const& canvas, int canvas_index, EqualizerContext& c)
     }
 }
 
-/// What a compound inherits from those around it.
+/// Settings that a compound inherits from enclosing ones.
 struct Inherited {
     std::optional<WallCorners> wall;
     StereoMode stereo = StereoMode::off;
