@@ -15,7 +15,7 @@ const float kClose = 0.05;     // px: no further step
 const float kConverged = 0.5;  // px: taken as a solution
 const float kSame = 0.1;       // relative difference of w within one surface
 const int kWalk = 12;          // steps beside a hole
-const float kSnap = 1.0 / 256; // px: as near to a pixel's middle as this is at it
+const float kSnap = 1.0 / 256; // px: positions this near to a pixel's centre count as its centre
 
 vec2 inside(vec2 x) { return clamp(x, vec2(0.5), vec2(textureSize(picture, 0)) - 0.5); }
 
@@ -84,7 +84,7 @@ vec2 search(vec2 r, vec2 c, out bool found)
             bool good = residual < kConverged, ends = residual <= kClose || n > kSteps;
             w = there;
             if (ends && state == kFar) {
-                // Nothing is so much nearer that it would lie elsewhere.
+                // No surface is near enough to be shifted by more than the tolerance.
                 state = good && shift * (near - w) < kConverged ? kDone : kNear;
                 far_w = w;
                 far_good = good;

@@ -11,7 +11,7 @@
 namespace ar {
 namespace {
 
-/// What follows the prefix, if it is there.
+/// The text after the prefix; none if the text does not begin with it.
 std::optional<std::string> after(std::string const& name, std::string const& prefix)
 {
     return name.starts_with(prefix) ? std::optional(name.substr(prefix.size())) : std::nullopt;

@@ -8,7 +8,7 @@
 namespace ar {
 namespace {
 
-/// Of the module, which the first source loads.
+/// The sources of the OpenCV module, which the first call loads.
 OpenCvSources const& sources()
 {
     // Counted: loaded once, and stays.

@@ -22,7 +22,7 @@
 
 namespace ar {
 
-/// How with and without change the camera's pixels.
+/// How the pictures `with` and `without` change the camera's pixels.
 enum class Blend {
     difference, ///< camera + with - without: exact if the model of the place is right
     /// camera with / without in uncovered pixels: errors of albedo cancel, but light added to very dark places is

@@ -90,7 +90,7 @@ private:
     bool still_;
 };
 
-/// How far pixels move at most, about: by the rotation, and by the translation for the nearest surface.
+/// Approximate largest motion of pixels: by the rotation, and by the translation for the nearest surface.
 double motion_px(CameraModel const& camera, Pose const& before_from_now, cv::Mat const& depth)
 {
     double nearest_m = std::numeric_limits<double>::infinity(), shift_m = glm::length(before_from_now.position_m);

@@ -6,7 +6,7 @@
 namespace ar {
 namespace {
 
-constexpr double kSameFeature_px = 2; ///< a new feature this near to a track is the track's
+constexpr double kSameFeature_px = 2; ///< a new feature this near to a track counts as the same
 constexpr double kApart_px = 6;       ///< from all tracks, to begin a new one
 constexpr double kSigma_px = 0.5;     ///< of a sighting
 constexpr int kAlike = 30;            ///< bits: a descriptor adds nothing

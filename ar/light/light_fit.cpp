@@ -132,7 +132,7 @@ private:
         }
     }
 
-    /// With the lamps of now; what the prior expects follows from the solution before.
+    /// Solves with the present lamps; the prior's expectation follows from the previous solution.
     void solve_once()
     {
         int const k = basis_.count();
@@ -244,8 +244,8 @@ private:
         return double(lit) >= settings_.least_lit * double(samples());
     }
 
-    /// By how much a lamp there would lower half the sum of squares, everything else being free to change: the
-    /// Schur complement of its column.
+    /// How much a lamp there would lower half the sum of squares if all other light is fitted again:
+    /// the Schur complement of its column.
     double gain_of(std::vector<double> const& column, cv::Mat const& inverse, std::vector<int> const& free) const
     {
         double const slope = std::inner_product(column.begin(), column.end(), residuals_.begin(), 0.0);

@@ -31,7 +31,7 @@ std::map<std::string, Family> const& families()
     return all;
 }
 
-/// With the table of all codes, which takes milliseconds to make.
+/// A detector with the table of all codes, which takes milliseconds to make.
 class Detector {
 public:
     explicit Detector(Family const& family) : family_(family.make(), family.destroy)

@@ -26,7 +26,7 @@ constexpr double kUnknownSigma = 0.1; ///< relative, of irradiance, where some a
 constexpr double kScaleSigma = 0.5;   ///< relative, where no albedo is known
 constexpr float kUndetermined = 0.2f;
 
-/// What the surfaces show by lights that the model contains itself.
+/// Light of the surfaces from lights that the model contains itself.
 std::vector<cv::Mat> own_light(gi::World const& world, ar::CameraModel const& camera,
                                std::span<PosedFrame const> frames, gi::StopRequest const& stop, gi::Report& report)
 {
@@ -125,7 +125,7 @@ private:
             return transfer_.of_disc(points, towards, half_angle_rad);
         };
         ar::LightFitSettings settings = settings_.fit;
-        // What few surfaces alone show may be their albedo as well.
+        // Light found on few surfaces only may be a wrong albedo instead.
         if (any_unknown_) {
             settings.least_lit = std::max(settings.least_lit, kLeastLit);
             settings.least_gain *= kGainShare;
@@ -210,7 +210,7 @@ private:
             if (basis_.direction(k).y > 0) out_.undetermined_above += 2.0 / basis_.count();
         }
         out_.known = basis_.spread(known, settings_.size);
-        // What the camera sees itself is sharper than the fit.
+        // Directions that the camera sees are sharper than the fit.
         cv::Mat seen, weight;
         cv::resize(pixels_.background, seen, settings_.size, 0, 0, cv::INTER_NEAREST);
         cv::resize(pixels_.weight, weight, settings_.size, 0, 0, cv::INTER_NEAREST);

@@ -26,7 +26,7 @@ struct FrameLightSettings {
     ar::LightFitSettings fit;
 };
 
-/// What became of the pixels that were looked at.
+/// Counts of the pixels examined: used, or left out and why.
 struct FrameLightCounts {
     std::size_t used = 0;
     std::size_t clipped = 0, dark = 0; ///< a byte of 0 or 255; an albedo below 0.03

@@ -1,5 +1,5 @@
 #pragma once
-// What an estimate of light from frames found and how far it can be trusted, as text for people.
+// Reports an estimate of light from frames, and how far it can be trusted, as text.
 
 #include "ar/pipeline/frame_light.h"
 

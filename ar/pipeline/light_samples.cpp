@@ -10,7 +10,7 @@ constexpr int kRaysAcross = 5; ///< rays across a pixel and its neighbours, half
 cv::Size const kBackground{128, 64};
 constexpr double kDarkAlbedo = 0.03;
 
-/// What a pixel shows, with a filter two pixels wide.
+/// Kind of surface and light at a pixel, with a filter two pixels wide.
 struct PixelView {
     enum class What { surface, background, border, not_matt } what = What::border;
     LightPixel pixel;

@@ -1,5 +1,5 @@
 #pragma once
-// What renderers of pairs make: the place with and without the virtual objects, before compositing.
+// Output of renderers of pairs: pictures of the place with and without the virtual objects, before compositing.
 
 #include "ar/composite/temporal.h"
 

@@ -14,7 +14,7 @@ ar::OfferedPose offered_pose(ArPoseUse const& use, ar::PoseTracker const& track,
 {
     ar::OfferedPose offered;
     offered.is_estimated = estimate.found();
-    // Of an ambiguous estimate that jumps, the other pose may be the true one.
+    // If an ambiguous estimate jumps, its other pose may be the true one.
     bool const is_doubtful = taken == ar::Taken::jump && estimate.ambiguous;
     bool const is_confident = estimate.found() && estimate.confidence >= use.trust.least_confidence;
     ar::TrackedCamera const tracked = track.at(time_s);

@@ -1,5 +1,5 @@
 #pragma once
-// A camera's frame whose pose is known, for estimates of what it shows.
+// A camera's frame with a known pose, from which light and albedos are estimated.
 
 #include "ar/camera/photometry.h"
 #include "ar/camera/pose.h"

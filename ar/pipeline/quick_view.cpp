@@ -12,7 +12,7 @@ namespace {
 constexpr double kResolution = 1.25; ///< pixels rasterised per pixel of the camera, as synthetic_radiance
 
 float sky(float y) { return 0.7f + 0.3f * y; }
-/// Of a matt surface with this normal, per albedo: its irradiance pi (0.7 + 0.3 * 2/3 y), over pi.
+/// Radiance of a matt surface with this normal, per albedo: irradiance / pi = 0.7 + 0.3 * 2/3 y.
 float reflected(float y) { return 0.7f + 0.2f * y; }
 
 } // namespace

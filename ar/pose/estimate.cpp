@@ -55,7 +55,8 @@ void append(std::vector<Pose>& to, std::vector<Pose> const& more)
     to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Of all points; where not all agree, of each of the larger markers, and then of few points drawn at random.
+/// First guesses from all points; if not all agree, also from each of the larger markers,
+/// and from few points drawn at random.
 std::vector<Pose> first_guesses(CameraModel const& camera, SightedPoints const& points,
                                 std::optional<Pose> const& last)
 {
@@ -85,7 +86,7 @@ std::vector<Pose> first_guesses(CameraModel const& camera, SightedPoints const& 
     return guesses;
 }
 
-/// How much worse than their sigmas the better half of the points are, 1 to kMostScale.
+/// Ratio of the errors of the better half of the points to their sigmas, 1 to kMostScale.
 double scale_of(CameraModel const& camera, SightedPoints const& points, Pose const& pose)
 {
     std::vector<double> misses;

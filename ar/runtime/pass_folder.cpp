@@ -145,7 +145,7 @@ gi::ExrAttributes PassLayers::attributes(PassFrame const& f) const
     a.time_code = gi::time_code_of(f.sequence, frames_per_s_);
     if (!f.world_from_camera) return a;
     a.world_to_camera = glm::inverse(gi_camera(shown_, *f.world_from_camera).world_from_camera);
-    // Of the pinhole; the lens comes behind it.
+    // Projection matrix of the pinhole; lens distortion is applied afterwards.
     double const w = shown_.size_px.x, h = shown_.size_px.y, near = 0.01, far = 1000;
     gi::dmat4 ndc(0);
     ndc[0][0] = 2 * shown_.fx / w;

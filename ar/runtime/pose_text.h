@@ -1,5 +1,5 @@
 #pragma once
-// How far camera poses could be trusted, over a run.
+// Text about how far camera poses could be trusted in a run.
 
 #include "ar/pose/trust.h"
 

@@ -10,7 +10,7 @@ namespace viewer {
 /// Means of FLIP (Andersson et al. 2020), 0 to 1.
 struct TruthErrors {
     double flip_affected = 0;                         ///< where the truth differs from the camera's frame
-    double flip_elsewhere = 0;                        ///< where it does not: any change there is an error
+    double flip_elsewhere = 0;                        ///< elsewhere: any change there is an error
     double affected = 0;                              ///< share of the picture
     double camera_affected = 0, camera_elsewhere = 0; ///< of the unchanged camera frame
 };

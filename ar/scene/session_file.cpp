@@ -195,7 +195,7 @@ private:
         if (p.has("undistorted")) session_.passes.is_undistorted = p.at("undistorted").boolean();
     }
 
-    /// Of markers, or of a tracker in their place.
+    /// Reads how the pose is found (by markers, features or a tracker) and used.
     void read_pose(Yaml const& p)
     {
         p.only_keys({"tripod", "smoothing", "predict_s", "least_confidence", "hold_s", "fade_s", "fuse",

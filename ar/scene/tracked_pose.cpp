@@ -32,7 +32,7 @@ DisplayTracker const& find_tracker(Display const& display, ArTracked const& t)
                          known.empty() ? "add one" : "write pose.tracker: one of " + known);
 }
 
-/// By seconds since the file's first sample.
+/// Samples with their times in seconds since the file's first sample.
 std::vector<ar::TimedPose> samples_of(fs::path const& file, TrackerSettings const& settings)
 {
     std::string const& body = settings.head.id;

@@ -122,7 +122,7 @@ struct FindNeighbours {
     }
 };
 
-/// Which clusters join (those that chose each other), and which stay.
+/// Marks the clusters that join (those that chose each other) and those that stay.
 struct MarkPairs {
     View<std::uint32_t const> nearest;
     View<std::uint32_t> joins, stays; ///< 1 or 0
@@ -221,7 +221,7 @@ struct Children {
     std::uint32_t leaves = 0, all = 0;
 };
 
-/// Which children the wide nodes of one depth have.
+/// Chooses the children of the wide nodes of one depth.
 struct ChooseChildren {
     View<BinaryNode const> inner;
     View<Cuts const> cuts;

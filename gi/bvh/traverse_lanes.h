@@ -112,7 +112,7 @@ struct Lanes {
 
 } // namespace bvh_lanes
 
-/// As trace_scalar. What waits on the stack is fetched meanwhile.
+/// As trace_scalar. Nodes waiting on the stack are prefetched.
 template <bool any, class Accepts>
 void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts const& accepts)
 {

@@ -3,8 +3,7 @@
 
 namespace gi {
 
-/// Radical inverse of i (its digits mirrored at the radix point), in [0, 1): bases 2 and 3 give Halton's points of
-/// a square.
+/// Radical inverse of i (its digits mirrored at the radix point), in [0, 1); bases 2 and 3 give Halton's points.
 inline double radical_inverse(std::size_t i, std::size_t base)
 {
     double out = 0, digit = 1;

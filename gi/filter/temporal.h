@@ -110,7 +110,7 @@ private:
     bool interpolate(vec2 at, int width, int height, Shows const& shows, Light& light) const;
     template <class Shows>
     bool take_nearest(vec2 at, int width, int height, Shows const& shows, Light& light) const;
-    /// Where the light has changed, replaces means by those of the latest frames.
+    /// Where the light has changed, replaces means by means over the latest frames.
     void renew_changed(int width, int height, TemporalCounts& counts);
     void rest(Picture& frame, TemporalCounts& counts);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What kernels write in one way for the CPU and in another for a device.
+// Operations that kernels write differently for the CPU and for a device.
 
 #include "gi/core/platform.h"
 

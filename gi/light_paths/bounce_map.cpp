@@ -40,7 +40,7 @@ void add_cube(LightView const& v, vec3 eye, float near_m, std::uint32_t resoluti
     }
 }
 
-/// Which part of the light from afar a view shows, see LightPaths::focus.
+/// The part of distant light that a view shows, see LightPaths::focus.
 struct FocusPart {
     vec3 center{0};
     float radius = 0; ///< m; 0 = all
@@ -60,7 +60,7 @@ bool fits_grid(Bounds const& focus, Bounds const& world, float texels)
 RasterGrid grid_about(FocusPart const& focus, Bounds const& world, vec3 axis, std::uint32_t resolution,
                       vec2 jitter, float turn_rad)
 {
-    // Of boxes that cover the sphere along the grid's axes the smallest.
+    // The smallest of the boxes along the grid's axes that cover the sphere.
     auto const reach = [](vec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
     RasterGrid const turned = make_grid({}, axis, resolution, jitter, turn_rad);
     float const half = focus.radius / std::min(reach(turned.right), reach(turned.up));
@@ -142,7 +142,7 @@ std::vector<LightView> light_views(WorldView const& world, Bounds const& bounds,
     FocusPart focus;
     if (fits_grid(s.focus, bounds, float(s.count) / float(n)))
         focus = {s.focus.center(), 1.001f * s.focus.radius(), false};
-    // By turns, so that both parts have views of each light; which part is first is random.
+    // Alternates, so that both parts have views of each light; the first part is random.
     std::uint32_t const first_part = Pcg32::for_path(s.seed ^ 0xb0cf0c, n, s.pass).uniform() < 0.5f ? 0 : 1;
     for (std::uint32_t k = 0; k < n; ++k) {
         focus.through = focus.radius > 0 && (k + first_part) % 2 == 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Where distance impostors are put so that together they see what light can reach.
+// Chooses places of distance impostors, so that together they see all surfaces that light can reach.
 //
 // Random walks of exact rays from the lights and the cameras (from all surfaces, where there are neither) meet
 // surfaces with the density of diffuse light: uniform over the area of a closed room, and denser where the cameras

@@ -24,7 +24,7 @@ struct ImpostorSettings {
     float jump = 3;    ///< texels; surfaces of neighbouring texels whose distances differ by more do not join
 };
 
-/// What kernels need to follow rays by impostors.
+/// Data that kernels need to follow rays by impostors.
 struct ImpostorScene {
     ImpostorsView maps;
     WorldView world;

@@ -26,7 +26,7 @@ struct LightPath {
     float length = 0;                           ///< since then, m
 };
 
-/// Which paths are traced together, as they share the power of the lights.
+/// A set of paths that are traced together, and share the power of the lights.
 struct LightPathSet {
     std::uint32_t count; ///< >= 1
     std::uint64_t seed;

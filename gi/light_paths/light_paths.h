@@ -36,7 +36,7 @@ struct LightPaths {
 std::vector<LightVertex> trace_light_paths(WorldView const& world, Bounds const& bounds, PathRays const& rays,
                                            LightPaths const& settings, PathCounts& counts);
 
-/// As trace_light_paths(), for paths that are under way; those without power have ended.
+/// As trace_light_paths(), for paths already begun; those without power have ended.
 std::vector<LightVertex> trace_onwards(WorldView const& world, PathRays const& rays,
                                        std::span<LightPath const> paths, LightPaths const& settings,
                                        PathCounts& counts);
@@ -49,7 +49,7 @@ struct LightStart {
     std::uint32_t number; ///< of its random numbers
     int scatterings;      ///< of the light before, at least
 };
-/// As trace_light_paths(), for paths that begin so.
+/// As trace_light_paths(), for paths that begin on surfaces.
 std::vector<LightVertex> trace_from_surfaces(WorldView const& world, PathRays const& rays,
                                              std::span<LightStart const> starts, LightPaths const& settings,
                                              PathCounts& counts);

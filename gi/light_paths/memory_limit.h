@@ -1,6 +1,6 @@
 #pragma once
-// How much memory light paths, what stores their light, and impostors may take:
-// it is checked before any of it is spent.
+// Limits the memory of light paths, structures that store their light, and impostors;
+// checked before it is allocated.
 
 #include <cstdint>
 #include <string_view>

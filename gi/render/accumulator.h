@@ -115,7 +115,7 @@ struct Accumulator {
              Picture& picture) const;
 };
 
-/// The picture of sums that nobody adds to any more, made while it is read.
+/// The picture of finished sums, made while it is read.
 PictureRows picture_rows(std::shared_ptr<Accumulator const> const& sums, PictureShape const& shape);
 
 } // namespace gi

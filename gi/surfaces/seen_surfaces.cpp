@@ -100,7 +100,7 @@ void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights 
     draw_view(soup_, 0, soup_.count, cut_outs_, grid_, kSeed, map_);
     lights_ = lights == Lights::few && has_few_lights(world_) ? std::uint32_t(world_.lights.size()) : 0;
     if (lights_ == 0) return;
-    // A fourth of the rows and columns first: where those around a pixel agree, it needs no shadow ray of its own.
+    // First every fourth row and column: a pixel whose surrounding ones agree needs no shadow ray of its own.
     int const columns = (width + kCoarse - 1) / kCoarse, rows = (height + kCoarse - 1) / kCoarse;
     coarse_.clear();
     std::vector<SeenSurface> found(std::size_t(columns) * std::size_t(rows));

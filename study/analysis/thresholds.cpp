@@ -92,7 +92,7 @@ GroupThresholdSettings group_settings(Compare const& c, PsychometricChoice const
     return s;
 }
 
-/// Observers whose false alarms leave room for the proportion; the number of others.
+/// Keeps observers whose false alarm rate is well below the proportion; returns the number of the others.
 int leave_out_guessers(std::vector<ObserverLevels>& observers, std::vector<std::string>& who, double proportion)
 {
     constexpr double kRoom = 0.03;

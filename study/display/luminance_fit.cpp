@@ -53,7 +53,7 @@ void check_points(PatchColour colour, Points const& points)
                              "the highest value is the brightest", "check the readings and their order");
 }
 
-/// Readings of one colour and value that disagree: said with the largest difference.
+/// Reports readings of one colour and value that differ too much, with the largest difference.
 void judge_repeats(std::vector<LuminanceReading> const& readings, LuminanceFit& fit)
 {
     std::map<std::pair<PatchColour, double>, std::pair<double, double>> ends;

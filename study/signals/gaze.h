@@ -25,7 +25,7 @@ struct GazeFixation {
 };
 /// Gaze that stays.
 struct GazeHold {
-    double within_deg = 3, grace_ms = 100; ///< shorter absences, and blinks, are no leaving
+    double within_deg = 3, grace_ms = 100; ///< shorter absences and blinks do not count as leaving
 };
 enum class GazeFollow { window, mask };
 /// A circle that follows gaze.

@@ -59,7 +59,7 @@ public:
         double variance_ratio = 1;
         double scale = 0; ///< standard error of the logarithm
     };
-    /// The spread of thresholds is left out: its estimate and that of the mean are independent.
+    /// Omits the spread of thresholds, since its estimate and that of the mean are independent.
     Errors errors()
     {
         std::vector<std::size_t> parts{kMean}; // the scale is next

@@ -25,7 +25,7 @@ struct SamplerSettings {
     int most_doublings = 8;  ///< of a path: at most 2^n - 1 steps per draw
     double spread = 0.5; ///< chains start at the given point plus this much standard normal noise per parameter
     std::uint64_t seed = 1;
-    /// Called after each draw with the share that is done, from several threads, but never by two at once.
+    /// Called after each draw with the share of draws done. From several threads, but never by two at once.
     std::function<void(double)> progress{};
 };
 

@@ -1,4 +1,4 @@
-// The libcamera that this program was built with, on whatever machine this is.
+// Tests with the libcamera that this program was built with, on any machine.
 #include "ar/capture/libcamera_source.h"
 #include "gi/core/error.h"
 

@@ -233,7 +233,7 @@ TEST(Photographs, CharucoOnAScreen)
     EXPECT_GE(full, 14);
     EXPECT_LT(our_rms, 0.3);
 
-    // The board's markers, too, must be where the inner corners say they are.
+    // The board's markers must also be where its inner corners predict them.
     auto const placed = placed_markers(map);
     for (auto const refinement :
          {Refinement::edges, Refinement::subpixel, Refinement::contour, Refinement::none}) {

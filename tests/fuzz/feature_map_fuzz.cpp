@@ -1,4 +1,5 @@
-// Any text as a map of features: one that comes back as it was, or an InputError.
+// Any text as a map of features: the result is an InputError, or a map that is
+// unchanged after writing and reading.
 
 #include "ar/features/feature_map.h"
 #include "gi/core/error.h"

@@ -1,5 +1,5 @@
-// Any bytes as an OBJ file and, behind a byte 0, its material library: a scene or a reason why not, in this
-// process, as mesh_fuzz starts one for each input.
+// Any bytes as an OBJ file and, after a zero byte, its material library: a scene or a reported reason.
+// Runs in this process, since mesh_fuzz starts a child per input.
 
 #include "gi/core/error.h"
 #include "gi/scene/load/assimp_convert.h"

@@ -151,7 +151,7 @@ void check_photons()
         }
         ASSERT_LT(max_component(glm::abs(smooth[i].arrived.c[0] - mean)), 1e-3f);
     }
-    // Gathering: a cell exchanges a seventh with each neighbour that shares a face. The sums stay.
+    // Gathering: a cell exchanges a seventh with each neighbour that shares a face. Sums over cells are conserved.
     Buffer<PhotonCell, S> on_gathered(summed.size());
     launch(S, "gather in lattice", summed.size(),
            GatherCells<PhotonCell>{on, read(of_values), on_gathered.view()});

@@ -246,7 +246,8 @@ TEST(LightPropagation, WallsBlock)
     }
 }
 
-/// Nested lattices show what one lattice with the cells of the fine one shows, also of light from outside of it.
+/// Nested lattices give the same light as a single lattice with the fine cells,
+/// also light that comes from outside the fine one.
 TEST(LightPropagation, NestedLatticesAgree)
 {
     Bounds const bounds{vec3{-2}, vec3{2}};

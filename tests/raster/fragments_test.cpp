@@ -11,7 +11,7 @@ constexpr std::size_t kMany = 100000;
 TEST(BorrowedFragments, KeepMemoryUntilItIsReleased)
 {
     release_spare_fragments();
-    { // one within the other, as where a thread takes other work while it waits
+    { // nested, as when a waiting thread runs another task
         BorrowedFragments outer;
         EXPECT_EQ(outer->capacity, 0u);
         outer->reserve(kMany);

@@ -1,4 +1,4 @@
-// Interleaved indirect light: turns, what pixels that wait are given, and the time of frames.
+// Interleaved indirect light: the order of pixels, the light given to waiting pixels, and the time of frames.
 
 #include "gi/render/interleaving.h"
 

@@ -1,4 +1,4 @@
-// Whatever the material and the directions: finite, not negative, no more light than there was.
+// For every material and direction, values are finite and not negative, and no more light leaves than arrives.
 
 #include "gi/core/rng.h"
 #include "tests/support/bsdf_cases.h"

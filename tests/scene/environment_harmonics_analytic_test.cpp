@@ -193,8 +193,8 @@ struct RealMap {
 
 class RealMaps : public testing::TestWithParam<RealMap> {};
 
-/// The paper: 1 % on average and 9 % at most. Of the brightest surface that holds for all three;
-/// relative to what a surface gets itself it does not, on the side that looks away from a sun
+/// The paper: 1 % on average and 9 % at most. All three maps have this error relative to the brightest surface.
+/// Relative to each surface's own light, it is larger on surfaces that face away from a sun
 /// (kloppenheim) or a bright sky (dresden).
 TEST_P(RealMaps, IrradianceAgainstIntegration)
 {

@@ -106,8 +106,8 @@ Picture second_frame(StartFrames start, std::shared_ptr<Scene const> const& scen
     return frames->frame(camera_moves ? a_step_aside(camera) : camera, {}, {}).picture;
 }
 
-/// Paths of the two go through different points of a pixel: the motion of one lies within
-/// that of the pixels around the other.
+/// Paths of the two methods go through different points of a pixel: the motion of one lies within the range
+/// of motion of the other's surrounding pixels.
 TEST(MotionVectors, OfTheReferenceAreThoseOfSlhb)
 {
     auto const scene = room_with_walker();

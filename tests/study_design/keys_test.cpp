@@ -1,4 +1,4 @@
-// data/study.schema.json, docs/study/reference.md and the program know the same keys.
+// data/study.schema.json, docs/study/reference.md and the program list the same keys.
 
 #include "study/script/examples.h"
 #include "study/script/keys.h"

@@ -56,7 +56,7 @@ double mean_over_posterior(std::vector<PairAnswer> const& answers, double prior_
     for (double x = -12; x < 12; x += 0.1)
         for (double y = -12; y < 12; y += 0.1) {
             std::array<double, 3> const s{0, x, y};
-            // The prior of the differences: independent scores less their mean.
+            // The prior on differences: independent scores minus their mean.
             double const mean = (x + y) / 3;
             double log_p =
                 -(mean * mean + (x - mean) * (x - mean) + (y - mean) * (y - mean)) / 2 / (prior_sd * prior_sd);

@@ -51,7 +51,7 @@ std::vector<PairCount> choices_of(PairExperiment const& e, Random& random)
     return pairs;
 }
 
-/// The scores that an infinite number of observers gives: variances of people add to those of trials.
+/// Scores of infinitely many observers: variances between people add to those of trials.
 std::vector<double> scores_of_all(PairExperiment const& e, PairSettings const& settings)
 {
     int const units = e.unit_sd > 0 ? 2000 : 1;

@@ -39,7 +39,7 @@ questionnaires:
 
 Script script() { return parse_script(kScript, "t.yaml"); }
 
-/// Prefers x; the second trial fails once and is done again.
+/// A session whose participant always prefers x; the second trial fails once and is repeated.
 RecordedSession session(Script const& s)
 {
     int trials = 0;

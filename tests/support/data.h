@@ -1,5 +1,6 @@
 #pragma once
-// Real scenes and hard inputs for tests lie beside the checkout, where they are present.
+// Real scenes and hard inputs for tests: data outside the repository, in a folder beside
+// it. Tests skip where it is missing.
 
 #include <filesystem>
 #include <gtest/gtest.h>

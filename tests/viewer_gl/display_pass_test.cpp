@@ -47,7 +47,7 @@ TEST_F(Display, ToneCurvesAreThoseOfTheCpu)
         }
 }
 
-/// A display whose channels have curves of their own; the luminance of what is drawn is that of the radiance.
+/// A display whose channels have different curves: the luminance shown is that of the radiance.
 TEST_F(Display, CalibratedPicturesAreThoseOfTheCpuAndLinearInLuminance)
 {
     glm::ivec2 const size{640, 200};

@@ -1,4 +1,5 @@
-// What a headset's lenses hide is a change like any other: black, not rendered, kept out of what is seen.
+// Areas hidden by a headset's lenses are set by a change like others: black, not rendered,
+// and without effect on visible pixels.
 
 #include "gi/core/error.h"
 #include "gi/metrics/metrics.h"
@@ -127,7 +128,7 @@ TEST_F(HiddenViews, ViewsWithThinMasksHaveNoMargins)
     EXPECT_EQ(b.views[0].margin_px, glm::ivec2(8));
 }
 
-/// Without bounces no endings are shared, so bits can be compared.
+/// Without bounces no vertices are shared, so results are equal bit for bit.
 TEST_F(HiddenViews, WithoutFilterWhatIsSeenIsTheSameInEveryBit)
 {
     for (Change const& c : {Change{"denoise", "none"}, {"reuse", 1}, {"bounces", 0}, {"share_eyes", false}})

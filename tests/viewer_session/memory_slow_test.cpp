@@ -26,8 +26,8 @@ Memory memory_now()
             double(m.fordblks) / kMib};
 }
 
-/// As in the program, which keeps freed memory. Whitted ray tracing needs little, and must not keep what the hit
-/// buffers of slhb took.
+/// Freed memory is kept, as in the program. Whitted ray tracing needs little, and must not
+/// keep the memory of slhb's hit buffers.
 TEST(SessionMemory, IsTheSameAfterManyChangesOfMethod)
 {
     keep_freed_memory();

@@ -1,4 +1,4 @@
-// How many directions follow what moves, by frames of a machine whose times are made up.
+// The number of axes updated for moving geometry, with frame times of a simulated machine.
 
 #include "viewer/engine/update_governor.h"
 

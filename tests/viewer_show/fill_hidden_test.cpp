@@ -7,7 +7,7 @@
 namespace viewer::test {
 namespace {
 
-/// Letters are what is seen, dots are hidden.
+/// Letters are visible pixels, dots hidden ones.
 std::string filled(std::vector<std::string> const& rows)
 {
     std::vector<std::uint8_t> hidden;

@@ -1,4 +1,4 @@
-// What the running viewer writes, and what it refuses before a window opens.
+// Files that the running viewer writes, and those that it refuses before a window opens.
 
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"

@@ -1,4 +1,4 @@
-// What people see and can do while a scene loads, and what recordings keep of it.
+// The viewer while a scene loads: its window, its controls, its recordings.
 
 #include "gi/core/file.h"
 #include "gi/scene/generate/write_glb.h"

@@ -1,4 +1,4 @@
-// What the dialog "open scene" offers, and what it remembers.
+// Entries of the dialog "open scene", and its memory of recent ones.
 
 #include "viewer/app/open_dialog.h"
 

@@ -81,7 +81,7 @@ protected:
         return all;
     }
 
-    /// That the remote control presses, and may be holding.
+    /// Keys that the remote control presses and may hold down.
     static std::vector<std::string> const& remote_keys()
     {
         static std::vector<std::string> const all{"w", "a", "s", "d", "q", "e", "up",  "F1",    "F11", "v", "c",

@@ -1,4 +1,4 @@
-// What stands in the window, in every stereo mode, held to the pictures of the two eyes.
+// The window's pixels in every stereo mode, compared with the pictures of the two eyes.
 
 #include "gi/filter/tone_map.h"
 #include "gi/image_io/picture_file.h"

@@ -96,7 +96,7 @@ TEST(Compose, DuboisKeepsGreyAndShowsEachEyeItsColour)
     EXPECT_EQ(right[0], 0);
     EXPECT_EQ(right[1], 255);
     EXPECT_EQ(right[2], 255);
-    // By hand: red on the left only is 0.437 of linear red.
+    // Computed by hand: red in the left picture only gives 0.437 of linear red.
     Bytes const red = compose_stereo(StereoMode::anaglyph_dubois, Bytes{255, 0, 0}, Bytes{0, 0, 0}, {1, 1});
     EXPECT_EQ(red[0], 177); // 255 * (1.055 * 0.437^(1/2.4) - 0.055) = 176.52, rounded
     EXPECT_EQ(red[1], 0);

@@ -136,7 +136,7 @@ public:
     {
         EXPECT_EQ(::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL), ssize_t(bytes.size()));
     }
-    /// What the client has sent until it is silent for 50 ms.
+    /// The bytes that the client has sent until it is silent for 50 ms.
     VrpnBytes received() const
     {
         VrpnBytes all;

@@ -26,7 +26,7 @@ questionnaires:
       - {id: more, text: "What else?", type: text, lines: 3}
 )";
 
-/// As from a keyboard that has all characters.
+/// Types text as from a keyboard that has all characters.
 void type(std::string const& text)
 {
     ASSERT_EQ(gi::test::run_shell("xdotool type --delay 40 '" + text + "'"), 0) << "xdotool";

@@ -131,7 +131,7 @@ TEST_F(Sounds, BeginWhenTheJournalSays)
         EXPECT_FALSE(about[key].empty()) << key;
     EXPECT_EQ(about["audio_onset_method"], "dac_time");
 
-    // The recording against the journal: jitter by its own clock, lag by the session's.
+    // Compares the recording with the journal: jitter by its own clock, lag by the session's.
     std::string const session = "study photodiode loop.csv --sounds --session data/sub-P001/ses-01/beh --json ";
     Json const own = Json::parse(run_well(session, folder.path()).out);
     EXPECT_EQ(own.at("matched"), 60);

@@ -1,4 +1,4 @@
-// How the six kinds lie to each other, pixel by pixel: they share camera paths and virtual lights.
+// Differences between the six kinds of visibility, pixel by pixel: they share camera paths and virtual lights.
 
 #include "tests/visibility/visibility_render.h"
 

@@ -56,7 +56,7 @@ inline Picture reference_picture(World const& world, Camera const& camera, Rende
     return render_reference(world, camera, settings, stop, {}, report).picture;
 }
 
-/// Of renders with seeds of their own, as all pixels share virtual lights.
+/// Mean over renders with different seeds, since all pixels of one share virtual lights.
 inline RunningMean mean_over_seeds(VisibilityKind kind, World const& world, Camera const& camera,
                                    RenderSettings settings, int seeds, std::string const& layer = "color")
 {

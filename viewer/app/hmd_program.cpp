@@ -24,7 +24,7 @@ WindowSettings hidden()
     return settings;
 }
 
-/// Of both eyes, before the runtime says their sizes; the method's start is planned for them.
+/// Pixels of both eyes assumed until the runtime reports their sizes; the method's start is planned for them.
 constexpr double kEyesPixels = 2.0 * 1440 * 1600;
 
 /// Compares bit by bit, so that NaN equals itself.
@@ -223,7 +223,7 @@ private:
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
     }
 
-    /// While the headset shows nothing (put aside, lost), screenshots have the eyes as they were rendered last.
+    /// While the headset shows nothing (taken off, lost), screenshots use the last rendered pictures of the eyes.
     void shoot_unseen()
     {
         auto const newest = core_.renderer->newest();

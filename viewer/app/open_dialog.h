@@ -7,7 +7,7 @@
 
 namespace viewer {
 
-/// What a folder offers: its folders, then files of which load_scene knows the ending, each in the order of names.
+/// Entries of a folder: its folders, then files of formats that load_scene reads, each sorted by name.
 struct FolderContents {
     std::vector<std::string> folders, files;
     bool cut = false;    ///< it has more than are listed

@@ -71,7 +71,7 @@ private:
     std::exception_ptr failure_; ///< of the first scene
     std::uint64_t resumes_ = 0;  ///< scene that the next look is at, if it is a new one
     std::unique_ptr<gi::ProgressBar> bar_;
-    /// What the current frame is at, from the rendering thread.
+    /// The step of the current frame, from the rendering thread.
     struct FrameStep {
         std::mutex mutex;
         gi::Step step;

@@ -124,7 +124,7 @@ private:
         core_.keeps_recent = true;
     }
 
-    /// Of all views of this process, at full size.
+    /// Number of pixels of all views of this process, at full size.
     double pixels_of_a_frame()
     {
         if (core_.display) {
@@ -303,7 +303,7 @@ private:
         std::fputs(("note: " + what + "\n").c_str(), stderr);
     }
 
-    /// What is drawn over the picture besides the panel. A new message stays for a while.
+    /// True if something besides the panel is drawn over the picture. A new message stays for a while.
     bool has_messages()
     {
         if (state_.message != message_) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a wand's buttons and axes ask for: one place for flysticks, VRPN and OSC.
+// Commands from a wand's buttons and axes, the same for flysticks, VRPN and OSC.
 
 #include "viewer/displays/wand.h"
 #include "viewer/engine/live/navigation.h"

@@ -8,8 +8,7 @@
 namespace viewer::batch {
 
 std::string text_of_batch(Batch const& batch);
-/// Where its lines begin, so that a process can read its task alone:
-/// 16 hexadecimal digits and a line end for each.
+/// Offsets of its lines, so that a process can read its task alone: 16 hexadecimal digits and a line end for each.
 std::string index_of(std::string_view text);
 /// NAME-1a2b3c4d: the hash is that of the keys of its tasks.
 std::string batch_id(Batch const& batch);

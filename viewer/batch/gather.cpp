@@ -94,7 +94,7 @@ private:
     void add_to(Merge const& merge, Task const& task, Result const& result)
     {
         auto const at = tables_.try_emplace(folder_ / merge.group / merge.file, merge.file).first;
-        // Of a folder with several tables, the one that is called like the merged one.
+        // In a folder with several tables, the table with the merged one's name.
         bool const is_named = std::ranges::any_of(
             result.outputs, [&](Output const& o) { return fs::path(o.name).filename() == merge.file; });
         for (Output const& output : result.outputs)

@@ -16,7 +16,7 @@ struct Machine {
 
 /// This machine: processors that this process may use, memory that is available, NVIDIA's GPUs.
 Machine this_machine();
-/// What one of several processes may use that share it: at least one core.
+/// The part of a machine that one of several processes may use: at least one core.
 Machine part_of(Machine const& machine, int index, int count);
 /// As many cores as wanted: the first ones, or each several times, for more tasks at a time than processors.
 void set_cores(Machine& machine, int cores);

@@ -1,5 +1,5 @@
 #pragma once
-// What an attempt that was cut leaves for the next one of the same task, so that its work is not done again.
+// Files that an interrupted attempt leaves for the next one of the same task, so that its work is not repeated.
 
 #include "viewer/batch/task.h"
 

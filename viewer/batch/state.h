@@ -1,5 +1,5 @@
 #pragma once
-// Where the tasks of a batch are, from the store alone.
+// The states of a batch's tasks, from the store alone.
 
 #include "viewer/batch/journal.h"
 #include "viewer/batch/store.h"

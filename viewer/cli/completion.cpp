@@ -52,7 +52,7 @@ void offer_values(CLI::Option const& option, std::string const& begun, std::stri
                   std::vector<std::string>& out)
 {
     std::vector<std::string> const choices = choices_of(option);
-    // Of values with commas between them, the last one.
+    // The last one of several values separated by commas.
     std::size_t const comma = option.get_delimiter() == ',' ? begun.rfind(',') : std::string::npos;
     std::string const kept = comma == begun.npos ? "" : begun.substr(0, comma + 1);
     for (std::string const& c : choices)

@@ -249,7 +249,7 @@ CalibrationPicture draw_curved_grid(Display const& display, Wall const& wall)
     int const width = std::max(1, area.width), height = std::max(1, area.height);
     cv::Mat image(height, width, CV_8UC3, kBlack);
     RoomPose const pose = pose_of(wall.surface->place);
-    // Cells of 10 degrees; a line is where the cell of the next pixel is another.
+    // Cells of 10 degrees; lines are where neighbouring pixels are in different cells.
     auto const cell = [&](int x, int y) -> std::optional<cv::Point> {
         auto const p =
             surface_point(*wall.surface, double(width) / height, {(x + 0.5) / width, 1 - (y + 0.5) / height});

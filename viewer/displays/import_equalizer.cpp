@@ -398,8 +398,8 @@ void read_segment(TextNode const& segment, TextNode const& canvas, std::optional
         c.lose("Equalizer segments shown only without stereo (eye CYCLOP) skipped", segment);
 }
 
-/// What all compounds together say of a segment under the canvas's first layout; none if they do not draw it, so
-/// that it is drawn as usual.
+/// Settings of all compounds together for a segment under the canvas's first layout;
+/// none if they do not draw it, so that it is drawn as usual.
 std::optional<SegmentUse> use_of(EqualizerContext const& c, TextNode const& canvas, int canvas_index,
                                  TextNode const& segment, int segment_index, std::vector<LayoutView> const* layout)
 {
@@ -450,7 +450,7 @@ void read_canvas(TextNode const& canvas, int canvas_index, EqualizerContext& c)
     }
 }
 
-/// What a compound inherits from those around it.
+/// Settings that a compound inherits from enclosing ones.
 struct Inherited {
     std::optional<WallCorners> wall;
     StereoMode stereo = StereoMode::off;

@@ -283,7 +283,7 @@ User read_viewer(TextNode const& s, VruiContext& c)
     return user;
 }
 
-/// Where a stereo mode that it has puts the left eye.
+/// A stereo mode, and where it puts the left eye.
 struct VruiStereo {
     StereoMode mode = StereoMode::off;
     bool swap_eyes = false;

@@ -24,11 +24,11 @@ constexpr int kMostPaths = 256;
 constexpr double kLeast = 0.05; // of a frame's work that the next one gets
 /// A larger picture must fit with this margin, because a change of size costs sharpness and reused light.
 constexpr double kToGrow = 1.15;
-/// Of the time between frames, where surfaces are larger than half the size: antialiasing brings smaller ones to
-/// the size of the view, nearly as sharp.
+/// Share of the time between frames for surfaces if they are larger than half the size:
+/// antialiasing makes smaller ones nearly as sharp at the size of the view.
 constexpr double kForSurfaces = 0.3;
 
-/// Of times, 0 = none yet: single slow frames say little, fast ones show what is possible.
+/// Smooths times (0 = none yet): single slow frames count little, fast ones show what is possible.
 double smoothed(double before, double now)
 {
     return before > 0 ? before + (now < before ? 0.5 : 0.1) * (now - before) : now;
@@ -41,7 +41,7 @@ double Governor::surfaces_scale() const
     if (surface_s_ == 0) return surfaces_;
     for (double const scale : kSurfaceScales) {
         if (scale > surfaces_ && to_wait_ > 0) continue;
-        // Of a smaller picture, more of the time does not depend on its size.
+        // In smaller pictures, a larger share of the time does not depend on the size.
         double const expected_s = surface_s_ * std::pow(scale / surfaces_, scale > surfaces_ ? 1.3 : 2.0);
         if (expected_s * rate_hz_ <= kForSurfaces) return scale;
     }

@@ -38,7 +38,7 @@ public:
         return seen_[view].light ? &*seen_[view].light : nullptr;
     }
     int still_frames() const { return still_; }
-    /// Of a method that chooses another: which and why, a sentence; else empty.
+    /// For a method that chooses another: which and why, a sentence; else empty.
     std::string const& choice() const { return choice_; }
     gi::DynamicUpdate dynamic_update() const ///< of the last frame
     {

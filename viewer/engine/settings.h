@@ -47,7 +47,7 @@ struct Settings {
 /// The version of the program that wrote a file, or for whose schema a file was written.
 /// Methods had other names in 0.1 (gi/methods/names.h).
 enum class MadeFor : std::uint8_t { version_0_1, this_version };
-/// By the program's name as files record it: "lightwell 0.1.0 (git ...)".
+/// Version from the program's name in files: "lightwell 0.1.0 (git ...)".
 MadeFor made_for(std::string const& program);
 /// What a file that says nothing has.
 Settings first_settings(MadeFor made_for);

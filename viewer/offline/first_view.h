@@ -1,6 +1,6 @@
 #pragma once
-// The first camera of a scene that has none: inside rooms, at eye height on a floor; of objects, all of them from
-// outside. Chosen by rays: the same scene always gives the same camera.
+// The default camera of a scene without one: inside rooms at eye height above a floor;
+// around objects, outside with all of them in view. Chosen by rays: the same scene always gives the same camera.
 
 #include "gi/scene/model/world.h"
 

@@ -17,7 +17,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& options, g
 /// Stop condition as an option: "--paths 64", "--budget 2s" or "--until relmse=0.01".
 std::string stop_option(gi::RenderSettings const& settings);
 
-/// What the plan chose for a picture: the settings as options; the method, where another was to choose, and why.
+/// Choice of the plan for a picture: the settings as options; the method, if another was to choose it, and why.
 struct Chosen {
     std::string options, method, why_method;
 };

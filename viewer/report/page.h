@@ -29,7 +29,7 @@ std::string sweep_figures(BenchTable const& table, std::filesystem::path const& 
 /// Strips of figures, each with its heading, beside a reference picture.
 std::string picture_strips(std::string const& reference_html,
                            std::vector<std::pair<std::string, std::string>> const& strips);
-/// What the strips show below the pictures.
+/// Explanation of the strips of pictures, shown below them.
 std::string picture_note();
 
 /// For each scene and budget the pictures of all methods and filters beside the reference, worst first; empty

@@ -1,6 +1,6 @@
 #pragma once
-// Values by direction: an octahedral table (Meyer et al. 2010), read bilinearly. Nodes lie on the square's border,
-// so that no read needs a neighbour across it.
+// Values by direction: an octahedral table (Meyer et al. 2010) with bilinear interpolation.
+// Nodes lie on the square's border, so that no read crosses it.
 
 #include "gi/core/math.h"
 

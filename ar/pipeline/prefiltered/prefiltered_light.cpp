@@ -204,8 +204,8 @@ void PrefilteredLight::draw_stale(std::size_t most_triangles)
 
 void PrefilteredLight::light_moving()
 {
-    // What is seen of a white matt ball amid the moving surfaces: the irradiance of its normals, by the area that
-    // they turn to the viewer.
+    // Radiance of a white matt ball amid the moving surfaces: the irradiance of its normals,
+    // weighted by the area that they show the viewer.
     std::size_t const n = directions_.size();
     std::vector<gi::vec3> received(n);
     tbb::parallel_for(std::size_t(0), n, [&](std::size_t k) {

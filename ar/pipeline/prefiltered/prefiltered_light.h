@@ -27,7 +27,7 @@ struct LitPoint {
     GlossyLobe lobe;
 };
 
-/// What a point receives, or how that changes.
+/// Light received by a point, or the change of it.
 struct ReceivedLight {
     gi::vec3 irradiance{0}; ///< W/m^2
     gi::vec3 glossy{0};     ///< radiance that its glossy lobe reflects to the viewer
@@ -80,7 +80,7 @@ private:
         gi::vec3 light{0};    ///< what arrives of the environment
         gi::vec3 radiance{0}; ///< of surfaces, times solid angle
     };
-    /// Of all light, whether it arrives or not.
+    /// Sums over all light, whether it arrives or not.
     struct All {
         gi::vec3 light{0};
         float solid_angle = 0;

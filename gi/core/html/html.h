@@ -10,7 +10,7 @@
 
 namespace gi {
 
-/// As text or as a quoted attribute of HTML and SVG. Control characters become blanks.
+/// Escapes a text for HTML and SVG, as content or quoted attribute. Control characters become blanks.
 std::string escaped(std::string_view text);
 /// The same with its line ends, for elements that show them.
 std::string escaped_lines(std::string_view text);

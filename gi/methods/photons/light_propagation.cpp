@@ -86,9 +86,9 @@ void check(PropagationSettings const& s)
                          "choose others");
 }
 
-/// A point before a surface, past the faces that it and others nearby block.
-/// In the lattice, surfaces lie at the corners nearest to them; points keep to their side of these.
-/// Then half a cell along the normal's largest component.
+/// A point in front of a surface, beyond the cell faces blocked by this surface and others nearby.
+/// In the lattice, surfaces lie at the nearest corners; points are kept on their side of these,
+/// then moved by half a cell along the normal's largest component.
 vec3 in_front(LightPropagation::Cascade const& cascade, vec3 position, vec3 normal)
 {
     constexpr float kBlocks = 0.2f; // so much of a face

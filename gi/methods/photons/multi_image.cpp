@@ -44,7 +44,7 @@ public:
 private:
     vec3 caustics(TreePoint const& p) const
     {
-        // Four coefficients are too few for what a glossy lobe shows of a caustic.
+        // Four coefficients are too few for a caustic seen in a glossy lobe.
         if (bsdf_detail::is_matt(p.at.bsdf) || p.glossy_traced)
             for (ScreenVolume const& s : screens_) {
                 vec3 irradiance;

@@ -20,7 +20,7 @@ namespace gi {
 /// One set of photons.
 struct PhotonSet {
     std::vector<Photon> photons;
-    std::uint32_t number;  ///< since the last change; 0 = what earlier sets gave is no longer true
+    std::uint32_t number;  ///< since the last change; 0 = results of earlier sets are no longer valid
     std::uint32_t paths;   ///< light paths of the set
     bool surfaces_changed; ///< since the set before: geometry, materials or coverage
     bool only_moved;       ///< of these, geometry alone

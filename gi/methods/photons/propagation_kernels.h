@@ -73,7 +73,7 @@ GI_FN inline Blocker operator*(float by, Blocker const& b) { return {by * b.area
 /// and divided by a face's, lie in cells about the corners of the lattice's cells: the mean of the four at the
 /// corners of a face is what blocks it.
 struct OpenFaces {
-    GridFrame frame;             ///< of the corners: one more a side than cells
+    GridFrame frame;             ///< grid of the corners: one more per side than cells
     View<Blocker const> blocked; ///< per corner
     View<vec3> open;             ///< per cell, and one more a side
 

@@ -24,9 +24,9 @@ public:
 
     /// Follows the world: geometry that moved, lights or materials that changed.
     void changed(Changes const& changes);
-    /// Brings the fields up to date for one more pass. After a change their cells follow within `field_passes`
-    /// calls, after motion the photons at the same pace; in a world at rest, calls 4, 8, 16, ... average the
-    /// fields of more photons and other directions.
+    /// Updates the fields for one more pass. After a change, all their cells are updated within `field_passes`
+    /// calls, and after motion the photons at the same rate. In a world at rest, calls 4, 8, 16,
+    /// ... average the fields of more photons and other directions.
     /// @param visibility  of the world as it is now  @param index  of the pass; the first decides which photons
     /// are traced. Throws Interrupted if a stop is requested and there is no field yet, or in frames, which
     /// must not have older light; null = never.

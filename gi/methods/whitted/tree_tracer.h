@@ -25,7 +25,7 @@ struct TreePoint {
     vec3 wo; ///< unit, in at.frame
     Pcg32 rng;
     bool direct;        ///< seen by the camera, not in mirrors or through glass
-    bool glossy_traced; ///< a ray brings what its glossy lobe reflects
+    bool glossy_traced; ///< a ray computes the reflection of its glossy lobe
     int scatterings;    ///< non-delta, between it and the camera
     vec3 throughput;
     PathSample* sample;

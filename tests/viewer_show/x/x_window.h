@@ -21,18 +21,19 @@ public:
 
     glm::ivec2 size_px() const;
     glm::ivec2 position_px() const; ///< of its top left corner on the screen
-    /// What the screen has there: R, G, B, rows from the top.
+    /// Pixels of the screen in the window's area: R, G, B, rows from the top.
     std::vector<unsigned char> picture() const;
     std::vector<unsigned char> picture(glm::ivec2 corner_px, glm::ivec2 size_px) const;
 
     void move(glm::ivec2 to_px);
     void resize(glm::ivec2 size_px);
-    /// As a window manager asks it to (WM_DELETE_WINDOW).
+    /// Asks the window to close as a window manager does (WM_DELETE_WINDOW).
     void ask_to_close();
 
     /// Keys go to it from now on.
     void focus();
-    /// By the XTEST extension, as from a keyboard. @param key  X's name: "w", "Escape", "F1"
+    /// Presses a key by the XTEST extension, as a keyboard would.
+    /// @param key  X's name: "w", "Escape", "F1"
     void press(std::string const& key);
     void release(std::string const& key);
     void tap(std::string const& key);

@@ -1,5 +1,5 @@
 #pragma once
-// What `lightwell batch` prints, and its hidden command.
+// Texts that `lightwell batch` prints, and its hidden command.
 
 #include "viewer/batch/gather.h"
 #include "viewer/batch/local_runner.h"

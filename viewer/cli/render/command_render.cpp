@@ -102,7 +102,7 @@ void save_interrupted(RenderOptions o, gi::RenderSettings const& settings, State
     result.resumable |= is_saved;
 }
 
-/// Where a complete picture could not be made, or be written: keeps what it would be made of.
+/// If a complete picture could not be made or written: saves its paths.
 void keep_paths(StateSaving& state, std::filesystem::path const& file, gi::Report& report)
 {
     if (!state.has_state()) return;

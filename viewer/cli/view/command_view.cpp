@@ -167,7 +167,7 @@ void follow(ViewOptions& o)
     if (!o.frame_log.empty()) o.frame_log += fmt::format(".{}", o.rank);
 }
 
-/// Of the leader and of every other rank: what it lost, or how it was lost itself.
+/// Statistics of the leader and of every other rank: its losses, or how it ended early.
 nlohmann::ordered_json rank_stats(ClusterLink const& link, gi::Report const& report)
 {
     nlohmann::ordered_json ranks;

@@ -1,5 +1,5 @@
 #pragma once
-// Hands of a user with a keyboard only: they hang in front of the hips,
+// Hands of a user who has only a keyboard: they hang in front of the hips,
 // and rise beside the head while a key is held.
 
 #include "viewer/protocol/frame_command.h"

@@ -83,7 +83,7 @@ public:
     /// Binds sockets and reads files. Trackers of one protocol at one address and port
     /// share a socket. Throws InputError.
     TrackerHub(std::vector<TrackerSettings> const& settings, Polling polling);
-    /// With given sources, one per settings entry (whose type, address and file are then ignored).
+    /// Uses given sources, one per settings entry (whose type, address and file are then ignored).
     TrackerHub(std::vector<TrackerSettings> const& settings, std::vector<std::unique_ptr<Tracker>> sources,
                Polling polling);
     ~TrackerHub();

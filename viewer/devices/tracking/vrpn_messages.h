@@ -30,8 +30,8 @@ struct VrpnDevices {
     bool operator==(VrpnDevices const&) const = default;
 };
 
-/// What a client sends: its greeting; names of sender 0 (the device) and type 0 (ping); a wish for UDP packets; a
-/// ping, which the device answers.
+/// Messages of a client: its greeting; names of sender 0 (the device) and type 0 (ping);
+/// a request for UDP packets; a ping, which the device answers.
 std::vector<unsigned char> vrpn_greeting();
 std::vector<unsigned char> vrpn_introduction(std::string const& device);
 std::vector<unsigned char> vrpn_udp_wish(std::string const& own_address, int own_port);

@@ -262,7 +262,7 @@ void HmdSession::Parts::add_bodies(HmdFrame& frame, XrTime time)
     for (std::size_t h = 0; h < 2; ++h) frame.hands[h] = hands[h].state;
     frame.tracked.left_hand = hands[0].grip;
     frame.tracked.right_hand = hands[1].grip;
-    // As it is now: what is predicted for the display's time would be a guess at the next saccade.
+    // The present gaze: a prediction for the time of display would guess the next saccade.
     if (auto const gaze = actions->gaze(spaces->head_space(), runtime.xr_time(frame.pose_s))) {
         frame.gaze = gaze->state;
         frame.gaze->time_s = gaze->measured > 0 ? runtime.steady_s(gaze->measured) : frame.pose_s;

@@ -218,7 +218,7 @@ void AudioOutput::fill(float* out, std::size_t frames, double first_s, double ra
         if (state == VoiceState::waiting) {
             double const wait = std::round((v.at_s - first_s) * rate_hz);
             if (wait >= double(frames)) continue;
-            // What was released before it began is free already.
+            // A voice released before it began is already free.
             if (!v.state.compare_exchange_strong(state, VoiceState::playing)) continue;
             at = std::size_t(std::max(0.0, wait));
             v.onset_s = first_s + double(at) / rate_hz;

@@ -65,7 +65,7 @@ std::vector<study::SoundPlayed> CuePlayer::take(double now_s)
     for (Started& s : started_) {
         if (s.ticket) {
             SoundReport r = output_->report(*s.ticket);
-            // What is due comes with the device's next buffers.
+            // Sounds that are due play with the device's next buffers.
             for (int i = 0; i < 100 && !r.onset_s && s.planned_s <= now_s && output_->is_running(); ++i) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(5));
                 r = output_->report(*s.ticket);

@@ -136,7 +136,7 @@ void LiveSource::walk(NavigationInput const& input, double seconds)
     {
         std::lock_guard const lock(mutex_);
         if (!place_) return;
-        // As in the viewer: crossing a scene takes seconds, whatever its size.
+        // Speed as in the viewer: crossing a scene takes seconds, whatever its size.
         if (!navigation_)
             navigation_.emplace(place_->camera.world_from_camera, std::clamp(0.2 * place_->radius_m, 0.05, 20.0),
                                 gi::dvec3(place_->camera.world_from_camera[3]));

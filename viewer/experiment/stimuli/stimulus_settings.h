@@ -28,7 +28,7 @@ struct StimulusSettings {
     std::vector<Change> edits;          ///< edits of the scene
     std::optional<ArStimulus> ar;       ///< if set, replaces all of the above
     PhysicalStimulus physical;          ///< degrees, cd/m2
-    std::string sha256; ///< of all of the above as written in the script: equal hashes mean equal pictures
+    std::string sha256; ///< hash of all of the above as written in the script: equal hashes mean equal pictures
 };
 
 /// Throws InputError that names a key or value unknown to the renderer.

@@ -1,7 +1,8 @@
 #pragma once
-// The paths of a pass by kernels: all of them one surface further, and then those that go on, so that the threads
-// of a device do the same at the same time (Laine et al. 2013, "Megakernels Considered Harmful"). Estimators and
-// random numbers are those of PathsTracer (tracer.h), so that both trace the same paths up to rounding.
+// The paths of a pass by kernels: each launch moves all paths to their next surface,
+// then only those that continue, so that the threads of a device do the same at the same time (Laine et al. 2013,
+// "Megakernels Considered Harmful"). Estimators and random numbers are those of PathsTracer (tracer.h),
+// so that both trace the same paths up to rounding.
 //
 // Mirrors, glass and narrow lobes continue by exact rays through the project's own BVH, traced by a kernel of
 // their own (NearestHits). Cone, gathering, interleaving and shared vertices are not supported.
