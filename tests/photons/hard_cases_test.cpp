@@ -247,13 +247,13 @@ TEST(PhotonStops, AfterTracing)
     RenderSettings s = small_photon_picture(8, 4096);
     s.of<PhotonSettings>().caustic_paths = 0;
     RenderSettings lattices = s;
-    lattices.photons.low_cells = lattices.photons.middle_cells = lattices.photons.high_cells = 64;
+    lattices.of<PhotonSettings>().low_cells = lattices.of<PhotonSettings>().middle_cells = lattices.of<PhotonSettings>().high_cells = 64;
     stages.push_back({"isllpm", s, lattices});
     s.of<PhotonSettings>().caustic_paths = 4096;
     s.of<PhotonSettings>().screen_gathers = 1;
     RenderSettings gathers = s;
     gathers.width = gathers.height = 64;
-    gathers.photons.screen_gathers = 1000;
+    gathers.of<PhotonSettings>().screen_gathers = 1000;
     stages.push_back({"multi_image", s, gathers});
     for (Stage const& stage : stages)
         for (PhotonMethod const& m : kPhotonMethods) {
