@@ -212,30 +212,33 @@ TEST(Accumulator, ACheckpointHoldsAll)
 
 TEST(Accumulator, ACheckpointOfAnEarlierVersionIsReadOrRefusedWithTheWayOut)
 {
-    std::filesystem::path const old = std::filesystem::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old";
-    auto const refusal = [&](char const* file, int width, int height, std::uint64_t print) -> std::string {
-        Accumulator a(width, height);
+    std::filesystem::path const old =
+        std::filesystem::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old/7d477989/cornell.exr.state";
+    auto const refusal = [](std::filesystem::path const& file, std::uint64_t print) -> std::string {
+        Accumulator a(8, 6);
         try {
-            EXPECT_TRUE(load_checkpoint(old / file, a, print)) << "there is no " << file;
+            EXPECT_TRUE(load_checkpoint(file, a, print)) << "there is no " << file;
         } catch (InputError const& e) {
             return e.what();
         }
         return {};
     };
-    std::string const format_2 = refusal("0d0c255/cornell.exr.state", 4, 3, 0x1234);
-    EXPECT_NE(
-        format_2.find("is a checkpoint of another version (its format is 2, this version reads 5) finish the "
-                      "picture with the version that began it, or delete the file to start afresh"),
-        std::string::npos)
-        << format_2;
     std::uint64_t print = 0; // after the 8 bytes of the format
-    std::ifstream(old / "7d477989/cornell.exr.state", std::ios::binary)
-        .ignore(8)
-        .read(reinterpret_cast<char*>(&print), sizeof print);
-    EXPECT_EQ(refusal("7d477989/cornell.exr.state", 8, 6, print), "");
-    std::string const foreign = refusal("7d477989/cornell.exr.state", 8, 6, print + 1);
+    std::ifstream(old, std::ios::binary).ignore(8).read(reinterpret_cast<char*>(&print), sizeof print);
+    EXPECT_EQ(refusal(old, print), "");
+    std::string const foreign = refusal(old, print + 1);
     EXPECT_NE(foreign.find("belongs to another render"), std::string::npos) << foreign;
     EXPECT_NE(foreign.find("the version that wrote it can finish it"), std::string::npos) << foreign;
+
+    std::filesystem::path const earlier = std::filesystem::path(testing::TempDir()) / "earlier.state";
+    std::filesystem::copy_file(old, earlier, std::filesystem::copy_options::overwrite_existing);
+    std::fstream(earlier, std::ios::binary | std::ios::in | std::ios::out).seekp(7).put('2');
+    std::string const format_2 = refusal(earlier, print);
+    EXPECT_NE(format_2.find("is a checkpoint of another version (its format is 2, this version reads 5) finish the "
+                            "picture with the version that began it, or delete the file to start afresh"),
+              std::string::npos)
+        << format_2;
+    std::filesystem::remove(earlier);
 }
 
 TEST(Accumulator, AnyDamagedByteOfACheckpointIsNoticed)

@@ -67,7 +67,7 @@ TEST(Recording, ComesBackAsItWas)
 
 TEST(Recording, OfAnEarlierVersionIsRead)
 {
-    for (std::string const commit : {"0d0c255", "7d477989"}) {
+    for (std::string const commit : {"7d477989"}) {
         RecordingReader reader(std::filesystem::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old" / commit /
                                "cornell.lwr");
         EXPECT_EQ(reader.header().program, "lightwell 0.1.0 (git " + commit + ")");
@@ -78,7 +78,7 @@ TEST(Recording, OfAnEarlierVersionIsRead)
         while (reader.next()) {
         }
         EXPECT_EQ(describe_loss(reader.end()), "") << commit;
-        EXPECT_EQ(reader.end().frames, commit == "0d0c255" ? 2u : 31u) << commit;
+        EXPECT_EQ(reader.end().frames, 31u) << commit;
     }
 }
 
