@@ -16,6 +16,8 @@ constexpr std::string_view method_of_0_1(std::string_view name) { return name ==
 
 /// The method of viewers, studies and AR sessions of version 0.1 that name none.
 inline constexpr std::string_view kDefaultMethodOf01 = method_of_0_1("slhb");
+/// That of its `render`.
+inline constexpr std::string_view kRenderMethodOf01 = "reference";
 
 /// True if an interrupted and resumed picture by this method equals an uninterrupted one bit for bit.
 /// The other methods start their light afresh.

@@ -31,6 +31,7 @@ struct MethodChoice {
 struct ExposurePlan {
     std::string_view method;
     RenderSettings settings; ///< with the choices for that budget
+    PlanText why = "";       ///< of a method that chooses another
 };
 enum class Triangles : std::uint8_t { still, moving };
 

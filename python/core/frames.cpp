@@ -16,6 +16,7 @@ Frames::Frames(int threads) : scenes_(viewer::study_scenes()), session_(scenes_.
 void Frames::set(viewer::Change const& wanted)
 {
     std::lock_guard const lock(mutex_);
+    viewer::check_offered(session_.settings(), wanted.key);
     change(wanted);
 }
 

@@ -7,6 +7,7 @@
 #include "gi/core/file.h"
 #include "gi/core/sha256.h"
 #include "study/analysis/analysis.h"
+#include "study/analysis/result_tables.h"
 #include "study/journal/entry_line.h"
 #include "study/journal/journal_file.h"
 #include "study/journal/journal_folders.h"

@@ -114,7 +114,10 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
         session.apply(current({"method", settings.value("method", first_settings(made).method)}, made));
     for (auto const& [key, value] : settings.items())
         if (!overridden.contains(current_key(key))) apply_recorded(session, current({key, value}, made), report);
-    for (Change const& c : o.settings) session.apply(c);
+    for (Change const& c : o.settings) {
+        check_offered(session.settings(), c.key);
+        session.apply(c);
+    }
     SceneChange scene{header.scene, {}};
     if (header.settings.contains("start")) scene.start = start_from_json(header.settings.at("start"));
     session.apply(to_change(scene));

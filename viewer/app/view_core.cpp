@@ -31,7 +31,10 @@ ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
     : options(o), display(o.display), report(r), session(o.load, o.threads, r), requests(state, controls, r)
 {
     if (o.drive) session.drive_bodies(o.drive);
-    for (Change const& c : o.settings) session.apply(c);
+    for (Change const& c : o.settings) {
+        check_offered(session.settings(), c.key);
+        session.apply(c);
+    }
     state.settings = session.settings();
     state.navigation.set_eye_height(o.eye_height_m);
     state.navigation.set_mode(o.navigation);

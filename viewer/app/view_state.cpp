@@ -9,6 +9,7 @@ namespace viewer {
 void ViewState::change(Change const& c, std::function<void(std::string const&)> done)
 {
     if (is_setting(c.key)) {
+        check_offered(settings, c.key);
         Settings changed = settings;
         set(changed, c);
         if (c.key == "device") {

@@ -30,7 +30,11 @@ std::vector<std::string> current_command(std::vector<std::string> command)
     CommandWords words(std::move(command));
     for (char const* const option : {"--method", "--methods"})
         if (auto const names = words.value(option)) words.set(option, current_methods(*names));
-    if (is_render && !words.has("--method")) words.all().insert(words.all().end(), {"--method", "reference"});
+    for (std::string& w : words.all()) // of --set
+        for (std::string_view const key : {"method=", "compare=", "--set=method=", "--set=compare="})
+            if (w.starts_with(key)) w = std::string(key) + std::string(gi::method_of_0_1(w.substr(key.size())));
+    std::string const usual(gi::kRenderMethodOf01);
+    if (is_render && !words.has("--method")) words.all().insert(words.all().end(), {"--method", usual});
     return std::move(words.all());
 }
 

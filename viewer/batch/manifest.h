@@ -1,5 +1,5 @@
 #pragma once
-// The manifest of a batch (YAML, schema batch/1): groups of tasks, made from command lines with {parameters}.
+// The manifest of a batch (YAML, schema batch/2; batch/1 is of version 0.1): groups of tasks, made from command lines with {parameters}.
 // docs/batch.md describes every key.
 
 #include "gi/core/mistakes.h"

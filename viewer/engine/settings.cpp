@@ -196,12 +196,17 @@ Change current(Change change, MadeFor made_for)
     return change;
 }
 
+void check_offered(Settings const& settings, std::string const& key)
+{
+    SettingKey const* const k = find(key);
+    if (k == nullptr || k->is_offered() || k->option->read_by(settings.method)) return;
+    throw gi::InputError(fmt::format("'{}' with method {}", key, settings.method),
+                         "only files of earlier versions have it", "give " + k->option->replaced_by);
+}
+
 void set(Settings& settings, Change const& change)
 {
     SettingKey const& k = known(change.key);
-    if (!k.is_offered() && !k.option->read_by(settings.method))
-        throw gi::InputError(fmt::format("'{}' with method {}", change.key, settings.method),
-                             "only files of earlier versions have it", "give " + k.option->replaced_by);
     Json value = change.value;
     if (k.key == "radiance_cache" && value.is_boolean()) value = value.get<bool>() ? "auto" : "off"; // formerly
     k.set(settings, value.is_string() ? value.get<std::string>() : dumped(value),

@@ -71,6 +71,9 @@ std::string current_key(std::string const& key);
 /// True if a change of the setting restarts the methods.
 bool restarts_methods(std::string const& key);
 
+/// For settings that people give: throws InputError if only files of earlier versions have the key, and the method does
+/// not read it.
+void check_offered(Settings const& settings, std::string const& key);
 /// Throws InputError if the key is unknown, or the value has the wrong type or is out of range.
 void set(Settings& settings, Change const& change);
 /// Parses "KEY=VALUE". The value is JSON if it parses as JSON, else a word. Throws InputError.

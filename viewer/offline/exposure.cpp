@@ -47,6 +47,10 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
     };
     gi::RenderResult result = renderer->frame(first, stop, progress, moments);
     if (!exposure.still) world.advance(exposure.from_s);
+    if (plan.method != method.name) {
+        result.method = plan.method;
+        result.why_method = plan.why.text;
+    }
     return result;
 }
 

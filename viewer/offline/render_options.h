@@ -50,7 +50,6 @@ CLI::Option* declare_option(CLI::App& command, gi::RenderSettings& settings, std
 void declare_method_options(CLI::App& command, gi::RenderSettings& settings,
                             std::vector<std::string_view> const& methods = {},
                             std::vector<std::string_view> const& except = {});
-/// The method with the schedule of the options.
 /// Throws InputError if a given option is read by none of the methods (at least one), or if some contradict.
 void check_method_options(CLI::App const& command, std::vector<gi::ChosenMethod> const& methods);
 /// Options of `lightwell render`.

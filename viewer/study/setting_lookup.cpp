@@ -99,6 +99,7 @@ void check_of_viewer(std::string const& key, Json const& value, MadeFor made)
                              "stimuli are rendered on the CPU, so that they are equal at all sites",
                              "leave it out");
     Settings settings = first_settings(made);
+    if (made == MadeFor::this_version) check_offered(settings, key);
     set(settings, current({key, value}, made));
 }
 
@@ -202,7 +203,7 @@ std::string look_up_varied(std::string const& written)
                          "compare levels of a factor, or vary a number: lightwell info --settings has them");
 }
 
-void look_up_varied(std::string const& written, double low, double high)
+void look_up_varied(std::string const& written, double low, double high, MadeFor made)
 {
     std::string const key = look_up_varied(written);
     if (is_ar_key(key)) return;
@@ -212,7 +213,7 @@ void look_up_varied(std::string const& written, double low, double high)
         else if (is_scene_edit(key))
             check_scene_edit({key, Json(end)});
         else
-            check_of_viewer(key, setting_value(key, study::level_text(end)), MadeFor::version_0_1);
+            check_of_viewer(key, setting_value(key, study::level_text(end)), made);
 }
 
 std::set<std::pair<std::string, std::string>> find_wrong_settings(study::Script const& script,
@@ -228,7 +229,7 @@ std::set<std::pair<std::string, std::string>> find_wrong_settings(study::Script 
             check_known(study::plain_key(s.key));
             where = s.value_place;
             if (s.varied) {
-                look_up_varied(s.key, s.varied->first, s.varied->second);
+                look_up_varied(s.key, s.varied->first, s.varied->second, made_for(script));
                 check_rounded_levels(study::plain_key(s.key), s.levels);
             } else if (!s.block.empty()) {
                 look_up_varied(s.key);

@@ -33,7 +33,7 @@ MadeFor made_for(study::Script const& script);
 /// Throws InputError unless a procedure can vary the setting: it takes numbers. @returns key without prefix
 std::string look_up_varied(std::string const& key);
 /// As look_up_varied(), and it takes all numbers from `low` to `high`.
-void look_up_varied(std::string const& key, double low, double high);
+void look_up_varied(std::string const& key, double low, double high, MadeFor made_for = MadeFor::this_version);
 
 /// Looks all settings of a script up and adds what is wrong, each with its place.
 /// @returns keys and values that are wrong, which stimuli cannot have; of varied settings with an empty value

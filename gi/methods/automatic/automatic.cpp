@@ -1,5 +1,6 @@
 #include "gi/methods/automatic/automatic.h"
 
+#include "gi/core/error.h"
 #include "gi/methods/paths/look_up_trust.h"
 #include "gi/methods/paths/lobes.h"
 #include "gi/methods/paths/paths.h"
@@ -40,8 +41,8 @@ Candidate const& find(std::string_view name) { return *std::ranges::find(kCandid
 /// What its paths do, for the method named.
 PathAlgorithm algorithm_of(std::string_view name)
 {
-    return name == "slhb"               ? PathAlgorithm{SurfacesBy::look_ups, ShadowsBy::maps}
-           : name == "slhb_shadow_rays" ? PathAlgorithm{SurfacesBy::look_ups, ShadowsBy::rays}
+    return name == "slhb"               ? kSlhb
+           : name == "slhb_shadow_rays" ? PathAlgorithm{SurfacesBy::look_ups, ShadowsBy::rays, false}
                                         : PathAlgorithm{};
 }
 
@@ -82,11 +83,8 @@ RenderResult render_auto(World const& world, Camera const& camera, RenderSetting
     auto const begun = std::chrono::steady_clock::now();
     MethodChoice const choice = choose_method(world, settings, camera, RenderUse::picture);
     RenderSettings left = settings;
-    left.of<PathAlgorithm>().caches = true;
-    if (settings.budget_s > 0) {
-        double const spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-        left.budget_s = std::max(settings.budget_s - spent_s, 1e-9);
-    }
+    left.of<SpentBeforehand>().seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     RenderResult result = find(choice.method).render(world, camera, left, stop, progress, report);
     result.method = choice.method;
     result.why_method = choice.why.text;
@@ -112,11 +110,21 @@ std::vector<PlanItem> explain_auto(World const& world, RenderSettings const& ask
 
 ExposurePlan auto_exposure(World const& world, RenderSettings const& asked, Camera const& camera, Triangles triangles)
 {
-    if (asked.space == Space::device) return {"reference", asked};
     bool const still = triangles == Triangles::still;
     MethodChoice const choice = choose_method(world, asked, camera, still ? RenderUse::picture : RenderUse::frames);
-    if (!(asked.budget_s > 0)) return {choice.method, asked};
-    return {choice.method, choose_settings(with(algorithm_of(choice.method), asked), world, make_soup(world))};
+    if (!(asked.budget_s > 0) || asked.space == Space::device) return {choice.method, asked, choice.why};
+    return {choice.method, choose_settings(with(algorithm_of(choice.method), asked), world, make_soup(world)),
+            choice.why};
+}
+
+void check_auto_options(std::vector<std::string> const& given, RenderSettings const& settings)
+{
+    if (settings.space != Space::device) return;
+    for (RenderOption const& o : paths_options())
+        if (std::ranges::find(given, o.name) != given.end())
+            throw InputError("--" + o.name + " with --method auto --device cuda",
+                             "auto chooses reference there, which does not have it",
+                             "leave it out, or choose --method slhb or --device cpu");
 }
 
 } // namespace gi

@@ -11,11 +11,11 @@
 
 namespace gi {
 
-/// @param use  structures for frames serve many pictures, so that their build time is ignored
 struct AlgorithmChoice {
     PathAlgorithm algorithm;
     PlanText why;
 };
+/// @param use  structures for frames serve many pictures, so that their build time is ignored
 AlgorithmChoice choose_algorithm(World const& world, RenderSettings const& asked, Camera const& camera,
                                  RenderUse use);
 
@@ -27,5 +27,6 @@ std::unique_ptr<FrameRenderer> start_auto_frames(MovingWorld const& world, Camer
                                                  RenderSettings const& settings, Report& report);
 std::vector<PlanItem> explain_auto(World const& world, RenderSettings const& asked, Camera const& camera);
 ExposurePlan auto_exposure(World const& world, RenderSettings const& asked, Camera const& camera, Triangles triangles);
+void check_auto_options(std::vector<std::string> const& given, RenderSettings const& settings);
 
 } // namespace gi

@@ -31,6 +31,11 @@ struct PathAlgorithm {
 /// Cells of a cache are no part of the method: paths end in them on request only.
 inline constexpr PathAlgorithm kSlhb{SurfacesBy::look_ups, ShadowsBy::maps, false};
 
+/// Seconds of the budget that passed before the call, as of choosing the method.
+struct SpentBeforehand {
+    double seconds = 0;
+};
+
 inline RenderSettings with(PathAlgorithm algorithm, RenderSettings settings)
 {
     settings.of<PathAlgorithm>() = algorithm;

@@ -11,7 +11,7 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     std::optional<tbb::global_control> limit; // also limits the building of structures before the passes
     if (settings.threads > 0)
         limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
-    PassLoop loop(settings, stop, progress, report);
+    PassLoop loop(settings, stop, progress, report, settings.of<SpentBeforehand>().seconds);
     TriangleSoup soup = make_soup(world);
     RenderSettings const chosen = choose_settings(settings, world, soup);
     std::string const options = as_options(chosen);

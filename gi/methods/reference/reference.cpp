@@ -113,6 +113,7 @@ public:
                                     StopRequest const& stop) override
     {
         RenderProgress const silent;
+        StopRequest const never; // all views have as many paths as the first
         std::vector<RenderResult> results;
         motion_.see(views);
         for (FrameView const& v : views) {
@@ -120,9 +121,9 @@ public:
             RenderSettings settings = settings_;
             settings.width = v.width;
             settings.height = v.height;
-            settings.paths = paths;
+            settings.paths = k == 0 ? paths : results[0].paths;
             settings.budget_s = settings.until_relmse = 0;
-            PassLoop loop(settings, stop, silent, report_);
+            PassLoop loop(settings, k == 0 ? stop : never, silent, report_);
             PathSteps const through = steps(v.camera, settings);
             results.push_back(trace_all(
                 loop, 0,
@@ -133,7 +134,7 @@ public:
             motion_.add(k, results.back().picture);
             hide_pixels(results.back().picture, v.hidden);
         }
-        paths_ += paths;
+        if (!results.empty()) paths_ += results[0].paths;
         motion_.end_frame();
         return results;
     }

@@ -12,6 +12,19 @@ namespace {
 constexpr PathAlgorithm kSlhbShadowRays{SurfacesBy::look_ups, ShadowsBy::rays, false},
     kPathsShadowMaps{SurfacesBy::rays, ShadowsBy::maps};
 
+ExposurePlan exposure_by(std::string_view method, PathAlgorithm by, World const& world, RenderSettings const& asked,
+                         Triangles triangles)
+{
+    RenderSettings s = with(by, asked);
+    SlhbSettings& buffers = s.of<SlhbSettings>();
+    // Appending moving triangles to all stored axes again for every path is more work than new axes.
+    bool const any_axes =
+        buffers.schedule == Schedule::automatic && buffers.directions.empty() && buffers.fresh_axes == 0;
+    if (triangles == Triangles::moving && any_axes) buffers.schedule = Schedule::streamed;
+    if (s.budget_s > 0) s = choose_settings(s, world, make_soup(world));
+    return {method, s};
+}
+
 } // namespace
 
 RenderResult render_slhb(World const& world, Camera const& camera, RenderSettings const& settings,
@@ -43,14 +56,21 @@ RenderSettings slhb_for_display(RenderSettings settings)
 
 ExposurePlan slhb_exposure(World const& world, RenderSettings const& asked, Camera const&, Triangles triangles)
 {
-    RenderSettings s = with(kSlhb, asked);
-    SlhbSettings& buffers = s.of<SlhbSettings>();
-    // Appending moving triangles to all stored axes again for every path is more work than new axes.
-    bool const any_axes =
-        buffers.schedule == Schedule::automatic && buffers.directions.empty() && buffers.fresh_axes == 0;
-    if (triangles == Triangles::moving && any_axes) buffers.schedule = Schedule::streamed;
-    if (s.budget_s > 0) s = choose_settings(s, world, make_soup(world));
-    return {"slhb", s};
+    ExposurePlan plan = exposure_by("slhb", kSlhb, world, asked, triangles);
+    if (asked.space == Space::device) KernelRenderer<Space::device>::limit(plan.settings);
+    return plan;
+}
+
+ExposurePlan slhb_shadow_rays_exposure(World const& world, RenderSettings const& asked, Camera const&,
+                                       Triangles triangles)
+{
+    return exposure_by("slhb_shadow_rays", kSlhbShadowRays, world, asked, triangles);
+}
+
+ExposurePlan paths_shadow_maps_exposure(World const& world, RenderSettings const& asked, Camera const&,
+                                        Triangles triangles)
+{
+    return exposure_by("paths_shadow_maps", kPathsShadowMaps, world, asked, triangles);
 }
 
 bool slhb_updates_axes(RenderSettings const& settings)

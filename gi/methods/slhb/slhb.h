@@ -17,6 +17,10 @@ std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camer
 RenderSettings slhb_for_display(RenderSettings settings);
 ExposurePlan slhb_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
                            Triangles triangles);
+ExposurePlan slhb_shadow_rays_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
+                                       Triangles triangles);
+ExposurePlan paths_shadow_maps_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
+                                        Triangles triangles);
 bool slhb_updates_axes(RenderSettings const& settings);
 
 /// Look-ups for surfaces, exact rays for shadows.

@@ -119,13 +119,15 @@ RenderSettings slhb_0_1_for_display(RenderSettings settings)
 ExposurePlan slhb_0_1_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
                                Triangles triangles)
 {
+    if (asked.space == Space::device)
+        return {"slhb_0_1", slhb_exposure(world, asked, camera, triangles).settings};
     RenderSettings s = asked;
     SlhbSettings& buffers = s.of<SlhbSettings>();
     // Which made its paths take look-ups.
     if (triangles == Triangles::moving && buffers.schedule == Schedule::automatic && buffers.directions.empty() &&
         buffers.fresh_axes == 0)
         buffers.schedule = Schedule::streamed;
-    if (s.space == Space::host && s.budget_s > 0) {
+    if (s.budget_s > 0) {
         PathAlgorithm const by = algorithm_of(s, world, camera, RenderUse::picture);
         s = choose_settings(with(by, s), world, make_soup(world));
         s.of<FormerSlhbSettings>() = {
