@@ -53,7 +53,7 @@ enum class CompositeBy {
 /// state. Each must get the frames in order.
 class ArPipeline {
 public:
-    /// Loads the scenes and the light. @throws gi::InputError, gi::InputError
+    /// Loads the scenes and the light. @throws gi::InputError
     /// @param prefix  for its counts in the report, if there are several pipelines
     ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers, gi::Report& report,
                std::string prefix = {});
