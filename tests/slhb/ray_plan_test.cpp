@@ -93,7 +93,9 @@ TEST(RayPlan, LampsInMirrors)
 TEST(RayPlan, ChoosesLookUpsOnlyWhereABvhTakesTooLongAndTheyAreRight)
 {
     Scene closed;
-    add_sphere(closed, {0, 0, 0}, 1, 7, add_material(closed, lambert(vec3{0.6f})), false);
+    int const wall = add_material(closed, lambert(vec3{0.6f}));
+    add_box(closed, {-1, -1, -1}, {1, 1, 1}, wall, true);
+    add_sphere(closed, {1.5f, 0, 0}, 0.2f, 7, wall, false); // out of sight: 327,680 triangles
     World const wide = world_of(room_on_a_plane(5000)), world = world_of(std::move(closed));
     Camera const camera = look_at({0, 0, 0}, {1, 0.2, 0.1}, 70);
     RenderSettings asked = small_settings(64, 16, 3);

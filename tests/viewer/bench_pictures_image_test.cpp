@@ -49,7 +49,7 @@ TEST(BenchPictures, JudgesMethodsBudgetsAndFilters)
             EXPECT_EQ(gi::read_picture(folder / "d" / to_text(cell(t, row, column))).width, 32) << column;
     }
     std::string const html = file_text(folder / "d" / "pictures.html");
-    EXPECT_NE(html.find("src=\"cornell_slhb_20ms_atrous_flip.png\""), std::string::npos);
+    EXPECT_NE(html.find("src=\"cornell_paths_20ms_atrous_flip.png\""), std::string::npos);
     EXPECT_EQ(html.find("http"), std::string::npos);
     EXPECT_LT(html.find("Against reference, worst first"), html.find("Methods by their pictures"));
     EXPECT_EQ(file_text(folder / "d" / "pictures.csv").substr(0, 20), "scene,budget,method,");
@@ -101,7 +101,7 @@ TEST(BenchPictures, JudgesFramesThatFollowEachOther)
         EXPECT_GE(number(cell(t, row, "paths")), 1);
         EXPECT_GT(number(cell(t, row, "flip")), 0);
     }
-    EXPECT_NE(file_text(folder / "d" / "interactive.html").find("walk_slhb_frame4_wide.png"), std::string::npos);
+    EXPECT_NE(file_text(folder / "d" / "interactive.html").find("walk_paths_frame4_wide.png"), std::string::npos);
 }
 
 TEST(BenchPictures, ControlCKeepsTheRowsSoFar)

@@ -68,7 +68,8 @@ TEST(RecordingCommand, UnknownSettingsOfARecordingAreCountedAndRefusedOnesHaveAW
         header.scene = "cornell";
         header.settings = {{"settings", {{"method", "reference"}, {key, value}}}};
         RecordedFrame f;
-        f.command.views.emplace_back().width = f.command.views[0].height = 8;
+        ViewCommand& view = f.command.views.emplace_back();
+        view.width = view.height = 8;
         gi::Report report;
         Recorder(folder / "one.lwr", header, report).append(f);
     };

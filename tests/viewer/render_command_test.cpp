@@ -85,7 +85,7 @@ TEST(RenderCommand, ThePictureSaysHowItWasMade)
     gi::Picture const picture = gi::read_picture(folder / "a.exr");
     auto const& m = picture.metadata;
     EXPECT_EQ(m.at("scene"), "cornell");
-    EXPECT_EQ(m.at("method"), "reference");
+    EXPECT_EQ(m.at("method"), "paths"); // which auto chose
     EXPECT_EQ(m.at("size"), "24x16");
     EXPECT_EQ(m.at("seed"), "7");
     EXPECT_EQ(m.at("paths"), "4");

@@ -12,6 +12,7 @@ std::map<std::string, std::string> frame_metadata(RenderOptions const& o, gi::Re
                                                   std::uint64_t fingerprint, std::uint64_t motion)
 {
     std::map<std::string, std::string> m = make_metadata(o, s, result);
+    m["method"] = o.method; // also where it chose another one: --resume compares it
     m["frame"] = std::to_string(frame);
     m["stop"] = stop_option(s);
     m["reuse"] = std::to_string(o.reuse);

@@ -97,7 +97,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
             {"git", git_hash()},
             {"command", normalised_command(o, s, paths_option(result), chosen_of(result))},
             {"scene", o.scene},
-            {"method", o.method},
+            {"method", result.method.empty() ? o.method : result.method},
             {"size", fmt::format("{}x{}", s.width, s.height)},
             {"seed", std::to_string(s.seed)},
             {"filter", filter_of(s)},
