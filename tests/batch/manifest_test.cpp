@@ -45,8 +45,8 @@ TEST_F(ManifestTest, OfVersion01NameMethodsAsThatDid)
     EXPECT_EQ(current_command({"bench", "sweep", "--methods", "slhb:stored,reference,slhb,vpl_slhb"}),
               (Words{"bench", "sweep", "--methods", "slhb_0_1:stored,reference,slhb_0_1,vpl_slhb"}));
     EXPECT_EQ(current_command({"view", "--replay", "a.lwr", "--set", "method=slhb"}).back(), "method=slhb_0_1");
-    std::string const rest = "batch: b\nsweeps:\n  s: {command: render cornell --out {p}.exr --seed {p}, over: {p: 1}, "
-                             "outputs: '{p}.exr'}\n";
+    std::string const rest = "batch: b\nsweeps:\n  s:\n    command: render cornell --out {p}.exr --seed {p}\n    over: {p: 1}\n"
+                             "    outputs: '{p}.exr'\n";
     auto const last = [&](std::string const& schema) {
         return read_manifest(schema + rest, "m.yaml", kCommands).batch.tasks.at(0).command.back();
     };
