@@ -207,7 +207,7 @@ passes: {folder: parts, bits: 32, undistorted: true}
 
 TEST(ArSessions, ThatAreWrongAreRefusedWithTheirPlace)
 {
-    EXPECT_NE(session_refusal("frames: {source: x}\ncamera: c\nmarkers: m\n").find("schema: ar/1"),
+    EXPECT_NE(session_refusal("frames: {source: x}\ncamera: c\nmarkers: m\n").find("schema: ar/2"),
               std::string::npos);
     EXPECT_NE(session_refusal("schema: ar/1\nframes: {source: x}\ncamera: c\n").find("no 'markers'"),
               std::string::npos);
