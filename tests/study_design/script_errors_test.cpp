@@ -83,7 +83,7 @@ TEST(ScriptErrors, NameTheirPlaceAndWhatToDo)
 {
     ASSERT_EQ(message_of(kSound), "");
     for (Case const& c : {
-             Case{"schema: study/1", "schema: study/2", "t.yaml:1:9: ", "did you mean 'study/1'?"},
+             Case{"schema: study/1", "schema: study/3", "t.yaml:1:9: ", "did you mean 'study/2'?"},
              {"seed: 5", "sede: 5", "t.yaml:3:1: ",
               "unknown key 'sede' in script (it would be ignored) did you mean "
               "'seed'?"},

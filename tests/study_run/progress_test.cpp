@@ -206,9 +206,10 @@ TEST(Progress, RecordedLevelsCountWhereAProcedureChoosesOthersNow)
         t.is_correct = true;
     });
     EXPECT_EQ(w.progress.levels_not_due(), 2);
-    ASSERT_GT(levels[0].size(), 1u);
+    ASSERT_GT(levels[0].size(), 2u);
     EXPECT_EQ(levels[0][0], 16);
-    EXPECT_EQ(levels[0][1], 256) << "a step of 2 beyond the recorded level";
+    EXPECT_EQ(levels[0][1], 64) << "the recorded level, until two responses are right";
+    EXPECT_EQ(levels[0][2], 256) << "a step of 2 beyond it";
     EXPECT_EQ(levels[1].size(), 12u);
 }
 

@@ -234,7 +234,7 @@ TEST_P(OldRecords, LostPlanIsRefusedWithTheWayOutWhereNoneFits)
         std::string const what = e.what();
         EXPECT_NE(
             what.find("the plan of this session is lost (plan.tsv is missing, and the journal contradicts the "
-                      "plan that this version makes: step "),
+                      "plan that this version makes: "),
             std::string::npos)
             << what;
         EXPECT_NE(what.find("restore the file from a copy, or write it by version 0.1.0 (git "), std::string::npos)
