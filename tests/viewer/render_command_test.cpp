@@ -225,7 +225,7 @@ TEST(RenderCommand, NegativeValuesAreValues)
 TEST(RenderCommand, GoesOnInInstalments)
 {
     TemporaryFolder const folder, whole;
-    std::string const call = "render cornell --size 64x64 --out a.exr";
+    std::string const call = "render cornell --method reference --size 64x64 --out a.exr";
     run_well(call + " --resume --until relmse=0.05", folder.path());
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
     run_well(call + " --resume --paths 96", folder.path());
