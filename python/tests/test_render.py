@@ -111,10 +111,10 @@ def test_a_budget_ends_a_render(cornell):
         (lambda w: w.render(size=SIZE, denoise="nlm"), "nlm"),
         (lambda w: w.render("reference", size=SIZE, axes=3), "--axes"),
         (lambda w: w.render(size=SIZE, axis=3), "axis"),
-        (lambda w: w.render(size=SIZE, axes="many"), "axes"),
-        (lambda w: w.render(size=SIZE, axes=1000), "axes"),
-        (lambda w: w.render(size=SIZE, packed=3), "packed"),
-        (lambda w: w.render(size=SIZE, schedule="stored", axes=3), "--axes"),
+        (lambda w: w.render("slhb", size=SIZE, axes="many"), "axes"),
+        (lambda w: w.render("slhb", size=SIZE, axes=1000), "axes"),
+        (lambda w: w.render("slhb", size=SIZE, packed=3), "packed"),
+        (lambda w: w.render("slhb", size=SIZE, schedule="stored", axes=3), "--axes"),
         (lambda w: w.render(size=SIZE, budget_s=float("nan")), "budget_s"),
         (lambda w: setattr(lightwell.Camera(), "world_from_camera", np.zeros((4, 4))), "world_from_camera"),
         (lambda w: lightwell.Camera.look_at((0, 0, 0), (0, 0, 0)), "camera"),
@@ -186,7 +186,7 @@ def test_pictures_are_compared_as_the_program_does(program, cornell, tmp_path):
 
 
 def test_methods_take_their_own_options(cornell):
-    picture = cornell.render(size=SIZE, paths=1, schedule="stored", hit_buffer=32)
+    picture = cornell.render("slhb", size=SIZE, paths=1, schedule="stored", hit_buffer=32)
     assert "stored" in picture.options and "32" in picture.options
 
 
