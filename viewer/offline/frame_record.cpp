@@ -18,7 +18,8 @@ nlohmann::json to_message(FrameRecord const& r)
             {"seconds", r.seconds},      {"end", int(r.result.end)},
             {"paths", r.result.paths},   {"trace_s", r.result.seconds},
             {"relmse", r.result.relmse}, {"options", r.result.options},
-            {"rays", r.result.rays},     {"losses", losses_json(r.losses)}};
+            {"rays", r.result.rays},     {"losses", losses_json(r.losses)},
+            {"method", r.result.method}, {"why_method", r.result.why_method}};
 }
 
 FrameRecord record_of(nlohmann::json const& m)
@@ -33,6 +34,8 @@ FrameRecord record_of(nlohmann::json const& m)
     r.result.relmse = m.at("relmse");
     r.result.options = m.at("options");
     r.result.rays = m.at("rays");
+    r.result.method = m.at("method");
+    r.result.why_method = m.at("why_method");
     r.losses = losses_of(m.at("losses"));
     return r;
 }

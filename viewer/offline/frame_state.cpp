@@ -12,7 +12,7 @@ std::map<std::string, std::string> frame_metadata(RenderOptions const& o, gi::Re
                                                   std::uint64_t fingerprint, std::uint64_t motion)
 {
     std::map<std::string, std::string> m = make_metadata(o, s, result);
-    m["method"] = o.method; // also where it chose another one: --resume compares it
+    m["asked_method"] = o.method; // which may have chosen another one: --resume compares it
     m["frame"] = std::to_string(frame);
     m["stop"] = stop_option(s);
     m["reuse"] = std::to_string(o.reuse);
@@ -26,7 +26,7 @@ std::map<std::string, std::string> frame_metadata(RenderOptions const& o, gi::Re
 
 std::string difference(gi::Picture const& there, std::map<std::string, std::string> const& wanted)
 {
-    for (char const* key : {"frame", "method", "size", "seed", "filter", "denoise", "bounces", "stop", "reuse",
+    for (char const* key : {"frame", "asked_method", "size", "seed", "filter", "denoise", "bounces", "stop", "reuse",
                             "shutter", "layers", "numbers", "version", "git", "fingerprint", "motion"}) {
         auto const found = there.metadata.find(key);
         if (found == there.metadata.end()) return "it is not a frame of a sequence";
@@ -34,6 +34,7 @@ std::string difference(gi::Picture const& there, std::map<std::string, std::stri
         if (found->second == value) continue;
         if (std::string(key) == "fingerprint") return "its scene, camera or settings differ";
         if (std::string(key) == "motion") return "its motion blur differs";
+        if (std::string(key) == "asked_method") return fmt::format("its method is {}, not {}", found->second, value);
         return fmt::format("its {} is {}, not {}", key, found->second, value);
     }
     return {};
