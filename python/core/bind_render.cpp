@@ -77,12 +77,14 @@ py::dict render(LoadedWorld const& scene, std::string const& method, gi::Camera 
     gi::Picture picture;
     Watched watched;
     still.trace = [&](gi::RenderSettings const& s, gi::StopRequest const& stop, gi::Report& r) {
-        return chosen.render(*world, camera, s, stop, [&](gi::RenderStatus const& now) { watched.put(now); }, r);
+        return chosen.render(
+            *world, camera, s, stop, [&](gi::RenderStatus const& now) { watched.put(now); }, r);
     };
     viewer::StillEnd end;
     auto const work = [&](gi::StopRequest const& stop) {
         still.write = [&](gi::PictureRows const& rows, viewer::PictureParts parts, gi::RenderResult const&) {
-            if (parts == viewer::PictureParts::complete) picture = rows.whole(&stop); // else an exception is raised
+            if (parts == viewer::PictureParts::complete)
+                picture = rows.whole(&stop); // else an exception is raised
         };
         end = viewer::render_picture(std::move(still), stop, report);
     };

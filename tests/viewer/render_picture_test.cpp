@@ -34,9 +34,10 @@ protected:
 
     TemporaryFolder const folder;
     gi::Report loading;
-    gi::World const world =
-        gi::build_world(std::make_shared<gi::Scene const>(gi::load_scene("cornell", loading)), std::nullopt, loading);
-    gi::RenderSettings settings{.width = 24, .height = 16, .paths = 6, .bounces = 2, .checkpoint = folder / "a.state"};
+    gi::World const world = gi::build_world(std::make_shared<gi::Scene const>(gi::load_scene("cornell", loading)),
+                                            std::nullopt, loading);
+    gi::RenderSettings settings{
+        .width = 24, .height = 16, .paths = 6, .bounces = 2, .checkpoint = folder / "a.state"};
     bool fails = false;
     std::vector<PictureParts> parts;
     gi::Picture picture;
@@ -65,7 +66,8 @@ TEST_F(StillPictureTest, GoesOnAfterAStopAtAnyAsk)
         EXPECT_FALSE(has_state()) << ask;
         ASSERT_EQ(picture.layers.size(), whole.layers.size()) << ask;
         for (std::size_t k = 0; k < whole.layers.size(); ++k)
-            EXPECT_TRUE(picture.layers[k].data == whole.layers[k].data) << whole.layers[k].name << " after " << ask;
+            EXPECT_TRUE(picture.layers[k].data == whole.layers[k].data)
+                << whole.layers[k].name << " after " << ask;
     }
     EXPECT_GT(interrupted, 5);
 }

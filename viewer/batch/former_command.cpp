@@ -38,7 +38,9 @@ std::vector<std::string> current_command(std::vector<std::string> command)
         if (!words.has(option)) words.all().insert(words.all().end(), {option, usual});
     };
     if (is_render) add("--method", std::string(gi::kRenderMethodOf01));
-    if (is_pictures) add("--methods", current_methods(words.has("--interactive") ? "reference,slhb" : "reference,slhb,vpl_slhb"));
+    if (is_pictures)
+        add("--methods",
+            current_methods(words.has("--interactive") ? "reference,slhb" : "reference,slhb,vpl_slhb"));
     return std::move(words.all());
 }
 

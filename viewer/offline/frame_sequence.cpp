@@ -12,8 +12,6 @@
 #include "viewer/offline/finish_picture.h"
 #include "viewer/offline/frame_follower.h"
 #include "viewer/offline/frame_record.h"
-#include "viewer/offline/frame_state.h"
-#include "viewer/offline/plan_json.h"
 #include "viewer/offline/render_record.h"
 #include "viewer/offline/video_writer.h"
 
@@ -38,8 +36,12 @@ public:
     Sequence(RenderOptions const& o, gi::RenderSettings const& settings,
              gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work,
              gi::Report& report)
-        : o_(o), settings_(settings), denoise_(denoise_settings), f_(make_frame_settings(o, settings)),
-          work_(work), report_(report)
+        : o_(o),
+          settings_(settings),
+          denoise_(denoise_settings),
+          f_(make_frame_settings(o, settings)),
+          work_(work),
+          report_(report)
     {
         denoise_.stop = &stop_;
         if (work.leads()) refuse_to_replace();
@@ -380,8 +382,8 @@ private:
         std::string const done =
             fmt::format("{}: {} of {} frames are complete", stop_.requested() ? "interrupted" : "ranks were lost",
                         f_.range.count() - missing_ + rendered_, f_.range.count());
-        end.notes = {done +
-                     (f_.exr ? "; the same command with --resume continues" : "; with --out they could be resumed")};
+        end.notes = {
+            done + (f_.exr ? "; the same command with --resume continues" : "; with --out they could be resumed")};
         if (has_video) end.notes.push_back(fmt::format("'{}' contains the frames so far", f_.video));
         return end;
     }
@@ -420,7 +422,7 @@ private:
     FrameSettings f_;
     RankWork& work_;
     gi::StopRequest& stop_ = work_.stop();
-    gi::Report& report_; ///< for all frames together
+    gi::Report& report_;                             ///< for all frames together
     std::map<std::string, gi::Report::Loss> loaded_; ///< losses before the first frame
     std::unique_ptr<VideoWriter> video_;
     std::shared_ptr<gi::Scene const> scene_;

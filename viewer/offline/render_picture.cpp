@@ -27,7 +27,8 @@ void finish(StillPicture const& picture, gi::StopRequest const& stop, StillEnd& 
 
 /// Saves what an interrupted render has, quickly: its state, and the picture, not filtered; where the state has
 /// all of it, only its color.
-void save_interrupted(StillPicture const& picture, StateSaving& state, gi::RenderResult& result, gi::Report& report)
+void save_interrupted(StillPicture const& picture, StateSaving& state, gi::RenderResult& result,
+                      gi::Report& report)
 {
     if (state.has_state()) picture.write(result.color_rows, PictureParts::color_so_far, result);
     bool const is_saved = state.join(report);

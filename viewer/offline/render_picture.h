@@ -18,7 +18,8 @@ enum class PictureParts : std::uint8_t {
 };
 
 struct StillPicture {
-    gi::RenderSettings settings; ///< `checkpoint` (empty = no state is kept) and `resume` say what becomes of the state
+    /// `checkpoint` (empty = no state is kept) and `resume` say what becomes of the state.
+    gi::RenderSettings settings;
     gi::DenoiseSettings filter = {};
     /// Traces the paths by these settings until the stop request: Method::render or expose().
     std::function<gi::RenderResult(gi::RenderSettings const&, gi::StopRequest const&, gi::Report&)> trace = {};

@@ -83,7 +83,8 @@ std::vector<StudySetting> study_settings()
 {
     std::vector<StudySetting> all;
     for (StimulusSetting const& s : kOwn) {
-        std::string range = s.key == kVisibility ? fmt::format("{}", fmt::join(visibility_words(), ", ")) : std::string(s.range);
+        std::string range =
+            s.key == kVisibility ? fmt::format("{}", fmt::join(visibility_words(), ", ")) : std::string(s.range);
         all.push_back({std::string(s.key), std::string(s.kind), std::move(range), std::string(s.usual),
                        std::string(s.meaning), s.takes_numbers()});
     }
