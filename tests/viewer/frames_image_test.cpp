@@ -295,6 +295,24 @@ TEST(Frames, HaveARecordEach)
     EXPECT_TRUE(again.at("frame_seconds").is_null());
 }
 
+TEST(Frames, SayWhichMethodWasChosen)
+{
+    TemporaryFolder const folder;
+    for (char const* const reuse : {"", " --reuse 2"}) {
+        run_well("render cornell --size 8x8 --paths 1 --frames 0:2@8 --turntable --out f_%d.exr --stats s.json" +
+                     std::string(reuse),
+                 folder.path());
+        Json const stats = json_file(folder / "s.json"), settings = stats.at("settings");
+        EXPECT_EQ(settings.at("method"), "auto");
+        EXPECT_EQ(settings.at("chosen_method"), "paths") << reuse;
+        EXPECT_TRUE(contains(settings.at("chosen_method_because"), "exact rays")) << settings;
+        EXPECT_TRUE(contains(stats.at("command"), "--method paths")) << stats.at("command");
+        auto const facts = gi::read_exr(folder / "f_1.exr").metadata;
+        EXPECT_EQ(facts.at("method"), "paths") << reuse;
+        EXPECT_EQ(facts.at("asked_method"), "auto");
+    }
+}
+
 // Frames take a tenth of a second, so that the signal comes between the first and the last.
 constexpr char const* kLong =
     "render cornell --size 128x128 --paths 16 --seed-per-frame --threads 1 --quiet --frames "
@@ -404,6 +422,7 @@ TEST(Frames, OfAnotherRenderAreKept)
     };
     for (Other const other : {Other{"--seed 1", "its seed is 0, not 1"},
                               {"--bounces 2", "its bounces is 64, not 2"},
+                              {"--method paths", "its method is auto, not paths"},
                               {"--paths 2", "its stop is --paths 1, not --paths 2"},
                               {"--size 8x8", "its size is 16x16, not 8x8"},
                               {"--shutter 0.1", "its shutter is 0, not 0.1"},
