@@ -87,20 +87,21 @@ TEST(Interrupt, ASecondControlCEndsAtOnce)
     EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
 }
 
-/// The picture of a complete render is not yet there: its paths are kept, and all of it is made from them.
+/// The picture of a complete render is not yet there: its paths are kept, and all of it is made from them. If the signal
+/// comes late, it is complete. (tests/viewer/render_picture_test.cpp interrupts at every moment.)
 TEST(Interrupt, WhileTheCompletePictureIsWritten)
 {
     TemporaryFolder const folder, undisturbed;
-    std::string const call = "render cornell --size 800x600 --paths 1 --bounces 0 --quiet --out a.exr";
+    std::string const call = "render cornell --size 400x300 --paths 1 --bounces 0 --quiet --out a.exr";
     Program program(words(call), folder.path());
     while (program.runs() && !std::filesystem::exists(folder / ".a.exr.tmp"))
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     program.send(SIGINT);
-    Outcome const o = program.wait();
-    EXPECT_EQ(o.code, 130) << o.err;
-    EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
-    EXPECT_LT(file_text(folder / "a.exr").size(), 800u * 600 * 13) << "only color: the state has the rest";
-    run_well(call + " --resume", folder.path());
+    if (Outcome const o = program.wait(); o.code == 130) {
+        EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
+        EXPECT_LT(file_text(folder / "a.exr").size(), 400u * 300 * 13) << "only color: the state has the rest";
+        run_well(call + " --resume", folder.path());
+    }
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.exr"});
     run_well(call, undisturbed.path());
     EXPECT_TRUE(file_text(folder / "a.exr") == file_text(undisturbed / "a.exr"));
