@@ -20,10 +20,11 @@
 namespace viewer {
 
 /// The clock of a session: seconds since it began. Trackers, headsets and other processes count the same seconds from
-/// the start of the steady clock.
+/// the start of the steady clock. Tests override what time it is.
 class SessionClock {
 public:
-    double now_s() const { return at_s(Clock::now()); }
+    virtual ~SessionClock() = default;
+    virtual double now_s() const { return at_s(Clock::now()); }
     double at_s(std::chrono::steady_clock::time_point t) const
     {
         return std::chrono::duration<double>(t - start_).count();
