@@ -32,7 +32,7 @@ inline KilledRender render_with_kills(std::string const& call, std::string const
     TemporaryFolder const folder;
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> moment(0, most_seconds);
-    std::string const all = call + " --out a.exr --quiet --checkpoint " + interval;
+    std::string const whole = call + " --out a.exr --quiet", all = whole + " --checkpoint " + interval;
     KilledRender r;
     while (r.kills < kills) {
         bool const has_state = fs::exists(folder / "a.exr.state");
@@ -58,7 +58,7 @@ inline KilledRender render_with_kills(std::string const& call, std::string const
         auto const files = folder.files();
         r.has_leftovers |= files != std::vector<std::string>{"a.exr.state"} && !files.empty();
     }
-    run_well(all + " --resume", folder.path());
+    run_well(whole + " --resume", folder.path());
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.exr"});
     r.picture = file_text(folder / "a.exr");
     return r;

@@ -5,15 +5,15 @@
 namespace viewer::test {
 namespace {
 
-constexpr char const* kLongRender =
-    "render cornell --size 48x48 --paths 160 --quiet --threads 2 --checkpoint 1ms --out a.exr";
+std::string const kRender = "render cornell --size 48x48 --paths 160 --quiet --threads 2 --out a.exr";
+std::string const kWithStates = kRender + " --checkpoint 1ms"; ///< early ones: see wait_for_state
 
-/// kLongRender without interruption.
+/// Without interruption.
 std::string const& whole_picture()
 {
     static std::string const picture = [] {
         TemporaryFolder const folder;
-        run_well(kLongRender, folder.path());
+        run_well(kRender, folder.path());
         return file_text(folder / "a.exr");
     }();
     return picture;
@@ -22,7 +22,7 @@ std::string const& whole_picture()
 void interrupt_and_resume(int signal, int code)
 {
     TemporaryFolder const folder;
-    Program program(words(kLongRender), folder.path());
+    Program program(words(kWithStates), folder.path());
     ASSERT_TRUE(program.wait_until_catches(signal, true));
     wait_for_state(program, folder / "a.exr.state");
     program.send(signal);
@@ -34,13 +34,13 @@ void interrupt_and_resume(int signal, int code)
         << "what takes its time is said first\n"
         << o.err;
     EXPECT_NE(o.err.find("--resume"), std::string::npos) << o.err;
-    Outcome const again = run(kLongRender, folder.path());
+    Outcome const again = run(kRender, folder.path());
     EXPECT_EQ(again.code, 2) << "would destroy what is unfinished";
     EXPECT_NE(again.err.find("--resume"), std::string::npos) << again.err;
     std::string const part = file_text(folder / "a.exr");
     EXPECT_TRUE(part.starts_with("\x76\x2f\x31\x01"));
 
-    run_well(std::string(kLongRender) + " --resume", folder.path());
+    run_well(kRender + " --resume", folder.path());
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.exr"});
     EXPECT_TRUE(file_text(folder / "a.exr") == whole_picture()) << "resumed and undisturbed pictures differ";
 }
@@ -55,7 +55,7 @@ TEST(Interrupt, ClosedTerminal) { interrupt_and_resume(SIGHUP, 129); }
 TEST(Interrupt, AClosedTerminalMayBeToldTwice)
 {
     TemporaryFolder const folder;
-    Program program(words(kLongRender), folder.path());
+    Program program(words(kWithStates), folder.path());
     wait_for_state(program, folder / "a.exr.state");
     program.send(SIGHUP);
     program.send(SIGHUP);
@@ -147,8 +147,8 @@ TEST(Interrupt, NeitherPictureNorStateCanBeWritten)
 TEST(Interrupt, DenoisingIsLeftToTheResumedRender)
 {
     TemporaryFolder const folder, undisturbed;
-    std::string const call = std::string(kLongRender) + " --denoise atrous";
-    Program program(words(call), folder.path());
+    std::string const call = kRender + " --denoise atrous";
+    Program program(words(call + " --checkpoint 1ms"), folder.path());
     wait_for_state(program, folder / "a.exr.state");
     program.send(SIGINT);
     Outcome const o = program.wait();
@@ -162,12 +162,12 @@ TEST(Interrupt, DenoisingIsLeftToTheResumedRender)
 TEST(Interrupt, AnotherRendersStateIsRefused)
 {
     TemporaryFolder const folder;
-    Program program(words(kLongRender), folder.path());
+    Program program(words(kWithStates), folder.path());
     wait_for_state(program, folder / "a.exr.state");
     program.send(SIGINT);
     ASSERT_EQ(program.wait().code, 130);
     std::string const state = file_text(folder / "a.exr.state"), picture = file_text(folder / "a.exr");
-    Outcome const o = run(std::string(kLongRender) + " --resume --seed 5", folder.path());
+    Outcome const o = run(kRender + " --resume --seed 5", folder.path());
     EXPECT_EQ(o.code, 2);
     EXPECT_NE(o.err.find("belongs to another render"), std::string::npos) << o.err;
     EXPECT_TRUE(file_text(folder / "a.exr.state") == state);
