@@ -1,6 +1,6 @@
 #include "study/display/display_model.h"
 
-#include "study/stats/root.h"
+#include "study/numeric/root.h"
 
 #include <algorithm>
 #include <cmath>

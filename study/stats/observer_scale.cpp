@@ -1,11 +1,11 @@
 #include "study/stats/observer_scale.h"
 
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/bootstrap.h"
-#include "study/stats/error.h"
 #include "study/stats/left_out.h"
 #include "study/stats/observer_components.h"
 #include "study/stats/pair_likelihood.h"
-#include "study/stats/special.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,10 +1,10 @@
 // The parts that need no window.
 
 #include "gi/core/error.h"
+#include "study/numeric/random.h"
 #include "study/run/adaptive_run.h"
 #include "study/script/examples.h"
 #include "study/script/script_file.h"
-#include "study/stats/random.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/experiment/answer_keys.h"
 #include "viewer/experiment/experimenter.h"

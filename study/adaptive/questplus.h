@@ -4,8 +4,8 @@
 // slope, guess and lapse, Psi (Kontsevich & Tyler 1999) that of one guess and lapse.
 //   P(x) = guess + (1 - guess - lapse) F(x),  F one of QuestFunction.
 
-#include "study/stats/matrix.h"
-#include "study/stats/psychometric.h"
+#include "study/adaptive/psychometric_curve.h"
+#include "study/numeric/matrix.h"
 
 namespace study {
 
@@ -48,26 +48,23 @@ public:
 
     /// Index into settings().stimuli of the next stimulus.
     std::size_t next() const;
-    double next_stimulus() const { return settings_.stimuli[next()]; }
     /// @param stimulus  index into settings().stimuli
     /// @throws std::invalid_argument no such stimulus, or a response that all remaining parameters exclude
     void respond(std::size_t stimulus, bool correct);
 
-    /// Expected entropy of the posterior after showing this stimulus, bits.
-    double expected_entropy(std::size_t stimulus) const;
+    /// By how much a response to this stimulus is expected to lower the entropy, bits.
+    double expected_information(std::size_t stimulus) const;
     double entropy() const; ///< of the posterior, bits
     int trials() const { return trials_; }
 
     QuestParameters mode() const; ///< the most probable cell; the first of ties
     QuestParameters mean() const;
     QuestParameters standard_deviation() const;
-    std::vector<double> threshold_posterior() const;                    ///< marginal of the threshold
     std::vector<double> const& posterior() const { return posterior_; } ///< of all cells; sum 1
     QuestParameters parameters(std::size_t cell) const;
     QuestSettings const& settings() const { return settings_; }
 
 private:
-    double expected_information(std::size_t stimulus) const;
     template <class Value>
     QuestParameters expectation(Value const& value) const;
 

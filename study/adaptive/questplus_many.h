@@ -4,8 +4,8 @@
 // function of contrast and spatial frequency. The next stimulus is the point of the stimulus grid with the least
 // expected entropy. For one dimension and the usual four parameters questplus.h is the same with less work.
 
-#include "study/stats/formula.h"
-#include "study/stats/matrix.h"
+#include "study/adaptive/formula.h"
+#include "study/numeric/matrix.h"
 
 #include <memory>
 #include <optional>

@@ -1,9 +1,9 @@
 // How many trials active sampling of pairs needs for the error that random pairs leave, and how few are possible:
 // table on stdout, worst first.
 
-#include "study/stats/active_pairs.h"
-#include "study/stats/grid_posterior.h"
-#include "study/stats/special.h"
+#include "study/adaptive/active_pairs.h"
+#include "study/adaptive/grid_posterior.h"
+#include "study/numeric/special.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,8 +1,8 @@
 // Active sampling of pairs: the posterior, the expected gain, and what it chooses.
 
-#include "study/stats/active_pairs.h"
+#include "study/adaptive/active_pairs.h"
+#include "study/numeric/special.h"
 #include "study/stats/pair_scale.h"
-#include "study/stats/special.h"
 
 #include <array>
 #include <cmath>

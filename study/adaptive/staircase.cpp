@@ -1,7 +1,7 @@
-#include "study/stats/staircase.h"
+#include "study/adaptive/staircase.h"
 
-#include "study/stats/error.h"
-#include "study/stats/root.h"
+#include "study/numeric/error.h"
+#include "study/numeric/root.h"
 
 #include <algorithm>
 #include <cmath>

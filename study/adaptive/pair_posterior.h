@@ -2,7 +2,7 @@
 // Posterior of the scores of items after answers about pairs of them: Thurstone's model with
 // P(first is chosen) = Phi(s_first - s_second), and independent normal priors with mean 0.
 
-#include "study/stats/matrix.h"
+#include "study/numeric/matrix.h"
 
 #include <map>
 #include <span>

@@ -1,4 +1,4 @@
-#include "study/stats/descent.h"
+#include "study/numeric/descent.h"
 
 #include <Eigen/Core>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "study/stats/questplus_many.h"
+#include "study/adaptive/questplus_many.h"
 
-#include "study/stats/grid_posterior.h"
+#include "study/adaptive/grid_posterior.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // The numbers that make orders of trials: those that were published, and no order preferred.
 
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 
 #include <array>
 #include <gtest/gtest.h>

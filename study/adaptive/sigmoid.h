@@ -1,8 +1,8 @@
 #pragma once
 // The curves of psychometric functions.
 
-#include "study/stats/psychometric.h"
-#include "study/stats/special.h"
+#include "study/adaptive/psychometric_curve.h"
+#include "study/numeric/special.h"
 
 #include <cmath>
 #include <numbers>

@@ -3,9 +3,8 @@
 // 49:227). After `down` correct responses in a row the level falls by a step, after `up` wrong ones it rises. The
 // number of reversals so far, including one at this trial, selects the step.
 
-#include "study/stats/psychometric.h"
-
 #include <optional>
+#include <vector>
 
 namespace study {
 

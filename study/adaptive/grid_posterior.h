@@ -1,7 +1,7 @@
 #pragma once
 // What the posteriors of QUEST+ have in common (Watson 2017).
 
-#include "study/stats/error.h"
+#include "study/numeric/error.h"
 
 #include <cmath>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "study/stats/special.h"
+#include "study/numeric/special.h"
 
-#include "study/stats/root.h"
+#include "study/numeric/root.h"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/erf.hpp>

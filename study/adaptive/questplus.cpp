@@ -1,8 +1,8 @@
-#include "study/stats/questplus.h"
+#include "study/adaptive/questplus.h"
 
-#include "study/stats/grid_posterior.h"
-#include "study/stats/sigmoid.h"
-#include "study/stats/special.h"
+#include "study/adaptive/grid_posterior.h"
+#include "study/adaptive/sigmoid.h"
+#include "study/numeric/special.h"
 
 #include <algorithm>
 #include <array>
@@ -143,11 +143,6 @@ double QuestPlus::entropy() const
     return sum;
 }
 
-double QuestPlus::expected_entropy(std::size_t stimulus) const
-{
-    return entropy() - expected_information(stimulus);
-}
-
 double QuestPlus::expected_information(std::size_t stimulus) const
 {
     // I(parameters; response) = H(response) - H(response | parameters)
@@ -216,14 +211,6 @@ QuestParameters QuestPlus::standard_deviation() const
     });
     return {std::sqrt(variance.threshold), std::sqrt(variance.slope), std::sqrt(variance.guess),
             std::sqrt(variance.lapse)};
-}
-
-std::vector<double> QuestPlus::threshold_posterior() const
-{
-    std::vector<double> sums(settings_.threshold.size(), 0);
-    std::size_t const per_threshold = posterior_.size() / sums.size();
-    for (std::size_t c = 0; c < posterior_.size(); ++c) sums[c / per_threshold] += posterior_[c];
-    return sums;
 }
 
 } // namespace study

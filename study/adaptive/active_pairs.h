@@ -13,8 +13,8 @@
 // the answers before had been given, and shown in random order. Ties within 1e-9 are broken by the seed,
 // so that rounding does not decide.
 
-#include "study/stats/pair_posterior.h"
-#include "study/stats/random.h"
+#include "study/adaptive/pair_posterior.h"
+#include "study/numeric/random.h"
 
 #include <cstdint>
 #include <deque>

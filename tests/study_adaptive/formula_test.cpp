@@ -1,9 +1,9 @@
 // Formulas of psychometric functions: parsing, values, errors with columns; the named curves; fits.
 
-#include "study/stats/formula.h"
-#include "study/stats/psychometric.h"
-#include "study/stats/questplus.h"
-#include "study/stats/sigmoid.h"
+#include "study/adaptive/formula.h"
+#include "study/adaptive/questplus.h"
+#include "study/adaptive/sigmoid.h"
+#include "study/stats/psychometric_fit.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

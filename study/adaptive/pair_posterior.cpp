@@ -1,6 +1,6 @@
-#include "study/stats/pair_posterior.h"
+#include "study/adaptive/pair_posterior.h"
 
-#include "study/stats/special.h"
+#include "study/numeric/special.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>

@@ -1,8 +1,8 @@
 // QUEST+ of several dimensions: the one-dimensional one again, and a contrast sensitivity function.
 
-#include "study/stats/questplus.h"
-#include "study/stats/questplus_many.h"
-#include "study/stats/random.h"
+#include "study/adaptive/questplus.h"
+#include "study/adaptive/questplus_many.h"
+#include "study/numeric/random.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

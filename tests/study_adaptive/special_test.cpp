@@ -1,6 +1,6 @@
 // Special functions against values printed in tables and against each other.
 
-#include "study/stats/special.h"
+#include "study/numeric/special.h"
 
 #include "tests/study_stats/support/study_data.h"
 

@@ -1,7 +1,7 @@
-#include "study/stats/formula.h"
+#include "study/adaptive/formula.h"
 
 #include "gi/core/edit_distance.h"
-#include "study/stats/special.h"
+#include "study/numeric/special.h"
 
 #include <algorithm>
 #include <charconv>
