@@ -42,7 +42,6 @@ public:
     /// 1/2: neither; none = there was no valid answer
     void shown(Pair pair, std::optional<double> first_wins);
 
-    int answers() const { return answers_; }
     /// Mean and covariance of the posterior, in units of F; the prior makes the mean of the scores 0.
     std::vector<double> const& scores() const { return posterior_.mean(); }
     Matrix const& covariance() const { return posterior_.covariance(); }

@@ -17,15 +17,6 @@ struct PairAnswer {
     double first_wins = 0;
 };
 
-/// Normal approximation of the posterior of the scores at its mode, in units of F; the prior makes their mean 0.
-struct PairPosterior {
-    std::vector<double> mode;
-    Matrix covariance;
-};
-/// @param start  of the search, such as an earlier mode; empty = all 0
-PairPosterior pair_posterior(int items, std::span<PairAnswer const> answers, double prior_sd,
-                             std::vector<double> const& start = {});
-
 /// Mean and covariance of the posterior, kept up to date with each answer by expectation propagation (Minka 2001,
 /// "Expectation Propagation for approximate Bayesian inference", UAI): the answers about a pair are replaced by a
 /// normal factor of its difference, so that its mean and variance are exact with all other factors as they are.

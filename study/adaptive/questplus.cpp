@@ -174,7 +174,6 @@ void QuestPlus::respond(std::size_t stimulus, bool correct)
         updated[c] *= correct ? correct_(stimulus, c) : 1 - correct_(stimulus, c);
     normalise(updated);
     posterior_ = std::move(updated);
-    ++trials_;
 }
 
 QuestParameters QuestPlus::mode() const

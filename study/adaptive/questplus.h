@@ -55,7 +55,6 @@ public:
     /// By how much a response to this stimulus is expected to lower the entropy, bits.
     double expected_information(std::size_t stimulus) const;
     double entropy() const; ///< of the posterior, bits
-    int trials() const { return trials_; }
 
     QuestParameters mode() const; ///< the most probable cell; the first of ties
     QuestParameters mean() const;
@@ -72,7 +71,6 @@ private:
     std::vector<double> posterior_; ///< lapse fastest, threshold slowest
     Matrix correct_;                ///< stimuli x cells: P(correct)
     Matrix noise_;                  ///< stimuli x cells: entropy of the response itself, bits
-    int trials_ = 0;
 };
 
 /// P(correct) of one stimulus, with the function or formula of the settings.

@@ -45,7 +45,6 @@ void Staircase::respond(bool correct)
 {
     if (finished()) throw std::logic_error("a response to a staircase that has finished");
     levels_.push_back(level_);
-    responses_.push_back(correct);
     run_ = correct ? std::max(run_, 0) + 1 : std::min(run_, 0) - 1;
     bool const one_by_one = settings_.initial == InitialRule::one_by_one && reversals_.empty();
     if (correct && run_ >= (one_by_one ? 1 : settings_.down))

@@ -57,7 +57,6 @@ public:
 
     StaircaseSettings const& settings() const { return settings_; }
     std::vector<double> const& levels() const { return levels_; }    ///< of the trials so far
-    std::vector<int> const& responses() const { return responses_; } ///< 1 = correct
     std::vector<Reversal> const& reversals() const { return reversals_; }
 
 private:
@@ -68,7 +67,6 @@ private:
     int run_ = 0;       ///< correct responses in a row since the last step, negative = wrong ones
     int direction_ = 0; ///< of the last step: -1 down, 1 up, 0 none yet
     std::vector<double> levels_;
-    std::vector<int> responses_;
     std::vector<Reversal> reversals_;
 };
 

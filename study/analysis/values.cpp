@@ -251,12 +251,11 @@ ScaleResult ranking_of_group(Script const& script, Block const& b, std::vector<O
         if (!note.empty()) add_note(r, note);
         std::optional<Bootstrap> boot;
         try {
-            boot = bootstrap(
-                r.observers,
-                [&](std::span<int const> drawn) {
-                    return utilities(ranked, {drawn.begin(), drawn.end()}, int(n), nullptr);
-                },
-                {settings.replicates, settings.confidence, settings.seed});
+            boot = bootstrap(r.observers,
+                             [&](std::span<int const> drawn) {
+                                 return utilities(ranked, {drawn.begin(), drawn.end()}, int(n), nullptr);
+                             },
+                             {settings.replicates, settings.confidence, settings.seed});
         } catch (std::invalid_argument const& e) {
             add_note(r, std::string("no intervals: ") + e.what());
         }

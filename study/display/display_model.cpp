@@ -38,14 +38,6 @@ double value_of_share(DisplayLuminance const& light, int channel, double share)
     return bisect([&](double v) { return share_of_value(light, channel, v) - share; }, 0, 1);
 }
 
-double luminance_of(DisplayLuminance const& light, std::array<double, 3> const& values)
-{
-    double sum = light.black;
-    for (int c = 0; c < 3; ++c)
-        sum += light.channels[std::size_t(c)].peak * share_of_value(light, c, values[std::size_t(c)]);
-    return sum;
-}
-
 std::vector<std::array<float, 3>> inverse_table(DisplayLuminance const& light, int steps)
 {
     std::vector<std::array<float, 3>> table(static_cast<std::size_t>(steps));

@@ -286,8 +286,8 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
         bool const is_high = is_up != is_down ? is_up : g.mean > 0;
         g.mean = is_high ? kInfinity : -kInfinity;
         g.note = fmt::format("all answers to {} are {}: d' has no {} limit",
-                             has_noise ? "one kind of trial, or both," : "these trials", is_high ? "right" : "wrong",
-                             is_high ? "upper" : "lower");
+                             has_noise ? "one kind of trial, or both," : "these trials",
+                             is_high ? "right" : "wrong", is_high ? "upper" : "lower");
     }
     fit.start_over();
     g.p = profile_p(fit.loss(0), n, ratio);

@@ -4,6 +4,7 @@
 #include "study/adaptive/active_pairs.h"
 #include "study/adaptive/grid_posterior.h"
 #include "study/numeric/special.h"
+#include "tests/study_adaptive/pair_mode.h"
 
 #include <algorithm>
 #include <chrono>

@@ -3,6 +3,7 @@
 #include "study/adaptive/active_pairs.h"
 #include "study/numeric/special.h"
 #include "study/stats/pair_scale.h"
+#include "tests/study_adaptive/pair_mode.h"
 
 #include <array>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "study/adaptive/staircase.h"
 
 #include "study/numeric/random.h"
+#include "study/stats/psychometric_fit.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>
@@ -101,10 +102,14 @@ TEST(Staircase, MeanOfReversalsAndCurveAgreeOnItsTrials)
     Staircase stairs(s);
     Random random(12);
     PsychometricParameters const truth{0.5, 0.8, 0.5, 0};
-    while (!stairs.finished()) stairs.respond(random.uniform() < proportion_at({}, truth, stairs.level()));
+    std::vector<int> responses;
+    while (!stairs.finished()) {
+        responses.push_back(random.uniform() < proportion_at({}, truth, stairs.level()));
+        stairs.respond(responses.back());
+    }
     PsychometricSettings settings;
     settings.guess.value = 0.5;
-    auto const fit = fit_psychometric(count_levels(stairs.levels(), stairs.responses()), settings);
+    auto const fit = fit_psychometric(count_levels(stairs.levels(), responses), settings);
     double const level = level_at({}, truth, staircase_target(s));
     EXPECT_NEAR(*mean_of_reversals(stairs), level, 0.25);
     EXPECT_NEAR(level_at(fit.shape, fit.parameters, staircase_target(s)), level, 0.25);
@@ -183,9 +188,8 @@ TEST(QuestPlus, ShowsTheStimuliOfWatsonsFirstExample)
     EXPECT_NEAR(quest.mean().threshold, double(x["mean_threshold"]), double(tolerance["mean"]));
     EXPECT_NEAR(quest.standard_deviation().threshold, double(x["sd_threshold"]), double(tolerance["sd"]));
     EXPECT_NEAR(quest.posterior()[10], double(x["posterior_index10"]), double(tolerance["posterior"]));
-    EXPECT_NEAR(quest.entropy() - quest.expected_information(8),
-                double(x["expected_entropy_bits_stim_index8"]), double(tolerance["entropy"]));
-    EXPECT_EQ(quest.trials(), 32);
+    EXPECT_NEAR(quest.entropy() - quest.expected_information(8), double(x["expected_entropy_bits_stim_index8"]),
+                double(tolerance["entropy"]));
 }
 
 TEST(QuestPlus, FindsThresholdAndSlopeOfASimulatedObserver)
@@ -278,8 +282,7 @@ TEST(QuestPlus, RefusesWhatHasNoPosterior)
         s.guess = s.lapse = {0};
     });
     EXPECT_THROW(sure.respond(1, true), std::invalid_argument);
-    EXPECT_EQ(sure.trials(), 0); // and is as before
-    EXPECT_NEAR(sure.entropy(), 1, 1e-12);
+    EXPECT_NEAR(sure.entropy(), 1, 1e-12); // as before
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "viewer/displays/calibration.h"
+#include "viewer/displays/test_pattern.h"
 
 #include "viewer/displays/blend.h"
 
@@ -208,28 +208,28 @@ void draw_blend(Canvas const& c)
 
 } // namespace
 
-char const* name_of(CalibrationPattern pattern)
+char const* name_of(TestPattern pattern)
 {
     switch (pattern) {
-    case CalibrationPattern::grid:
+    case TestPattern::grid:
         return "grid";
-    case CalibrationPattern::corners:
+    case TestPattern::corners:
         return "corners";
-    case CalibrationPattern::eyes:
+    case TestPattern::eyes:
         return "eyes";
-    case CalibrationPattern::colours:
+    case TestPattern::colours:
         return "colours";
-    case CalibrationPattern::crosstalk:
+    case TestPattern::crosstalk:
         return "crosstalk";
-    case CalibrationPattern::blend:
+    case TestPattern::blend:
         break;
     }
     return "blend";
 }
 
-std::optional<CalibrationPattern> calibration_pattern(std::string_view name)
+std::optional<TestPattern> test_pattern(std::string_view name)
 {
-    for (CalibrationPattern const pattern : kCalibrationPatterns)
+    for (TestPattern const pattern : kTestPatterns)
         if (name == name_of(pattern)) return pattern;
     return {};
 }
@@ -243,7 +243,7 @@ double grid_step_m(WallFrame const& wall)
     return 10 * decade;
 }
 
-CalibrationPicture draw_curved_grid(Display const& display, Wall const& wall)
+PatternPicture draw_curved_grid(Display const& display, Wall const& wall)
 {
     PixelRectangle const area = viewport_px(wall, display.windows[std::size_t(wall.window)]);
     int const width = std::max(1, area.width), height = std::max(1, area.height);
@@ -275,27 +275,27 @@ CalibrationPicture draw_curved_grid(Display const& display, Wall const& wall)
     return {width, height, {image.data, image.data + image.total() * 3}};
 }
 
-CalibrationPicture draw_calibration(CalibrationPattern pattern, Display const& display, DisplayView const& view)
+PatternPicture draw_pattern(TestPattern pattern, Display const& display, DisplayView const& view)
 {
     Wall const& wall = display.walls[std::size_t(view.wall)];
     Canvas const c{cv::Mat(view.height_px, view.width_px, CV_8UC3, kBlack), wall, wall_frame(wall.corners), view};
     switch (pattern) {
-    case CalibrationPattern::grid:
+    case TestPattern::grid:
         draw_grid(c);
         break;
-    case CalibrationPattern::corners:
+    case TestPattern::corners:
         draw_corners(c);
         break;
-    case CalibrationPattern::eyes:
+    case TestPattern::eyes:
         draw_eyes(c);
         break;
-    case CalibrationPattern::colours:
+    case TestPattern::colours:
         draw_colours(c);
         break;
-    case CalibrationPattern::crosstalk:
+    case TestPattern::crosstalk:
         draw_crosstalk(c);
         break;
-    case CalibrationPattern::blend:
+    case TestPattern::blend:
         draw_blend(c);
         break;
     }

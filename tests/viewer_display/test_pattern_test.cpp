@@ -2,7 +2,7 @@
 
 #include "tests/viewer_display/display_samples.h"
 #include "viewer/displays/blend.h"
-#include "viewer/displays/calibration.h"
+#include "viewer/displays/test_pattern.h"
 
 #include <array>
 
@@ -11,7 +11,7 @@ namespace {
 
 using Rgb = std::array<int, 3>;
 
-Rgb pixel(CalibrationPicture const& p, double u, double v)
+Rgb pixel(PatternPicture const& p, double u, double v)
 {
     int const x = std::min(p.width - 1, int(u * p.width)), y = std::min(p.height - 1, int((1 - v) * p.height));
     unsigned char const* at = p.rgb.data() + 3 * (std::size_t(y) * std::size_t(p.width) + std::size_t(x));
@@ -23,12 +23,12 @@ TEST(Calibration, EveryPatternOfEveryViewHasItsSize)
     for (char const* file : {"cave4.yaml", "dome.yaml", "desktop3d.yaml"}) {
         Display const d = shipped(file);
         for (DisplayView const& view : views_of(d, {}))
-            for (CalibrationPattern const pattern : kCalibrationPatterns) {
-                CalibrationPicture const picture = draw_calibration(pattern, d, view);
+            for (TestPattern const pattern : kTestPatterns) {
+                PatternPicture const picture = draw_pattern(pattern, d, view);
                 EXPECT_EQ(picture.width, view.width_px);
                 EXPECT_EQ(picture.height, view.height_px);
                 ASSERT_EQ(picture.rgb.size(), std::size_t(view.width_px) * std::size_t(view.height_px) * 3);
-                EXPECT_EQ(calibration_pattern(name_of(pattern)), pattern);
+                EXPECT_EQ(test_pattern(name_of(pattern)), pattern);
             }
     }
 }
@@ -38,17 +38,17 @@ TEST(Calibration, TinyPicturesAndDarkEyesAreDrawnToo)
     Display d = shipped("cave4.yaml");
     d.users[0].head.translation_m = {0, 1.7, -5};
     for (DisplayView view : views_of(d, {}))
-        for (CalibrationPattern const pattern : kCalibrationPatterns) {
+        for (TestPattern const pattern : kTestPatterns) {
             view.width_px = 1;
             view.height_px = 3;
-            EXPECT_EQ(draw_calibration(pattern, d, view).rgb.size(), 9u);
+            EXPECT_EQ(draw_pattern(pattern, d, view).rgb.size(), 9u);
         }
 }
 
 TEST(Calibration, CornersHaveTheirColours)
 {
     Display const d = shipped("cave4.yaml");
-    auto const p = draw_calibration(CalibrationPattern::corners, d, views_of(d, {})[2]);
+    auto const p = draw_pattern(TestPattern::corners, d, views_of(d, {})[2]);
     EXPECT_EQ(pixel(p, 0.05, 0.05), (Rgb{255, 0, 0}));
     EXPECT_EQ(pixel(p, 0.95, 0.05), (Rgb{0, 200, 0}));
     EXPECT_EQ(pixel(p, 0.05, 0.95), (Rgb{60, 90, 255}));
@@ -59,8 +59,8 @@ TEST(Calibration, CrosstalkFieldsAreForOneEye)
 {
     Display const d = shipped("cave4.yaml");
     auto const views = views_of(d, {});
-    auto const left = draw_calibration(CalibrationPattern::crosstalk, d, views[0]),
-               right = draw_calibration(CalibrationPattern::crosstalk, d, views[1]);
+    auto const left = draw_pattern(TestPattern::crosstalk, d, views[0]),
+               right = draw_pattern(TestPattern::crosstalk, d, views[1]);
     int combinations = 0;
     for (double const u : {0.25, 0.75})
         for (double const v : {0.3, 0.7})
@@ -73,7 +73,7 @@ TEST(Calibration, MarksOfTheEyesAreWhereGeometryPutsThem)
     Display const d = shipped("cave4.yaml");
     auto const views = views_of(d, {});
     auto const middle_of_cross = [&](int view, double v) {
-        auto const p = draw_calibration(CalibrationPattern::eyes, d, views[std::size_t(view)]);
+        auto const p = draw_pattern(TestPattern::eyes, d, views[std::size_t(view)]);
         Rgb const mine = views[std::size_t(view)].eye == Eye::left ? Rgb{255, 0, 0} : Rgb{0, 230, 230};
         int first = -1, last = -1; // of the vertical bar, a little above the middle
         for (int x = 0; x < p.width; ++x)
@@ -96,9 +96,9 @@ TEST(Calibration, BlendedWhiteAddsUp)
 {
     Display const d = shipped("powerwall.yaml");
     auto const views = views_of(d, {});
-    auto const a = draw_calibration(CalibrationPattern::blend, d, views[0]); // lower left, left eye
-    auto const b = draw_calibration(CalibrationPattern::blend, d, views[2]); // lower middle
-    for (int i = 1; i < 96 * 2; ++i) {                                       // 0.2 of 2 m are 192 of 1920 pixels
+    auto const a = draw_pattern(TestPattern::blend, d, views[0]); // lower left, left eye
+    auto const b = draw_pattern(TestPattern::blend, d, views[2]); // lower middle
+    for (int i = 1; i < 96 * 2; ++i) {                            // 0.2 of 2 m are 192 of 1920 pixels
         double const x = (i + 0.5) / 1920;
         double const light =
             std::pow(pixel(a, 1 - 0.1 + x, 0.3)[0] / 255.0, 2.2) + std::pow(pixel(b, x, 0.3)[0] / 255.0, 2.2);
