@@ -3,11 +3,9 @@
 #include "study/numeric/special.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace study {
 namespace {

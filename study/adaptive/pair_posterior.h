@@ -5,7 +5,6 @@
 #include "study/numeric/matrix.h"
 
 #include <map>
-#include <span>
 #include <utility>
 #include <vector>
 

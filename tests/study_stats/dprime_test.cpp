@@ -35,11 +35,10 @@ TEST(DPrime, YesNoIsTheClosedForm)
 TEST(DPrime, OfTwoIntervalsIsThatOfPsyphy)
 {
     LIGHTWELL_NEED_STUDY_DATA();
-    int found = 0;
-    for (auto const& e : read_json("sdt_and_constants.expected.json")["mafc"])
-        for (std::size_t i = 0; e["m"] == 2 && i < e["pc"].size(); ++i, ++found)
-            EXPECT_NEAR(two_interval_dprime(e["pc"][i]), double(e["dprime"][i]), kUniroot) << e["pc"][i];
-    EXPECT_GT(found, 0);
+    auto const e = read_json("sdt_and_constants.expected.json")["mafc"][0];
+    ASSERT_EQ(e["m"], 2);
+    for (std::size_t i = 0; i < e["pc"].size(); ++i)
+        EXPECT_NEAR(two_interval_dprime(e["pc"][i]), double(e["dprime"][i]), kUniroot) << e["pc"][i];
     EXPECT_NEAR(two_interval_dprime(0.5), 0, 1e-9);
     EXPECT_LT(two_interval_dprime(0.1), 0);
     EXPECT_TRUE(std::isinf(two_interval_dprime(1)));
