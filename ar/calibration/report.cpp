@@ -77,7 +77,7 @@ std::string view_table(LensCalibration const& lens)
         rows.push_back({v.name, std::to_string(v.residuals_px.size()), fmt::format("{:.3f}", v.rms_px),
                         gi::HtmlCell::of(fmt::format("<div class=\"bar{}\" style=\"width:{:.0f}px\"></div>",
                                                      v.used ? "" : " out", 200 * v.rms_px / most)),
-                        fmt::format("{:.3f}", glm::length(v.camera_from_board.position_m)),
+                        fmt::format("{:.3f}", glm::length(v.camera_from_board.position)),
                         v.used ? "" : "left out: " + v.why});
     return gi::html_table({{"view", false, ""},
                            {"points", true, ""},

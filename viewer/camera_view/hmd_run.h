@@ -2,7 +2,7 @@
 // Runs an AR session in a headset with video pass-through. Each composite is placed in the room where the
 // headset's camera was when its frame was taken, and each eye sees it from its predicted pose at display time.
 
-#include "ar/runtime/pass_through.h"
+#include "viewer/camera_view/pass_through.h"
 #include "viewer/devices/xr/session.h"
 
 #include <deque>
@@ -13,9 +13,9 @@ namespace viewer {
 class HeadPath {
 public:
     /// @param steady_s  increasing
-    void add(double steady_s, ar::Pose const& room_from_head);
+    void add(double steady_s, gi::RigidPose const& room_from_head);
     /// Interpolated pose; outside the known range, the first or last one; nothing before the first was added.
-    std::optional<ar::Pose> at(double steady_s) const;
+    std::optional<gi::RigidPose> at(double steady_s) const;
 
 private:
     static constexpr double kKept_s = 2;
@@ -31,11 +31,11 @@ struct ArHmdOptions {
 
 struct ArHmdSummary {
     PassThroughCounts frames;
-    std::uint64_t shown = 0; ///< stereo pictures submitted to the runtime
-    std::uint64_t fresh = 0; ///< of these, with a new composite
-    std::uint64_t blind = 0; ///< without a head pose: the picture is fixed to the head
-    Spread first_seen_ms;    ///< time from capture to the predicted first display, per composite
-    Spread age_ms;           ///< age of the composite, over all pictures shown
+    std::uint64_t shown = 0;  ///< stereo pictures submitted to the runtime
+    std::uint64_t fresh = 0;  ///< of these, with a new composite
+    std::uint64_t blind = 0;  ///< without a head pose: the picture is fixed to the head
+    ar::Spread first_seen_ms; ///< time from capture to the predicted first display, per composite
+    ar::Spread age_ms;        ///< age of the composite, over all pictures shown
     std::vector<std::string> phases;
     std::string headset;
     int losses = 0;
@@ -44,7 +44,7 @@ struct ArHmdSummary {
 /// Runs until the frames end, or `stop`.  @throws gi::InputError no runtime,
 /// no headset, or the session cannot be run
 /// @param summary  is filled even if an exception is thrown
-void run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
+void run_ar_in_hmd(ar::Session const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
                    gi::Report& report, ArHmdSummary& summary);
 
 std::string describe(ArHmdSummary const& summary);

@@ -1,4 +1,4 @@
-#include "ar/scene/session_inputs.h"
+#include "viewer/camera_view/session_inputs.h"
 
 #include "ar/capture/picture_source.h"
 #include "ar/capture/session_format.h"
@@ -48,26 +48,27 @@ public:
     {
         for (fs::path const& file : files) add(file);
     }
-    void add(ArProxy const& p)
+    void add(ar::Proxy const& p)
     {
-        if (p.surface.from == AlbedoFrom::texture) add(p.surface.texture);
-        if (auto const* const mesh = std::get_if<ProxyMesh>(&p.shape)) add(mesh->placed.scene);
-        if (auto const* const depth = std::get_if<ProxyDepth>(&p.shape)) {
+        if (p.surface.from == ar::AlbedoFrom::texture) add(p.surface.texture);
+        if (auto const* const mesh = std::get_if<ar::ProxyMesh>(&p.shape)) add(mesh->placed.scene);
+        if (auto const* const depth = std::get_if<ar::ProxyDepth>(&p.shape)) {
             add(depth->file);
             add(depth->camera);
         }
     }
-    void add_estimates(ArReal const& real)
+    void add_estimates(ar::RealPlace const& real)
     {
         bool const is_estimated =
-            real.estimate_scene || std::any_of(real.proxies.begin(), real.proxies.end(), [](ArProxy const& p) {
-                return p.surface.from == AlbedoFrom::estimate || p.surface.from == AlbedoFrom::estimate_texture;
+            real.estimate_scene || std::any_of(real.proxies.begin(), real.proxies.end(), [](ar::Proxy const& p) {
+                return p.surface.from == ar::AlbedoFrom::estimate ||
+                       p.surface.from == ar::AlbedoFrom::estimate_texture;
             });
         if (!is_estimated || real.estimates.empty()) return;
         add(real.estimates);
         std::error_code error;
         if (!fs::is_regular_file(real.estimates, error)) return;
-        for (AlbedoEntry const& e : read_albedos(real.estimates)) add(e.texture);
+        for (ar::AlbedoEntry const& e : ar::read_albedos(real.estimates)) add(e.texture);
     }
     std::vector<fs::path> take() { return std::move(files_); }
 
@@ -79,7 +80,7 @@ private:
 
 fs::path folder_of_source(std::string const& source)
 {
-    if (source.empty() || is_device(source)) return {};
+    if (source.empty() || ar::is_device(source)) return {};
     if (is_folder(source)) return source;
     if (!is_pattern(source)) return {};
     fs::path const folder = fs::path(source).parent_path();
@@ -88,7 +89,7 @@ fs::path folder_of_source(std::string const& source)
 
 std::vector<fs::path> files_of_source(std::string const& source)
 {
-    if (source.empty() || is_device(source)) return {};
+    if (source.empty() || ar::is_device(source)) return {};
     fs::path const path = source;
     if (is_folder(path) && fs::exists(path / ar::kSessionFile)) return files_of_folder(path);
     if (!is_folder(path) && !is_pattern(path)) return {path};
@@ -97,7 +98,7 @@ std::vector<fs::path> files_of_source(std::string const& source)
     return files;
 }
 
-std::vector<fs::path> files_read_by(ArSession const& s)
+std::vector<fs::path> files_read_by(ar::Session const& s)
 {
     Files files;
     files.add(s.file);
@@ -107,7 +108,7 @@ std::vector<fs::path> files_read_by(ArSession const& s)
     files.add(s.pose.features);
     files.add(s.light);
     files.add(s.real.scene);
-    for (ArProxy const& p : s.real.proxies) files.add(p);
+    for (ar::Proxy const& p : s.real.proxies) files.add(p);
     files.add_estimates(s.real);
     files.add(s.virtual_things.scene);
     if (s.tracked) files.add(files_read_by(*s.tracked));

@@ -1,4 +1,4 @@
-#include "ar/runtime/hmd_run.h"
+#include "viewer/camera_view/hmd_run.h"
 
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
@@ -36,12 +36,10 @@ struct Context {
     GlContext const& gl() const { return window ? window->gl() : *own; }
 };
 
-ar::Pose pose_in_ar(RoomPose const& p) { return {p.rotation, p.position}; }
-
 class Loop {
 public:
-    Loop(ArSession const& session, ArHmdOptions const& options, gi::Report& report, ArHmdSummary& summary)
-        : hmd_(session.hmd.value_or(ArHmd{})),
+    Loop(ar::Session const& session, ArHmdOptions const& options, gi::Report& report, ArHmdSummary& summary)
+        : hmd_(session.hmd.value_or(ar::HmdCameras{})),
           options_(options),
           context_(report),
           keeper_(&context_.gl(), options.headset),
@@ -73,8 +71,8 @@ private:
     void tell()
     {
         summary_.frames = pass_through_.counts();
-        summary_.first_seen_ms = spread_of(first_seen_ms_);
-        summary_.age_ms = spread_of(age_ms_);
+        summary_.first_seen_ms = ar::spread_of(first_seen_ms_);
+        summary_.age_ms = ar::spread_of(age_ms_);
         summary_.losses = keeper_.losses();
     }
 
@@ -96,7 +94,7 @@ private:
         std::optional<HmdFrame> const next = session->begin_frame();
         unseen_ = next && next->should_render ? 0 : unseen_ + 1;
         if (!next) return;
-        if (next->has_pose && next->tracked.head) path_.add(next->display_s, pose_in_ar(*next->tracked.head));
+        if (next->has_pose && next->tracked.head) path_.add(next->display_s, *next->tracked.head);
         auto const newest = pass_through_.newest();
         if (!next->should_render || !newest) return session->end_frame();
         context_.gl().make_current();
@@ -125,9 +123,9 @@ private:
     }
 
     /// Pose of an eye's camera when the frame was taken.
-    ar::Pose room_from_camera(std::size_t eye, ar::Pose const& room_from_head) const
+    gi::RigidPose room_from_camera(std::size_t eye, gi::RigidPose const& room_from_head) const
     {
-        ar::Pose const left = room_from_head * hmd_.head_from_camera;
+        gi::RigidPose const left = room_from_head * hmd_.head_from_camera;
         return eye == 1 && hmd_.right ? left * hmd_.right->left_from_right : left;
     }
 
@@ -143,7 +141,8 @@ private:
             if (!targets_[eye] || sizes_[eye] != size) targets_[eye].emplace(TextureTarget::Format::bytes, size);
             sizes_[eye] = size;
             // Without head tracking the plane moves with the eyes.
-            ar::Pose const head = frame.has_pose && room_from_head_ ? *room_from_head_ : middle_of(picture.views);
+            gi::RigidPose const head =
+                frame.has_pose && room_from_head_ ? *room_from_head_ : middle_of(picture.views);
             passes_[std::min(eye, passes_.size() - 1)].draw(targets_[eye]->target(), view.camera,
                                                             room_from_camera(eye, head), hmd_.plane_m);
             picture.textures[eye] = targets_[eye]->shown().texture;
@@ -151,10 +150,10 @@ private:
         session.end_frame(picture);
     }
 
-    static ar::Pose middle_of(std::array<HmdView, 2> const& views)
+    static gi::RigidPose middle_of(std::array<HmdView, 2> const& views)
     {
         gi::dmat4 const &a = views[0].camera.world_from_camera, &b = views[1].camera.world_from_camera;
-        return {glm::normalize(glm::quat_cast(glm::dmat3(a))), 0.5 * glm::dvec3(a[3] + b[3])};
+        return {0.5 * glm::dvec3(a[3] + b[3]), glm::normalize(glm::quat_cast(glm::dmat3(a)))};
     }
 
     void keep_eyes()
@@ -181,7 +180,7 @@ private:
         }
     }
 
-    ArHmd hmd_;
+    ar::HmdCameras hmd_;
     ArHmdOptions const& options_;
     Context context_;
     HmdKeeper keeper_; ///< created before the scenes are loaded: nothing runs without a headset
@@ -191,7 +190,7 @@ private:
     std::array<glm::ivec2, 2> sizes_{};
     HeadPath path_;
     std::shared_ptr<PassThroughFrame const> frame_; ///< currently shown
-    std::optional<ar::Pose> room_from_head_;        ///< when it was taken
+    std::optional<gi::RigidPose> room_from_head_;   ///< when it was taken
     std::vector<double> first_seen_ms_, age_ms_;
     int unseen_ = 0; ///< number of rounds without a visible frame
     ArHmdSummary& summary_;
@@ -199,7 +198,7 @@ private:
 
 } // namespace
 
-void HeadPath::add(double steady_s, ar::Pose const& room_from_head)
+void HeadPath::add(double steady_s, gi::RigidPose const& room_from_head)
 {
     if (!poses_.empty() && steady_s <= poses_.back().time_s) poses_.pop_back(); // a newer prediction
     if (!poses_.empty() && steady_s <= poses_.back().time_s) return;
@@ -207,7 +206,7 @@ void HeadPath::add(double steady_s, ar::Pose const& room_from_head)
     while (poses_.front().time_s < steady_s - kKept_s) poses_.pop_front();
 }
 
-std::optional<ar::Pose> HeadPath::at(double steady_s) const
+std::optional<gi::RigidPose> HeadPath::at(double steady_s) const
 {
     if (poses_.empty()) return std::nullopt;
     auto const after = std::upper_bound(poses_.begin(), poses_.end(), steady_s,
@@ -216,11 +215,11 @@ std::optional<ar::Pose> HeadPath::at(double steady_s) const
     if (after == poses_.end()) return poses_.back().world_from_camera;
     ar::TimedPose const &a = *(after - 1), &b = *after;
     double const t = (steady_s - a.time_s) / (b.time_s - a.time_s);
-    return ar::Pose{glm::slerp(a.world_from_camera.rotation, b.world_from_camera.rotation, t),
-                    glm::mix(a.world_from_camera.position_m, b.world_from_camera.position_m, t)};
+    return gi::RigidPose{glm::mix(a.world_from_camera.position, b.world_from_camera.position, t),
+                         glm::slerp(a.world_from_camera.rotation, b.world_from_camera.rotation, t)};
 }
 
-void run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
+void run_ar_in_hmd(ar::Session const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
                    gi::Report& report, ArHmdSummary& summary)
 {
     Loop(session, options, report, summary).run(stop);

@@ -29,7 +29,7 @@ public:
     /// Draws and swaps; sets `record.present_ms` and, for frames with times, `record.swapped_ms`:
     /// the time from capture until the swap returned and the GPU had finished. Keys:
     /// S before and after side by side, H panel, Escape ends.
-    void show(ArFrameRecord& record, ArResult const& result);
+    void show(ar::RunFrame& record, ar::FrameResult const& result);
     /// The frame's area of the window at the swap, read back: CV_8UC3 RGB.
     cv::Mat const& shown() const { return shown_; }
     bool wants_close() const { return wants_close_; }
@@ -38,9 +38,9 @@ public:
 
 private:
     void take_input();
-    void fill_panel(ArFrameRecord const& record);
+    void fill_panel(ar::RunFrame const& record);
     /// Returns the texture of the composite.
-    unsigned composite(ArFrameRecord const& record, ArResult const& result);
+    unsigned composite(ar::RunFrame const& record, ar::FrameResult const& result);
     /// @param share  part of the picture's width to draw, from the left
     void draw(unsigned texture, cv::Size picture, double share);
     void keep_shown(cv::Size picture);

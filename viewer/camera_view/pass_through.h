@@ -19,8 +19,8 @@ struct PassThroughOptions {
     /// Own: a waiting frame is discarded for a newer one. Fastest (files): every frame, with the time of reading
     /// as its capture time.
     ar::Pace pace = ar::Pace::own;
-    std::vector<ar::TimedPose> poses;                                 ///< of the left camera, as ArRunOptions
-    std::function<std::optional<ar::Pose>(ar::Frame const&)> tracked; ///< likewise; called by the thread
+    std::vector<ar::TimedPose> poses;                                      ///< of the left camera, as RunOptions
+    std::function<std::optional<gi::RigidPose>(ar::Frame const&)> tracked; ///< likewise; called by the thread
 };
 
 /// The composites of one moment.
@@ -35,7 +35,7 @@ struct PassThroughFrame {
 
 struct PassThroughCounts {
     std::uint64_t frames = 0;
-    PoseTally poses;
+    ar::PoseTally poses;
     std::uint64_t overtaken = 0; ///< discarded for a newer one
     std::uint64_t refused = 0;   ///< unusable
     std::uint64_t alone = 0;     ///< left frames without a right frame at the same time
@@ -47,7 +47,7 @@ class PassThrough {
 public:
     /// Opens cameras, loads scenes and starts. All arguments must outlive it.
     /// @throws gi::InputError, gi::InputError
-    PassThrough(ArSession const& session, PassThroughOptions const& options, gi::Report& report);
+    PassThrough(ar::Session const& session, PassThroughOptions const& options, gi::Report& report);
     ~PassThrough();
 
     std::vector<ar::CameraModel> const& cameras() const { return models_; } ///< left and right, or one
@@ -63,7 +63,7 @@ private:
     void run();
     std::shared_ptr<PassThroughFrame> composited(ar::Frame const& left, ar::Frame const* right, double time_s);
 
-    ArSession const& session_;
+    ar::Session const& session_;
     PassThroughOptions const& options_;
     gi::Report& report_;
     std::vector<ar::CameraModel> models_;

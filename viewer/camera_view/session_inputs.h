@@ -12,7 +12,7 @@ namespace viewer {
 /// cameras and generated scenes have no files. Files referenced by scene files (textures, buffers) are not listed.
 /// The order is always the same.
 /// @throws gi::InputError, gi::InputError albedos, a display or a pattern that cannot be read
-std::vector<std::filesystem::path> files_read_by(ArSession const& session);
+std::vector<std::filesystem::path> files_read_by(ar::Session const& session);
 
 /// Pictures of a folder or numbered pattern, the files of a recording, or the video. Empty for a camera.
 std::vector<std::filesystem::path> files_of_source(std::string const& source);

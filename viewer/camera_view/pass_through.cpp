@@ -1,11 +1,11 @@
-#include "ar/runtime/pass_through.h"
+#include "viewer/camera_view/pass_through.h"
 
 #include "ar/capture/clock.h"
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/runtime/frame_clock.h"
-#include "ar/scene/tracked_pose.h"
 #include "gi/core/error.h"
+#include "viewer/camera_view/camera_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::chrono::milliseconds kWait{20}; ///< interval for checking stop requests
 constexpr double kUsualRate_hz = 30;
 
-ArSession right_session(ArSession s)
+ar::Session right_session(ar::Session s)
 {
     s.camera = s.hmd->right->calibration;
     s.frames.source = s.hmd->right->source;
@@ -28,32 +28,32 @@ ArSession right_session(ArSession s)
 /// One camera with the pipeline that adds virtual objects to its frames.
 struct PassThrough::Side {
     /// @param prefix  for the pipeline's counts in the report
-    Side(ArSession const& session_, ar::Pace pace, gi::Report& report, std::string const& prefix)
+    Side(ar::Session const& session_, ar::Pace pace, gi::Report& report, std::string const& prefix)
         : session(session_),
-          camera(load_ar_camera(session.camera)),
+          camera(ar::load_camera(session.camera)),
           pipeline(session, camera, ar::read_marker_map(session.markers), report, prefix)
     {
         ar::OpenOptions open = session.frames.options;
         open.pace = pace;
         source = ar::open_source(session.frames.source, open);
         about = source->description();
-        check_size(about.size_px, camera);
+        ar::check_size(about.size_px, camera);
         clock.emplace(session.frames.source, about, false);
     }
     /// Since its first frame; of cameras on the steady clock, which two of them share.
     double time_of(ar::Frame const& f) { return about.is_live ? f.captured_s : (*clock)(f); }
     double half_period_s() const { return 0.5 / (about.frames_per_s > 0 ? about.frames_per_s : kUsualRate_hz); }
 
-    ArSession session;
-    ArCamera camera;
-    ArPipeline pipeline;
+    ar::Session session;
+    ar::CalibratedCamera camera;
+    ar::Pipeline pipeline;
     std::unique_ptr<ar::FrameSource> source;
     ar::SourceDescription about;
-    std::optional<FrameClock> clock;
+    std::optional<ar::FrameClock> clock;
     std::optional<ar::Frame> waiting; ///< taken, and not yet used
 };
 
-PassThrough::PassThrough(ArSession const& session, PassThroughOptions const& options, gi::Report& report)
+PassThrough::PassThrough(ar::Session const& session, PassThroughOptions const& options, gi::Report& report)
     : session_(session), options_(options), report_(report)
 {
     sides_.push_back(std::make_unique<Side>(session, options.pace, report, ""));
@@ -170,11 +170,12 @@ std::shared_ptr<PassThroughFrame> PassThrough::composited(ar::Frame const& frame
     auto made = std::make_shared<PassThroughFrame>();
     made->sequence = frame.sequence;
     made->captured_s = frame.captured_s;
-    std::optional<ar::Pose> known;
-    bool const is_told = !options_.poses.empty() || options_.tracked;
-    if (is_told) known = options_.tracked ? options_.tracked(frame) : recorded_pose(options_.poses, time_s);
-    ArResult left = sides_[0]->pipeline.find(frame, time_s,
-                                             is_told ? std::optional(KnownPose(known)) : std::nullopt, {}, &stop_);
+    std::optional<std::optional<gi::RigidPose>> known;
+    if (options_.tracked)
+        known = options_.tracked(frame);
+    else if (!options_.poses.empty())
+        known = ar::recorded_pose(options_.poses, time_s);
+    ar::FrameResult left = sides_[0]->pipeline.find(frame, time_s, known, {}, &stop_);
     sides_[0]->pipeline.add(left, frame, time_s, stop_);
     made->used = left.used;
     made->is_estimated = left.pose.found();
@@ -182,8 +183,8 @@ std::shared_ptr<PassThroughFrame> PassThrough::composited(ar::Frame const& frame
     if (left.rgb.depth() != CV_8U) report_.lose("frames shown with 8 bits of 16 or more", 1, "the headset");
     made->rgb.push_back(ar::eight_bits_of(left.rgb).clone());
     if (other != nullptr && left.used.world_from_camera) {
-        ar::Pose const world_from_right = *left.used.world_from_camera * session_.hmd->right->left_from_right;
-        ArResult right = sides_[1]->pipeline.find(*other, time_s, world_from_right);
+        gi::RigidPose const world_from_right = *left.used.world_from_camera * session_.hmd->right->left_from_right;
+        ar::FrameResult right = sides_[1]->pipeline.find(*other, time_s, world_from_right);
         right.used = left.used;
         right.used.world_from_camera = world_from_right;
         sides_[1]->pipeline.add(right, *other, time_s, stop_);

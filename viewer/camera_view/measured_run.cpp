@@ -1,4 +1,4 @@
-#include "ar/runtime/measured_run.h"
+#include "viewer/camera_view/measured_run.h"
 
 #include "ar/capture/clock.h"
 #include "ar/runtime/frame_clock.h"
@@ -10,13 +10,13 @@ namespace viewer {
 namespace {
 
 /// Returns the records without the first.
-std::vector<ArFrameRecord> settled(std::vector<ArFrameRecord> frames)
+std::vector<ar::RunFrame> settled(std::vector<ar::RunFrame> frames)
 {
     if (!frames.empty()) frames.erase(frames.begin());
     return frames;
 }
 
-ar::OpenOptions files_at_once(ArSession const& session)
+ar::OpenOptions files_at_once(ar::Session const& session)
 {
     ar::OpenOptions open = session.frames.options;
     open.pace = ar::Pace::fastest;
@@ -24,7 +24,7 @@ ar::OpenOptions files_at_once(ArSession const& session)
 }
 
 /// Seconds since the first, as the run that takes them as fast as possible has them.
-std::vector<double> times_of(std::vector<ar::Frame> const& frames, FrameClock clock)
+std::vector<double> times_of(std::vector<ar::Frame> const& frames, ar::FrameClock clock)
 {
     std::vector<double> times_s;
     for (ar::Frame const& f : frames) times_s.push_back(clock(f));
@@ -33,31 +33,32 @@ std::vector<double> times_of(std::vector<ar::Frame> const& frames, FrameClock cl
 
 } // namespace
 
-MeasuredRun measure_run(ArSession const& session, MeasureSettings const& settings, gi::StopRequest& stop,
+MeasuredRun measure_run(ar::Session const& session, MeasureSettings const& settings, gi::StopRequest& stop,
                         gi::Report& report)
 {
     MeasuredRun m;
-    ArRunOptions o;
+    ar::RunOptions o;
     o.pace = ar::Pace::fastest;
     o.frames = settings.frames;
     if (session.tracked) o.poses = recorded_poses(*session.tracked, report);
     std::vector<ar::TimedPose> true_poses;
     if (!settings.true_poses.empty())
-        true_poses = read_camera_poses(settings.true_poses, {frames_per_s_of(session.frames)}, report).poses;
-    FrameTruth truth(settings.truth, std::move(true_poses));
-    o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) {
+        true_poses =
+            ar::read_camera_poses(settings.true_poses, {ar::frames_per_s_of(session.frames)}, report).poses;
+    ar::FrameTruth truth(settings.truth, std::move(true_poses));
+    o.opened = [&](ar::SourceDescription const&, ar::Pipeline const& p) {
         m.compositor = p.compositor();
         m.is_prefiltered = p.is_prefiltered();
     };
-    std::vector<ArResult> results; // evaluated afterwards, since that takes longer than a frame
+    std::vector<ar::FrameResult> results; // evaluated afterwards, since that takes longer than a frame
     std::vector<double> shown_s;
-    ArSummary fast;
+    ar::RunSummary fast;
     std::optional<ar::Frame> first_frame; ///< with a pose
-    ar::Pose first_pose;
+    gi::RigidPose first_pose;
     double first_s = 0;
-    run_ar(
+    ar::run_frames(
         session, o,
-        [&](ArFrameRecord& f, ArResult const& r) {
+        [&](ar::RunFrame& f, ar::FrameResult const& r) {
             shown_s.push_back(ar::steady_now_s());
             if (r.pair && r.used.world_from_camera && !first_frame) {
                 first_frame.emplace();
@@ -74,20 +75,20 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
             results.back().camera = r.camera;
         },
         stop, report, fast);
-    report_losses(fast.source, fast.end, report);
+    ar::report_losses(fast.source, fast.end, report);
     if (shown_s.size() > 1) m.frames_per_s = double(shown_s.size() - 1) / (shown_s.back() - shown_s.front());
     for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
     m.errors = truth.errors();
     if (settings.still_frames > 1 && first_frame)
         m.flicker =
-            measure_flicker(session, *first_frame, first_pose, first_s, settings.still_frames, stop, report);
+            ar::measure_flicker(session, *first_frame, first_pose, first_s, settings.still_frames, stop, report);
     m.refused = fast.refused + fast.source.refused;
     m.fast = settled(std::move(fast.frames));
     if (stop.requested()) return m;
 
     o.pace = ar::Pace::own;
     std::optional<ArWindow> window;
-    o.opened = [&](ar::SourceDescription const& source, ArPipeline const&) {
+    o.opened = [&](ar::SourceDescription const& source, ar::Pipeline const&) {
         if (settings.in_window) window.emplace(ArWindowSettings{.size_px = source.size_px}, report);
     };
     o.idle = [&] {
@@ -98,26 +99,26 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     std::unique_ptr<ar::FrameSource> camera = ar::open_source(session.frames.source, files_at_once(session));
     if (!camera->description().is_live) {
         double const own_hz = camera->description().frames_per_s;
-        std::vector<ar::Frame> frames = read_frames(*camera, settings.frames);
-        report_losses({}, camera->state(), report); // refused frames are already counted
+        std::vector<ar::Frame> frames = ar::read_frames(*camera, settings.frames);
+        ar::report_losses({}, camera->state(), report); // refused frames are already counted
         if (frames.empty()) return m;
         std::vector<double> times_s = times_of(frames, {session.frames.source, camera->description(), false});
-        auto loop = std::make_unique<LoopSource>(std::move(frames),
-                                                 own_hz > 0 ? own_hz : session.frames.options.frames_per_s);
+        auto loop = std::make_unique<ar::LoopSource>(std::move(frames),
+                                                     own_hz > 0 ? own_hz : session.frames.options.frames_per_s);
         if (!o.poses.empty()) // they come back with their frames
             o.tracked = [poses = o.poses, times_s = std::move(times_s), l = loop.get()](ar::Frame const& f) {
-                return recorded_pose(poses, times_s[l->index_of(f.sequence)]);
+                return ar::recorded_pose(poses, times_s[l->index_of(f.sequence)]);
             };
         camera = std::move(loop);
     }
-    ArSummary own;
-    run_ar(
+    ar::RunSummary own;
+    ar::run_frames(
         session, *camera, o,
-        [&](ArFrameRecord& f, ArResult const& r) {
+        [&](ar::RunFrame& f, ar::FrameResult const& r) {
             if (window) window->show(f, r);
         },
         stop, report, own);
-    report_losses(own.source, own.end, report);
+    ar::report_losses(own.source, own.end, report);
     m.overtaken = own.overtaken;
     m.own = settled(std::move(own.frames));
     return m;

@@ -1,4 +1,4 @@
-#include "ar/runtime/ar_window.h"
+#include "viewer/camera_view/ar_window.h"
 
 #include <GLFW/glfw3.h>
 #include <epoxy/gl.h>
@@ -83,7 +83,7 @@ void ArWindow::take_input()
     }
 }
 
-void ArWindow::fill_panel(ArFrameRecord const& f)
+void ArWindow::fill_panel(ar::RunFrame const& f)
 {
     panel_.begin();
     if (has_panel_) {
@@ -92,7 +92,7 @@ void ArWindow::fill_panel(ArFrameRecord const& f)
         ImGui::Text("frame %llu; camera found in %.1f %%", static_cast<unsigned long long>(f.sequence),
                     100.0 * double(frames_ - lost_) / double(frames_));
         if (f.world_from_camera) {
-            glm::dvec3 const p = f.world_from_camera->position_m;
+            glm::dvec3 const p = f.world_from_camera->position;
             ImGui::Text("at %.3f %.3f %.3f m, %d points, %d left out", p.x, p.y, p.z, f.points_used,
                         f.points_rejected);
             ImGui::Text("residual %.2f px, confidence %.2f", f.rms_px, f.confidence);
@@ -126,7 +126,7 @@ void ArWindow::fill_panel(ArFrameRecord const& f)
     panel_.finish();
 }
 
-unsigned ArWindow::composite(ArFrameRecord const& record, ArResult const& result)
+unsigned ArWindow::composite(ar::RunFrame const& record, ar::FrameResult const& result)
 {
     if (!pass_ || !result.pair) {
         fill(picture_, ar::eight_bits_of(result.rgb));
@@ -170,7 +170,7 @@ void ArWindow::keep_shown(cv::Size picture)
     shown_ = cv::Mat(window_px.y, window_px.x, CV_8UC3, bytes.data())(place).clone();
 }
 
-void ArWindow::show(ArFrameRecord& record, ArResult const& result)
+void ArWindow::show(ar::RunFrame& record, ar::FrameResult const& result)
 {
     take_input();
     if (frames_++ == 0) window_.set_title("Lightwell: augmented reality");
