@@ -5,6 +5,7 @@
 #include "python/core/convert.h"
 #include "python/core/interruptible.h"
 #include "python/core/render_keywords.h"
+#include "viewer/base/outputs.h"
 #include "viewer/offline/choose_camera.h"
 #include "viewer/offline/render_picture.h"
 
@@ -38,15 +39,19 @@ private:
     bool is_new_ = false;
 };
 
-py::dict to_result(gi::RenderResult&& r, gi::Report const& report, std::string const& note)
+py::dict to_result(gi::Picture&& picture, gi::RenderResult const& r, std::string const& asked,
+                   gi::Report const& report, std::string const& note)
 {
     py::dict d;
-    d["layers"] = to_layers(std::move(r.picture));
+    d["layers"] = to_layers(std::move(picture));
     d["end"] = kEnds[std::size_t(r.end)];
     d["paths"] = r.paths;
     d["seconds"] = r.seconds;
     d["relmse"] = r.relmse;
+    d["method"] = r.method.empty() ? asked : r.method;
+    d["why_method"] = r.why_method;
     d["options"] = r.options;
+    d["resumable"] = r.resumable;
     d["losses"] = losses_of(report);
     d["stages_s"] = report.times();
     d["note"] = note;
@@ -58,26 +63,39 @@ py::dict render(LoadedWorld const& scene, std::string const& method, gi::Camera 
                 py::object const& progress)
 {
     gi::Method const& chosen = gi::find_method(method);
-    gi::RenderSettings const settings = settings_of(keywords, options, method);
-    gi::DenoiseSettings const filter = denoise_of(denoise, settings);
+    viewer::StillPicture still{settings_of(keywords, options, method)};
+    gi::RenderSettings const& settings = still.settings;
+    still.filter = denoise_of(denoise, settings);
     viewer::check_distance(*scene.world, camera);
     gi::check_lens(camera);
+    viewer::check_outputs({settings.checkpoint.string()}, {scene.name});
+    std::string note;
+    if (!viewer::check_state(settings, "give resume=True"))
+        note = "there is no '" + settings.checkpoint.string() + "': started afresh";
     std::shared_ptr<gi::World const> const world = scene.world;
     gi::Report report;
-    gi::RenderResult result;
-    std::string note;
+    gi::Picture picture;
     Watched watched;
+    still.trace = [&](gi::RenderSettings const& s, gi::StopRequest const& stop, gi::Report& r) {
+        return chosen.render(
+            *world, camera, s, stop, [&](gi::RenderStatus const& now) { watched.put(now); }, r);
+    };
+    viewer::StillEnd end;
     auto const work = [&](gi::StopRequest const& stop) {
-        result = chosen.render(
-            *world, camera, settings, stop, [&](gi::RenderStatus const& s) { watched.put(s); }, report);
-        note = viewer::denoise(result.picture, filter, report);
+        still.write = [&](gi::PictureRows const& rows, viewer::PictureParts parts, gi::RenderResult const&) {
+            if (parts == viewer::PictureParts::complete)
+                picture = rows.whole(&stop); // else an exception is raised
+        };
+        end = viewer::render_picture(std::move(still), stop, report);
     };
     auto const tick = [&] {
         if (progress.is_none()) return;
         if (auto const s = watched.take()) progress(s->fraction, s->paths, s->relmse);
     };
     run_interruptible(work, tick);
-    return to_result(std::move(result), report, note);
+    if (end.failure) std::rethrow_exception(end.failure);
+    if (!end.note.empty()) note += (note.empty() ? "" : "; ") + end.note;
+    return to_result(std::move(picture), end.result, method, report, note);
 }
 
 } // namespace

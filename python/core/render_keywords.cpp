@@ -80,6 +80,12 @@ gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::
         s.paths = std::uint32_t(whole(k, "paths", 1, kNoLimit));
     else if (s.budget_s > 0 || s.until_relmse > 0)
         s.paths = kNoLimit;
+    s.checkpoint = py::cast<std::string>(k["state"]);
+    s.resume = py::cast<bool>(k["resume"]);
+    if (s.resume && s.checkpoint.empty())
+        throw gi::InputError("resume=True without a state", "it is not known what to continue", "give state=FILE");
+    s.checkpoint_s = py::cast<double>(k["checkpoint_s"]);
+    check_range("checkpoint_s", s.checkpoint_s, 0, 1e9);
     return s;
 }
 

@@ -11,8 +11,8 @@ namespace bindings {
 namespace py = pybind11;
 
 /// Converts the arguments of World.render, checked by the rules of `lightwell render`. Throws InputError.
-/// @param k  width, height, paths, budget_s, until_relmse, bounces, seed, threads, filter; all are required, but
-/// paths, budget_s and until_relmse may be None
+/// @param k  width, height, paths, budget_s, until_relmse, bounces, seed, threads, filter, state, resume, checkpoint_s;
+/// all are required, but paths, budget_s and until_relmse may be None
 /// @param options  of the method, by the names of the command line's options, with _ for -: axes, light_paths, ...
 gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::string const& method);
 

@@ -54,6 +54,9 @@ class Rendered:
         relmse: relative mean squared error, estimated from the variance; 0 = unknown.
         end: why rendering ended: "paths", "budget", "error_target".
         options: options that the method chose itself, as on the command line.
+        method: the method that rendered: of "auto", the one that it chose.
+        why_method: why "auto" chose it; "" = it was asked for.
+        resumable: the file `state` remains, for more paths with ``resume=True``.
         losses: counts of everything skipped, clamped or missing, by name.
         stages_s: seconds of each stage.
         note: a remark about the picture; "" = none.
@@ -65,6 +68,9 @@ class Rendered:
     relmse: float
     end: str
     options: str
+    method: str = ""
+    why_method: str = ""
+    resumable: bool = False
     losses: dict[str, int] = field(default_factory=dict)
     stages_s: dict[str, float] = field(default_factory=dict)
     note: str = ""
@@ -170,12 +176,16 @@ class World:
         denoise: str = "none",
         threads: int = 0,
         progress: Callable[[float, int, float], object] | None = None,
+        state: str | os.PathLike[str] = "",
+        resume: bool = False,
+        checkpoint_s: float = 30.0,
         **options: Any,
     ) -> Rendered:
         """Renders a picture, bit-identical to ``lightwell render`` with the same options.
 
-        Other Python threads run meanwhile. Ctrl-C stops rendering after the current pass and raises
-        KeyboardInterrupt.
+        Other Python threads run meanwhile. Ctrl-C stops rendering after the current pass, saves its state, if a file
+        for it is given, and raises KeyboardInterrupt; the same call with ``resume=True`` then gives the picture of an
+        uninterrupted one. ``lightwell render --resume`` continues such a state too, and this one continues its.
 
         Args:
             method: a name from `methods()`.
@@ -191,12 +201,18 @@ class World:
                 installed); the layer "variance" remains that of the unfiltered picture.
             threads: number of threads, 0 = all. The picture does not depend on it.
             progress: called a few times a second with the completed fraction (0..1), paths per pixel, and the
-                estimated relative mean squared error. An exception that it raises ends the render.
+                estimated relative mean squared error. An exception that it raises ends the render, as Ctrl-C does.
+            state: file for the state of the unfinished picture, 92 bytes a pixel; deleted when the picture is
+                complete. "" = none is kept.
+            resume: continue from the file `state`, which is left by interrupted and killed renders and by those
+                that a budget or an error target ended with ``resume=True``. Without the file, start afresh.
+            checkpoint_s: seconds after which the state is saved again, for a crash; 0 = only when interrupted.
             **options: options of the method, named as on the command line (``lightwell render --help``) with
                 _ for -: ``axes=8``, ``schedule="stored"``, ``packed=True``, ``light_paths=64``, ...
 
         Raises:
-            InputError: the method, the camera or a value is invalid.
+            InputError: the method, the camera or a value is invalid; `state` belongs to another render, or to an
+                unfinished one that is not to be resumed.
             KeyboardInterrupt: on Ctrl-C.
         """
         width, height = _size(size)
@@ -210,6 +226,9 @@ class World:
             "seed": seed,
             "threads": threads,
             "filter": filter,
+            "state": os.fspath(state),
+            "resume": resume,
+            "checkpoint_s": checkpoint_s,
         }
         eye = camera if isinstance(camera, Camera) else self.camera(camera or "")
         result = _core.render(self._core, method, eye, keywords, options, denoise, progress)

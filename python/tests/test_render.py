@@ -116,6 +116,8 @@ def test_a_budget_ends_a_render(cornell):
         (lambda w: w.render("slhb", size=SIZE, packed=3), "packed"),
         (lambda w: w.render("slhb", size=SIZE, schedule="stored", axes=3), "--axes"),
         (lambda w: w.render(size=SIZE, budget_s=float("nan")), "budget_s"),
+        (lambda w: w.render(size=SIZE, resume=True), "state"),
+        (lambda w: w.render(size=SIZE, state="no/such/folder/a.state"), "no/such/folder"),
         (lambda w: setattr(lightwell.Camera(), "world_from_camera", np.zeros((4, 4))), "world_from_camera"),
         (lambda w: lightwell.Camera.look_at((0, 0, 0), (0, 0, 0)), "camera"),
         (lambda w: lightwell.load("no such scene"), "no such scene"),
@@ -168,6 +170,39 @@ def test_progress_is_told_and_what_it_raises_ends_the_render(cornell):
     with pytest.raises(RuntimeError, match="enough"):
         cornell.render("reference", size=SIZE, budget_s=60, progress=progress)
     assert len(seen) == 3 and seen[0][1] <= seen[2][1]
+
+
+def test_a_stopped_render_continues_bit_for_bit(cornell, tmp_path):
+    state = tmp_path / "a.state"
+
+    def stop(fraction, paths, relmse):
+        raise RuntimeError("enough")
+
+    call = {"size": (320, 240), "bounces": 2, "state": state}
+    with pytest.raises(RuntimeError, match="enough"):
+        cornell.render("reference", paths=1_000_000, progress=stop, **call)
+    assert state.exists()
+    with pytest.raises(lightwell.InputError, match="unfinished.*resume=True"):
+        cornell.render("reference", paths=2, **call)
+    ours = cornell.render("reference", paths=1, resume=True, **call)
+    assert not state.exists() and not ours.resumable and ours.note == ""
+    whole = cornell.render("reference", size=(320, 240), bounces=2, paths=ours.paths)
+    for name, layer in whole.layers.items():
+        np.testing.assert_array_equal(ours.layers[name], layer, err_msg=name)
+
+
+def test_the_program_continues_a_state_of_python(program, cornell, tmp_path):
+    state, out = tmp_path / "a.state", tmp_path / "a.exr"
+    call = {"size": SIZE, "state": state, "resume": True}
+    first = cornell.render(until_relmse=1e6, denoise="atrous", **call)
+    assert first.resumable and first.end == "error_target" and state.exists() and "afresh" in first.note
+    assert first.method == "paths" and "exact rays" in first.why_method
+    options = ["--size", "48x32", "--paths", "32", "--state", state, "--resume", "--out", out, "--quiet"]
+    subprocess.run([program, "render", "cornell", *options], check=True, capture_output=True)
+    whole = cornell.render(size=SIZE, paths=32)
+    np.testing.assert_array_equal(lightwell.read_picture(out)["color"], whole.color)
+    assert first.paths < whole.paths and not whole.resumable
+    assert cornell.render("reference", size=SIZE, paths=1).why_method == ""
 
 
 def test_pictures_are_compared_as_the_program_does(program, cornell, tmp_path):

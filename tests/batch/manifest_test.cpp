@@ -44,6 +44,10 @@ TEST_F(ManifestTest, OfVersion01NameMethodsAsThatDid)
     EXPECT_EQ(current_command({"render", "a"}), (Words{"render", "a", "--method", "reference"}));
     EXPECT_EQ(current_command({"bench", "sweep", "--methods", "slhb:stored,reference,slhb,vpl_slhb"}),
               (Words{"bench", "sweep", "--methods", "slhb_0_1:stored,reference,slhb_0_1,vpl_slhb"}));
+    EXPECT_EQ(current_command({"bench", "pictures", "--out", "a"}),
+              (Words{"bench", "pictures", "--out", "a", "--methods", "reference,slhb_0_1,vpl_slhb"}));
+    EXPECT_EQ(current_command({"bench", "pictures", "--interactive"}).back(), "reference,slhb_0_1");
+    EXPECT_EQ(current_command({"bench", "pictures", "--methods", "lpv"}).back(), "lpv");
     EXPECT_EQ(current_command({"view", "--replay", "a.lwr", "--set", "method=slhb"}).back(), "method=slhb_0_1");
     std::string const rest = "batch: b\nsweeps:\n  s:\n    command: render cornell --out {p}.exr --seed {p}\n    over: {p: 1}\n"
                              "    outputs: '{p}.exr'\n";

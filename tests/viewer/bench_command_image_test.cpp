@@ -155,13 +155,14 @@ TEST(BenchCommand, AGivenReference)
 {
     TemporaryFolder const folder;
     run_well("render cornell --size 16x16 --paths 16 --seed 9 --out r.exr", folder.path());
-    std::string const call = "bench sweep --scene cornell --budgets 20ms --repeats 1 --out d --reference r.exr ";
+    std::string const call =
+        "bench sweep --scene cornell --methods reference --budgets 20ms --repeats 1 --out d --reference r.exr ";
     BenchTable const t = parse_table(run_well(call + "--size 16x16 --json", folder.path()).out, "stdout");
     EXPECT_GT(number(cell(t, t.rows.at(0), "reference_relmse")), 0);
     Outcome const o = run(call + "--size 32x32", folder.path());
     EXPECT_EQ(o.code, 2);
     EXPECT_NE(o.err.find("--size 16x16"), std::string::npos) << o.err;
-    Outcome const same = run("bench sweep --scene cornell --budgets 20ms --out d --size 16x16 "
+    Outcome const same = run("bench sweep --scene cornell --methods reference --budgets 20ms --out d --size 16x16 "
                              "--reference d/cornell_reference_20ms.exr",
                              folder.path());
     EXPECT_EQ(same.code, 2) << "would be replaced";
@@ -275,8 +276,8 @@ TEST(BenchCommand, AnInterruptedReferenceGoesOn)
 {
     TemporaryFolder const folder;
     std::string const call =
-        "bench sweep --scene cornell --methods reference --budgets 20ms --repeats 1 --size 64x64 "
-        "--reference-paths 400 --threads 1 --out d";
+        "bench sweep --scene cornell --methods reference --budgets 20ms --repeats 1 --size 32x32 "
+        "--reference-paths 200 --threads 1 --out d";
     Program program(words(call), folder.path());
     ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
     program.send(SIGINT);

@@ -1,11 +1,20 @@
 #pragma once
-// Renders that are killed (SIGKILL) at moments of chance, and continued until they are complete.
+// Renders that are interrupted once they have a state, and others that are killed (SIGKILL) at moments of chance and
+// continued until they are complete.
 
 #include "tests/viewer/run_program.h"
 
 #include <random>
 
 namespace viewer::test {
+
+/// Until a render has a picture so far; before that an interruption leaves nothing.
+inline void wait_for_state(Program const& program, std::filesystem::path const& state)
+{
+    while (program.runs() && !std::filesystem::exists(state))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_TRUE(program.runs());
+}
 
 struct KilledRender {
     int kills = 0, without_state = 0; ///< of them before the first state was written

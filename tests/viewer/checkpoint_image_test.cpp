@@ -9,27 +9,26 @@ void expect_the_same_picture(std::string const& call, int kills, double most_sec
 {
     TemporaryFolder const undisturbed;
     run_well(call + " --out a.exr --quiet", undisturbed.path());
-    KilledRender const r = render_with_kills(call, "100ms", kills, most_seconds, 3);
+    KilledRender const r = render_with_kills(call, "1ms", kills, most_seconds, 3);
     EXPECT_TRUE(r.picture == file_text(undisturbed / "a.exr")) << "resumed and undisturbed pictures differ";
     EXPECT_FALSE(r.has_leftovers);
 }
 
 TEST(Checkpoint, AKilledRenderGoesOn)
 {
-    expect_the_same_picture("render cornell --size 64x64 --paths 1200 --threads 2", 3, 1.2);
+    expect_the_same_picture("render cornell --size 48x48 --paths 300 --threads 2", 3, 0.1);
 }
 
 TEST(Checkpoint, SoDoesOneByLookUps)
 {
-    expect_the_same_picture("render cornell --method slhb --size 48x48 --paths 600 --threads 2", 2,
-                            1.5);
+    expect_the_same_picture("render cornell --method slhb --size 32x32 --paths 200 --threads 2", 2, 0.1);
 }
 
 TEST(Checkpoint, ItsFileAndSizeAreToldBefore)
 {
     TemporaryFolder const folder;
     Outcome const o =
-        run_well("render cornell --size 64x64 --paths 400 --quiet --checkpoint 50ms --out a.exr", folder.path());
+        run_well("render cornell --size 32x32 --paths 100 --quiet --checkpoint 1ms --out a.exr", folder.path());
     EXPECT_NE(o.err.find("a.exr.state"), std::string::npos) << o.err;
     EXPECT_NE(o.err.find("bytes"), std::string::npos) << o.err;
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.exr"});
@@ -38,9 +37,10 @@ TEST(Checkpoint, ItsFileAndSizeAreToldBefore)
 TEST(Checkpoint, ItsFileCanBeNamed)
 {
     TemporaryFolder const folder;
-    std::string const call = "render cornell --size 64x64 --paths 100000 --quiet --state x.state --png a.png";
+    std::string const call =
+        "render cornell --size 64x64 --paths 100000 --quiet --checkpoint 1ms --state x.state --png a.png";
     Program program(words(call), folder.path());
-    ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
+    wait_for_state(program, folder / "x.state");
     program.send(SIGINT);
     EXPECT_EQ(program.wait().code, 130);
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.png", "x.state"}));
@@ -51,10 +51,10 @@ TEST(Checkpoint, ItsFileCanBeNamed)
 TEST(Checkpoint, OneTerminalThatClosesMayTellItOftenWhileItIsSaved)
 {
     TemporaryFolder const folder;
-    Program program(words("render cornell --size 640x480 --paths 100000 --quiet --out a.exr"), folder.path());
-    ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    while (program.runs() && !std::filesystem::exists(folder / "a.exr.state")) {
+    Program program(words("render cornell --size 160x120 --paths 100000 --quiet --checkpoint 1ms --out a.exr"),
+                    folder.path());
+    wait_for_state(program, folder / "a.exr.state");
+    while (program.runs()) {
         program.send(SIGHUP);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
@@ -65,10 +65,10 @@ TEST(Checkpoint, OneTerminalThatClosesMayTellItOftenWhileItIsSaved)
 TEST(Checkpoint, OffLeavesItToInterruptions)
 {
     TemporaryFolder const folder;
-    Program program(words("render cornell --size 64x64 --paths 100000 --quiet --checkpoint off --out a.exr"),
+    Program program(words("render cornell --size 16x16 --paths 10000000 --quiet --checkpoint off --out a.exr"),
                     folder.path());
     ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
     EXPECT_TRUE(folder.files().empty());
     program.send(SIGINT);
     EXPECT_EQ(program.wait().code, 130);

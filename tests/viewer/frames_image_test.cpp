@@ -34,54 +34,58 @@ int frames_of_video(std::filesystem::path const& file, cv::Size size)
     return frames;
 }
 
+/// Of 32 x 24 pixels; hit buffers of few directions, as they are built for each moment.
+std::string small_pictures_by(std::string const& method)
+{
+    return " --size 32x24 --camera gallery --method " + method +
+           (method == "slhb" ? " --directions icosahedron:20 --hit-buffer 32" : "");
+}
+
+/// A frame's own words make it again, alone.
+void expect_to_be_made_alone(TemporaryFolder const& folder, std::string const& frame, std::string const& more = "")
+{
+    run_well(gi::read_picture(folder / frame).metadata.at("command").substr(10) + " --out one.exr" + more,
+             folder.path());
+    EXPECT_EQ(difference(folder / frame, folder / "one.exr"), "");
+}
+
 TEST(Frames, AreThePicturesOfTheirTimes)
 {
     TemporaryFolder const folder;
     for (std::string const method : {"reference", "paths", "slhb"}) {
-        std::string const how = " --size 32x24 --paths 2 --camera gallery --method " + method;
-        Outcome const o =
-            run_well("render atrium --frames 3:6@7 --out f_%02d.exr --png f_%d.png" + how, folder.path());
-        EXPECT_TRUE(contains(o.out, "f_03.exr ... f_05.exr\n")) << o.out;
-        EXPECT_TRUE(contains(o.out, "3 frames of 32 x 24 pixels")) << o.out;
-        for (int k = 3; k < 6; ++k) {
+        Outcome const o = run_well("render atrium --frames 3:5@7 --paths 2 --out f_%02d.exr --png f_%d.png" +
+                                       small_pictures_by(method),
+                                   folder.path());
+        EXPECT_TRUE(contains(o.out, "f_03.exr ... f_04.exr\n")) << o.out;
+        EXPECT_TRUE(contains(o.out, "2 frames of 32 x 24 pixels")) << o.out;
+        for (int k = 3; k < 5; ++k) {
             std::string const name = "f_0" + std::to_string(k) + ".exr";
-            auto const metadata = gi::read_picture(folder / name).metadata;
-            EXPECT_EQ(metadata.at("frame"), std::to_string(k));
-            // Its own words make it again, alone.
-            run_well(metadata.at("command").substr(10) + " --out one.exr --png one.png", folder.path());
-            EXPECT_EQ(difference(folder / name, folder / "one.exr"), "");
+            EXPECT_EQ(gi::read_picture(folder / name).metadata.at("frame"), std::to_string(k));
+            expect_to_be_made_alone(folder, name, " --png one.png");
             EXPECT_EQ(file_text(folder / ("f_" + std::to_string(k) + ".png")), file_text(folder / "one.png"));
         }
-        EXPECT_NE(difference(folder / "f_03.exr", folder / "f_05.exr"), "") << "the figure walks";
+        EXPECT_NE(difference(folder / "f_03.exr", folder / "f_04.exr"), "") << "the figure walks";
     }
 }
 
 /// Blurred by motion, too, and an interruption changes nothing.
 TEST(Frames, AreThePicturesOfTheirShutters)
 {
-    TemporaryFolder const folder;
     for (std::string const method : {"reference", "paths", "slhb"}) {
-        std::string const how = " --size 32x24 --paths 4 --camera gallery --method " + method;
+        TemporaryFolder const folder;
+        std::string const how = " --paths 4" + small_pictures_by(method);
         std::string const call = "render atrium --frames 3:5@7 --out f_%d.exr --shutter 0.1" + how;
         run_well(call, folder.path());
-        for (int k = 3; k < 5; ++k) {
-            std::string const name = "f_" + std::to_string(k) + ".exr";
-            run_well(gi::read_picture(folder / name).metadata.at("command").substr(10) + " --out one.exr",
-                     folder.path());
-            EXPECT_EQ(difference(folder / name, folder / "one.exr"), "");
-        }
+        expect_to_be_made_alone(folder, "f_3.exr");
         std::string const kept = file_text(folder / "f_4.exr");
         std::filesystem::remove(folder / "f_4.exr");
         run_well(call + " --resume", folder.path());
         EXPECT_TRUE(file_text(folder / "f_4.exr") == kept);
-        run_well("render atrium --frames 3:5@7 --out sharp_%d.exr --stats a.json" + how, folder.path());
+        run_well("render atrium --frames 3:4@7 --out sharp_%d.exr --stats a.json" + how, folder.path());
         EXPECT_NE(difference(folder / "f_3.exr", folder / "sharp_3.exr"), "") << "the figure walks";
         EXPECT_EQ(json_file(folder / "a.json")["settings"]["shutter_s"], 0);
-        run_well("render atrium --frames 3:5@7 --shutter 0 --out closed_%d.exr" + how, folder.path());
+        run_well("render atrium --frames 3:4@7 --shutter 0 --out closed_%d.exr" + how, folder.path());
         EXPECT_TRUE(file_text(folder / "closed_3.exr") == file_text(folder / "sharp_3.exr"));
-        for (std::string const file :
-             {"f_3.exr", "f_4.exr", "sharp_3.exr", "sharp_4.exr", "closed_3.exr", "closed_4.exr"})
-            std::filesystem::remove(folder / file);
     }
 }
 
@@ -295,17 +299,36 @@ TEST(Frames, HaveARecordEach)
     EXPECT_TRUE(again.at("frame_seconds").is_null());
 }
 
-// Frames take a tenth of a second, so that the signal comes between the first and the last.
-constexpr char const* kLong =
-    "render cornell --size 128x128 --paths 16 --seed-per-frame --threads 1 --quiet --frames "
-    "0:30@30 --turntable 15deg --out f_%02d.exr --video a.mkv";
-constexpr char const* kState = "f_00-29.exr.state";
+TEST(Frames, SayWhichMethodWasChosen)
+{
+    TemporaryFolder const folder;
+    for (char const* const reuse : {"", " --reuse 2"}) {
+        run_well("render cornell --size 8x8 --paths 1 --frames 0:2@8 --turntable --out f_%d.exr --stats s.json" +
+                     std::string(reuse),
+                 folder.path());
+        Json const stats = json_file(folder / "s.json"), settings = stats.at("settings");
+        EXPECT_EQ(settings.at("method"), "auto");
+        EXPECT_EQ(settings.at("chosen_method"), "paths") << reuse;
+        EXPECT_TRUE(contains(settings.at("chosen_method_because"), "exact rays")) << settings;
+        EXPECT_TRUE(contains(stats.at("command"), "--method paths")) << stats.at("command");
+        auto const facts = gi::read_exr(folder / "f_1.exr").metadata;
+        EXPECT_EQ(facts.at("method"), "paths") << reuse;
+        EXPECT_EQ(facts.at("asked_method"), "auto");
+    }
+}
 
-/// Starts it and sends the signal once some frames are there.
+constexpr int kFrames = 10;
+constexpr char const* kLong =
+    "render cornell --size 32x32 --paths 16 --seed-per-frame --threads 1 --quiet --frames "
+    "0:10@30 --turntable 15deg --out f_%02d.exr --video a.mkv";
+constexpr char const* kState = "f_00-09.exr.state";
+
+/// Starts it and sends the signal once some frames are there: it comes while another one is rendered or written, or
+/// after the last one. tests/viewer/interrupted_frames_test.cpp interrupts at every moment.
 Outcome interrupt(TemporaryFolder const& folder, int signal)
 {
     Program program(words(kLong), folder.path());
-    for (int i = 0; i < 60000 && !std::filesystem::exists(folder / "f_02.exr"); ++i)
+    while (program.runs() && !std::filesystem::exists(folder / "f_02.exr"))
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     program.send(signal);
     return program.wait();
@@ -320,7 +343,7 @@ void expect_whole(TemporaryFolder const& folder)
         if (name.ends_with(".exr")) {
             EXPECT_TRUE(file_text(folder / name) == file_text(undisturbed / name)) << name;
         }
-    EXPECT_EQ(frames_of_video(folder / "a.mkv", {128, 128}), 30);
+    EXPECT_EQ(frames_of_video(folder / "a.mkv", {32, 32}), kFrames);
     // Matroska writes a random id, so that videos are compared by what they show.
     cv::VideoCapture a((folder / "a.mkv").string()), b((undisturbed / "a.mkv").string());
     for (cv::Mat p, q; a.read(p) && b.read(q);) EXPECT_EQ(cv::norm(p, q, cv::NORM_INF), 0);
@@ -330,25 +353,23 @@ TEST(Frames, ControlCKeepsWhatIsCompleteAndResumeGoesOn)
 {
     TemporaryFolder const folder;
     Outcome const o = interrupt(folder, SIGINT);
-    ASSERT_EQ(o.code, 130) << o.err;
-    EXPECT_TRUE(contains(o.err, "--resume")) << o.err;
-    EXPECT_TRUE(contains(o.err, "contains the frames so far")) << o.err;
-    std::vector<std::string> const files = folder.files();
-    int const frames = int(files.size()) - 2; // a.mkv and the state
-    EXPECT_TRUE(std::filesystem::exists(folder / kState));
-    EXPECT_GE(frames, 3);
-    ASSERT_LT(frames, 30) << "was not interrupted";
-    EXPECT_TRUE(contains(o.err, std::to_string(frames) + " of 30 frames")) << o.err;
-    for (std::string const& name : files)
+    int frames = 0;
+    for (std::string const& name : folder.files())
         if (name.ends_with(".exr")) {
             EXPECT_NO_THROW(gi::read_picture(folder / name)) << name;
+            ++frames;
         }
-    EXPECT_EQ(frames_of_video(folder / "a.mkv", {128, 128}), frames);
-
-    Outcome const afresh = run(kLong, folder.path());
-    EXPECT_EQ(afresh.code, 2) << "would replace what is unfinished";
-    EXPECT_TRUE(contains(afresh.err, "--resume")) << afresh.err;
-
+    EXPECT_EQ(frames_of_video(folder / "a.mkv", {32, 32}), frames);
+    if (frames < kFrames) {
+        EXPECT_EQ(o.code, 130) << o.err;
+        EXPECT_TRUE(contains(o.err, std::to_string(frames) + " of 10 frames")) << o.err;
+        EXPECT_TRUE(contains(o.err, "--resume")) << o.err;
+        EXPECT_TRUE(contains(o.err, "contains the frames so far")) << o.err;
+        EXPECT_TRUE(std::filesystem::exists(folder / kState));
+        Outcome const afresh = run(kLong, folder.path());
+        EXPECT_EQ(afresh.code, 2) << "would replace what is unfinished";
+        EXPECT_TRUE(contains(afresh.err, "--resume")) << afresh.err;
+    }
     auto const time = std::filesystem::last_write_time(folder / "f_00.exr");
     Outcome const resumed = run_well(std::string(kLong) + " --resume", folder.path());
     EXPECT_TRUE(contains(resumed.out, std::to_string(frames) + " existed already")) << resumed.out;
@@ -356,33 +377,11 @@ TEST(Frames, ControlCKeepsWhatIsCompleteAndResumeGoesOn)
     expect_whole(folder);
 }
 
-/// Interrupts a render after its first frame was begun. @return what it says of complete frames
-std::string interrupt_within_the_first_frame(std::string const& call, std::chrono::duration<double> after)
-{
-    TemporaryFolder const folder;
-    Program program(words(call), folder.path());
-    while (program.runs() && !std::filesystem::exists(folder / "f_0-8.exr.state"))
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(after);
-    program.send(SIGINT);
-    Outcome const o = program.wait();
-    EXPECT_EQ(o.code, 130) << o.err;
-    return o.err;
-}
-
-TEST(Frames, ControlCIsObeyedWithinTheFirstPass)
-{
-    EXPECT_TRUE(contains(interrupt_within_the_first_frame("render cornell --size 2048x2048 --threads 1 --paths 1 "
-                                                          "--frames 0:9@8 --out f_%d.exr",
-                                                          std::chrono::seconds(1)),
-                         "0 of 9 frames are complete"));
-}
-
 TEST(Frames, AKilledRenderResumesToo)
 {
     TemporaryFolder const folder;
-    EXPECT_EQ(interrupt(folder, SIGKILL).signal, SIGKILL);
-    std::string const part = file_text(folder / "f_01.exr").substr(0, 5000);
+    interrupt(folder, SIGKILL);
+    std::string const part = file_text(folder / "f_01.exr").substr(0, 2000);
     std::ofstream(folder / "f_01.exr", std::ios::binary) << part;
     Outcome const o = run_well(std::string(kLong) + " --resume", folder.path());
     EXPECT_TRUE(contains(o.err, "damaged, rendered again: 1 (first: f_01.exr)")) << o.err;
@@ -404,6 +403,7 @@ TEST(Frames, OfAnotherRenderAreKept)
     };
     for (Other const other : {Other{"--seed 1", "its seed is 0, not 1"},
                               {"--bounces 2", "its bounces is 64, not 2"},
+                              {"--method paths", "its method is auto, not paths"},
                               {"--paths 2", "its stop is --paths 1, not --paths 2"},
                               {"--size 8x8", "its size is 16x16, not 8x8"},
                               {"--shutter 0.1", "its shutter is 0, not 0.1"},

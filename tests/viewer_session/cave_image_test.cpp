@@ -33,7 +33,7 @@ struct Edge {
     bool reversed = false; ///< the other wall counts from the other end
 };
 
-constexpr int kSize = 64;
+constexpr int kSize = 16;
 constexpr double kBeside = 1e-3; ///< of a wall's extent that a strip reaches to both sides of the edge
 
 /// The same wall seen through a strip along one of its edges, one pixel wide. What it shows lies on the edge, half
@@ -89,7 +89,7 @@ TEST(Cave, WallsAreContinuousAcrossTheirEdges)
     session.apply({"denoise", "none"});
     session.apply({"bounces", 3}); // the noise of more would need more frames
     session.apply({"scene", "room"});
-    constexpr int kFrames = 32;
+    constexpr int kFrames = 16;
     command.paths = 256;
     SessionFrame frame;
     for (int f = 0; f < kFrames; ++f) {

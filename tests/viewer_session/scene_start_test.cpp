@@ -134,13 +134,13 @@ TEST(RenderSession, StillPicturesHaveTheLightOfRender)
     RenderSession s(built_in, 0, report);
     s.apply({"scene", "cornell"});
     FrameCommand c;
-    c.views.push_back({"eye", s.world().cameras.at(0), 64, 48});
-    c.paths = 16;
+    c.views.push_back({"eye", s.world().cameras.at(0), 32, 24});
+    c.paths = 160;
     double shown = 0;
-    for (c.frame = 0; c.frame < 70; ++c.frame) shown = mean_light(s.render(c, {}).views[0].picture);
+    for (c.frame = 0; c.frame < 7; ++c.frame) shown = mean_light(s.render(c, {}).views[0].picture);
     gi::RenderSettings settings;
-    settings.width = 64;
-    settings.height = 48;
+    settings.width = 32;
+    settings.height = 24;
     settings.paths = 1024;
     gi::MovingWorld world(std::make_shared<gi::Scene const>(gi::generate_cornell()), 0, report);
     gi::RenderResult const rendered =

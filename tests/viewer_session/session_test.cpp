@@ -54,6 +54,14 @@ FrameCommand command(std::uint64_t frame, double aside = 0, bool stereo = false)
     return o;
 }
 
+/// As command(), of a quarter of the pixels, for many paths.
+FrameCommand small_command(std::uint64_t frame)
+{
+    FrameCommand o = command(frame, 0, true);
+    for (ViewCommand& v : o.views) v.width = 20, v.height = 15;
+    return o;
+}
+
 RenderSession started(gi::Report& report)
 {
     RenderSession s(scene_of, 0, report);
@@ -127,16 +135,17 @@ TEST(RenderSession, WhatStandsStillConvergesToTheReference)
     s.apply({"directions", "icosahedron:320"});
     s.apply({"resolution", 128});
     judge.apply({"method", "reference"});
-    SessionFrame frame, truth;
-    double first = 0;
-    for (std::uint64_t f = 0; f < 200; ++f) {
-        FrameCommand o = command(f, 0, true);
-        o.paths = 4;
+    judge.apply({"denoise", "none"});
+    FrameCommand o = small_command(0);
+    o.paths = 800;
+    SessionFrame frame, truth = judge.render(o, {});
+    double first = 0; // of four paths
+    for (o.frame = 0; o.frame < 50; ++o.frame) {
+        o.paths = o.frame == 0 ? 4 : 16;
         frame = s.render(o, {});
-        truth = judge.render(o, {});
-        if (f == 0) first = relmse(color(frame, 1), color(truth, 1));
+        if (o.frame == 0) first = relmse(color(frame, 1), color(truth, 1));
     }
-    EXPECT_EQ(frame.still_frames, 200);
+    EXPECT_EQ(frame.still_frames, 50);
     EXPECT_LT(relmse(color(frame, 0), color(truth, 0)), 3e-3);
     EXPECT_LT(relmse(color(frame, 1), color(truth, 1)), 3e-3);
     EXPECT_LT(relmse(color(frame, 1), color(truth, 1)), 0.1 * first);
@@ -149,10 +158,11 @@ TEST(RenderSession, FirefliesAreClampedForTheFilterAndKeptInTheMean)
     gi::Report report, plain_report;
     RenderSession filtered = started(report), plain = started(plain_report);
     plain.apply({"denoise", "none"});
+    for (RenderSession* const of : {&filtered, &plain}) of->apply({"bounces", 2});
     SessionFrame a, b;
-    for (std::uint64_t f = 0; f < 49; ++f) {
-        FrameCommand many = command(f, 0, true);
-        many.paths = 21; // 1,029 in all
+    for (std::uint64_t f = 0; f < 7; ++f) {
+        FrameCommand many = small_command(f);
+        many.paths = 147; // 1,029 in all
         a = filtered.render(many, {});
         b = plain.render(many, {});
     }
@@ -161,7 +171,7 @@ TEST(RenderSession, FirefliesAreClampedForTheFilterAndKeptInTheMean)
     std::map<std::string, double> const counts = report.counts();
     ASSERT_TRUE(counts.contains("fireflies clamped"));
     EXPECT_GE(counts.at("fireflies clamped"), counts.at("fireflies clamped, as the other eye does not see them"));
-    EXPECT_GT(counts.at("pixels searched for fireflies"), 48 * 2 * 40 * 30 / 2);
+    EXPECT_GT(counts.at("pixels searched for fireflies"), 6 * 2 * 20 * 15 / 2);
     EXPECT_LT(counts.at("light of fireflies spread around them, share"), 0.1);
     EXPECT_FALSE(plain_report.counts().contains("fireflies clamped"));
 }
@@ -257,7 +267,7 @@ TEST(RenderSession, EveryKeyCanBeSetToWhatItIs)
 /// was reused stays, pictures stay right, and the same orders give the same pixels.
 TEST(RenderSession, FewerDirectionsMayFollowWhatMoves)
 {
-    constexpr std::uint64_t kFrames = 60, kFewer = 20, kAll = 40;
+    constexpr std::uint64_t kFrames = 45, kFewer = 15, kAll = 30;
     gi::Report report;
     RenderSession s = started(report), again = started(report), all = started(report), judge = started(report);
     judge.apply({"method", "reference"});

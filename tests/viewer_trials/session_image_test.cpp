@@ -1,6 +1,6 @@
 // Sessions in a real window under an X server without a monitor: keys by XTEST, onsets by markers.
 
-#include "tests/viewer_trials/running_session.h"
+#include "tests/viewer_trials/tiny_session.h"
 
 #include <algorithm>
 #include <csignal>
@@ -8,39 +8,10 @@
 namespace viewer::test {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double steady_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
-
-/// A script of small pictures that are soon ready.
-std::string script(std::string const& timing, std::string const& sequence, std::string const& blocks)
-{
-    return fmt::format(R"(schema: study/1
-id: tiny
-seed: 4
-participants: {{count: 2}}
-timing: {{expected_hz: 20, calibrate: {{frames: 50}}, {}}}
-factors: {{bounces: [0, 2]}}
-defaults: {{settings: {{method: slhb, scene: cornell, paths: 1, scale: 1}}, iti_ms: 100, isi_ms: 200, warmup_frames: 2}}
-sequence: {}
-record: {{markers: [udp]}}
-blocks:
-{})",
-                       timing, sequence, blocks);
-}
-
-std::string const kPair = "  better: {task: pair, prompt: better, pairs: {factor: bounces}, repeats: 10}\n";
-
 class Sessions : public OnScreen {
 protected:
     TemporaryFolder folder;
 };
-
-/// Those that measure: they run alone.
-using SessionTimes = Sessions;
-
-#define NEED_KEYS(run)                                                                                            \
-    if (!(run).window().key_problem().empty()) GTEST_SKIP() << "SKIPPED: " << (run).window().key_problem()
 
 TEST_F(Sessions, RequiredVsyncIsRefusedWithTheReason)
 {
@@ -52,84 +23,47 @@ TEST_F(Sessions, RequiredVsyncIsRefusedWithTheReason)
                  !run.entries<study::TrialDone>().empty());
 }
 
-TEST_F(SessionTimes, ReactionTimesAreThoseOfTheKeys)
+/// No answer is earlier than its key, or later than the next stimulus that it brings, whatever else the machine does.
+TEST_F(Sessions, ReactionTimesAreThoseOfTheKeys)
 {
-    RunningSession run(folder, script("vsync: record, on_bad_trial: keep", "[better]", kPair));
+    std::string pair = kPair;
+    pair.replace(pair.find("repeats: 10"), 11, "repeats: 3");
+    RunningSession run(folder, script("vsync: record, on_bad_trial: keep", "[better]", pair));
     NEED_KEYS(run);
-    std::vector<double> pressed, uncertain_ms, errors_ms;
-    for (int i = 0; i < 10; ++i) {
-        Json const onset = run.markers.wait_for("stimulus");
-        ASSERT_TRUE(onset.is_object()) << run.program().errors();
-        sleep_ms(150 + 37 * i);
-        double const before_s = steady_s();
+    std::vector<double> before, after;
+    for (int i = 0; i < 3; ++i) {
+        ASSERT_TRUE(run.markers.wait_for("stimulus").is_object()) << run.program().errors();
+        before.push_back(steady_s());
         run.window().tap(i % 2 == 0 ? "Left" : "Right");
-        pressed.push_back(0.5 * (before_s + steady_s()));
-        uncertain_ms.push_back(500 * (steady_s() - before_s));
+        ASSERT_TRUE(run.markers.wait_for("stimulus_end").is_object());
+        after.push_back(steady_s());
     }
     Outcome const o = run.wait();
     EXPECT_EQ(o.code, 0) << o.err;
     auto const trials = run.entries<study::TrialDone>();
-    ASSERT_EQ(trials.size(), 10u);
+    ASSERT_EQ(trials.size(), 3u);
     for (std::size_t i = 0; i < trials.size(); ++i) {
         study::TrialDone const& t = trials[i];
         ASSERT_TRUE(t.reaction_ms) << i;
         EXPECT_EQ(t.response, i % 2 == 0 ? "first" : "second");
         EXPECT_EQ(t.device, i % 2 == 0 ? "key:left" : "key:right");
-        double const expected_ms = 1e3 * (pressed[i] - t.shown.back().onset_s);
-        errors_ms.push_back(std::abs(*t.reaction_ms - expected_ms));
-        // Where others use the machine a key may be read late; the uncertainty of its row says so.
-        EXPECT_LE(errors_ms.back(), t.response_uncertainty_ms + uncertain_ms[i] + 2) << i;
+        EXPECT_GT(t.response_uncertainty_ms, 0);
+        double const at_s = t.shown.back().onset_s + 1e-3 * *t.reaction_ms,
+                     within_s = 1e-3 * t.response_uncertainty_ms;
+        EXPECT_GE(at_s + within_s, before[i]) << i;
+        EXPECT_LE(at_s - within_s, after[i]) << i;
         for (study::StimulusShown const& s : t.shown) {
             EXPECT_EQ(s.onset_method, "swap_finish");
             EXPECT_GT(s.onset_uncertainty_ms, 0);
-            EXPECT_GT(s.frames_shown, 1);
+            EXPECT_GE(s.frames_shown, 1);
             EXPECT_EQ(s.settings_sha256.size(), 64u);
         }
-        EXPECT_GT(t.response_uncertainty_ms, 0);
     }
-    std::sort(errors_ms.begin(), errors_ms.end());
-    fmt::print("reaction times: error median {:.2f}, most {:.2f} ms of 10\n", errors_ms[5], errors_ms.back());
     auto const calibration = run.entries<study::CalibrationDone>();
     ASSERT_EQ(calibration.size(), 1u);
     EXPECT_FALSE(calibration[0].passed);
     std::string const frames = file_text(run.folder() / "sub-P001_ses-01_frames.csv");
-    EXPECT_GT(std::count(frames.begin(), frames.end(), '\n'), 30);
-}
-
-TEST_F(SessionTimes, ADroppedFrameIsSeenFlaggedAndRepeated)
-{
-    RunningSession run(folder,
-                       script("vsync: record, max_dropped_frames: 9, on_bad_trial: repeat_at_end", "[seen]",
-                              "  seen: {task: rating, prompt: how, scale: {min: 1, max: 7}, cross: [bounces], "
-                              "stimulus_ms: 1000}\n"));
-    NEED_KEYS(run);
-    int shown = 0;
-    for (; shown < 12; ++shown) {
-        Json const onset = run.markers.wait_for("stimulus", std::chrono::seconds(shown < 3 ? 60 : 15));
-        if (!onset.is_object()) break;
-        if (shown == 0) { // the machine stands still for 16 of 20 refreshes
-            sleep_ms(100);
-            run.program().send(SIGSTOP);
-            sleep_ms(800);
-            run.program().send(SIGCONT);
-        }
-        sleep_ms(200);
-        run.window().tap("5");
-    }
-    Outcome const o = run.wait();
-    EXPECT_EQ(o.code, 0) << o.err;
-    auto const trials = run.entries<study::TrialDone>();
-    ASSERT_GE(trials.size(), 3u);
-    EXPECT_FALSE(trials[0].is_valid);
-    EXPECT_EQ(trials[0].reason, "dropped_frames");
-    EXPECT_GE(trials[0].shown[0].frames_dropped, 10);
-    EXPECT_EQ(trials[0].shown[0].frames_planned, 20);
-    auto const again = std::find_if(trials.begin() + 1, trials.end(), [&](study::TrialDone const& t) {
-        return t.step == trials[0].step && t.attempt == 2;
-    });
-    EXPECT_NE(again, trials.end()) << "it comes again";
-    EXPECT_TRUE(trials.back().is_valid) << trials.back().reason;
-    EXPECT_EQ(trials.back().value, 5);
+    EXPECT_GT(std::count(frames.begin(), frames.end(), '\n'), 3);
 }
 
 TEST_F(Sessions, TheExperimenterSeesPausesNotesAndEndsIt)

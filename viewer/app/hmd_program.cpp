@@ -141,9 +141,8 @@ private:
             started_ = true;
         }
         Viewpoint at;
-        double const to_session = state_.clock.now_s() - steady_s();
-        at.pose_s = frame.pose_s + to_session;
-        at.display_s = at.valid_s = frame.display_s + to_session;
+        at.pose_s = state_.clock.of_steady(frame.pose_s);
+        at.display_s = at.valid_s = state_.clock.of_steady(frame.display_s);
         at.world_from_room = world_from_room();
         at.tracked = frame.tracked;
         if (UserBody* const body = bodies_.first()) body->stand(at.tracked, at.world_from_room, seconds);
@@ -166,7 +165,7 @@ private:
         double const begun = state_.clock.now_s();
         if (fresh) {
             state_.frame = newest;
-            state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
+            state_.follow(newest->settings);
             eyes_.take(*newest);
             note_hidden(*newest);
             core_.expose(*newest);
@@ -181,7 +180,7 @@ private:
         eyes_.draw(*newest, now,
                    {glm::ivec2{frame.views[0].width, frame.views[0].height},
                     glm::ivec2{frame.views[1].width, frame.views[1].height}},
-                   state_.settings.reproject, tone_settings(state_.settings));
+                   state_.settings().reproject, tone_settings(state_.settings()));
         picture.textures = eyes_.textures();
         session.end_frame(picture);
         ++shown_;
@@ -191,7 +190,7 @@ private:
         FrameTimes times;
         times.frame = newest->command.frame;
         times.pose_s = newest->command.pose_s;
-        times.display_s = frame.display_s + to_session;
+        times.display_s = state_.clock.of_steady(frame.display_s);
         times.swap_s = times.display_s;
         times.swap_method = SwapMethod::openxr;
         times.swap_uncertainty_ms = 0.5e3 * frame.period_s;
@@ -236,13 +235,8 @@ private:
         }
         state_.frame = newest;
         eyes_.take(*newest);
-        eyes_.draw(*newest, rendered, sizes, false, tone_settings(state_.settings));
+        eyes_.draw(*newest, rendered, sizes, false, tone_settings(state_.settings()));
         shoot();
-    }
-
-    static double steady_s()
-    {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     }
 
     ViewCore core_;

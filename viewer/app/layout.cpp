@@ -14,9 +14,9 @@ Layout desktop_layout(ViewState const& state, StereoMode mode, std::span<glm::iv
     Layout layout;
     layout.panes.resize(window_px.size());
     if (eye_px.x <= 0 || eye_px.y <= 0) return layout;
-    layout.views = desktop_views(state.now(),
-                                 {mode != StereoMode::off, state.settings.eye_distance_m, state.screen_distance_m},
-                                 px, eye_px);
+    layout.views = desktop_views(
+        state.now(), {mode != StereoMode::off, state.settings().eye_distance_m, state.screen_distance_m}, px,
+        eye_px);
     int const right = layout.views.size() > 1 ? 1 : -1;
     layout.panes[0] = {{{0, 0}, px, mode, 0, right}};
     if (window_px.size() > 1) layout.panes[1] = {{{0, 0}, window_px[1], mode, 0, right, true}};

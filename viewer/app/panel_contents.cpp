@@ -21,7 +21,7 @@ void try_change(ViewState& s, Change const& c)
 
 void edit_setting(ViewState& s, SettingKey const& k)
 {
-    nlohmann::json const value = get(s.settings, k.key);
+    nlohmann::json const value = get(s.settings(), k.key);
     std::string const label = label_of(k), id = "##" + k.key;
     bool const is_box = k.type == gi::OptionType::yes_or_no;
     bool hovered = false;
@@ -82,7 +82,7 @@ void show_numbers(ViewState& s, double frames_per_s)
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("rests at %u", kConvergedPaths);
     for (std::string const& line : frame_notes(s, f)) ImGui::TextWrapped("%s", line.c_str());
     if (s.live_error)
-        ImGui::Text("%s - %s: relMSE %.2e, FLIP %.4f", s.settings.method.c_str(), s.settings.compare.c_str(),
+        ImGui::Text("%s - %s: relMSE %.2e, FLIP %.4f", s.settings().method.c_str(), s.settings().compare.c_str(),
                     s.live_error->relmse, s.live_error->flip);
     if (!f.result.options.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", f.result.options.c_str());
     if (!f.schedule.empty()) ImGui::TextWrapped("%s", f.schedule.c_str());
@@ -147,20 +147,20 @@ std::vector<std::string> frame_notes(ViewState const& s, LiveFrame const& f)
 {
     std::vector<std::string> notes;
     bool const still = f.result.still_frames > 1;
-    if (s.facts.moves && s.settings.play && s.settings.speed != 0)
+    if (s.facts.moves && s.settings().play && s.settings().speed != 0)
         notes.emplace_back("Animation plays: press space to let the picture refine");
-    else if (still && !s.settings.refine)
+    else if (still && !s.settings().refine)
         notes.emplace_back("Refinement of still pictures is off");
-    if (!still && (f.budget.scale < 1 || s.settings.paths == 0))
+    if (!still && (f.budget.scale < 1 || s.settings().paths == 0))
         notes.push_back(fmt::format("For up to {:g} Hz: {} path{} per pixel, {:.0f} % of the window's width{}",
                                     f.settings.rate_hz, f.command.paths, f.command.paths == 1 ? "" : "s",
                                     100 * f.budget.scale,
                                     f.budget.surfaces > f.budget.scale
                                         ? fmt::format(" for light, {:.0f} % for surfaces", 100 * f.budget.surfaces)
                                         : ""));
-    if (s.settings.auto_exposure != "off")
-        notes.push_back(fmt::format("Exposure {:+.2f} stops, {} (T)", s.settings.exposure_ev,
-                                    s.settings.auto_exposure == "on" ? "automatic" : "held"));
+    if (s.settings().auto_exposure != "off")
+        notes.push_back(fmt::format("Exposure {:+.2f} stops, {} (T)", s.settings().exposure_ev,
+                                    s.settings().auto_exposure == "on" ? "automatic" : "held"));
     return notes;
 }
 

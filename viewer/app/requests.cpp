@@ -73,7 +73,7 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         return Json::object();
     }
     if (r.what == "camera") return camera(r);
-    if (r.what == "get") return Json{{"value", get(state_.settings, r.arguments.at("key").get<std::string>())}};
+    if (r.what == "get") return Json{{"value", get(state_.settings(), r.arguments.at("key").get<std::string>())}};
     if (r.what == "play" || r.what == "pause") {
         if (r.has("speed")) state_.change({"speed", r.arguments.at("speed")});
         state_.change({"play", r.what == "play"});
@@ -284,7 +284,7 @@ void Requests::presented(double shown_s, Snapshot const& picture)
     std::erase_if(shots_, [&](Shot const& shot) {
         if (!has_seen(shot.since_s)) return false;
         if (picture.empty() && shot.view < 0 && !shot.file.ends_with(".exr")) return false;
-        if (shot.converged && state_.settings.refine && f.still_paths < kConvergedPaths) return false;
+        if (shot.converged && state_.settings().refine && f.still_paths < kConvergedPaths) return false;
         save(shot, picture);
         return true;
     });
@@ -293,7 +293,7 @@ void Requests::presented(double shown_s, Snapshot const& picture)
     });
     std::erase_if(keys_, [&](Key const& key) {
         bool const in_frame = f.command.pose_s >= key.pressed_s;
-        bool const moved = !(key.camera == state_.navigation.world_from_camera()) && state_.settings.reproject;
+        bool const moved = !(key.camera == state_.navigation.world_from_camera()) && state_.settings().reproject;
         if (!in_frame && !moved) return false;
         server_->answer(key.token, {{"frame", f.command.frame},
                                     {"after_ms", 1e3 * (shown_s - key.pressed_s)},
@@ -319,7 +319,7 @@ Json Requests::stats() const
         j["scene_s"] = f.command.scene_s;
         j["render_ms"] = 1e3 * (f.done_s - f.begun_s);
         j["paths"] = f.command.paths;
-        j["exposure"] = state_.settings.exposure_ev;
+        j["exposure"] = state_.settings().exposure_ev;
         j["still_paths"] = f.still_paths;
         j["still_frames"] = f.result.still_frames;
         j["at_rest"] = !state_.loading && loading_ == 0 && changed_s_ < stepped_s_ && !state_.drawing &&

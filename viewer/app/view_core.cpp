@@ -35,7 +35,8 @@ ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
         check_offered(session.settings(), c.key);
         session.apply(c);
     }
-    state.settings = session.settings();
+    state.begin(session.settings());
+    state.follows = o.rank > 0;
     state.navigation.set_eye_height(o.eye_height_m);
     state.navigation.set_mode(o.navigation);
     state.load = [this](std::string const& name, std::function<void(std::string const&)> done) {
@@ -87,7 +88,9 @@ void ViewCore::load(std::string const& name, std::function<void(std::string cons
     };
     loader_.begin(
         name,
-        [this, made, name, choose, settings = state.settings] { *made = session.prepare(name, settings, choose); },
+        [this, made, name, choose, settings = state.settings()] {
+            *made = session.prepare(name, settings, choose);
+        },
         [this, made, done, known](std::exception_ptr const& failure) {
             if (failure) return state.inbox.put([this, failure, done] { not_loaded(failure, done); });
             renderer->adopt(made, known ? LiveRenderer::SceneKnown::yes : LiveRenderer::SceneKnown::no,
@@ -176,7 +179,7 @@ void ViewCore::make_files(SceneChange const& scene)
     if (options.record.empty()) return;
     RecordingHeader header = options.header;
     header.scene = scene.name;
-    header.settings = {{"settings", all_settings(state.settings)},
+    header.settings = {{"settings", all_settings(state.settings())},
                        {"load", options.load_options},
                        {"start", to_json(*scene.start)}};
     for (Change const& c : options.settings)
@@ -244,7 +247,7 @@ bool ViewCore::poll(gi::StopRequest const& stop)
 
 void ViewCore::obey(Command command)
 {
-    Settings const& s = state.settings;
+    Settings const& s = state.settings();
     switch (command) {
     case Command::close:
         state.ends = true;
@@ -304,11 +307,9 @@ void ViewCore::obey(Command command)
 
 void ViewCore::expose(LiveFrame const& frame)
 {
-    if (state.settings.auto_exposure != "on") return auto_exposure_.begin();
-    auto const ev = auto_exposure_.see(frame.result.views, state.settings.exposure_ev, state.clock.now_s());
-    if (!ev || *ev == state.settings.exposure_ev) return;
-    state.settings.exposure_ev = *ev;
-    renderer->post({"exposure", *ev});
+    if (state.settings().auto_exposure != "on") return auto_exposure_.begin();
+    auto const ev = auto_exposure_.see(frame.result.views, state.settings().exposure_ev, state.clock.now_s());
+    if (ev && *ev != state.settings().exposure_ev) state.expose(*ev);
 }
 
 void ViewCore::log(FrameTimes const& times)
@@ -336,7 +337,7 @@ void ViewCore::report_failure(std::filesystem::path const& file, std::string con
 
 void ViewCore::finish()
 {
-    summary.exposure_ev = state.settings.exposure_ev;
+    summary.exposure_ev = state.settings().exposure_ev;
     bar_.reset();
     loader_.stop();
     renderer->stop();

@@ -31,11 +31,6 @@ constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture,
 constexpr double kDrawings = 5;         // at most 1/5 of the time, as software drivers slow the renderer
 constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
-double steady_s()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 class WindowLoop {
 public:
     WindowLoop(ViewOptions const& options, FrameLink* link, gi::Report& report)
@@ -87,21 +82,22 @@ public:
         presenting_.reset();
         core_.finish();
         core_.summary.gl = shown_.windows.empty() ? "" : shown_.windows[0]->window.gl().description();
-        if (tracking_) core_.summary.trackers = tracking_->stats(steady_s());
+        if (tracking_) core_.summary.trackers = tracking_->stats(steady_now_s());
         return core_.summary;
     }
 
 private:
-    bool follows() const { return core_.options.rank > 0; }
+    bool follows() const { return state_.follows; }
 
     void open_desktop()
     {
-        bool const two = state_.settings.stereo == name_of(StereoMode::two_windows);
+        bool const two = state_.settings().stereo == name_of(StereoMode::two_windows);
         WindowSettings settings;
         settings.title = "Lightwell: " + core_.options.scene;
         settings.size_px = core_.options.size_px;
         settings.swap_interval = core_.options.swap_interval;
-        if (state_.settings.stereo == name_of(StereoMode::quad_buffer)) settings.quad_buffer = QuadBuffer::wanted;
+        if (state_.settings().stereo == name_of(StereoMode::quad_buffer))
+            settings.quad_buffer = QuadBuffer::wanted;
         std::string const scene = settings.title;
         std::size_t const windows = two ? 2 : 1;
         std::vector<std::string> const& monitors = core_.options.monitors;
@@ -200,7 +196,7 @@ private:
     /// Falls back to side by side if the windows have no quad buffers.
     StereoMode possible_mode()
     {
-        StereoMode const mode = *stereo_mode(state_.settings.stereo);
+        StereoMode const mode = *stereo_mode(state_.settings().stereo);
         if (mode != StereoMode::quad_buffer || shown_.windows[0]->window.has_quad_buffer()) return mode;
         if (!std::exchange(fallback_told_, true)) {
             core_.report.lose("quad-buffer stereo not supported by this window: side by side instead");
@@ -242,7 +238,7 @@ private:
         Layout layout;
         if (core_.display) {
             Display const& display = *core_.display;
-            double const seen_s = steady_s() + expected_s_;
+            double const seen_s = state_.clock.to_steady(at.display_s); // as trackers count
             // The resting head is at the navigation pose.
             at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
             at.valid_s = at.display_s;
@@ -277,13 +273,16 @@ private:
         gi::dmat4 const world_from_room =
             state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
         NavigationInput const by_wands =
-            wands_->step(tracking_->wands(steady_s()), core_, world_from_room, seconds);
+            wands_->step(tracking_->wands(steady_now_s()), core_, world_from_room, seconds);
         in.right += by_wands.right;
         in.up += by_wands.up;
         in.forward += by_wands.forward;
         in.turn_right_rad += by_wands.turn_right_rad;
         if (wands_->wants_picture(state_.clock.now_s())) dirty_ = true;
     }
+
+    /// Now, as trackers count.
+    double steady_now_s() const { return state_.clock.to_steady(state_.clock.now_s()); }
 
     /// Resting pose of the first user's head, in the room.
     gi::dvec3 rest() const
@@ -294,7 +293,7 @@ private:
     bool has_moved() const { return cameras_.size() == shown_cameras_.size() && !(cameras_ == shown_cameras_); }
 
     /// The user works with panel or dialog.
-    bool uses_panel() const { return state_.settings.panel || state_.open_dialog.is_open(); }
+    bool uses_panel() const { return state_.settings().panel || state_.open_dialog.is_open(); }
 
     /// At once, in the window and on stderr.
     void tell(std::string const& what)
@@ -320,9 +319,9 @@ private:
         if (presenting_->busy()) return;
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
-        bool const moved = state_.settings.reproject && link_ == nullptr && has_moved() &&
+        bool const moved = state_.settings().reproject && link_ == nullptr && has_moved() &&
                            since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_);
-        bool const flickers = state_.settings.view == "flicker" && since_s > 0.5 / kFlicker_Hz;
+        bool const flickers = state_.settings().view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
         bool const messages = has_messages();
@@ -358,19 +357,16 @@ private:
         if (newest)
             for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
         bool const reprojects =
-            state_.settings.reproject && link_ == nullptr && cameras_.size() == rendered.size();
+            state_.settings().reproject && link_ == nullptr && cameras_.size() == rendered.size();
         shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
         p->reprojected = !(shown_cameras_ == rendered);
         if (fresh) {
             state_.frame = newest;
-            state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
+            state_.follow(newest->settings);
             if (link_ != nullptr && core_.display)
                 set_panes(display_panes(*core_.display, newest->command.views, newest->command.world_from_room));
             meter_.see(newest);
-            if (follows())
-                state_.settings = newest->settings; // those of the leader
-            else
-                core_.expose(*newest);
+            if (!follows()) core_.expose(*newest);
         }
         p->settings = present_settings();
         state_.live_error = meter_.latest();
@@ -379,7 +375,7 @@ private:
             w->shown_panes = w->panes;
             w->on_screen_px = w->window.position_px();
         }
-        p->panel = panel_ && state_.settings.panel && newest;
+        p->panel = panel_ && state_.settings().panel && newest;
         p->messages = had_messages_ = has_messages();
         if (p->panel || p->messages)
             for (auto const& w : shown_.windows) fill(*w, *p);
@@ -395,7 +391,7 @@ private:
     {
         if (!w.panel) return;
         w.panel->begin();
-        ImGui::GetIO().FontGlobalScale = float(state_.settings.font_scale);
+        ImGui::GetIO().FontGlobalScale = float(state_.settings().font_scale);
         if (p.panel && w.panel.get() == panel_) fill_panel(state_, frames_per_s_);
         if (state_.loading)
             fill_loading(*state_.loading, p.frame ? LoadingPlace::over_picture : LoadingPlace::alone);
@@ -466,8 +462,7 @@ private:
     void log(LiveFrame const& f, FrameTimes times, SwapTime const& swap, double begun, double shown_s,
              bool reprojected)
     {
-        if (link_ != nullptr)
-            link_->swapped(f.command.frame, std::chrono::duration<double>(swap.time.time_since_epoch()).count());
+        if (link_ != nullptr) link_->swapped(f.command.frame, state_.clock.to_steady(shown_s));
         expected_s_ = (f.done_s - f.begun_s) + (shown_s - begun);
         times.frame = f.command.frame;
         times.pose_s = f.command.pose_s;
@@ -488,7 +483,7 @@ private:
             due ? std::max(0, int(std::floor((shown_s - last_fresh_s_) * f.settings.rate_hz - 0.5))) : 0;
         times.late_ms = 1e3 * (shown_s - f.command.display_s);
         times.reprojected = reprojected;
-        if (tracking_) times.tracker_ms = tracking_->age_ms(steady_s());
+        if (tracking_) times.tracker_ms = tracking_->age_ms(steady_now_s());
         core_.log(times);
         if (last_fresh_s_ > 0) frames_per_s_ = 0.8 * frames_per_s_ + 0.2 / std::max(1e-4, shown_s - last_fresh_s_);
         last_fresh_s_ = shown_s;
@@ -496,7 +491,7 @@ private:
 
     PresentSettings present_settings() const
     {
-        Settings const& s = state_.settings;
+        Settings const& s = state_.settings();
         PresentSettings p;
         p.tone = tone_settings(s);
         p.light = light_;

@@ -6,11 +6,34 @@
 
 namespace viewer {
 
+SceneFacts facts_of(RenderSession const& s)
+{
+    SceneFacts f;
+    if (!s.has_scene()) return f;
+    gi::World const& w = s.world();
+    f.scene = s.scene_name();
+    for (std::size_t i = 0; i < w.scene->materials.size(); ++i)
+        f.materials.push_back({w.scene->material_names[i], w.materials[i]});
+    f.lights = w.lights;
+    f.cameras = w.cameras;
+    f.origin = w.origin;
+    if (!w.bounds.empty()) {
+        f.center = w.origin + gi::dvec3(w.bounds.center());
+        f.radius_m = double(w.bounds.radius());
+    }
+    f.triangles = std::uint32_t(w.triangles.size());
+    f.moves = s.moves();
+    f.has_environment = w.environment != nullptr;
+    f.environment_rotation_rad = w.environment_rotation_rad;
+    f.environment_scale = w.environment_scale.x;
+    return f;
+}
+
 void ViewState::change(Change const& c, std::function<void(std::string const&)> done)
 {
     if (is_setting(c.key)) {
-        check_offered(settings, c.key);
-        Settings changed = settings;
+        check_offered(settings_, c.key);
+        Settings changed = settings_;
         set(changed, c);
         if (c.key == "device") {
             if (is_one_of_ranks)
@@ -21,9 +44,9 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
         if (c.key == "stereo" && changed.stereo == name_of(StereoMode::two_windows) && !has_two_windows)
             throw gi::InputError("'stereo' = two-windows", "there is no second window",
                                  "start with --set stereo=two-windows");
-        if (c.key == "exposure" && settings.auto_exposure == "on") change({"auto_exposure", "hold"});
-        changed.auto_exposure = c.key == "exposure" ? settings.auto_exposure : changed.auto_exposure;
-        settings = std::move(changed);
+        if (c.key == "exposure" && settings_.auto_exposure == "on") change({"auto_exposure", "hold"});
+        changed.auto_exposure = c.key == "exposure" ? settings_.auto_exposure : changed.auto_exposure;
+        settings_ = std::move(changed);
         renderer->post(c);
         if (done) done({});
         return;
@@ -36,6 +59,20 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
             refresh_facts();
         });
     });
+}
+
+void ViewState::expose(double ev)
+{
+    settings_.exposure_ev = ev;
+    renderer->post({"exposure", ev});
+}
+
+void ViewState::follow(Settings const& of_frame)
+{
+    if (follows)
+        settings_ = of_frame;
+    else
+        settings_.updated_axes = of_frame.updated_axes;
 }
 
 void ViewState::open_scene(std::string const& name)

@@ -4,7 +4,6 @@
 
 #include "viewer/app/live_error.h"
 #include "viewer/app/open_dialog.h"
-#include "viewer/app/scene_facts.h"
 #include "viewer/engine/live/navigation.h"
 #include "viewer/engine/live/scene_loader.h"
 #include "viewer/engine/picking.h"
@@ -13,6 +12,25 @@
 #include <mutex>
 
 namespace viewer {
+
+/// Copy of the scene's data for the panel and the remote control, because the session
+/// belongs to the rendering thread.
+struct SceneFacts {
+    struct Named {
+        std::string name;
+        gi::Material material;
+    };
+    std::string scene;
+    std::vector<Named> materials;
+    std::vector<gi::Light> lights;
+    std::vector<gi::Camera> cameras;
+    gi::dvec3 origin{0}, center{0};
+    double radius_m = 1;
+    std::uint32_t triangles = 0;
+    bool moves = false, has_environment = false;
+    float environment_rotation_rad = 0, environment_scale = 1;
+};
+SceneFacts facts_of(RenderSession const& session);
 
 struct Selection {
     Picked picked;
@@ -44,7 +62,6 @@ private:
 
 struct ViewState {
     SessionClock clock;
-    Settings settings;
     SceneFacts facts;
     gi::Camera first_camera, camera; ///< `camera`: only its lens counts; the pose is that of `navigation`
     Navigation navigation{gi::dmat4(1), 1, {}};
@@ -59,6 +76,7 @@ struct ViewState {
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
     bool is_one_of_ranks = false; ///< other ranks render the same frame commands
+    bool follows = false;         ///< one of them leads
     bool has_two_windows = false; ///< for StereoMode::two_windows
     /// Begins to load a scene; `done` as in change().
     std::function<void(std::string const& name, std::function<void(std::string const&)> done)> load;
@@ -66,9 +84,18 @@ struct ViewState {
     std::optional<LoadProgress> building;                  ///< what a frame that takes long is at
     bool wants_screenshot = false, own_screenshot = false; ///< own_screenshot: requested by key
 
+    /// The settings of the viewer, which only change(), expose() and follow() change. The rendering thread gets every
+    /// change in order; a frame says which settings it was rendered with.
+    Settings const& settings() const { return settings_; }
     /// Applies a setting to the display at once and to the rendering with the next frame. Throws InputError if a
     /// setting is invalid. Errors in edits of the scene are passed to `done` later, through the inbox.
     void change(Change const& change, std::function<void(std::string const&)> done = {});
+    /// Automatic exposure: changes the exposure and goes on.
+    void expose(double ev);
+    /// The settings before the first frame.
+    void begin(Settings const& settings) { settings_ = settings; }
+    /// Takes over what the renderer of a frame has set itself; on ranks that follow, all settings, as the leader's.
+    void follow(Settings const& of_frame);
     /// Loads a scene that the user chose.
     void open_scene(std::string const& name);
     /// Moves the selected object by an offset, m, in the world.
@@ -88,6 +115,7 @@ private:
     void pick_by(gi::Camera const& eye, glm::dvec2 at, double aspect,
                  std::function<void(std::optional<Selection> const&)> done);
 
+    Settings settings_;
     std::weak_ptr<gi::Scene const> ground_of_; ///< scene of the navigation's ground
 };
 

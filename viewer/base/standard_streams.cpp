@@ -6,6 +6,11 @@
 #include <unistd.h>
 
 namespace viewer {
+namespace {
+
+bool g_silent = false; // set once, for the whole process
+
+}
 
 void guard_standard_streams()
 {
@@ -21,5 +26,12 @@ std::string finish_standard_output()
     bool const is_closed = (fcntl(STDOUT_FILENO, F_GETFL) & O_ACCMODE) == O_RDONLY;
     return is_closed ? "it is closed" : "its reader has ended, or its disk is full";
 }
+
+void say(std::string const& text)
+{
+    if (!g_silent) std::fputs(("note: " + text + "\n").c_str(), stderr);
+}
+
+void be_silent() { g_silent = true; }
 
 } // namespace viewer

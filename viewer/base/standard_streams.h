@@ -1,5 +1,5 @@
 #pragma once
-// Guards against closed or broken standard streams.
+// Notes on standard error; guards against closed or broken standard streams.
 
 #include <string>
 
@@ -12,5 +12,10 @@ void guard_standard_streams();
 
 /// Writes out what is buffered. @returns why standard output could not be written, now or earlier; empty = it was
 std::string finish_standard_output();
+
+/// Prints "note: TEXT" on stderr.
+void say(std::string const& text);
+/// Turns off all notes of this process; called once by ranks of a cluster that do not lead.
+void be_silent();
 
 } // namespace viewer

@@ -30,12 +30,19 @@ FrameFollower::Frame FrameFollower::render(gi::Camera const& camera, gi::StopReq
         throw gi::InputError("--reuse with an orthographic camera", "it has no motion vectors",
                              "leave out --reuse, or choose a perspective camera");
     bool const first = renderer_ == nullptr;
-    if (first)
+    if (first) {
         renderer_ = start_frames(method_, world_, camera, settings_, report_, stop);
-    else
+        if (method_.choose != nullptr)
+            choice_ = method_.choose(world_.world(), settings_, camera, gi::RenderUse::frames);
+    } else {
         renderer_->changed(changes_);
+    }
     Frame frame;
     frame.result = renderer_->frame(camera, stop, progress);
+    if (choice_) {
+        frame.result.method = choice_->method;
+        frame.result.why_method = choice_->why.text;
+    }
     if (frame.result.end == gi::RenderEnd::interrupted) return frame;
     {
         gi::StageTimer const timer(report_, "temporal reuse");

@@ -36,6 +36,7 @@ private:
     FlatTriangles flat_;
     gi::Changes changes_;
     std::unique_ptr<gi::FrameRenderer> renderer_;
+    std::optional<gi::MethodChoice> choice_; ///< of a method that chooses another
     gi::TemporalReuse reuse_;
     gi::Camera last_camera_;
 };

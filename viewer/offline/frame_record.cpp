@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <numeric>
 
 namespace viewer {
@@ -18,7 +20,8 @@ nlohmann::json to_message(FrameRecord const& r)
             {"seconds", r.seconds},      {"end", int(r.result.end)},
             {"paths", r.result.paths},   {"trace_s", r.result.seconds},
             {"relmse", r.result.relmse}, {"options", r.result.options},
-            {"rays", r.result.rays},     {"losses", losses_json(r.losses)}};
+            {"rays", r.result.rays},     {"losses", losses_json(r.losses)},
+            {"method", r.result.method}, {"why_method", r.result.why_method}};
 }
 
 FrameRecord record_of(nlohmann::json const& m)
@@ -33,6 +36,8 @@ FrameRecord record_of(nlohmann::json const& m)
     r.result.relmse = m.at("relmse");
     r.result.options = m.at("options");
     r.result.rays = m.at("rays");
+    r.result.method = m.at("method");
+    r.result.why_method = m.at("why_method");
     r.losses = losses_of(m.at("losses"));
     return r;
 }
@@ -78,6 +83,40 @@ Json frame_seconds(std::vector<FrameRecord> const& records)
             {"p99", gi::quantile_of_sorted(s, 0.99)},
             {"most", s.back()},
             {"total", std::accumulate(s.begin(), s.end(), 0.0)}};
+}
+
+std::map<std::string, std::string> frame_metadata(RenderOptions const& o, gi::RenderSettings const& s,
+                                                  gi::RenderResult const& result, int frame,
+                                                  std::uint64_t fingerprint, std::uint64_t motion)
+{
+    std::map<std::string, std::string> m = make_metadata(o, s, result);
+    m["asked_method"] = o.method; // which may have chosen another one: --resume compares it
+    m["frame"] = std::to_string(frame);
+    m["stop"] = stop_option(s);
+    m["reuse"] = std::to_string(o.reuse);
+    m["shutter"] = fmt::format("{}", o.shutter_s);
+    m["layers"] = o.layers.empty() ? "all" : fmt::format("{}", fmt::join(o.layers, ","));
+    m["numbers"] = o.half ? "half" : "single";
+    m["fingerprint"] = fmt::format("{:016x}", fingerprint);
+    m["motion"] = fmt::format("{:016x}", motion);
+    return m;
+}
+
+std::string difference(gi::Picture const& there, std::map<std::string, std::string> const& wanted)
+{
+    for (char const* key : {"frame", "asked_method", "size", "seed", "filter", "denoise", "bounces", "stop",
+                            "reuse", "shutter", "layers", "numbers", "version", "git", "fingerprint", "motion"}) {
+        auto const found = there.metadata.find(key);
+        if (found == there.metadata.end()) return "it is not a frame of a sequence";
+        std::string const& value = wanted.at(key);
+        if (found->second == value) continue;
+        if (std::string(key) == "fingerprint") return "its scene, camera or settings differ";
+        if (std::string(key) == "motion") return "its motion blur differs";
+        if (std::string(key) == "asked_method")
+            return fmt::format("its method is {}, not {}", found->second, value);
+        return fmt::format("its {} is {}, not {}", key, found->second, value);
+    }
+    return {};
 }
 
 } // namespace viewer

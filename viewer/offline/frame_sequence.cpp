@@ -5,21 +5,18 @@
 #include "gi/image_io/picture_file.h"
 #include "gi/methods/registry.h"
 #include "gi/render/fingerprint.h"
-#include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/base/standard_streams.h"
 #include "viewer/offline/exposure.h"
+#include "viewer/offline/finish_picture.h"
 #include "viewer/offline/frame_follower.h"
 #include "viewer/offline/frame_record.h"
-#include "viewer/offline/frame_state.h"
-#include "viewer/offline/plan_json.h"
-#include "viewer/offline/render_picture.h"
 #include "viewer/offline/render_record.h"
 #include "viewer/offline/video_writer.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -37,8 +34,14 @@ void add_losses(gi::Report& sum, std::map<std::string, gi::Report::Loss> const& 
 class Sequence {
 public:
     Sequence(RenderOptions const& o, gi::RenderSettings const& settings,
-             gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
-        : o_(o), settings_(settings), denoise_(denoise_settings), f_(make_frame_settings(o, settings)), work_(work)
+             gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work,
+             gi::Report& report)
+        : o_(o),
+          settings_(settings),
+          denoise_(denoise_settings),
+          f_(make_frame_settings(o, settings)),
+          work_(work),
+          report_(report)
     {
         denoise_.stop = &stop_;
         if (work.leads()) refuse_to_replace();
@@ -57,7 +60,7 @@ public:
         loaded_ = report_.losses();
     }
 
-    int run()
+    FramesEnd run()
     {
         std::vector<char> const there =
             o_.resume ? find_frames() : std::vector<char>(std::size_t(f_.range.count()));
@@ -75,13 +78,7 @@ public:
         }
         bar_.reset();
         if (!work_.alone()) gather();
-        if (!work_.leads()) {
-            work_.finish();
-            return 0;
-        }
-        int const code = finish();
-        work_.finish();
-        return code;
+        return work_.leads() ? finish() : FramesEnd{};
     }
 
 private:
@@ -363,27 +360,35 @@ private:
         }
     }
 
-    int finish()
+    FramesEnd finish()
     {
-        bool const complete = int(records_.size()) == f_.range.count();
+        FramesEnd end;
+        end.complete = int(records_.size()) == f_.range.count();
         bool const has_video = video_ && video_->frames() > 0;
         if (has_video) {
             gi::StageTimer const timer(report_, "video");
             video_->finish();
         }
-        if (complete && !f_.state.empty()) fs::remove(f_.state);
-        print();
-        print_losses(report_);
-        if (complete) return 0;
+        if (end.complete && !f_.state.empty()) fs::remove(f_.state);
+        end.stats = stats();
+        for (auto const& name : {f_.exr, f_.png})
+            if (name && !records_.empty())
+                end.lines.push_back(
+                    fmt::format("{} ... {}", name->of(records_.front().frame), name->of(records_.back().frame)));
+        for (std::string const& file : {has_video ? f_.video : "", o_.stats})
+            if (!file.empty()) end.lines.push_back(file);
+        end.lines.push_back(summary(end.stats["frame_seconds"]));
+        if (end.complete) return end;
         std::string const done =
             fmt::format("{}: {} of {} frames are complete", stop_.requested() ? "interrupted" : "ranks were lost",
                         f_.range.count() - missing_ + rendered_, f_.range.count());
-        say(done + (f_.exr ? "; the same command with --resume continues" : "; with --out they could be resumed"));
-        if (has_video) say(fmt::format("'{}' contains the frames so far", f_.video));
-        return stop_.requested() ? interrupted_code() : 1;
+        end.notes = {
+            done + (f_.exr ? "; the same command with --resume continues" : "; with --out they could be resumed")};
+        if (has_video) end.notes.push_back(fmt::format("'{}' contains the frames so far", f_.video));
+        return end;
     }
 
-    void print() const
+    Json stats() const
     {
         Json stats = describe_call(o_, settings_, stop_option(settings_),
                                    rendered_ > 0 ? chosen_of(last_rendered().result) : Chosen{});
@@ -391,18 +396,7 @@ private:
         stats["frame_seconds"] = frame_seconds(records_);
         stats["plan"] = plan_;
         stats["report"] = to_json(report_);
-        if (!o_.stats.empty()) gi::write_text(o_.stats, to_text(stats));
-        if (o_.json) {
-            std::fputs(to_text(stats).c_str(), stdout);
-        } else {
-            for (auto const& name : {f_.exr, f_.png})
-                if (name && !records_.empty())
-                    fmt::print("{} ... {}\n", name->of(records_.front().frame), name->of(records_.back().frame));
-            for (std::string const& file : {video_ && video_->frames() > 0 ? f_.video : "", o_.stats})
-                if (!file.empty()) fmt::print("{}\n", file);
-            fmt::print("{}\n", summary(stats["frame_seconds"]));
-        }
-        std::fflush(stdout);
+        return stats;
     }
 
     FrameRecord const& last_rendered() const
@@ -428,8 +422,7 @@ private:
     FrameSettings f_;
     RankWork& work_;
     gi::StopRequest& stop_ = work_.stop();
-    InterruptGuard const guard_{stop_}; ///< set before the video starts, so that its hidden file is removed
-    gi::Report report_;                 ///< for all frames together
+    gi::Report& report_;                             ///< for all frames together
     std::map<std::string, gi::Report::Loss> loaded_; ///< losses before the first frame
     std::unique_ptr<VideoWriter> video_;
     std::shared_ptr<gi::Scene const> scene_;
@@ -445,10 +438,11 @@ private:
 
 } // namespace
 
-int render_frames(RenderOptions const& o, gi::RenderSettings const& settings,
-                  gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
+FramesEnd render_frames(RenderOptions const& o, gi::RenderSettings const& settings,
+                        gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work,
+                        gi::Report& report)
 {
-    return Sequence(o, settings, denoise_settings, choice, work).run();
+    return Sequence(o, settings, denoise_settings, choice, work, report).run();
 }
 
 } // namespace viewer

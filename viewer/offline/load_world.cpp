@@ -3,7 +3,7 @@
 #include "gi/core/error.h"
 #include "gi/scene/load/load.h"
 #include "viewer/base/arguments.h"
-#include "viewer/offline/render_picture.h"
+#include "viewer/base/standard_streams.h"
 
 #include <algorithm>
 #include <memory>

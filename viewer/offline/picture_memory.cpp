@@ -2,7 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/render/checkpoint.h"
-#include "viewer/offline/render_picture.h"
+#include "viewer/base/standard_streams.h"
 
 #include <fmt/format.h>
 #include <fstream>

@@ -1,7 +1,7 @@
 #include "viewer/offline/rank_work.h"
 
 #include "gi/render/accumulator.h"
-#include "viewer/offline/render_picture.h"
+#include "viewer/base/standard_streams.h"
 
 #include <cstring>
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ std::uint32_t first_path(std::uint32_t paths, int rank, int size)
 
 } // namespace
 
-RankWork::RankWork(Cluster& cluster) : cluster_(cluster) { stay_alive(); }
+RankWork::RankWork(Cluster& cluster, gi::StopRequest& stop) : cluster_(cluster), stop_(stop) { stay_alive(); }
 
 void RankWork::stay_alive()
 {

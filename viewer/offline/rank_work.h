@@ -16,8 +16,8 @@ struct RankInterrupted {};
 
 class RankWork {
 public:
-    /// Starts sending signs of life to the other ranks. The cluster must outlive this object.
-    explicit RankWork(Cluster& cluster);
+    /// Starts sending signs of life to the other ranks. Cluster and stop request must outlive this object.
+    RankWork(Cluster& cluster, gi::StopRequest& stop);
 
     bool alone() const { return cluster_.alone(); }
     bool leads() const { return cluster_.leads(); }
@@ -45,7 +45,7 @@ private:
     void merge(gi::Accumulator& sums);
 
     Cluster& cluster_;
-    gi::StopRequest stop_;
+    gi::StopRequest& stop_;
     std::uint32_t missing_paths_ = 0, paths_ = 0;
     bool needs_others_ = true; ///< false once the leader has what they contribute
     std::optional<KeepAlive> alive_;

@@ -1,91 +1,88 @@
 #include "viewer/offline/render_picture.h"
 
-#include "gi/filter/tone_map.h"
-#include "gi/image_io/picture_file.h"
-
-#include <algorithm>
-#include <cstdio>
+#include "gi/core/error.h"
+#include "viewer/offline/finish_picture.h"
+#include "viewer/offline/state_saving.h"
 
 namespace viewer {
-
 namespace {
 
-bool g_silent = false; // set once, for the whole process
-
+gi::PictureRows rows_of(gi::RenderResult const& result)
+{
+    return result.rows ? result.rows : gi::rows_of(result.picture);
 }
 
-void say(std::string const& text)
+/// The end of a complete render. Throws Interrupted; the result is as before then.
+void finish(StillPicture const& picture, gi::StopRequest const& stop, StillEnd& end, gi::Report& report)
 {
-    if (!g_silent) std::fputs(("note: " + text + "\n").c_str(), stderr);
-}
-
-void be_silent() { g_silent = true; }
-
-std::string denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, gi::Report& report)
-{
-    if (settings.denoiser == gi::Denoiser::none) return {};
-    gi::StageTimer const timer(report, "denoise");
-    gi::DenoiseReport const done = gi::denoise(picture, settings);
-    report.count("pixels without a surface to filter on", double(done.without_surface));
-    if (done.not_finite > 0) report.lose("pixels not filtered, as a value is not finite", done.not_finite);
-    return done.no_variance ? "--denoise atrous does nothing: the picture has no variance" : "";
-}
-
-namespace {
-
-/// Makes alpha the fourth channel of color.
-void join_alpha(gi::Picture& picture)
-{
-    gi::Layer const* const alpha = picture.find("alpha");
-    if (alpha == nullptr) return;
-    gi::Layer& color = *picture.find("color");
-    std::vector<float> joined;
-    joined.reserve(4 * alpha->data.size());
-    for (std::size_t p = 0; p < alpha->data.size(); ++p) {
-        joined.insert(joined.end(), color.data.begin() + std::ptrdiff_t(3 * p),
-                      color.data.begin() + std::ptrdiff_t(3 * p + 3));
-        joined.push_back(alpha->data[p]);
+    gi::PictureRows rows = rows_of(end.result);
+    gi::Picture filtered;
+    if (picture.filter.denoiser != gi::Denoiser::none) {
+        filtered = rows.whole(&stop);
+        end.note = denoise(filtered, picture.filter, report);
+        rows = gi::rows_of(filtered);
     }
-    color.channels = 4;
-    color.data = std::move(joined);
-    std::erase_if(picture.layers, [](gi::Layer const& l) { return l.name == "alpha"; });
+    picture.write(rows, PictureParts::complete, end.result);
 }
 
-/// Inverse of join_alpha.
-std::pair<gi::Layer, gi::Layer> without_alpha(gi::Layer const& joined)
+/// Saves what an interrupted render has, quickly: its state, and the picture, not filtered; where the state has
+/// all of it, only its color.
+void save_interrupted(StillPicture const& picture, StateSaving& state, gi::RenderResult& result,
+                      gi::Report& report)
 {
-    gi::Layer color{"color", 3, {}}, alpha{"alpha", 1, {}};
-    for (std::size_t k = 0; k < joined.data.size(); ++k)
-        (k % 4 == 3 ? alpha : color).data.push_back(joined.data[k]);
-    return {color, alpha};
+    if (state.has_state()) picture.write(result.color_rows, PictureParts::color_so_far, result);
+    bool const is_saved = state.join(report);
+    if (!is_saved) picture.write(rows_of(result), PictureParts::all_so_far, result);
+    result.resumable |= is_saved;
 }
 
 } // namespace
 
-void keep_layers(RenderOptions const& o, gi::Picture& picture)
+bool check_state(gi::RenderSettings const& s, std::string const& advice)
 {
-    join_alpha(picture);
-    if (o.layers.empty()) return;
-    std::erase_if(picture.layers, [&](gi::Layer const& l) {
-        return l.name != "color" && std::find(o.layers.begin(), o.layers.end(), l.name) == o.layers.end();
-    });
+    bool const is_there = !s.checkpoint.empty() && std::filesystem::exists(s.checkpoint);
+    if (is_there && !s.resume)
+        throw gi::InputError("'" + s.checkpoint.string() + "' holds an unfinished render",
+                             "a new one would replace it", advice + " to continue, or delete it");
+    return is_there || !s.resume;
 }
 
-void save_exr(RenderOptions const& o, std::string const& file, gi::PictureRows const& picture, gi::Report& report,
-              gi::ExrAttributes const& attributes)
+StillEnd render_picture(StillPicture picture, gi::StopRequest const& stop, gi::Report& report)
 {
-    gi::write_exr(file, picture, o.half ? gi::PixelType::half : gi::PixelType::single, report, attributes);
-}
-
-std::vector<unsigned char> display_bytes(RenderOptions const& o, gi::Picture const& picture)
-{
-    gi::ToneMapSettings const tone{float(o.exposure_ev),
-                                   o.tone == "filmic" ? gi::ToneCurve::filmic : gi::ToneCurve::srgb};
-    gi::Layer const &color = *picture.find("color"), *const alpha = picture.find("alpha");
-    if (alpha != nullptr) return gi::tone_map_bytes(color, *alpha, tone);
-    if (color.channels != 4) return gi::tone_map_bytes(color, tone);
-    auto const [plain, apart] = without_alpha(color);
-    return gi::tone_map_bytes(plain, apart, tone);
+    gi::RenderSettings& settings = picture.settings;
+    settings.by_rows = true;
+    picture.filter.stop = &stop;
+    StillEnd end;
+    gi::RenderResult& result = end.result;
+    result = picture.trace(settings, stop, report);
+    if (!picture.write) return end;
+    std::optional<StateSaving> saving;
+    bool is_left = result.end == gi::RenderEnd::interrupted;
+    if (!is_left && settings.resume && result.end != gi::RenderEnd::paths)
+        saving.emplace(result); // before the denoiser, which may take long, or fail
+    try {
+        if (!is_left) finish(picture, stop, end, report);
+    } catch (gi::Interrupted const&) {
+        is_left = true;
+        result.end = gi::RenderEnd::interrupted;
+        result.resumable = !saving && std::filesystem::exists(settings.checkpoint); // an earlier one
+    } catch (std::exception const&) {                                               // for example a full disk
+        end.failure = std::current_exception();
+        if (!saving) saving.emplace(result);
+        result.resumable = saving->join(report);
+        return end;
+    }
+    if (is_left && picture.interrupted)
+        picture.interrupted(saving || result.save_state ? PictureParts::color_so_far : PictureParts::all_so_far);
+    if (is_left && !saving) saving.emplace(result, gi::DiskWait::no);
+    if (is_left)
+        save_interrupted(picture, *saving, result, report);
+    else if (saving)
+        result.resumable |= saving->join(report);
+    if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
+    result.picture = {};
+    result.rows = result.color_rows = {};
+    return end;
 }
 
 } // namespace viewer

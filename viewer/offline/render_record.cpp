@@ -3,7 +3,6 @@
 #include "gi/core/shell.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/version.h"
-#include "viewer/offline/plan_json.h"
 #include "viewer/report/machine.h"
 
 #include <algorithm>
@@ -176,6 +175,22 @@ Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePl
     j["plan"] = to_json(plan.items);
     j["report"] = to_json(report);
     return j;
+}
+
+Json to_json(std::vector<gi::PlanItem> const& plan)
+{
+    auto list = Json::array();
+    for (gi::PlanItem const& item : plan) {
+        auto numbers = Json::object();
+        for (gi::PlanNumber const& n : item.numbers)
+            std::visit([&](auto value) { numbers[n.key] = value; }, n.value);
+        list.push_back({{"name", item.name},
+                        {"what", item.what},
+                        {"build", item.build},
+                        {"reason", item.reason},
+                        {"numbers", numbers}});
+    }
+    return list;
 }
 
 std::string summary_line(RenderOptions const& o, gi::RenderSettings const& s, gi::RenderResult const& r)

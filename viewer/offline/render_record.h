@@ -36,6 +36,9 @@ nlohmann::ordered_json make_stats(RenderOptions const& options, gi::RenderSettin
                                   gi::ScenePlan const& plan, gi::RenderResult const& result,
                                   gi::Report const& report);
 
+/// A list with the name, what, build, reason and numbers of each item, as common.schema.json says.
+nlohmann::ordered_json to_json(std::vector<gi::PlanItem> const& plan);
+
 /// Summary of the render in one line.
 std::string summary_line(RenderOptions const& options, gi::RenderSettings const& settings,
                          gi::RenderResult const& result);

@@ -107,13 +107,10 @@ void check_of_viewer(std::string const& key, Json const& value, MadeFor made)
 
 std::string visibility_method(std::string const& word)
 {
-    std::vector<std::string> known;
-    for (gi::Method const& m : gi::methods()) {
-        if (m.visibility.empty()) continue;
-        if (m.visibility == word) return std::string(m.name);
-        known.emplace_back(m.visibility);
-    }
-    throw gi::InputError("visibility: " + word, "there is no such approximation", gi::suggest(word, known));
+    for (gi::Method const& m : gi::methods())
+        if (!m.visibility.empty() && m.visibility == word) return std::string(m.name);
+    throw gi::InputError("visibility: " + word, "there is no such approximation",
+                         gi::suggest(word, visibility_words()));
 }
 
 StimulusPath path_of(std::string const& name)

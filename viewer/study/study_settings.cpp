@@ -1,21 +1,23 @@
 #include "viewer/study/study_settings.h"
 
+#include "gi/methods/registry.h"
 #include "viewer/engine/scene_edits.h"
 #include "viewer/study/physical_setting.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace viewer {
 namespace {
 
+constexpr std::string_view kVisibility = "visibility";
 constexpr StimulusSetting kOwn[]{
     {"scene", "word", "a scene file or a generated scene", "", "what is shown"},
     {"camera", "word", "a camera of the scene, path:orbit", "", "where it is seen from, and how the camera moves"},
     {"camera.raise", "number", "-1000 to 1000", "0", "height above the camera's own place, m", -1000, 1000},
     {"camera.fov", "number", "1 to 170", "", "vertical field of view, degrees", 1, 170},
-    {"visibility", "word", "exact, slhb, imperfect, ao, directional_ao, none", "",
-     "method that approximates the visibility of indirect light"},
+    {kVisibility, "word", "", "", "method that approximates the visibility of indirect light"},
     {"size", "length", "0.001 to 170 deg, or cm, px; one or width x height", "",
      "of the picture; a number alone is in degrees", 1e-3, 170},
     {"place", "2 lengths", "-80 to 80 deg, or cm, px", "0 0", "of the picture's centre: right, up"},
@@ -63,6 +65,14 @@ StudySetting of_edit(SceneEditKey const& k)
 
 std::span<StimulusSetting const> stimulus_settings() { return kOwn; }
 
+std::vector<std::string> visibility_words()
+{
+    std::vector<std::string> words;
+    for (gi::Method const& m : gi::methods())
+        if (!m.visibility.empty()) words.emplace_back(m.visibility);
+    return words;
+}
+
 bool takes_numbers(SettingKey const& k)
 {
     if (k.type == gi::OptionType::yes_or_no) return false;
@@ -72,9 +82,12 @@ bool takes_numbers(SettingKey const& k)
 std::vector<StudySetting> study_settings()
 {
     std::vector<StudySetting> all;
-    for (StimulusSetting const& s : kOwn)
-        all.push_back({std::string(s.key), std::string(s.kind), std::string(s.range), std::string(s.usual),
+    for (StimulusSetting const& s : kOwn) {
+        std::string range =
+            s.key == kVisibility ? fmt::format("{}", fmt::join(visibility_words(), ", ")) : std::string(s.range);
+        all.push_back({std::string(s.key), std::string(s.kind), std::move(range), std::string(s.usual),
                        std::string(s.meaning), s.takes_numbers()});
+    }
     for (SceneEditKey const& k : scene_edit_keys()) all.push_back(of_edit(k));
     for (SettingKey const& k : setting_keys())
         if (k.is_offered() &&

@@ -31,6 +31,9 @@ struct StimulusSetting {
 };
 std::span<StimulusSetting const> stimulus_settings();
 
+/// The words of the key `visibility`, of the methods that have one.
+std::vector<std::string> visibility_words();
+
 /// Words may be numbers too: "16384" or "30%".
 bool takes_numbers(SettingKey const& k);
 

@@ -1,14 +1,15 @@
 #include "gi/core/error.h"
 #include "gi/core/file.h"
-#include "gi/image_io/picture_file.h"
 #include "gi/methods/registry.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/base/standard_streams.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
 #include "viewer/offline/exposure.h"
+#include "viewer/offline/finish_picture.h"
 #include "viewer/offline/frame_options.h"
 #include "viewer/offline/frame_sequence.h"
 #include "viewer/offline/load_world.h"
@@ -16,7 +17,6 @@
 #include "viewer/offline/rank_work.h"
 #include "viewer/offline/render_picture.h"
 #include "viewer/offline/render_record.h"
-#include "viewer/offline/state_saving.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -40,78 +40,6 @@ trace(RenderOptions const& o, RankWork& work, std::unique_ptr<InterruptGuard>& g
         bar.update(s.fraction, fmt::format("{} paths, relMSE {:.2g}", s.paths, s.relmse));
     };
     return render(work.stop(), show);
-}
-
-/// Makes the picture while it writes it, as that takes half of the memory.
-/// @param stop  throws Interrupted; null = never, and the picture is not compressed,
-///   which would take longer than all else
-void write_files(RenderOptions const& o, gi::PictureRows const& picture, gi::StopRequest const* stop,
-                 gi::Report& report)
-{
-    gi::StageTimer const timer(report, "save");
-    if (!o.png.empty())
-        gi::write_png(o.png, picture.width, picture.height, [&](int first, int count) {
-            if (stop != nullptr && stop->requested()) throw gi::Interrupted();
-            return display_bytes(o, picture.read(first, count));
-        });
-    if (o.out.empty()) return;
-    gi::PictureRows kept = picture;
-    kept.read = [&](int first, int count) {
-        gi::Picture rows = picture.read(first, count);
-        keep_layers(o, rows);
-        return rows;
-    };
-    save_exr(o, o.out, kept, report,
-             {.compression = stop != nullptr ? gi::ExrCompression::zip : gi::ExrCompression::none, .stop = stop});
-}
-
-gi::PictureRows rows_of(gi::RenderResult const& result)
-{
-    return result.rows ? result.rows : gi::rows_of(result.picture);
-}
-
-/// The end of a complete render. Throws Interrupted; the result is as before then.
-void finish_picture(RenderOptions const& o, gi::RenderSettings const& settings, gi::DenoiseSettings const& filter,
-                    gi::RenderResult const& result, gi::StopRequest const& stop, gi::Report& report)
-{
-    gi::PictureRows picture = rows_of(result);
-    gi::Picture filtered;
-    if (filter.denoiser != gi::Denoiser::none) {
-        filtered = picture.whole(&stop);
-        std::string const remark = denoise(filtered, filter, report);
-        if (!remark.empty()) say(remark);
-        picture = gi::rows_of(filtered);
-    }
-    picture.metadata = make_metadata(o, settings, result);
-    write_files(o, picture, &stop, report);
-}
-
-/// Saves what an interrupted render has, quickly: its state, and the picture, not filtered; where the state has
-/// all of it, only its color.
-void save_interrupted(RenderOptions o, gi::RenderSettings const& settings, StateSaving& state,
-                      gi::RenderResult& result, gi::Report& report)
-{
-    gi::PictureRows all = rows_of(result), color = state.has_state() ? result.color_rows : all;
-    o.denoise = "none";
-    all.metadata = color.metadata = make_metadata(o, settings, result);
-    RenderOptions less = o;
-    if (state.has_state()) less.layers = {"color"};
-    write_files(less, color, nullptr, report);
-    bool const is_saved = state.join(report);
-    if (state.has_state() && !is_saved) write_files(o, all, nullptr, report);
-    result.resumable |= is_saved;
-}
-
-/// If a complete picture could not be made or written: saves its paths.
-void keep_paths(StateSaving& state, std::filesystem::path const& file, gi::Report& report)
-{
-    if (!state.has_state()) return;
-    if (state.join(report))
-        return say("all paths are kept in '" + file.string() +
-                   "': the same command with --resume makes the picture of them");
-    print_losses(report);
-    if (std::filesystem::exists(file))
-        say("'" + file.string() + "' has earlier paths: --resume continues with them");
 }
 
 struct Shot {
@@ -215,17 +143,28 @@ void check_ranks(RenderOptions const& o, gi::RenderSettings const& s)
                      "add --out F_%04d.exr on a disk that all of them share");
 }
 
-int render_picture(RenderOptions const& o, gi::RenderSettings settings, gi::DenoiseSettings filter,
-                   CameraChoice const& choice, RankWork& work)
+/// What to say of a picture that was not written: its paths may be kept.
+void say_what_is_kept(gi::RenderSettings const& settings, StillEnd const& end, gi::Report const& report)
 {
-    filter.stop = &work.stop();
+    std::filesystem::path const& file = settings.checkpoint;
+    if (file.empty()) return;
+    if (end.result.resumable)
+        return say("all paths are kept in '" + file.string() +
+                   "': the same command with --resume makes the picture of them");
+    print_losses(report);
+    if (std::filesystem::exists(file))
+        say("'" + file.string() + "' has earlier paths: --resume continues with them");
+}
+
+int render_still(RenderOptions const& o, gi::RenderSettings settings, gi::DenoiseSettings const& filter,
+                 CameraChoice const& choice, RankWork& work)
+{
     CameraMotion const motion = make_motion(o);
     check_outputs(outputs_of(o, settings), {o.scene, o.environment, o.camera_path});
-    std::string const state = settings.checkpoint.string(); // may exist although several processes write none
-    bool const has_state = !state.empty() && std::filesystem::exists(state);
     check_picture_memory(settings.width, settings.height);
-    settings.by_rows = true;
-    settings.before_checkpoint = [&](std::uint64_t bytes) {
+    if (work.leads() && !check_state(settings, "add --resume"))
+        say("there is no '" + settings.checkpoint.string() + "': starting afresh");
+    settings.before_checkpoint = [&, state = settings.checkpoint.string()](std::uint64_t bytes) {
         std::string const again = settings.checkpoint_s > 0 && !work.stop().requested()
                                       ? fmt::format(" and again about every {:g} s", settings.checkpoint_s)
                                       : "";
@@ -236,43 +175,42 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings, gi::Deno
         settings.checkpoint.clear();
         settings.share = work.share(settings.paths);
     }
-    if (o.resume && !has_state) say("there is no '" + state + "': starting afresh");
-    if (!o.resume && has_state && work.leads())
-        throw gi::InputError("'" + state + "' holds an unfinished render", "a new one would replace it",
-                             "add --resume to continue, or delete it");
 
     gi::Report report;
-    auto [plan, result, loaded, guard] = shoot(o, settings, choice, motion, work, report);
-    work.gather(result, report, loaded);
+    gi::ScenePlan plan;
+    std::unique_ptr<InterruptGuard> guard;
+    StillPicture picture{settings, filter};
+    picture.trace = [&](gi::RenderSettings const& s, gi::StopRequest const&, gi::Report&) {
+        Shot shot = shoot(o, s, choice, motion, work, report);
+        work.gather(shot.result, report, shot.loaded);
+        plan = std::move(shot.plan);
+        guard = std::move(shot.guard);
+        return std::move(shot.result);
+    };
+    if (work.leads())
+        picture.write = [&](gi::PictureRows rows, PictureParts parts, gi::RenderResult const& result) {
+            bool const is_complete = parts == PictureParts::complete;
+            RenderOptions with = o;
+            if (!is_complete) with.denoise = "none";
+            rows.metadata = make_metadata(with, settings, result);
+            if (parts == PictureParts::color_so_far) with.layers = {"color"};
+            write_files(with, rows, is_complete ? &work.stop() : nullptr, report);
+        };
+    picture.interrupted = [](PictureParts parts) {
+        say(std::string("interrupted: saving ") +
+            (parts == PictureParts::color_so_far ? "the state and the color of " : "") + "the picture so far");
+    };
+    StillEnd const end = render_picture(std::move(picture), work.stop(), report);
     if (!work.leads()) {
         work.finish();
         return 0;
     }
-    std::optional<StateSaving> saving;
-    bool is_left = result.end == gi::RenderEnd::interrupted;
-    if (!is_left && settings.resume && result.end != gi::RenderEnd::paths)
-        saving.emplace(result); // before the denoiser, which may take long, or fail
-    try {
-        if (!is_left) finish_picture(o, settings, filter, result, work.stop(), report);
-    } catch (gi::Interrupted const&) {
-        is_left = true;
-        result.end = gi::RenderEnd::interrupted;
-        result.resumable = !saving && std::filesystem::exists(settings.checkpoint); // an earlier one
-    } catch (std::exception const&) {                                               // for example a full disk
-        if (!saving) saving.emplace(result);
-        keep_paths(*saving, settings.checkpoint, report);
-        throw;
+    if (!end.note.empty()) say(end.note);
+    if (end.failure) {
+        say_what_is_kept(settings, end, report);
+        std::rethrow_exception(end.failure);
     }
-    if (is_left)
-        say(std::string("interrupted: saving ") +
-            (saving || result.save_state ? "the state and the color of " : "") + "the picture so far");
-    if (is_left && !saving) saving.emplace(result, gi::DiskWait::no);
-    if (is_left)
-        save_interrupted(o, settings, *saving, result, report);
-    else if (saving)
-        result.resumable |= saving->join(report);
-    if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
-
+    gi::RenderResult const& result = end.result;
     nlohmann::ordered_json const stats = make_stats(o, settings, plan, result, report);
     if (!o.stats.empty()) gi::write_text(o.stats, to_text(stats));
     if (o.json) {
@@ -296,6 +234,26 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings, gi::Deno
     return interrupted_code();
 }
 
+int render_sequence(RenderOptions const& o, gi::RenderSettings const& settings, gi::DenoiseSettings const& filter,
+                    CameraChoice const& choice, RankWork& work)
+{
+    InterruptGuard const guard(work.stop()); // before the video starts, so that its hidden file is removed
+    gi::Report report;
+    FramesEnd const end = render_frames(o, settings, filter, choice, work, report);
+    if (work.leads()) {
+        if (!o.stats.empty()) gi::write_text(o.stats, to_text(end.stats));
+        if (o.json)
+            std::fputs(to_text(end.stats).c_str(), stdout);
+        else
+            for (std::string const& line : end.lines) fmt::print("{}\n", line);
+        std::fflush(stdout);
+        print_losses(report);
+    }
+    for (std::string const& note : end.notes) say(note);
+    work.finish();
+    return !work.leads() || end.complete ? 0 : work.stop().requested() ? interrupted_code() : 1;
+}
+
 int run(RenderOptions o)
 {
     gi::find_method(o.method);
@@ -313,9 +271,10 @@ int run(RenderOptions o)
                                    : o.out.empty()  ? "complete frames are kept"
                                                     : "the same command with --resume renders the missing frames";
     try {
-        RankWork work(cluster);
-        return o.frames.empty() ? render_picture(o, settings, denoise_settings, choice, work)
-                                : render_frames(o, settings, denoise_settings, choice, work);
+        gi::StopRequest stop;
+        RankWork work(cluster, stop);
+        return o.frames.empty() ? render_still(o, settings, denoise_settings, choice, work)
+                                : render_sequence(o, settings, denoise_settings, choice, work);
     } catch (RankInterrupted const&) {
         say("interrupted: " + what_stays);
         return interrupted_code();

@@ -1,8 +1,8 @@
 #include "gi/core/error.h"
-#include "gi/image_io/picture_file.h"
-#include "gi/methods/registry.h"
 #include "gi/hit_buffers/directions/direction_picture.h"
 #include "gi/hit_buffers/directions/direction_quality.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/methods/registry.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/model/summary.h"
@@ -16,7 +16,7 @@
 #include "viewer/offline/choose_camera.h"
 #include "viewer/offline/load_world.h"
 #include "viewer/offline/picture_memory.h"
-#include "viewer/offline/plan_json.h"
+#include "viewer/offline/render_record.h"
 #include "viewer/study/study_settings.h"
 
 #include <CLI/CLI.hpp>

@@ -64,17 +64,18 @@ int run(PrepareOptions const& o)
     std::size_t made = 0, number = 0;
     bool is_interrupted = false;
     try {
-        RankWork work(cluster);
-        InterruptGuard const guard(work.stop());
+        gi::StopRequest stop;
+        RankWork work(cluster, stop);
+        InterruptGuard const guard(stop);
         gi::ProgressBar bar("prepare " + loaded.script.id, work.leads());
         SceneAccess const scenes = study_scenes();
         for (auto const& [key, wanted] : list) {
             bar.update(double(number) / double(list.size()), name_of(wanted.stimulus));
             if (int(number++ % std::size_t(work.size())) != work.rank()) continue;
             try {
-                made += prepare_stimulus(wanted, o.out, key, scenes, o.threads, work.stop(), report);
+                made += prepare_stimulus(wanted, o.out, key, scenes, o.threads, stop, report);
             } catch (gi::InputError const& e) {
-                is_interrupted = work.stop().requested();
+                is_interrupted = stop.requested();
                 if (is_interrupted) break;
                 throw gi::InputError(wanted.where, e.what(), "complete stimuli are kept");
             }

@@ -14,6 +14,7 @@
 #include "viewer/base/outputs.h"
 #include "viewer/base/port_options.h"
 #include "viewer/base/report_json.h"
+#include "viewer/base/standard_streams.h"
 #include "viewer/base/validators.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
@@ -22,7 +23,6 @@
 #include "viewer/offline/load_world.h"
 #include "viewer/offline/rank_options.h"
 #include "viewer/offline/render_options.h"
-#include "viewer/offline/render_picture.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -19,17 +19,22 @@
 
 namespace viewer {
 
-/// Seconds since the session began, on the steady clock.
+/// The clock of a session: seconds since it began. Trackers, headsets and other processes count the same seconds from
+/// the start of the steady clock.
 class SessionClock {
 public:
-    double now_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+    double now_s() const { return at_s(Clock::now()); }
     double at_s(std::chrono::steady_clock::time_point t) const
     {
         return std::chrono::duration<double>(t - start_).count();
     }
+    double of_steady(double steady_s) const { return steady_s - start_s(); }
+    double to_steady(double session_s) const { return session_s + start_s(); }
 
 private:
     using Clock = std::chrono::steady_clock;
+    double start_s() const { return std::chrono::duration<double>(start_.time_since_epoch()).count(); }
+
     Clock::time_point start_ = Clock::now();
 };
 

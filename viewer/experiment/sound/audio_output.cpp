@@ -1,21 +1,19 @@
 #include "viewer/experiment/sound/audio_output.h"
 
 #include "gi/core/error.h"
+#include "viewer/experiment/sound/buffer_times.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <limits>
 #include <portaudio.h>
 #include <thread>
 #include <unistd.h>
 
 namespace viewer {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double steady_s()
 {
@@ -83,19 +81,13 @@ struct AudioOutput::Stream {
     std::string device, host;
     int rate_hz, channels = 2;
     std::vector<float> stereo; ///< for devices with one channel
-    // Of the device's thread:
-    double frames_done = 0;
-    std::array<double, 64> starts{}; ///< of the stream's first sample, as each of the last buffers says
-    double start = 0;                ///< their median
-    std::size_t count = 0;
-    double offset_s = kInfinite,
-           next_offset_s = kInfinite; ///< steady minus device's clock: least of the last buffers
-    std::size_t since_offset = 0;
+    BufferTimes times;         ///< of the device's thread
     // For others:
     std::atomic<double> latency_s{0};
     std::atomic<bool> is_timed{true}, is_known{false};
 
-    Stream(AudioOutput& o, std::string const& name, int rate, double latency_ms) : owner(o), rate_hz(rate)
+    Stream(AudioOutput& o, std::string const& name, int rate, double latency_ms)
+        : owner(o), rate_hz(rate), times(rate)
     {
         // PulseAudio would otherwise fill its buffers for seconds, and after an underrun ask for nothing as long.
         setenv("PULSE_LATENCY_MSEC", fmt::format("{:.0f}", std::ceil(latency_ms)).c_str(), 0);
@@ -147,42 +139,16 @@ struct AudioOutput::Stream {
         return paContinue;
     }
 
-    /// The median of the last reports of when the stream's first sample left, with this one.
-    double smoothed_start(double start_s)
-    {
-        constexpr double kJump_s = 0.02; // the device has stopped between, which it does not always say
-        if (count > 0 && std::abs(start_s - start) > kJump_s) count = 0;
-        starts[count++ % starts.size()] = start_s;
-        std::array<double, 64> sorted = starts;
-        auto const end = sorted.begin() + std::ptrdiff_t(std::min(count, sorted.size()));
-        auto const middle = sorted.begin() + (end - sorted.begin()) / 2;
-        std::nth_element(sorted.begin(), middle, end);
-        return start = *middle;
-    }
-
     void play(float* out, std::size_t frames, PaStreamCallbackTimeInfo const& time, PaStreamCallbackFlags flags)
     {
         double const now_s = steady_s();
-        if (flags & paOutputUnderflow) {
-            ++owner.underruns_;
-            count = 0; // the device has played silence between
-        }
-        bool const has_time = time.outputBufferDacTime > 0 && time.currentTime > 0;
-        is_timed = has_time;
-        double first_s = now_s + Pa_GetStreamInfo(pa)->outputLatency;
-        if (has_time) {
-            // The clock was read a little before this call: the least difference is the nearest.
-            double const difference = now_s - time.currentTime;
-            next_offset_s = std::min(next_offset_s, difference);
-            if (++since_offset * frames > std::size_t(2 * rate_hz)) {
-                offset_s = std::exchange(next_offset_s, difference);
-                since_offset = 0;
-            }
-            offset_s = std::min(offset_s, difference);
-            first_s = time.outputBufferDacTime + offset_s;
-        }
-        first_s = smoothed_start(first_s - frames_done / rate_hz) + frames_done / rate_hz;
-        frames_done += double(frames);
+        bool const has_underrun = flags & paOutputUnderflow;
+        if (has_underrun) ++owner.underruns_;
+        is_timed = time.outputBufferDacTime > 0 && time.currentTime > 0;
+        BufferTimes::Asked const asked{
+            now_s,       is_timed, time.currentTime, time.outputBufferDacTime, Pa_GetStreamInfo(pa)->outputLatency,
+            has_underrun};
+        double const first_s = times.first_s(asked, frames);
         latency_s = first_s + double(frames) / rate_hz - now_s;
         if (channels == 2) {
             owner.fill(out, frames, first_s, rate_hz);
@@ -191,7 +157,7 @@ struct AudioOutput::Stream {
             owner.fill(stereo.data(), frames, first_s, rate_hz);
             for (std::size_t i = 0; i < frames; ++i) out[i] = 0.5f * (stereo[2 * i] + stereo[2 * i + 1]);
         }
-        if (count >= 8) is_known = true;
+        if (times.is_known()) is_known = true;
     }
 };
 
@@ -208,80 +174,10 @@ AudioOutput::AudioOutput(std::string const& device, int rate_hz, double latency_
 
 AudioOutput::~AudioOutput() = default;
 
-/// Mixes the voices. @param first_s when the first frame leaves
-void AudioOutput::fill(float* out, std::size_t frames, double first_s, double rate_hz)
-{
-    std::fill_n(out, 2 * frames, 0.0f);
-    for (Voice& v : voices_) {
-        VoiceState state = v.state.load(std::memory_order_acquire);
-        std::size_t at = 0;
-        if (state == VoiceState::waiting) {
-            double const wait = std::round((v.at_s - first_s) * rate_hz);
-            if (wait >= double(frames)) continue;
-            // A voice released before it began is already free.
-            if (!v.state.compare_exchange_strong(state, VoiceState::playing)) continue;
-            at = std::size_t(std::max(0.0, wait));
-            v.onset_s = first_s + double(at) / rate_hz;
-            v.underruns_before = underruns_;
-        } else if (state != VoiceState::playing) {
-            continue;
-        }
-        std::vector<float> const& samples = v.sound->samples;
-        for (; at < frames && v.next < samples.size(); ++at, v.next += 2) {
-            out[2 * at] += samples[v.next];
-            out[2 * at + 1] += samples[v.next + 1];
-        }
-        v.underruns = underruns_ - v.underruns_before;
-        if (v.next < samples.size()) continue;
-        v.state = VoiceState::done;
-        if (v.is_released) v.state = VoiceState::free;
-    }
-    for (std::size_t i = 0; i < 2 * frames; ++i)
-        if (std::abs(out[i]) > 1) {
-            out[i] = std::clamp(out[i], -1.0f, 1.0f);
-            ++clipped_;
-        }
-}
-
 double AudioOutput::lead_s() const
 {
     constexpr double kMargin_s = 0.01; // for the buffer that is being asked for, and its thread
     return stream_->latency_s + kMargin_s;
-}
-
-std::optional<SoundTicket> AudioOutput::start(std::shared_ptr<SoundSamples const> sound, double at_s)
-{
-    for (std::size_t i = 0; i < voices_.size(); ++i) {
-        Voice& v = voices_[i];
-        if (v.state.load(std::memory_order_acquire) != VoiceState::free) continue;
-        v.sound = std::move(sound);
-        v.at_s = at_s;
-        v.next = 0;
-        v.is_released = false;
-        v.onset_s = 0;
-        v.underruns = 0;
-        v.state.store(VoiceState::waiting, std::memory_order_release);
-        return SoundTicket{int(i)};
-    }
-    return {};
-}
-
-SoundReport AudioOutput::report(SoundTicket ticket) const
-{
-    Voice const& v = voices_.at(std::size_t(ticket.voice));
-    SoundReport r;
-    if (v.onset_s > 0) r.onset_s = v.onset_s;
-    r.underruns = v.underruns;
-    return r;
-}
-
-void AudioOutput::release(SoundTicket ticket)
-{
-    Voice& v = voices_.at(std::size_t(ticket.voice));
-    VoiceState waiting = VoiceState::waiting, done = VoiceState::done;
-    if (v.state.compare_exchange_strong(waiting, VoiceState::free)) return;
-    v.is_released = true;
-    v.state.compare_exchange_strong(done, VoiceState::free); // it may have ended before it saw that
 }
 
 bool AudioOutput::is_running() const { return Pa_IsStreamActive(stream_->pa) == 1; }
