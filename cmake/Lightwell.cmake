@@ -121,12 +121,18 @@ if(NOT LIGHTWELL_CUDA)
     <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional> <algorithm> <optional> <span>
     <CLI/CLI.hpp> <nlohmann/json.hpp> <fmt/format.h>)
 endif()
+set(lightwell_quick "$<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O0>")
 if(NOT LIGHTWELL_FUZZ)
-  add_executable(lightwell_test_headers ${PROJECT_BINARY_DIR}/headers.cpp)
-  target_link_libraries(lightwell_test_headers PRIVATE lightwell_options GTest::gtest)
-  lightwell_precompile(lightwell_test_headers
-    <gtest/gtest.h> <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional> <algorithm> <optional> <span>
-    <fstream> <sstream>)
+  foreach(headers lightwell_test_headers lightwell_quick_test_headers)
+    add_executable(${headers} ${PROJECT_BINARY_DIR}/headers.cpp)
+    target_link_libraries(${headers} PRIVATE lightwell_options GTest::gtest)
+    if(headers MATCHES quick)
+      target_compile_options(${headers} PRIVATE ${lightwell_quick})
+    endif()
+    lightwell_precompile(${headers}
+      <gtest/gtest.h> <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional> <algorithm> <optional> <span>
+      <fstream> <sstream>)
+  endforeach()
 endif()
 
 add_custom_target(slow_tests) # compiled only for those who run them
@@ -157,7 +163,8 @@ function(lightwell_tests folder)
       target_compile_definitions(${target} PRIVATE
         LIGHTWELL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" LIGHTWELL_PROGRAM="${PROJECT_BINARY_DIR}/lightwell")
       lightwell_unity(${target})
-      lightwell_reuse_precompiled(${target} lightwell_test_headers)
+      target_compile_options(${target} PRIVATE ${test_options})
+      lightwell_reuse_precompiled(${target} ${test_headers})
       configure_file(${PROJECT_SOURCE_DIR}/cmake/suites.cmake.in ${target}_suites.cmake.in @ONLY)
       file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake
         INPUT ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake.in)

@@ -14,14 +14,14 @@ double squared(std::vector<glm::dvec2> const& r)
 }
 
 /// Applies a small rotation and translation from the left.
-Pose moved(Pose const& p, cv::Vec6d const& by)
+gi::RigidPose moved(gi::RigidPose const& p, cv::Vec6d const& by)
 {
-    Pose const d = pose_of({by[0], by[1], by[2]}, {0, 0, 0});
-    return {glm::normalize(d.rotation * p.rotation), p.position_m + glm::dvec3(by[3], by[4], by[5])};
+    gi::RigidPose const d = pose_of({by[0], by[1], by[2]}, {0, 0, 0});
+    return {p.position + glm::dvec3(by[3], by[4], by[5]), glm::normalize(d.rotation * p.rotation)};
 }
 
 /// Levenberg and Marquardt over the six numbers of a pose.
-Pose refined(CameraModel const& camera, Pose pose, BoardView const& view)
+gi::RigidPose refined(CameraModel const& camera, gi::RigidPose pose, BoardView const& view)
 {
     double damping = 1e-6, error = squared(residuals(camera, pose, view));
     for (int round = 0; round < 30; ++round) {
@@ -29,7 +29,7 @@ Pose refined(CameraModel const& camera, Pose pose, BoardView const& view)
         cv::Matx66d normal = cv::Matx66d::zeros();
         cv::Vec6d right;
         std::array<std::vector<glm::dvec2>, 6> slopes;
-        double const scale = std::max(1e-3, glm::length(pose.position_m));
+        double const scale = std::max(1e-3, glm::length(pose.position));
         for (int k = 0; k < 6; ++k) {
             double const h = 1e-6 * (k < 3 ? 1 : scale);
             cv::Vec6d step;
@@ -48,7 +48,7 @@ Pose refined(CameraModel const& camera, Pose pose, BoardView const& view)
         for (int a = 0; a < 6; ++a) normal(a, a) *= 1 + damping;
         cv::Vec6d step;
         if (!cv::solve(normal, right, step, cv::DECOMP_CHOLESKY)) break;
-        Pose const next = moved(pose, step);
+        gi::RigidPose const next = moved(pose, step);
         double const next_error = squared(residuals(camera, next, view));
         if (next_error < error) {
             bool const done = error - next_error < 1e-12 * error;
@@ -70,7 +70,7 @@ BoardView view_of(Sighting const& sighting, MarkerMap const& map, std::size_t bo
 {
     BoardView view;
     view.name = std::move(name);
-    Pose const board_from_world = inverse(map.boards.at(board).world_from_board);
+    gi::RigidPose const board_from_world = inverse(map.boards.at(board).world_from_board);
     for (SightedPoint const& p : sighting.points) {
         if (p.marker != int(map.markers.size() + board)) continue;
         glm::dvec3 at = board_from_world * p.world_m;
@@ -96,7 +96,8 @@ std::optional<BoardView> find_chessboard(cv::Mat const& gray, int corners_x, int
     return view;
 }
 
-std::vector<glm::dvec2> residuals(CameraModel const& camera, Pose const& camera_from_board, BoardView const& view)
+std::vector<glm::dvec2> residuals(CameraModel const& camera, gi::RigidPose const& camera_from_board,
+                                  BoardView const& view)
 {
     std::vector<glm::dvec2> out;
     for (std::size_t i = 0; i < view.pixels.size(); ++i) {
@@ -108,7 +109,7 @@ std::vector<glm::dvec2> residuals(CameraModel const& camera, Pose const& camera_
 
 double rms(std::vector<glm::dvec2> const& r) { return r.empty() ? 0 : std::sqrt(squared(r) / double(r.size())); }
 
-std::optional<Pose> camera_from_board(CameraModel const& camera, BoardView const& view)
+std::optional<gi::RigidPose> camera_from_board(CameraModel const& camera, BoardView const& view)
 {
     std::vector<cv::Point3d> board;
     std::vector<cv::Point2d> plane;
@@ -126,9 +127,9 @@ std::optional<Pose> camera_from_board(CameraModel const& camera, BoardView const
     } catch (cv::Exception const&) { // points on a line
         return std::nullopt;
     }
-    Pose const pose = refined(camera, pose_of(turn, shift), view);
+    gi::RigidPose const pose = refined(camera, pose_of(turn, shift), view);
     for (int i = 0; i < 3; ++i)
-        if (!std::isfinite(pose.position_m[i])) return std::nullopt;
+        if (!std::isfinite(pose.position[i])) return std::nullopt;
     return pose;
 }
 

@@ -30,10 +30,11 @@ std::optional<BoardView> find_chessboard(cv::Mat const& gray, int corners_x, int
 
 /// Pose of the board by least squares of the reprojection error; nothing for fewer than
 /// four points or if no pose fits them.
-std::optional<Pose> camera_from_board(CameraModel const& camera, BoardView const& view);
+std::optional<gi::RigidPose> camera_from_board(CameraModel const& camera, BoardView const& view);
 
 /// Observed minus projected position in pixels; (1e3, 1e3) for points outside the camera's view.
-std::vector<glm::dvec2> residuals(CameraModel const& camera, Pose const& camera_from_board, BoardView const& view);
+std::vector<glm::dvec2> residuals(CameraModel const& camera, gi::RigidPose const& camera_from_board,
+                                  BoardView const& view);
 double rms(std::vector<glm::dvec2> const& residuals);
 
 } // namespace ar

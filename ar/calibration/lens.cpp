@@ -15,7 +15,7 @@ constexpr std::size_t kFewestViews = 3;
 
 struct Fit {
     CameraModel camera;
-    std::vector<Pose> poses;
+    std::vector<gi::RigidPose> poses;
 };
 
 CameraModel camera_of(LensModel lens, glm::ivec2 size_px, cv::Mat const& k, cv::Mat const& distortion)
@@ -98,8 +98,8 @@ void add_warnings(LensCalibration& c, std::vector<BoardView> const& used)
         if (!v.used) continue;
         double const cosine = std::abs((v.camera_from_board.rotation * glm::dvec3(0, 0, 1)).z);
         tilt = std::max(tilt, glm::degrees(std::acos(std::min(1., cosine))));
-        nearest = std::min(nearest, glm::length(v.camera_from_board.position_m));
-        farthest = std::max(farthest, glm::length(v.camera_from_board.position_m));
+        nearest = std::min(nearest, glm::length(v.camera_from_board.position));
+        farthest = std::max(farthest, glm::length(v.camera_from_board.position));
     }
     if (tilt < 20)
         c.warnings.push_back(
@@ -152,7 +152,7 @@ CameraModel with_parameters(CameraModel c, std::vector<double> const& v)
 }
 
 cv::Mat covariance_of(CameraModel const& camera, std::vector<BoardView> const& views,
-                      std::vector<Pose> const& poses)
+                      std::vector<gi::RigidPose> const& poses)
 {
     auto const values = parameters_of(camera);
     int const n = int(values.size());
@@ -180,8 +180,9 @@ cv::Mat covariance_of(CameraModel const& camera, std::vector<BoardView> const& v
             auto const moved = [&](double by) {
                 cv::Vec3d turn, shift;
                 (k < 3 ? turn : shift)[k % 3] = by;
-                Pose const d = pose_of(turn, shift);
-                return Pose{glm::normalize(d.rotation * poses[v].rotation), poses[v].position_m + d.position_m};
+                gi::RigidPose const d = pose_of(turn, shift);
+                return gi::RigidPose{poses[v].position + d.position,
+                                     glm::normalize(d.rotation * poses[v].rotation)};
             };
             fill(n + k, residuals(camera, moved(h), views[v]), residuals(camera, moved(-h), views[v]), h);
         }

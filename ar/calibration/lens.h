@@ -7,7 +7,7 @@ namespace ar {
 
 struct ViewResult {
     std::string name;
-    Pose camera_from_board;
+    gi::RigidPose camera_from_board;
     double rms_px = 0;
     std::vector<glm::dvec2> residuals_px; ///< observed minus projected, in the order of the view's points
     bool used = true;
@@ -51,7 +51,7 @@ std::vector<std::string> parameter_names(LensModel lens);
 
 /// Covariance of the parameters: CV_64F, parameters x parameters. @param poses one per view
 cv::Mat covariance_of(CameraModel const& camera, std::vector<BoardView> const& views,
-                      std::vector<Pose> const& poses);
+                      std::vector<gi::RigidPose> const& poses);
 
 /// Share of the cells of an 8 x 6 grid over the picture that have a point.
 double coverage_of(std::vector<BoardView> const& views, glm::ivec2 size_px);

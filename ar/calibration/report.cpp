@@ -77,7 +77,7 @@ std::string view_table(LensCalibration const& lens)
         rows.push_back({v.name, std::to_string(v.residuals_px.size()), fmt::format("{:.3f}", v.rms_px),
                         gi::HtmlCell::of(fmt::format("<div class=\"bar{}\" style=\"width:{:.0f}px\"></div>",
                                                      v.used ? "" : " out", 200 * v.rms_px / most)),
-                        fmt::format("{:.3f}", glm::length(v.camera_from_board.position_m)),
+                        fmt::format("{:.3f}", glm::length(v.camera_from_board.position)),
                         v.used ? "" : "left out: " + v.why});
     return gi::html_table({{"view", false, ""},
                            {"points", true, ""},
@@ -131,7 +131,7 @@ std::string lens_tables(CalibrationReport const& r)
            gi::html_table(
                {{"model", false, ""}, {"fitted, px", true, ""}, {"unseen views, px", true, ""}, {"", false, ""}},
                trials) +
-           "<p>" + gi::escaped(r.choice->why) + "</p>\n";
+           gi::html_paragraph(r.choice->why);
 }
 
 } // namespace
@@ -139,17 +139,18 @@ std::string lens_tables(CalibrationReport const& r)
 std::string to_html(CalibrationReport const& r)
 {
     auto const& c = r.lens.camera;
-    std::string const about = fmt::format(
-        "<p class=\"about\">{} x {} pixels, {}; {} of {} views; RMS reprojection error {:.3f} px.</p>\n",
-        c.size_px.x, c.size_px.y, name_of(c.lens), r.lens.used_views(), r.lens.views.size(), r.lens.rms_px);
+    std::string const about = gi::html_paragraph(
+        fmt::format("{} x {} pixels, {}; {} of {} views; RMS reprojection error {:.3f} px.", c.size_px.x,
+                    c.size_px.y, name_of(c.lens), r.lens.used_views(), r.lens.views.size(), r.lens.rms_px),
+        "about");
     std::string html =
         gi::html_section("Lens", lens_tables(r)) + gi::html_section("Residuals", residual_drawing(r)) +
         gi::html_section("Coverage", coverage_drawing(r)) + gi::html_section("Views", view_table(r.lens));
     if (r.photometry) html += gi::html_section("Response", curve_figure(*r.photometry));
     if (r.noise)
-        html += gi::html_section(
-            "Noise", fmt::format("<p>Variance of a unit: {:.3g} + {:.3g} unit; sigma at 0.18: {:.4f}.</p>\n",
-                                 r.noise->read, r.noise->photon, r.noise->sigma(0.18)));
+        html += gi::html_section("Noise", gi::html_paragraph(fmt::format(
+                                              "Variance of a unit: {:.3g} + {:.3g} unit; sigma at 0.18: {:.4f}.",
+                                              r.noise->read, r.noise->photon, r.noise->sigma(0.18))));
     return gi::html_page("Camera calibration", html, about + gi::html_cautions(r.lens.warnings));
 }
 

@@ -87,9 +87,10 @@ std::string colour_part(ColourFit const& fit, std::vector<cv::Vec3f> const& patc
     return gi::html_section(
         "Colour",
         gi::html_table({{"red", true, ""}, {"green", true, ""}, {"blue", true, ""}}, matrix) +
-            fmt::format("<p>Linear RGB of the camera's. ΔE (CIE 1976): mean {:.2f}, largest {:.2f}; without the "
-                        "matrix {:.2f}.</p>\n",
-                        fit.mean_delta_e, fit.largest_delta_e, fit.delta_e_before) +
+            gi::html_paragraph(
+                fmt::format("Linear RGB of the camera's. ΔE (CIE 1976): mean {:.2f}, largest {:.2f}; "
+                            "without the matrix {:.2f}.",
+                            fit.mean_delta_e, fit.largest_delta_e, fit.delta_e_before)) +
             gi::html_table({{"patch", true, ""}, {"chart", false, ""}, {"camera", false, ""}, {"ΔE", true, ""}},
                            rows));
 }

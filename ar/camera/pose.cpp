@@ -1,33 +1,15 @@
 #include "ar/camera/pose.h"
 
-#include "gi/core/rotation.h"
-
 #include <cmath>
 
 namespace ar {
 
-glm::dvec3 operator*(Pose const& a_from_b, glm::dvec3 point_b)
+gi::RigidPose pose_of(cv::Vec3d const& r, cv::Vec3d const& t)
 {
-    return a_from_b.rotation * point_b + a_from_b.position_m;
+    return {{t[0], t[1], t[2]}, gi::exp_rotation({r[0], r[1], r[2]})};
 }
 
-Pose operator*(Pose const& a_from_b, Pose const& b_from_c)
-{
-    return {glm::normalize(a_from_b.rotation * b_from_c.rotation), a_from_b * b_from_c.position_m};
-}
-
-Pose inverse(Pose const& a_from_b)
-{
-    glm::dquat const back = glm::conjugate(a_from_b.rotation);
-    return {back, -(back * a_from_b.position_m)};
-}
-
-Pose pose_of(cv::Vec3d const& r, cv::Vec3d const& t)
-{
-    return {gi::exp_rotation({r[0], r[1], r[2]}), {t[0], t[1], t[2]}};
-}
-
-cv::Vec3d rotation_vector(Pose const& p)
+cv::Vec3d rotation_vector(gi::RigidPose const& p)
 {
     glm::dvec3 const v = gi::log_rotation(p.rotation);
     return {v.x, v.y, v.z};

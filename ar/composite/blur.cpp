@@ -152,7 +152,8 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
     return out;
 }
 
-cv::Mat image_velocity(CameraModel const& camera, cv::Mat const& depth, Pose const& before, Pose const& after)
+cv::Mat image_velocity(CameraModel const& camera, cv::Mat const& depth, gi::RigidPose const& before,
+                       gi::RigidPose const& after)
 {
     if (camera.lens != LensModel::pinhole || depth.type() != CV_32FC1 ||
         depth.size() != cv::Size(camera.size_px.x, camera.size_px.y))
@@ -160,7 +161,7 @@ cv::Mat image_velocity(CameraModel const& camera, cv::Mat const& depth, Pose con
                              "rendered pictures are of pinholes",
                              "give the pinhole and the depth that are rendered");
     cv::Mat velocity(depth.size(), CV_32FC2);
-    Pose const before_from_after = inverse(before) * after;
+    gi::RigidPose const before_from_after = inverse(before) * after;
     velocity.forEach<cv::Vec2f>([&](cv::Vec2f& v, int const* at) {
         double const z = depth.at<float>(at[0], at[1]);
         glm::dvec3 const ray((at[1] - camera.cx) / camera.fx, (at[0] - camera.cy) / camera.fy, 1);

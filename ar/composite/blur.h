@@ -29,7 +29,8 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
 /// Motion of static surfaces in the picture between two camera poses (from `before` to `after`), at their pixels
 /// in `after`: CV_32FC2. @param depth  CV_32FC1, metres along the axis, 0 = infinitely far
 /// @param pinhole  must have the size of depth; @throws gi::InputError another lens or size
-cv::Mat image_velocity(CameraModel const& pinhole, cv::Mat const& depth, Pose const& world_from_camera_before,
-                       Pose const& world_from_camera_after);
+cv::Mat image_velocity(CameraModel const& pinhole, cv::Mat const& depth,
+                       gi::RigidPose const& world_from_camera_before,
+                       gi::RigidPose const& world_from_camera_after);
 
 } // namespace ar

@@ -66,10 +66,10 @@ Neighbourhood around(Added const& added, int radius)
 class PlaceBefore {
 public:
     /// @param still  take each pixel for the same as before
-    PlaceBefore(CameraModel const& camera, Pose const& before_from_now, bool still)
+    PlaceBefore(CameraModel const& camera, gi::RigidPose const& before_from_now, bool still)
         : camera_(camera),
           turn_(glm::mat3_cast(before_from_now.rotation)),
-          shift_(before_from_now.position_m),
+          shift_(before_from_now.position),
           still_(still)
     {
     }
@@ -91,9 +91,9 @@ private:
 };
 
 /// Approximate largest motion of pixels: by the rotation, and by the translation for the nearest surface.
-double motion_px(CameraModel const& camera, Pose const& before_from_now, cv::Mat const& depth)
+double motion_px(CameraModel const& camera, gi::RigidPose const& before_from_now, cv::Mat const& depth)
 {
-    double nearest_m = std::numeric_limits<double>::infinity(), shift_m = glm::length(before_from_now.position_m);
+    double nearest_m = std::numeric_limits<double>::infinity(), shift_m = glm::length(before_from_now.position);
     if (shift_m > 0)
         for (int y = 0; y < depth.rows; ++y)
             for (int x = 0; x < depth.cols; ++x)
@@ -122,12 +122,12 @@ TemporalFilter::TemporalFilter(CameraModel const& camera, TemporalSettings const
 
 void TemporalFilter::forget() { added_ = cv::Mat(); }
 
-RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const& depth, Pose const& pose,
+RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const& depth, gi::RigidPose const& pose,
                                         SceneChange change)
 {
     constexpr float kMostFrames = 256;
     constexpr double kStill_px = 0.02;
-    Pose const before_from_now = inverse(world_from_camera_) * pose;
+    gi::RigidPose const before_from_now = inverse(world_from_camera_) * pose;
     // History that is looked up between pixels again and again would be blurred.
     bool const same_view = !added_.empty() && motion_px(camera_, before_from_now, depth) < kStill_px;
     bool const is_still = change == SceneChange::none && same_view;

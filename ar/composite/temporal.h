@@ -46,7 +46,7 @@ public:
     /// @param depth   CV_32FC1, metres along the axis, of the visible surface (objects
     /// or proxies); 0 = infinitely far
     /// @return filtered pair with `without` and coverage unchanged. @throws gi::InputError wrong types or sizes
-    RenderedPair operator()(RenderedPair const& pair, cv::Mat const& depth, Pose const& world_from_camera,
+    RenderedPair operator()(RenderedPair const& pair, cv::Mat const& depth, gi::RigidPose const& world_from_camera,
                             SceneChange change = SceneChange::unknown);
     /// Discards the history; call after cuts and changes of exposure or scene.
     void forget();
@@ -57,7 +57,7 @@ private:
     TemporalSettings settings_;
     cv::Mat added_, coverage_, depth_; ///< of the previous frame; added_ empty = none
     cv::Mat frames_;                   ///< CV_32FC1: whose mean added_ is, since the last change
-    Pose world_from_camera_;
+    gi::RigidPose world_from_camera_;
     TemporalCounts counts_;
 };
 

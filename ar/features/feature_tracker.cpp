@@ -34,7 +34,7 @@ FeatureTracker::FeatureTracker(FeatureMap map, CameraModel const& camera, Featur
         for (Descriptor const& d : p.descriptors) std::memcpy(descriptors_.ptr(row++), d.data(), d.size());
 }
 
-PoseEstimate FeatureTracker::next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected,
+PoseEstimate FeatureTracker::next(double time_s, cv::Mat const& gray, std::optional<gi::RigidPose> const& expected,
                                   Sighting& seen, gi::StopRequest const* stop)
 {
     ++counts_.pictures;
@@ -77,7 +77,7 @@ PoseEstimate FeatureTracker::next(double time_s, cv::Mat const& gray, std::optio
     return e;
 }
 
-void FeatureTracker::follow(cv::Mat const& gray, std::optional<Pose> const& expected)
+void FeatureTracker::follow(cv::Mat const& gray, std::optional<gi::RigidPose> const& expected)
 {
     std::vector<glm::dvec2> pixels, guesses;
     for (Followed const& f : followed_) {
@@ -100,26 +100,26 @@ Sighting FeatureTracker::sighting() const
     Sighting s;
     for (Followed const& f : followed_) {
         MapPoint const& p = map_.points[std::size_t(f.point)];
-        double const away_m = last_ ? std::max(0.01, glm::length(last_->position_m - p.world_m)) : 1;
+        double const away_m = last_ ? std::max(0.01, glm::length(last_->position - p.world_m)) : 1;
         s.points.push_back({p.world_m, f.pixel, f.point, std::hypot(f.sigma_px, p.sigma_m * camera_.fx / away_m)});
     }
     s.markers_seen = int(followed_.size());
     return s;
 }
 
-PoseEstimate FeatureTracker::estimate(std::optional<Pose> const& expected, Sighting& seen)
+PoseEstimate FeatureTracker::estimate(std::optional<gi::RigidPose> const& expected, Sighting& seen)
 {
     seen = sighting();
     return estimate_pose(seen, camera_, expected);
 }
 
 /// Recognises features near where the pose predicts them: corrects those that are followed, and adds others.
-std::size_t FeatureTracker::look(PictureFeatures const& features, Pose const& world_from_camera)
+std::size_t FeatureTracker::look(PictureFeatures const& features, gi::RigidPose const& world_from_camera)
 {
     int const columns = camera_.size_px.x / kGrid_px + 1, rows = camera_.size_px.y / kGrid_px + 1;
     std::vector<std::vector<std::pair<int, glm::dvec2>>> cells(std::size_t(columns) * std::size_t(rows));
     auto const cell_of = [](double v, int n) { return std::clamp(int(v / kGrid_px), 0, n - 1); };
-    Pose const camera_from_world = inverse(world_from_camera);
+    gi::RigidPose const camera_from_world = inverse(world_from_camera);
     for (std::size_t k = 0; k < map_.points.size(); ++k) {
         auto const at = project(camera_, camera_from_world * map_.points[k].world_m);
         if (!at || at->x < 0 || at->y < 0 || at->x >= camera_.size_px.x || at->y >= camera_.size_px.y) continue;

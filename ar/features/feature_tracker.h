@@ -32,8 +32,8 @@ public:
     /// @param gray  CV_8UC1 of the camera's size  @param expected  pose, if it can be predicted
     /// @param[out] seen  the map's points in the picture
     /// @param stop  null = none; after a request, the map is not searched again
-    PoseEstimate next(double time_s, cv::Mat const& gray, std::optional<Pose> const& expected, Sighting& seen,
-                      gi::StopRequest const* stop = nullptr);
+    PoseEstimate next(double time_s, cv::Mat const& gray, std::optional<gi::RigidPose> const& expected,
+                      Sighting& seen, gi::StopRequest const* stop = nullptr);
     /// Time since features were last recognised in the map instead of tracked from the previous frame (s).
     double flow_s() const { return flow_s_; }
     FeatureTrackerCounts const& counts() const { return counts_; }
@@ -45,12 +45,12 @@ private:
         double sigma_px; ///< of the recognised feature; grows as it is followed
     };
 
-    void follow(cv::Mat const& gray, std::optional<Pose> const& expected);
+    void follow(cv::Mat const& gray, std::optional<gi::RigidPose> const& expected);
     /// Number of features that were recognised.
-    std::size_t look(PictureFeatures const& features, Pose const& world_from_camera);
+    std::size_t look(PictureFeatures const& features, gi::RigidPose const& world_from_camera);
     bool relocate(PictureFeatures const& features, gi::StopRequest const* stop);
     Sighting sighting() const;
-    PoseEstimate estimate(std::optional<Pose> const& expected, Sighting& seen);
+    PoseEstimate estimate(std::optional<gi::RigidPose> const& expected, Sighting& seen);
 
     FeatureMap map_;
     CameraModel camera_;
@@ -59,7 +59,7 @@ private:
     std::vector<int> point_of_; ///< of each row
     Flow flow_;
     std::vector<Followed> followed_;
-    std::optional<Pose> last_; ///< of the picture before
+    std::optional<gi::RigidPose> last_; ///< of the picture before
     double recognised_s_ = 0, flow_s_ = 0;
     int since_look_ = 0;
     FeatureTrackerCounts counts_;

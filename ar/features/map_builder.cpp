@@ -15,12 +15,12 @@ constexpr int kMergedBits = 60;
 
 } // namespace
 
-bool MapBuilder::has_moved(Pose const& a, Pose const& b, double m, double deg) const
+bool MapBuilder::has_moved(gi::RigidPose const& a, gi::RigidPose const& b, double m, double deg) const
 {
-    return glm::length(a.position_m - b.position_m) > m || angle_between_deg(a.rotation, b.rotation) > deg;
+    return glm::length(a.position - b.position) > m || angle_between_deg(a.rotation, b.rotation) > deg;
 }
 
-void MapBuilder::add(cv::Mat const& gray, Pose const& world_from_camera)
+void MapBuilder::add(cv::Mat const& gray, gi::RigidPose const& world_from_camera)
 {
     ++counts_.pictures;
     follow(gray, world_from_camera);
@@ -37,7 +37,7 @@ void MapBuilder::skip()
     key_.reset();
 }
 
-void MapBuilder::follow(cv::Mat const& gray, Pose const& world_from_camera)
+void MapBuilder::follow(cv::Mat const& gray, gi::RigidPose const& world_from_camera)
 {
     std::vector<glm::dvec2> pixels;
     for (Track const& t : tracks_) pixels.push_back(t.pixel);
@@ -59,7 +59,7 @@ void MapBuilder::follow(cv::Mat const& gray, Pose const& world_from_camera)
     tracks_ = std::move(going_on);
 }
 
-void MapBuilder::look(cv::Mat const& gray, Pose const& world_from_camera)
+void MapBuilder::look(cv::Mat const& gray, gi::RigidPose const& world_from_camera)
 {
     PictureFeatures const features = find_features(gray, settings_.features);
     std::size_t const known = tracks_.size();
@@ -100,7 +100,7 @@ std::optional<MapPoint> MapBuilder::triangulated(Track const& track)
         rays.push_back(ray);
         glm::dmat3 const across = glm::dmat3(1) - glm::outerProduct(ray, ray);
         sum += across;
-        right += across * s.world_from_camera.position_m;
+        right += across * s.world_from_camera.position;
     }
     double widest = 1;
     for (std::size_t i = 0; i < rays.size(); ++i)
@@ -118,11 +118,11 @@ std::optional<MapPoint> MapBuilder::triangulated(Track const& track)
         double square = 0;
         std::size_t n = 0;
         for (Sighted const& s : track.sightings) {
-            Pose const camera_from_world = inverse(s.world_from_camera);
+            gi::RigidPose const camera_from_world = inverse(s.world_from_camera);
             auto const at = project(camera_, camera_from_world * point);
             if (!at) continue;
             glm::dvec2 const miss = *at - s.pixel;
-            double const step = 1e-5 * glm::length(s.world_from_camera.position_m - point);
+            double const step = 1e-5 * glm::length(s.world_from_camera.position - point);
             glm::dvec3 jx(0), jy(0);
             bool whole = true;
             for (int c = 0; c < 3; ++c) {
@@ -185,7 +185,7 @@ void MapBuilder::end(Track const& t)
 {
     auto p = triangulated(t);
     if (!p) return;
-    double const away_m = glm::length(t.sightings.front().world_from_camera.position_m - p->world_m);
+    double const away_m = glm::length(t.sightings.front().world_from_camera.position - p->world_m);
     if (away_m > 0 && std::isfinite(away_m) && p->sigma_m > 0 && p->sigma_m <= 0.05 * away_m)
         add_merged(std::move(*p), away_m);
     else

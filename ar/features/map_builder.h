@@ -34,7 +34,7 @@ public:
     }
 
     /// Pictures must follow each other as in a video. @param gray  CV_8UC1 of the camera's size
-    void add(cv::Mat const& gray, Pose const& world_from_camera);
+    void add(cv::Mat const& gray, gi::RigidPose const& world_from_camera);
     /// A picture without a known pose: features are lost.
     void skip();
     /// The map of all pictures so far; features that are still followed are lost, too.
@@ -43,7 +43,7 @@ public:
 
 private:
     struct Sighted {
-        Pose world_from_camera;
+        gi::RigidPose world_from_camera;
         glm::dvec2 pixel;
     };
     struct Track {
@@ -52,9 +52,9 @@ private:
         std::vector<Descriptor> descriptors;
     };
 
-    bool has_moved(Pose const& a, Pose const& b, double m, double deg) const;
-    void follow(cv::Mat const& gray, Pose const& world_from_camera);
-    void look(cv::Mat const& gray, Pose const& world_from_camera);
+    bool has_moved(gi::RigidPose const& a, gi::RigidPose const& b, double m, double deg) const;
+    void follow(cv::Mat const& gray, gi::RigidPose const& world_from_camera);
+    void look(cv::Mat const& gray, gi::RigidPose const& world_from_camera);
     void end(Track const& track);
     std::optional<MapPoint> triangulated(Track const& track);
     void add_merged(MapPoint point, double distance_m);
@@ -65,7 +65,7 @@ private:
     std::vector<Track> tracks_;
     FeatureMap map_;
     PointGrid grid_; ///< of its points
-    std::optional<Pose> key_;
+    std::optional<gi::RigidPose> key_;
     MapBuilderCounts counts_;
 };
 

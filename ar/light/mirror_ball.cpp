@@ -25,7 +25,8 @@ double reflecting_angle(double s, double toward)
 
 } // namespace
 
-std::optional<BallSight> predicted_ball(Pose const& world_from_camera, glm::dvec3 centre_m, double radius_m)
+std::optional<BallSight> predicted_ball(gi::RigidPose const& world_from_camera, glm::dvec3 centre_m,
+                                        double radius_m)
 {
     glm::dvec3 const centre = inverse(world_from_camera) * centre_m;
     double const distance = glm::length(centre);

@@ -23,7 +23,8 @@ struct BallSight {
 };
 
 /// Cone of a ball with known radius and position; nothing if it is behind the camera or contains it.
-std::optional<BallSight> predicted_ball(Pose const& world_from_camera, glm::dvec3 centre_m, double radius_m);
+std::optional<BallSight> predicted_ball(gi::RigidPose const& world_from_camera, glm::dvec3 centre_m,
+                                        double radius_m);
 /// The ball whose rim is approximately the given circle in the picture.
 /// @throws gi::InputError if the radius is not positive, or the circle is not in the picture
 BallSight ball_of_circle(CameraModel const& camera, glm::dvec2 centre_px, double radius_px);

@@ -95,7 +95,7 @@ Found find(cv::Mat const& gray, cv::Rect part, MarkerMap const& map, DetectorSet
         bool const is_board = thing >= lone && thing < lone + boards;
         if (is_board && add_inner_corners(s, gray, map.boards[std::size_t(thing - lone)], thing, matches))
             continue;
-        Pose const world = world_from_thing(map, thing);
+        gi::RigidPose const world = world_from_thing(map, thing);
         for (Match const& m : matches)
             for (std::size_t i = 0; i < 4; ++i)
                 s.points.push_back(

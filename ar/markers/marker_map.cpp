@@ -46,13 +46,13 @@ public:
             refuse(fmt::format("{} is {}", what, v), fmt::format("{} to {} are possible", least, kMostSquares),
                    "write how many are printed");
     }
-    void pose(std::string const& what, Pose const& p) const
+    void pose(std::string const& what, gi::RigidPose const& p) const
     {
         if (!(std::abs(glm::length(p.rotation) - 1) < 1e-6))
             refuse(what + " has a rotation that is none", "the length of its quaternion is not 1", "normalise it");
         for (int i = 0; i < 3; ++i)
-            if (!(std::abs(p.position_m[i]) <= kLongest_m))
-                refuse(fmt::format("{} is {} m from the origin", what, p.position_m[i]),
+            if (!(std::abs(p.position[i]) <= kLongest_m))
+                refuse(fmt::format("{} is {} m from the origin", what, p.position[i]),
                        fmt::format("at most {:g} m are possible", kLongest_m), "write metres");
     }
     void identifiers(std::string const& what, std::string const& dictionary, int first, int count)
@@ -95,7 +95,7 @@ std::string describe(MarkerMap const& map, int thing)
     return fmt::format("grid {} ({} x {} markers)", i + 1, map.grids.at(i).markers_x, map.grids.at(i).markers_y);
 }
 
-Pose world_from_thing(MarkerMap const& map, int thing)
+gi::RigidPose world_from_thing(MarkerMap const& map, int thing)
 {
     auto i = std::size_t(thing);
     if (i < map.markers.size()) return map.markers[i].world_from_marker;

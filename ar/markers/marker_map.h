@@ -20,7 +20,7 @@ struct Marker {
     std::string dictionary; ///< as OpenCV names it: DICT_4X4_50, DICT_APRILTAG_36h11, ...
     int id = 0;
     double side_m = 0; ///< of the black square with its border
-    Pose world_from_marker;
+    gi::RigidPose world_from_marker;
 
     friend bool operator==(Marker const&, Marker const&) = default;
 };
@@ -33,7 +33,7 @@ struct CharucoBoard {
     int first_id = 0;
     /// False: the upper left square is black. True: it is white if squares_y is even, as before OpenCV 4.6.
     bool legacy_pattern = false;
-    Pose world_from_board;
+    gi::RigidPose world_from_board;
 
     friend bool operator==(CharucoBoard const&, CharucoBoard const&) = default;
 };
@@ -44,7 +44,7 @@ struct MarkerGrid {
     double marker_m = 0, gap_m = 0; ///< side of a marker; white between two
     std::string dictionary;
     int first_id = 0;
-    Pose world_from_grid;
+    gi::RigidPose world_from_grid;
 
     friend bool operator==(MarkerGrid const&, MarkerGrid const&) = default;
 };
@@ -61,7 +61,7 @@ struct MarkerMap {
 int count_of(MarkerMap const& map);
 /// "marker 7 of DICT_4X4_50", "board 1 (7 x 5 squares)", "grid 1 (2 x 3 markers)".
 std::string describe(MarkerMap const& map, int thing);
-Pose world_from_thing(MarkerMap const& map, int thing);
+gi::RigidPose world_from_thing(MarkerMap const& map, int thing);
 
 /// All names of dictionaries.
 std::vector<std::string> const& dictionary_names();

@@ -13,12 +13,12 @@ namespace {
 constexpr double kFar_m = 1000;
 constexpr int kMostIds = 100000;
 
-Pose read_pose(gi::Yaml const& y)
+gi::RigidPose read_pose(gi::Yaml const& y)
 {
-    Pose p;
+    gi::RigidPose p;
     if (y.has("position_m")) {
         auto const v = y.at("position_m").numbers(3, -kFar_m, kFar_m);
-        p.position_m = {v[0], v[1], v[2]};
+        p.position = {v[0], v[1], v[2]};
     }
     if (y.has("rotation_deg")) {
         gi::Yaml const r = y.at("rotation_deg");
@@ -68,11 +68,11 @@ void add(std::vector<Thing>& things, Thing thing, MarkerMap const& map, gi::Yaml
     check(map, fmt::format("{}:{}:{}", at.file, at.line, at.column));
 }
 
-std::string text_of(Pose const& p)
+std::string text_of(gi::RigidPose const& p)
 {
     std::string s;
-    if (p.position_m != glm::dvec3(0))
-        s += fmt::format(", position_m: [{}, {}, {}]", p.position_m.x, p.position_m.y, p.position_m.z);
+    if (p.position != glm::dvec3(0))
+        s += fmt::format(", position_m: [{}, {}, {}]", p.position.x, p.position.y, p.position.z);
     glm::dquat const q = p.rotation;
     if (q != glm::dquat(1, 0, 0, 0)) s += fmt::format(", rotation_xyzw: [{}, {}, {}, {}]", q.x, q.y, q.z, q.w);
     return s;

@@ -5,14 +5,14 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <stdexcept>
 
-namespace viewer {
+namespace ar {
 
-gi::Camera gi_camera(ar::CameraModel const& c, ar::Pose const& world_from_camera)
+gi::Camera gi_camera(CameraModel const& c, gi::RigidPose const& world_from_camera)
 {
     gi::Camera camera;
     camera.off_axis = {(-0.5 - c.cx) / c.fx, (c.size_px.x - 0.5 - c.cx) / c.fx, -(c.size_px.y - 0.5 - c.cy) / c.fy,
                        (c.cy + 0.5) / c.fy};
-    camera.world_from_camera = glm::translate(gi::dmat4(1), world_from_camera.position_m) *
+    camera.world_from_camera = glm::translate(gi::dmat4(1), world_from_camera.position) *
                                glm::mat4_cast(world_from_camera.rotation) *
                                glm::scale(gi::dmat4(1), gi::dvec3(1, -1, -1));
     return camera;
@@ -42,4 +42,4 @@ gi::EnvironmentMap environment_of(cv::Mat const& lat_long)
     return map;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -9,11 +9,11 @@
 
 #include <opencv2/core.hpp>
 
-namespace viewer {
+namespace ar {
 
 /// Converts a pinhole camera (distortion is ignored) with its pose. gi's cameras look along -z
 /// with y up; ar's along z with y down. Pictures must have the camera's size.
-gi::Camera gi_camera(ar::CameraModel const& pinhole, ar::Pose const& world_from_camera);
+gi::Camera gi_camera(CameraModel const& pinhole, gi::RigidPose const& world_from_camera);
 
 /// A copy of a layer: CV_32FC3 or CV_32FC1. @throws std::invalid_argument no such layer
 cv::Mat matrix_of(gi::Picture const& picture, std::string const& layer);
@@ -22,4 +22,4 @@ cv::Mat matrix_of(gi::Picture const& picture, std::string const& layer);
 /// Negative and non-finite values become 0.
 gi::EnvironmentMap environment_of(cv::Mat const& lat_long);
 
-} // namespace viewer
+} // namespace ar

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace viewer {
+namespace ar {
 
 struct CameraBlurCounts {
     std::size_t measured = 0;    ///< frames with usable edges
@@ -20,32 +20,32 @@ struct CameraBlurCounts {
 
 class CameraBlur {
 public:
-    CameraBlur(ar::MarkerMap const& markers, ar::CameraModel const& camera);
+    CameraBlur(MarkerMap const& markers, CameraModel const& camera);
 
     /// Measures a frame. @param radiance  CV_32FC3  @param exposure_s  0 = unknown
-    void follow(cv::Mat const& radiance, ar::Pose const& world_from_camera, double time_s, double exposure_s);
+    void follow(cv::Mat const& radiance, gi::RigidPose const& world_from_camera, double time_s, double exposure_s);
     /// Call for frames without a pose: the motion to the next frame is unknown.
     void forget() { before_.reset(); }
 
     /// Standard deviation of the lens blur in camera pixels, smoothed over frames; nothing if never measured.
     std::optional<double> sigma_px() const { return sigma_px_; }
     /// Camera pose when this frame's shutter opened; nothing if unknown or if it moved by less than a pixel.
-    std::optional<ar::Pose> shutter_opened() const { return opened_; }
+    std::optional<gi::RigidPose> shutter_opened() const { return opened_; }
     CameraBlurCounts const& counts() const { return counts_; }
 
 private:
-    std::vector<ar::EdgeSegment> edges(ar::Pose const& world_from_camera, double& shortest_px) const;
+    std::vector<EdgeSegment> edges(gi::RigidPose const& world_from_camera, double& shortest_px) const;
 
-    ar::CameraModel camera_;
+    CameraModel camera_;
     std::vector<std::array<glm::dvec3, 4>> markers_; ///< corners in the world
     struct Before {
-        ar::Pose world_from_camera;
+        gi::RigidPose world_from_camera;
         double time_s;
     };
     std::optional<Before> before_;
-    std::optional<ar::Pose> opened_;
+    std::optional<gi::RigidPose> opened_;
     std::optional<double> sigma_px_;
     CameraBlurCounts counts_;
 };
 
-} // namespace viewer
+} // namespace ar

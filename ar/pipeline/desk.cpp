@@ -7,7 +7,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 using gi::vec2, gi::vec3, gi::vec4;
@@ -162,4 +162,4 @@ gi::Scene generate_statue()
     return scene;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -6,7 +6,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace viewer {
+namespace ar {
 
 /// A sheet of paper lying on the table, its upper edge away from the camera.
 struct PaperOnTable {
@@ -32,4 +32,4 @@ gi::Scene generate_desk(DeskPart part, PaperOnTable const& paper, TableCloth clo
 /// A figure 0.36 m tall that walks in place, and a red ball; both stand on y = 0.
 gi::Scene generate_statue();
 
-} // namespace viewer
+} // namespace ar

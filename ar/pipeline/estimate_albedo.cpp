@@ -10,28 +10,28 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr float kLeastAlbedo = 0.02f; ///< lower limit for rendering: the light is divided by it
 
 /// A view and its camera, which stay the same in all iterations except for `white`.
 struct Prepared {
-    ar::AlbedoView view;
+    AlbedoView view;
     gi::Camera camera;
 };
 
 class Estimator {
 public:
-    Estimator(RealScene real, ArCamera const& camera, EstimateSettings const& settings,
+    Estimator(RealScene real, CalibratedCamera const& camera, EstimateSettings const& settings,
               gi::StopRequest const& stop, gi::Report& report)
         : real_(std::move(real)),
           camera_(camera),
           settings_(settings),
           stop_(stop),
           report_(report),
-          small_(ar::scaled(camera.model, small_size(camera.model.size_px, settings.resolution))),
-          warp_(small_, ar::covering_pinhole(small_))
+          small_(scaled(camera.model, small_size(camera.model.size_px, settings.resolution))),
+          warp_(small_, covering_pinhole(small_))
     {
         patch_of_material_.assign(real_.scene.materials.size() + 1, -1);
         for (std::size_t k = 0; k < real_.patches.size(); ++k) {
@@ -59,17 +59,17 @@ public:
             p.view.surface = nearest(patches, -1);
             p.view.place = warp_.nearest(s.place);
             cv::Size const size(small_.size_px.x, small_.size_px.y);
-            cv::resize(ar::radiance_of(f.rgb, camera_.photometry, f.exposure), p.view.radiance, size, 0, 0,
+            cv::resize(radiance_of(f.rgb, camera_.photometry, f.exposure), p.view.radiance, size, 0, 0,
                        cv::INTER_AREA);
             cv::Mat clipped;
-            cv::resize(ar::is_clipped(f.rgb), clipped, size, 0, 0, cv::INTER_AREA);
+            cv::resize(is_clipped(f.rgb), clipped, size, 0, 0, cv::INTER_AREA);
             p.view.clipped = clipped > 0;
             p.view.weight = cv::Mat(size, CV_32FC1, cv::Scalar(f.confidence));
             prepared_.push_back(std::move(p));
         }
     }
 
-    std::vector<ar::AlbedoView> render(std::vector<cv::Vec3f> const& albedos)
+    std::vector<AlbedoView> render(std::vector<cv::Vec3f> const& albedos)
     {
         std::vector<cv::Vec3f> rendered = albedos;
         for (std::size_t k = 0; k < albedos.size(); ++k) {
@@ -78,12 +78,12 @@ public:
                                                                            rendered[k][2]};
         }
         gi::World const world = build();
-        std::vector<ar::AlbedoView> views;
+        std::vector<AlbedoView> views;
         for (std::size_t i = 0; i < prepared_.size(); ++i) {
-            ar::AlbedoView view = prepared_[i].view;
-            double const begun_s = ar::steady_now_s();
+            AlbedoView view = prepared_[i].view;
+            double const begun_s = steady_now_s();
             view.white = warp_.smooth(color(world, prepared_[i].camera, i));
-            if (double const each_s = ar::steady_now_s() - begun_s; !std::exchange(is_told_, true)) {
+            if (double const each_s = steady_now_s() - begun_s; !std::exchange(is_told_, true)) {
                 std::size_t const n = prepared_.size();
                 gi::say_estimate(
                     "albedo", each_s * double(n) * settings_.most_turns,
@@ -150,12 +150,12 @@ private:
 
     RealScene real_;
     std::shared_ptr<gi::EnvironmentMap const> map_;
-    ArCamera const& camera_;
+    CalibratedCamera const& camera_;
     EstimateSettings const& settings_;
     gi::StopRequest const& stop_;
     gi::Report& report_;
-    ar::CameraModel small_;
-    ar::Warp warp_;
+    CameraModel small_;
+    Warp warp_;
     std::vector<int> patch_of_material_;
     std::vector<Prepared> prepared_;
     bool is_told_ = false; ///< how long it will take
@@ -173,7 +173,7 @@ gi::dvec3 vector_of(cv::Vec3f const& v) { return {v[0], v[1], v[2]}; }
 } // namespace
 
 AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentMap const> light,
-                                ArCamera const& camera, std::span<PosedFrame const> frames,
+                                CalibratedCamera const& camera, std::span<PosedFrame const> frames,
                                 EstimateSettings const& settings, gi::StopRequest const& stop, gi::Report& report)
 {
     if (real.patches.empty())
@@ -186,18 +186,18 @@ AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentM
     estimator.light(std::move(light));
     estimator.prepare(frames);
     auto const& patches = estimator.patches();
-    std::vector<ar::AlbedoView> views;
+    std::vector<AlbedoView> views;
     AlbedoEstimate out;
-    out.solution = ar::solve_albedo(
+    out.solution = solve_albedo(
         [&](std::vector<cv::Vec3f> const& albedos) { return views = estimator.render(albedos); },
         int(patches.size()), settings.fit, {0.5f, 0.5f, 0.5f}, settings.tolerance, settings.most_turns);
     for (std::size_t k = 0; k < patches.size(); ++k) {
-        ar::PatchAlbedo const& found = out.solution.fit.patches[k];
+        PatchAlbedo const& found = out.solution.fit.patches[k];
         out.entries.push_back(
             {patches[k].name, vector_of(found.albedo), vector_of(found.spread), found.samples, {}});
         out.textures.emplace_back();
         if (patches[k].texels == 0 || found.samples == 0) continue;
-        ar::AlbedoTexture const t = ar::fit_texture(views, int(k), texture_size(patches[k]), found, settings.fit);
+        AlbedoTexture const t = fit_texture(views, int(k), texture_size(patches[k]), found, settings.fit);
         out.textures.back() = t.albedo;
         out.texels += t.albedo.total();
         out.filled += t.filled;
@@ -206,4 +206,4 @@ AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentM
     return out;
 }
 
-} // namespace viewer
+} // namespace ar

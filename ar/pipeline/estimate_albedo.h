@@ -8,7 +8,7 @@
 #include "ar/scene/real_scene.h"
 #include "gi/core/progress.h"
 
-namespace viewer {
+namespace ar {
 
 struct EstimateSettings {
     double resolution = 0.5;  ///< compared pixels per camera pixel, in each direction
@@ -16,21 +16,21 @@ struct EstimateSettings {
     int bounces = 6;
     int most_turns = 8; ///< maximum number of alternations of rendering and fitting
     float tolerance = 2e-3f;
-    ar::AlbedoSettings fit;
+    AlbedoSettings fit;
 };
 
 struct AlbedoEstimate {
     std::vector<AlbedoEntry> entries; ///< one per patch; `texture` is left empty
     std::vector<cv::Mat> textures;    ///< one per patch: CV_32FC3, linear, upper row first; empty = none
-    ar::AlbedoSolution solution;
-    std::size_t filled = 0, texels = 0, outside = 0; ///< over all textures, see ar::AlbedoTexture
+    AlbedoSolution solution;
+    std::size_t filled = 0, texels = 0, outside = 0; ///< over all textures, see AlbedoTexture
 };
 
 /// @param real   as from `model_of`, with its lights
 /// @param light  environment map in the world's frame; null = none
 /// @throws gi::InputError nothing to estimate, no light, no frame
 AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentMap const> light,
-                                ArCamera const& camera, std::span<PosedFrame const> frames,
+                                CalibratedCamera const& camera, std::span<PosedFrame const> frames,
                                 EstimateSettings const& settings, gi::StopRequest const& stop, gi::Report& report);
 
-} // namespace viewer
+} // namespace ar

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 /// Triangles first..end - 1 have no area any more, and are nowhere but at one point.
@@ -121,4 +121,4 @@ FirstSurface SurfaceView::surface_at(SurfaceRaster const& raster, gi::NearestTex
     return {p.frame.normal, gi::albedo(p.bsdf), depth_m};
 }
 
-} // namespace viewer
+} // namespace ar

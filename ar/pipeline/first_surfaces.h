@@ -7,7 +7,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace viewer {
+namespace ar {
 
 /// Surfaces to include in a picture.
 enum class Surfaces {
@@ -72,4 +72,4 @@ private:
     gi::CutOuts cut_outs_;
 };
 
-} // namespace viewer
+} // namespace ar

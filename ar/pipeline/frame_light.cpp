@@ -14,7 +14,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr int kTurns = 5;             ///< of light and albedos
@@ -27,11 +27,11 @@ constexpr double kScaleSigma = 0.5;   ///< relative, where no albedo is known
 constexpr float kUndetermined = 0.2f;
 
 /// Light of the surfaces from lights that the model contains itself.
-std::vector<cv::Mat> own_light(gi::World const& world, ar::CameraModel const& camera,
+std::vector<cv::Mat> own_light(gi::World const& world, CameraModel const& camera,
                                std::span<PosedFrame const> frames, gi::StopRequest const& stop, gi::Report& report)
 {
     if (world.lights.empty() && world.emitters.empty()) return {};
-    ar::Warp const warp(camera, ar::covering_pinhole(camera));
+    Warp const warp(camera, covering_pinhole(camera));
     std::vector<cv::Mat> out;
     for (PosedFrame const& f : frames) {
         gi::RenderSettings r;
@@ -59,7 +59,7 @@ public:
         }
     }
 
-    FrameLight run(gi::World const& world, ar::CameraModel const& camera, ar::Photometry const& photometry,
+    FrameLight run(gi::World const& world, CameraModel const& camera, Photometry const& photometry,
                    std::span<PosedFrame const> frames, std::vector<cv::Mat> const& own)
     {
         pixels_ = light_pixels(world, transfer_, basis_, camera, photometry, frames, own, patch_of_material_,
@@ -88,7 +88,7 @@ private:
     enum class Rows { all, known_albedo };
     enum class Lamps { all, one }; ///< one, sooner found, while albedos change
 
-    ar::LightFit fit(Rows which, Lamps lamps)
+    LightFit fit(Rows which, Lamps lamps)
     {
         used_.clear();
         std::vector<ReceivingPoint> points;
@@ -124,7 +124,7 @@ private:
         rows_.of_disc = [this, points](glm::dvec3 towards, double half_angle_rad) {
             return transfer_.of_disc(points, towards, half_angle_rad);
         };
-        ar::LightFitSettings settings = settings_.fit;
+        LightFitSettings settings = settings_.fit;
         // Light found on few surfaces only may be a wrong albedo instead.
         if (any_unknown_) {
             settings.least_lit = std::max(settings.least_lit, kLeastLit);
@@ -134,11 +134,11 @@ private:
             settings.most_lamps = std::min(settings.most_lamps, 1);
             settings.candidates = std::min(settings.candidates, 300);
         }
-        return ar::fit_light(basis_, rows_, settings);
+        return fit_light(basis_, rows_, settings);
     }
 
     /// The albedo of each patch as the median of what its pixels reflect over what the fit gives them.
-    void fit_albedos(ar::LightFit const& light)
+    void fit_albedos(LightFit const& light)
     {
         std::vector<ReceivingPoint> points;
         for (LightPixel const& p : pixels_.surfaces) points.push_back(p.point);
@@ -148,7 +148,7 @@ private:
             whole_.seen = pixels_.seen;
         }
         std::vector<std::vector<float>> lamps;
-        for (ar::FittedLamp const& l : light.lamps)
+        for (FittedLamp const& l : light.lamps)
             lamps.push_back(transfer_.of_disc(points, l.direction, l.half_angle_rad));
         std::vector<std::array<std::vector<double>, 3>> ratios(out_.albedos.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -201,7 +201,7 @@ private:
 
     void finish()
     {
-        out_.map = ar::map_of(basis_, out_.fit, settings_.size);
+        out_.map = map_of(basis_, out_.fit, settings_.size);
         cv::Mat known(basis_.count(), 1, CV_32FC1);
         for (int k = 0; k < basis_.count(); ++k) {
             known.at<float>(k) = out_.fit.known[std::size_t(k)];
@@ -218,14 +218,14 @@ private:
             for (int i = 0; i < settings_.size.width; ++i) {
                 float const w = weight.at<float>(j, i);
                 if (!(w > 0)) continue;
-                out_.seen_share += double(w) * ar::texel_sr(settings_.size, j) / (4 * std::numbers::pi);
+                out_.seen_share += double(w) * texel_sr(settings_.size, j) / (4 * std::numbers::pi);
                 if (w < 0.8f) continue;
                 auto& to = out_.map.at<cv::Vec3f>(j, i);
                 for (int c = 0; c < 3; ++c) // a clipped lamp stays as bright as its shading says
-                    to[c] = pixels_.seen[std::size_t(basis_.nearest(ar::texel_direction(settings_.size, i, j)))]
-                                    .clipped
-                                ? std::max(to[c], seen.at<cv::Vec3f>(j, i)[c])
-                                : seen.at<cv::Vec3f>(j, i)[c];
+                    to[c] =
+                        pixels_.seen[std::size_t(basis_.nearest(texel_direction(settings_.size, i, j)))].clipped
+                            ? std::max(to[c], seen.at<cv::Vec3f>(j, i)[c])
+                            : seen.at<cv::Vec3f>(j, i)[c];
                 out_.known.at<float>(j, i) = std::max(out_.known.at<float>(j, i), w);
             }
         out_.faces = {{{"+x", {1, 0, 0}, {}, 0},
@@ -235,10 +235,10 @@ private:
                        {"+z", {0, 0, 1}, {}, 0},
                        {"-z", {0, 0, -1}, {}, 0}}};
         for (FrameLight::Face& f : out_.faces) {
-            f.irradiance = ar::irradiance_exact(out_.map, f.normal);
+            f.irradiance = irradiance_exact(out_.map, f.normal);
             double const all = 0.2126 * f.irradiance[0] + 0.7152 * f.irradiance[1] + 0.0722 * f.irradiance[2];
             if (all > 0)
-                f.sigma = std::hypot(ar::irradiance_sigma(basis_, out_.fit, f.normal) / all,
+                f.sigma = std::hypot(irradiance_sigma(basis_, out_.fit, f.normal) / all,
                                      any_unknown_ ? std::max(settings_.common_sigma, kUnknownSigma)
                                                   : settings_.common_sigma,
                                      out_.scale_is_known ? 0 : kScaleSigma);
@@ -246,20 +246,20 @@ private:
     }
 
     FrameLightSettings const& settings_;
-    ar::LightBasis basis_;
+    LightBasis basis_;
     LightTransfer transfer_;
     std::vector<int> patch_of_material_;
     LightPixels pixels_;
     bool any_unknown_ = false;
     std::vector<double> spreads_;   ///< per patch: relative, of its pixels about its albedo
     std::vector<std::size_t> used_; ///< of the pixels, those of the rows
-    ar::LightRows rows_, whole_;
+    LightRows rows_, whole_;
     FrameLight out_;
 };
 
 } // namespace
 
-FrameLight estimate_light(RealScene real, ar::CameraModel const& camera, ar::Photometry const& photometry,
+FrameLight estimate_light(RealScene real, CameraModel const& camera, Photometry const& photometry,
                           std::span<PosedFrame const> frames, FrameLightSettings const& settings,
                           gi::StopRequest const& stop, gi::Report& report)
 {
@@ -278,4 +278,4 @@ FrameLight estimate_light(RealScene real, ar::CameraModel const& camera, ar::Pho
     return LightEstimator(world, real, settings).run(world, camera, photometry, frames, own);
 }
 
-} // namespace viewer
+} // namespace ar

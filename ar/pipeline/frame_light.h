@@ -14,7 +14,7 @@
 
 #include <span>
 
-namespace viewer {
+namespace ar {
 
 struct FrameLightSettings {
     int directions = 256;       ///< of the environment
@@ -23,7 +23,7 @@ struct FrameLightSettings {
     double mean_albedo = 0.4;   ///< prior, where no albedo is known (grey world)
     double model_sigma = 0.03;  ///< relative, of a sample: geometry, albedo, light from near
     double common_sigma = 0.03; ///< relative, of all samples alike: albedos and response of the camera
-    ar::LightFitSettings fit;
+    LightFitSettings fit;
 };
 
 /// Counts of the pixels examined: used, or left out and why.
@@ -39,7 +39,7 @@ struct FrameLightCounts {
 struct FrameLight {
     cv::Mat map;   ///< CV_32FC3, lat-long
     cv::Mat known; ///< CV_32FC1: 0 = the prior's guess, 1 = determined by the frames
-    ar::LightFit fit;
+    LightFit fit;
     FrameLightCounts counts;
     double undetermined_share = 0; ///< of the sphere, `known` below 0.2
     double undetermined_above = 0; ///< of the upper half
@@ -62,8 +62,8 @@ struct FrameLight {
 
 /// @param real  as from `model_of`, in the world's frame
 /// @throws gi::InputError no frame, no real surface, too few usable pixels
-FrameLight estimate_light(RealScene real, ar::CameraModel const& camera, ar::Photometry const& photometry,
+FrameLight estimate_light(RealScene real, CameraModel const& camera, Photometry const& photometry,
                           std::span<PosedFrame const> frames, FrameLightSettings const& settings,
                           gi::StopRequest const& stop, gi::Report& report);
 
-} // namespace viewer
+} // namespace ar

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 
 std::vector<std::string> warnings_of(FrameLight const& light)
 {
@@ -52,7 +52,7 @@ std::string describe(FrameLight const& light)
         t += fmt::format("  {:<12} {:>10.4f} {:>10.4f} {:>10.4f}  +- {:.0f} %\n", f.name, f.irradiance[0],
                          f.irradiance[1], f.irradiance[2], 100 * f.sigma);
     t += fmt::format("{} lights\n", light.fit.lamps.size());
-    for (ar::FittedLamp const& l : light.fit.lamps)
+    for (FittedLamp const& l : light.fit.lamps)
         t += fmt::format("  towards {:.4f}, {:.4f}, {:.4f}: half angle {:.1f} degrees, irradiance {:.4f} {:.4f} "
                          "{:.4f} +- {:.4f}\n",
                          l.direction.x, l.direction.y, l.direction.z, glm::degrees(l.half_angle_rad),
@@ -81,4 +81,4 @@ void write_light(std::filesystem::path const& file, FrameLight const& light, gi:
     gi::write_exr(file, picture, gi::PixelType::single, report);
 }
 
-} // namespace viewer
+} // namespace ar

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr int kRaysAcross = 5; ///< rays across a pixel and its neighbours, half a pixel apart
@@ -18,7 +18,7 @@ struct PixelView {
 
 class Looker {
 public:
-    Looker(gi::World const& world, LightTransfer const& transfer, ar::CameraModel const& camera,
+    Looker(gi::World const& world, LightTransfer const& transfer, CameraModel const& camera,
            std::vector<int> const& patch_of_material)
         : world_(world),
           view_(gi::view(world)),
@@ -28,10 +28,10 @@ public:
     {
     }
 
-    PixelView operator()(ar::Pose const& pose, int x, int y) const
+    PixelView operator()(gi::RigidPose const& pose, int x, int y) const
     {
         std::array<gi::RayQuery, kRaysAcross * kRaysAcross> queries;
-        gi::vec3 const from(pose.position_m - world_.origin);
+        gi::vec3 const from(pose.position - world_.origin);
         for (int k = 0; k < kRaysAcross * kRaysAcross; ++k) {
             auto const d =
                 direction_of(camera_, {x + 0.5 * (k % kRaysAcross - 2), y + 0.5 * (k / kRaysAcross - 2)});
@@ -95,11 +95,11 @@ private:
     gi::World const& world_;
     gi::WorldView view_;
     LightTransfer const& transfer_;
-    ar::CameraModel const& camera_;
+    CameraModel const& camera_;
     std::vector<int> const& patch_of_material_;
 };
 
-double pixel_sr(ar::CameraModel const& camera, int x, int y)
+double pixel_sr(CameraModel const& camera, int x, int y)
 {
     auto const l = direction_of(camera, {x - 0.5, y}), r = direction_of(camera, {x + 0.5, y}),
                u = direction_of(camera, {x, y - 0.5}), b = direction_of(camera, {x, y + 0.5});
@@ -109,7 +109,7 @@ double pixel_sr(ar::CameraModel const& camera, int x, int y)
 /// Sums of what is seen behind all surfaces.
 class Background {
 public:
-    explicit Background(ar::LightBasis const& basis)
+    explicit Background(LightBasis const& basis)
         : basis_(basis),
           cells_(std::size_t(basis.count())),
           light_(cv::Mat::zeros(kBackground, CV_64FC3)),
@@ -124,7 +124,7 @@ public:
         cells_[k].radiance += sr * radiance;
         cells_[k].share += sr;
         if (is_clipped) clipped_[k] += sr;
-        glm::dvec2 const uv = ar::uv_of(towards);
+        glm::dvec2 const uv = uv_of(towards);
         cv::Point const at(std::min(int(uv.x * kBackground.width), kBackground.width - 1),
                            std::min(int(uv.y * kBackground.height), kBackground.height - 1));
         light_.at<cv::Vec3d>(at) += sr * radiance;
@@ -135,7 +135,7 @@ public:
     {
         out.seen = cells_;
         for (std::size_t k = 0; k < out.seen.size(); ++k) {
-            ar::SeenLight& s = out.seen[k];
+            SeenLight& s = out.seen[k];
             if (!(s.share > 0)) continue;
             s.radiance /= s.share;
             s.clipped = clipped_[k] > 0.02 * s.share;
@@ -148,21 +148,21 @@ public:
                 double const sr = sr_.at<double>(j, i);
                 out.background.at<cv::Vec3f>(j, i) =
                     sr > 0 ? cv::Vec3f(light_.at<cv::Vec3d>(j, i) / sr) : cv::Vec3f(0, 0, 0);
-                out.weight.at<float>(j, i) = float(std::min(1.0, sr / ar::texel_sr(kBackground, j)));
+                out.weight.at<float>(j, i) = float(std::min(1.0, sr / texel_sr(kBackground, j)));
             }
     }
 
 private:
-    ar::LightBasis const& basis_;
-    std::vector<ar::SeenLight> cells_; ///< sums until the end
+    LightBasis const& basis_;
+    std::vector<SeenLight> cells_; ///< sums until the end
     cv::Mat light_, sr_;
     std::vector<double> clipped_;
 };
 
 } // namespace
 
-LightPixels light_pixels(gi::World const& world, LightTransfer const& transfer, ar::LightBasis const& basis,
-                         ar::CameraModel const& camera, ar::Photometry const& photometry,
+LightPixels light_pixels(gi::World const& world, LightTransfer const& transfer, LightBasis const& basis,
+                         CameraModel const& camera, Photometry const& photometry,
                          std::span<PosedFrame const> frames, std::vector<cv::Mat> const& own_light,
                          std::vector<int> const& patch_of_material, int samples)
 {
@@ -173,8 +173,8 @@ LightPixels light_pixels(gi::World const& world, LightTransfer const& transfer, 
     int const step = std::max(1, int(std::floor(std::sqrt(pixels / samples))));
     for (std::size_t f = 0; f < frames.size(); ++f) {
         PosedFrame const& frame = frames[f];
-        cv::Mat const radiance = ar::radiance_of(frame.rgb, photometry, frame.exposure);
-        cv::Mat const clipped = ar::is_clipped(frame.rgb);
+        cv::Mat const radiance = radiance_of(frame.rgb, photometry, frame.exposure);
+        cv::Mat const clipped = is_clipped(frame.rgb);
         double const white = cv::mean(radiance)[1];
         // Another phase in each frame, so that the points of the surfaces differ.
         int const shift = int(f * std::size_t(step) / frames.size());
@@ -212,4 +212,4 @@ LightPixels light_pixels(gi::World const& world, LightTransfer const& transfer, 
     return out;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -5,7 +5,7 @@
 #include "ar/pipeline/frame_light.h"
 #include "ar/pipeline/light_transfer.h"
 
-namespace viewer {
+namespace ar {
 
 struct LightPixel {
     ReceivingPoint point;
@@ -17,16 +17,16 @@ struct LightPixel {
 
 struct LightPixels {
     std::vector<LightPixel> surfaces;
-    std::vector<ar::SeenLight> seen; ///< per direction of the basis
+    std::vector<SeenLight> seen;     ///< per direction of the basis
     cv::Mat background, weight;      ///< lat-long: CV_32FC3 and CV_32FC1 (share of a texel that was seen)
     FrameLightCounts counts;
 };
 
 /// @param own_light  per frame: radiance of the surfaces by the model's own lights, CV_32FC3; empty = none
 /// @param patch_of_material  -1 = its albedo is known
-LightPixels light_pixels(gi::World const& world, LightTransfer const& transfer, ar::LightBasis const& basis,
-                         ar::CameraModel const& camera, ar::Photometry const& photometry,
+LightPixels light_pixels(gi::World const& world, LightTransfer const& transfer, LightBasis const& basis,
+                         CameraModel const& camera, Photometry const& photometry,
                          std::span<PosedFrame const> frames, std::vector<cv::Mat> const& own_light,
                          std::vector<int> const& patch_of_material, int samples);
 
-} // namespace viewer
+} // namespace ar

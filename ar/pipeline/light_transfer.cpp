@@ -6,7 +6,7 @@
 #include <numbers>
 #include <tbb/parallel_for.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr int kAround = 32;           ///< rays from each point to find other surfaces
@@ -45,7 +45,7 @@ ReceivingPoint receiving_point(gi::ShadingPoint const& p)
     return {p.position, p.frame.normal, p.geometric_normal, p.clearance};
 }
 
-LightTransfer::LightTransfer(gi::World const& world, ar::LightBasis const& basis)
+LightTransfer::LightTransfer(gi::World const& world, LightBasis const& basis)
     : world_(world), view_(gi::view(world)), basis_(basis), visibility_(world, true, 0)
 {
 }
@@ -214,4 +214,4 @@ std::array<cv::Mat, 3> LightTransfer::by_surfaces(std::vector<ReceivingPoint> co
     return out;
 }
 
-} // namespace viewer
+} // namespace ar

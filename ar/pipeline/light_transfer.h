@@ -6,7 +6,7 @@
 #include "gi/render/exact_visibility.h"
 #include "gi/scene/shading/shading_point.h"
 
-namespace viewer {
+namespace ar {
 
 /// A point of a surface that light is computed for.
 struct ReceivingPoint {
@@ -19,7 +19,7 @@ ReceivingPoint receiving_point(gi::ShadingPoint const& p);
 class LightTransfer {
 public:
     /// @param world  must outlive this object and not change
-    LightTransfer(gi::World const& world, ar::LightBasis const& basis);
+    LightTransfer(gi::World const& world, LightBasis const& basis);
 
     /// V n.w dw of each point and direction: points x directions, CV_32F, sr.
     cv::Mat direct(std::vector<ReceivingPoint> const& points) const;
@@ -48,8 +48,8 @@ private:
 
     gi::World const& world_;
     gi::WorldView view_;
-    ar::LightBasis const& basis_;
+    LightBasis const& basis_;
     gi::ExactVisibility visibility_;
 };
 
-} // namespace viewer
+} // namespace ar

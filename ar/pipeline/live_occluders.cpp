@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ std::map<std::int64_t, fs::path> numbered(fs::path const& source)
     std::map<std::int64_t, fs::path> files;
     std::error_code error;
     bool const is_folder = fs::is_directory(source, error);
-    for (ar::NumberedPicture const& p : ar::find_pictures(source)) {
+    for (NumberedPicture const& p : find_pictures(source)) {
         auto const number = is_folder ? number_in(p.file) : std::optional(std::int64_t(p.number));
         if (!number)
             throw gi::InputError("'" + p.file.string() + "' has no number in its name",
@@ -57,10 +57,10 @@ gi::InputError other_size(fs::path const& file, cv::Size is, glm::ivec2 needed)
 
 } // namespace
 
-LiveOccluders::LiveOccluders(ArOcclusion const& settings, ar::CameraModel const& camera)
+LiveOccluders::LiveOccluders(OcclusionPictures const& settings, CameraModel const& camera)
     : settings_(settings), camera_(camera)
 {
-    if (!settings.camera.empty()) depth_camera_ = ar::read_calibration(settings.camera).camera;
+    if (!settings.camera.empty()) depth_camera_ = read_calibration(settings.camera).camera;
     if (settings.depth) {
         depths_ = numbered(settings.depth->source);
         depth(depths_.begin()->second); // says at once what is wrong with all
@@ -84,7 +84,7 @@ cv::Mat LiveOccluders::depth(fs::path const& file) const
         cv::resize(map, fitted, size, 0, 0, cv::INTER_NEAREST);
         return fitted;
     }
-    ar::CameraModel const& from = *depth_camera_;
+    CameraModel const& from = *depth_camera_;
     if (glm::ivec2(map.cols, map.rows) != from.size_px) throw other_size(file, map.size(), from.size_px);
     cv::Mat seen(size, CV_32FC1, cv::Scalar(0));
     // Each depth covers a square as large as its pixel appears, so that there are no gaps.
@@ -93,10 +93,10 @@ cv::Mat LiveOccluders::depth(fs::path const& file) const
         for (int x = 0; x < map.cols; ++x) {
             float const z = map.at<float>(y, x);
             if (!(z > 0) || !std::isfinite(z)) continue;
-            auto const d = ar::direction_of(from, {x, y});
+            auto const d = direction_of(from, {x, y});
             if (!d || !(d->z > 1e-3)) continue;
             glm::dvec3 const point = settings_.camera_from_depth * (*d * (double(z) / d->z));
-            auto const p = ar::project(camera_, point);
+            auto const p = project(camera_, point);
             if (!p || !(point.z > 0)) continue;
             int const left = std::max(0, int(std::ceil(p->x - half))),
                       top = std::max(0, int(std::ceil(p->y - half)));
@@ -115,7 +115,7 @@ cv::Mat LiveOccluders::depth(fs::path const& file) const
 cv::Mat LiveOccluders::matte(fs::path const& file) const
 {
     std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 30);
-    ar::DecodedPicture const picture = ar::decoded_picture(bytes);
+    DecodedPicture const picture = decoded_picture(bytes);
     if (!picture.problem.empty())
         throw gi::InputError("'" + file.string() + "' is no matte", picture.problem,
                              "mattes are pictures of 8 or 16 bits or EXR, white where real objects are in front");
@@ -129,8 +129,8 @@ cv::Mat LiveOccluders::matte(fs::path const& file) const
 }
 
 template <typename Read>
-cv::Mat LiveOccluders::of_frame(std::optional<ArFramePictures> const& which, Files const& files,
-                                std::uint64_t frame, double time_s, std::uint64_t& missing, Read const& read)
+cv::Mat LiveOccluders::of_frame(std::optional<FramePictures> const& which, Files const& files, std::uint64_t frame,
+                                double time_s, std::uint64_t& missing, Read const& read)
 {
     if (!which) return {};
     std::int64_t const n = which->rate_hz > 0 ? std::llround(time_s * which->rate_hz) : std::int64_t(frame);
@@ -148,7 +148,7 @@ cv::Mat LiveOccluders::of_frame(std::optional<ArFramePictures> const& which, Fil
     }
 }
 
-void LiveOccluders::hide(ar::RenderedPair& pair, cv::Mat const& modelled_m, std::uint64_t frame, double time_s)
+void LiveOccluders::hide(RenderedPair& pair, cv::Mat const& modelled_m, std::uint64_t frame, double time_s)
 {
     cv::Mat const measured = of_frame(settings_.depth, depths_, frame, time_s, counts_.without_depth,
                                       [&](fs::path const& file) { return depth(file); });
@@ -157,9 +157,9 @@ void LiveOccluders::hide(ar::RenderedPair& pair, cv::Mat const& modelled_m, std:
     if (measured.empty() && real.empty()) return;
     ++counts_.frames;
     cv::Mat share;
-    if (!measured.empty()) share = ar::share_of_nearer(measured, modelled_m, settings_.settings);
+    if (!measured.empty()) share = share_of_nearer(measured, modelled_m, settings_.settings);
     if (!real.empty()) share = share.empty() ? real : cv::Mat(cv::max(share, real));
-    ar::occlude(pair, share, measured, counts_.pixels);
+    occlude(pair, share, measured, counts_.pixels);
 }
 
-} // namespace viewer
+} // namespace ar

@@ -6,10 +6,10 @@
 
 #include <map>
 
-namespace viewer {
+namespace ar {
 
 struct LiveOccluderCounts {
-    ar::OcclusionCounts pixels;      ///< of all frames
+    OcclusionCounts pixels;          ///< of all frames
     std::uint64_t frames = 0;        ///< with a depth picture or a matte
     std::uint64_t without_depth = 0; ///< frames without a depth picture of their number
     std::uint64_t without_matte = 0; ///< the same of mattes
@@ -21,10 +21,10 @@ class LiveOccluders {
 public:
     /// @param camera  of the frames
     /// @throws gi::InputError no pictures, a first picture that cannot be used (another size, no depths)
-    LiveOccluders(ArOcclusion const& settings, ar::CameraModel const& camera);
+    LiveOccluders(OcclusionPictures const& settings, CameraModel const& camera);
 
     /// @param modelled_m  CV_32FC1 in the camera's lens: virtual objects and the model of the place; 0 = none
-    void hide(ar::RenderedPair& pair, cv::Mat const& modelled_m, std::uint64_t frame, double time_s);
+    void hide(RenderedPair& pair, cv::Mat const& modelled_m, std::uint64_t frame, double time_s);
     LiveOccluderCounts const& counts() const { return counts_; }
 
 private:
@@ -32,14 +32,14 @@ private:
     cv::Mat depth(std::filesystem::path const& file) const;
     cv::Mat matte(std::filesystem::path const& file) const;
     template <typename Read>
-    cv::Mat of_frame(std::optional<ArFramePictures> const& which, Files const& files, std::uint64_t frame,
+    cv::Mat of_frame(std::optional<FramePictures> const& which, Files const& files, std::uint64_t frame,
                      double time_s, std::uint64_t& missing, Read const& read);
 
-    ArOcclusion settings_;
-    ar::CameraModel camera_;
-    std::optional<ar::CameraModel> depth_camera_; ///< nothing = registered
+    OcclusionPictures settings_;
+    CameraModel camera_;
+    std::optional<CameraModel> depth_camera_; ///< nothing = registered
     Files depths_, mattes_;
     LiveOccluderCounts counts_;
 };
 
-} // namespace viewer
+} // namespace ar

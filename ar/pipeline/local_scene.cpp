@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <span>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 /// Scale of hidden objects. Not 0, so that lights keep a direction; triangles have zero area in floats.
@@ -58,4 +58,4 @@ gi::Pose local_pose(LocalScene const& local, gi::SceneTime time_s, gi::PairSide 
     return pose;
 }
 
-} // namespace viewer
+} // namespace ar

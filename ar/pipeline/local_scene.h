@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace viewer {
+namespace ar {
 
 struct LocalScene {
     std::shared_ptr<gi::Scene const> scene;
@@ -27,4 +27,4 @@ LocalScene join_scenes(gi::Scene real, gi::Scene virtual_things, gi::dmat4 const
 /// Pose of all nodes at a time; for the side without virtual objects, these are scaled to zero.
 gi::Pose local_pose(LocalScene const& local, gi::SceneTime time_s, gi::PairSide side);
 
-} // namespace viewer
+} // namespace ar

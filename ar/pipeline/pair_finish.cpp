@@ -6,14 +6,14 @@
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 /// The pinhole at the frame's size, with exactly the view of the rendered one.
-ar::CameraModel full_pinhole(ar::CameraModel const& rendered, ArSession const& s)
+CameraModel full_pinhole(CameraModel const& rendered, Session const& s)
 {
     if (!s.finish.upsample || *s.render.resolution >= 1) return rendered;
-    return ar::scaled(rendered, glm::ivec2(glm::round(glm::dvec2(rendered.size_px) / *s.render.resolution)));
+    return scaled(rendered, glm::ivec2(glm::round(glm::dvec2(rendered.size_px) / *s.render.resolution)));
 }
 
 /// Blur of a rendered pixel's mean and of the bilinear lookup through the lens:
@@ -22,16 +22,16 @@ constexpr double kRenderedSigma_px = 0.5;
 
 } // namespace
 
-PairFinish::PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers,
+PairFinish::PairFinish(Session const& session, CameraModel const& camera, MarkerMap const& markers,
                        PixelPoints points)
     : session_(session),
       camera_(camera),
-      pinhole_(ar::covering_pinhole(camera, session.render.resolution.value())),
+      pinhole_(covering_pinhole(camera, session.render.resolution.value())),
       warp_(camera, full_pinhole(pinhole_, session))
 {
     if (*session.render.resolution >= 1 && points == PixelPoints::many) session_.finish.upsample = false;
     if (session.smoothing < 1) {
-        ar::TemporalSettings smooth;
+        TemporalSettings smooth;
         smooth.weight = float(session.smoothing);
         filter_.emplace(pinhole_, smooth);
     }
@@ -44,9 +44,9 @@ void PairFinish::forget()
     if (blur_) blur_->forget();
 }
 
-ar::RenderedPair PairFinish::smoothed(PairPictures const& p, ar::Pose const& world_from_camera)
+RenderedPair PairFinish::smoothed(PairPictures const& p, gi::RigidPose const& world_from_camera)
 {
-    ar::RenderedPair pair{p.with, p.without, p.coverage, p.direct};
+    RenderedPair pair{p.with, p.without, p.coverage, p.direct};
     if (!filter_) return pair;
     pair = (*filter_)(pair, p.depth_m, world_from_camera, p.change);
     pair.direct = p.direct.clone();
@@ -62,8 +62,7 @@ ar::RenderedPair PairFinish::smoothed(PairPictures const& p, ar::Pose const& wor
     return pair;
 }
 
-ar::RenderedPair PairFinish::upsampled(ar::RenderedPair const& low, SharpSurfaces const& sharp,
-                                       gi::Camera const& camera)
+RenderedPair PairFinish::upsampled(RenderedPair const& low, SharpSurfaces const& sharp, gi::Camera const& camera)
 {
     // Guides are needed near changed pixels and near visible virtual objects.
     cv::Size const low_size = low.with.size();
@@ -78,33 +77,33 @@ ar::RenderedPair PairFinish::upsampled(ar::RenderedPair const& low, SharpSurface
     });
     cv::dilate(wanted_, wanted_, cv::getStructuringElement(cv::MORPH_RECT, {9, 9}));
     real_->look(camera, sharp.seen.coverage.size(), wanted_);
-    ar::UpsampleCounts counts;
-    ar::RenderedPair pair = ar::upsampled(low, real_->low_guides(), sharp.seen, real_->guides(), {}, {}, &counts);
+    UpsampleCounts counts;
+    RenderedPair pair = ar::upsampled(low, real_->low_guides(), sharp.seen, real_->guides(), {}, {}, &counts);
     counts_.upsample.without_guide += counts.without_guide;
     counts_.upsample.no_sample += counts.no_sample;
     return pair;
 }
 
-ar::RenderedPair PairFinish::blurred(ar::RenderedPair pair, FinishFrame const& frame, cv::Mat const& depth_m)
+RenderedPair PairFinish::blurred(RenderedPair pair, FinishFrame const& frame, cv::Mat const& depth_m)
 {
     blur_->follow(frame.radiance, frame.world_from_camera, frame.time_s, frame.exposure_s);
     counts_.blur = blur_->counts();
     counts_.added_sigma_px = 0;
-    ar::CameraModel const& pinhole = warp_.from();
+    CameraModel const& pinhole = warp_.from();
     double const pixels = pinhole.fx / camera_.fx; // of the pair per pixel of the camera
     if (auto const sigma_px = blur_->sigma_px()) {
         counts_.camera_sigma_px = *sigma_px;
-        double const missing_px = ar::missing_blur_px(*sigma_px, kRenderedSigma_px / pixels);
+        double const missing_px = missing_blur_px(*sigma_px, kRenderedSigma_px / pixels);
         if (missing_px > 0.05) {
             counts_.added_sigma_px = missing_px;
-            pair = ar::defocused(pair, std::min(missing_px * pixels, 20.0));
+            pair = defocused(pair, std::min(missing_px * pixels, 20.0));
         }
     }
     if (auto const opened = blur_->shutter_opened()) {
         cv::Mat depth = depth_m;
         if (depth.size() != pair.with.size())
             cv::resize(depth_m, depth, pair.with.size(), 0, 0, cv::INTER_NEAREST);
-        pair = ar::motion_blurred(pair, ar::image_velocity(pinhole, depth, *opened, frame.world_from_camera));
+        pair = motion_blurred(pair, image_velocity(pinhole, depth, *opened, frame.world_from_camera));
     }
     return pair;
 }
@@ -119,10 +118,9 @@ SeenDepth PairFinish::depth_of(PairPictures const& rendered) const
     return {in_lens(rendered.depth_m), in_lens(rendered.real_depth_m)};
 }
 
-ar::RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFrame const& frame,
-                                        gi::World const& world)
+RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFrame const& frame, gi::World const& world)
 {
-    ar::RenderedPair pair = smoothed(rendered, frame.world_from_camera);
+    RenderedPair pair = smoothed(rendered, frame.world_from_camera);
     SharpSurfaces sharp;
     gi::Camera const camera = gi_camera(pinhole_, frame.world_from_camera);
     glm::ivec2 const size = warp_.from().size_px;
@@ -141,13 +139,13 @@ ar::RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFram
     if (blur_) pair = blurred(std::move(pair), frame, rendered.depth_m);
     pair = warp_(pair);
     if (!session_.finish.mattes) return pair;
-    ar::DirectlySeen const unoccluded{warp_.smooth(sharp.unoccluded.radiance),
-                                      warp_.smooth(sharp.unoccluded.coverage)};
-    ar::MatteCounts counts;
-    cv::Mat const coverage = ar::refined_coverage(pair.coverage, unoccluded.coverage, frame.radiance, {}, &counts);
+    DirectlySeen const unoccluded{warp_.smooth(sharp.unoccluded.radiance),
+                                  warp_.smooth(sharp.unoccluded.coverage)};
+    MatteCounts counts;
+    cv::Mat const coverage = refined_coverage(pair.coverage, unoccluded.coverage, frame.radiance, {}, &counts);
     counts_.matte.band += counts.band;
     counts_.matte.refined += counts.refined;
-    return ar::with_coverage(pair, coverage, {pair.direct, pair.coverage}, unoccluded);
+    return with_coverage(pair, coverage, {pair.direct, pair.coverage}, unoccluded);
 }
 
-} // namespace viewer
+} // namespace ar

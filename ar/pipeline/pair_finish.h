@@ -10,18 +10,18 @@
 #include "ar/pipeline/virtual_surfaces.h"
 #include "ar/scene/session_file.h"
 
-namespace viewer {
+namespace ar {
 
 /// The camera frame that a pair belongs to.
 struct FinishFrame {
     cv::Mat radiance; ///< CV_32FC3, of the camera; used only for mattes and blur
-    ar::Pose world_from_camera;
+    gi::RigidPose world_from_camera;
     double time_s = 0, exposure_s = 0;
 };
 
 struct FinishCounts {
-    ar::UpsampleCounts upsample; ///< of all frames
-    ar::MatteCounts matte;       ///< of all frames
+    UpsampleCounts upsample;     ///< of all frames
+    MatteCounts matte;           ///< of all frames
     std::size_t unlit = 0;       ///< SharpSurfaces::unlit, of all frames
     CameraBlurCounts blur;
     double camera_sigma_px = 0, added_sigma_px = 0; ///< of the last frame
@@ -39,15 +39,15 @@ struct SeenDepth {
 class PairFinish {
 public:
     /// @param session  with a resolution  @param points  of each rendered pixel
-    PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers,
+    PairFinish(Session const& session, CameraModel const& camera, MarkerMap const& markers,
                PixelPoints points = PixelPoints::many);
 
     /// The camera to render with.
-    ar::CameraModel const& pinhole() const { return pinhole_; }
+    CameraModel const& pinhole() const { return pinhole_; }
     bool needs_radiance() const { return session_.finish.mattes || blur_; }
     bool needs_world() const { return session_.finish.upsample || session_.finish.mattes; }
     /// @param world  with all virtual objects in place, the same object in every call; read only if needed
-    ar::RenderedPair operator()(PairPictures const& rendered, FinishFrame const& frame, gi::World const& world);
+    RenderedPair operator()(PairPictures const& rendered, FinishFrame const& frame, gi::World const& world);
     /// Nearest rendered pixels: at a resolution below 1 their borders are coarser than those of the pair.
     SeenDepth depth_of(PairPictures const& rendered) const;
     /// Discards the history; call when the camera's pose is lost.
@@ -55,14 +55,14 @@ public:
     FinishCounts const& counts() const { return counts_; }
 
 private:
-    ar::RenderedPair smoothed(PairPictures const& p, ar::Pose const& world_from_camera);
-    ar::RenderedPair upsampled(ar::RenderedPair const& low, SharpSurfaces const& sharp, gi::Camera const& camera);
-    ar::RenderedPair blurred(ar::RenderedPair pair, FinishFrame const& frame, cv::Mat const& depth_m);
+    RenderedPair smoothed(PairPictures const& p, gi::RigidPose const& world_from_camera);
+    RenderedPair upsampled(RenderedPair const& low, SharpSurfaces const& sharp, gi::Camera const& camera);
+    RenderedPair blurred(RenderedPair pair, FinishFrame const& frame, cv::Mat const& depth_m);
 
-    ArSession session_;
-    ar::CameraModel camera_, pinhole_; ///< rendered
-    ar::Warp warp_;                    ///< from the final size of pairs
-    std::optional<ar::TemporalFilter> filter_;
+    Session session_;
+    CameraModel camera_, pinhole_; ///< rendered
+    Warp warp_;                    ///< from the final size of pairs
+    std::optional<TemporalFilter> filter_;
     std::optional<CameraBlur> blur_;
     std::optional<VirtualSurfaces> virtual_;
     std::optional<RealSurfaces> real_;
@@ -70,4 +70,4 @@ private:
     FinishCounts counts_;
 };
 
-} // namespace viewer
+} // namespace ar

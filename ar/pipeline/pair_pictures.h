@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-namespace viewer {
+namespace ar {
 
 /// Pictures of a pinhole camera. `with` and `without`: radiance, CV_32FC3, RGB, equal bit for bit where virtual
 /// objects change nothing.
@@ -16,7 +16,7 @@ struct PairPictures {
     cv::Mat coverage;              ///< CV_32FC1: share of the pixel whose first surface is virtual
     cv::Mat depth_m, real_depth_m; ///< CV_32FC1, along the axis: first surface with and without; 0 = none
     std::uint32_t paths = 0;       ///< per pixel of each picture; 0 = prefiltered light
-    ar::SceneChange change = ar::SceneChange::unknown; ///< since the previous pair
+    SceneChange change = SceneChange::unknown; ///< since the previous pair
 };
 
-} // namespace viewer
+} // namespace ar

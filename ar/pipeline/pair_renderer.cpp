@@ -5,7 +5,7 @@
 #include "gi/filter/filter_names.h"
 #include "gi/methods/registry.h"
 
-namespace viewer {
+namespace ar {
 
 PairRenderer::PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report,
                            std::string method)
@@ -35,14 +35,14 @@ gi::Changes PairRenderer::turn(gi::PairSide side, gi::SceneTime time_s)
     return changes;
 }
 
-ar::SceneChange PairRenderer::change_since_last(gi::SceneTime time_s)
+SceneChange PairRenderer::change_since_last(gi::SceneTime time_s)
 {
     gi::Pose const pose = local_pose(local_, time_s, gi::PairSide::with);
     bool const same = !std::exchange(light_changed_, false) && last_pose_ &&
                       pose.world_from_node == last_pose_->world_from_node &&
                       pose.morph_weights == last_pose_->morph_weights;
     last_pose_ = pose;
-    return same ? ar::SceneChange::none : ar::SceneChange::unknown;
+    return same ? SceneChange::none : SceneChange::unknown;
 }
 
 gi::World const& PairRenderer::world_with(gi::SceneTime time_s)
@@ -85,18 +85,13 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
         settings_.width = width;
         settings_.height = height;
         frames_ = gi::find_method(method_).frames(world_, camera, settings_, report_);
-        pairs_by_paths_ = gi::ask<gi::PairFrames>(*frames_);
-        if (pairs_by_paths_ == nullptr)
-            throw gi::InputError("method " + method_ + " in an AR session",
-                                 "it cannot render a scene with and without objects with the same random numbers",
-                                 "set method: auto, paths or slhb");
     }
     filter.threads = settings_.threads;
     bool denoise = gi::can_filter(filter, paths);
     gi::PairSettings const pair{
         paths, virtual_lights_.empty() ? gi::PairDifference::vanishing : gi::PairDifference::anything,
         denoise ? gi::PictureLayers::all : gi::PictureLayers::color_and_depth};
-    gi::PairResult both = pairs_by_paths_->pair(
+    gi::PairResult both = gi::ask<gi::PairFrames>(*frames_)->pair(
         {camera, width, height}, pair, [&](gi::PairSide side) { return turn(side, time_s); }, stop);
     denoise = denoise && gi::can_filter(filter, both.with.paths);
     cv::Mat const raw = denoise ? matrix_of(both.with.picture, "color") : cv::Mat();
@@ -126,4 +121,4 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
     return p;
 }
 
-} // namespace viewer
+} // namespace ar

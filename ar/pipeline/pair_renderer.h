@@ -10,11 +10,12 @@
 #include "gi/methods/names.h"
 #include "gi/scene/motion/moving_world.h"
 
-namespace viewer {
+namespace ar {
 
 class PairRenderer {
 public:
     /// @param settings  size and number of paths are set per call of `render`
+    /// @param method  with Method::pairs
     PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report,
                  std::string method = std::string(gi::kDefaultMethod));
 
@@ -39,7 +40,7 @@ private:
     PairPictures prefiltered(gi::Camera const& camera, int width, int height, gi::SceneTime time_s,
                              gi::StopRequest const& stop);
 
-    ar::SceneChange change_since_last(gi::SceneTime time_s);
+    SceneChange change_since_last(gi::SceneTime time_s);
 
     LocalScene local_;
     std::string method_;
@@ -49,11 +50,10 @@ private:
     std::vector<gi::Light> virtual_lights_; ///< the virtual lights, for the side with them
     gi::Changes pending_;                   ///< since the last picture
     std::unique_ptr<gi::FrameRenderer> frames_;
-    gi::PairFrames* pairs_by_paths_ = nullptr; ///< of frames_
     bool light_changed_ = true;         ///< since the last picture
     std::optional<gi::Pose> last_pose_; ///< of the last picture
     bool prefiltered_ = false;
     std::unique_ptr<PrefilteredPairs> pairs_; ///< made for the first picture by prefiltered light
 };
 
-} // namespace viewer
+} // namespace ar

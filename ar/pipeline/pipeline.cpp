@@ -8,14 +8,14 @@
 
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 /// Milliseconds since the last call, without gaps between calls.
 class Lap {
 public:
     explicit Lap(double begun_s) : last_s_(begun_s) {}
-    double operator()() { return until(ar::steady_now_s()); }
+    double operator()() { return until(steady_now_s()); }
     double until(double now_s) { return 1e3 * (now_s - std::exchange(last_s_, now_s)); }
     double last_s() const { return last_s_; }
 
@@ -23,14 +23,14 @@ private:
     double last_s_;
 };
 
-LocalScene local_scene(ArSession const& s, gi::Report& report)
+LocalScene local_scene(Session const& s, gi::Report& report)
 {
-    ArPlaced const& v = s.virtual_things;
+    PlacedScene const& v = s.virtual_things;
     return join_scenes(real_scene(s.real, report),
                        v.scene.empty() ? gi::Scene{} : gi::load_scene(v.scene.string(), report), placement(v));
 }
 
-ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise const& noise)
+CompositeSettings with_noise(CompositeSettings settings, SensorNoise const& noise)
 {
     settings.noise = noise;
     return settings;
@@ -38,7 +38,7 @@ ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise
 
 } // namespace
 
-void check_size(glm::ivec2 frames_px, ArCamera const& camera)
+void check_size(glm::ivec2 frames_px, CalibratedCamera const& camera)
 {
     glm::ivec2 const calibrated_px = camera.model.size_px;
     if (frames_px == calibrated_px) return;
@@ -47,14 +47,14 @@ void check_size(glm::ivec2 frames_px, ArCamera const& camera)
                          "set the camera to that size, or calibrate it at this one");
 }
 
-ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers,
-                       gi::Report& report, std::string prefix)
+Pipeline::Pipeline(Session const& session, CalibratedCamera const& camera, MarkerMap const& markers,
+                   gi::Report& report, std::string prefix)
     : session_(session),
       camera_(camera),
       renderer_(local_scene(session, report), session.render.settings, report, session.render.method),
       light_(session),
       compositor_(camera.photometry,
-                  with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),
+                  with_noise(session.composite, session.match_noise ? camera.noise : SensorNoise{})),
       poses_(session.pose, markers, camera.model),
       report_(report),
       prefix_(std::move(prefix))
@@ -69,17 +69,17 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
     light_picture_ = picture_of_light(light_.map());
 }
 
-void ArPipeline::render(ArResult& found, ar::Frame const& frame, double time_s, gi::StopRequest const& stop)
+void Pipeline::render(FrameResult& found, Frame const& frame, double time_s, gi::StopRequest const& stop)
 {
-    ar::CameraModel const& pinhole = finish_->pinhole();
-    ar::Pose const& world_from_camera = *found.used.world_from_camera;
+    CameraModel const& pinhole = finish_->pinhole();
+    gi::RigidPose const& world_from_camera = *found.used.world_from_camera;
     PairPictures const p =
         renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
                          session_.render.paths, time_s, session_.render.denoise, stop);
     FinishFrame of{{}, world_from_camera, time_s, frame.exposure.time_s};
-    if (finish_->needs_radiance()) of.radiance = ar::radiance_of(found.camera, camera_.photometry, frame.exposure);
+    if (finish_->needs_radiance()) of.radiance = radiance_of(found.camera, camera_.photometry, frame.exposure);
     found.pair = (*finish_)(p, of, finish_->needs_world() ? renderer_.world_with(time_s) : renderer_.world());
-    if (found.used.shown < 1) found.pair = ar::faded(*found.pair, found.used.shown);
+    if (found.used.shown < 1) found.pair = faded(*found.pair, found.used.shown);
     if (keeps_depth_ || occluders_) found.depth = finish_->depth_of(p);
     if (!occluders_) return;
     LiveOccluderCounts const before = occluders_->counts();
@@ -93,7 +93,7 @@ void ArPipeline::render(ArResult& found, ar::Frame const& frame, double time_s, 
     report_occluders();
 }
 
-void ArPipeline::report_occluders()
+void Pipeline::report_occluders()
 {
     LiveOccluderCounts const& c = occluders_->counts();
     count_some("frames with a depth picture or a matte", c.frames);
@@ -101,14 +101,14 @@ void ArPipeline::report_occluders()
     count_some("pixels of virtual objects without a measured depth", c.pixels.holes);
 }
 
-void ArPipeline::count_some(char const* what, std::size_t n)
+void Pipeline::count_some(char const* what, std::size_t n)
 {
     if (n > 0) report_.count(prefix_ + what, double(n));
 }
 
-void ArPipeline::report_poses()
+void Pipeline::report_poses()
 {
-    ar::TrackerCounts const& t = poses_.tracker();
+    TrackerCounts const& t = poses_.tracker();
     if (auto const* const f = poses_.features()) {
         count_some("frames recognised anew by features", f->relocated);
         count_some("frames whose features were not recognised", f->not_relocated);
@@ -118,11 +118,11 @@ void ArPipeline::report_poses()
     count_some("poses refused as jumps", t.jumps_refused);
     count_some("jumps believed", t.jumps_believed);
     count_some("moves of the tripod", t.moves);
-    for (std::size_t k = 0; k < ar::kPoseStates; ++k)
-        count_some(("frames " + ar::name_of(ar::PoseState(k))).c_str(), poses_.states()[k]);
+    for (std::size_t k = 0; k < kPoseStates; ++k)
+        count_some(("frames " + name_of(PoseState(k))).c_str(), poses_.states()[k]);
 }
 
-void ArPipeline::report_finish()
+void Pipeline::report_finish()
 {
     FinishCounts const& f = finish_->counts();
     count_some("enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
@@ -138,18 +138,19 @@ void ArPipeline::report_finish()
     if (f.added_sigma_px > 0) report_.count("blur that was added (px)", f.added_sigma_px);
 }
 
-ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<KnownPose> const& known,
-                          std::optional<double> begun_s, gi::StopRequest const* stop)
+FrameResult Pipeline::find(Frame const& frame, double time_s,
+                           std::optional<std::optional<gi::RigidPose>> const& known, std::optional<double> begun_s,
+                           gi::StopRequest const* stop)
 {
     if (frame.size_px != camera_.model.size_px)
         throw gi::InputError(
             fmt::format("frame {} has {} x {} pixels", frame.sequence, frame.size_px.x, frame.size_px.y),
             fmt::format("the calibration is of {} x {}", camera_.model.size_px.x, camera_.model.size_px.y),
             "set the camera to that size, or calibrate it at this one");
-    ArResult r;
-    Lap lap(begun_s ? *begun_s : ar::steady_now_s());
-    r.camera = ar::picture_of(frame);
-    cv::Mat const gray = ar::gray_of(frame);
+    FrameResult r;
+    Lap lap(begun_s ? *begun_s : steady_now_s());
+    r.camera = picture_of(frame);
+    cv::Mat const gray = gray_of(frame);
     r.times.decode_ms = lap();
     FoundPose f = known ? poses_.next(time_s, *known) : poses_.next(time_s, gray, stop);
     r.sighting = std::move(f.sighting);
@@ -163,14 +164,14 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<K
     return r;
 }
 
-void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
-                     CompositeBy composite)
+void Pipeline::add(FrameResult& r, Frame const& frame, double time_s, gi::StopRequest const& stop,
+                   CompositeBy composite)
 {
     Lap lap(r.done_s);
     r.times.wait_ms = lap();
     if (r.used.world_from_camera) {
         // Only a measured pose says from which direction the light of a pixel comes.
-        if (r.used.state == ar::PoseState::tracked)
+        if (r.used.state == PoseState::tracked)
             if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
                                          *r.used.world_from_camera, time_s, stop, report_)) {
                 renderer_.set_environment(std::move(map));
@@ -192,4 +193,4 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
     r.done_s = lap.last_s();
 }
 
-} // namespace viewer
+} // namespace ar

@@ -10,36 +10,36 @@
 #include "ar/pipeline/place_light.h"
 #include "ar/pipeline/pose_finder.h"
 
-namespace viewer {
+namespace ar {
 
-/// Consecutive stages without gaps: their sum is the time from delivery to `ArResult::done_s`.
-struct ArTimes {
+/// Consecutive stages without gaps: their sum is the time from delivery to `FrameResult::done_s`.
+struct StageTimes {
     double decode_ms = 0, detect_ms = 0, pose_ms = 0;
     double wait_ms = 0; ///< waiting to be rendered
     double light_ms = 0, render_ms = 0, composite_ms = 0;
 };
 
 /// The camera's properties from its calibration file.
-struct ArCamera {
-    ar::CameraModel model;
-    ar::Photometry photometry;
-    ar::SensorNoise noise;
+struct CalibratedCamera {
+    CameraModel model;
+    Photometry photometry;
+    SensorNoise noise;
 };
 
 /// @throws gi::InputError if the frames' size differs from the calibration's
-void check_size(glm::ivec2 frames_px, ArCamera const& camera);
+void check_size(glm::ivec2 frames_px, CalibratedCamera const& camera);
 
-struct ArResult {
+struct FrameResult {
     cv::Mat rgb;    ///< of the type of `camera`; without a pose: the camera's frame unchanged
-    cv::Mat camera; ///< the camera's frame, with all its bits (ar::picture_of)
-    ar::Sighting sighting;
-    ar::PoseEstimate pose; ///< the frame's own estimate, or the known pose
-    ar::UsedPose used;     ///< what the frame is composited with
-    ar::CompositeCounts counts;
-    std::optional<ar::RenderedPair> pair; ///< in the camera's lens
-    std::optional<SeenDepth> depth;       ///< of the pair; only after ArPipeline::keep_depth
+    cv::Mat camera; ///< the camera's frame, with all its bits (picture_of)
+    Sighting sighting;
+    PoseEstimate pose; ///< the frame's own estimate, or the known pose
+    UsedPose used;     ///< what the frame is composited with
+    CompositeCounts counts;
+    std::optional<RenderedPair> pair;     ///< in the camera's lens
+    std::optional<SeenDepth> depth;       ///< of the pair; only after Pipeline::keep_depth
     cv::Mat light;                        ///< CV_8UC3 RGB, thumbnail of the environment map used; empty = no map
-    ArTimes times;
+    StageTimes times;
     double done_s = 0; ///< steady clock, end of the last stage
 };
 
@@ -51,29 +51,31 @@ enum class CompositeBy {
 
 /// Processes frames in two steps, `find` and `add`, which may run in two threads at once, as they share no mutable
 /// state. Each must get the frames in order.
-class ArPipeline {
+class Pipeline {
 public:
     /// Loads the scenes and the light. @throws gi::InputError
     /// @param prefix  for its counts in the report, if there are several pipelines
-    ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers, gi::Report& report,
-               std::string prefix = {});
+    Pipeline(Session const& session, CalibratedCamera const& camera, MarkerMap const& markers, gi::Report& report,
+             std::string prefix = {});
 
     /// Finds the camera's pose.
     /// @param time_s   since the first frame: time for animation clips, the camera's motion and the light
-    /// @param known    use this camera pose instead of estimating it from the frame
+    /// @param known    the camera's pose by a tracker or a file, which may have none for this frame; not set: it is
+    ///                 estimated
     /// @param begun_s  steady clock, start of the time measurement; nothing = now
     /// @param stop     null = none; a pose may be missing after a request
     /// @throws gi::InputError the frame cannot be decoded or has another size than the calibration
-    ArResult find(ar::Frame const& frame, double time_s, std::optional<KnownPose> const& known = {},
-                  std::optional<double> begun_s = {}, gi::StopRequest const* stop = nullptr);
+    FrameResult find(Frame const& frame, double time_s,
+                     std::optional<std::optional<gi::RigidPose>> const& known = {},
+                     std::optional<double> begun_s = {}, gi::StopRequest const* stop = nullptr);
     /// Adds the virtual objects, as far as `r.used` shows them.
     /// @param r  result of `find` for the same frame
-    void add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
+    void add(FrameResult& r, Frame const& frame, double time_s, gi::StopRequest const& stop,
              CompositeBy composite = CompositeBy::pipeline);
     /// Results get their depth; call before the first frame.
     void keep_depth() { keeps_depth_ = true; }
-    ArCamera const& camera() const { return camera_; }
-    ar::Compositor const& compositor() const { return compositor_; }
+    CalibratedCamera const& camera() const { return camera_; }
+    Compositor const& compositor() const { return compositor_; }
     /// By prefiltered light, without paths.
     bool is_prefiltered() const { return renderer_.is_prefiltered(); }
     /// "prefiltered light", or "paths (why)".
@@ -81,19 +83,19 @@ public:
 
 private:
     /// Sets the pair, and its depth if needed.
-    void render(ArResult& found, ar::Frame const& frame, double time_s, gi::StopRequest const& stop);
+    void render(FrameResult& found, Frame const& frame, double time_s, gi::StopRequest const& stop);
     void report_poses();
     void report_finish();
     void report_occluders();
     void count_some(char const* what, std::size_t n);
 
-    ArSession session_;
-    ArCamera camera_;
+    Session session_;
+    CalibratedCamera camera_;
     PairRenderer renderer_;
     PlaceLight light_;
     std::optional<PairFinish> finish_;
     std::optional<LiveOccluders> occluders_;
-    ar::Compositor compositor_;
+    Compositor compositor_;
     PoseFinder poses_;
     bool keeps_depth_ = false;
     cv::Mat light_picture_;
@@ -102,4 +104,4 @@ private:
     std::string prefix_;
 };
 
-} // namespace viewer
+} // namespace ar

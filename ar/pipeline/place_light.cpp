@@ -9,15 +9,15 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 
-PlaceLight::PlaceLight(ArSession const& session) : every_(session.live_light)
+PlaceLight::PlaceLight(Session const& session) : every_(session.live_light)
 {
     if (!session.light.empty()) {
-        captured_ = ar::read_map(session.light) * session.light_scale;
+        captured_ = read_map(session.light) * session.light_scale;
         if (session.light_turn_deg != 0)
-            captured_ = ar::resampled(captured_, captured_.size(),
-                                      glm::angleAxis(glm::radians(session.light_turn_deg), glm::dvec3(0, 1, 0)));
+            captured_ = resampled(captured_, captured_.size(),
+                                  glm::angleAxis(glm::radians(session.light_turn_deg), glm::dvec3(0, 1, 0)));
     }
     if (session.light_from_frame) {
         unseen_ = session.real;
@@ -33,7 +33,7 @@ std::shared_ptr<gi::EnvironmentMap const> PlaceLight::begin() const
     return std::make_shared<gi::EnvironmentMap const>(environment_of(captured_));
 }
 
-bool PlaceLight::estimate(PosedFrame const& frame, ar::Photometry const& photometry, ar::CameraModel const& camera,
+bool PlaceLight::estimate(PosedFrame const& frame, Photometry const& photometry, CameraModel const& camera,
                           gi::StopRequest const& stop, gi::Report& report)
 {
     RealScene known;
@@ -56,17 +56,16 @@ bool PlaceLight::estimate(PosedFrame const& frame, ar::Photometry const& photome
     return true;
 }
 
-std::shared_ptr<gi::EnvironmentMap const> PlaceLight::follow(cv::Mat const& rgb, ar::Photometry const& photometry,
-                                                             ar::Exposure const& exposure,
-                                                             ar::CameraModel const& camera,
-                                                             ar::Pose const& world_from_camera, double time_s,
+std::shared_ptr<gi::EnvironmentMap const> PlaceLight::follow(cv::Mat const& rgb, Photometry const& photometry,
+                                                             Exposure const& exposure, CameraModel const& camera,
+                                                             gi::RigidPose const& world_from_camera, double time_s,
                                                              gi::StopRequest const& stop, gi::Report& report)
 {
     if (unseen_)
         return estimate({rgb, exposure, world_from_camera}, photometry, camera, stop, report) ? begin() : nullptr;
     if (!probe_) return nullptr;
-    ar::ProbeUpdate const update = probe_->update(ar::radiance_of(rgb, photometry, exposure), ar::is_clipped(rgb),
-                                                  camera, world_from_camera.rotation, time_s);
+    ProbeUpdate const update = probe_->update(radiance_of(rgb, photometry, exposure), is_clipped(rgb), camera,
+                                              world_from_camera.rotation, time_s);
     if (frames_++ % every_ != 0 && !update.lamp_changed) return nullptr;
     return std::make_shared<gi::EnvironmentMap const>(environment_of(probe_->map()));
 }
@@ -79,7 +78,7 @@ cv::Mat picture_of_light(cv::Mat const& map)
     cv::transform(small, log_luminance, cv::Matx13f(0.2126f, 0.7152f, 0.0722f));
     cv::log(cv::max(log_luminance, 1e-6), log_luminance);
     double const middle = std::exp(cv::mean(log_luminance)[0]);
-    return ar::bytes_of(small * (0.18 / middle), ar::srgb_photometry());
+    return bytes_of(small * (0.18 / middle), srgb_photometry());
 }
 
-} // namespace viewer
+} // namespace ar

@@ -11,36 +11,36 @@
 
 #include <memory>
 
-namespace viewer {
+namespace ar {
 
 class PlaceLight {
 public:
     /// @throws gi::InputError the map cannot be read
-    explicit PlaceLight(ArSession const& session);
+    explicit PlaceLight(Session const& session);
 
     /// The captured map; with `from: frame`, grey until a frame was seen; null: none.
     std::shared_ptr<gi::EnvironmentMap const> begin() const;
     /// Updates the estimate with a frame. The first one takes a second or two with `from: frame`; a frame that
     /// does not suffice is counted in the report, and the next one is tried.
     /// @return a new map if one is due or a lamp was switched; else null
-    std::shared_ptr<gi::EnvironmentMap const> follow(cv::Mat const& rgb, ar::Photometry const& photometry,
-                                                     ar::Exposure const& exposure, ar::CameraModel const& camera,
-                                                     ar::Pose const& world_from_camera, double time_s,
+    std::shared_ptr<gi::EnvironmentMap const> follow(cv::Mat const& rgb, Photometry const& photometry,
+                                                     Exposure const& exposure, CameraModel const& camera,
+                                                     gi::RigidPose const& world_from_camera, double time_s,
                                                      gi::StopRequest const& stop, gi::Report& report);
     /// The current map: lat-long radiance, CV_32FC3; empty = none.
     cv::Mat map() const { return probe_ ? probe_->map() : captured_; }
 
 private:
-    bool estimate(PosedFrame const& frame, ar::Photometry const& photometry, ar::CameraModel const& camera,
+    bool estimate(PosedFrame const& frame, Photometry const& photometry, CameraModel const& camera,
                   gi::StopRequest const& stop, gi::Report& report);
 
     cv::Mat captured_;             ///< in the world's frame; empty = none
-    std::optional<ArReal> unseen_; ///< real surfaces from which the light is still to be estimated
-    std::optional<ar::LiveProbe> probe_;
+    std::optional<RealPlace> unseen_; ///< real surfaces from which the light is still to be estimated
+    std::optional<LiveProbe> probe_;
     int every_, frames_ = 0;
 };
 
 /// Picture of the map for display: CV_8UC3 RGB, 128 x 64, exposed for its middle tones; empty for an empty map.
 cv::Mat picture_of_light(cv::Mat const& map);
 
-} // namespace viewer
+} // namespace ar

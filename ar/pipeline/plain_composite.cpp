@@ -4,11 +4,11 @@
 
 #include <opencv2/core.hpp>
 
-namespace viewer {
+namespace ar {
 
-cv::Mat plain_composite(cv::Mat const& rgb, ar::RenderedPair const& pair)
+cv::Mat plain_composite(cv::Mat const& rgb, RenderedPair const& pair)
 {
-    ar::Photometry const srgb = ar::srgb_photometry();
+    Photometry const srgb = srgb_photometry();
     cv::Mat const table(1, 256, CV_32FC1, const_cast<float*>(srgb.unit_of_byte[0].data()));
     cv::Mat light, uncovered, dark, bright;
     cv::LUT(rgb, table, light);
@@ -27,4 +27,4 @@ cv::Mat plain_composite(cv::Mat const& rgb, ar::RenderedPair const& pair)
     return out;
 }
 
-} // namespace viewer
+} // namespace ar

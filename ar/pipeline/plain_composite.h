@@ -3,10 +3,10 @@
 
 #include "ar/composite/rendered_pair.h"
 
-namespace viewer {
+namespace ar {
 
 /// with + (1 - a)(camera - without), for a camera with sRGB bytes: decoded by table, encoded by powers.
 /// @param rgb CV_8UC3
-cv::Mat plain_composite(cv::Mat const& rgb, ar::RenderedPair const& pair);
+cv::Mat plain_composite(cv::Mat const& rgb, RenderedPair const& pair);
 
-} // namespace viewer
+} // namespace ar

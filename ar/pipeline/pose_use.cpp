@@ -1,26 +1,26 @@
 #include "ar/pipeline/pose_use.h"
 
-namespace viewer {
+namespace ar {
 
-ar::PoseTrackerSettings tracker_settings(ArPoseUse const& use)
+PoseTrackerSettings tracker_settings(PoseUse const& use)
 {
-    ar::PoseTrackerSettings settings = use.tracker;
+    PoseTrackerSettings settings = use.tracker;
     settings.least_confidence = use.trust.least_confidence;
     return settings;
 }
 
-ar::OfferedPose offered_pose(ArPoseUse const& use, ar::PoseTracker const& track, double time_s,
-                             ar::PoseEstimate const& estimate, ar::Taken taken)
+OfferedPose offered_pose(PoseUse const& use, PoseTracker const& track, double time_s, PoseEstimate const& estimate,
+                         Taken taken)
 {
-    ar::OfferedPose offered;
+    OfferedPose offered;
     offered.is_estimated = estimate.found();
     // If an ambiguous estimate jumps, its other pose may be the true one.
-    bool const is_doubtful = taken == ar::Taken::jump && estimate.ambiguous;
+    bool const is_doubtful = taken == Taken::jump && estimate.ambiguous;
     bool const is_confident = estimate.found() && estimate.confidence >= use.trust.least_confidence;
-    ar::TrackedCamera const tracked = track.at(time_s);
+    FilteredPose const tracked = track.at(time_s);
     if (use.filtered && tracked.world_from_camera) {
         // An estimate refused as a jump is replaced, too: the newest accepted one is older.
-        bool const stands = use.tracker.motion == ar::CameraMotion::tripod && estimate.found();
+        bool const stands = use.tracker.motion == CameraMotion::tripod && estimate.found();
         if (stands || (is_confident && tracked.age_s <= use.tracker.predict_s))
             offered.trusted = tracked.world_from_camera;
     } else if (is_confident && !is_doubtful) {
@@ -31,4 +31,4 @@ ar::OfferedPose offered_pose(ArPoseUse const& use, ar::PoseTracker const& track,
     return offered;
 }
 
-} // namespace viewer
+} // namespace ar

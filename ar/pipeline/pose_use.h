@@ -6,13 +6,13 @@
 #include "ar/pose/trust.h"
 #include "ar/scene/session_file.h"
 
-namespace viewer {
+namespace ar {
 
 /// The tracker's settings, with the session's least confidence.
-ar::PoseTrackerSettings tracker_settings(ArPoseUse const& use);
+PoseTrackerSettings tracker_settings(PoseUse const& use);
 
 /// @param track  must already have the estimate  @param taken  its answer
-ar::OfferedPose offered_pose(ArPoseUse const& use, ar::PoseTracker const& track, double time_s,
-                             ar::PoseEstimate const& estimate, ar::Taken taken);
+OfferedPose offered_pose(PoseUse const& use, PoseTracker const& track, double time_s, PoseEstimate const& estimate,
+                         Taken taken);
 
-} // namespace viewer
+} // namespace ar

@@ -4,14 +4,14 @@
 #include "ar/camera/photometry.h"
 #include "ar/camera/pose.h"
 
-namespace viewer {
+namespace ar {
 
 /// A frame without virtual objects.
 struct PosedFrame {
-    cv::Mat rgb; ///< as ar::picture_of, of the calibration's size
-    ar::Exposure exposure;
-    ar::Pose world_from_camera;
+    cv::Mat rgb; ///< as picture_of, of the calibration's size
+    Exposure exposure;
+    gi::RigidPose world_from_camera;
     double confidence = 1; ///< of the pose
 };
 
-} // namespace viewer
+} // namespace ar

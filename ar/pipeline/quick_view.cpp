@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr double kResolution = 1.25; ///< pixels rasterised per pixel of the camera, as synthetic_radiance
@@ -31,9 +31,9 @@ QuickView::QuickView(gi::Scene const& scene, gi::Report& report)
 {
 }
 
-cv::Mat QuickView::radiance(ar::CameraModel const& camera, ar::Pose const& world_from_camera, int samples)
+cv::Mat QuickView::radiance(CameraModel const& camera, gi::RigidPose const& world_from_camera, int samples)
 {
-    ar::CameraModel const pinhole = ar::covering_pinhole(camera, kResolution);
+    CameraModel const pinhole = covering_pinhole(camera, kResolution);
     gi::Camera const view = gi_camera(pinhole, world_from_camera);
     cv::Mat sum(pinhole.size_px.y, pinhole.size_px.x, CV_32FC3, cv::Scalar::all(0));
     int const passes = std::max(1, int(std::lround(samples / (kResolution * kResolution))));
@@ -43,7 +43,7 @@ cv::Mat QuickView::radiance(ar::CameraModel const& camera, ar::Pose const& world
             to += reflected(s.normal.at<cv::Vec3f>(at[0], at[1])[1]) * s.albedo.at<cv::Vec3f>(at[0], at[1]);
         });
     }
-    return ar::Warp(camera, pinhole).smooth(sum / passes);
+    return Warp(camera, pinhole).smooth(sum / passes);
 }
 
-} // namespace viewer
+} // namespace ar

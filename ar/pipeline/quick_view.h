@@ -8,7 +8,7 @@
 #include "ar/pipeline/first_surfaces.h"
 #include "gi/scene/model/scene.h"
 
-namespace viewer {
+namespace ar {
 
 /// The sky: radiance 0.7 + 0.3 y towards a direction of height y, white.
 /// Its lat-long map: CV_32FC3, 2 height x height.
@@ -20,11 +20,11 @@ public:
 
     /// Radiance reflected by the first surfaces, CV_32FC3 of the camera's size, through its lens; 0 = no surface.
     /// @param samples  points per pixel of the camera, in the mean
-    cv::Mat radiance(ar::CameraModel const& camera, ar::Pose const& world_from_camera, int samples = 4);
+    cv::Mat radiance(CameraModel const& camera, gi::RigidPose const& world_from_camera, int samples = 4);
 
 private:
     gi::World world_;
     SurfaceView surfaces_;
 };
 
-} // namespace viewer
+} // namespace ar

@@ -17,20 +17,20 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 namespace fs = std::filesystem;
 
-PaperOnTable paper_of(ar::MarkerMap const& map)
+PaperOnTable paper_of(MarkerMap const& map)
 {
     constexpr double dots_per_m = 4000;
-    ar::Sheet const sheet = ar::sheet_of(map, 0);
+    Sheet const sheet = sheet_of(map, 0);
     PaperOnTable paper;
-    paper.print = ar::draw(sheet, dots_per_m);
+    paper.print = draw(sheet, dots_per_m);
     paper.width_m = paper.print.cols / dots_per_m;
     paper.depth_m = paper.print.rows / dots_per_m;
-    glm::dvec3 const corner = ar::world_from_thing(map, 0) * glm::dvec3(-sheet.origin_m, 0);
+    glm::dvec3 const corner = world_from_thing(map, 0) * glm::dvec3(-sheet.origin_m, 0);
     paper.near_left_m = {corner.x, corner.z};
     return paper;
 }
@@ -93,21 +93,21 @@ void check_folder(SynthesizeOptions const& o)
                              "old and new frames would be mixed", "choose another folder");
 }
 
-void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::MarkerMap const& markers,
-                 PaperOnTable const& paper, std::vector<ar::TimedPose> const& poses, gi::StopRequest const& stop,
+void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, MarkerMap const& markers,
+                 PaperOnTable const& paper, std::vector<TimedPose> const& poses, gi::StopRequest const& stop,
                  gi::Report& report)
 {
-    ar::Calibration calibration;
+    Calibration calibration;
     calibration.camera = camera.model;
     calibration.photometry = camera.photometry;
-    ar::NoiseModel noise;
+    NoiseModel noise;
     noise.read = camera.read_noise * camera.read_noise;
     noise.photon = camera.photon_noise;
     calibration.noise = noise;
     calibration.provenance = {{"made_by", "lightwell_ar_synthesize"}};
-    ar::write_calibration(o.folder / "camera.yaml", calibration);
-    ar::write_marker_map(o.folder / "markers.yaml", markers); // defines the world, also where none is printed
-    gi::write_text(o.folder / "poses.csv", ar::format_poses(poses));
+    write_calibration(o.folder / "camera.yaml", calibration);
+    write_marker_map(o.folder / "markers.yaml", markers); // defines the world, also where none is printed
+    gi::write_text(o.folder / "poses.csv", format_poses(poses));
     gi::write_glb(o.folder / "near.glb", generate_desk(DeskPart::near, paper, cloth_of(o)), report);
     gi::write_glb(o.folder / "statue.glb", generate_statue(), report);
     SyntheticQuality fine = o.quality;
@@ -122,18 +122,18 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::
 
 } // namespace
 
-ar::MarkerMap synthetic_markers(DeskMarkers which)
+MarkerMap synthetic_markers(DeskMarkers which)
 {
     glm::dquat const flat = glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0));
-    if (which == DeskMarkers::one) return {{{"DICT_4X4_50", 7, 0.07, {flat, {0.05, 0.0005, 0.15}}}}, {}, {}};
-    ar::CharucoBoard board;
+    if (which == DeskMarkers::one) return {{{"DICT_4X4_50", 7, 0.07, {{0.05, 0.0005, 0.15}, flat}}}, {}, {}};
+    CharucoBoard board;
     board.squares_x = 7;
     board.squares_y = 5;
     board.square_m = 0.045;
     board.marker_m = 0.034;
     board.dictionary = "DICT_4X4_50";
     // Flat on the table, its top away from the camera.
-    board.world_from_board = {flat, {-0.1575, 0.0005, 0.32}};
+    board.world_from_board = {{-0.1575, 0.0005, 0.32}, flat};
     return {{}, {board}, {}};
 }
 
@@ -158,9 +158,9 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
         throw gi::InputError("'" + o.folder.string() + "' cannot be made", problem.message(),
                              "choose another folder");
     SyntheticCamera const camera = synthetic_camera(o.size_px);
-    ar::MarkerMap const markers = synthetic_markers(o.markers);
+    MarkerMap const markers = synthetic_markers(o.markers);
     PaperOnTable const paper = synthetic_paper(o.markers);
-    std::vector<ar::TimedPose> poses;
+    std::vector<TimedPose> poses;
     for (int f = 0; f < o.frames; ++f)
         poses.push_back({f / o.rate_hz, (o.apart ? synthetic_pose_apart : synthetic_pose)(
                                             o.frames > 1 ? double(f) / (o.frames - 1) : 0)});
@@ -179,7 +179,7 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
         wanted += std::size_t(!fs::exists(file_of("frames", f))) +
                   std::size_t(o.truth && !fs::exists(file_of("truth", f)));
     gi::ProgressBar bar("synthesize");
-    double const begun_s = ar::steady_now_s();
+    double const begun_s = steady_now_s();
     bool is_told = false;
     int done = 0;
     for (std::size_t f = 0; f < poses.size() && !stop.requested(); ++f) {
@@ -200,7 +200,7 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
         done += stop.requested() ? 0 : 1;
         if (is_told || written == 0 || stop.requested()) continue;
         is_told = true;
-        double const each_s = (ar::steady_now_s() - begun_s) / double(written);
+        double const each_s = (steady_now_s() - begun_s) / double(written);
         gi::say_estimate("synthesize", each_s * double(wanted - written),
                          fmt::format("{} pictures of {} x {}, {:.1f} s each with {} paths per pixel",
                                      wanted - written, o.size_px.x, o.size_px.y, each_s, o.quality.paths));
@@ -208,4 +208,4 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
     return done;
 }
 
-} // namespace viewer
+} // namespace ar

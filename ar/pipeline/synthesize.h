@@ -8,14 +8,14 @@
 
 #include <filesystem>
 
-namespace viewer {
+namespace ar {
 
 /// What is printed and lies on the table.
 enum class DeskMarkers { board, one, none };
 
 /// Markers of a synthetic session, as they lie on the table: of the board, squares are 25 pixels wide at 1 m in
 /// pictures of 640 x 480.
-ar::MarkerMap synthetic_markers(DeskMarkers which);
+MarkerMap synthetic_markers(DeskMarkers which);
 /// Their print.
 PaperOnTable synthetic_paper(DeskMarkers which);
 
@@ -39,4 +39,4 @@ struct SynthesizeOptions {
 /// session with other options
 int synthesize(SynthesizeOptions const& options, gi::StopRequest const& stop, gi::Report& report);
 
-} // namespace viewer
+} // namespace ar

@@ -9,7 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 cv::Mat rendered(gi::World const& world, gi::Camera const& camera, int width, int height, std::uint32_t paths,
@@ -28,12 +28,12 @@ cv::Mat rendered(gi::World const& world, gi::Camera const& camera, int width, in
     return matrix_of(result.picture, "color");
 }
 
-ar::Pose looking(glm::dvec3 from, glm::dvec3 at)
+gi::RigidPose looking(glm::dvec3 from, glm::dvec3 at)
 {
     glm::dvec3 const ahead = glm::normalize(at - from);
     glm::dvec3 const right = glm::normalize(glm::cross(ahead, glm::dvec3(0, 1, 0)));
     glm::dmat3 const axes(right, glm::cross(ahead, right), ahead); // x right, y down, z ahead
-    return {glm::normalize(glm::quat_cast(axes)), from};
+    return {from, glm::normalize(glm::quat_cast(axes))};
 }
 
 } // namespace
@@ -41,20 +41,20 @@ ar::Pose looking(glm::dvec3 from, glm::dvec3 at)
 SyntheticCamera synthetic_camera(glm::ivec2 size_px)
 {
     SyntheticCamera c;
-    c.model.lens = ar::LensModel::radial_tangential;
+    c.model.lens = LensModel::radial_tangential;
     c.model.size_px = {640, 480};
     c.model.fx = 556.3;
     c.model.fy = 554.9;
     c.model.cx = 322.4;
     c.model.cy = 236.8;
     c.model.distortion = {-0.17, 0.06, 0.0006, -0.0009, -0.004, 0, 0, 0};
-    c.model = ar::scaled(c.model, size_px);
-    c.photometry = ar::srgb_photometry();
+    c.model = scaled(c.model, size_px);
+    c.photometry = srgb_photometry();
     c.photometry.radiance_per_unit = 1;
     return c;
 }
 
-ar::Pose synthetic_pose(double t)
+gi::RigidPose synthetic_pose(double t)
 {
     double const turn = 2 * glm::pi<double>() * t;
     double const azimuth = glm::radians(-24 + 48 * t) + 0.02 * std::sin(5 * turn);
@@ -66,7 +66,7 @@ ar::Pose synthetic_pose(double t)
                    at);
 }
 
-ar::Pose synthetic_pose_apart(double t)
+gi::RigidPose synthetic_pose_apart(double t)
 {
     double const turn = 2 * glm::pi<double>() * t;
     double const azimuth = glm::radians(14 * std::sin(1.5 * turn) + 5) + 0.02 * std::sin(6 * turn);
@@ -78,17 +78,17 @@ ar::Pose synthetic_pose_apart(double t)
                    at);
 }
 
-cv::Mat synthetic_radiance(gi::Scene const& scene, std::optional<double> time_s, ar::CameraModel const& camera,
-                           ar::Pose const& world_from_camera, SyntheticQuality const& quality, std::uint64_t seed,
-                           gi::StopRequest const& stop, gi::Report& report)
+cv::Mat synthetic_radiance(gi::Scene const& scene, std::optional<double> time_s, CameraModel const& camera,
+                           gi::RigidPose const& world_from_camera, SyntheticQuality const& quality,
+                           std::uint64_t seed, gi::StopRequest const& stop, gi::Report& report)
 {
-    ar::CameraModel const pinhole = ar::covering_pinhole(camera, quality.resolution);
+    CameraModel const pinhole = covering_pinhole(camera, quality.resolution);
     double const per_pixel = quality.resolution * quality.resolution;
     auto const paths = std::uint32_t(std::max(1.0, std::round(quality.paths / per_pixel)));
     gi::World const world = gi::build_world(std::make_shared<gi::Scene const>(scene), time_s, report);
     cv::Mat const flat = rendered(world, gi_camera(pinhole, world_from_camera), pinhole.size_px.x,
                                   pinhole.size_px.y, paths, quality, seed, stop, report);
-    return ar::Warp(camera, pinhole).smooth(flat);
+    return Warp(camera, pinhole).smooth(flat);
 }
 
 cv::Mat synthetic_frame(cv::Mat const& radiance, SyntheticCamera const& camera, std::uint64_t frame)
@@ -108,7 +108,7 @@ cv::Mat synthetic_frame(cv::Mat const& radiance, SyntheticCamera const& camera, 
                 value = float(value + unit * std::sqrt(variance) * normal);
             }
     }
-    return ar::bytes_of(noisy, camera.photometry);
+    return bytes_of(noisy, camera.photometry);
 }
 
 cv::Mat synthetic_probe(gi::Scene const& scene, gi::dvec3 place_m, int height, SyntheticQuality const& quality,
@@ -146,4 +146,4 @@ cv::Mat synthetic_probe(gi::Scene const& scene, gi::dvec3 place_m, int height, S
     return map;
 }
 
-} // namespace viewer
+} // namespace ar

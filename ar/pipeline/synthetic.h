@@ -10,11 +10,11 @@
 #include "gi/core/report.h"
 #include "gi/scene/model/scene.h"
 
-namespace viewer {
+namespace ar {
 
 struct SyntheticCamera {
-    ar::CameraModel model;
-    ar::Photometry photometry;
+    CameraModel model;
+    Photometry photometry;
     double read_noise = 0.0015; ///< standard deviation, units of the photometry
     double photon_noise = 2e-5; ///< variance per unit
 };
@@ -24,9 +24,9 @@ SyntheticCamera synthetic_camera(glm::ivec2 size_px);
 
 /// Camera pose around the middle of the table at a distance of about 1 m, above it: smooth, with a little handheld
 /// sway. @param t  0 to 1
-ar::Pose synthetic_pose(double t);
+gi::RigidPose synthetic_pose(double t);
 /// Another way around the table, nearer and faster, for tracking by a map that was made along the first.
-ar::Pose synthetic_pose_apart(double t);
+gi::RigidPose synthetic_pose_apart(double t);
 
 struct SyntheticQuality {
     std::uint32_t paths = 4;  ///< of the reference renderer, per pixel of the camera
@@ -37,9 +37,9 @@ struct SyntheticQuality {
 
 /// Radiance, CV_32FC3, of the camera's size, through its lens.
 /// @param seed  with the same seed, the common parts of two scenes have the same noise
-cv::Mat synthetic_radiance(gi::Scene const& scene, std::optional<double> time_s, ar::CameraModel const& camera,
-                           ar::Pose const& world_from_camera, SyntheticQuality const& quality, std::uint64_t seed,
-                           gi::StopRequest const& stop, gi::Report& report);
+cv::Mat synthetic_radiance(gi::Scene const& scene, std::optional<double> time_s, CameraModel const& camera,
+                           gi::RigidPose const& world_from_camera, SyntheticQuality const& quality,
+                           std::uint64_t seed, gi::StopRequest const& stop, gi::Report& report);
 
 /// Simulates the sensor: CV_8UC3 RGB. The noise depends only on the frame number.
 cv::Mat synthetic_frame(cv::Mat const& radiance, SyntheticCamera const& camera, std::uint64_t frame);
@@ -48,4 +48,4 @@ cv::Mat synthetic_frame(cv::Mat const& radiance, SyntheticCamera const& camera, 
 cv::Mat synthetic_probe(gi::Scene const& scene, gi::dvec3 place_m, int height, SyntheticQuality const& quality,
                         gi::StopRequest const& stop, gi::Report& report);
 
-} // namespace viewer
+} // namespace ar

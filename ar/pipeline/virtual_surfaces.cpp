@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr int kSide = 2, kPoints = kSide * kSide; ///< of each pixel of the frame
@@ -150,7 +150,7 @@ std::optional<cv::Vec3f> VirtualSurfaces::light_at(cv::Vec2f place, cv::Vec3f co
 }
 
 std::size_t VirtualSurfaces::light(SurfaceView const& surfaces, cv::Size low_size, cv::Size size, cv::Rect region,
-                                   ar::DirectlySeen& to) const
+                                   DirectlySeen& to) const
 {
     float const step_x = float(low_size.width) / float(size.width),
                 step_y = float(low_size.height) / float(size.height);
@@ -188,7 +188,7 @@ SharpSurfaces VirtualSurfaces::at_size(PairPictures const& low, gi::Camera const
                                        bool with_unoccluded)
 {
     cv::Size const low_size = low.coverage.size();
-    auto const clear = [&](ar::DirectlySeen& seen) {
+    auto const clear = [&](DirectlySeen& seen) {
         seen.radiance.create(size, CV_32FC3);
         seen.coverage.create(size, CV_32FC1);
         seen.radiance.setTo(cv::Scalar::all(0));
@@ -247,4 +247,4 @@ void RealSurfaces::look(gi::Camera const& camera, cv::Size size, cv::Mat const& 
     });
 }
 
-} // namespace viewer
+} // namespace ar

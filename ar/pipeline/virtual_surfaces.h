@@ -11,12 +11,12 @@
 #include <optional>
 #include <vector>
 
-namespace viewer {
+namespace ar {
 
 /// Pictures of the frame's size.
 struct SharpSurfaces {
-    ar::DirectlySeen seen;       ///< with occlusion by proxies
-    ar::DirectlySeen unoccluded; ///< without occlusion by proxies; empty unless requested
+    DirectlySeen seen;           ///< with occlusion by proxies
+    DirectlySeen unoccluded;     ///< without occlusion by proxies; empty unless requested
     std::size_t unlit = 0;       ///< points without a nearby rendered pixel of virtual objects, which become black
 };
 
@@ -65,7 +65,7 @@ private:
     void look(SurfaceView const& surfaces, gi::Camera const& camera, cv::Size size, cv::Rect region);
     void know(PairPictures const& low, cv::Size size, cv::Rect low_region, cv::Rect region);
     std::size_t light(SurfaceView const& surfaces, cv::Size low_size, cv::Size size, cv::Rect region,
-                      ar::DirectlySeen& to) const;
+                      DirectlySeen& to) const;
     std::optional<cv::Vec3f> light_at(cv::Vec2f place, cv::Vec3f const& normal, float depth_m) const;
 
     gi::World const& world_;
@@ -87,13 +87,13 @@ public:
     /// is nonzero and undefined elsewhere
     void look(gi::Camera const& camera, cv::Size size, cv::Mat const& wanted);
     /// Valid until the next `look`, which reuses their memory.
-    ar::SurfaceGuides const& guides() const { return guides_; }
-    ar::SurfaceGuides const& low_guides() const { return low_; }
+    SurfaceGuides const& guides() const { return guides_; }
+    SurfaceGuides const& low_guides() const { return low_; }
 
 private:
     SurfaceView real_;
     SurfaceRaster raster_;
-    ar::SurfaceGuides guides_, low_;
+    SurfaceGuides guides_, low_;
 };
 
 /// Bounding rectangle of nonzero pixels, enlarged by `by_px`; empty if all are 0.
@@ -101,4 +101,4 @@ cv::Rect around(cv::Mat const& mask, int by_px);
 /// Scales a rectangle from one picture size to another.
 cv::Rect scaled(cv::Rect rectangle, cv::Size from, cv::Size to);
 
-} // namespace viewer
+} // namespace ar

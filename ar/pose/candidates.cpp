@@ -50,7 +50,8 @@ AimedPoints aim(CameraModel const& camera, std::span<SightedPoint const> points,
     return aimed;
 }
 
-void solve(AimedPoints const& aimed, PointSet const& set, cv::SolvePnPMethod method, std::vector<Pose>& out)
+void solve(AimedPoints const& aimed, PointSet const& set, cv::SolvePnPMethod method,
+           std::vector<gi::RigidPose>& out)
 {
     std::vector<cv::Mat> rotations, translations;
     try {
@@ -64,12 +65,12 @@ void solve(AimedPoints const& aimed, PointSet const& set, cv::SolvePnPMethod met
         rotations[i].reshape(1, 3).convertTo(r, CV_64F);
         translations[i].reshape(1, 3).convertTo(t, CV_64F);
         if (!std::isfinite(cv::norm(r)) || !std::isfinite(cv::norm(t))) continue;
-        Pose aimed_from_set = pose_of(r, t);
-        aimed_from_set.position_m *= set.extent_m;
-        Pose const set_from_camera = inverse(Pose{aimed.camera_from_aimed, {}} * aimed_from_set);
-        Pose const world_from_set{glm::normalize(glm::quat_cast(set.axes)), set.centre_m};
-        Pose const pose = world_from_set * set_from_camera;
-        if (std::isfinite(glm::length(pose.position_m)) && std::abs(glm::length(pose.rotation) - 1) < 1e-6)
+        gi::RigidPose aimed_from_set = pose_of(r, t);
+        aimed_from_set.position *= set.extent_m;
+        gi::RigidPose const set_from_camera = inverse(gi::RigidPose{{}, aimed.camera_from_aimed} * aimed_from_set);
+        gi::RigidPose const world_from_set{set.centre_m, glm::normalize(glm::quat_cast(set.axes))};
+        gi::RigidPose const pose = world_from_set * set_from_camera;
+        if (std::isfinite(glm::length(pose.position)) && std::abs(glm::length(pose.rotation) - 1) < 1e-6)
             out.push_back(pose);
     }
 }
@@ -104,12 +105,12 @@ PointSet survey(std::span<SightedPoint const> points)
     return s;
 }
 
-std::vector<Pose> candidates(CameraModel const& camera, std::span<SightedPoint const> points)
+std::vector<gi::RigidPose> candidates(CameraModel const& camera, std::span<SightedPoint const> points)
 {
     PointSet const set = survey(points);
     if (set.different < 4 || set.shape == Shape::point || set.shape == Shape::line) return {};
     AimedPoints const aimed = aim(camera, points, set);
-    std::vector<Pose> found;
+    std::vector<gi::RigidPose> found;
     if (aimed.image.size() < 4) return found;
     if (set.shape == Shape::plane) solve(aimed, set, cv::SOLVEPNP_IPPE, found);
     solve(aimed, set, cv::SOLVEPNP_SQPNP, found);

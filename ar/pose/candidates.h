@@ -30,6 +30,6 @@ PointSet survey(std::span<SightedPoint const> points);
 /// Unrefined poses world_from_camera with all points in front of the camera. Planes: both solutions of IPPE
 /// (Collins and Bartoli 2014), the better first, then SQPnP (Terzakis and Lourakis 2020); else SQPnP. Rays more
 /// than 80 degrees from their mean are not used. Empty if none is found.
-std::vector<Pose> candidates(CameraModel const& camera, std::span<SightedPoint const> points);
+std::vector<gi::RigidPose> candidates(CameraModel const& camera, std::span<SightedPoint const> points);
 
 } // namespace ar

@@ -40,7 +40,8 @@ double size_px(SightedPoints const& points)
     return glm::length(high - low);
 }
 
-double truncated_cost(CameraModel const& camera, SightedPoints const& points, Pose const& pose, double limit)
+double truncated_cost(CameraModel const& camera, SightedPoints const& points, gi::RigidPose const& pose,
+                      double limit)
 {
     double sum = 0;
     for (SightedPoint const& p : points) {
@@ -50,20 +51,20 @@ double truncated_cost(CameraModel const& camera, SightedPoints const& points, Po
     return sum;
 }
 
-void append(std::vector<Pose>& to, std::vector<Pose> const& more)
+void append(std::vector<gi::RigidPose>& to, std::vector<gi::RigidPose> const& more)
 {
     to.insert(to.end(), more.begin(), more.end());
 }
 
 /// First guesses from all points; if not all agree, also from each of the larger markers,
 /// and from few points drawn at random.
-std::vector<Pose> first_guesses(CameraModel const& camera, SightedPoints const& points,
-                                std::optional<Pose> const& last)
+std::vector<gi::RigidPose> first_guesses(CameraModel const& camera, SightedPoints const& points,
+                                         std::optional<gi::RigidPose> const& last)
 {
-    std::vector<Pose> guesses = candidates(camera, points);
+    std::vector<gi::RigidPose> guesses = candidates(camera, points);
     if (last) guesses.push_back(*last);
     auto const some_disagree = [&] {
-        return std::none_of(guesses.begin(), guesses.end(), [&](Pose const& g) {
+        return std::none_of(guesses.begin(), guesses.end(), [&](gi::RigidPose const& g) {
             return truncated_cost(camera, points, g, kCoarseSigmas) < 0.05 * double(points.size());
         });
     };
@@ -87,7 +88,7 @@ std::vector<Pose> first_guesses(CameraModel const& camera, SightedPoints const& 
 }
 
 /// Ratio of the errors of the better half of the points to their sigmas, 1 to kMostScale.
-double scale_of(CameraModel const& camera, SightedPoints const& points, Pose const& pose)
+double scale_of(CameraModel const& camera, SightedPoints const& points, gi::RigidPose const& pose)
 {
     std::vector<double> misses;
     for (SightedPoint const& p : points) misses.push_back(miss_sigmas(camera, pose, p));
@@ -95,7 +96,8 @@ double scale_of(CameraModel const& camera, SightedPoints const& points, Pose con
 }
 
 /// Returns the agreeing points, without markers of which half or more of the points disagree.
-SightedPoints agreeing(CameraModel const& camera, SightedPoints const& points, Pose const& pose, double limit)
+SightedPoints agreeing(CameraModel const& camera, SightedPoints const& points, gi::RigidPose const& pose,
+                       double limit)
 {
     SightedPoints kept;
     for (auto const& [unused, own] : by_marker(points)) {
@@ -113,10 +115,10 @@ struct Agreed {
     double cost = 0; ///< truncated, over all points: what guesses are compared by
 };
 
-Agreed agree(CameraModel const& camera, SightedPoints const& points, Pose const& guess)
+Agreed agree(CameraModel const& camera, SightedPoints const& points, gi::RigidPose const& guess)
 {
     Agreed a;
-    Pose pose = guess;
+    gi::RigidPose pose = guess;
     // With fewer than 6 points, any 3 fit exactly if the others count as outliers:
     // robust weights would choose such a pose.
     if (points.size() < 6)
@@ -145,7 +147,7 @@ double chi2_scale(Agreed const& a)
     return std::max(1.0, a.refined.chi2 / freedom);
 }
 
-double rms_px(CameraModel const& camera, SightedPoints const& points, Pose const& pose)
+double rms_px(CameraModel const& camera, SightedPoints const& points, gi::RigidPose const& pose)
 {
     double sum = 0;
     for (SightedPoint const& p : points)
@@ -157,19 +159,19 @@ double rms_px(CameraModel const& camera, SightedPoints const& points, Pose const
 /// tried, too: that which IPPE finds for the first may fall together with it.
 std::optional<Refined> second_pose(CameraModel const& camera, Agreed const& first, PointSet const& set)
 {
-    Pose const& chosen = first.refined.world_from_camera;
-    std::vector<Pose> starts = candidates(camera, first.points);
-    glm::dvec3 const sight = glm::normalize(set.centre_m - chosen.position_m);
+    gi::RigidPose const& chosen = first.refined.world_from_camera;
+    std::vector<gi::RigidPose> starts = candidates(camera, first.points);
+    glm::dvec3 const sight = glm::normalize(set.centre_m - chosen.position);
     glm::dvec3 const normal = set.axes[2];
     glm::dvec3 const axis = glm::cross(normal, sight);
     if (double const sine = glm::length(axis); sine > 1e-6) {
         double const tilt = std::asin(std::min(1.0, sine)) * (glm::dot(normal, sight) < 0 ? -1 : 1);
         // Turning the camera about the set by twice the tilt shows the plane tilted the other way.
         glm::dquat const turn = gi::exp_rotation(axis / sine * (-2 * tilt));
-        starts.push_back({turn * chosen.rotation, set.centre_m + turn * (chosen.position_m - set.centre_m)});
+        starts.push_back({set.centre_m + turn * (chosen.position - set.centre_m), turn * chosen.rotation});
     }
     std::optional<Refined> best;
-    for (Pose const& start : starts) {
+    for (gi::RigidPose const& start : starts) {
         if (angle_between_deg(start.rotation, chosen.rotation) < 0.5) continue; // would find the first
         Refined const r = refine(camera, first.points, start);
         bool const ahead = std::all_of(first.points.begin(), first.points.end(), [&](SightedPoint const& p) {
@@ -181,13 +183,13 @@ std::optional<Refined> second_pose(CameraModel const& camera, Agreed const& firs
     return best;
 }
 
-double distance(Pose const& a, Pose const& b, double extent_m)
+double distance(gi::RigidPose const& a, gi::RigidPose const& b, double extent_m)
 {
     return angle_between_deg(a.rotation, b.rotation) +
-           glm::degrees(glm::length(a.position_m - b.position_m) / std::max(1e-9, extent_m));
+           glm::degrees(glm::length(a.position - b.position) / std::max(1e-9, extent_m));
 }
 
-void decide(PoseEstimate& e, CameraModel const& camera, Agreed& chosen, std::optional<Pose> const& last)
+void decide(PoseEstimate& e, CameraModel const& camera, Agreed& chosen, std::optional<gi::RigidPose> const& last)
 {
     PointSet const set = survey(chosen.points);
     if (set.shape != Shape::plane) return;
@@ -202,7 +204,7 @@ void decide(PoseEstimate& e, CameraModel const& camera, Agreed& chosen, std::opt
     bool swap = likely > 0.5;
     e.ambiguous = std::min(likely, 1 - likely) > kAmbiguous;
     if (e.ambiguous && last) {
-        double const far = glm::length(set.centre_m - last->position_m);
+        double const far = glm::length(set.centre_m - last->position);
         swap =
             distance(other.world_from_camera, *last, far) < distance(chosen.refined.world_from_camera, *last, far);
     }
@@ -252,7 +254,8 @@ double confidence_of(double fit, double likelihood, glm::dvec3 const& rotation_s
     return fit * likelihood / (1 + turn * turn);
 }
 
-PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, std::optional<Pose> const& last)
+PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera,
+                           std::optional<gi::RigidPose> const& last)
 {
     SightedPoints points;
     std::copy_if(sighting.points.begin(), sighting.points.end(), std::back_inserter(points), is_usable);
@@ -261,11 +264,11 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, 
     if (all.shape == Shape::line || all.shape == Shape::point) return failed(PoseFailure::on_a_line, sighting);
     // Precision is lost far from zero: compute relative to the points' centre.
     for (SightedPoint& p : points) p.world_m -= all.centre_m;
-    std::optional<Pose> near = last;
-    if (near) near->position_m -= all.centre_m;
+    std::optional<gi::RigidPose> near = last;
+    if (near) near->position -= all.centre_m;
 
-    std::vector<Pose> guesses = first_guesses(camera, points, near);
-    std::stable_sort(guesses.begin(), guesses.end(), [&](Pose const& a, Pose const& b) {
+    std::vector<gi::RigidPose> guesses = first_guesses(camera, points, near);
+    std::stable_sort(guesses.begin(), guesses.end(), [&](gi::RigidPose const& a, gi::RigidPose const& b) {
         return truncated_cost(camera, points, a, kCoarseSigmas) < truncated_cost(camera, points, b, kCoarseSigmas);
     });
     std::optional<Agreed> best;
@@ -291,8 +294,8 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, 
         e.position_sigma_m[i] = std::sqrt(e.covariance(i, i));
         e.rotation_sigma_deg[i] = glm::degrees(std::sqrt(e.covariance(3 + i, 3 + i)));
     }
-    e.world_from_camera.position_m += all.centre_m;
-    if (e.other) e.other->position_m += all.centre_m;
+    e.world_from_camera.position += all.centre_m;
+    if (e.other) e.other->position += all.centre_m;
     count(e, sighting, best->points);
     double const own_likelihood = std::max(1 - e.other_likelihood, e.ambiguous && last ? 0.5 : 0);
     e.fit =

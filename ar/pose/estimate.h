@@ -23,7 +23,7 @@ std::string name_of(PoseFailure failure);
 struct PoseEstimate {
     PoseFailure failure = PoseFailure::too_few_points;
     /// The members below are valid only if `failure` is none, except for the counts.
-    Pose world_from_camera;
+    gi::RigidPose world_from_camera;
     double rms_px = 0; ///< root mean square of the reprojection errors of the points used
     int points_used = 0;
     int points_rejected = 0; ///< not finite, or outliers; used + rejected = all points
@@ -35,7 +35,7 @@ struct PoseEstimate {
     glm::dvec3 position_sigma_m{0};   ///< along the world's axes
     glm::dvec3 rotation_sigma_deg{0}; ///< about the camera's axes
     /// Second solution for planar points, if it differs by more than half a degree from the first.
-    std::optional<Pose> other;
+    std::optional<gi::RigidPose> other;
     cv::Matx66d other_covariance = cv::Matx66d::zeros(); ///< of the other pose, as `covariance`
     double other_rms_px = 0;
     /// Likelihood of the other pose: exp(-d/2) / (1 + exp(-d/2)), d = difference of their chi^2. 0 to 1; above 0.5
@@ -59,6 +59,6 @@ double confidence_of(double fit, double likelihood, glm::dvec3 const& rotation_s
 /// @param last recent camera pose: decides between two poses that fit the picture equally well (`ambiguous`),
 ///             and is a further initial estimate
 PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera,
-                           std::optional<Pose> const& last = std::nullopt);
+                           std::optional<gi::RigidPose> const& last = std::nullopt);
 
 } // namespace ar

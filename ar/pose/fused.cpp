@@ -25,9 +25,9 @@ cv::Matx<double, rows, columns> part(M const& m, int row, int column)
 
 glm::dvec3 three(cv::Vec<double, 12> const& v, int at) { return {v[at], v[at + 1], v[at + 2]}; }
 
-bool are_same(Pose const& a, Pose const& b, double m, double deg)
+bool are_same(gi::RigidPose const& a, gi::RigidPose const& b, double m, double deg)
 {
-    return glm::length(a.position_m - b.position_m) < m && angle_between_deg(a.rotation, b.rotation) < deg;
+    return glm::length(a.position - b.position) < m && angle_between_deg(a.rotation, b.rotation) < deg;
 }
 
 /// Covariances of few points may be singular to rounding, and are never exact: 0.1 mm and 0.01 degrees at least.
@@ -64,7 +64,7 @@ PoseFusion::Hypothesis PoseFusion::begun(Measured const& m, double log_weight) c
 
 PoseFusion::Hypothesis PoseFusion::moved(Hypothesis h, double dt) const
 {
-    h.pose.position_m += dt * h.velocity;
+    h.pose.position += dt * h.velocity;
     glm::dquat const turn = gi::exp_rotation(dt * h.turning);
     h.pose.rotation = glm::normalize(h.pose.rotation * turn);
     Covariance f = Covariance::eye();
@@ -86,14 +86,14 @@ PoseFusion::Hypothesis PoseFusion::moved(Hypothesis h, double dt) const
 
 PoseFusion::Hypothesis PoseFusion::updated(Hypothesis h, Measured const& m) const
 {
-    glm::dvec3 const shift = m.pose.position_m - h.pose.position_m;
+    glm::dvec3 const shift = m.pose.position - h.pose.position;
     glm::dvec3 const turn = gi::log_rotation(glm::conjugate(h.pose.rotation) * m.pose.rotation);
     cv::Vec6d const innovation(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z);
     cv::Matx66d const s = part<6, 6>(h.covariance, 0, 0) + m.covariance;
     cv::Matx66d const inverse = s.inv(cv::DECOMP_CHOLESKY);
     Gain const gain = part<12, 6>(h.covariance, 0, 0) * inverse;
     cv::Vec<double, 12> const step = gain * innovation;
-    h.pose.position_m += three(step, 0);
+    h.pose.position += three(step, 0);
     h.pose.rotation = glm::normalize(h.pose.rotation * gi::exp_rotation(three(step, 3)));
     h.velocity += three(step, 6);
     h.turning += three(step, 9);
@@ -154,7 +154,7 @@ PoseEstimate PoseFusion::next(double time_s, PoseEstimate const& estimate)
     e.world_from_camera = best.pose;
     e.covariance = part<6, 6>(best.covariance, 0, 0);
     double likely = 0;
-    std::optional<Pose> rival;
+    std::optional<gi::RigidPose> rival;
     for (Hypothesis const& h : hypotheses_)
         if (are_same(h.pose, best.pose, kSame_m, kSame_deg))
             likely += std::exp(h.log_weight);

@@ -39,13 +39,13 @@ public:
 private:
     using Covariance = cv::Matx<double, 12, 12>;
     struct Hypothesis {
-        Pose pose;
+        gi::RigidPose pose;
         glm::dvec3 velocity{0}, turning{0};
         Covariance covariance = Covariance::zeros();
         double log_weight = 0;
     };
     struct Measured {
-        Pose pose;
+        gi::RigidPose pose;
         cv::Matx66d covariance;
         double log_fit = 0;
     };

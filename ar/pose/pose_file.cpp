@@ -62,7 +62,7 @@ TimedPose read_pose(gi::TextLine const& line, bool by_commas, CameraAxes axes)
                          "write qx qy qz qw with qw last; 0 0 0 1 is no rotation");
     glm::dquat const vision_in_graphics(0, 1, 0, 0); // half a turn about x
     glm::dquat const turn = axes == CameraAxes::graphics ? q * vision_in_graphics : q;
-    return {v[0], {glm::normalize(turn), {v[1], v[2], v[3]}}};
+    return {v[0], {{v[1], v[2], v[3]}, glm::normalize(turn)}};
 }
 
 } // namespace
@@ -129,14 +129,14 @@ std::string format_poses(std::vector<TimedPose> const& poses)
 {
     std::string text = fmt::format("{}\n", fmt::join(kColumns, ","));
     for (TimedPose const& t : poses) {
-        glm::dvec3 const p = t.world_from_camera.position_m;
+        glm::dvec3 const p = t.world_from_camera.position;
         glm::dquat const q = t.world_from_camera.rotation;
         text += fmt::format("{},{},{},{},{},{},{},{}\n", t.time_s, p.x, p.y, p.z, q.x, q.y, q.z, q.w);
     }
     return text;
 }
 
-std::optional<Pose> pose_at(std::vector<TimedPose> const& poses, double time_s, double longest_gap_s)
+std::optional<gi::RigidPose> pose_at(std::vector<TimedPose> const& poses, double time_s, double longest_gap_s)
 {
     auto const after = std::lower_bound(poses.begin(), poses.end(), time_s,
                                         [](TimedPose const& p, double t) { return p.time_s < t; });
@@ -150,8 +150,16 @@ std::optional<Pose> pose_at(std::vector<TimedPose> const& poses, double time_s, 
     double const s = (time_s - a.time_s) / gap;
     glm::dvec3 const turn =
         gi::log_rotation(glm::conjugate(a.world_from_camera.rotation) * b.world_from_camera.rotation);
-    return Pose{glm::normalize(a.world_from_camera.rotation * gi::exp_rotation(s * turn)),
-                glm::mix(a.world_from_camera.position_m, b.world_from_camera.position_m, s)};
+    return gi::RigidPose{glm::mix(a.world_from_camera.position, b.world_from_camera.position, s),
+                         glm::normalize(a.world_from_camera.rotation * gi::exp_rotation(s * turn))};
+}
+
+std::optional<gi::RigidPose> recorded_pose(std::vector<TimedPose> const& poses, double time_s)
+{
+    constexpr double kRounding_s = 2e-6;
+    double const first_s = poses.front().time_s, last_s = poses.back().time_s;
+    if (time_s < first_s - kRounding_s || time_s > last_s + kRounding_s) return std::nullopt;
+    return pose_at(poses, std::clamp(time_s, first_s, last_s));
 }
 
 } // namespace ar

@@ -17,7 +17,7 @@ namespace ar {
 
 struct TimedPose {
     double time_s = 0;
-    Pose world_from_camera;
+    gi::RigidPose world_from_camera;
 };
 
 /// Convention of the camera's axes in a file.
@@ -52,6 +52,9 @@ std::string format_poses(std::vector<TimedPose> const& poses);
 
 /// Interpolates between the two nearest poses: position linearly, rotation by slerp along the shorter arc. Nothing
 /// before the first, after the last, or in a gap longer than `longest_gap_s`.
-std::optional<Pose> pose_at(std::vector<TimedPose> const& poses, double time_s, double longest_gap_s = 0.5);
+std::optional<gi::RigidPose> pose_at(std::vector<TimedPose> const& poses, double time_s,
+                                     double longest_gap_s = 0.5);
+/// As pose_at, for times that may be rounded, as file clocks are. @param poses  not empty
+std::optional<gi::RigidPose> recorded_pose(std::vector<TimedPose> const& poses, double time_s);
 
 } // namespace ar

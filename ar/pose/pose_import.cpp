@@ -17,7 +17,7 @@ glm::dquat const kVisionInGraphics(0, 1, 0, 0); ///< half a turn about x
 
 struct NumberedPose {
     double frame = 0;
-    Pose world_from_camera;
+    gi::RigidPose world_from_camera;
     int line = 0;
 };
 
@@ -140,7 +140,7 @@ PoseFile parse_colmap_images(std::string_view text, std::string const& file, Fra
         glm::dquat const turn = unit({v[1], v[2], v[3], v[4]},
                                      line.error(words[1], "the quaternion's length is not 1",
                                                 "that of rotations is 1", "write QW QX QY QZ with QW first"));
-        poses.push_back({frame, inverse(Pose{turn, {v[5], v[6], v[7]}}), n});
+        poses.push_back({frame, inverse(gi::RigidPose{{v[5], v[6], v[7]}, turn}), n});
         check_points({gi::take_until(text, '\n'), file, ++n});
     }
     return timed(std::move(poses), file, numbering);
@@ -164,7 +164,7 @@ PoseFile parse_chan(std::string_view text, std::string const& file, FrameNumberi
         glm::dquat const turn = glm::angleAxis(r.z, glm::dvec3(0, 0, 1)) *
                                 glm::angleAxis(r.y, glm::dvec3(0, 1, 0)) *
                                 glm::angleAxis(r.x, glm::dvec3(1, 0, 0));
-        poses.push_back({v[0], {glm::normalize(turn * kVisionInGraphics), {v[1], v[2], v[3]}}, n});
+        poses.push_back({v[0], {{v[1], v[2], v[3]}, glm::normalize(turn * kVisionInGraphics)}, n});
     }
     return timed(std::move(poses), file, numbering);
 }
@@ -188,7 +188,7 @@ PoseFile parse_blender_json(std::string const& text, std::string const& file, Fr
                  f.at("rotation_wxyz")
                      .error("the quaternion's length is not 1", "that of rotations is 1", "write w, x, y, z"));
         poses.push_back({f.needed("frame", "1").number(-kMostFrames, kMostFrames),
-                         {glm::normalize(y_up * turn * kVisionInGraphics), y_up * glm::dvec3(p[0], p[1], p[2])},
+                         {y_up * glm::dvec3(p[0], p[1], p[2]), glm::normalize(y_up * turn * kVisionInGraphics)},
                          f.place().line});
     }
     return timed(std::move(poses), file, numbering);

@@ -10,9 +10,9 @@ namespace {
 using Vec6 = cv::Vec<double, 6>;
 constexpr double kNowhere = 1e9;
 
-glm::dvec3 in_camera(Pose const& world_from_camera, glm::dvec3 world)
+glm::dvec3 in_camera(gi::RigidPose const& world_from_camera, glm::dvec3 world)
 {
-    return glm::conjugate(world_from_camera.rotation) * (world - world_from_camera.position_m);
+    return glm::conjugate(world_from_camera.rotation) * (world - world_from_camera.position);
 }
 
 struct Equations {
@@ -34,7 +34,8 @@ double cost_of(double sigmas2, double scale)
     return scale > 0 ? sigmas2 / (1 + sigmas2 / (scale * scale)) : sigmas2;
 }
 
-double cost(CameraModel const& camera, std::span<SightedPoint const> points, Pose const& pose, double scale)
+double cost(CameraModel const& camera, std::span<SightedPoint const> points, gi::RigidPose const& pose,
+            double scale)
 {
     double sum = 0;
     for (SightedPoint const& p : points) {
@@ -44,7 +45,7 @@ double cost(CameraModel const& camera, std::span<SightedPoint const> points, Pos
     return sum;
 }
 
-Equations equations(CameraModel const& camera, std::span<SightedPoint const> points, Pose const& pose,
+Equations equations(CameraModel const& camera, std::span<SightedPoint const> points, gi::RigidPose const& pose,
                     double scale)
 {
     Equations e;
@@ -83,10 +84,10 @@ Equations equations(CameraModel const& camera, std::span<SightedPoint const> poi
     return e;
 }
 
-Pose moved(Pose const& p, Vec6 const& d)
+gi::RigidPose moved(gi::RigidPose const& p, Vec6 const& d)
 {
-    return {glm::normalize(p.rotation * gi::exp_rotation({d[3], d[4], d[5]})),
-            p.position_m + glm::dvec3(d[0], d[1], d[2])};
+    return {p.position + glm::dvec3(d[0], d[1], d[2]),
+            glm::normalize(p.rotation * gi::exp_rotation({d[3], d[4], d[5]}))};
 }
 
 /// Inverse of a symmetric matrix. Its units differ so much that rows and columns are scaled to 1 first.
@@ -108,23 +109,23 @@ std::optional<cv::Matx66d> inverted(cv::Matx66d const& a)
 
 } // namespace
 
-std::optional<glm::dvec2> miss_px(CameraModel const& camera, Pose const& pose, SightedPoint const& p)
+std::optional<glm::dvec2> miss_px(CameraModel const& camera, gi::RigidPose const& pose, SightedPoint const& p)
 {
     auto const at = project(camera, in_camera(pose, p.world_m));
     if (!at || !std::isfinite(at->x) || !std::isfinite(at->y)) return std::nullopt;
     return *at - p.pixel;
 }
 
-double miss_sigmas(CameraModel const& camera, Pose const& pose, SightedPoint const& p)
+double miss_sigmas(CameraModel const& camera, gi::RigidPose const& pose, SightedPoint const& p)
 {
     auto const miss = miss_px(camera, pose, p);
     return miss ? std::min(kNowhere, glm::length(*miss) / p.sigma_px) : kNowhere;
 }
 
-Refined refine(CameraModel const& camera, std::span<SightedPoint const> points, Pose const& start,
+Refined refine(CameraModel const& camera, std::span<SightedPoint const> points, gi::RigidPose const& start,
                double robust_sigmas)
 {
-    Pose pose = start;
+    gi::RigidPose pose = start;
     Equations e = equations(camera, points, pose, robust_sigmas);
     double damping = 1e-4;
     bool const rough = robust_sigmas > 0; // a step on the way
@@ -133,7 +134,7 @@ Refined refine(CameraModel const& camera, std::span<SightedPoint const> points, 
         for (int k = 0; k < 6; ++k) a(k, k) += damping * e.a(k, k) + 1e-300;
         Vec6 step;
         if (!cv::solve(a, e.b, step, cv::DECOMP_CHOLESKY) && !cv::solve(a, e.b, step, cv::DECOMP_SVD)) break;
-        Pose const tried = moved(pose, step);
+        gi::RigidPose const tried = moved(pose, step);
         double const now = cost(camera, points, tried, robust_sigmas);
         if (!(now <= e.cost)) {
             damping *= 8;

@@ -12,12 +12,13 @@
 namespace ar {
 
 /// Projected minus observed pixel; nothing if the point is not in front of the camera.
-std::optional<glm::dvec2> miss_px(CameraModel const& camera, Pose const& world_from_camera, SightedPoint const& p);
+std::optional<glm::dvec2> miss_px(CameraModel const& camera, gi::RigidPose const& world_from_camera,
+                                  SightedPoint const& p);
 /// Length of `miss_px` in units of sigma_px; 1e9 if there is none.
-double miss_sigmas(CameraModel const& camera, Pose const& world_from_camera, SightedPoint const& point);
+double miss_sigmas(CameraModel const& camera, gi::RigidPose const& world_from_camera, SightedPoint const& point);
 
 struct Refined {
-    Pose world_from_camera;
+    gi::RigidPose world_from_camera;
     double chi2 = 0; ///< sum of squared misses in sigmas
     /// (J^T W J)^-1 of position in the world (m) and rotation about the camera's axes (rad), for the points'
     /// sigma_px. Nothing if the points do not determine the pose.
@@ -28,7 +29,7 @@ struct Refined {
 /// @param start a pose with the points in front of the camera
 /// @param robust_sigmas if > 0: weights of Geman and McClure 1987 with this scale, by iterative reweighting to low
 ///        precision: points far beyond it have almost no weight
-Refined refine(CameraModel const& camera, std::span<SightedPoint const> points, Pose const& start,
+Refined refine(CameraModel const& camera, std::span<SightedPoint const> points, gi::RigidPose const& start,
                double robust_sigmas = 0);
 
 } // namespace ar

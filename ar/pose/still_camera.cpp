@@ -13,19 +13,19 @@ namespace {
 double sigma_m(PoseEstimate const& e) { return std::max(1e-9, glm::length(e.position_sigma_m)); }
 double sigma_deg(PoseEstimate const& e) { return std::max(1e-9, glm::length(e.rotation_sigma_deg)); }
 
-bool agrees(StillSettings const& s, PoseEstimate const& e, Pose const& with)
+bool agrees(StillSettings const& s, PoseEstimate const& e, gi::RigidPose const& with)
 {
-    double const off_m = glm::length(e.world_from_camera.position_m - with.position_m);
+    double const off_m = glm::length(e.world_from_camera.position - with.position);
     double const off_deg = angle_between_deg(e.world_from_camera.rotation, with.rotation);
     return off_m <= std::max(s.least_m, s.limit_sigmas * sigma_m(e)) &&
            off_deg <= std::max(s.least_deg, s.limit_sigmas * sigma_deg(e));
 }
 
 /// Component by component; rotations as vectors about the one in the middle of the list.
-Pose median(std::deque<PoseEstimate> const& kept)
+gi::RigidPose median(std::deque<PoseEstimate> const& kept)
 {
-    Pose const about = kept[kept.size() / 2].world_from_camera;
-    Pose m = about;
+    gi::RigidPose const about = kept[kept.size() / 2].world_from_camera;
+    gi::RigidPose m = about;
     glm::dvec3 turn;
     std::vector<double> v(kept.size());
     auto const middle = [&](auto const& value) {
@@ -33,7 +33,7 @@ Pose median(std::deque<PoseEstimate> const& kept)
         return gi::median(v);
     };
     for (int k = 0; k < 3; ++k) {
-        m.position_m[k] = middle([&](PoseEstimate const& e) { return e.world_from_camera.position_m[k]; });
+        m.position[k] = middle([&](PoseEstimate const& e) { return e.world_from_camera.position[k]; });
         turn[k] = middle([&](PoseEstimate const& e) {
             return gi::log_rotation(glm::conjugate(about.rotation) * e.world_from_camera.rotation)[k];
         });
@@ -44,7 +44,7 @@ Pose median(std::deque<PoseEstimate> const& kept)
 
 StillPose mean_of(StillSettings const& s, std::deque<PoseEstimate> const& kept)
 {
-    Pose const about = median(kept);
+    gi::RigidPose const about = median(kept);
     StillPose mean;
     double weight_m = 0, weight_deg = 0;
     glm::dvec3 moved(0), turned(0), moved2(0);
@@ -56,7 +56,7 @@ StillPose mean_of(StillSettings const& s, std::deque<PoseEstimate> const& kept)
         }
         ++mean.averaged;
         double const m = 1 / (sigma_m(e) * sigma_m(e)), d = 1 / (sigma_deg(e) * sigma_deg(e));
-        glm::dvec3 const by = e.world_from_camera.position_m - about.position_m;
+        glm::dvec3 const by = e.world_from_camera.position - about.position;
         glm::dvec3 const turn = gi::log_rotation(glm::conjugate(about.rotation) * e.world_from_camera.rotation);
         weight_m += m;
         weight_deg += d;
@@ -72,7 +72,7 @@ StillPose mean_of(StillSettings const& s, std::deque<PoseEstimate> const& kept)
     moved /= weight_m;
     turned /= weight_deg;
     double const n = double(mean.averaged);
-    mean.world_from_camera = {glm::normalize(about.rotation * gi::exp_rotation(turned)), about.position_m + moved};
+    mean.world_from_camera = {about.position + moved, glm::normalize(about.rotation * gi::exp_rotation(turned))};
     for (int k = 0; k < 3; ++k)
         mean.position_sigma_m[k] = std::sqrt(std::max(0.0, moved2[k] / weight_m - moved[k] * moved[k]) / n);
     mean.rotation_sigma_deg =

@@ -17,7 +17,7 @@ struct StillSettings {
 };
 
 struct StillPose {
-    Pose world_from_camera;
+    gi::RigidPose world_from_camera;
     std::size_t averaged = 0;       ///< number of estimates in the mean
     std::size_t left_out = 0;       ///< kept, but in disagreement
     glm::dvec3 position_sigma_m{0}; ///< standard error of the mean, from the spread of the estimates

@@ -23,7 +23,6 @@ void check(PoseTrackerSettings const& s)
         need("beta + 1", f.beta + 1);
         need("velocity_beta + 1", f.velocity_beta + 1);
     }
-    need("fresh_s", s.fresh_s);
     need("predict_s", s.predict_s);
     need("lost_after_s", s.lost_after_s);
     need("jump_m_s", s.jump_m_s);
@@ -44,19 +43,19 @@ PoseTracker::PoseTracker(PoseTrackerSettings const& settings)
     check(settings);
 }
 
-bool PoseTracker::is_far(Pose const& a, Pose const& b, double dt_s) const
+bool PoseTracker::is_far(gi::RigidPose const& a, gi::RigidPose const& b, double dt_s) const
 {
-    return glm::length(a.position_m - b.position_m) > settings_.jump_least_m + settings_.jump_m_s * dt_s ||
+    return glm::length(a.position - b.position) > settings_.jump_least_m + settings_.jump_m_s * dt_s ||
            angle_between_deg(a.rotation, b.rotation) > settings_.jump_least_deg + settings_.jump_deg_s * dt_s;
 }
 
-bool PoseTracker::is_jump(double captured_s, Pose const& pose) const
+bool PoseTracker::is_jump(double captured_s, gi::RigidPose const& pose) const
 {
     double const dt = captured_s - *newest_s_;
     return is_far(pose, filter_.moved_on(std::min(dt, settings_.predict_s)), dt);
 }
 
-void PoseTracker::begin(double captured_s, Pose const& pose)
+void PoseTracker::begin(double captured_s, gi::RigidPose const& pose)
 {
     filter_.restart(pose);
     newest_s_ = captured_s;
@@ -74,7 +73,7 @@ Taken PoseTracker::add(double captured_s, PoseEstimate const& e)
         ++counts_.late;
         return Taken::late;
     }
-    Pose const& pose = e.world_from_camera;
+    gi::RigidPose const& pose = e.world_from_camera;
     if (settings_.motion == CameraMotion::tripod) {
         counts_.moves += still_.add(e) ? 1 : 0;
         newest_s_ = captured_s;
@@ -97,29 +96,22 @@ Taken PoseTracker::add(double captured_s, PoseEstimate const& e)
         newest_s_ = captured_s;
         jump_.reset();
     }
-    confidence_ = e.confidence;
     ++counts_.taken;
     return Taken::taken;
 }
 
-TrackedCamera PoseTracker::at(double time_s) const
+FilteredPose PoseTracker::at(double time_s) const
 {
-    TrackedCamera t;
+    FilteredPose t;
     if (!newest_s_ || !std::isfinite(time_s)) return t;
     t.age_s = time_s - *newest_s_;
     if (settings_.motion == CameraMotion::tripod) {
         // The tripod stands still: if markers are covered for a while, the pose is only less certain, not lost.
-        t.state = t.age_s <= settings_.fresh_s ? CameraTrackState::tracked : CameraTrackState::predicted;
         t.world_from_camera = still_.pose()->world_from_camera;
-        t.confidence = confidence_;
         return t;
     }
     if (t.age_s > settings_.lost_after_s) return t;
-    t.state = t.age_s <= settings_.fresh_s ? CameraTrackState::tracked : CameraTrackState::predicted;
     t.world_from_camera = filter_.moved_on(std::clamp(t.age_s, -settings_.predict_s, settings_.predict_s));
-    double const stale = std::max(0.0, t.age_s - settings_.fresh_s);
-    t.confidence =
-        confidence_ * std::max(0.0, 1 - stale / std::max(1e-9, settings_.lost_after_s - settings_.fresh_s));
     return t;
 }
 

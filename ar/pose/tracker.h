@@ -10,12 +10,6 @@
 
 namespace ar {
 
-enum class CameraTrackState {
-    lost,      ///< no pose: no estimate yet, or none for `lost_after_s`
-    predicted, ///< extrapolated: more than a frame after the newest estimate
-    tracked    ///< measured
-};
-
 enum class CameraMotion { moving, tripod };
 
 struct PoseTrackerSettings {
@@ -23,7 +17,6 @@ struct PoseTrackerSettings {
     gi::OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
     gi::OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< in Hz per rad/s
     double least_confidence = 0.1;                  ///< estimates below this are ignored
-    double fresh_s = 0.05;                          ///< maximum age of an estimate for `tracked`
     double predict_s = 0.1; ///< extrapolate at constant velocity for this long, then hold the pose
     double lost_after_s = 0.5;
     /// An estimate farther from the predicted motion than this speed explains (plus the floors) is a jump; it is
@@ -34,11 +27,9 @@ struct PoseTrackerSettings {
     StillSettings still; ///< of CameraMotion::tripod
 };
 
-struct TrackedCamera {
-    CameraTrackState state = CameraTrackState::lost;
-    std::optional<Pose> world_from_camera; ///< unless lost
-    double age_s = 0;                      ///< age of the newest estimate at that time
-    double confidence = 0; ///< of the newest estimate; for predicted poses, falling to 0 at lost_after_s
+struct FilteredPose {
+    std::optional<gi::RigidPose> world_from_camera; ///< nothing: no estimate yet, or none for `lost_after_s`
+    double age_s = 0;                               ///< age of the newest estimate at that time
 };
 
 /// What became of an estimate.
@@ -66,23 +57,22 @@ public:
 
     Taken add(double captured_s, PoseEstimate const& estimate);
     /// Filtered and predicted pose; for times before the newest estimate, extrapolated backwards equally far.
-    TrackedCamera at(double time_s) const;
+    FilteredPose at(double time_s) const;
     /// Expected pose at that time, for the argument `last` of `estimate_pose`.
-    std::optional<Pose> expected(double time_s) const { return at(time_s).world_from_camera; }
+    std::optional<gi::RigidPose> expected(double time_s) const { return at(time_s).world_from_camera; }
     TrackerCounts const& counts() const { return counts_; }
     StillCamera const& still() const { return still_; }
 
 private:
-    bool is_far(Pose const& a, Pose const& b, double dt_s) const;
-    bool is_jump(double captured_s, Pose const& pose) const;
-    void begin(double captured_s, Pose const& pose);
+    bool is_far(gi::RigidPose const& a, gi::RigidPose const& b, double dt_s) const;
+    bool is_jump(double captured_s, gi::RigidPose const& pose) const;
+    void begin(double captured_s, gi::RigidPose const& pose);
 
     PoseTrackerSettings settings_;
     OneEuroPose filter_;
     StillCamera still_;
     std::optional<double> newest_s_; ///< time of the newest estimate taken
-    double confidence_ = 0;
-    std::optional<Pose> jump_; ///< pose of the last refused estimates
+    std::optional<gi::RigidPose> jump_; ///< pose of the last refused estimates
     double jump_s_ = 0;        ///< time of the last of them
     int jump_seen_ = 0;
     TrackerCounts counts_;

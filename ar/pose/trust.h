@@ -30,14 +30,14 @@ struct TrustSettings {
 
 /// What is known about a frame's pose.
 struct OfferedPose {
-    std::optional<Pose> trusted;   ///< of this frame
-    std::optional<Pose> predicted; ///< from earlier frames
+    std::optional<gi::RigidPose> trusted;   ///< of this frame
+    std::optional<gi::RigidPose> predicted; ///< from earlier frames
     bool is_estimated = false;     ///< this frame has an estimate, trusted or not
 };
 
 struct UsedPose {
     PoseState state = PoseState::lost;
-    std::optional<Pose> world_from_camera; ///< if anything is shown
+    std::optional<gi::RigidPose> world_from_camera; ///< if anything is shown
     double shown = 0; ///< 0 to 1: share of the change by virtual objects that is shown; 0 without a pose
     double age_s = 0; ///< since the last trusted pose
 };
@@ -57,7 +57,7 @@ private:
     TrustSettings settings_;
     std::optional<double> last_s_;    ///< time of the last frame
     std::optional<double> trusted_s_; ///< time of the last trusted pose
-    Pose pose_;                       ///< the last one shown
+    gi::RigidPose pose_;              ///< the last one shown
     double shown_ = 0;
     std::array<std::uint64_t, kPoseStates> counts_{};
 };

@@ -9,32 +9,31 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr double kDistance_m = 1, kWayPerFrame = 0.02, kWay = 0.25; // of the picture's width; to either side
 constexpr double kFocal = 0.9;                                      // of the picture's width
 
 /// Looks along -z; to the left and right by a triangle wave.
-ar::Pose pose_of_frame(std::uint64_t number)
+gi::RigidPose pose_of_frame(std::uint64_t number)
 {
     auto const steps = std::uint64_t(std::lround(2 * kWay / kWayPerFrame)); // from one side to the other
     std::uint64_t const k = number % (2 * steps);
     double const side = kWay - kWayPerFrame * double(k < steps ? k : 2 * steps - k);
-    return {glm::dquat(0, 1, 0, 0), {side * kDistance_m / kFocal, 0, 0}};
+    return {{side * kDistance_m / kFocal, 0, 0}, glm::dquat(0, 1, 0, 0)};
 }
 
 } // namespace
 
-ar::Pose CounterSession::camera_at(double since_frame_0_s) const
+gi::RigidPose CounterSession::camera_at(double since_frame_0_s) const
 {
     constexpr double kRounding = 1e-4; // of a frame
     double const frames = std::max(since_frame_0_s * rate_hz + kRounding, 0.0);
     auto const before = std::uint64_t(frames);
-    ar::Pose pose = pose_of_frame(before);
+    gi::RigidPose pose = pose_of_frame(before);
     double const part = frames - double(before);
-    if (part > 2 * kRounding)
-        pose.position_m = glm::mix(pose.position_m, pose_of_frame(before + 1).position_m, part);
+    if (part > 2 * kRounding) pose.position = glm::mix(pose.position, pose_of_frame(before + 1).position, part);
     return pose;
 }
 
@@ -47,19 +46,19 @@ CounterSession make_counter_session(std::filesystem::path const& folder, glm::iv
     c.camera.fx = c.camera.fy = kFocal * size_px.x;
     c.camera.cx = 0.5 * (size_px.x - 1);
     c.camera.cy = 0.5 * (size_px.y - 1);
-    ar::Calibration calibration;
+    Calibration calibration;
     calibration.camera = c.camera;
-    calibration.photometry = ar::srgb_photometry();
-    ArSession& s = c.session;
+    calibration.photometry = srgb_photometry();
+    Session& s = c.session;
     s.file = folder / "session.yaml";
     s.camera = folder / "camera.yaml";
     s.markers = folder / "markers.yaml";
     s.virtual_things.scene = folder / "ball.glb";
-    ar::write_calibration(s.camera, calibration);
-    ar::Marker marker; // never detected: poses are supplied
+    write_calibration(s.camera, calibration);
+    Marker marker; // never detected: poses are supplied
     marker.dictionary = "DICT_4X4_50";
     marker.side_m = 0.1;
-    ar::write_marker_map(s.markers, {{marker}, {}, {}});
+    write_marker_map(s.markers, {{marker}, {}, {}});
     gi::SceneBuilder b;
     gi::Material white;
     white.base_color = gi::vec3(0);
@@ -86,17 +85,15 @@ std::optional<glm::dvec2> ball_in(cv::Mat const& rgb)
     return glm::dvec2(m.m10 / m.m00, m.m01 / m.m00 + rgb.rows / 8);
 }
 
-glm::dvec2 ball_from(ar::CameraModel const& camera, ar::Pose const& world_from_camera)
+glm::dvec2 ball_from(CameraModel const& camera, gi::RigidPose const& world_from_camera)
 {
-    return ar::project(camera, ar::inverse(world_from_camera) * glm::dvec3(0, 0, -kDistance_m))
-        .value_or(glm::dvec2(-1e3));
+    return project(camera, inverse(world_from_camera) * glm::dvec3(0, 0, -kDistance_m)).value_or(glm::dvec2(-1e3));
 }
 
-void CounterCheck::add(ArFrameRecord const& f, cv::Mat const& shown, bool in_window, double before_s,
-                       double after_s)
+void CounterCheck::add(RunFrame const& f, cv::Mat const& shown, bool in_window, double before_s, double after_s)
 {
     ++verdict_.frames;
-    std::optional<std::uint32_t> const number = ar::read_counter(shown);
+    std::optional<std::uint32_t> const number = read_counter(shown);
     if (!number) {
         ++verdict_.unread;
         return;
@@ -116,7 +113,7 @@ void CounterCheck::add(ArFrameRecord const& f, cv::Mat const& shown, bool in_win
     if (good) {
         double const captured_s = *f.captured_steady_s, start_s = captured_s - double(*number) / session_.rate_hz;
         if (!start_s_) start_s_ = start_s;
-        ArTimes const& t = f.times;
+        StageTimes const& t = f.times;
         double const ready_ms = f.age_ms + t.decode_ms + t.detect_ms + t.pose_ms + t.wait_ms + t.light_ms +
                                 t.render_ms + t.composite_ms;
         double const ready_s = captured_s + 1e-3 * f.latency_ms;
@@ -131,4 +128,4 @@ void CounterCheck::add(ArFrameRecord const& f, cv::Mat const& shown, bool in_win
     if (!good) ++verdict_.mistimed;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -7,12 +7,12 @@
 #include "ar/camera/camera_model.h"
 #include "ar/runtime/runner.h"
 
-namespace viewer {
+namespace ar {
 
 struct CounterSession {
-    ArSession session;
-    ar::Pose camera_at(double since_frame_0_s) const; ///< for any time
-    ar::CameraModel camera;
+    Session session;
+    gi::RigidPose camera_at(double since_frame_0_s) const; ///< for any time
+    CameraModel camera;
     double rate_hz = 30;
 };
 
@@ -25,7 +25,7 @@ CounterSession make_counter_session(std::filesystem::path const& folder, glm::iv
 /// Centre of the white pixels below the number; nothing if there are none.
 std::optional<glm::dvec2> ball_in(cv::Mat const& rgb);
 /// Pixel position of the ball for a camera pose.
-glm::dvec2 ball_from(ar::CameraModel const& camera, ar::Pose const& world_from_camera);
+glm::dvec2 ball_from(CameraModel const& camera, gi::RigidPose const& world_from_camera);
 
 struct CounterVerdict {
     int frames = 0;
@@ -44,7 +44,7 @@ public:
     /// @param shown           CV_8UC3 RGB of any size
     /// @param before_s,after_s steady clock before and after showing; the record's swap must be between them
     /// (without a window: its composite must be before both)
-    void add(ArFrameRecord const& record, cv::Mat const& shown, bool in_window, double before_s, double after_s);
+    void add(RunFrame const& record, cv::Mat const& shown, bool in_window, double before_s, double after_s);
     CounterVerdict const& verdict() const { return verdict_; }
 
 private:
@@ -53,4 +53,4 @@ private:
     std::optional<double> start_s_; ///< when frame 0 was captured
 };
 
-} // namespace viewer
+} // namespace ar

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr int kBlock_px = 8;
@@ -53,18 +53,18 @@ cv::Mat block_means(cv::Mat const& radiance)
 
 } // namespace
 
-Flicker measure_flicker(ArSession const& session, ar::Frame const& frame, ar::Pose const& pose, double time_s,
+Flicker measure_flicker(Session const& session, Frame const& frame, gi::RigidPose const& pose, double time_s,
                         int frames, gi::StopRequest const& stop, gi::Report& report)
 {
     gi::Report own; // counts of this run are not the session's
-    ArPipeline pipeline(session, load_ar_camera(session.camera), ar::read_marker_map(session.markers), own);
+    Pipeline pipeline(session, load_camera(session.camera), read_marker_map(session.markers), own);
     Moments bytes, blocks;
     cv::Mat coverage, changed;
     for (int k = 0; k < frames && !stop.requested(); ++k) {
-        ArResult r = pipeline.find(frame, time_s, pose);
+        FrameResult r = pipeline.find(frame, time_s, pose);
         pipeline.add(r, frame, time_s, stop);
         if (!r.pair) break;
-        bytes.add(ar::eight_bits_of(r.rgb));
+        bytes.add(eight_bits_of(r.rgb));
         blocks.add(block_means(r.pair->with));
         coverage = k == 0 ? r.pair->coverage.clone() : cv::Mat(cv::min(coverage, r.pair->coverage));
         cv::Mat differs = r.rgb != r.camera;
@@ -88,4 +88,4 @@ Flicker measure_flicker(ArSession const& session, ar::Frame const& frame, ar::Po
     return f;
 }
 
-} // namespace viewer
+} // namespace ar

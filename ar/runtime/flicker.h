@@ -5,7 +5,7 @@
 
 #include "ar/pipeline/pipeline.h"
 
-namespace viewer {
+namespace ar {
 
 struct Flicker {
     /// Per block of 8 x 8 pixels that virtual objects cover: standard deviation of its mean radiance over the
@@ -18,7 +18,7 @@ struct Flicker {
 
 /// @param frame  of the camera  @param pose  its pose
 /// @return nothing of a frame in which no virtual object is seen; fewer frames if `stop` was requested
-Flicker measure_flicker(ArSession const& session, ar::Frame const& frame, ar::Pose const& pose, double time_s,
+Flicker measure_flicker(Session const& session, Frame const& frame, gi::RigidPose const& pose, double time_s,
                         int frames, gi::StopRequest const& stop, gi::Report& report);
 
-} // namespace viewer
+} // namespace ar

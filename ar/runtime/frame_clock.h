@@ -7,21 +7,21 @@
 #include <string>
 #include <utility>
 
-namespace viewer {
+namespace ar {
 
 /// Times of frames. Pictures read as fast as possible are timed by their numbers, as the clock does not show
 /// the time that passes in them. Recordings keep their recorded times.
 class FrameClock {
 public:
-    /// @param source  name for ar::open_source  @param is_timed  frames come at their own pace
-    FrameClock(std::string const& source, ar::SourceDescription const& about, bool is_timed);
+    /// @param source  name for open_source  @param is_timed  frames come at their own pace
+    FrameClock(std::string const& source, SourceDescription const& about, bool is_timed);
 
     /// The first frame passed has the time 0.
-    double operator()(ar::Frame const& frame);
+    double operator()(Frame const& frame);
 
 private:
     double numbered_hz_ = 0; ///< 0 = use capture times
     std::optional<std::pair<std::uint64_t, double>> first_;
 };
 
-} // namespace viewer
+} // namespace ar

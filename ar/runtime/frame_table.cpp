@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 
-std::string frame_table(ArSummary const& summary)
+std::string frame_table(RunSummary const& summary)
 {
     std::string text =
         "sequence,captured_s,overtaken,read_ms,age_ms,decode_ms,detect_ms,pose_ms,wait_ms,light_ms,render_ms,"
         "composite_ms,latency_ms,show_wait_ms,present_ms,swapped_ms,"
         "markers,points_used,points_rejected,rms_px,confidence,x_m,y_m,z_m,qx,qy,qz,qw,changed_px,clipped_px,"
         "negative_values,not_finite_px,state,shown\n";
-    for (ArFrameRecord const& f : summary.frames) {
+    for (RunFrame const& f : summary.frames) {
         text += fmt::format("{},{:.6f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},", f.sequence, f.captured_s,
                             f.overtaken, f.read_ms, f.age_ms, f.times.decode_ms, f.times.detect_ms,
                             f.times.pose_ms, f.times.wait_ms);
@@ -20,17 +20,16 @@ std::string frame_table(ArSummary const& summary)
                             f.show_wait_ms, f.present_ms, f.swapped_ms, f.markers, f.points_used,
                             f.points_rejected, f.rms_px, f.confidence);
         if (f.world_from_camera) {
-            ar::Pose const& p = *f.world_from_camera;
-            text +=
-                fmt::format("{:.7f},{:.7f},{:.7f},{:.8f},{:.8f},{:.8f},{:.8f},", p.position_m.x, p.position_m.y,
-                            p.position_m.z, p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w);
+            gi::RigidPose const& p = *f.world_from_camera;
+            text += fmt::format("{:.7f},{:.7f},{:.7f},{:.8f},{:.8f},{:.8f},{:.8f},", p.position.x, p.position.y,
+                                p.position.z, p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w);
         } else {
             text += ",,,,,,,";
         }
         text += fmt::format("{},{},{},{},{},{:.3f}\n", f.counts.pixels - f.counts.copied, f.counts.clipped,
-                            f.counts.negative, f.counts.not_finite, ar::name_of(f.state), f.shown);
+                            f.counts.negative, f.counts.not_finite, name_of(f.state), f.shown);
     }
     return text;
 }
 
-} // namespace viewer
+} // namespace ar

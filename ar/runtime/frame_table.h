@@ -3,9 +3,9 @@
 
 #include "ar/runtime/runner.h"
 
-namespace viewer {
+namespace ar {
 
 /// CSV with a header line and one line per frame. Numbers missing between two lines are lost frames.
-std::string frame_table(ArSummary const& summary);
+std::string frame_table(RunSummary const& summary);
 
-} // namespace viewer
+} // namespace ar

@@ -7,9 +7,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 
-FrameTruth::FrameTruth(std::filesystem::path pictures, std::vector<ar::TimedPose> poses)
+FrameTruth::FrameTruth(std::filesystem::path pictures, std::vector<TimedPose> poses)
     : pictures_(std::move(pictures)), poses_(std::move(poses))
 {
     if (!pictures_.empty() && !std::filesystem::is_directory(pictures_))
@@ -17,14 +17,14 @@ FrameTruth::FrameTruth(std::filesystem::path pictures, std::vector<ar::TimedPose
                              "name the folder truth that `ar synthesize` made");
 }
 
-void FrameTruth::add(ArFrameRecord const& f, ArResult const& r)
+void FrameTruth::add(RunFrame const& f, FrameResult const& r)
 {
-    auto const truth_pose = ar::pose_at(poses_, f.captured_s);
+    auto const truth_pose = pose_at(poses_, f.captured_s);
     if (truth_pose)
         errors_.poses.add(f.sequence, *truth_pose, f.estimated, f.confidence, f.state, f.world_from_camera);
     if (truth_pose && f.world_from_camera) {
-        errors_.position_mm.push_back(1e3 * glm::length(f.world_from_camera->position_m - truth_pose->position_m));
-        errors_.rotation_deg.push_back(ar::angle_between_deg(f.world_from_camera->rotation, truth_pose->rotation));
+        errors_.position_mm.push_back(1e3 * glm::length(f.world_from_camera->position - truth_pose->position));
+        errors_.rotation_deg.push_back(angle_between_deg(f.world_from_camera->rotation, truth_pose->rotation));
     }
     if (pictures_.empty()) return;
     cv::Mat truth = cv::imread((pictures_ / fmt::format("{:06}.png", f.sequence)).string(), cv::IMREAD_COLOR);
@@ -33,7 +33,7 @@ void FrameTruth::add(ArFrameRecord const& f, ArResult const& r)
         return;
     }
     cv::cvtColor(truth, truth, cv::COLOR_BGR2RGB);
-    TruthErrors const e = errors_against_truth(ar::eight_bits_of(r.rgb), ar::eight_bits_of(r.camera), truth);
+    TruthErrors const e = errors_against_truth(eight_bits_of(r.rgb), eight_bits_of(r.camera), truth);
     errors_.flip_affected.push_back(e.flip_affected);
     errors_.flip_elsewhere.push_back(e.flip_elsewhere);
     errors_.camera_affected.push_back(e.camera_affected);
@@ -63,4 +63,4 @@ std::string describe(FrameErrors const& e)
                            t + poses;
 }
 
-} // namespace viewer
+} // namespace ar

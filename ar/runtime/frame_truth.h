@@ -6,7 +6,7 @@
 #include "ar/runtime/pose_truth.h"
 #include "ar/runtime/runner.h"
 
-namespace viewer {
+namespace ar {
 
 /// One value per frame with known truth.
 struct FrameErrors {
@@ -24,14 +24,14 @@ std::string describe(FrameErrors const& errors);
 class FrameTruth {
 public:
     /// @param pictures  folder, empty = none   @param poses  empty = none. @throws gi::InputError no such folder
-    FrameTruth(std::filesystem::path pictures, std::vector<ar::TimedPose> poses);
-    void add(ArFrameRecord const& record, ArResult const& result);
+    FrameTruth(std::filesystem::path pictures, std::vector<TimedPose> poses);
+    void add(RunFrame const& record, FrameResult const& result);
     FrameErrors const& errors() const { return errors_; }
 
 private:
     std::filesystem::path pictures_;
-    std::vector<ar::TimedPose> poses_;
+    std::vector<TimedPose> poses_;
     FrameErrors errors_;
 };
 
-} // namespace viewer
+} // namespace ar

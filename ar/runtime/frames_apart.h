@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace viewer {
+namespace ar {
 
 template <class T>
 class SpacedFrames {
@@ -42,4 +42,4 @@ private:
     std::uint64_t seen_ = 0, step_ = 1;
 };
 
-} // namespace viewer
+} // namespace ar

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace viewer {
+namespace ar {
 
 template <typename T>
 class HandOver {
@@ -88,4 +88,4 @@ private:
     bool is_closed_ = false, is_abandoned_ = false;
 };
 
-} // namespace viewer
+} // namespace ar

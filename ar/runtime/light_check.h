@@ -5,7 +5,7 @@
 
 #include "ar/pipeline/frame_light.h"
 
-namespace viewer {
+namespace ar {
 
 struct LightCheckSettings {
     glm::ivec2 size_px{320, 240};
@@ -37,4 +37,4 @@ struct LightChecked {
 LightChecked check_light(cv::Mat const& truth, LightCheckSettings const& settings, gi::StopRequest const& stop,
                          gi::Report& report);
 
-} // namespace viewer
+} // namespace ar

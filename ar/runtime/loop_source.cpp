@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace viewer {
+namespace ar {
 
-LoopSource::LoopSource(std::vector<ar::Frame> frames, double rate_hz)
-    : frames_(std::move(frames)), rate_hz_(rate_hz)
+LoopSource::LoopSource(std::vector<Frame> frames, double rate_hz) : frames_(std::move(frames)), rate_hz_(rate_hz)
 {
     if (frames_.empty() || !(rate_hz > 0)) throw std::invalid_argument("a loop without frames or without a rate");
 }
@@ -19,27 +18,27 @@ std::size_t LoopSource::index_of(std::uint64_t sequence) const
     return std::size_t(k <= last ? k : 2 * last - k);
 }
 
-std::optional<ar::Frame> LoopSource::next(std::chrono::milliseconds wait)
+std::optional<Frame> LoopSource::next(std::chrono::milliseconds wait)
 {
-    double const now_s = ar::steady_now_s();
+    double const now_s = steady_now_s();
     if (!start_s_) start_s_ = now_s;
     std::uint64_t const number = std::max(next_, std::uint64_t((now_s - *start_s_) * rate_hz_));
     double const captured_s = *start_s_ + double(number) / rate_hz_;
     double const limit_s = now_s + std::chrono::duration<double>(wait).count();
-    ar::sleep_until_s(std::min(captured_s, limit_s));
+    sleep_until_s(std::min(captured_s, limit_s));
     if (captured_s > limit_s) return std::nullopt;
 
-    ar::Frame f = frames_[index_of(number)];
+    Frame f = frames_[index_of(number)];
     f.sequence = number;
     f.captured_s = captured_s;
-    f.arrived_s = ar::steady_now_s();
-    f.origin = ar::TimestampOrigin::sensor;
+    f.arrived_s = steady_now_s();
+    f.origin = TimestampOrigin::sensor;
     next_ = number + 1;
     tally_.deliver(number);
     return f;
 }
 
-ar::SourceDescription LoopSource::description() const
+SourceDescription LoopSource::description() const
 {
     return {.name = "frames read before",
             .id = "loop",
@@ -50,21 +49,21 @@ ar::SourceDescription LoopSource::description() const
             .controls = {}};
 }
 
-std::vector<std::string> LoopSource::set(ar::Controls const& controls)
+std::vector<std::string> LoopSource::set(Controls const& controls)
 {
     check(controls);
     return cannot_set(controls, "the frames were made before");
 }
 
-std::vector<ar::Frame> read_frames(ar::FrameSource& source, int most)
+std::vector<Frame> read_frames(FrameSource& source, int most)
 {
-    std::vector<ar::Frame> frames;
+    std::vector<Frame> frames;
     while (int(frames.size()) < most) {
-        std::optional<ar::Frame> f = source.next(std::chrono::seconds(5));
+        std::optional<Frame> f = source.next(std::chrono::seconds(5));
         if (!f) break;
         frames.push_back(std::move(*f));
     }
     return frames;
 }
 
-} // namespace viewer
+} // namespace ar

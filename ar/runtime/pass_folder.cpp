@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <utility>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,9 +29,9 @@ std::string numbers(std::initializer_list<double> values)
 
 /// How the composite's codes follow from radiance: unit = vignetting(r) M radiance,
 /// code = the nearest by response.
-void add_response(std::map<std::string, std::string>& text, ar::Compositor const& compositor, PassFrame const& f)
+void add_response(std::map<std::string, std::string>& text, Compositor const& compositor, PassFrame const& f)
 {
-    ar::Photometry const& p = compositor.photometry();
+    Photometry const& p = compositor.photometry();
     text["bits"] = f.camera.depth() == CV_8U ? "8" : f.camera.depth() == CV_16U ? "16" : "float";
     if (f.camera.depth() == CV_32F) return; // radiance itself
     cv::Matx33f const m = compositor.unit_of_radiance(f.exposure);
@@ -39,7 +39,7 @@ void add_response(std::map<std::string, std::string>& text, ar::Compositor const
         numbers({m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)});
     text["vignetting"] = numbers({p.vignetting[0], p.vignetting[1], p.vignetting[2]});
     std::string& curve = text["response"];
-    if (p.unit_of_byte == ar::srgb_photometry().unit_of_byte) {
+    if (p.unit_of_byte == srgb_photometry().unit_of_byte) {
         curve = "sRGB";
         return;
     }
@@ -48,36 +48,35 @@ void add_response(std::map<std::string, std::string>& text, ar::Compositor const
 }
 
 /// Measured or predicted for the frame, not kept from an earlier one.
-bool is_own(ar::PoseState state) { return state == ar::PoseState::tracked || state == ar::PoseState::predicted; }
+bool is_own(PoseState state) { return state == PoseState::tracked || state == PoseState::predicted; }
 
 } // namespace
 
-PassLayers::PassLayers(ar::CameraModel const& camera, ar::Compositor compositor, double frames_per_s,
-                       bool is_undistorted)
+PassLayers::PassLayers(CameraModel const& camera, Compositor compositor, double frames_per_s, bool is_undistorted)
     : camera_(camera), shown_(camera), compositor_(std::move(compositor)), frames_per_s_(frames_per_s)
 {
     if (is_undistorted) {
-        shown_ = ar::covering_pinhole(camera);
+        shown_ = covering_pinhole(camera);
         undistort_.emplace(shown_, camera);
     }
     directions_.create(camera.size_px.y, camera.size_px.x, CV_32FC2);
     directions_.forEach<cv::Vec2f>([&](cv::Vec2f& p, int const* at) {
-        auto const d = ar::direction_of(camera_, {at[1], at[0]});
+        auto const d = direction_of(camera_, {at[1], at[0]});
         p = d && d->z > 0 ? cv::Vec2f(float(d->x / d->z), float(d->y / d->z)) : cv::Vec2f(NAN, NAN);
     });
 }
 
 /// From a pixel to where its surface was in the frame before, if it did not move itself.
-cv::Mat PassLayers::motion(cv::Mat const& depth_m, ar::Pose const& now, ar::Pose const& before) const
+cv::Mat PassLayers::motion(cv::Mat const& depth_m, gi::RigidPose const& now, gi::RigidPose const& before) const
 {
-    ar::Pose const before_from_now = inverse(before) * now;
+    gi::RigidPose const before_from_now = inverse(before) * now;
     cv::Mat out(depth_m.size(), CV_32FC2);
     out.forEach<cv::Vec2f>([&](cv::Vec2f& px, int const* at) {
         cv::Vec2f const p = directions_.at<cv::Vec2f>(at[0], at[1]);
         float const z = depth_m.at<float>(at[0], at[1]);
         glm::dvec3 const ray(p[0], p[1], 1); // without a surface: infinitely far
         glm::dvec3 const point = z > 0 ? before_from_now * (double(z) * ray) : before_from_now.rotation * ray;
-        auto const was = std::isfinite(p[0]) ? ar::project(camera_, point) : std::nullopt;
+        auto const was = std::isfinite(p[0]) ? project(camera_, point) : std::nullopt;
         px = was ? cv::Vec2f(float(was->x - at[1]), float(was->y - at[0])) : cv::Vec2f(0, 0);
     });
     return out;
@@ -85,8 +84,8 @@ cv::Mat PassLayers::motion(cv::Mat const& depth_m, ar::Pose const& now, ar::Pose
 
 gi::Picture PassLayers::picture(PassFrame const& f)
 {
-    ar::CompositePasses const p = f.pair ? ar::passes_of(compositor_, f.camera, f.composite, *f.pair, f.exposure)
-                                         : ar::passes_of_nothing(compositor_.photometry(), f.camera, f.exposure);
+    CompositePasses const p = f.pair ? passes_of(compositor_, f.camera, f.composite, *f.pair, f.exposure)
+                                     : passes_of_nothing(compositor_.photometry(), f.camera, f.exposure);
     gi::Picture out{shown_.size_px.x, shown_.size_px.y, {}, {}};
     auto const smooth = [&](char const* name, cv::Mat const& m) {
         add_layer(out, name, undistort_ ? undistort_->smooth(m) : m);
@@ -114,20 +113,20 @@ gi::Picture PassLayers::picture(PassFrame const& f)
     auto& text = out.metadata;
     text["frame"] = std::to_string(f.sequence);
     text["colour_space"] = "linear BT.709 (sRGB primaries), D65";
-    text["lens"] = ar::name_of(shown_.lens);
+    text["lens"] = name_of(shown_.lens);
     text["focal_length_px"] = numbers({shown_.fx, shown_.fy});
     // Pixel centres are whole numbers, from the top left.
     text["principal_point_px"] = numbers({shown_.cx, shown_.cy});
     std::string coefficients;
-    for (int i = 0; i < ar::coefficient_count(shown_.lens); ++i)
+    for (int i = 0; i < coefficient_count(shown_.lens); ++i)
         coefficients += (i > 0 ? " " : "") + fmt::format("{:.9g}", shown_.distortion[std::size_t(i)]);
     if (!coefficients.empty()) text["distortion"] = coefficients;
     if (f.world_from_camera) {
-        auto const& [q, at] = *f.world_from_camera;
+        auto const& [at, q] = *f.world_from_camera;
         text["camera_position_m"] = numbers({at.x, at.y, at.z});
         text["camera_rotation_xyzw"] = numbers({q.x, q.y, q.z, q.w}); // camera: x right, y down, z ahead
     }
-    text["pose"] = ar::name_of(f.state);
+    text["pose"] = name_of(f.state);
     text["shown"] = numbers({f.shown}); // share of the change by virtual objects
     add_response(text, compositor_, f);
     text["sum"] = "color = objects.rgb + (1 - objects.a) background + added + noise";
@@ -159,7 +158,7 @@ gi::ExrAttributes PassLayers::attributes(PassFrame const& f) const
     return a;
 }
 
-PassFolder::PassFolder(ArPassSettings const& settings, ar::CameraModel const& camera, ar::Compositor compositor,
+PassFolder::PassFolder(PassSettings const& settings, CameraModel const& camera, Compositor compositor,
                        double frames_per_s, WhenFull when_full, gi::Report& report)
     : settings_(settings), layers_(camera, std::move(compositor), frames_per_s, settings.is_undistorted)
 {
@@ -177,7 +176,7 @@ PassFolder::PassFolder(ArPassSettings const& settings, ar::CameraModel const& ca
         when_full, kMostWaiting);
 }
 
-void PassFolder::add(ArFrameRecord const& record, ArResult const& r)
+void PassFolder::add(RunFrame const& record, FrameResult const& r)
 {
     PassFrame f{.sequence = record.sequence,
                 .exposure = record.exposure,
@@ -193,4 +192,4 @@ void PassFolder::add(ArFrameRecord const& record, ArResult const& r)
     thread_->add(std::move(f));
 }
 
-} // namespace viewer
+} // namespace ar

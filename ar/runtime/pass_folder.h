@@ -11,23 +11,23 @@
 #include <filesystem>
 #include <memory>
 
-namespace viewer {
+namespace ar {
 
 struct PlacedFrame {
     std::uint64_t sequence = 0;
-    ar::Pose world_from_camera;
+    gi::RigidPose world_from_camera;
 };
 
 /// A frame and its result, as they wait to be written.
 struct PassFrame {
     std::uint64_t sequence = 0;
-    ar::Exposure exposure;
-    cv::Mat camera, composite; ///< as ArResult
-    std::optional<ar::RenderedPair> pair;
+    Exposure exposure;
+    cv::Mat camera, composite; ///< as FrameResult
+    std::optional<RenderedPair> pair;
     std::optional<SeenDepth> depth;
-    ar::PoseState state = ar::PoseState::lost;
-    double shown = 0;                          ///< as ar::UsedPose
-    std::optional<ar::Pose> world_from_camera; ///< the pose that was used
+    PoseState state = PoseState::lost;
+    double shown = 0;                               ///< as UsedPose
+    std::optional<gi::RigidPose> world_from_camera; ///< the pose that was used
     std::optional<PlacedFrame> before;         ///< the last frame written, if it had a pose of its own
 };
 
@@ -35,17 +35,17 @@ struct PassFrame {
 class PassLayers {
 public:
     /// @param frames_per_s  of the source; 0 = unknown
-    PassLayers(ar::CameraModel const& camera, ar::Compositor compositor, double frames_per_s, bool is_undistorted);
+    PassLayers(CameraModel const& camera, Compositor compositor, double frames_per_s, bool is_undistorted);
 
     gi::Picture picture(PassFrame const& frame);
     gi::ExrAttributes attributes(PassFrame const& frame) const;
 
 private:
-    cv::Mat motion(cv::Mat const& depth_m, ar::Pose const& now, ar::Pose const& before) const;
+    cv::Mat motion(cv::Mat const& depth_m, gi::RigidPose const& now, gi::RigidPose const& before) const;
 
-    ar::CameraModel camera_, shown_; ///< of the frames, of the layers
-    ar::Compositor compositor_;
-    std::optional<ar::Warp> undistort_;
+    CameraModel camera_, shown_; ///< of the frames, of the layers
+    Compositor compositor_;
+    std::optional<Warp> undistort_;
     double frames_per_s_ = 0;
     cv::Mat directions_; ///< CV_32FC2: of the camera's pixels on the plane z = 1
 };
@@ -53,20 +53,20 @@ private:
 class PassFolder {
 public:
     /// @throws gi::InputError if the folder cannot be created
-    PassFolder(ArPassSettings const& settings, ar::CameraModel const& camera, ar::Compositor compositor,
-               double frames_per_s, WhenFull when_full, gi::Report& report);
+    PassFolder(PassSettings const& settings, CameraModel const& camera, Compositor compositor, double frames_per_s,
+               WhenFull when_full, gi::Report& report);
 
     /// Writes sequence.exr in a separate thread. @throws the error of an earlier frame
-    void add(ArFrameRecord const& record, ArResult const& result);
+    void add(RunFrame const& record, FrameResult const& result);
     /// Waits until all are written. @throws as `add`
     void finish() { thread_->finish(); }
     std::uint64_t lost() const { return thread_->lost(); } ///< frames, as the disk was too slow
 
 private:
-    ArPassSettings settings_;
+    PassSettings settings_;
     PassLayers layers_;
     std::optional<PlacedFrame> before_;
     std::unique_ptr<KeepThread<PassFrame>> thread_;
 };
 
-} // namespace viewer
+} // namespace ar

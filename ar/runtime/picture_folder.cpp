@@ -8,7 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 
 PictureFolder::PictureFolder(std::filesystem::path folder) : folder_(std::move(folder))
 {
@@ -38,4 +38,4 @@ void PictureFolder::add(std::uint64_t sequence, cv::Mat const& rgb) const
                    {reinterpret_cast<char const*>(bytes.data()), bytes.size()});
 }
 
-} // namespace viewer
+} // namespace ar

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 
-namespace viewer {
+namespace ar {
 
 class PictureFolder {
 public:
@@ -19,4 +19,4 @@ private:
     std::filesystem::path folder_;
 };
 
-} // namespace viewer
+} // namespace ar

@@ -9,9 +9,9 @@
 #include <opencv2/core.hpp>
 #include <thread>
 
-namespace viewer {
+namespace ar {
 
-struct NumberedPicture {
+struct KeptPicture {
     std::uint64_t sequence = 0;
     double time_s = 0; ///< since the first
     cv::Mat rgb;       ///< CV_8UC3, CV_16UC3 or CV_32FC3, must not be modified any more
@@ -25,7 +25,7 @@ enum class WhenFull {
 template <typename Item>
 class KeepThread {
 public:
-    using WhenFull = viewer::WhenFull;
+    using WhenFull = ar::WhenFull;
 
     /// @param keep  called on a thread of its own, in order
     /// @param most  items that wait
@@ -103,6 +103,6 @@ private:
     std::thread thread_;
 };
 
-using PictureThread = KeepThread<NumberedPicture>;
+using PictureThread = KeepThread<KeptPicture>;
 
-} // namespace viewer
+} // namespace ar

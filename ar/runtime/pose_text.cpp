@@ -4,15 +4,14 @@
 
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 
 std::string describe(PoseTally const& t)
 {
     std::string states;
-    for (std::size_t k = 0; k < ar::kPoseStates; ++k)
+    for (std::size_t k = 0; k < kPoseStates; ++k)
         if (t.states[k] > 0)
-            states +=
-                fmt::format("{}{} {}", states.empty() ? "" : ", ", t.states[k], ar::name_of(ar::PoseState(k)));
+            states += fmt::format("{}{} {}", states.empty() ? "" : ", ", t.states[k], name_of(PoseState(k)));
     if (states.empty()) return {};
     std::string text = "poses: " + states;
     if (!t.confidence.empty())
@@ -21,4 +20,4 @@ std::string describe(PoseTally const& t)
     return text + "\n";
 }
 
-} // namespace viewer
+} // namespace ar

@@ -5,7 +5,7 @@
 #include <array>
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 
 std::vector<ConfidenceBin> confidence_curve(std::vector<PoseError> const& errors)
 {
@@ -45,24 +45,24 @@ std::string to_csv(std::vector<ConfidenceBin> const& curve)
     return text;
 }
 
-void PoseTruth::add(std::uint64_t sequence, ar::Pose const& truth, std::optional<ar::Pose> const& estimated,
-                    double confidence, ar::PoseState state, std::optional<ar::Pose> const& used)
+void PoseTruth::add(std::uint64_t sequence, gi::RigidPose const& truth,
+                    std::optional<gi::RigidPose> const& estimated, double confidence, PoseState state,
+                    std::optional<gi::RigidPose> const& used)
 {
     if (estimated)
-        estimates_.push_back({confidence, 1e3 * glm::length(estimated->position_m - truth.position_m),
-                              ar::angle_between_deg(estimated->rotation, truth.rotation)});
+        estimates_.push_back({confidence, 1e3 * glm::length(estimated->position - truth.position),
+                              angle_between_deg(estimated->rotation, truth.rotation)});
     if (!used) {
         last_.reset();
         return;
     }
-    glm::dvec3 const off = used->position_m - truth.position_m;
+    glm::dvec3 const off = used->position - truth.position;
     if (last_ && sequence == last_sequence_ + 1) {
         double const jump_mm = 1e3 * glm::length(off - *last_);
         ++steps_;
         largest_jump_mm_ = std::max(largest_jump_mm_, jump_mm);
         jumps_ += jump_mm > kJump_mm;
-        tracked_jumps_ +=
-            jump_mm > kJump_mm && state == ar::PoseState::tracked && last_state_ == ar::PoseState::tracked;
+        tracked_jumps_ += jump_mm > kJump_mm && state == PoseState::tracked && last_state_ == PoseState::tracked;
     }
     last_ = off;
     last_state_ = state;
@@ -85,4 +85,4 @@ std::string describe(PoseTruth const& t)
     return text;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace viewer {
+namespace ar {
 
 struct PoseError {
     double confidence = 0, position_mm = 0, rotation_deg = 0;
@@ -32,8 +32,8 @@ inline constexpr double kJump_mm = 20;
 class PoseTruth {
 public:
     /// @param estimated  the frame's own pose, trusted or not  @param used  the pose that it is shown with
-    void add(std::uint64_t sequence, ar::Pose const& truth, std::optional<ar::Pose> const& estimated,
-             double confidence, ar::PoseState state, std::optional<ar::Pose> const& used);
+    void add(std::uint64_t sequence, gi::RigidPose const& truth, std::optional<gi::RigidPose> const& estimated,
+             double confidence, PoseState state, std::optional<gi::RigidPose> const& used);
 
     std::vector<PoseError> const& estimates() const { return estimates_; }
     std::size_t jumps() const { return jumps_; }
@@ -44,7 +44,7 @@ public:
 private:
     std::vector<PoseError> estimates_;
     std::optional<glm::dvec3> last_; ///< error of the last frame's used pose, m
-    ar::PoseState last_state_ = ar::PoseState::lost;
+    PoseState last_state_ = PoseState::lost;
     std::uint64_t last_sequence_ = 0;
     std::size_t jumps_ = 0, tracked_jumps_ = 0, steps_ = 0;
     double largest_jump_mm_ = 0;
@@ -53,4 +53,4 @@ private:
 /// Lines of text: jumps, and the curve of confidence; empty without estimates.
 std::string describe(PoseTruth const& truth);
 
-} // namespace viewer
+} // namespace ar

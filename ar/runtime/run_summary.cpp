@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 
 Spread spread_of(std::vector<double> values)
 {
@@ -16,13 +16,13 @@ Spread spread_of(std::vector<double> values)
     return {gi::quantile_of_sorted(values, 0.5), gi::quantile_of_sorted(values, 0.95), values.back()};
 }
 
-std::size_t count_found(std::vector<ArFrameRecord> const& frames)
+std::size_t count_found(std::vector<RunFrame> const& frames)
 {
     return std::size_t(std::count_if(frames.begin(), frames.end(),
-                                     [](ArFrameRecord const& f) { return f.state == ar::PoseState::tracked; }));
+                                     [](RunFrame const& f) { return f.state == PoseState::tracked; }));
 }
 
-std::string describe(ArSummary const& s)
+std::string describe(RunSummary const& s)
 {
     std::size_t const n = s.frames.size();
     std::size_t const found = count_found(s.frames);
@@ -30,11 +30,11 @@ std::string describe(ArSummary const& s)
         fmt::format("{} frames in {:.2f} s: {:.1f} frames/s; camera found in {} ({:.1f} %)\n", n, s.seconds,
                     n / std::max(s.seconds, 1e-9), found, n > 0 ? 100.0 * double(found) / double(n) : 0);
     PoseTally poses;
-    for (ArFrameRecord const& f : s.frames) poses.add(f.state, f.confidence, f.estimated.has_value());
+    for (RunFrame const& f : s.frames) poses.add(f.state, f.confidence, f.estimated.has_value());
     text += describe(poses);
     if (!s.light.empty()) text += fmt::format("virtual objects lit by {}\n", s.light);
     text += fmt::format("source: {}{}\n", describe(s.source),
-                        s.end.kind == ar::SourceState::Kind::lost ? "; lost: " + s.end.reason : "");
+                        s.end.kind == SourceState::Kind::lost ? "; lost: " + s.end.reason : "");
     if (s.overtaken > 0)
         text +=
             fmt::format("overtaken: {} frames (a newer one was there before they were rendered)\n", s.overtaken);
@@ -43,7 +43,7 @@ std::string describe(ArSummary const& s)
     text += fmt::format("{:<24} {:>9} {:>9} {:>9}\n", "", "median", "95 %", "most");
     auto const line = [&](char const* name, auto const& value) {
         std::vector<double> values;
-        for (ArFrameRecord const& f : s.frames) values.push_back(value(f));
+        for (RunFrame const& f : s.frames) values.push_back(value(f));
         Spread const d = spread_of(std::move(values));
         if (d.most > 0) text += fmt::format("{:<24} {:>9.2f} {:>9.2f} {:>9.2f}\n", name, d.median, d.p95, d.most);
     };
@@ -64,4 +64,4 @@ std::string describe(ArSummary const& s)
     return text;
 }
 
-} // namespace viewer
+} // namespace ar

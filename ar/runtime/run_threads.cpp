@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 /// Copies device memory, since cameras have few buffers and frames in progress must not hold them.
 void give_back(FrameInFlight& w)
 {
     if (!w.frame.owner) return;
-    ArResult& r = w.result;
+    FrameResult& r = w.result;
     if (r.camera.data == w.frame.planes[0].data) r.rgb = r.camera = r.camera.clone();
     w.frame.planes = {};
     w.frame.owner.reset();
@@ -19,7 +19,7 @@ void give_back(FrameInFlight& w)
 
 } // namespace
 
-RunThreads::RunThreads(ar::FrameSource& source, ArPipeline& pipeline, ArRunOptions const& options, bool is_timed,
+RunThreads::RunThreads(FrameSource& source, Pipeline& pipeline, RunOptions const& options, bool is_timed,
                        FrameClock const& clock, gi::Report& report)
     : source_(source), pipeline_(pipeline), options_(options), is_timed_(is_timed), clock_(clock), report_(report)
 {
@@ -36,7 +36,7 @@ void RunThreads::end()
     if (adder_.joinable()) adder_.join();
 }
 
-void RunThreads::tell(ArSummary& s) const
+void RunThreads::tell(RunSummary& s) const
 {
     std::lock_guard const lock(mutex_);
     s.source = counts_;
@@ -82,18 +82,18 @@ void RunThreads::find_all()
     while (!ending_.requested()) {
         // At own pace the caller counts the frames shown.
         if (!is_timed_ && options_.frames > 0 && found == options_.frames) break;
-        double const asked_s = ar::steady_now_s();
-        std::optional<ar::Frame> frame = source_.next(kWait);
+        double const asked_s = steady_now_s();
+        std::optional<Frame> frame = source_.next(kWait);
         {
             std::lock_guard const lock(mutex_);
             counts_ = source_.counts();
             state_ = source_.state();
-            if (!frame && state_.kind != ar::SourceState::Kind::running) break;
+            if (!frame && state_.kind != SourceState::Kind::running) break;
         }
         if (!frame) continue;
         FrameInFlight w;
         w.time_s = clock_(*frame);
-        w.read_ms = 1e3 * (ar::steady_now_s() - asked_s);
+        w.read_ms = 1e3 * (steady_now_s() - asked_s);
         w.frame = std::move(*frame);
         try {
             if (options_.taken) options_.taken(w.frame);
@@ -108,12 +108,14 @@ void RunThreads::find_all()
     }
 }
 
-ArResult RunThreads::found_in(FrameInFlight const& w)
+FrameResult RunThreads::found_in(FrameInFlight const& w)
 {
     std::optional<double> const begun_s = is_timed_ ? std::optional(w.frame.arrived_s) : std::nullopt;
-    if (options_.poses.empty() && !options_.tracked)
-        return pipeline_.find(w.frame, w.time_s, {}, begun_s, &ending_);
-    KnownPose const known(options_.tracked ? options_.tracked(w.frame) : recorded_pose(options_.poses, w.time_s));
+    std::optional<std::optional<gi::RigidPose>> known;
+    if (options_.tracked)
+        known = options_.tracked(w.frame);
+    else if (!options_.poses.empty())
+        known = recorded_pose(options_.poses, w.time_s);
     return pipeline_.find(w.frame, w.time_s, known, begun_s, &ending_);
 }
 
@@ -148,4 +150,4 @@ void RunThreads::refuse(gi::InputError const& e)
     ++refused_;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -10,22 +10,22 @@
 #include <exception>
 #include <thread>
 
-namespace viewer {
+namespace ar {
 
 /// A frame that is being processed.
 struct FrameInFlight {
-    ar::Frame frame;   ///< after the pose estimation, without bytes in device memory
+    Frame frame;       ///< after the pose estimation, without bytes in device memory
     double time_s = 0; ///< since the first
     double read_ms = 0;
     std::uint64_t overtaken = 0; ///< number of frames that it replaced
-    ArResult result;
+    FrameResult result;
 };
 
 class RunThreads {
 public:
     /// All referenced arguments must outlive it; only its threads may use the source and the pipeline.
     /// @param is_timed     frames come at their own pace, and newer ones replace waiting ones
-    RunThreads(ar::FrameSource& source, ArPipeline& pipeline, ArRunOptions const& options, bool is_timed,
+    RunThreads(FrameSource& source, Pipeline& pipeline, RunOptions const& options, bool is_timed,
                FrameClock const& clock, gi::Report& report);
     ~RunThreads() { end(); }
     RunThreads(RunThreads const&) = delete;
@@ -36,7 +36,7 @@ public:
     /// Stops and discards frames in progress.
     void end();
     /// Fills in the source's state and all counts.
-    void tell(ArSummary& summary) const;
+    void tell(RunSummary& summary) const;
     /// Call after the end: rethrows a thread's exception.
     void rethrow() const;
 
@@ -44,13 +44,13 @@ private:
     void guarded(std::function<void()> const& work, HandOver<FrameInFlight>& filled);
     void hand_over(FrameInFlight w, HandOver<FrameInFlight>& to);
     void find_all();
-    ArResult found_in(FrameInFlight const& w);
+    FrameResult found_in(FrameInFlight const& w);
     void add_all();
     void refuse(gi::InputError const& e);
 
-    ar::FrameSource& source_;
-    ArPipeline& pipeline_;
-    ArRunOptions const& options_;
+    FrameSource& source_;
+    Pipeline& pipeline_;
+    RunOptions const& options_;
     bool is_timed_;
     FrameClock clock_;
     gi::Report& report_;
@@ -58,11 +58,11 @@ private:
     HandOver<FrameInFlight> found_, done_;
 
     mutable std::mutex mutex_; // guards the members below
-    ar::SourceCounts counts_;
-    ar::SourceState state_;
+    SourceCounts counts_;
+    SourceState state_;
     std::uint64_t refused_ = 0, overtaken_ = 0;
     std::exception_ptr problem_;
     std::thread finder_, adder_;
 };
 
-} // namespace viewer
+} // namespace ar

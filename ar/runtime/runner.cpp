@@ -8,14 +8,14 @@
 
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
-ArFrameRecord record_of(FrameInFlight const& w, bool is_timed)
+RunFrame record_of(FrameInFlight const& w, bool is_timed)
 {
-    ar::Frame const& frame = w.frame;
-    ArResult const& r = w.result;
-    ArFrameRecord f;
+    Frame const& frame = w.frame;
+    FrameResult const& r = w.result;
+    RunFrame f;
     f.sequence = frame.sequence;
     f.captured_s = w.time_s;
     f.exposure = frame.exposure;
@@ -38,16 +38,16 @@ ArFrameRecord record_of(FrameInFlight const& w, bool is_timed)
     f.shown = r.used.shown;
     f.world_from_camera = r.used.world_from_camera;
     f.counts = r.counts;
-    f.show_wait_ms = 1e3 * (ar::steady_now_s() - r.done_s);
+    f.show_wait_ms = 1e3 * (steady_now_s() - r.done_s);
     return f;
 }
 
 } // namespace
 
-ArCamera load_ar_camera(std::filesystem::path const& file)
+CalibratedCamera load_camera(std::filesystem::path const& file)
 {
-    ar::Calibration const c = ar::read_calibration(file);
-    ArCamera camera{c.camera, c.photometry ? *c.photometry : ar::srgb_photometry(), {}};
+    Calibration const c = read_calibration(file);
+    CalibratedCamera camera{c.camera, c.photometry ? *c.photometry : srgb_photometry(), {}};
     if (c.noise) {
         camera.noise.constant.fill(float(c.noise->read));
         camera.noise.per_unit.fill(float(c.noise->photon));
@@ -55,36 +55,36 @@ ArCamera load_ar_camera(std::filesystem::path const& file)
     return camera;
 }
 
-void run_ar(ArSession const& session, ArRunOptions const& options,
-            std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
-            gi::Report& report, ArSummary& summary)
+void run_frames(Session const& session, RunOptions const& options,
+                std::function<void(RunFrame&, FrameResult const&)> const& shown, gi::StopRequest const& stop,
+                gi::Report& report, RunSummary& summary)
 {
-    ar::OpenOptions open = session.frames.options;
+    OpenOptions open = session.frames.options;
     open.pace = options.pace;
-    auto const source = ar::open_source(session.frames.source, open);
-    run_ar(session, *source, options, shown, stop, report, summary);
+    auto const source = open_source(session.frames.source, open);
+    run_frames(session, *source, options, shown, stop, report, summary);
 }
 
-void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions const& options,
-            std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
-            gi::Report& report, ArSummary& summary)
+void run_frames(Session const& session, FrameSource& source, RunOptions const& options,
+                std::function<void(RunFrame&, FrameResult const&)> const& shown, gi::StopRequest const& stop,
+                gi::Report& report, RunSummary& summary)
 {
-    ArCamera const camera = load_ar_camera(session.camera);
-    ar::MarkerMap const markers = ar::read_marker_map(session.markers);
-    ar::SourceDescription const about = source.description();
+    CalibratedCamera const camera = load_camera(session.camera);
+    MarkerMap const markers = read_marker_map(session.markers);
+    SourceDescription const about = source.description();
     check_size(about.size_px, camera);
-    ArPipeline pipeline(session, camera, markers, report);
+    Pipeline pipeline(session, camera, markers, report);
     if (!options.find_poses_only) summary.light = pipeline.lit_by();
     if (options.keeps_depth) pipeline.keep_depth();
     if (options.opened) options.opened(about, pipeline);
-    bool const is_timed = options.pace == ar::Pace::own || about.is_live;
-    double const begun_s = ar::steady_now_s();
+    bool const is_timed = options.pace == Pace::own || about.is_live;
+    double const begun_s = steady_now_s();
     RunThreads ahead(source, pipeline, options, is_timed, {session.frames.source, about, is_timed}, report);
     while (!stop.requested() && !ahead.has_ended() &&
            (options.frames == 0 || int(summary.frames.size()) < options.frames)) {
         std::optional<FrameInFlight> const w = ahead.next(std::chrono::milliseconds(10));
         ahead.tell(summary);
-        summary.seconds = ar::steady_now_s() - begun_s;
+        summary.seconds = steady_now_s() - begun_s;
         if (w) {
             summary.frames.push_back(record_of(*w, is_timed));
             if (shown) shown(summary.frames.back(), w->result);
@@ -94,9 +94,9 @@ void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions cons
     }
     ahead.end();
     ahead.tell(summary);
-    summary.seconds = ar::steady_now_s() - begun_s;
+    summary.seconds = steady_now_s() - begun_s;
     summary.unfinished = summary.source.delivered - summary.frames.size() - summary.refused - summary.overtaken;
     ahead.rethrow();
 }
 
-} // namespace viewer
+} // namespace ar

@@ -13,28 +13,28 @@
 #include <functional>
 #include <memory>
 
-namespace viewer {
+namespace ar {
 
-struct ArRunOptions {
+struct RunOptions {
     int frames = 0; ///< at most; 0 = all
-    ar::Pace pace = ar::Pace::own;
-    std::vector<ar::TimedPose> poses; ///< camera poses to use instead of markers; empty = from markers
+    Pace pace = Pace::own;
+    std::vector<TimedPose> poses; ///< camera poses to use instead of markers; empty = from markers
     /// Callback to a tracker that replaces both; called for each frame by the pose-estimating thread.
-    std::function<std::optional<ar::Pose>(ar::Frame const&)> tracked;
+    std::function<std::optional<gi::RigidPose>(Frame const&)> tracked;
     bool find_poses_only = false; ///< nothing is rendered
-    bool keeps_depth = false;     ///< results have ArResult::depth
+    bool keeps_depth = false;     ///< results have FrameResult::depth
     CompositeBy composite = CompositeBy::pipeline;
     /// Called before the first frame, by the caller's thread.
-    std::function<void(ar::SourceDescription const&, ArPipeline const&)> opened;
+    std::function<void(SourceDescription const&, Pipeline const&)> opened;
     /// Called with every original frame, including those later overtaken or refused,
     /// by the thread that takes them.
-    std::function<void(ar::Frame const&)> taken;
+    std::function<void(Frame const&)> taken;
     std::function<void()> idle; ///< called by the caller's thread every 10 ms while there is nothing to show
 };
 
 /// Times and results of one frame. For frames at their own pace the times are consecutive without gaps:
 /// age + times = latency; latency + show_wait + present = swapped.
-struct ArFrameRecord {
+struct RunFrame {
     std::uint64_t sequence = 0;
     double captured_s = 0; ///< since the first frame
     /// The same on this machine's steady clock; none for files read as fast as possible.
@@ -46,41 +46,41 @@ struct ArFrameRecord {
     double show_wait_ms = 0;     ///< from the finished composite until it was shown
     double present_ms = 0;       ///< drawing and swap, with a window
     double swapped_ms = 0;       ///< from capture to the end of the swap
-    ar::Exposure exposure;
-    ArTimes times;
+    Exposure exposure;
+    StageTimes times;
     int markers = 0, points_used = 0, points_rejected = 0;
     double rms_px = 0, confidence = 0;
-    std::optional<ar::Pose> estimated; ///< the frame's own pose, trusted or not
-    ar::PoseState state = ar::PoseState::lost;
+    std::optional<gi::RigidPose> estimated; ///< the frame's own pose, trusted or not
+    PoseState state = PoseState::lost;
     double shown = 0;                          ///< share of the objects' change that is shown
-    std::optional<ar::Pose> world_from_camera; ///< the pose that was used
-    ar::CompositeCounts counts;
+    std::optional<gi::RigidPose> world_from_camera; ///< the pose that was used
+    CompositeCounts counts;
 };
 
-struct ArSummary {
+struct RunSummary {
     std::string light; ///< how virtual objects were lit, and why
-    std::vector<ArFrameRecord> frames;
-    ar::SourceCounts source;
-    ar::SourceState end;
+    std::vector<RunFrame> frames;
+    SourceCounts source;
+    SourceState end;
     std::uint64_t refused = 0;    ///< frames of another size, or that could not be decoded
     std::uint64_t overtaken = 0;  ///< discarded for a newer one
     std::uint64_t unfinished = 0; ///< in progress when the run was stopped
     double seconds = 0;
 };
 
-ArCamera load_ar_camera(std::filesystem::path const& calibration);
+CalibratedCamera load_camera(std::filesystem::path const& calibration);
 
 /// The source's delivered frames are the sum of the summary's frames, refused, overtaken and unfinished ones.
 /// Exceptions of any thread are rethrown here, after the results that were ready.
 /// @param shown  if set, called with every frame's result; may end the run by `stop`
 /// @param summary  kept up to date, so that it is valid if `shown` throws
-void run_ar(ArSession const& session, ArRunOptions const& options,
-            std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
-            gi::Report& report, ArSummary& summary);
+void run_frames(Session const& session, RunOptions const& options,
+                std::function<void(RunFrame&, FrameResult const&)> const& shown, gi::StopRequest const& stop,
+                gi::Report& report, RunSummary& summary);
 /// The same with an open source instead of the session's.
-void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions const& options,
-            std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
-            gi::Report& report, ArSummary& summary);
+void run_frames(Session const& session, FrameSource& source, RunOptions const& options,
+                std::function<void(RunFrame&, FrameResult const&)> const& shown, gi::StopRequest const& stop,
+                gi::Report& report, RunSummary& summary);
 
 struct Spread {
     double median = 0, p95 = 0, most = 0;
@@ -89,9 +89,9 @@ struct Spread {
 Spread spread_of(std::vector<double> values);
 
 /// Number of frames with a trusted pose of their own.
-std::size_t count_found(std::vector<ArFrameRecord> const& frames);
+std::size_t count_found(std::vector<RunFrame> const& frames);
 
 /// Lines of text: median, 95 % quantile and maximum of each stage, frames per second, latency, poses.
-std::string describe(ArSummary const& summary);
+std::string describe(RunSummary const& summary);
 
-} // namespace viewer
+} // namespace ar

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace viewer {
+namespace ar {
 
 class ScratchFolder {
 public:
@@ -35,4 +35,4 @@ private:
     std::filesystem::path path_;
 };
 
-} // namespace viewer
+} // namespace ar

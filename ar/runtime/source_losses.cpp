@@ -2,15 +2,15 @@
 
 #include "gi/core/error.h"
 
-namespace viewer {
+namespace ar {
 
-void report_losses(ar::SourceCounts const& counts, ar::SourceState const& state, gi::Report& report)
+void report_losses(SourceCounts const& counts, SourceState const& state, gi::Report& report)
 {
     if (counts.refused > 0)
         report.lose("frames that could not be read", std::size_t(counts.refused), counts.last_refusal);
-    if (state.kind == ar::SourceState::Kind::lost)
+    if (state.kind == SourceState::Kind::lost)
         throw gi::InputError("the source was lost: " + state.reason, describe(counts),
                              "check the file, or the camera's cable");
 }
 
-} // namespace viewer
+} // namespace ar

@@ -4,9 +4,9 @@
 #include "ar/capture/frame_source.h"
 #include "gi/core/report.h"
 
-namespace viewer {
+namespace ar {
 
 /// Counts refused frames. @throws gi::InputError if the source was lost
-void report_losses(ar::SourceCounts const& counts, ar::SourceState const& state, gi::Report& report);
+void report_losses(SourceCounts const& counts, SourceState const& state, gi::Report& report);
 
-} // namespace viewer
+} // namespace ar

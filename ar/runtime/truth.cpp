@@ -5,12 +5,12 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 std::vector<float> linear(cv::Mat const& rgb)
 {
-    cv::Mat const radiance = ar::radiance_of(rgb, ar::srgb_photometry());
+    cv::Mat const radiance = radiance_of(rgb, srgb_photometry());
     return {radiance.ptr<float>(), radiance.ptr<float>() + radiance.total() * 3};
 }
 
@@ -47,4 +47,4 @@ TruthErrors errors_against_truth(cv::Mat const& composite, cv::Mat const& camera
     return e;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -5,7 +5,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace viewer {
+namespace ar {
 
 /// Means of FLIP (Andersson et al. 2020), 0 to 1.
 struct TruthErrors {
@@ -22,4 +22,4 @@ cv::Mat affected_by_truth(cv::Mat const& camera, cv::Mat const& truth);
 /// All pictures CV_8UC3 RGB (sRGB), of the same size.
 TruthErrors errors_against_truth(cv::Mat const& composite, cv::Mat const& camera, cv::Mat const& truth);
 
-} // namespace viewer
+} // namespace ar

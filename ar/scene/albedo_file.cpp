@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 /// In double quotes, whatever is in it.
@@ -68,4 +68,4 @@ std::string format_albedos(std::vector<AlbedoEntry> const& entries)
     return text;
 }
 
-} // namespace viewer
+} // namespace ar

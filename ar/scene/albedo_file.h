@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace viewer {
+namespace ar {
 
 struct AlbedoEntry {
     std::string name;              ///< the proxy's name, or "scene:" and the material's name
@@ -27,4 +27,4 @@ std::vector<AlbedoEntry> parse_albedos(std::string const& text, std::filesystem:
 /// Textures are written relative to the file's folder and must be in it.
 std::string format_albedos(std::vector<AlbedoEntry> const& entries);
 
-} // namespace viewer
+} // namespace ar

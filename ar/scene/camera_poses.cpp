@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <set>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 bool is_scene(std::filesystem::path const& file)
@@ -23,29 +23,28 @@ bool is_scene(std::filesystem::path const& file)
 }
 
 /// Without its scale; cameras of scenes look along -z with y up, those of frames along z with y down.
-ar::Pose pose_of(gi::dmat4 const& world_from_node)
+gi::RigidPose pose_of(gi::dmat4 const& world_from_node)
 {
     gi::dvec3 const z = glm::normalize(gi::dvec3(world_from_node[2]));
     gi::dvec3 const x = glm::normalize(glm::cross(gi::dvec3(world_from_node[1]), z));
     glm::dmat3 const turn(x, -glm::cross(z, x), -z);
-    return {glm::normalize(glm::quat_cast(turn)), gi::dvec3(world_from_node[3])};
+    return {gi::dvec3(world_from_node[3]), glm::normalize(glm::quat_cast(turn))};
 }
 
 } // namespace
 
-double frames_per_s_of(ArFrames const& frames)
+double frames_per_s_of(SessionFrames const& frames)
 {
     if (is_device(frames.source)) return frames.options.frames_per_s;
-    ar::OpenOptions open = frames.options;
-    open.pace = ar::Pace::fastest;
-    double const own = ar::open_source(frames.source, open)->description().frames_per_s;
+    OpenOptions open = frames.options;
+    open.pace = Pace::fastest;
+    double const own = open_source(frames.source, open)->description().frames_per_s;
     return own > 0 ? own : frames.options.frames_per_s;
 }
 
-ar::PoseFile read_camera_poses(std::filesystem::path const& file, ar::FrameNumbering const& numbering,
-                               gi::Report& report)
+PoseFile read_camera_poses(std::filesystem::path const& file, FrameNumbering const& numbering, gi::Report& report)
 {
-    if (!is_scene(file)) return ar::read_poses(file, numbering);
+    if (!is_scene(file)) return read_poses(file, numbering);
     if (numbering.first)
         throw gi::InputError("a number of the first frame with '" + file.string() + "'",
                              "the first key of its camera is the first frame", "leave the number out");
@@ -61,7 +60,7 @@ ar::PoseFile read_camera_poses(std::filesystem::path const& file, ar::FrameNumbe
     double duration_s = 0;
     for (gi::Playback const& p : scene.playbacks)
         duration_s = std::max(duration_s, scene.animations[std::size_t(p.animation)].duration_s);
-    std::vector<ar::TimedPose> poses;
+    std::vector<TimedPose> poses;
     auto const frames = std::size_t(std::floor(duration_s * frames_per_s + 1e-6));
     for (std::size_t f = 0; f <= frames; ++f) {
         // A clip that loops is back at its start after its last key.
@@ -69,11 +68,11 @@ ar::PoseFile read_camera_poses(std::filesystem::path const& file, ar::FrameNumbe
         gi::Pose const pose = gi::evaluate_pose(scene, at_s);
         poses.push_back({time_s, pose_of(pose.world_from_node[cameras.front()])});
         auto const& p = poses.back().world_from_camera;
-        if (!std::isfinite(glm::length(p.position_m)) || !(std::abs(glm::length(p.rotation) - 1) < 1e-6))
+        if (!std::isfinite(glm::length(p.position)) || !(std::abs(glm::length(p.rotation) - 1) < 1e-6))
             throw gi::InputError(fmt::format("'{}': the camera at {} s is not finite", file.string(), time_s),
                                  "frames cannot be composited with it", "check the scale of its node");
     }
     return {std::move(poses), {}};
 }
 
-} // namespace viewer
+} // namespace ar

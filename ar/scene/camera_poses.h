@@ -6,16 +6,15 @@
 #include "ar/scene/session_file.h"
 #include "gi/core/report.h"
 
-namespace viewer {
+namespace ar {
 
 /// @param numbering  of frames that a file numbers instead of giving times; its rate is also that of the samples
 ///   of an animated camera, whose first key is the first frame
 /// @throws gi::InputError as of read_poses; a scene file with no camera or several, or with `numbering.first`
-ar::PoseFile read_camera_poses(std::filesystem::path const& file, ar::FrameNumbering const& numbering,
-                               gi::Report& report);
+PoseFile read_camera_poses(std::filesystem::path const& file, FrameNumbering const& numbering, gi::Report& report);
 
 /// Rate of a session's frames: a video's or recording's own, else its key rate_hz. Opens files, but no devices.
-/// @throws gi::InputError as of ar::open_source
-double frames_per_s_of(ArFrames const& frames);
+/// @throws gi::InputError as of open_source
+double frames_per_s_of(SessionFrames const& frames);
 
-} // namespace viewer
+} // namespace ar

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 cv::Mat decoded_exr(std::filesystem::path const& file)
@@ -57,4 +57,4 @@ cv::Mat read_depth_map(std::filesystem::path const& file, double metres_per_unit
     return map * (metres_per_unit > 0 ? metres_per_unit : is_exr ? 1 : 1e-3);
 }
 
-} // namespace viewer
+} // namespace ar

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 
-namespace viewer {
+namespace ar {
 
 /// CV_32FC1, metres; 0 and non-finite values: no surface. EXR: the layer `depth`, or the only channel without a
 /// layer, Z or Y; PNG of 16 bits.
@@ -12,4 +12,4 @@ namespace viewer {
 /// @throws gi::InputError the file cannot be read, or holds no depths
 cv::Mat read_depth_map(std::filesystem::path const& file, double metres_per_unit);
 
-} // namespace viewer
+} // namespace ar

@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
-ar::CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
+CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
 {
-    ar::CameraModel const camera = ar::read_calibration(depth.camera).camera;
+    CameraModel const camera = read_calibration(depth.camera).camera;
     glm::ivec2 const map_px(size.width, size.height);
     if (camera.size_px == map_px) return camera;
     if (std::abs(double(camera.size_px.x) * map_px.y - double(camera.size_px.y) * map_px.x) > camera.size_px.x)
@@ -20,7 +20,7 @@ ar::CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
                              fmt::format("the calibration '{}' is of {} x {}, another shape",
                                          depth.camera.string(), camera.size_px.x, camera.size_px.y),
                              "use the calibration of the picture that the depth map belongs to");
-    return ar::scaled(camera, map_px);
+    return scaled(camera, map_px);
 }
 
 } // namespace
@@ -28,7 +28,7 @@ ar::CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
 gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report)
 {
     cv::Mat const map = read_depth_map(depth.file, depth.metres_per_unit);
-    ar::CameraModel const camera = camera_of(depth, map.size());
+    CameraModel const camera = camera_of(depth, map.size());
     int const step = depth.step_px, columns = (map.cols - 1) / step + 1, rows = (map.rows - 1) / step + 1;
     gi::Mesh mesh;
     constexpr std::uint32_t kNone = ~std::uint32_t(0);
@@ -43,7 +43,7 @@ gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report)
                 ++without;
                 continue;
             }
-            auto const direction = ar::direction_of(camera, {x, y});
+            auto const direction = direction_of(camera, {x, y});
             if (!direction || !(direction->z > 1e-3)) {
                 ++beyond_lens;
                 continue;
@@ -80,4 +80,4 @@ gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report)
     return mesh;
 }
 
-} // namespace viewer
+} // namespace ar

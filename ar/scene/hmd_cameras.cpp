@@ -2,23 +2,12 @@
 
 #include "ar/scene/read_values.h"
 
-namespace viewer {
-namespace {
+namespace ar {
 
-void read_turned(gi::Yaml const& at, ar::Pose& pose)
-{
-    at.only_keys({"position_m", "rotation_deg", "rotation_xyzw"});
-    ar::Pose const read = read_pose(at);
-    bool const is_turned = at.has("rotation_deg") || at.has("rotation_xyzw");
-    pose = {is_turned ? read.rotation : pose.rotation, read.position_m};
-}
-
-} // namespace
-
-ArHmd read_hmd(gi::Yaml const& y, std::filesystem::path const& folder)
+HmdCameras read_hmd(gi::Yaml const& y, std::filesystem::path const& folder)
 {
     y.only_keys({"head_from_camera", "plane_m", "right"});
-    ArHmd hmd;
+    HmdCameras hmd;
     if (y.has("head_from_camera")) read_turned(y.at("head_from_camera"), hmd.head_from_camera);
     if (y.has("plane_m")) hmd.plane_m = y.at("plane_m").number(0.05, 1e4);
     if (!y.has("right")) return hmd;
@@ -28,7 +17,7 @@ ArHmd read_hmd(gi::Yaml const& y, std::filesystem::path const& folder)
         if (!r.has(needed))
             throw r.error(std::string("no '") + needed + "'", "the right eye has a camera of its own",
                           "add it, or remove `right` to use one camera for both eyes");
-    ArRightCamera right;
+    RightCamera right;
     std::string const name = r.at("source").text();
     right.source = is_device(name) ? name : (folder / name).string();
     right.calibration = folder / r.at("camera").text();
@@ -37,4 +26,4 @@ ArHmd read_hmd(gi::Yaml const& y, std::filesystem::path const& folder)
     return hmd;
 }
 
-} // namespace viewer
+} // namespace ar

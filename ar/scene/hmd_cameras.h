@@ -7,22 +7,22 @@
 #include <filesystem>
 #include <optional>
 
-namespace viewer {
+namespace ar {
 
-struct ArRightCamera {
-    std::string source; ///< name for ar::open_source
+struct RightCamera {
+    std::string source; ///< name for open_source
     std::filesystem::path calibration;
-    ar::Pose left_from_right; ///< its pose in the left camera's frame
+    gi::RigidPose left_from_right; ///< its pose in the left camera's frame
 };
 
-struct ArHmd {
+struct HmdCameras {
     /// The head's axes are x right, y up, z back; the camera's x right, y down, z ahead. Default: same direction.
-    ar::Pose head_from_camera{glm::dquat(0, 1, 0, 0), glm::dvec3(0)};
+    gi::RigidPose head_from_camera{glm::dvec3(0), glm::dquat(0, 1, 0, 0)};
     double plane_m = 1; ///< distance of the picture plane; objects at this distance appear at their true position
-    std::optional<ArRightCamera> right; ///< camera of the right eye; none: one camera for both eyes
+    std::optional<RightCamera> right; ///< camera of the right eye; none: one camera for both eyes
 };
 
 /// @throws gi::InputError with file:line:column
-ArHmd read_hmd(gi::Yaml const& hmd, std::filesystem::path const& folder);
+HmdCameras read_hmd(gi::Yaml const& hmd, std::filesystem::path const& folder);
 
-} // namespace viewer
+} // namespace ar

@@ -10,16 +10,16 @@
 #include <string>
 #include <variant>
 
-namespace viewer {
+namespace ar {
 
 /// A scene file in the world.
-struct ArPlaced {
+struct PlacedScene {
     std::filesystem::path scene; ///< empty = nothing
     gi::dvec3 at_m{0};
     double turn_deg = 0; ///< about the vertical, counter-clockwise seen from above
     double scale = 1;
 };
-gi::dmat4 placement(ArPlaced const& placed);
+gi::dmat4 placement(PlacedScene const& placed);
 
 enum class AlbedoFrom {
     number,          ///< `albedo`
@@ -45,25 +45,25 @@ struct ProxyPlane {
 /// Box around its centre. Its texture has three faces in each of two rows: +x -x +y, -y +z -z.
 struct ProxyBox {
     gi::dvec3 size_m{0};
-    ar::Pose world_from_box;
+    gi::RigidPose world_from_box;
 };
 struct ProxyMesh {
-    ArPlaced placed;
+    PlacedScene placed;
 };
 /// A depth map (along the camera's axis), and the camera of the corresponding picture.
 struct ProxyDepth {
     std::filesystem::path file;   ///< EXR, or PNG of 16 bits
     std::filesystem::path camera; ///< calibration; of the map's size, or of the same shape
-    ar::Pose world_from_camera;   ///< camera's axes as everywhere in ar: x right, y down, z ahead
+    gi::RigidPose world_from_camera; ///< camera's axes as everywhere in ar: x right, y down, z ahead
     double metres_per_unit = 0;   ///< 0 = 1 for EXR, 0.001 for PNG
     double jump = 0.05;           ///< relative to depth: triangles across larger differences are left out
     int step_px = 4;              ///< between vertices
 };
 
-struct ArProxy {
+struct Proxy {
     std::string name; ///< unique
     ProxySurface surface;
     std::variant<ProxyPlane, ProxyBox, ProxyMesh, ProxyDepth> shape;
 };
 
-} // namespace viewer
+} // namespace ar

@@ -5,7 +5,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 using gi::vec2, gi::vec3;
@@ -43,7 +43,7 @@ gi::Mesh mesh_of(ProxyBox const& b)
             if (axis == 1) up = {0, 0, -side};
             gi::dvec3 const u = glm::cross(up, out) * b.size_m, v = up * b.size_m;
             auto const world = [&](gi::dvec3 d) { return b.world_from_box.rotation * d; };
-            gi::dvec3 const corner = b.world_from_box.position_m + world(0.5 * (out * b.size_m - u - v));
+            gi::dvec3 const corner = b.world_from_box.position + world(0.5 * (out * b.size_m - u - v));
             vec2 const low{float(face % 3) / 3, float(face / 3) / 2};
             add_quad(mesh, corner, world(u), world(v), low, low + vec2(1.0f / 3, 0.5f));
             ++face;
@@ -93,14 +93,14 @@ struct Shape {
 
 } // namespace
 
-gi::dmat4 placement(ArPlaced const& p)
+gi::dmat4 placement(PlacedScene const& p)
 {
     return glm::translate(gi::dmat4(1), p.at_m) *
            glm::rotate(gi::dmat4(1), glm::radians(p.turn_deg), gi::dvec3(0, 1, 0)) *
            glm::scale(gi::dmat4(1), gi::dvec3(p.scale));
 }
 
-gi::Scene scene_of(ArProxy const& proxy, gi::Report& report)
+gi::Scene scene_of(Proxy const& proxy, gi::Report& report)
 {
     gi::Scene scene = std::visit(Shape{report}, proxy.shape);
     scene.name = proxy.name;
@@ -116,4 +116,4 @@ gi::Scene scene_of(ArProxy const& proxy, gi::Report& report)
     return scene;
 }
 
-} // namespace viewer
+} // namespace ar

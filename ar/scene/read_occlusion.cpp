@@ -1,15 +1,15 @@
 #include "ar/scene/occlusion.h"
 #include "ar/scene/read_values.h"
 
-namespace viewer {
+namespace ar {
 namespace {
 
 using gi::Yaml;
 
 /// A name, or a map with `source`.
-ArFramePictures pictures(Yaml const& y, std::filesystem::path const& folder)
+FramePictures pictures(Yaml const& y, std::filesystem::path const& folder)
 {
-    ArFramePictures p;
+    FramePictures p;
     if (y.is_text()) {
         p.source = folder / y.text();
         return p;
@@ -23,11 +23,11 @@ ArFramePictures pictures(Yaml const& y, std::filesystem::path const& folder)
 
 } // namespace
 
-ArOcclusion read_occlusion(Yaml const& o, std::filesystem::path const& folder)
+OcclusionPictures read_occlusion(Yaml const& o, std::filesystem::path const& folder)
 {
     o.only_keys(
         {"depth", "matte", "camera", "camera_from_depth", "metres_per_unit", "margin_m", "soft_m", "soft_px"});
-    ArOcclusion out;
+    OcclusionPictures out;
     if (o.has("depth")) out.depth = pictures(o.at("depth"), folder);
     if (o.has("matte")) out.matte = pictures(o.at("matte"), folder);
     if (!out.depth && !out.matte)
@@ -52,4 +52,4 @@ ArOcclusion read_occlusion(Yaml const& o, std::filesystem::path const& folder)
     return out;
 }
 
-} // namespace viewer
+} // namespace ar

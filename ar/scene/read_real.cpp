@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 using gi::Yaml;
@@ -17,13 +17,13 @@ class RealReader {
 public:
     RealReader(Yaml const& real, std::filesystem::path const& folder) : real_(real), folder_(folder) {}
 
-    ArReal read()
+    RealPlace read()
     {
         real_.only_keys(
             {"scene", "at", "turn_deg", "scale", "albedo", "estimates", "planes", "boxes", "meshes", "depth"});
         out_.estimates = folder_ / (real_.has("estimates") ? real_.at("estimates").text() : "albedo.yaml");
         if (real_.has("scene"))
-            static_cast<ArPlaced&>(out_) = read_placed(real_, "scene", folder_);
+            static_cast<PlacedScene&>(out_) = read_placed(real_, "scene", folder_);
         else
             for (char const* key : {"at", "turn_deg", "scale", "albedo"})
                 if (real_.has(key))
@@ -62,10 +62,10 @@ private:
             throw real_.at(key).error(fmt::format("{} of them", items.size()),
                                       fmt::format("{} is the most", kMostProxies), "put them into one mesh");
         for (std::size_t i = 0; i < items.size(); ++i) {
-            ArProxy p = read(items[i]);
+            Proxy p = read(items[i]);
             p.name = items[i].has("name") ? items[i].at("name").text() : fmt::format("{}-{}", key, i + 1);
             if (std::any_of(out_.proxies.begin(), out_.proxies.end(),
-                            [&](ArProxy const& q) { return q.name == p.name; }))
+                            [&](Proxy const& q) { return q.name == p.name; }))
                 throw items[i].error("there is another '" + p.name + "'", "estimates refer to proxies by name",
                                      "use unique names");
             out_.proxies.push_back(std::move(p));
@@ -109,7 +109,7 @@ private:
         return s;
     }
 
-    ArProxy plane(Yaml const& y) const
+    Proxy plane(Yaml const& y) const
     {
         y.only_keys(with_surface(
             {"corner_m", "edge_u_m", "edge_v_m", "centre_m", "size_m", "rotation_deg", "rotation_xyzw"}));
@@ -143,7 +143,7 @@ private:
         return {"", surface(y, AlbedoFrom::number), p};
     }
 
-    ArProxy box(Yaml const& y) const
+    Proxy box(Yaml const& y) const
     {
         y.only_keys(with_surface({"size_m", "position_m", "rotation_deg", "rotation_xyzw"}));
         need(y, {"size_m"});
@@ -153,7 +153,7 @@ private:
         return {"", surface(y, AlbedoFrom::number), b};
     }
 
-    ArProxy mesh(Yaml const& y) const
+    Proxy mesh(Yaml const& y) const
     {
         y.only_keys(with_surface({"file", "at", "turn_deg", "scale"}));
         need(y, {"file"});
@@ -165,7 +165,7 @@ private:
         return {"", s, ProxyMesh{read_placed(y, "file", folder_)}};
     }
 
-    ArProxy depth(Yaml const& y) const
+    Proxy depth(Yaml const& y) const
     {
         y.only_keys(with_surface({"file", "camera", "position_m", "rotation_deg", "rotation_xyzw",
                                   "metres_per_unit", "jump", "step_px"}));
@@ -188,11 +188,14 @@ private:
 
     Yaml const& real_;
     std::filesystem::path folder_;
-    ArReal out_;
+    RealPlace out_;
 };
 
 } // namespace
 
-ArReal read_real(Yaml const& real, std::filesystem::path const& folder) { return RealReader(real, folder).read(); }
+RealPlace read_real(Yaml const& real, std::filesystem::path const& folder)
+{
+    return RealReader(real, folder).read();
+}
 
-} // namespace viewer
+} // namespace ar

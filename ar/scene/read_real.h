@@ -4,9 +4,9 @@
 #include "ar/scene/session_file.h"
 #include "gi/core/yaml.h"
 
-namespace viewer {
+namespace ar {
 
 /// @throws gi::InputError with file:line:column
-ArReal read_real(gi::Yaml const& real, std::filesystem::path const& folder);
+RealPlace read_real(gi::Yaml const& real, std::filesystem::path const& folder);
 
-} // namespace viewer
+} // namespace ar

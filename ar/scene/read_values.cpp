@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 
 bool is_device(std::string const& name)
 {
@@ -10,9 +10,9 @@ bool is_device(std::string const& name)
            name.starts_with("gstreamer:");
 }
 
-ArPlaced read_placed(gi::Yaml const& p, std::string const& file_key, std::filesystem::path const& folder)
+PlacedScene read_placed(gi::Yaml const& p, std::string const& file_key, std::filesystem::path const& folder)
 {
-    ArPlaced placed;
+    PlacedScene placed;
     std::string const name = p.at(file_key).text();
     // As load_scene: a name without an extension is a scene that is generated, unless there is a folder of meshes.
     std::error_code none;
@@ -25,10 +25,10 @@ ArPlaced read_placed(gi::Yaml const& p, std::string const& file_key, std::filesy
     return placed;
 }
 
-ar::Pose read_pose(gi::Yaml const& p)
+gi::RigidPose read_pose(gi::Yaml const& p)
 {
-    ar::Pose pose;
-    if (p.has("position_m")) pose.position_m = p.at("position_m").vector(-1e4, 1e4);
+    gi::RigidPose pose;
+    if (p.has("position_m")) pose.position = p.at("position_m").vector(-1e4, 1e4);
     if (p.has("rotation_deg") && p.has("rotation_xyzw"))
         throw p.at("rotation_xyzw")
             .error("rotation_deg is there too", "only one of them can count", "remove one of the two");
@@ -52,4 +52,12 @@ ar::Pose read_pose(gi::Yaml const& p)
     return pose;
 }
 
-} // namespace viewer
+void read_turned(gi::Yaml const& at, gi::RigidPose& pose)
+{
+    at.only_keys({"position_m", "rotation_deg", "rotation_xyzw"});
+    gi::RigidPose const read = read_pose(at);
+    bool const is_turned = at.has("rotation_deg") || at.has("rotation_xyzw");
+    pose = {read.position, is_turned ? read.rotation : pose.rotation};
+}
+
+} // namespace ar

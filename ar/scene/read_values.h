@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace viewer {
+namespace ar {
 
 /// Returns the value of the matching word.
 template <class T>
@@ -21,11 +21,13 @@ T choice(gi::Yaml const& at, std::vector<std::pair<char const*, T>> const& words
     throw at.error("'" + text + "' is not known here", "nothing could be done with it", "choose one of " + known);
 }
 
-/// True if the name is a device for ar::open_source, not a path.
+/// True if the name is a device for open_source, not a path.
 bool is_device(std::string const& source);
 /// Reads the key `file_key`, relative to the folder, with `at`, `turn_deg` and `scale`; ignores other keys.
-ArPlaced read_placed(gi::Yaml const& map, std::string const& file_key, std::filesystem::path const& folder);
+PlacedScene read_placed(gi::Yaml const& map, std::string const& file_key, std::filesystem::path const& folder);
 /// Reads `position_m`, and `rotation_deg` (about x, then y, then z) or `rotation_xyzw`, as in marker maps.
-ar::Pose read_pose(gi::Yaml const& map);
+gi::RigidPose read_pose(gi::Yaml const& map);
+/// The same, without other keys; the rotation stays as it is where none is given.
+void read_turned(gi::Yaml const& map, gi::RigidPose& pose);
 
-} // namespace viewer
+} // namespace ar

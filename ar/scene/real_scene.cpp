@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 /// Matt grey placeholder material.
@@ -18,7 +18,7 @@ void make_unknown(gi::Material& m)
     m.base_color_map = {};
 }
 
-AlbedoPatch patch_of(ArProxy const& p, std::size_t material)
+AlbedoPatch patch_of(Proxy const& p, std::size_t material)
 {
     AlbedoPatch patch{p.name, material};
     if (p.surface.from != AlbedoFrom::estimate_texture) return patch;
@@ -30,7 +30,7 @@ AlbedoPatch patch_of(ArProxy const& p, std::size_t material)
     return patch;
 }
 
-void add_scene_file(ArReal const& real, RealScene& out, gi::Report& report)
+void add_scene_file(RealPlace const& real, RealScene& out, gi::Report& report)
 {
     if (real.scene.empty()) return;
     gi::Scene file = gi::load_scene(real.scene.string(), report);
@@ -64,11 +64,11 @@ void add_scene_file(ArReal const& real, RealScene& out, gi::Report& report)
 
 } // namespace
 
-RealScene model_of(ArReal const& real, gi::Report& report)
+RealScene model_of(RealPlace const& real, gi::Report& report)
 {
     RealScene out;
     add_scene_file(real, out, report);
-    for (ArProxy const& p : real.proxies) {
+    for (Proxy const& p : real.proxies) {
         bool const is_estimated =
             p.surface.from == AlbedoFrom::estimate || p.surface.from == AlbedoFrom::estimate_texture;
         if (is_estimated) out.patches.push_back(patch_of(p, out.scene.materials.size()));
@@ -101,7 +101,7 @@ void take_albedos(RealScene& real, std::vector<AlbedoEntry> const& entries, std:
     }
 }
 
-gi::Scene real_scene(ArReal const& real, gi::Report& report)
+gi::Scene real_scene(RealPlace const& real, gi::Report& report)
 {
     RealScene model = model_of(real, report);
     if (model.patches.empty()) return std::move(model.scene);
@@ -113,4 +113,4 @@ gi::Scene real_scene(ArReal const& real, gi::Report& report)
     return std::move(model.scene);
 }
 
-} // namespace viewer
+} // namespace ar

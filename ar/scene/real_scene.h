@@ -6,7 +6,7 @@
 #include "gi/core/report.h"
 #include "gi/scene/model/scene.h"
 
-namespace viewer {
+namespace ar {
 
 /// A material whose albedo is estimated; its index is the patch number in AlbedoView::surface.
 struct AlbedoPatch {
@@ -22,12 +22,12 @@ struct RealScene {
 };
 
 /// Returns the whole model, with grey for albedos to be estimated.
-RealScene model_of(ArReal const& real, gi::Report& report);
+RealScene model_of(RealPlace const& real, gi::Report& report);
 /// Sets the patches' albedos from the entries; patches never seen (no samples) are counted. @throws gi::InputError
 /// a patch without an entry
 void take_albedos(RealScene& real, std::vector<AlbedoEntry> const& entries, std::filesystem::path const& file,
                   gi::Report& report);
 /// Both steps. @throws gi::InputError if albedos are to be estimated and the file of estimates is missing
-gi::Scene real_scene(ArReal const& real, gi::Report& report);
+gi::Scene real_scene(RealPlace const& real, gi::Report& report);
 
-} // namespace viewer
+} // namespace ar

@@ -7,8 +7,9 @@
 #include "gi/methods/registry.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,7 +22,7 @@ public:
         session_.file = file;
     }
 
-    ArSession read()
+    Session read()
     {
         root_.only_keys({"schema", "frames", "camera", "markers", "light", "real", "virtual", "render",
                          "composite", "pose", "hmd", "passes", "occlusion"});
@@ -65,7 +66,7 @@ private:
                           "name a camera, a video or a folder of pictures");
         std::string const name = f.at("source").text();
         session_.frames.source = is_device(name) ? name : (folder_ / name).string();
-        ar::OpenOptions& o = session_.frames.options;
+        OpenOptions& o = session_.frames.options;
         if (f.has("rate_hz")) o.frames_per_s = f.at("rate_hz").number(0.01, 1000);
         if (f.has("size")) {
             auto const size = f.at("size").items();
@@ -74,7 +75,6 @@ private:
             o.size_px = {int(size[0].integer(16, 16384)), int(size[1].integer(16, 16384))};
         }
         if (f.has("format")) {
-            using ar::PixelFormat;
             std::vector<std::pair<char const*, PixelFormat>> const formats{
                 {"rgb8", PixelFormat::rgb8}, {"bgr8", PixelFormat::bgr8}, {"gray8", PixelFormat::gray8},
                 {"nv12", PixelFormat::nv12}, {"yuyv", PixelFormat::yuyv}, {"mjpeg", PixelFormat::mjpeg}};
@@ -107,7 +107,7 @@ private:
         if (l.has("scale")) session_.light_scale = l.at("scale").number(0, 1e9);
     }
 
-    ArPlaced virtual_things(Yaml const& v) const
+    PlacedScene virtual_things(Yaml const& v) const
     {
         v.only_keys({"scene", "at", "turn_deg", "scale"});
         if (!v.has("scene")) throw v.error("no 'scene'", "there is nothing to place", "name a scene file");
@@ -140,10 +140,17 @@ private:
     static std::string method(Yaml const& at)
     {
         try {
-            return std::string(gi::find_method(at.text()).name);
+            gi::Method const& chosen = gi::find_method(at.text());
+            if (chosen.pairs) return std::string(chosen.name);
         } catch (gi::InputError const& e) {
             throw at.error(e.problem(), e.why(), e.suggestion());
         }
+        std::vector<std::string_view> able;
+        for (gi::Method const& m : gi::methods())
+            if (m.offered && m.pairs) able.push_back(m.name);
+        throw at.error("method " + at.text() + " in an AR session",
+                       "it cannot render a scene with and without objects with the same random numbers",
+                       fmt::format("choose one of {}", fmt::join(able, ", ")));
     }
 
     void set(gi::RenderOption const& option, Yaml const& at)
@@ -177,13 +184,13 @@ private:
         if (c.has("noise")) session_.match_noise = c.at("noise").boolean();
         if (c.has("smoothing")) session_.smoothing = c.at("smoothing").number(0.01, 1);
         if (c.has("blend"))
-            session_.composite.blend = choice<ar::Blend>(
-                c.at("blend"), {{"difference", ar::Blend::difference}, {"ratio", ar::Blend::ratio}});
+            session_.composite.blend =
+                choice<Blend>(c.at("blend"), {{"difference", Blend::difference}, {"ratio", Blend::ratio}});
         if (c.has("clipped"))
             session_.composite.clipped =
-                choice<ar::ClippedBytes>(c.at("clipped"), {{"as_measured", ar::ClippedBytes::as_measured},
-                                                           {"ratio", ar::ClippedBytes::ratio},
-                                                           {"model", ar::ClippedBytes::model}});
+                choice<ClippedBytes>(c.at("clipped"), {{"as_measured", ClippedBytes::as_measured},
+                                                       {"ratio", ClippedBytes::ratio},
+                                                       {"model", ClippedBytes::model}});
         if (c.has("largest_ratio")) session_.composite.largest_ratio = float(c.at("largest_ratio").number(1, 1e6));
     }
 
@@ -200,7 +207,7 @@ private:
     {
         p.only_keys({"tripod", "smoothing", "predict_s", "least_confidence", "hold_s", "fade_s", "fuse",
                      "features", "display", "tracker", "camera_from_sensor", "world_from_room", "offset_s"});
-        ar::TrustSettings& trust = session_.pose.trust;
+        TrustSettings& trust = session_.pose.trust;
         if (p.has("hold_s")) trust.hold_s = p.at("hold_s").number(0, 10);
         if (p.has("fade_s")) trust.fade_s = p.at("fade_s").number(0, 10);
         bool is_tracked = false;
@@ -216,20 +223,31 @@ private:
                 throw p.at(key).error(fmt::format("'{}' beside a tracker", key),
                                       "filter and prediction of trackers are set in the display file",
                                       "remove one of the two");
-        session_.tracked = read_tracked(p, folder_);
+        session_.tracked = tracker_use(p);
+    }
+
+    TrackerUse tracker_use(Yaml const& p) const
+    {
+        TrackerUse use;
+        if (p.has("display")) use.display = path(p.at("display"));
+        if (p.has("tracker")) use.tracker = p.at("tracker").text();
+        if (p.has("camera_from_sensor")) read_turned(p.at("camera_from_sensor"), use.camera_from_sensor);
+        if (p.has("world_from_room")) read_turned(p.at("world_from_room"), use.world_from_room);
+        if (p.has("offset_s")) use.offset_s = p.at("offset_s").number(-1e6, 1e6);
+        return use;
     }
 
     void read_pose_use(Yaml const& p)
     {
-        ArPoseUse& use = session_.pose;
+        PoseUse& use = session_.pose;
         if (p.has("tripod") && p.at("tripod").boolean()) {
-            use.tracker.motion = ar::CameraMotion::tripod;
+            use.tracker.motion = CameraMotion::tripod;
             use.filtered = true;
         }
         if (p.has("smoothing")) {
             Yaml const s = p.at("smoothing");
             bool const is_on = s.is_map() || s.boolean();
-            bool const stands = use.tracker.motion == ar::CameraMotion::tripod;
+            bool const stands = use.tracker.motion == CameraMotion::tripod;
             if (is_on && stands)
                 throw s.error("smoothing of a camera on a tripod", "its poses are averaged",
                               "remove one of the two");
@@ -244,7 +262,7 @@ private:
         use.fused = !use.filtered; // averaged or smoothed already
         if (p.has("fuse")) {
             use.fused = p.at("fuse").boolean();
-            if (use.fused && use.tracker.motion == ar::CameraMotion::tripod)
+            if (use.fused && use.tracker.motion == CameraMotion::tripod)
                 throw p.at("fuse").error("fusion of a camera on a tripod", "its poses are averaged",
                                          "remove one of the two");
         }
@@ -263,22 +281,22 @@ private:
 
     Yaml const& root_;
     fs::path folder_;
-    ArSession session_;
+    Session session_;
     bool is_of_0_1_ = false; ///< written for version 0.1, which had other methods
 };
 
 } // namespace
 
-ArSession parse_ar_session(std::string const& text, fs::path const& file)
+Session parse_session(std::string const& text, fs::path const& file)
 {
     Yaml const root = Yaml::parse(text, file.string(), "session");
     return Reader(root, file).read();
 }
 
-ArSession read_ar_session(fs::path const& file)
+Session read_session(fs::path const& file)
 {
     std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 20);
-    return parse_ar_session({bytes.begin(), bytes.end()}, file);
+    return parse_session({bytes.begin(), bytes.end()}, file);
 }
 
-} // namespace viewer
+} // namespace ar

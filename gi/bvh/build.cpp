@@ -213,26 +213,4 @@ template void refit(Bvh<Space::host>&, TriangleList const&);
 template Bvh<Space::device> build_bvh(TriangleList const&, StopRequest const*);
 template void refit(Bvh<Space::device>&, TriangleList const&);
 
-double traversal_cost(HostBvh const& bvh)
-{
-    double sum = 0;
-    if (bvh.nodes.size() == 0) return 0;
-    View<Box const> const boxes = bvh.boxes.view();
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        WideNode const& node = bvh.nodes.view()[i];
-        sum += double(kNodeCost) * double(boxes[i].half_area());
-        for (std::uint32_t k = 0; k < node.leaves; ++k) {
-            if (node.high[0][k] < node.low[0][k]) continue;
-            Box box;
-            for (int axis = 0; axis < 3; ++axis) {
-                box.low[axis] = float(node.low[axis][k]) * node.step(axis);
-                box.high[axis] = float(node.high[axis][k]) * node.step(axis);
-            }
-            sum += double(kLeafCost) * double(box.half_area());
-        }
-    }
-    double const all = double(boxes[0].half_area());
-    return all > 0 ? sum / all : 0;
-}
-
 } // namespace gi

@@ -52,8 +52,4 @@ Bvh<S> build_bvh(TriangleList const& list, StopRequest const* stop = nullptr);
 template <Space S>
 void refit(Bvh<S>& bvh, TriangleList const& list);
 
-/// By the surface area heuristic: the number of nodes and leaves (as kNodeCost and kLeafCost weigh them) that a
-/// ray through the box of all triangles is expected to meet.
-double traversal_cost(HostBvh const& bvh);
-
 } // namespace gi

@@ -1,6 +1,5 @@
 #pragma once
-// Rays through a BVH, one at a time, for CPU and CUDA. traverse_lanes.h has the CPU's form in vectors;
-// both find the same triangles.
+// Rays through a BVH, one at a time, for CPU and CUDA.
 
 #include "gi/bvh/bvh.h"
 #include "gi/bvh/triangle_test.h"

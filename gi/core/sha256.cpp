@@ -1,74 +1,19 @@
 #include "gi/core/sha256.h"
 
-#include <array>
-#include <bit>
-#include <cstdint>
+#include <nettle/sha2.h>
 
 namespace gi {
-namespace {
-
-constexpr std::array<std::uint32_t, 64> kRound{
-    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
-    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
-    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
-    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
-    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
-    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
-    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
-    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
-
-using State = std::array<std::uint32_t, 8>;
-
-void add_block(State& state, unsigned char const* block)
-{
-    std::array<std::uint32_t, 64> w;
-    for (std::size_t i = 0; i < 16; ++i)
-        w[i] = std::uint32_t(block[4 * i]) << 24 | std::uint32_t(block[4 * i + 1]) << 16 |
-               std::uint32_t(block[4 * i + 2]) << 8 | block[4 * i + 3];
-    for (std::size_t i = 16; i < 64; ++i) {
-        std::uint32_t const a = w[i - 15], b = w[i - 2];
-        w[i] = w[i - 16] + (std::rotr(a, 7) ^ std::rotr(a, 18) ^ (a >> 3)) + w[i - 7] +
-               (std::rotr(b, 17) ^ std::rotr(b, 19) ^ (b >> 10));
-    }
-    auto [a, b, c, d, e, f, g, h] = state;
-    for (std::size_t i = 0; i < 64; ++i) {
-        std::uint32_t const t1 =
-            h + (std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25)) + ((e & f) ^ (~e & g)) + kRound[i] + w[i];
-        std::uint32_t const t2 =
-            (std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
-        h = g;
-        g = f;
-        f = e;
-        e = d + t1;
-        d = c;
-        c = b;
-        b = a;
-        a = t1 + t2;
-    }
-    std::size_t i = 0;
-    for (std::uint32_t const v : {a, b, c, d, e, f, g, h}) state[i++] += v;
-}
-
-} // namespace
 
 std::string sha256(std::string_view bytes)
 {
-    State state{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-    auto const* const data = reinterpret_cast<unsigned char const*>(bytes.data());
-    std::size_t const whole = bytes.size() / 64 * 64;
-    for (std::size_t at = 0; at < whole; at += 64) add_block(state, data + at);
-    // The rest, a one bit, zeros, and the length in bits.
-    std::array<unsigned char, 128> last{};
-    std::size_t const rest = bytes.size() - whole, size = rest < 56 ? 64 : 128;
-    for (std::size_t i = 0; i < rest; ++i) last[i] = data[whole + i];
-    last[rest] = 0x80;
-    for (std::size_t i = 0; i < 8; ++i)
-        last[size - 1 - i] = static_cast<unsigned char>(std::uint64_t(bytes.size()) * 8 >> (8 * i));
-    for (std::size_t at = 0; at < size; at += 64) add_block(state, last.data() + at);
-
+    sha256_ctx context;
+    sha256_init(&context);
+    sha256_update(&context, bytes.size(), reinterpret_cast<std::uint8_t const*>(bytes.data()));
+    std::uint8_t digest[SHA256_DIGEST_SIZE];
+    sha256_digest(&context, sizeof digest, digest);
     std::string text;
-    for (std::uint32_t const v : state)
-        for (int shift = 28; shift >= 0; shift -= 4) text += "0123456789abcdef"[(v >> shift) & 15];
+    for (std::uint8_t const byte : digest)
+        for (int const digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
     return text;
 }
 

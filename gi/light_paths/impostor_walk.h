@@ -376,14 +376,4 @@ GI_FN inline ImpostorHit follow(ImpostorScene const& scene, PathQuery const& pat
     return found;
 }
 
-/// Item = ray.
-struct FollowByImpostors {
-    ImpostorScene scene;
-    ImpostorSettings settings;
-    View<PathQuery const> queries;
-    View<ImpostorHit> hits;
-
-    GI_FN void operator()(std::size_t i) const { hits[i] = follow(scene, queries[i], settings); }
-};
-
 } // namespace gi

@@ -1,6 +1,7 @@
 #include "gi/light_paths/impostors.h"
 
 #include "gi/core/error.h"
+#include "gi/kernel/launch.h"
 #include "gi/light_paths/impostor_places.h"
 #include "gi/light_paths/memory_limit.h"
 
@@ -9,6 +10,47 @@
 #include <tbb/parallel_for.h>
 
 namespace gi {
+namespace {
+
+/// Turns what the rasteriser drew into texels of an impostor. @param keep_nearer  existing texels stay if they are
+/// nearer  @param face  in blocks
+void store_face(PerspectiveGrid const& grid, std::span<NearestTexel const> drawn, bool keep_nearer,
+                std::span<ImpostorTexel> face)
+{
+    constexpr int kBlock = ImpostorsView::kBlock;
+    auto const n = int(grid.width);
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            NearestTexel const texel = drawn[std::size_t(j * n + i)];
+            ImpostorTexel now;
+            if (texel.primitive != kNoPrimitive && texel.key > 0) {
+                now.distance = glm::length(grid.direction(std::uint32_t(i), std::uint32_t(j))) / texel.key;
+                now.triangle = texel.primitive;
+            }
+            ImpostorTexel& out = face[std::size_t((j / kBlock * (n / kBlock) + i / kBlock) * kBlock * kBlock +
+                                                  j % kBlock * kBlock + i % kBlock)];
+            if (!keep_nearer || now.distance < out.distance) out = now;
+        }
+}
+
+/// Item = block.
+struct BoundBlocks {
+    std::span<ImpostorTexel const> texels;
+    std::span<ImpostorBlock> blocks;
+
+    void operator()(std::size_t k) const
+    {
+        constexpr std::size_t kTexels = std::size_t(ImpostorsView::kBlock) * ImpostorsView::kBlock;
+        ImpostorBlock out;
+        for (ImpostorTexel const& texel : texels.subspan(k * kTexels, kTexels)) {
+            out.nearest = glm::min(out.nearest, texel.distance);
+            out.farthest = glm::max(out.farthest, texel.distance);
+        }
+        blocks[k] = out;
+    }
+};
+
+} // namespace
 
 std::uint32_t impostor_resolution(int texels)
 {
@@ -85,11 +127,10 @@ void Impostors::draw(World const& world, std::size_t first, std::size_t last, bo
         rasterize(soup_, first, last, grid, *fragments);
         cut_outs_.remove(*fragments, grid, seed_);
         resolve(*fragments, 1, map);
-        StoreImpostorFace const store{grid, map.texels, {texels_.data() + k * face, face}, keep_nearer};
-        for (std::size_t i = 0; i < face; ++i) store(i);
+        store_face(grid, map.texels, keep_nearer, {texels_.data() + k * face, face});
     });
     blocks_.resize(texels_.size() / (ImpostorsView::kBlock * ImpostorsView::kBlock));
-    launch_host(blocks_.size(), BoundImpostorBlocks{texels_, blocks_});
+    launch_host(blocks_.size(), BoundBlocks{texels_, blocks_});
 }
 
 } // namespace gi

@@ -4,11 +4,9 @@
 // partial that is a random decision for each texel, and not, as for exact rays, for each ray.
 
 #include "gi/core/progress.h"
-#include "gi/kernel/launch.h"
-#include "gi/light_paths/impostor_kernels.h"
+#include "gi/light_paths/impostor_maps.h"
 #include "gi/light_paths/settings.h"
 #include "gi/raster/cut_outs.h"
-#include "gi/raster/draw_nearest.h"
 #include "gi/render/render_settings.h"
 
 #include <span>
@@ -52,38 +50,5 @@ private:
     CutOuts cut_outs_;
     std::size_t first_moving_;
 };
-
-/// Impostors in space S, drawn by kernels there.
-template <Space S>
-struct ImpostorsOn {
-    Buffer<vec3, S> centres;
-    Buffer<ImpostorTexel, S> texels;
-    Buffer<ImpostorBlock, S> blocks;
-    std::uint32_t resolution = 0;
-
-    ImpostorsView view() const { return {centres.view(), texels.view(), blocks.view(), resolution}; }
-};
-
-/// For devices; methods draw theirs by Impostors, and tests compare the two.
-/// @param soup, keep  in space S; see DrawNearest  @param resolution  as for Impostors
-template <Space S, class Keep = KeepAll>
-ImpostorsOn<S> draw_impostors(World const& world, SoupView const& soup, std::vector<vec3> const& centres,
-                              std::uint32_t resolution, Keep const& keep = {})
-{
-    constexpr std::size_t kTexels = std::size_t(ImpostorsView::kBlock) * ImpostorsView::kBlock;
-    std::size_t const face = std::size_t(resolution) * resolution, texels = centres.size() * 6 * face;
-    ImpostorsOn<S> out{upload<S>(centres), Buffer<ImpostorTexel, S>(texels),
-                       Buffer<ImpostorBlock, S>(texels / kTexels), resolution};
-    for (std::size_t k = 0; k < 6 * centres.size(); ++k) {
-        vec3 const centre = centres[k / 6];
-        PerspectiveGrid const grid = cube_face(centre, int(k % 6), resolution, impostor_near(world, centre));
-        Buffer<NearestTexel, S> const drawn = draw_nearest<S>(soup, grid, keep);
-        launch(S, "store impostor", face,
-               StoreImpostorFace{grid, drawn.view(), {out.texels.view().data + k * face, face}});
-    }
-    launch(S, "bound impostor blocks", out.blocks.size(),
-           BoundImpostorBlocks{std::as_const(out.texels).view(), out.blocks.view()});
-    return out;
-}
 
 } // namespace gi

@@ -46,6 +46,7 @@ struct Method {
     bool offered = true; ///< to people; else only for files of earlier versions
     /// FrameRenderer::views may be stopped after any path: frames with as many paths are then the same.
     bool ends_frames_early = false;
+    bool pairs = false; ///< frames on the CPU are PairFrames: scenes with and without objects, as AR needs them
     /// The option whose value is appended to the name in measurements, such as "slhb:stored"; empty = none.
     std::string_view variant = {};
     /// How the key `visibility` of studies names it; empty = not at all.

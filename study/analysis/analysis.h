@@ -7,7 +7,7 @@
 #include "study/stats/effect_size.h"
 #include "study/stats/hierarchical_pairs.h"
 #include "study/stats/mixed_anova.h"
-#include "study/stats/psychometric.h"
+#include "study/stats/psychometric_fit.h"
 #include "study/stats/sampler.h"
 #include "study/tables/dataset.h"
 
@@ -56,7 +56,7 @@ struct ObserverSummary {
     int choices = 0, chose_first = 0; ///< main trials whose answers are first or second
     double bias_p = kUnknown;         ///< exact test of "first as often as second"
     int triads = 0, most_triads = 0;  ///< circular triads over all cells with all pairs, and their maximum
-    double zeta = kUnknown, triads_p = kUnknown;
+    double zeta = kUnknown;
     std::map<std::string, double> outlier_score; ///< by block of pairs
     double reaction_median_ms = kUnknown;
 };

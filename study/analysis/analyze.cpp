@@ -1,7 +1,6 @@
 #include "study/analysis/analysis.h"
 
 #include "study/analysis/blocks.h"
-#include "study/analysis/effects.h"
 #include "study/analysis/whole.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "study/analysis/effect_tables.h"
+#include "study/analysis/table_parts.h"
 
 #include "study/stats/pair_scale.h"
 

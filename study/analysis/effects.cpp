@@ -1,4 +1,4 @@
-#include "study/analysis/effects.h"
+#include "study/analysis/whole.h"
 
 #include "study/stats/summary.h"
 

@@ -1,6 +1,6 @@
 #include "study/analysis/groups.h"
 
-#include "study/stats/special.h"
+#include "study/numeric/special.h"
 #include "study/stats/summary.h"
 
 #include <algorithm>

@@ -166,7 +166,7 @@ struct AnswerCounts {
 /// d' of tasks in which it may be negative, with the log-linear correction.
 double signed_dprime(Task task, AnswerCounts const& t)
 {
-    if (task == Task::two_interval) return mafc_dprime((t.correct + 0.5) / (t.trials + 1), 2);
+    if (task == Task::two_interval) return two_interval_dprime((t.correct + 0.5) / (t.trials + 1));
     return t.signals > 0 && t.noises > 0
                ? yes_no(t.hits, t.signals, t.false_alarms, t.noises, Correction::log_linear).dprime
                : kUnknown;

@@ -1,8 +1,8 @@
 #include "study/analysis/own_fit.h"
 
+#include "study/numeric/special.h"
 #include "study/script/procedure_settings.h"
 #include "study/stats/bootstrap.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,8 +74,7 @@ void fit_pooled(CurveResult& r, Block const& b, std::vector<std::vector<LevelCou
         r.parameters = r.pooled.parameters;
         r.note = r.pooled.note;
         r.threshold = {level_at(r.shape, r.parameters, r.proportion), {kUnknown, kUnknown}, r.observers};
-        BootstrapSettings const bs{std::min(settings.replicates, 400), settings.confidence,
-                                   BootstrapInterval::expanded_percentile, settings.seed};
+        BootstrapSettings const bs{std::min(settings.replicates, 400), settings.confidence, settings.seed};
         Interval const i = bootstrap(r.observers, level, bs).interval.front();
         r.threshold.interval = {from_scale(scale, i.low), from_scale(scale, i.high)};
     } catch (std::invalid_argument const& e) {

@@ -1,9 +1,9 @@
 #include "study/analysis/blocks.h"
 #include "study/analysis/hierarchical_result.h"
+#include "study/numeric/special.h"
 #include "study/stats/bootstrap.h"
 #include "study/stats/observer_scale.h"
 #include "study/stats/outliers.h"
-#include "study/stats/special.h"
 #include "study/stats/triads.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // The threshold by QUEST+'s own posterior: that of the level at which the proportion of answers is right.
 
 #include "study/analysis/threshold_run.h"
+#include "study/numeric/root.h"
 #include "study/script/procedure_settings.h"
-#include "study/stats/root.h"
 
 #include <algorithm>
 #include <cmath>

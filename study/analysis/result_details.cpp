@@ -1,4 +1,4 @@
-#include "study/analysis/result_details.h"
+#include "study/analysis/table_parts.h"
 
 #include "gi/core/quantile.h"
 

@@ -1,8 +1,6 @@
 #include "study/analysis/result_tables.h"
 
-#include "study/analysis/effect_tables.h"
-#include "study/analysis/result_details.h"
-
+#include "study/analysis/table_parts.h"
 #include "study/stats/summary.h"
 
 #include <algorithm>

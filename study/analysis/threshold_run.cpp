@@ -1,11 +1,11 @@
 #include "study/analysis/threshold_run.h"
 
 #include "gi/core/quantile.h"
+#include "study/numeric/random.h"
+#include "study/numeric/special.h"
 #include "study/script/procedure_settings.h"
 #include "study/stats/own_threshold.h"
 #include "study/stats/psychometric_posterior.h"
-#include "study/stats/random.h"
-#include "study/stats/special.h"
 #include "study/stats/summary.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // Ratings, magnitudes, adjusted levels; rankings.
 
 #include "study/analysis/blocks.h"
+#include "study/numeric/special.h"
 #include "study/stats/bootstrap.h"
 #include "study/stats/rankings.h"
 #include "study/stats/ratings.h"
-#include "study/stats/special.h"
 #include "study/stats/summary.h"
 
 #include <algorithm>
@@ -251,12 +251,11 @@ ScaleResult ranking_of_group(Script const& script, Block const& b, std::vector<O
         if (!note.empty()) add_note(r, note);
         std::optional<Bootstrap> boot;
         try {
-            boot = bootstrap(
-                r.observers,
-                [&](std::span<int const> drawn) {
-                    return utilities(ranked, {drawn.begin(), drawn.end()}, int(n), nullptr);
-                },
-                {settings.replicates, settings.confidence, BootstrapInterval::expanded_percentile, settings.seed});
+            boot = bootstrap(r.observers,
+                             [&](std::span<int const> drawn) {
+                                 return utilities(ranked, {drawn.begin(), drawn.end()}, int(n), nullptr);
+                             },
+                             {settings.replicates, settings.confidence, settings.seed});
         } catch (std::invalid_argument const& e) {
             add_note(r, std::string("no intervals: ") + e.what());
         }

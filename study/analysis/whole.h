@@ -2,6 +2,7 @@
 // Parts of the analysis that do not belong to a single block.
 
 #include "study/analysis/groups.h"
+#include "study/analysis/measure.h"
 
 namespace study {
 
@@ -18,5 +19,10 @@ void analyze_timing(Script const& script, std::vector<ObserverTrials> const& obs
                     std::vector<RecordedSession const*> const& sessions, Analysis& analysis);
 void analyze_transitions(Script const& script, std::vector<RecordedSession const*> const& sessions,
                          Analysis& analysis);
+/// Tests effects of conditions and of groups of participants on a measure: an analysis of variance of observers'
+/// means (mixed_anova.h) if there is something to compare, and Welch's tests between groups in each condition and
+/// over all. Observers without one of the cells are left out of the former, with a note.
+void test_effects(Measure const& measure, std::vector<ParticipantFactor> const& groups,
+                  AnalysisSettings const& settings, Analysis& analysis);
 
 } // namespace study

@@ -1,6 +1,6 @@
 #include "study/display/display_model.h"
 
-#include "study/stats/root.h"
+#include "study/numeric/root.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,14 +36,6 @@ double value_of_share(DisplayLuminance const& light, int channel, double share)
     if (!(share > 0)) return 0;
     if (share >= 1) return 1;
     return bisect([&](double v) { return share_of_value(light, channel, v) - share; }, 0, 1);
-}
-
-double luminance_of(DisplayLuminance const& light, std::array<double, 3> const& values)
-{
-    double sum = light.black;
-    for (int c = 0; c < 3; ++c)
-        sum += light.channels[std::size_t(c)].peak * share_of_value(light, c, values[std::size_t(c)]);
-    return sum;
 }
 
 std::vector<std::array<float, 3>> inverse_table(DisplayLuminance const& light, int steps)

@@ -75,8 +75,6 @@ struct DisplayModel {
 double share_of_value(DisplayLuminance const& light, int channel, double value);
 /// Value in [0, 1] that gives this share of the channel's peak; shares beyond the ends give the ends.
 double value_of_share(DisplayLuminance const& light, int channel, double share);
-/// Luminance of a colour of three digital values in [0, 1], cd/m2.
-double luminance_of(DisplayLuminance const& light, std::array<double, 3> const& values);
 
 /// Values of one channel (grey: the three together) for shares of the peak: what pictures are shown with.
 /// @param steps  of the table; entry i is for the share (i / (steps - 1))^2.2, so that dark ones are dense

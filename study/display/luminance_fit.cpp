@@ -1,7 +1,7 @@
 #include "study/display/luminance_fit.h"
 
 #include "gi/core/error.h"
-#include "study/stats/descent.h"
+#include "study/numeric/descent.h"
 
 #include <algorithm>
 #include <cmath>

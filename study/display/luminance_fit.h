@@ -6,6 +6,10 @@
 namespace study {
 
 enum class PatchColour { white, red, green, blue };
+inline constexpr std::array kPatchColours{PatchColour::white, PatchColour::red, PatchColour::green,
+                                          PatchColour::blue};
+char const* name_of(PatchColour colour);
+
 /// A photometer's reading.
 struct LuminanceReading {
     PatchColour colour = PatchColour::white;
@@ -49,5 +53,10 @@ inline constexpr DisplayColour kSrgbColour{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.
 /// `cd_m2` (or luminance), in any order; colours are white (grey, w), red, green, blue. Values are 0..1, or 0..255
 /// if one is above 1. @throws gi::InputError with file:line:column
 std::vector<LuminanceReading> read_readings(std::string const& text, std::string const& file);
+/// Their table, which read_readings() reads.
+std::string readings_text(std::vector<LuminanceReading> const& readings);
+
+/// Values of a photometer's series: `count` from 0 to 1, evenly spaced in whole 255ths.
+std::vector<double> series_values(int count);
 
 } // namespace study

@@ -3,6 +3,7 @@
 #include "gi/core/text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace study {
@@ -46,6 +47,12 @@ std::array<int, 3> columns_of(gi::TextLine const& header)
 }
 
 } // namespace
+
+char const* name_of(PatchColour colour)
+{
+    constexpr char const* kNames[]{"white", "red", "green", "blue"};
+    return kNames[int(colour)];
+}
 
 std::vector<LuminanceReading> read_readings(std::string const& text, std::string const& file)
 {
@@ -97,6 +104,21 @@ std::vector<LuminanceReading> read_readings(std::string const& text, std::string
             readings[i].value /= 255;
         }
     return readings;
+}
+
+std::string readings_text(std::vector<LuminanceReading> const& readings)
+{
+    std::string text = "channel,value,cd_m2\n";
+    for (LuminanceReading const& r : readings)
+        text += fmt::format("{},{:.6f},{}\n", name_of(r.colour), r.value, r.cd_m2);
+    return text;
+}
+
+std::vector<double> series_values(int count)
+{
+    std::vector<double> values;
+    for (int i = 0; i < count; ++i) values.push_back(std::round(255.0 * i / (count - 1)) / 255);
+    return values;
 }
 
 } // namespace study

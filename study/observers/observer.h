@@ -4,8 +4,8 @@
 // arXiv:1712.03686), so a percept is the quality plus normal noise of standard deviation 1.4826 / sqrt(2)
 // (Thurstone's case V).
 
+#include "study/numeric/random.h"
 #include "study/script/script.h"
-#include "study/stats/random.h"
 
 namespace study {
 

@@ -1,8 +1,8 @@
 #pragma once
 // Random orders of trials that satisfy all rules, or an error if none is found.
 
+#include "study/numeric/random.h"
 #include "study/script/script.h"
-#include "study/stats/random.h"
 
 #include <optional>
 #include <span>

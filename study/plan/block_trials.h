@@ -1,8 +1,8 @@
 #pragma once
 // The trials of one block, before and after ordering.
 
+#include "study/numeric/random.h"
 #include "study/plan/plan.h"
-#include "study/stats/random.h"
 
 namespace study {
 

@@ -6,8 +6,8 @@
 // with `alternate` for displays and `williams` for three blocks, participants 1 to 12 get every combination
 // of 2 display orders and 6 block orders once.
 
+#include "study/numeric/random.h"
 #include "study/script/script.h"
-#include "study/stats/random.h"
 
 namespace study {
 

@@ -1,4 +1,4 @@
-#include "study/power/power_report.h"
+#include "study/power/power_study.h"
 
 #include "gi/core/html/html.h"
 #include "gi/core/html/plot.h"

@@ -5,6 +5,7 @@
 
 #include "study/analysis/analysis.h"
 #include "study/observers/observer.h"
+#include "study/tables/table.h"
 
 #include <functional>
 
@@ -56,5 +57,13 @@ PowerStudy study_power(Script const& script, ObserverModel const& model, PowerSe
 
 /// Model with effects multiplied.
 ObserverModel scaled_model(ObserverModel const& model, std::vector<int> const& factors, double by);
+
+Table power_table(PowerStudy const& study, PowerSettings const& settings);
+std::string power_json(PowerStudy const& study, PowerSettings const& settings);
+/// Aligned text for a terminal.
+std::string power_text(PowerStudy const& study, PowerSettings const& settings);
+/// One HTML page with power against participants, a curve for each size of the effect.
+std::string power_page(Script const& script, PowerStudy const& study, PowerSettings const& settings,
+                       std::string const& program);
 
 } // namespace study

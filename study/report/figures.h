@@ -1,9 +1,12 @@
 #pragma once
-// The figures of a report. Each is a <figure>, or empty if there is nothing to draw.
+// Parts of a report: its findings in words, and its figures. Each figure is a <figure>, or empty if there is nothing to draw.
 
 #include "study/report/page.h"
 
 namespace study {
+
+/// The main results, one sentence per block: a section of HTML, empty without results.
+std::string findings(Analysis const& analysis);
 
 /// "[1, 2]"; an end that the data leave open is "open"; empty if both are.
 std::string range_text(Interval const& interval);

@@ -1,5 +1,3 @@
-#include "study/report/findings.h"
-
 #include "gi/core/html/axis.h"
 #include "gi/core/html/html.h"
 #include "study/report/figures.h"
@@ -88,9 +86,11 @@ std::string findings(Analysis const& a)
                                     c.note.empty() ? "" : " Doubtful: " + gi::escaped(c.note) + ".");
     }
     if (html.empty()) return {};
-    return "<h2>In short</h2>\n<ul class=\"findings\">\n" + html + "</ul>\n" +
-           gi::html_note("Best first; &gt; means significantly better than the next one (5 %, corrected for all "
-                         "pairs by Holm's procedure), ~ that this was not shown.");
+    return gi::html_section(
+        "In short",
+        "<ul class=\"findings\">\n" + html + "</ul>\n" +
+            gi::html_note("Best first; &gt; means significantly better than the next one (5 %, corrected "
+                          "for all pairs by Holm's procedure), ~ that this was not shown."));
 }
 
 } // namespace study

@@ -4,7 +4,6 @@
 #include "study/analysis/result_tables.h"
 #include "study/analysis/threshold_run.h"
 #include "study/report/figures.h"
-#include "study/report/findings.h"
 #include "study/stats/summary.h"
 #include "study/tables/events.h"
 
@@ -38,8 +37,8 @@ std::string html_of(ResultTable const& t)
                 rows.back().back().css = "min-width: 14rem"; // where the table is wider than the page
         }
     }
-    return fmt::format("<h3>{}</h3>\n", gi::escaped(t.title)) +
-           (t.note.empty() ? "" : gi::html_note(gi::escaped(t.note))) + gi::html_table(columns, rows);
+    return gi::html_part(t.title, (t.note.empty() ? "" : gi::html_note(gi::escaped(t.note))) +
+                                      gi::html_table(columns, rows));
 }
 
 Block const* block_of(Script const& s, std::string const& name)
@@ -75,16 +74,13 @@ double true_threshold(Block const& b, ReportFacts const& facts, double share)
     return true_level(*facts.truth, b.compare->vary, b.compare->harder_up, guess_rate(b.task), share);
 }
 
-std::string figures(std::string const& html)
-{
-    return html.empty() ? "" : "<div class=\"figures\">\n" + html + "</div>\n";
-}
+std::string figures(std::string const& html) { return html.empty() ? "" : gi::html_group("figures", html); }
 
 /// Figures with their heading; empty without figures.
 std::string part(std::string const& heading, std::string const& note, std::string const& html)
 {
     if (html.empty()) return {};
-    return "<h3>" + heading + "</h3>\n" + (note.empty() ? "" : gi::html_note(note)) + figures(html);
+    return gi::html_part(heading, (note.empty() ? "" : gi::html_note(note)) + figures(html));
 }
 
 /// Range from the lowest to the highest score of all groups.
@@ -183,7 +179,7 @@ std::string thresholds_html(Block const& b, BlockResult const& r, ReportFacts co
         double const share = list.front().estimates.empty() ? kUnknown : list.front().estimates.front().proportion;
         tracks += tracks_figure(list, r, name, true_threshold(b, facts, share));
     }
-    if (!tracks.empty()) html += "<h3>Runs</h3>\n" + tracks;
+    if (!tracks.empty()) html += gi::html_part("Runs", tracks);
     return html;
 }
 
@@ -192,10 +188,9 @@ std::string block_html(Script const& s, BlockResult const& r, Analysis const& a,
     Block const* const b = block_of(s, r.name);
     if (b == nullptr) return {};
     std::string html;
-    if (!r.prompt.empty()) html += fmt::format("<p class=\"prompt\">“{}”</p>\n", gi::escaped(r.prompt));
+    if (!r.prompt.empty()) html += gi::html_paragraph("“" + r.prompt + "”", "prompt");
     for (ScaleResult const& scale : r.scales)
-        if (!scale.refused.empty())
-            html += fmt::format("<p>{}: no scale: {}</p>\n", gi::escaped(scale.group), gi::escaped(scale.refused));
+        if (!scale.refused.empty()) html += gi::html_paragraph(scale.group + ": no scale: " + scale.refused);
     if (!r.scales.empty()) html += scales_html(s, *b, r, a, facts);
     return gi::html_section(r.name + " (" + r.task + ")", html + thresholds_html(*b, r, facts));
 }
@@ -352,9 +347,8 @@ std::string texts_html(Script const& script, std::span<RecordedSession const> se
             columns.erase(columns.begin() + 1);
             for (auto& row : rows) row.erase(row.begin() + 1);
         }
-        html += fmt::format("<h3>{}: {}</h3>\n", gi::escaped(item.first->name),
-                            gi::escaped(item.first->items[item.second].text)) +
-                gi::html_table(columns, rows);
+        html += gi::html_part(item.first->name + ": " + item.first->items[item.second].text,
+                              gi::html_table(columns, rows));
     }
     return html.empty() ? "" : gi::html_section("Answers in words", html);
 }
@@ -381,7 +375,7 @@ std::string provenance(std::span<RecordedSession const> sessions, ReportFacts co
         if (list.size() > 5) text += fmt::format("; and {} more", list.size() - 5);
         entries.emplace_back(key, text);
     }
-    return "<h2>Provenance</h2>\n" + gi::html_definitions(entries);
+    return gi::html_section("Provenance", gi::html_definitions(entries));
 }
 
 } // namespace
@@ -400,9 +394,9 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
                 if (t.name == name && !t.is_long) found += html_of(t);
         return found;
     };
-    html += gi::html_section("Observers",
-                             (a.exclusions.empty() ? "<p>Nothing except practice was excluded.</p>\n" : "") +
-                                 exclusions_html(a) + shown({"observers", "agreement"}));
+    html += gi::html_section(
+        "Observers", (a.exclusions.empty() ? gi::html_paragraph("Nothing except practice was excluded.") : "") +
+                         exclusions_html(a) + shown({"observers", "agreement"}));
     html += gi::html_section("Timing", timing_html(a, facts) + shown({"timing", "reactions", "calibrations"}) +
                                            sounds_html(script, sessions) + gaze_html(sessions));
     std::string orders;
@@ -414,11 +408,12 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
                                                "thresholds", "parameters", "curves", "detection", "population",
                                                "questionnaires", "changes", "remarks"}));
     html += texts_html(script, sessions);
-    std::string const about = fmt::format("<p class=\"about\">Experiment {}: {} of {} participants, {} sessions, "
-                                          "{} complete. Intervals of {:.0f} %, "
-                                          "{} replicates of bootstraps.</p>\n",
-                                          gi::escaped(a.experiment), a.participants, a.planned, a.sessions,
-                                          a.complete, 100 * a.settings.confidence, a.settings.replicates);
+    std::string const about = gi::html_paragraph(
+        fmt::format("Experiment {}: {} of {} participants, {} sessions, {} complete. Intervals of {:.0f} %, "
+                    "{} replicates of bootstraps.",
+                    a.experiment, a.participants, a.planned, a.sessions, a.complete, 100 * a.settings.confidence,
+                    a.settings.replicates),
+        "about");
     return gi::html_page(a.title, html + provenance(sessions, facts), about + gi::html_cautions(a.cautions));
 }
 

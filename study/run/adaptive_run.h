@@ -1,9 +1,9 @@
 #pragma once
 // Chooses the level of each trial by a staircase or by QUEST+.
 
+#include "study/adaptive/questplus.h"
+#include "study/adaptive/staircase.h"
 #include "study/script/script.h"
-#include "study/stats/questplus.h"
-#include "study/stats/staircase.h"
 
 #include <variant>
 

@@ -1,8 +1,8 @@
 #pragma once
 // Chooses the pairs of a block from the answers so far (active sampling).
 
+#include "study/adaptive/active_pairs.h"
 #include "study/plan/plan.h"
-#include "study/stats/active_pairs.h"
 
 namespace study {
 

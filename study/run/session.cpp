@@ -370,7 +370,6 @@ private:
         std::error_code ignored;
         if (!std::filesystem::exists(file, ignored) || gi::read_text(file) != summary)
             gi::write_durably(file, summary);
-        if (settings_.on_ended) settings_.on_ended(files_.folder, record_);
     }
 
     void end(std::string const& reason)

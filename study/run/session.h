@@ -26,9 +26,6 @@ struct SessionSettings {
     std::function<double()> unix_s; ///< the wall clock; none = the machine's
     /// Called with each entry once it is on the disk.
     std::function<void(JournalEntry const&)> on_kept;
-    /// Called with folder and all entries when the session has ended, complete or not, so that tables can be
-    /// rewritten. Also called if a session to resume was already complete.
-    std::function<void(std::filesystem::path const&, SessionRecord const&)> on_ended;
 };
 
 struct SessionOutcome {

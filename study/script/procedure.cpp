@@ -1,6 +1,6 @@
 #include "study/script/procedure.h"
 
-#include "study/stats/staircase.h"
+#include "study/adaptive/staircase.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #pragma once
 // How the level of the varied setting is chosen from trial to trial.
 
+#include "study/adaptive/formula.h"
+#include "study/adaptive/questplus_many.h"
 #include "study/script/script_error.h"
-#include "study/stats/formula.h"
-#include "study/stats/questplus_many.h"
 
 #include <memory>
 #include <optional>

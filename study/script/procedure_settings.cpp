@@ -1,8 +1,8 @@
 #include "study/script/procedure_settings.h"
 
 #include "gi/core/text.h"
+#include "study/numeric/root.h"
 #include "study/script/condition.h"
-#include "study/stats/root.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // Converts a script's procedures to settings of study/stats: for sessions that run
 // them and analyses that replay them.
 
+#include "study/adaptive/questplus.h"
+#include "study/adaptive/staircase.h"
 #include "study/script/script.h"
-#include "study/stats/questplus.h"
-#include "study/stats/staircase.h"
 
 namespace study {
 

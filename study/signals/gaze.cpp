@@ -37,10 +37,7 @@ GazeSummary summarise(std::vector<GazeSample> const& samples)
     double const step = gi::median(steps);
     if (!(step > 0)) return sum;
     sum.rate_hz = 1 / step;
-    for (double const s : steps) {
-        sum.dropped += s > 1.5 * step ? int(std::lround(s / step)) - 1 : 0;
-        sum.longest_gap_ms = std::max(sum.longest_gap_ms, 1e3 * s);
-    }
+    for (double const s : steps) sum.dropped += s > 1.5 * step ? int(std::lround(s / step)) - 1 : 0;
     return sum;
 }
 

@@ -72,7 +72,6 @@ struct GazeSummary {
     int samples = 0, valid = 0;
     int dropped = 0;    ///< missing between samples that are too far apart
     double rate_hz = 0; ///< by the median step
-    double longest_gap_ms = 0;
 };
 /// @param samples  in the order of their times
 GazeSummary summarise(std::vector<GazeSample> const& samples);

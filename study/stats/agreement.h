@@ -1,7 +1,7 @@
 #pragma once
 // Do observers agree, and are there differences at all? For choices between pairs and for ranks.
 
-#include "study/stats/matrix.h"
+#include "study/numeric/matrix.h"
 
 #include <span>
 

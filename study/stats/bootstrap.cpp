@@ -1,9 +1,9 @@
 #include "study/stats/bootstrap.h"
 
 #include "gi/core/quantile.h"
-#include "study/stats/error.h"
-#include "study/stats/random.h"
-#include "study/stats/special.h"
+#include "study/numeric/error.h"
+#include "study/numeric/random.h"
+#include "study/numeric/special.h"
 #include "study/stats/summary.h"
 
 #include <algorithm>
@@ -13,12 +13,10 @@
 namespace study {
 namespace {
 
-double tail(int observers, BootstrapSettings const& settings)
+double tail(int observers, double confidence)
 {
-    double const plain = (1 - settings.confidence) / 2;
-    if (settings.interval == BootstrapInterval::percentile) return plain;
     double const n = observers;
-    return normal_cdf(std::sqrt(n / (n - 1)) * student_quantile(plain, n - 1));
+    return normal_cdf(std::sqrt(n / (n - 1)) * student_quantile((1 - confidence) / 2, n - 1));
 }
 
 } // namespace
@@ -51,7 +49,7 @@ Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, Bootstrap
                "too few observers made the comparisons that connect the items",
                "collect more observers, or report the standard error of the fit");
 
-    double const low = tail(observers, settings);
+    double const low = tail(observers, settings.confidence);
     for (std::size_t k = 0; k < result.replicates.front().size(); ++k) {
         std::vector<double> values;
         for (auto const& r : result.replicates) values.push_back(r[k]);
@@ -76,37 +74,6 @@ std::vector<PairCount> pool(std::vector<std::vector<PairCount>> const& observers
     std::vector<PairCount> pooled;
     for (auto const& [unused, sum] : sums) pooled.push_back(sum);
     return pooled;
-}
-
-Bootstrap bootstrap_pairs(std::vector<std::vector<PairCount>> const& observers, int items,
-                          PairSettings const& scaling, BootstrapSettings const& settings)
-{
-    std::vector<PairCount> const all = pool(observers);
-    check_pairs(all, items);
-    std::map<std::pair<int, int>, std::size_t> place;
-    for (std::size_t i = 0; i < all.size(); ++i) place[{all[i].first, all[i].second}] = i;
-    std::vector<std::vector<std::size_t>> where(observers.size());
-    for (std::size_t o = 0; o < observers.size(); ++o)
-        for (PairCount const& p : observers[o]) where[o].push_back(place.at({p.first, p.second}));
-
-    double const jod = jod_per_unit(scaling.model);
-    auto const scores = [&](std::span<int const> drawn) {
-        std::vector<PairCount> sums = all;
-        for (PairCount& s : sums) s.first_wins = s.second_wins = s.ties = 0;
-        for (int const d : drawn) {
-            auto const o = std::size_t(d);
-            for (std::size_t i = 0; i < observers[o].size(); ++i) {
-                PairCount& sum = sums[where[o][i]];
-                sum.first_wins += observers[o][i].first_wins;
-                sum.second_wins += observers[o][i].second_wins;
-                sum.ties += observers[o][i].ties;
-            }
-        }
-        std::vector<double> score = fit_pairs(sums, items, scaling).score;
-        for (double& s : score) s *= jod;
-        return score;
-    };
-    return bootstrap(int(observers.size()), scores, settings);
 }
 
 } // namespace study

@@ -11,22 +11,16 @@
 
 namespace study {
 
-enum class BootstrapInterval {
-    percentile,
-    /// Percentiles at Phi(-sqrt(n/(n-1)) t), t the quantile of Student's distribution with n - 1 degrees: not too
-    /// narrow for few observers (Hesterberg 2015, Amer. Stat. 69:371, "expanded percentile").
-    expanded_percentile
-};
-
 struct BootstrapSettings {
     int replicates = 1000;
     double confidence = 0.95;
-    BootstrapInterval interval = BootstrapInterval::expanded_percentile;
     std::uint64_t seed = 1;
 };
 
 struct Bootstrap {
-    std::vector<Interval> interval;              ///< per number
+    /// Per number: percentiles at Phi(-sqrt(n/(n-1)) t), t the quantile of Student's distribution with n - 1 degrees:
+    /// not too narrow for few observers (Hesterberg 2015, Amer. Stat. 69:371, "expanded percentile").
+    std::vector<Interval> interval;
     std::vector<double> standard_error;          ///< per number: standard deviation of the replicates
     std::vector<std::vector<double>> replicates; ///< those with a result
     int failed = 0;                              ///< replicates whose observers the statistic refused
@@ -38,11 +32,6 @@ using ObserverStatistic = std::function<std::vector<double>(std::span<int const>
 /// The same seed gives the same result. @throws std::invalid_argument fewer than 2 observers, fewer than 2
 /// replicates, a confidence outside (0, 1), or more than half of the replicates failed
 Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, BootstrapSettings const& settings = {});
-
-/// Bootstrap of the scores of fit_pairs (in JOD, mean 0). @param observers  the pairs of each
-/// @throws std::invalid_argument as bootstrap and fit_pairs
-Bootstrap bootstrap_pairs(std::vector<std::vector<PairCount>> const& observers, int items,
-                          PairSettings const& scaling = {}, BootstrapSettings const& settings = {});
 
 /// All observers' pairs in one list; counts of pairs shown in the same order are added up.
 std::vector<PairCount> pool(std::vector<std::vector<PairCount>> const& observers);

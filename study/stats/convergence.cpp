@@ -1,6 +1,6 @@
 #include "gi/core/quantile.h"
+#include "study/numeric/special.h"
 #include "study/stats/sampler.h"
-#include "study/stats/special.h"
 #include "study/stats/summary.h"
 
 #include <algorithm>

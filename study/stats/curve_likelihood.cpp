@@ -1,7 +1,7 @@
 #include "study/stats/curve_likelihood.h"
 
-#include "study/stats/sigmoid.h"
-#include "study/stats/special.h"
+#include "study/adaptive/sigmoid.h"
+#include "study/numeric/special.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // / scale + offset), with the offset at which P(threshold) is the proportion. With overdispersion, answers of a
 // level are beta-binomial: n answers have variance n p q (1 + (n - 1) / (nu + 1)), nu = 1 / eta^2 - 1.
 
-#include "study/stats/psychometric.h"
+#include "study/stats/psychometric_fit.h"
 
 #include <optional>
 #include <span>

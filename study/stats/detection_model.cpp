@@ -1,8 +1,8 @@
 #include "study/stats/detection_model.h"
 
+#include "study/numeric/root.h"
+#include "study/numeric/special.h"
 #include "study/stats/dprime.h"
-#include "study/stats/root.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <cmath>

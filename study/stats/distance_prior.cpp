@@ -1,9 +1,9 @@
 #include "study/stats/distance_prior.h"
 
-#include "study/stats/descent.h"
-#include "study/stats/error.h"
+#include "study/numeric/descent.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/pair_scale.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <cmath>

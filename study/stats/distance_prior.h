@@ -7,7 +7,7 @@
 // distances resemble those of other pairs, which moves unanimous pairs closer. It serves for comparison with that
 // program: if every pair was unanimous it has no finite maximum, whereas fit_pairs has one.
 
-#include "study/stats/matrix.h"
+#include "study/numeric/matrix.h"
 
 namespace study {
 

@@ -1,35 +1,12 @@
 #include "study/stats/dprime.h"
 
-#include "study/stats/error.h"
-#include "study/stats/root.h"
-#include "study/stats/special.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace study {
-namespace {
-
-constexpr double kLargest = 40; ///< above it, proportions are 1 within rounding
-constexpr double kSqrt2 = std::numbers::sqrt2;
-
-void check_rate(double rate, char const* name)
-{
-    if (!(rate >= 0 && rate <= 1))
-        refuse(std::string(name) + " " + std::to_string(rate), "it is a proportion of trials, from 0 to 1",
-               "divide a count by its number of trials, which must not be 0");
-}
-
-double unbiased_proportion(double hit_rate, double false_alarm_rate)
-{
-    check_rate(hit_rate, "hit rate");
-    check_rate(false_alarm_rate, "false alarm rate");
-    if (hit_rate <= false_alarm_rate) return 0.5;
-    return normal_cdf((normal_quantile(hit_rate) - normal_quantile(false_alarm_rate)) / 2);
-}
-
-} // namespace
 
 YesNo yes_no(double hits, double signals, double false_alarms, double noises, Correction correction)
 {
@@ -55,51 +32,12 @@ YesNo yes_no(double hits, double signals, double false_alarms, double noises, Co
     return r;
 }
 
-double mafc_proportion(double dprime, int m)
+double two_interval_dprime(double p)
 {
-    if (m < 2)
-        refuse(std::to_string(m) + " alternatives", "a choice has two or more", "use yes_no for one interval");
-    if (std::isinf(dprime)) return dprime > 0 ? 1 : 0;
-    constexpr double kStep = 0.05, kEnd = 9; // the trapezium rule: see normal_range_cdf
-    double sum = 0;
-    for (double x = -kEnd; x < kEnd + kStep / 2; x += kStep)
-        sum += normal_pdf(x) * std::pow(normal_cdf(x + dprime), m - 1);
-    return sum * kStep;
-}
-
-double mafc_dprime(double p, int m)
-{
-    check_rate(p, "proportion correct");
-    if (m < 2)
-        refuse(std::to_string(m) + " alternatives", "a choice has two or more", "use yes_no for one interval");
-    if (p == 0 || p == 1) return p == 0 ? -kInfinity : kInfinity;
-    if (m == 2) return kSqrt2 * normal_quantile(p);
-    return bisect([&](double d) { return mafc_proportion(d, m) - p; }, -kLargest, kLargest);
-}
-
-double same_different_dprime(double hit_rate, double false_alarm_rate, Strategy strategy)
-{
-    double const p = unbiased_proportion(hit_rate, false_alarm_rate);
-    if (p <= 0.5) return 0;
-    if (strategy == Strategy::independent) return 2 * normal_quantile((1 + std::sqrt(2 * p - 1)) / 2);
-    if (hit_rate == 1 || false_alarm_rate == 0) return kInfinity;
-    double const k = -kSqrt2 * normal_quantile(false_alarm_rate / 2);
-    return bisect(
-        [&](double d) { return normal_cdf((d - k) / kSqrt2) + normal_cdf((-d - k) / kSqrt2) - hit_rate; }, 0,
-        kLargest);
-}
-
-double abx_dprime(double hit_rate, double false_alarm_rate, Strategy strategy)
-{
-    double const p = unbiased_proportion(hit_rate, false_alarm_rate);
-    if (p <= 0.5) return 0;
-    if (p == 1) return kInfinity;
-    double const s = strategy == Strategy::independent ? 2 : std::sqrt(6.0);
-    return bisect(
-        [&](double d) {
-            return normal_cdf(d / kSqrt2) * normal_cdf(d / s) + normal_cdf(-d / kSqrt2) * normal_cdf(-d / s) - p;
-        },
-        0, kLargest);
+    if (!(p >= 0 && p <= 1))
+        refuse("proportion correct " + std::to_string(p), "it is a proportion of trials, from 0 to 1",
+               "divide a count by its number of trials, which must not be 0");
+    return std::numbers::sqrt2 * normal_quantile(p);
 }
 
 double oddity_miss(double dprime)
@@ -109,13 +47,5 @@ double oddity_miss(double dprime)
 }
 
 double oddity_proportion(double dprime) { return 1 - oddity_miss(dprime); }
-
-double oddity_dprime(double p)
-{
-    check_rate(p, "proportion correct");
-    if (p <= 1.0 / 3) return 0;
-    if (p == 1) return kInfinity;
-    return bisect([&](double d) { return oddity_proportion(d) - p; }, 0, kLargest);
-}
 
 } // namespace study

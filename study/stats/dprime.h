@@ -21,36 +21,13 @@ struct YesNo {
 YesNo yes_no(double hits, double signals, double false_alarms, double noises,
              Correction correction = Correction::none);
 
-/// Decision strategy of an observer of pairs.
-enum class Strategy {
-    independent, ///< compares each observation with a criterion (optimal for same-different)
-    differencing ///< compares differences between observations
-};
+/// d' of choosing the signal between two intervals, from the proportion correct: sqrt(2) z(p).
+/// Negative below chance, infinite at 0 and 1. @throws std::invalid_argument p outside of [0, 1] or NaN
+double two_interval_dprime(double proportion_correct);
 
-/// d' of choosing the signal among m intervals or places, from the proportion correct:
-/// p = \int phi(x - d') Phi(x)^(m-1) dx (Green & Swets 1966); for m = 2 this is sqrt(2) z(p).
-/// Negative below chance, infinite at 0 and 1. @throws std::invalid_argument m < 2, p outside of [0, 1] or NaN
-double mafc_dprime(double proportion_correct, int m);
-
-/// d' of same-different, from the rates of "different" given different (hits) and given same (false alarms).
-/// Differencing: H = Phi((d'-k)/sqrt 2) + Phi((-d'-k)/sqrt 2), F = 2 Phi(-k/sqrt 2). Independent:
-/// d' = 2 z((1 + sqrt(2p - 1)) / 2) with the unbiased p = Phi((z(H) - z(F)) / 2). 0 where H <= F.
-/// @throws std::invalid_argument rates outside of [0, 1] or NaN
-double same_different_dprime(double hit_rate, double false_alarm_rate, Strategy strategy);
-
-/// d' of ABX, from the unbiased proportion correct p = Phi((z(H) - z(F)) / 2) with
-/// p = Phi(d'/sqrt 2) Phi(d'/s) + Phi(-d'/sqrt 2) Phi(-d'/s), s = 2 independent, sqrt 6 differencing.
-/// @param hit_rate, false_alarm_rate  of saying "A" given X = A, given X = B. 0 where H <= F.
-double abx_dprime(double hit_rate, double false_alarm_rate, Strategy strategy);
-
-/// d' of the odd one out of three (Frijters 1979, Br. J. Math. Stat. Psychol. 32:229):
-/// p = 2 \int_0^inf phi(u) (Phi(-u sqrt 3 + d' sqrt(2/3)) + Phi(-u sqrt 3 - d' sqrt(2/3))) du.
-/// 0 at or below chance (1/3), infinite at 1.
-double oddity_dprime(double proportion_correct);
-
-/// Proportions correct for a given d': inverses of mafc_dprime and oddity_dprime.
-double mafc_proportion(double dprime, int m);
-/// 1 - 4 T(d'/sqrt 6, sqrt 3), T of Owen 1956, which is Frijters' integral.
+/// Proportion correct of the odd one out of three (Frijters 1979, Br. J. Math. Stat. Psychol. 32:229):
+/// p = 2 \int_0^inf phi(u) (Phi(-u sqrt 3 + d' sqrt(2/3)) + Phi(-u sqrt 3 - d' sqrt(2/3))) du,
+/// which is 1 - 4 T(d'/sqrt 6, sqrt 3), T of Owen 1956.
 double oddity_proportion(double dprime);
 double oddity_miss(double dprime); ///< 1 - oddity_proportion, without cancellation
 

@@ -1,8 +1,8 @@
 #include "study/stats/effect_size.h"
 
-#include "study/stats/error.h"
-#include "study/stats/root.h"
-#include "study/stats/special.h"
+#include "study/numeric/error.h"
+#include "study/numeric/root.h"
+#include "study/numeric/special.h"
 #include "study/stats/summary.h"
 
 #include <boost/math/distributions/fisher_f.hpp>

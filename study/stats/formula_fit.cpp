@@ -1,8 +1,8 @@
 #include "study/stats/formula_fit.h"
 
-#include "study/stats/error.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/likelihood.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <array>

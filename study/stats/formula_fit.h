@@ -1,5 +1,5 @@
 #pragma once
-#include "study/stats/psychometric.h"
+#include "study/stats/psychometric_fit.h"
 
 namespace study {
 

@@ -1,10 +1,10 @@
 #include "study/stats/group_dprime.h"
 
-#include "study/stats/error.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/gauss_hermite.h"
 #include "study/stats/maximum_within.h"
 #include "study/stats/profile.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <array>
@@ -272,7 +272,6 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
     g.mean = best[0];
     g.deviation = deviation(best[1]);
     g.criterion = best[2];
-    g.criterion_deviation = deviation(best[3]);
     for (Observer const& o : fit.marginal().observers()) g.observer.push_back(o.dprime);
     auto const n = double(g.observer.size());
     double const ratio = variance_ratio(task, fit), limit = profile_limit(confidence, n, ratio);
@@ -287,8 +286,8 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
         bool const is_high = is_up != is_down ? is_up : g.mean > 0;
         g.mean = is_high ? kInfinity : -kInfinity;
         g.note = fmt::format("all answers to {} are {}: d' has no {} limit",
-                             has_noise ? "one kind of trial, or both," : "these trials", is_high ? "right" : "wrong",
-                             is_high ? "upper" : "lower");
+                             has_noise ? "one kind of trial, or both," : "these trials",
+                             is_high ? "right" : "wrong", is_high ? "upper" : "lower");
     }
     fit.start_over();
     g.p = profile_p(fit.loss(0), n, ratio);

@@ -20,7 +20,7 @@ namespace study {
 struct GroupDPrime {
     double mean = 0;      ///< of d' in the population; may be infinite
     double deviation = 0; ///< standard deviation of d' between observers
-    double criterion = 0, criterion_deviation = 0;
+    double criterion = 0;
     Interval interval;            ///< of the mean; ends may be infinite
     double p = 1;                 ///< of "the mean is 0", by the same likelihood ratio
     std::vector<double> observer; ///< d' of each observer with trials: mean given the answers of all (shrunken)

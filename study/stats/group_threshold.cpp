@@ -1,9 +1,9 @@
 #include "study/stats/group_threshold.h"
 
-#include "study/stats/error.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/maximum_within.h"
 #include "study/stats/profile.h"
-#include "study/stats/special.h"
 #include "study/stats/threshold_marginal.h"
 
 #include <Eigen/Cholesky>

@@ -10,7 +10,7 @@
 // own_threshold.h and hierarchical_psychometric.h.
 
 #include "study/stats/binomial.h"
-#include "study/stats/psychometric.h"
+#include "study/stats/psychometric_fit.h"
 
 #include <optional>
 #include <span>

@@ -1,8 +1,8 @@
 #include "study/stats/hierarchical.h"
 
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/curve_likelihood.h"
-#include "study/stats/error.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "study/stats/hierarchical_pairs.h"
 
-#include "study/stats/error.h"
-#include "study/stats/special.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 
 #include <algorithm>
 #include <cmath>

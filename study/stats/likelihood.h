@@ -2,7 +2,7 @@
 // Maximum likelihood by Fisher scoring with Levenberg's damping, within bounds. A model gives its log-likelihood,
 // the gradient of it and the expected information; the inverse of that is the covariance of the estimate.
 
-#include "study/stats/matrix.h"
+#include "study/numeric/matrix.h"
 
 #include <functional>
 #include <limits>

@@ -1,7 +1,7 @@
 #pragma once
 // Maximum of a function of a few parameters, of which some are free, within bounds.
 
-#include "study/stats/descent.h"
+#include "study/numeric/descent.h"
 
 #include <algorithm>
 #include <array>

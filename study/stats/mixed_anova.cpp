@@ -1,9 +1,9 @@
 #include "study/stats/mixed_anova.h"
 
+#include "study/numeric/error.h"
+#include "study/numeric/random.h"
+#include "study/numeric/special.h"
 #include "study/stats/effect_size.h"
-#include "study/stats/error.h"
-#include "study/stats/random.h"
-#include "study/stats/special.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -208,7 +208,6 @@ std::vector<AnovaEffect> mixed_anova(Matrix const& cells, MixedDesign const& des
             e.is_between = !b.name.empty();
             e.is_within = !w.name.empty();
             e.squares = s.effect;
-            e.error_squares = s.error;
             e.df1 = double(b.columns.cols()) * k;
             e.df2 = error_df * k;
             double const nothing = 1e-20 * y.squaredNorm();

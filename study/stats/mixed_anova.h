@@ -8,8 +8,8 @@
 // variances and correlations of the cells (sphericity): Greenhouse & Geisser 1959 (Psychometrika 24:95), Huynh &
 // Feldt 1976 (J. Educ. Stat. 1:69) as corrected by Lecoutre 1991.
 
+#include "study/numeric/matrix.h"
 #include "study/stats/binomial.h"
-#include "study/stats/matrix.h"
 
 #include <cstdint>
 #include <string>
@@ -35,11 +35,11 @@ struct AnovaEffect {
     std::string name;                           ///< "group", "group x scene"
     bool is_between = false, is_within = false; ///< it involves such factors
     double f = 0, df1 = 0, df2 = 0, p = 1;
-    double squares = 0, error_squares = 0; ///< sums of squares
+    double squares = 0; ///< sum of squares
     double greenhouse_geisser = 1,
            p_gg = 1;                  ///< epsilon, and p with it; 1 and p without a within factor of 3 or more
     double huynh_feldt = 1, p_hf = 1; ///< at most 1
-    double partial_eta2 = 0;          ///< squares / (squares + error_squares)
+    double partial_eta2 = 0;          ///< squares / (squares + those of the error)
     Interval eta2;                    ///< by the noncentral F distribution (Steiger 2004, Psychol. Methods 9:164)
     /// Without assumption of normality: for effects that involve groups, observers change groups; otherwise the
     /// signs of an observer's contrasts change (Fisher 1935; Anderson & ter Braak 2003). NaN if not asked for.

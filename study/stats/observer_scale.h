@@ -9,7 +9,7 @@
 // for more items, since these do not make the model truer of any one of them. Intervals are around scores with
 // Jeffreys' prior, because those of maximum likelihood are too far apart on average.
 //
-// The sandwich takes scores as linear in choices. The jackknife does not (left_out.h): with changes by leaving out
+// The sandwich takes scores as linear in choices. The jackknife does not: with changes by leaving out
 // observers, times (1 - leverage)^(1/2), so that it equals the sandwich if all is linear, V_left_out is larger
 // where far-off choices weigh more. Errors of trials alone need none of that, since V grows with the score
 // (below); those of differences between observers do: V rises by (1 - (V_trials / V)^2) (V_left_out -

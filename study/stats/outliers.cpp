@@ -1,11 +1,11 @@
 #include "study/stats/outliers.h"
 
 #include "gi/core/quantile.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/binomial.h"
 #include "study/stats/distance_prior.h"
-#include "study/stats/error.h"
 #include "study/stats/pair_scale.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 // fit_pairs if that has no finite maximum). The score is the distance of L below the lower quartile, in
 // interquartile ranges. The authors inspect observers near or above 1.5, and advise inspection before exclusion.
 
-#include "study/stats/matrix.h"
+#include "study/numeric/matrix.h"
 
 namespace study {
 

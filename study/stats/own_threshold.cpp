@@ -1,7 +1,7 @@
 #include "study/stats/own_threshold.h"
 
-#include "study/stats/error.h"
-#include "study/stats/special.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/threshold_marginal.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "study/stats/pair_likelihood.h"
 
-#include "study/stats/special.h"
+#include "study/numeric/special.h"
 
 #include <algorithm>
 #include <array>

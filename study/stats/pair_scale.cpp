@@ -1,9 +1,9 @@
 #include "study/stats/pair_scale.h"
 
-#include "study/stats/error.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 #include "study/stats/pair_likelihood.h"
 #include "study/stats/scores.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "study/stats/pairs.h"
 
-#include "study/stats/error.h"
+#include "study/numeric/error.h"
 
 #include <cmath>
 #include <map>

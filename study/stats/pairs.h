@@ -1,7 +1,7 @@
 #pragma once
 // Paired comparisons as counts, and properties of their design.
 
-#include "study/stats/matrix.h"
+#include "study/numeric/matrix.h"
 
 #include <span>
 #include <string>

@@ -1,6 +1,6 @@
 #include "study/stats/profile.h"
 
-#include "study/stats/special.h"
+#include "study/numeric/special.h"
 
 namespace study {
 

@@ -1,8 +1,9 @@
-#include "study/stats/error.h"
+#include "study/stats/psychometric_fit.h"
+
+#include "study/adaptive/sigmoid.h"
+#include "study/numeric/error.h"
 #include "study/stats/formula_fit.h"
 #include "study/stats/likelihood.h"
-#include "study/stats/psychometric.h"
-#include "study/stats/sigmoid.h"
 
 #include <algorithm>
 #include <array>
@@ -193,6 +194,79 @@ PsychometricFit fit_psychometric(std::span<LevelCount const> counts, Psychometri
     if (settings.shape.formula) return fit_formula(counts, settings);
     Model const m = make_model(counts, settings);
     return describe(m, settings.shape, best_fit(m));
+}
+
+double standard_error_at(PsychometricFit const& fit, double proportion)
+{
+    auto const moved = [&](std::size_t i, double by) {
+        PsychometricParameters p = fit.parameters;
+        if (i == 0) p.threshold += by;
+        if (i == 1) p.scale *= std::exp(by);
+        if (i == 2) p.guess += by;
+        if (i == 3) p.lapse += by;
+        return transformed(fit.shape, level_at(fit.shape, p, proportion));
+    };
+    std::array<double, 4> slope{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (fit.covariance(i, i) == 0) continue;
+        double const step = 1e-3 * std::sqrt(fit.covariance(i, i));
+        slope[i] = (moved(i, step) - moved(i, -step)) / (2 * step);
+    }
+    double variance = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j) variance += slope[i] * fit.covariance(i, j) * slope[j];
+    return std::sqrt(variance);
+}
+
+void Trend::add(double u, double n_correct, double n)
+{
+    if (own_.trials == 0) own_.first = u;
+    double const away = u - own_.first; // 0 if there is one level, whatever is rounded
+    own_.trials += n;
+    own_.correct += n_correct;
+    own_.u += n * away;
+    own_.square += n * away * away;
+    own_.product += n_correct * away;
+}
+
+void Trend::next_observer()
+{
+    finish(covariance_, variance_);
+    own_ = {};
+}
+
+void Trend::finish(double& covariance, double& variance) const
+{
+    if (own_.trials == 0) return;
+    double const p = own_.correct / own_.trials;
+    covariance += own_.product - p * own_.u;
+    variance += p * (1 - p) * std::max(0.0, own_.square - own_.u * own_.u / own_.trials);
+}
+
+bool Trend::is_falling() const
+{
+    double covariance = covariance_, variance = variance_;
+    finish(covariance, variance);
+    return covariance < -2 * std::sqrt(variance);
+}
+
+std::vector<LevelCount> count_levels(std::span<double const> levels, std::span<int const> correct)
+{
+    if (levels.size() != correct.size())
+        refuse(std::to_string(levels.size()) + " levels and " + std::to_string(correct.size()) + " responses",
+               "each trial has one of both", "give lists of the same length");
+    std::map<double, LevelCount> counts;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        if (std::isnan(levels[i]))
+            refuse("a level that is not a number", "it has no place on the axis", "leave it out");
+        LevelCount& c = counts[levels[i]];
+        c.level = levels[i];
+        c.correct += correct[i] != 0;
+        c.trials += 1;
+    }
+    std::vector<LevelCount> result;
+    for (auto const& [unused, c] : counts) result.push_back(c);
+    return result;
 }
 
 } // namespace study

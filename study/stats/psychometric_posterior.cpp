@@ -1,9 +1,9 @@
 #include "study/stats/psychometric_posterior.h"
 
-#include "study/stats/descent.h"
-#include "study/stats/error.h"
-#include "study/stats/sigmoid.h"
-#include "study/stats/special.h"
+#include "study/adaptive/sigmoid.h"
+#include "study/numeric/descent.h"
+#include "study/numeric/error.h"
+#include "study/numeric/special.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -11,7 +11,7 @@
 // Beta(1, 10); guess rate, where fitted, Beta(1, 1), to which trials without a signal are added. Overdispersion:
 // answers of a level are beta-binomial, with variance n p q (1 + (n - 1) eta^2): thresholds that drift.
 
-#include "study/stats/psychometric.h"
+#include "study/stats/psychometric_fit.h"
 
 #include <optional>
 #include <span>

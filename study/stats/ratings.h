@@ -1,8 +1,8 @@
 #pragma once
 // Ratings on a scale. Tables are items x observers; NaN = not rated.
 
+#include "study/numeric/matrix.h"
 #include "study/stats/binomial.h"
-#include "study/stats/matrix.h"
 
 #include <span>
 #include <string>

@@ -1,7 +1,7 @@
 #include "study/stats/sampler.h"
 
-#include "study/stats/error.h"
-#include "study/stats/random.h"
+#include "study/numeric/error.h"
+#include "study/numeric/random.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "study/stats/shrunken_rates.h"
 
-#include "study/stats/error.h"
+#include "study/numeric/error.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "study/stats/threshold_marginal.h"
 
-#include "study/stats/error.h"
+#include "study/numeric/error.h"
 #include "study/stats/gauss_hermite.h"
 
 namespace study {

@@ -1,9 +1,9 @@
 #pragma once
 // The likelihood of several observers' answers at levels, integrated over their thresholds: see group_threshold.h.
 
+#include "study/numeric/special.h"
 #include "study/stats/curve_likelihood.h"
 #include "study/stats/group_threshold.h"
-#include "study/stats/special.h"
 
 #include <algorithm>
 #include <array>

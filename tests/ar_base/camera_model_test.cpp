@@ -113,7 +113,7 @@ TEST(Poses, AreThoseOfRodrigues)
 {
     for (cv::Vec3d const& r : {cv::Vec3d(0, 0, 0), cv::Vec3d(1e-10, 0, 2e-10), cv::Vec3d(0.3, -1.2, 0.7),
                                cv::Vec3d(0, 3.1415, 0), cv::Vec3d(1.8, 1.8, -1.8)}) {
-        Pose const p = pose_of(r, {1, 2, 3});
+        gi::RigidPose const p = pose_of(r, {1, 2, 3});
         cv::Matx33d m;
         cv::Rodrigues(r, m);
         cv::Vec3d const expected = m * cv::Vec3d(0.5, -2, 1);

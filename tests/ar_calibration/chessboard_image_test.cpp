@@ -35,7 +35,7 @@ std::vector<glm::dvec3> rays_of(CameraModel const& camera)
     return rays;
 }
 
-cv::Mat picture(glm::ivec2 size_px, std::vector<glm::dvec3> const& rays, Pose const& board_from_camera,
+cv::Mat picture(glm::ivec2 size_px, std::vector<glm::dvec3> const& rays, gi::RigidPose const& board_from_camera,
                 std::uint64_t seed)
 {
     cv::Mat light(size_px.y, size_px.x, CV_32FC1);
@@ -45,7 +45,7 @@ cv::Mat picture(glm::ivec2 size_px, std::vector<glm::dvec3> const& rays, Pose co
             float sum = 0;
             for (int s = 0; s < kRays * kRays; ++s, ++ray) {
                 glm::dvec3 const d = board_from_camera.rotation * *ray;
-                glm::dvec3 const at = board_from_camera.position_m - board_from_camera.position_m.z / d.z * d;
+                glm::dvec3 const at = board_from_camera.position - board_from_camera.position.z / d.z * d;
                 sum += d.z < 0 ? board_at(at.x, at.y) : 0.3f;
             }
             light.at<float>(y, x) = sum / (kRays * kRays);
@@ -71,9 +71,9 @@ TEST(Chessboard, IsFoundAndCalibratesADrawnLens)
     for (int i = 0; i < 14; ++i) {
         glm::dvec3 const middle(0.12, 0.075, 0);
         double const a = rng.uniform(-0.6, 0.6), b = rng.uniform(-0.6, 0.6);
-        Pose const pose = looking(middle + rng.uniform(0.42, 0.6) *
-                                               glm::normalize(glm::dvec3(std::sin(a), std::sin(b), std::cos(a))),
-                                  middle + glm::dvec3(rng.uniform(-0.05, 0.05), rng.uniform(-0.04, 0.04), 0));
+        gi::RigidPose const pose = looking(
+            middle + rng.uniform(0.42, 0.6) * glm::normalize(glm::dvec3(std::sin(a), std::sin(b), std::cos(a))),
+            middle + glm::dvec3(rng.uniform(-0.05, 0.05), rng.uniform(-0.04, 0.04), 0));
         auto const view = find_chessboard(picture(truth.size_px, rays, pose, std::uint64_t(i)), kCornersX,
                                           kCornersY, kSquare_m, fmt::format("view {}", i));
         if (!view) continue;

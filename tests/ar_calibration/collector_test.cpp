@@ -10,7 +10,7 @@ CameraModel const kCamera{LensModel::pinhole, {640, 480}, 525, 525, 320, 240, {}
 BoardView board_at(cv::Vec3d const& turn, glm::dvec3 at)
 {
     BoardView v;
-    Pose const p = pose_of(turn, {at.x, at.y, at.z}) * Pose{{1, 0, 0, 0}, {-0.12, -0.075, 0}};
+    gi::RigidPose const p = pose_of(turn, {at.x, at.y, at.z}) * gi::RigidPose{{-0.12, -0.075, 0}, {1, 0, 0, 0}};
     for (int i = 0; i < 54; ++i) {
         glm::dvec3 const m(0.03 * (i % 9), 0.03 * (i / 9), 0);
         auto const px = project(kCamera, p * m);

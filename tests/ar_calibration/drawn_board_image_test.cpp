@@ -10,16 +10,15 @@
 namespace ar::test {
 namespace {
 
-Pose view_pose(cv::RNG& rng, CameraModel const& c, glm::dvec3 middle)
+gi::RigidPose view_pose(cv::RNG& rng, CameraModel const& c, glm::dvec3 middle)
 {
     // From in front, up to 35 degrees from the side, the board anywhere in the picture.
     double const distance = rng.uniform(0.38, 0.6) * c.fx / 525;
     double const a = rng.uniform(-0.6, 0.6), b = rng.uniform(-0.6, 0.6);
     glm::dvec3 const eye = middle + distance * glm::normalize(glm::dvec3(std::sin(a), std::sin(b), std::cos(a)));
     glm::dvec3 const target = middle + glm::dvec3(rng.uniform(-0.1, 0.1), rng.uniform(-0.08, 0.08), 0);
-    Pose const p = looking(eye, target);
-    return {glm::normalize(p.rotation * glm::angleAxis(rng.uniform(-0.4, 0.4), glm::dvec3(0, 0, 1))),
-            p.position_m};
+    gi::RigidPose const p = looking(eye, target);
+    return {p.position, glm::normalize(p.rotation * glm::angleAxis(rng.uniform(-0.4, 0.4), glm::dvec3(0, 0, 1)))};
 }
 
 class OfDrawnLens : public testing::TestWithParam<LensModel> {};
@@ -48,7 +47,7 @@ TEST_P(OfDrawnLens, IsCalibratedWithinTwoPerMille)
     double corner_error = 0;
     int corners = 0, offered = 0;
     while (offered < 60 && (!collector.enough() || collector.views().size() < 24)) {
-        Pose const pose = view_pose(rng, truth, {0.175, 0.1225, 0});
+        gi::RigidPose const pose = view_pose(rng, truth, {0.175, 0.1225, 0});
         Sighting const s = detect(world.picture(pose, std::uint64_t(offered)), map);
         for (double e : world.errors(s, pose)) corner_error += e * e;
         corners += int(s.points.size());

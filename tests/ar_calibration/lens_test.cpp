@@ -33,8 +33,9 @@ std::vector<BoardView> views_of(CameraModel const& c, double noise_px, int count
         double const z = rng.uniform(0.3, 0.55) * (c.lens == LensModel::fisheye ? 0.6 : 1);
         double const wide = 0.5 * c.size_px.x / c.fx, high = 0.5 * c.size_px.y / c.fy;
         cv::Vec3d const turn(rng.uniform(-0.6, 0.6), rng.uniform(-0.6, 0.6), rng.uniform(-0.5, 0.5));
-        Pose const p = pose_of(turn, {rng.uniform(-wide, wide) * z * 0.6, rng.uniform(-high, high) * z * 0.6, z});
-        Pose const centred = p * Pose{{1, 0, 0, 0}, {-0.12, -0.075, 0}};
+        gi::RigidPose const p =
+            pose_of(turn, {rng.uniform(-wide, wide) * z * 0.6, rng.uniform(-high, high) * z * 0.6, z});
+        gi::RigidPose const centred = p * gi::RigidPose{{-0.12, -0.075, 0}, {1, 0, 0, 0}};
         for (int i = 0; i < 54; ++i) {
             glm::dvec3 const m(0.03 * (i % 9), 0.03 * (i / 9), 0);
             auto const px = project(c, centred * m);
@@ -118,7 +119,7 @@ TEST(Lens, WarnsOfPoorViews)
         BoardView v;
         for (int k = 0; k < 54; ++k) {
             glm::dvec3 const m(0.01 * (k % 9), 0.01 * (k / 9), 0);
-            Pose const p = pose_of({0.04 * i, -0.03 * i, 0}, {-0.04 + 0.003 * i, -0.03, 0.5});
+            gi::RigidPose const p = pose_of({0.04 * i, -0.03 * i, 0}, {-0.04 + 0.003 * i, -0.03, 0.5});
             v.board_m.push_back(m);
             v.pixels.push_back(*project(truth, p * m) +
                                glm::dvec2(0.05 * std::sin(7. * k + i), 0.05 * std::cos(5. * k)));

@@ -14,7 +14,7 @@ TEST(Report, IsOnePageWithAllThereIs)
     for (int k = 0; k < 6; ++k) {
         BoardView v;
         v.name = k == 2 ? "<b>third</b>" : "view";
-        Pose const p =
+        gi::RigidPose const p =
             pose_of({0.3 * std::sin(2. * k), 0.3 * std::cos(3. * k), 0.1 * k}, {-0.1, -0.05, 0.5 + 0.02 * k});
         for (int i = 0; i < 40; ++i) {
             v.board_m.emplace_back(0.03 * (i % 8), 0.03 * (i / 8), 0);

@@ -179,8 +179,8 @@ TEST(ImageVelocity, IsThatOfStandingThings)
     CameraModel const camera{LensModel::pinhole, {80, 60}, 70, 70, 39.5, 29.5, {}};
     cv::Mat depth(60, 80, CV_32FC1, cv::Scalar(2));
     depth.colRange(0, 10) = 0;
-    Pose before, after;
-    after.position_m.x = 0.1; // to the right: things move to the left by 70 * 0.1 / 2
+    gi::RigidPose before, after;
+    after.position.x = 0.1; // to the right: things move to the left by 70 * 0.1 / 2
     cv::Mat const v = image_velocity(camera, depth, before, after);
     EXPECT_NEAR(v.at<cv::Vec2f>(30, 40)[0], -3.5, 1e-4);
     EXPECT_NEAR(v.at<cv::Vec2f>(30, 40)[1], 0, 1e-4);

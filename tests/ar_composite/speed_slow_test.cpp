@@ -127,14 +127,14 @@ TEST(CompositeSpeed, IsStated)
         cv::Mat const light = random_radiance(size, 9);
         cv::Mat hidden = pair.coverage.clone();
         hidden.colRange(0, size.width / 2) = 0;
-        Pose moved;
+        gi::RigidPose moved;
         auto const print = [&](char const* what, Cost const& cost) {
             std::cout << size << ", " << what << ": " << cost << "\n";
         };
         print("warp of a pair", cost_of([&] { warp(wide); }, 9));
         print("temporal filter", cost_of(
                                      [&] {
-                                         moved.position_m.x += 0.003;
+                                         moved.position.x += 0.003;
                                          filter(pair, depth, moved);
                                      },
                                      9));

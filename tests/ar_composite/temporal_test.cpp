@@ -118,8 +118,8 @@ TEST(TemporalFilter, KeepsTexturesWhileTheCameraMovesOverAStillScene)
         for (int y = 0; y < kFrameSize.height; ++y)
             for (int x = 0; x < kFrameSize.width; ++x)
                 in.with.at<cv::Vec3f>(y, x) += cv::Vec3f::all(std::sin((x + 0.3 * i) * 1.2) > 0 ? 0.3f : 0.1f);
-        Pose pose;
-        pose.position_m.x = step_m * i;
+        gi::RigidPose pose;
+        pose.position.x = step_m * i;
         out = filter(in, depth, pose, i > 0 ? SceneChange::none : SceneChange::unknown);
     }
     auto const contrast = [](RenderedPair const& pair) {
@@ -159,8 +159,8 @@ TEST(TemporalFilter, FollowsSurfacesByPose)
         for (int y = 0; y < kFrameSize.height; ++y)
             for (int x = 0; x < kFrameSize.width; ++x)
                 pair.with.at<cv::Vec3f>(y, x) += cv::Vec3f::all(change_at(x + 3.5 * i));
-        Pose pose;
-        pose.position_m.x = step_m * i;
+        gi::RigidPose pose;
+        pose.position.x = step_m * i;
         out = filter(pair, depth, pose);
         now_error = cv::norm(out.with.colRange(0, 60), pair.with.colRange(0, 60), cv::NORM_INF);
         still_error = filter.counts().fresh;

@@ -33,7 +33,7 @@ CameraModel camera()
     return {LensModel::radial_tangential, {400, 300}, 350, 352, 201, 148, {-0.1, 0.03, 0, 0, 0}};
 }
 
-cv::Mat picture(Pose const& world_from_camera, int frame)
+cv::Mat picture(gi::RigidPose const& world_from_camera, int frame)
 {
     static cv::Mat const table = tabletop();
     CameraModel const c = camera();
@@ -41,7 +41,7 @@ cv::Mat picture(Pose const& world_from_camera, int frame)
     for (int y = 0; y < at.rows; ++y)
         for (int x = 0; x < at.cols; ++x) {
             glm::dvec3 const d = world_from_camera.rotation * *direction_of(c, {x, y});
-            glm::dvec3 const p = world_from_camera.position_m - world_from_camera.position_m.y / d.y * d;
+            glm::dvec3 const p = world_from_camera.position - world_from_camera.position.y / d.y * d;
             bool const hit = d.y < 0;
             at.at<cv::Vec2f>(y, x) =
                 hit ? cv::Vec2f(float(1000 * (p.x + 0.6)), float(1000 * (p.z + 0.5))) : cv::Vec2f(-1e4f, -1e4f);
@@ -53,13 +53,16 @@ cv::Mat picture(Pose const& world_from_camera, int frame)
     return out;
 }
 
-Pose looking_at(glm::dvec3 eye, glm::dvec3 at)
+gi::RigidPose looking_at(glm::dvec3 eye, glm::dvec3 at)
 {
     glm::dvec3 const z = glm::normalize(at - eye), x = glm::normalize(glm::cross(z, glm::dvec3(0, 1, 0)));
-    return {glm::normalize(glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z))), eye};
+    return {eye, glm::normalize(glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z)))};
 }
-Pose first_way(int k) { return looking_at({-0.25 + 0.018 * k, 0.62 + 0.04 * std::sin(0.3 * k), 0.45}, {0, 0, 0}); }
-Pose second_way(int k)
+gi::RigidPose first_way(int k)
+{
+    return looking_at({-0.25 + 0.018 * k, 0.62 + 0.04 * std::sin(0.3 * k), 0.45}, {0, 0, 0});
+}
+gi::RigidPose second_way(int k)
 {
     return looking_at({0.12 * std::sin(0.12 * k), 0.55, 0.4 + 0.05 * std::cos(0.1 * k)}, {0.03, 0, 0.02});
 }
@@ -93,7 +96,7 @@ TEST_F(Features, FindTheCameraAndFindItAgain)
 {
     FeatureTracker tracker(map, camera());
     std::vector<double> mm, deg;
-    std::optional<Pose> expected;
+    std::optional<gi::RigidPose> expected;
     int found_again = -1;
     for (int k = 0; k < 60; ++k) {
         bool const covered = k >= 20 && k < 26, flat = k >= 40 && k < 43;
@@ -110,7 +113,7 @@ TEST_F(Features, FindTheCameraAndFindItAgain)
         }
         ASSERT_TRUE(e.found()) << k;
         if (k >= 26 && found_again < 0) found_again = k;
-        mm.push_back(1e3 * glm::length(e.world_from_camera.position_m - second_way(k).position_m));
+        mm.push_back(1e3 * glm::length(e.world_from_camera.position - second_way(k).position));
         deg.push_back(angle_between_deg(e.world_from_camera.rotation, second_way(k).rotation));
         EXPECT_GT(e.confidence, 0.5) << k;
         expected = e.world_from_camera;

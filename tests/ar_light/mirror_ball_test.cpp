@@ -20,7 +20,7 @@ std::vector<Disc> const kBallDiscs{
 /// A camera that shows the ball with a radius of about 110 px, off the middle, and where it stands.
 struct Shot {
     CameraModel camera;
-    Pose world_from_camera;
+    gi::RigidPose world_from_camera;
 };
 
 Shot shot(double distance, double turn_rad, LensModel lens = LensModel::radial_tangential)
@@ -32,7 +32,7 @@ Shot shot(double distance, double turn_rad, LensModel lens = LensModel::radial_t
     glm::dquat const level(0, 1, 0, 0);
     s.world_from_camera.rotation = gi::exp_rotation({0, turn_rad, 0}) * level * gi::exp_rotation({0.05, 0, 0.1});
     auto const aside = direction_of(s.camera, {245, 140});
-    s.world_from_camera.position_m = -(s.world_from_camera.rotation * (distance * *aside));
+    s.world_from_camera.position = -(s.world_from_camera.rotation * (distance * *aside));
     return s;
 }
 
@@ -42,7 +42,7 @@ cv::Mat traced(Shot const& s, Environment const& light, double reflectivity, boo
 {
     int const n = 3;
     cv::Mat picture(s.camera.size_px.y, s.camera.size_px.x, CV_32FC3);
-    glm::dvec3 const eye = s.world_from_camera.position_m;
+    glm::dvec3 const eye = s.world_from_camera.position;
     for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x) {
             cv::Vec3d sum(0, 0, 0);
@@ -199,7 +199,7 @@ TEST(MirrorBall, ThatIsNotThereIsAnError)
     EXPECT_THROW(find_ball(flat, s.camera, truth(s)), gi::InputError);
     EXPECT_THROW(ball_of_circle(s.camera, {100, 100}, -3), gi::InputError);
     EXPECT_FALSE(predicted_ball(s.world_from_camera, {0, 0, 0}, 3));
-    EXPECT_FALSE(predicted_ball(s.world_from_camera, 3.0 * s.world_from_camera.position_m, kRadius));
+    EXPECT_FALSE(predicted_ball(s.world_from_camera, 3.0 * s.world_from_camera.position, kRadius));
     BallSettings black;
     black.reflectivity[1] = 0;
     EXPECT_THROW(unwrap_ball(flat, s.camera, {1, 0, 0, 0}, truth(s), black), gi::InputError);

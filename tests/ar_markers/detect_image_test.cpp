@@ -21,7 +21,7 @@ MarkerMap markers_of(std::string const& dictionary)
             {dictionary,
              3 * i + 1,
              0.08,
-             {{1, 0, 0, 0}, i < 4 ? glm::dvec3(0.13 * i - 0.195, 0, 0) : glm::dvec3(0, 0.14, 0)}});
+             {i < 4 ? glm::dvec3(0.13 * i - 0.195, 0, 0) : glm::dvec3(0, 0.14, 0), {1, 0, 0, 0}}});
     return map;
 }
 
@@ -36,7 +36,7 @@ TEST_P(OfDictionary, CornersAreWhereTheyAreDrawn)
     ViewSettings view;
     view.rays = 3;
     DrawnWorld const world(markers_of(GetParam()), kCamera, view);
-    std::vector<Pose> poses;
+    std::vector<gi::RigidPose> poses;
     std::vector<cv::Mat> pictures;
     for (glm::dvec3 const eye : {glm::dvec3(0, 0.05, 0.7), {0.4, 0.3, 0.6}, {-0.5, 0.1, 0.8}}) {
         poses.push_back(looking(eye, {0, 0.05, 0}));
@@ -69,13 +69,13 @@ TEST_P(OfPattern, InnerCornersAreWhereTheyAreDrawn)
 {
     auto const [nx, ny, legacy] = GetParam();
     MarkerMap map;
-    Pose const turned{glm::angleAxis(0.3, glm::normalize(glm::dvec3(1, 2, 3))), {0.1, -0.2, 0.05}};
+    gi::RigidPose const turned{{0.1, -0.2, 0.05}, glm::angleAxis(0.3, glm::normalize(glm::dvec3(1, 2, 3)))};
     map.boards = {{nx, ny, 0.04, 0.03, "DICT_4X4_100", 11, legacy, turned}};
     ViewSettings settings;
     settings.rays = 3;
     DrawnWorld const world(map, kCamera, settings);
     glm::dvec3 const middle = turned * glm::dvec3(0.02 * nx, 0.02 * ny, 0);
-    Pose const pose = looking(middle + turned.rotation * glm::dvec3(0.1, 0.12, 0.45), middle);
+    gi::RigidPose const pose = looking(middle + turned.rotation * glm::dvec3(0.1, 0.12, 0.45), middle);
     Sighting const s = detect(world.picture(pose), map);
     EXPECT_EQ(int(s.points.size()), (nx - 1) * (ny - 1));
     EXPECT_LT(rms(world.errors(s, pose)), 0.08) << s.points.size();
@@ -84,7 +84,7 @@ TEST_P(OfPattern, InnerCornersAreWhereTheyAreDrawn)
 TEST(Detect, CountsWhatTheMapDoesNotKnow)
 {
     DrawnWorld const world(markers_of("DICT_4X4_50"), kCamera);
-    Pose const pose = looking({0, 0.05, 0.7}, {0, 0.05, 0});
+    gi::RigidPose const pose = looking({0, 0.05, 0.7}, {0, 0.05, 0});
     cv::Mat picture = world.picture(pose);
     MarkerMap fewer = world.map();
     fewer.markers.resize(3);
@@ -109,7 +109,7 @@ TEST(Detect, CountsWhatTheMapDoesNotKnow)
 TEST(MarkerTracker, FindsWhatTheWholePictureHas)
 {
     MarkerMap map = markers_of("DICT_4X4_50");
-    map.boards = {{5, 4, 0.05, 0.038, "DICT_5X5_100", 0, false, {{1, 0, 0, 0}, {-0.12, -0.28, 0}}}};
+    map.boards = {{5, 4, 0.05, 0.038, "DICT_5X5_100", 0, false, {{-0.12, -0.28, 0}, {1, 0, 0, 0}}}};
     ViewSettings settings;
     settings.rays = 2;
     DrawnWorld const world(map, kCamera, settings);
@@ -119,7 +119,7 @@ TEST(MarkerTracker, FindsWhatTheWholePictureHas)
         double const a = 0.05 * i;
         // In the eighth picture the camera has been put elsewhere.
         glm::dvec3 const target(i == 7 ? 0.5 : 0.02 * i, 0, 0);
-        Pose const pose = looking({0.95 * std::sin(a), 0.2, 0.95 * std::cos(a)}, target);
+        gi::RigidPose const pose = looking({0.95 * std::sin(a), 0.2, 0.95 * std::cos(a)}, target);
         cv::Mat const picture = world.picture(pose, std::uint64_t(i));
         Sighting const whole = detect(picture, map), near = tracker.next(picture);
         EXPECT_LE(std::abs(near.markers_seen - whole.markers_seen), 1) << i; // another crop, other thresholds

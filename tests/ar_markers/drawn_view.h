@@ -46,14 +46,14 @@ public:
     }
 
     /// Light per pixel, CV_32F, before blur and noise.
-    cv::Mat light(Pose const& world_from_camera) const
+    cv::Mat light(gi::RigidPose const& world_from_camera) const
     {
         cv::Mat out(camera_.size_px.y, camera_.size_px.x, CV_32F);
-        std::vector<Pose> things_from_camera;
+        std::vector<gi::RigidPose> things_from_camera;
         for (auto const& s : sheets_)
             things_from_camera.push_back(inverse(s.world_from_thing) * world_from_camera);
         std::vector<glm::dmat3> turns;
-        for (Pose const& p : things_from_camera) turns.push_back(glm::mat3_cast(p.rotation));
+        for (gi::RigidPose const& p : things_from_camera) turns.push_back(glm::mat3_cast(p.rotation));
         int const n = settings_.rays;
         cv::parallel_for_({0, out.rows}, [&](cv::Range const& rows) {
             for (int y = rows.start; y < rows.end; ++y)
@@ -73,7 +73,7 @@ public:
     }
 
     /// CV_8UC1.
-    cv::Mat picture(Pose const& world_from_camera, std::uint64_t number = 0) const
+    cv::Mat picture(gi::RigidPose const& world_from_camera, std::uint64_t number = 0) const
     {
         cv::Mat p = light(world_from_camera);
         if (settings_.blur_px > 0) cv::GaussianBlur(p, p, {}, settings_.blur_px);
@@ -90,10 +90,10 @@ public:
     }
 
     /// Distances between points of a sighting and where they really are, pixels.
-    std::vector<double> errors(Sighting const& s, Pose const& world_from_camera) const
+    std::vector<double> errors(Sighting const& s, gi::RigidPose const& world_from_camera) const
     {
         std::vector<double> all;
-        Pose const camera_from_world = inverse(world_from_camera);
+        gi::RigidPose const camera_from_world = inverse(world_from_camera);
         for (auto const& p : s.points) {
             auto const truth = project(camera_, camera_from_world * p.world_m);
             all.push_back(truth ? glm::distance(*truth, p.pixel) : 1e3);
@@ -107,16 +107,16 @@ private:
     struct Placed {
         Sheet sheet;
         cv::Mat light;
-        Pose world_from_thing;
+        gi::RigidPose world_from_thing;
     };
     cv::Vec3d ray(int y, int x) const { return rays_.at<cv::Vec3d>(y, x); }
-    double seen(glm::dvec3 direction, std::vector<Pose> const& from_camera,
+    double seen(glm::dvec3 direction, std::vector<gi::RigidPose> const& from_camera,
                 std::vector<glm::dmat3> const& turns) const
     {
         double nearest = 1e30, value = settings_.background;
         for (std::size_t k = 0; k < sheets_.size(); ++k) {
             glm::dvec3 const d = turns[k] * direction;
-            glm::dvec3 const o = from_camera[k].position_m;
+            glm::dvec3 const o = from_camera[k].position;
             double const t = -o.z / d.z;
             if (!(d.z < 0 && t > 0 && t < nearest)) continue; // seen from the front
             Sheet const& s = sheets_[k].sheet;
@@ -142,10 +142,10 @@ private:
 };
 
 /// A camera at `eye` that looks at `target`, its picture's top towards `up`.
-inline Pose looking(glm::dvec3 eye, glm::dvec3 target, glm::dvec3 up = {0, 1, 0})
+inline gi::RigidPose looking(glm::dvec3 eye, glm::dvec3 target, glm::dvec3 up = {0, 1, 0})
 {
     glm::dvec3 const z = glm::normalize(target - eye), x = glm::normalize(glm::cross(z, up)), y = glm::cross(z, x);
-    return {glm::normalize(glm::quat_cast(glm::dmat3(x, y, z))), eye};
+    return {eye, glm::normalize(glm::quat_cast(glm::dmat3(x, y, z)))};
 }
 
 inline double rms(std::vector<double> const& v)

@@ -20,7 +20,7 @@ std::string message_of(std::string const& text)
 TEST(MarkerMapFile, ComesBackAsItWas)
 {
     MarkerMap map;
-    Pose const flat{glm::angleAxis(-glm::radians(90.), glm::dvec3(1, 0, 0)), {0.1, 0, -0.3}};
+    gi::RigidPose const flat{{0.1, 0, -0.3}, glm::angleAxis(-glm::radians(90.), glm::dvec3(1, 0, 0))};
     map.markers = {{"DICT_4X4_50", 3, 0.08, {}}, {"DICT_APRILTAG_36h11", 3, 0.1 / 3, flat}};
     map.boards = {{8, 5, 0.03, 0.022, "DICT_5X5_100", 7, true, flat}};
     map.grids = {{2, 3, 0.05, 0.01, "DICT_6X6_250", 100, {}}};

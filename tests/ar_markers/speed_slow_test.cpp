@@ -20,8 +20,8 @@ TEST(Speed, OfDetection)
         CameraModel const camera{
             LensModel::radial_tangential, size, f, f, 0.5 * size.x, 0.5 * size.y, {-0.2, 0.05}};
         MarkerMap map;
-        map.boards = {{7, 5, 0.04, 0.03, "DICT_4X4_100", 0, false, {{1, 0, 0, 0}, {-0.14, -0.1, 0}}}};
-        map.markers = {{"DICT_4X4_100", 90, 0.08, {{1, 0, 0, 0}, {0.25, 0, 0}}}};
+        map.boards = {{7, 5, 0.04, 0.03, "DICT_4X4_100", 0, false, {{-0.14, -0.1, 0}, {1, 0, 0, 0}}}};
+        map.markers = {{"DICT_4X4_100", 90, 0.08, {{0.25, 0, 0}, {1, 0, 0, 0}}}};
         ViewSettings settings;
         settings.rays = 2;
         DrawnWorld const world(map, camera, settings);

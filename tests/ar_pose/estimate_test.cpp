@@ -14,9 +14,9 @@ namespace {
 struct Errors {
     std::vector<double> mm, deg;
 
-    void add(Pose const& found, Pose const& truth)
+    void add(gi::RigidPose const& found, gi::RigidPose const& truth)
     {
-        mm.push_back(1e3 * glm::length(found.position_m - truth.position_m));
+        mm.push_back(1e3 * glm::length(found.position - truth.position));
         deg.push_back(angle_between_deg(found.rotation, truth.rotation));
     }
     void print(std::string const& what) const
@@ -40,13 +40,13 @@ TEST_P(PoseOf, GridOfMarkersAtAMetreIsRightToAMillimetre)
         Errors errors;
         double normalised = 0;
         for (int i = 0; i < 300; ++i) {
-            Pose const truth = random_view(random, 1);
+            gi::RigidPose const truth = random_view(random, 1);
             PoseEstimate const e = estimate_pose(sight(marker_grid(), camera, truth, noise, random), camera);
             ASSERT_TRUE(e.found()) << name_of(e.failure);
             EXPECT_GE(e.points_used, 34);
             EXPECT_EQ(e.points_used + e.points_rejected, 36);
             errors.add(e.world_from_camera, truth);
-            glm::dvec3 const d = e.world_from_camera.position_m - truth.position_m;
+            glm::dvec3 const d = e.world_from_camera.position - truth.position;
             for (int k = 0; k < 3; ++k) normalised += std::pow(d[k] / e.position_sigma_m[k], 2) / 900;
         }
         errors.print(fmt::format("{} {:.1f} px", name_of(GetParam()), noise));
@@ -61,10 +61,10 @@ TEST(Pose, OfExactPointsIsExact)
     std::mt19937 random(3);
     for (auto const& points : {marker_grid(), one_marker(0.2)})
         for (int i = 0; i < 30; ++i) {
-            Pose const truth = random_view(random, 0.8);
+            gi::RigidPose const truth = random_view(random, 0.8);
             PoseEstimate const e = estimate_pose(sight(points, camera_640(), truth, 0, random), camera_640());
             ASSERT_TRUE(e.found());
-            EXPECT_LT(glm::length(e.world_from_camera.position_m - truth.position_m), 1e-6);
+            EXPECT_LT(glm::length(e.world_from_camera.position - truth.position), 1e-6);
             EXPECT_LT(e.rms_px, 1e-6);
         }
 }
@@ -76,7 +76,7 @@ TEST(Pose, OfMarkersOnTwoWallsComesFromPointsInSpace)
     for (std::size_t i = 0; i < 20; ++i) std::swap(points[i].world_m.y, points[i].world_m.x);
     Errors errors;
     for (int i = 0; i < 60; ++i) {
-        Pose const truth = random_view(random, 1);
+        gi::RigidPose const truth = random_view(random, 1);
         PoseEstimate const e = estimate_pose(sight(points, camera_640(), truth, 0.1, random), camera_640());
         ASSERT_TRUE(e.found());
         EXPECT_FALSE(e.ambiguous);
@@ -90,7 +90,7 @@ TEST(Pose, LeavesOutAMarkerThatWasMoved)
 {
     std::mt19937 random(5);
     for (int moved : {0, 4, 8}) {
-        Pose const truth = random_view(random, 1);
+        gi::RigidPose const truth = random_view(random, 1);
         auto points = marker_grid();
         for (auto& p : points)
             if (p.marker == moved) p.world_m += glm::dvec3(0.03, 0, 0.01); // where it was when the map was made
@@ -100,7 +100,7 @@ TEST(Pose, LeavesOutAMarkerThatWasMoved)
         ASSERT_TRUE(e.found());
         EXPECT_EQ(e.markers_rejected, std::vector<int>{moved});
         EXPECT_GE(e.points_rejected, 4);
-        EXPECT_LT(glm::length(e.world_from_camera.position_m - truth.position_m), 0.004);
+        EXPECT_LT(glm::length(e.world_from_camera.position - truth.position), 0.004);
         EXPECT_LT(e.confidence, 0.9);
     }
 }
@@ -108,21 +108,21 @@ TEST(Pose, LeavesOutAMarkerThatWasMoved)
 TEST(Pose, LeavesOutFourOfNineMarkersThatWereMovedApart)
 {
     std::mt19937 random(6);
-    Pose const truth = random_view(random, 1);
+    gi::RigidPose const truth = random_view(random, 1);
     Sighting s = sight(marker_grid(), camera_640(), truth, 0.1, random);
     for (auto& p : s.points)
         if (p.marker < 4) p.world_m += 0.05 * glm::dvec3(std::sin(3.0 * p.marker), 0.5, std::cos(2.0 * p.marker));
     PoseEstimate const e = estimate_pose(s, camera_640());
     ASSERT_TRUE(e.found());
     EXPECT_EQ(e.markers_rejected, (std::vector<int>{0, 1, 2, 3}));
-    EXPECT_LT(glm::length(e.world_from_camera.position_m - truth.position_m), 0.005);
+    EXPECT_LT(glm::length(e.world_from_camera.position - truth.position), 0.005);
 }
 
 TEST(Pose, LeavesOutSinglePointsOfABoard)
 {
     std::mt19937 random(8);
     for (int round = 0; round < 10; ++round) {
-        Pose const truth = random_view(random, 1);
+        gi::RigidPose const truth = random_view(random, 1);
         auto board = marker_grid();
         for (auto& p : board) p.marker = 0;
         Sighting s = sight(board, camera_640(), truth, 0.1, random);
@@ -131,7 +131,7 @@ TEST(Pose, LeavesOutSinglePointsOfABoard)
         ASSERT_TRUE(e.found());
         EXPECT_GE(e.points_rejected, 5);
         EXPECT_LE(e.points_rejected, 7);
-        EXPECT_LT(glm::length(e.world_from_camera.position_m - truth.position_m), 0.004);
+        EXPECT_LT(glm::length(e.world_from_camera.position - truth.position), 0.004);
     }
 }
 
@@ -142,12 +142,13 @@ TEST(Pose, OfASmallFarMarkerIsSaidToBeAmbiguousAndTheLastPoseDecides)
     int const n = 60;
     for (int i = 0; i < n; ++i) {
         double const tilt = glm::radians(12.0);
-        Pose const truth = looking(2.5 * glm::dvec3(std::sin(tilt), std::cos(tilt), 0), {0, 0, 0}, 0.1 * i);
+        gi::RigidPose const truth =
+            looking(2.5 * glm::dvec3(std::sin(tilt), std::cos(tilt), 0), {0, 0, 0}, 0.1 * i);
         Sighting const s = sight(one_marker(0.05), camera_640(), truth, 0.15, random);
         PoseEstimate const alone = estimate_pose(s, camera_640());
         ASSERT_TRUE(alone.found());
-        Pose const last{glm::normalize(truth.rotation * gi::exp_rotation({0.02, -0.02, 0.01})),
-                        truth.position_m + glm::dvec3(0.02, 0.01, -0.03)};
+        gi::RigidPose const last{truth.position + glm::dvec3(0.02, 0.01, -0.03),
+                                 glm::normalize(truth.rotation * gi::exp_rotation({0.02, -0.02, 0.01}))};
         PoseEstimate const with = estimate_pose(s, camera_640(), last);
         if (alone.ambiguous) {
             ++ambiguous;
@@ -156,7 +157,7 @@ TEST(Pose, OfASmallFarMarkerIsSaidToBeAmbiguousAndTheLastPoseDecides)
             EXPECT_LT(alone.confidence, 0.995);
         }
         auto const near = [&](PoseEstimate const& e) {
-            return glm::length(e.world_from_camera.position_m - truth.position_m) < 0.5;
+            return glm::length(e.world_from_camera.position - truth.position) < 0.5;
         };
         right_alone += near(alone);
         right_with_last += near(with);
@@ -172,20 +173,20 @@ TEST(Pose, OfALargeTiltedMarkerIsNotAmbiguous)
 {
     std::mt19937 random(10);
     for (int i = 0; i < 20; ++i) {
-        Pose const truth = looking({0.5, 0.5, 0.1 * i - 1}, {0, 0, 0});
+        gi::RigidPose const truth = looking({0.5, 0.5, 0.1 * i - 1}, {0, 0, 0});
         PoseEstimate const e =
             estimate_pose(sight(one_marker(0.25), camera_640(), truth, 0.1, random), camera_640());
         ASSERT_TRUE(e.found());
         EXPECT_FALSE(e.ambiguous);
         EXPECT_GT(e.confidence, 0.5);
-        EXPECT_LT(glm::length(e.world_from_camera.position_m - truth.position_m), 0.01);
+        EXPECT_LT(glm::length(e.world_from_camera.position - truth.position), 0.01);
     }
 }
 
 TEST(Pose, OfTooLittleIsAFailureWithItsReason)
 {
     std::mt19937 random(11);
-    Pose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
+    gi::RigidPose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
     Sighting const whole = sight(marker_grid(), camera_640(), truth, 0.1, random);
     for (std::size_t n : {0u, 1u, 2u, 3u}) {
         Sighting s = whole;
@@ -207,25 +208,25 @@ TEST(Pose, OfTooLittleIsAFailureWithItsReason)
     tee.push_back({{0.1, 0, 0.2}, {}, 0, 0.1});
     PoseEstimate const e = estimate_pose(sight(tee, camera_640(), truth, 0.01, random), camera_640());
     ASSERT_TRUE(e.found());
-    EXPECT_LT(glm::length(e.world_from_camera.position_m - truth.position_m), 0.05);
+    EXPECT_LT(glm::length(e.world_from_camera.position - truth.position), 0.05);
 }
 
 TEST(Pose, OfPointsSeenTwiceIsThatOfPointsSeenOnce)
 {
     std::mt19937 random(12);
-    Pose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
+    gi::RigidPose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
     Sighting s = sight(marker_grid(), camera_640(), truth, 0.1, random);
-    Pose const once = estimate_pose(s, camera_640()).world_from_camera;
+    gi::RigidPose const once = estimate_pose(s, camera_640()).world_from_camera;
     s.points.insert(s.points.end(), s.points.begin(), s.points.begin() + 36);
     PoseEstimate const twice = estimate_pose(s, camera_640());
     ASSERT_TRUE(twice.found());
-    EXPECT_LT(glm::length(twice.world_from_camera.position_m - once.position_m), 2e-4);
+    EXPECT_LT(glm::length(twice.world_from_camera.position - once.position), 2e-4);
 }
 
 TEST(Pose, OfWhatIsNotFiniteIsNotTaken)
 {
     std::mt19937 random(13);
-    Pose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
+    gi::RigidPose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
     Sighting s = sight(marker_grid(), camera_640(), truth, 0.1, random);
     double const nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
     s.points[0].pixel.x = nan;
@@ -245,20 +246,19 @@ TEST(Pose, FarFromTheOriginAndOfOtherSizesIsAsGood)
     for (double const scale : {1e-3, 1.0, 1e5}) {
         std::mt19937 random(14);
         glm::dvec3 const offset = 1e6 * scale * glm::dvec3(1, -2, 3);
-        Pose truth = looking({0.2, 1, 0.1}, {0, 0, 0});
+        gi::RigidPose truth = looking({0.2, 1, 0.1}, {0, 0, 0});
         Sighting s = sight(marker_grid(), camera_640(), truth, 0.1, random);
         for (auto& p : s.points) p.world_m = scale * p.world_m + offset;
         PoseEstimate const e = estimate_pose(s, camera_640());
         ASSERT_TRUE(e.found()) << scale;
-        EXPECT_LT(glm::length(e.world_from_camera.position_m - (scale * truth.position_m + offset)),
-                  0.003 * scale);
+        EXPECT_LT(glm::length(e.world_from_camera.position - (scale * truth.position + offset)), 0.003 * scale);
     }
 }
 
 TEST(Pose, OfPicturesThatNoCameraTakesIsAFailure)
 {
     std::mt19937 random(15);
-    Pose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
+    gi::RigidPose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
     // What is behind a pinhole would be shown turned half about: the mirror image, which in space no pose shows.
     std::vector<SightedPoint> walls = marker_grid();
     for (std::size_t i = 0; i < 20; ++i) std::swap(walls[i].world_m.y, walls[i].world_m.x);
@@ -278,13 +278,13 @@ TEST(Pose, OfPicturesThatNoCameraTakesIsAFailure)
 TEST(Pose, OfALastPoseThatIsNotFiniteIsThatWithoutIt)
 {
     std::mt19937 random(17);
-    Pose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
+    gi::RigidPose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
     Sighting const s = sight(one_marker(0.05), camera_640(), truth, 0.1, random);
     double const nan = std::numeric_limits<double>::quiet_NaN();
     PoseEstimate const alone = estimate_pose(s, camera_640());
-    PoseEstimate const with = estimate_pose(s, camera_640(), Pose{{nan, 0, 0, 0}, {nan, nan, 0}});
+    PoseEstimate const with = estimate_pose(s, camera_640(), gi::RigidPose{{nan, nan, 0}, {nan, 0, 0, 0}});
     ASSERT_TRUE(alone.found() && with.found());
-    EXPECT_LT(glm::length(alone.world_from_camera.position_m - with.world_from_camera.position_m), 1e-6);
+    EXPECT_LT(glm::length(alone.world_from_camera.position - with.world_from_camera.position), 1e-6);
 }
 
 TEST(Pose, OfAFisheyeReachesBeyondTheHemisphere)
@@ -299,11 +299,11 @@ TEST(Pose, OfAFisheyeReachesBeyondTheHemisphere)
             points.push_back(
                 {{2 * std::sin(turn), (m % 3) * 0.3 + (c >= 2 ? 0.08 : -0.08), 2 * std::cos(turn)}, {}, m, 0.1});
         }
-    Pose const truth = looking({0.05, 0.2, -0.02}, {0.1, 0.3, 2});
+    gi::RigidPose const truth = looking({0.05, 0.2, -0.02}, {0.1, 0.3, 2});
     PoseEstimate const e = estimate_pose(sight(points, camera, truth, 0.1, random), camera);
     ASSERT_TRUE(e.found());
     EXPECT_EQ(e.points_used, 48);
-    EXPECT_LT(glm::length(e.world_from_camera.position_m - truth.position_m), 0.002);
+    EXPECT_LT(glm::length(e.world_from_camera.position - truth.position), 0.002);
 }
 
 } // namespace

@@ -22,11 +22,11 @@ TEST(PoseFile, OfEitherFormatIsRead)
 {
     auto const tum = parse_poses("# a comment\n0.5 1 2 3 0 0 0 1\r\n1.5\t1  2 4 0 0.6 0 0.8\n", "a");
     ASSERT_EQ(tum.size(), 2u);
-    EXPECT_EQ(tum[0].world_from_camera.position_m, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(tum[0].world_from_camera.position, glm::dvec3(1, 2, 3));
     EXPECT_NEAR(tum[1].world_from_camera.rotation.y, 0.6, 1e-12);
     auto const csv = parse_poses(format_poses(tum), "b");
     ASSERT_EQ(csv.size(), 2u);
-    EXPECT_EQ(csv[1].world_from_camera.position_m, tum[1].world_from_camera.position_m);
+    EXPECT_EQ(csv[1].world_from_camera.position, tum[1].world_from_camera.position);
     EXPECT_EQ(csv[1].time_s, 1.5);
 }
 
@@ -55,12 +55,12 @@ TEST(PoseFile, SaysWhereItIsWrong)
 
 TEST(PoseFile, IsReadBetweenItsTimes)
 {
-    std::vector<TimedPose> const poses{{0, {{1, 0, 0, 0}, {0, 0, 0}}},
-                                       {0.4, {gi::exp_rotation({0, 0.8, 0}), {4, 0, 0}}},
-                                       {2, {gi::exp_rotation({0, 0.8, 0}), {8, 0, 0}}}};
-    EXPECT_NEAR(pose_at(poses, 0.1)->position_m.x, 1, 1e-12);
+    std::vector<TimedPose> const poses{{0, {{0, 0, 0}, {1, 0, 0, 0}}},
+                                       {0.4, {{4, 0, 0}, gi::exp_rotation({0, 0.8, 0})}},
+                                       {2, {{8, 0, 0}, gi::exp_rotation({0, 0.8, 0})}}};
+    EXPECT_NEAR(pose_at(poses, 0.1)->position.x, 1, 1e-12);
     EXPECT_NEAR(gi::log_rotation(pose_at(poses, 0.1)->rotation).y, 0.2, 1e-12);
-    EXPECT_EQ(pose_at(poses, 0.4)->position_m.x, 4);
+    EXPECT_EQ(pose_at(poses, 0.4)->position.x, 4);
     EXPECT_FALSE(pose_at(poses, -0.01));
     EXPECT_FALSE(pose_at(poses, 2.01));
     EXPECT_FALSE(pose_at(poses, 1));

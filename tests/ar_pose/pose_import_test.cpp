@@ -12,15 +12,15 @@ namespace ar::test {
 namespace {
 
 /// At (1, 2, 3) in a world with y up, looking along -x, its right side towards -z, upright.
-Pose known()
+gi::RigidPose known()
 {
     glm::dvec3 const right(0, 0, -1), down(0, -1, 0), ahead(-1, 0, 0);
-    return {glm::quat_cast(glm::dmat3(right, down, ahead)), {1, 2, 3}};
+    return {{1, 2, 3}, glm::quat_cast(glm::dmat3(right, down, ahead))};
 }
 
-void expect_known(Pose const& p)
+void expect_known(gi::RigidPose const& p)
 {
-    EXPECT_LT(glm::length(p.position_m - known().position_m), 1e-9);
+    EXPECT_LT(glm::length(p.position - known().position), 1e-9);
     EXPECT_LT(angle_between_deg(p.rotation, known().rotation), 1e-5);
     // 5 m in front of the camera, 1 m to the right and 0.5 m up.
     EXPECT_LT(glm::length(p * glm::dvec3(1, -0.5, 5) - glm::dvec3(-4, 2.5, 2)), 1e-9);
@@ -48,16 +48,16 @@ TEST(PoseImport, OfNukeHasItsAxes)
     EXPECT_EQ(poses[0].time_s, 0);
     EXPECT_NEAR(poses[2].time_s, 6 / 24.0, 1e-12);
     // About x first, then y: looking up by 30 degrees, then turned.
-    Pose const up = parse_chan("1 0 0 0 30 90 0\n", "a.chan", {24}).poses[0].world_from_camera;
+    gi::RigidPose const up = parse_chan("1 0 0 0 30 90 0\n", "a.chan", {24}).poses[0].world_from_camera;
     EXPECT_LT(glm::length(up.rotation * glm::dvec3(0, 0, 1) - glm::dvec3(-std::sqrt(0.75), 0.5, 0)), 1e-9);
     EXPECT_LT(glm::length(up.rotation * glm::dvec3(1, 0, 0) - glm::dvec3(0, 0, -1)), 1e-9) << "level";
 }
 
 TEST(PoseImport, OfColmapIsCameraFromWorld)
 {
-    Pose const camera_from_world = inverse(known());
+    gi::RigidPose const camera_from_world = inverse(known());
     glm::dquat const q = camera_from_world.rotation;
-    glm::dvec3 const t = camera_from_world.position_m;
+    glm::dvec3 const t = camera_from_world.position;
     std::string const pose = fmt::format("{} {} {} {} {} {} {}", q.w, q.x, q.y, q.z, t.x, t.y, t.z);
     std::string const text = "# Image list with two lines of data per image:\n2 " + pose +
                              " 1 walk/000007.png\n\n1 " + pose + " 1 walk/000004.png\n1.5 2.5 -1 3 4 17\n";

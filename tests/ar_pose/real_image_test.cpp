@@ -58,8 +58,8 @@ TEST(Photographs, OfABoardGiveThePosesOfItsCalibration)
         }
         PoseEstimate const e = estimate_pose(s, camera);
         ASSERT_TRUE(e.found()) << v;
-        Pose const reference = inverse(pose_of(vec3(cal["rvecs"][v]), vec3(cal["tvecs_m"][v])));
-        mm.push_back(1e3 * glm::length(reference.position_m - e.world_from_camera.position_m));
+        gi::RigidPose const reference = inverse(pose_of(vec3(cal["rvecs"][v]), vec3(cal["tvecs_m"][v])));
+        mm.push_back(1e3 * glm::length(reference.position - e.world_from_camera.position));
         deg.push_back(angle_between_deg(reference.rotation, e.world_from_camera.rotation));
         ours += e.rms_px / double(cal["files"].size());
         theirs += double(cal["per_view_rms_px"][v]) / double(cal["files"].size());
@@ -89,7 +89,7 @@ TEST(Photographs, OfATagTurnedGiveItsTurns)
         {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}}};
     int photographs = 0, ambiguous = 0;
     double ours_off = 0, theirs_off = 0, most_rms = 0, most_reference_px = 0;
-    std::optional<Pose> last, last_reference;
+    std::optional<gi::RigidPose> last, last_reference;
     nlohmann::json const all = read(file);
     for (int turn = -70; turn <= 70; turn += 10) {
         nlohmann::json const& tag = all["images"][fmt::format("test_image_rotation_{}.png", turn)][0];
@@ -100,7 +100,7 @@ TEST(Photographs, OfATagTurnedGiveItsTurns)
         }
         PoseEstimate const e = estimate_pose(s, camera, last);
         ASSERT_TRUE(e.found()) << turn;
-        Pose const reference = inverse(pose_of(vec3(tag["rvec"]), vec3(tag["tvec_m"])));
+        gi::RigidPose const reference = inverse(pose_of(vec3(tag["rvec"]), vec3(tag["tvec_m"])));
         if (last) { // the tag was turned by 10 degrees, by hand
             ours_off += std::abs(angle_between_deg(last->rotation, e.world_from_camera.rotation) - 10) / 14;
             theirs_off += std::abs(angle_between_deg(last_reference->rotation, reference.rotation) - 10) / 14;

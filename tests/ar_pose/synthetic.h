@@ -43,17 +43,17 @@ inline std::vector<SightedPoint> one_marker(double side_m)
 }
 
 /// From `eye` looking at `target`, turned about the line of sight.
-inline Pose looking(glm::dvec3 eye, glm::dvec3 target, double roll_rad = 0)
+inline gi::RigidPose looking(glm::dvec3 eye, glm::dvec3 target, double roll_rad = 0)
 {
     glm::dvec3 const z = glm::normalize(target - eye);
     glm::dvec3 const up = std::abs(z.y) < 0.99 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
     glm::dvec3 const x = glm::normalize(glm::cross(z, up));
     glm::dmat3 const m(x, glm::cross(z, x), z);
-    return {glm::normalize(glm::quat_cast(m) * gi::exp_rotation({0, 0, roll_rad})), eye};
+    return {eye, glm::normalize(glm::quat_cast(m) * gi::exp_rotation({0, 0, roll_rad}))};
 }
 
 /// About `distance_m` from the origin, in the upper half, at most 60 degrees from its pole.
-inline Pose random_view(std::mt19937& random, double distance_m)
+inline gi::RigidPose random_view(std::mt19937& random, double distance_m)
 {
     std::uniform_real_distribution<double> u(0, 1);
     double const turn = 2 * 3.14159265 * u(random), tilt = glm::radians(60.0) * u(random);
@@ -62,8 +62,8 @@ inline Pose random_view(std::mt19937& random, double distance_m)
     return looking(eye, {0.1 * u(random) - 0.05, 0, 0.1 * u(random) - 0.05}, 6.28 * u(random));
 }
 
-inline Sighting sight(std::vector<SightedPoint> points, CameraModel const& camera, Pose const& world_from_camera,
-                      double noise_px, std::mt19937& random)
+inline Sighting sight(std::vector<SightedPoint> points, CameraModel const& camera,
+                      gi::RigidPose const& world_from_camera, double noise_px, std::mt19937& random)
 {
     std::normal_distribution<double> noise(0, 1);
     Sighting s;

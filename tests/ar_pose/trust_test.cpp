@@ -13,7 +13,7 @@
 namespace ar::test {
 namespace {
 
-Pose at_x(double x_m) { return {{1, 0, 0, 0}, {x_m, 0, 0}}; }
+gi::RigidPose at_x(double x_m) { return {{x_m, 0, 0}, {1, 0, 0, 0}}; }
 
 OfferedPose trusted(double x_m) { return {at_x(x_m), {}, true}; }
 OfferedPose doubtful() { return {{}, {}, true}; }
@@ -25,7 +25,7 @@ TEST(Trust, HoldsThenFadesAndComesBack)
     UsedPose u = trust.next(0.05, doubtful());
     EXPECT_EQ(u.state, PoseState::held);
     EXPECT_EQ(u.shown, 1);
-    EXPECT_EQ(u.world_from_camera->position_m.x, 1);
+    EXPECT_EQ(u.world_from_camera->position.x, 1);
     EXPECT_EQ(trust.next(0.1, {}).state, PoseState::held);
     u = trust.next(0.15, {});
     EXPECT_EQ(u.state, PoseState::fading);
@@ -39,7 +39,7 @@ TEST(Trust, HoldsThenFadesAndComesBack)
     u = trust.next(0.45, trusted(2));
     EXPECT_EQ(u.state, PoseState::tracked);
     EXPECT_NEAR(u.shown, 0.25, 1e-9);
-    EXPECT_EQ(u.world_from_camera->position_m.x, 2);
+    EXPECT_EQ(u.world_from_camera->position.x, 2);
     EXPECT_EQ(trust.next(1, trusted(2)).shown, 1);
     EXPECT_EQ(trust.counts()[std::size_t(PoseState::tracked)], 3u);
     EXPECT_EQ(trust.counts()[std::size_t(PoseState::fading)], 2u);
@@ -63,7 +63,7 @@ TEST(Trust, PredictsBeforeItHolds)
     EXPECT_EQ(trust.next(0.05, predicted).state, PoseState::predicted);
     UsedPose const u = trust.next(0.1, {});
     EXPECT_EQ(u.state, PoseState::held);
-    EXPECT_EQ(u.world_from_camera->position_m.x, 1.2) << "held where it was shown last: no jump back";
+    EXPECT_EQ(u.world_from_camera->position.x, 1.2) << "held where it was shown last: no jump back";
     EXPECT_EQ(trust.next(0.2, {}).state, PoseState::lost) << "at once without fading";
 }
 
@@ -104,7 +104,7 @@ OneMarker circle(double least_confidence, Fusion fusion, double side_m, double a
         double const t = k / 30.0, turn = 0.6 * t;
         // From above, where the two poses that fit a marker are nearly the same, to the side and back.
         double const tilt = glm::radians(6 + 30 * std::pow(std::sin(0.5 * t), 2));
-        Pose const truth = looking(
+        gi::RigidPose const truth = looking(
             away_m * glm::dvec3(std::sin(tilt) * std::sin(turn), std::cos(tilt), std::sin(tilt) * std::cos(turn)),
             {0, 0, 0});
         PoseEstimate e =
@@ -117,14 +117,14 @@ OneMarker circle(double least_confidence, Fusion fusion, double side_m, double a
         if (confident && !(taken == Taken::jump && e.ambiguous)) offered.trusted = e.world_from_camera;
         UsedPose const used = trust.next(t, offered);
         if (e.found() && !confident)
-            m.unused_m.push_back(glm::length(e.world_from_camera.position_m - truth.position_m));
+            m.unused_m.push_back(glm::length(e.world_from_camera.position - truth.position));
         if (used.state != PoseState::tracked) continue;
-        glm::dvec3 const is = used.world_from_camera->position_m;
-        m.error_m.push_back(glm::length(is - truth.position_m));
-        glm::dvec3 const point(0, 0.1, 0), off = is - truth.position_m;
+        glm::dvec3 const is = used.world_from_camera->position;
+        m.error_m.push_back(glm::length(is - truth.position));
+        glm::dvec3 const point(0, 0.1, 0), off = is - truth.position;
         auto const here = project(camera, inverse(*used.world_from_camera) * point),
                    there = project(camera, inverse(truth) * point);
-        glm::dvec2 const seen = (*here - *there) * (glm::length(truth.position_m - point) / camera.fx);
+        glm::dvec2 const seen = (*here - *there) * (glm::length(truth.position - point) / camera.fx);
         if (last && last_k == k - 1) {
             m.camera_jump_m = std::max(m.camera_jump_m, glm::length(off - *last));
             m.seen_jump_m = std::max(m.seen_jump_m, glm::length(seen - last_seen));

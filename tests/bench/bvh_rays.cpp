@@ -4,11 +4,12 @@
 // beside that for what stays, and with one tree of everything, built anew.
 //   bench_bvh_rays [--rays N] [SCENE...]      default: 400,000 rays; boxes of 1M triangles, atrium, cornell
 
+#include "gi/bvh/build_kernels.h"
 #include "gi/core/quantile.h"
 #include "gi/core/report.h"
 #include "gi/core/rng.h"
-#include "gi/render/bvh_visibility.h"
 #include "gi/render/exact_visibility.h"
+#include "gi/render/world_bvh.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
@@ -22,6 +23,59 @@
 namespace {
 
 using namespace gi;
+
+/// The own BVH in the form of ExactVisibility.
+class OwnBvh {
+public:
+    OwnBvh(World const& world, std::size_t first_moving) : world_(view(world)), bvh_(world_, false, first_moving)
+    {
+    }
+    void moved(World const& world)
+    {
+        world_ = view(world);
+        bvh_.moved(world_);
+    }
+    void nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const
+    {
+        KernelRays const rays = bvh_.rays();
+        for (std::size_t i = 0; i < queries.size(); ++i) hits[i] = rays.nearest(world_, queries[i]);
+    }
+    std::size_t occluded(std::span<RayQuery const> queries) const
+    {
+        KernelRays const rays = bvh_.rays();
+        return std::size_t(
+            std::ranges::count_if(queries, [&](RayQuery const& q) { return rays.occluded(world_, q); }));
+    }
+    HostBvh const& moving() const { return bvh_.moving(); }
+
+private:
+    WorldView world_;
+    WorldBvh<Space::host> bvh_;
+};
+
+/// By the surface area heuristic: the number of nodes and leaves (as kNodeCost and kLeafCost weigh them) that a
+/// ray through the box of all triangles is expected to meet.
+double traversal_cost(HostBvh const& bvh)
+{
+    double sum = 0;
+    if (bvh.nodes.size() == 0) return 0;
+    View<Box const> const boxes = bvh.boxes.view();
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        WideNode const& node = bvh.nodes.view()[i];
+        sum += double(kNodeCost) * double(boxes[i].half_area());
+        for (std::uint32_t k = 0; k < node.leaves; ++k) {
+            if (node.high[0][k] < node.low[0][k]) continue;
+            Box box;
+            for (int axis = 0; axis < 3; ++axis) {
+                box.low[axis] = float(node.low[axis][k]) * node.step(axis);
+                box.high[axis] = float(node.high[axis][k]) * node.step(axis);
+            }
+            sum += double(kLeafCost) * double(box.half_area());
+        }
+    }
+    double const all = double(boxes[0].half_area());
+    return all > 0 ? sum / all : 0;
+}
 
 template <class Work>
 double seconds(Work const& work)
@@ -92,14 +146,14 @@ std::size_t occluded_by_embree(ExactVisibility const& exact, std::span<RayQuery 
 void measure_frame(World const& world, std::span<RayQuery const> rays)
 {
     if (world.static_triangles == world.triangles.size()) return;
-    BvhVisibility two(world, false, world.static_triangles);
+    OwnBvh two(world, world.static_triangles);
     std::vector<Hit> hits(rays.size());
     std::vector<double> refit_s, two_s, build_s, one_s;
     for (int round = 0; round < 5; ++round) {
         refit_s.push_back(seconds([&] { two.moved(world); }));
         two_s.push_back(seconds([&] { two.nearest(rays, hits); }));
-        std::optional<BvhVisibility> one;
-        build_s.push_back(seconds([&] { one.emplace(world, false); }));
+        std::optional<OwnBvh> one;
+        build_s.push_back(seconds([&] { one.emplace(world, ~std::size_t(0)); }));
         one_s.push_back(seconds([&] { one->nearest(rays, hits); }));
     }
     fmt::print(
@@ -114,11 +168,11 @@ void measure(std::string const& name, Scene scene, std::size_t kRays)
     Report report;
     World const world = build_world(std::make_shared<Scene const>(std::move(scene)), std::nullopt, report);
     std::optional<ExactVisibility> exact;
-    std::optional<BvhVisibility> own;
+    std::optional<OwnBvh> own;
     std::vector<double> embree_build_s, build_s, refit_s, embree_s, packets_s, own_s, ratio;
     for (int round = 0; round < 3; ++round) {
         embree_build_s.push_back(seconds([&] { exact.emplace(world, false, 0); }));
-        build_s.push_back(seconds([&] { own.emplace(world, false, 0); })); // all in the tree that can be refitted
+        build_s.push_back(seconds([&] { own.emplace(world, 0); })); // all in the tree that can be refitted
         refit_s.push_back(seconds([&] { own->moved(world); }));
     }
     std::vector<RayQuery> const rays = incoherent_rays(world, kRays);
@@ -141,14 +195,12 @@ void measure(std::string const& name, Scene scene, std::size_t kRays)
     auto const [low, high] = std::minmax_element(ratio.begin(), ratio.end());
     std::vector<RayQuery> shadow = rays; // to half the scene's radius
     for (RayQuery& q : shadow) q.reach = 0.5f * world.bounds.radius();
-    std::vector<std::uint8_t> blocked(kRays);
     std::vector<double> any_embree_s, any_own_s;
-    std::size_t embree_blocked = 0;
+    std::size_t embree_blocked = 0, own_blocked = 0;
     for (int round = 0; round < 3; ++round) {
         any_embree_s.push_back(seconds([&] { embree_blocked = occluded_by_embree(*exact, shadow); }));
-        any_own_s.push_back(seconds([&] { own->occluded(shadow, blocked); }));
+        any_own_s.push_back(seconds([&] { own_blocked = own->occluded(shadow); }));
     }
-    auto const own_blocked = std::size_t(std::ranges::count(blocked, std::uint8_t(1)));
     HostBvh const& tree = own->moving();
     fmt::print(
         "{:<24} {:>9} {:>8.3f} {:>8.3f} {:>8.3f} {:>7.2f} {:>7.2f} {:>6.3f} [{:.3f}, {:.3f}] {:>6} {:>6} {:>7.1f} "

@@ -80,7 +80,6 @@ void measure(std::string const& name, std::size_t n, ImpostorPlacement const& pl
     ExactPathRays const exact(visibility);
     std::vector<Kind> const all = kinds();
     std::vector<Hit> truth(rays.size()), hits(rays.size());
-    std::vector<ImpostorHit> how(rays.size());
     constexpr int kRounds = 5;
     std::vector<std::vector<double>> time_s(all.size());
     std::vector<double> exact_s;
@@ -97,8 +96,8 @@ void measure(std::string const& name, std::size_t n, ImpostorPlacement const& pl
     fmt::print("  {:<22} {:>7} {:>7} {:>7} {:>8} {:>8} {:>6} {:>7} {:>8.3f}\n", "exact rays", "", "", "", "", "",
                "", "", million / median(exact_s));
     for (std::size_t k = 0; k < all.size(); ++k) {
-        ImpostorRays(world, *impostors, all[k].settings).follow(rays, how);
-        test::Accuracy const a = test::accuracy(truth, how);
+        test::Accuracy const a =
+            test::accuracy(truth, test::how_followed(world, *impostors, all[k].settings, rays));
         std::vector<double> by_all, by_exact;
         for (int round = 0; round < kRounds; ++round) {
             by_all.push_back(time_s[1][std::size_t(round)] / time_s[k][std::size_t(round)]);

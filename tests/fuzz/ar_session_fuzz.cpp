@@ -8,14 +8,13 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
 {
     std::string const text(data, data + size);
     try {
-        viewer::ArSession const s = viewer::parse_ar_session(text, "fuzz");
+        ar::Session const s = ar::parse_session(text, "fuzz");
         if (s.camera.empty() || s.markers.empty()) __builtin_trap();
     } catch (gi::InputError const&) {
     }
     try {
-        auto const albedos = viewer::parse_albedos(text, "fuzz");
-        if (viewer::parse_albedos(viewer::format_albedos(albedos), "again").size() != albedos.size())
-            __builtin_trap();
+        auto const albedos = ar::parse_albedos(text, "fuzz");
+        if (ar::parse_albedos(ar::format_albedos(albedos), "again").size() != albedos.size()) __builtin_trap();
     } catch (gi::InputError const&) {
     }
     return 0;

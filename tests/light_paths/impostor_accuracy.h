@@ -57,15 +57,23 @@ inline Accuracy accuracy(std::span<Hit const> truth, std::span<ImpostorHit const
     return a;
 }
 
+/// What ImpostorRays find, and how.
+inline std::vector<ImpostorHit> how_followed(World const& world, Impostors const& impostors,
+                                             ImpostorSettings const& settings, std::span<PathQuery const> rays)
+{
+    ImpostorScene const scene = ImpostorRays(world, impostors).scene();
+    std::vector<ImpostorHit> found;
+    for (PathQuery const& q : rays) found.push_back(follow(scene, q, settings));
+    return found;
+}
+
 inline Accuracy accuracy(World const& world, Impostors const& impostors, ImpostorSettings const& settings,
                          ExactVisibility const& visibility, std::span<PathQuery const> rays)
 {
     std::vector<Hit> truth(rays.size());
     std::vector<PathQuery> copies(rays.begin(), rays.end());
     ExactPathRays(visibility).nearest(copies, truth);
-    std::vector<ImpostorHit> found(rays.size());
-    ImpostorRays(world, impostors, settings).follow(rays, found);
-    return accuracy(truth, found);
+    return accuracy(truth, how_followed(world, impostors, settings, rays));
 }
 
 } // namespace gi::test

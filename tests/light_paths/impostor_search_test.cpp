@@ -4,9 +4,7 @@
 #include "gi/light_paths/impostor_places.h"
 #include "gi/light_paths/reached_points.h"
 #include "gi/scene/generate/generate.h"
-#include "gi/scene/model/world_on.h"
 #include "tests/light_paths/impostor_scenes.h"
-#include "tests/support/on_device.h"
 
 #include <limits>
 
@@ -27,8 +25,8 @@ TEST(ImpostorSearch, ErrsByLessThanATexelInAConvexRoom)
     ExactPathRays(visibility).nearest(copies, truth);
     for (ImpostorSearch const search : kSearches) {
         // With few steps the secant rule does not come to the end.
-        std::vector<ImpostorHit> found(rays.size());
-        ImpostorRays(world, impostors, {.search = search, .iterations = 24}).follow(rays, found);
+        std::vector<ImpostorHit> const found =
+            how_followed(world, impostors, {.search = search, .iterations = 24}, rays);
         std::size_t within = 0;
         for (std::size_t k = 0; k < rays.size(); ++k) {
             float const off = std::abs(found[k].hit.distance - truth[k].distance);
@@ -237,49 +235,6 @@ TEST(Impostors, RefuseWhatIsImpossible)
     EXPECT_THROW(Impostors(world, {{0, kInf, 0}}, 16), InputError);
     EXPECT_NO_THROW(Impostors(world, {}, 16));
 }
-
-template <Space S>
-void check_kernels()
-{
-    World const world = world_of(generate_cornell());
-    ExactVisibility const visibility(world, false, 1);
-    std::vector<vec3> const centres = place_impostors(world, visibility, {.count = 4});
-    Impostors const host(world, centres, 64);
-    ImpostorsOn<S> const there = draw_impostors<S>(world, SoupOn<S>(make_soup(world)).view(), centres, 64);
-    std::vector<ImpostorTexel> const texels = download(there.texels);
-    ImpostorsView const maps = host.view();
-    ASSERT_EQ(texels.size(), maps.texels.size());
-    std::size_t differ = 0;
-    for (std::size_t k = 0; k < texels.size(); ++k) {
-        differ += texels[k].triangle != maps.texels[k].triangle;
-        if (texels[k].triangle != maps.texels[k].triangle || texels[k].triangle == kNoTriangle) continue;
-        ASSERT_NEAR(texels[k].distance, maps.texels[k].distance, 1e-3f * maps.texels[k].distance);
-    }
-    EXPECT_LT(differ, texels.size() / 1000);
-
-    std::vector<PathQuery> const rays = rays_of_light(world, visibility, 2000, 77);
-    WorldOn<S> const world_there(world);
-    // The same maps for both, so that differences are those of the search.
-    ImpostorsOn<S> const same{upload<S>(centres), upload<S>(std::vector(maps.texels.begin(), maps.texels.end())),
-                              upload<S>(std::vector(maps.blocks.begin(), maps.blocks.end())), 64};
-    Buffer<PathQuery, S> const queries = upload<S>(rays);
-    for (ImpostorSearch const search : kSearches) {
-        ImpostorSettings const settings{.search = search};
-        Buffer<ImpostorHit, S> hits(rays.size());
-        launch(S, "follow by impostors", rays.size(),
-               FollowByImpostors{{same.view(), world_there.view(), false}, settings, queries.view(), hits.view()});
-        std::vector<ImpostorHit> const found = download(hits);
-        std::vector<ImpostorHit> expected(rays.size());
-        ImpostorRays(world, host, settings).follow(rays, expected);
-        std::size_t other = 0;
-        for (std::size_t k = 0; k < rays.size(); ++k)
-            other +=
-                found[k].hit.triangle != expected[k].hit.triangle || found[k].maps != expected[k].maps ||
-                !(std::abs(found[k].hit.distance - expected[k].hit.distance) <= 1e-4f * expected[k].hit.distance);
-        EXPECT_LE(other, S == Space::host ? 0 : rays.size() / 100) << int(search); // compilers fuse differently
-    }
-}
-LIGHTWELL_TEST_BOTH(ImpostorKernels, AnswerAsTheHost, check_kernels);
 
 } // namespace
 } // namespace gi::test

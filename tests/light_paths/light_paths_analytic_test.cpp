@@ -3,7 +3,6 @@
 
 #include "gi/kernel/launch.h"
 #include "gi/light_paths/bounce_map.h"
-#include "gi/light_paths/trace_kernel.h"
 #include "gi/methods/path_rays/look_up_rays.h"
 #include "gi/scene/model/world_on.h"
 #include "tests/support/scenes.h"
@@ -382,42 +381,6 @@ TEST(LightPathsAnalytic, BounceMap)
     EXPECT_EQ(count(2, Bounce::scattered), 0);
     EXPECT_GT(count(3, Bounce::none), 1000);
     EXPECT_EQ(count(3, Bounce::scattered), 0);
-}
-
-/// The kernel traces the same paths.
-TEST(LightPathsAnalytic, KernelTracesTheSame)
-{
-    Scene scene;
-    int const wall = add_material(scene, lambert(vec3{0.7f})),
-              glass_ball = add_material(scene, glass(1.5f, false));
-    add_box(scene, {-1, -1, -1}, {1, 1, 1}, wall, true);
-    add_sphere(scene, {0.2f, -0.5f, 0}, 0.4f, 3, glass_ball, true);
-    add_light(scene, punctual(LightType::point, {0, 0.8f, 0}));
-    World const world = world_of(scene);
-    constexpr std::uint32_t kPaths = 20000, kSlots = 8;
-    std::vector<LightVertex> const expected = trace(Way::rays, world, paths_of(kPaths, 5));
-    WorldBvh<Space::host> const bvh(view(world), false, ~std::size_t(0));
-    std::vector<LightVertex> vertices(kPaths * kSlots);
-    std::vector<std::uint32_t> counts(kPaths);
-    launch(Space::host, "trace light paths", kPaths,
-           TraceLightPaths{
-               view(world), world.bounds, bvh.rays(), {kPaths, 0, 0}, {5, false}, 0, kSlots, vertices, counts});
-    std::size_t next = 0, differ = 0;
-    for (std::uint32_t path = 0; path < kPaths; ++path) {
-        std::size_t const first = next;
-        while (next < expected.size() && expected[next].path == path) ++next;
-        bool same = counts[path] == next - first;
-        for (std::uint32_t k = 0; same && k < counts[path]; ++k) {
-            LightVertex const &a = expected[first + k], &b = vertices[path * kSlots + k];
-            same = a.triangle == b.triangle && glm::length(a.position - b.position) < 1e-3f &&
-                   a.scatterings == b.scatterings &&
-                   glm::length(a.power - b.power) <= 1e-3f * max_component(a.power);
-        }
-        differ += !same;
-    }
-    EXPECT_EQ(next, expected.size());
-    EXPECT_GT(expected.size(), kPaths);
-    EXPECT_LE(differ, kPaths / 100);
 }
 
 TEST(LightPathsAnalytic, NothingToTrace)

@@ -1,6 +1,6 @@
 #include "gi/core/rng.h"
-#include "gi/render/bvh_visibility.h"
 #include "gi/render/exact_visibility.h"
+#include "gi/render/world_bvh.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -31,13 +31,8 @@ struct Embree {
     ExactVisibility visibility;
     Embree(World const& world, bool holes) : visibility(world, holes, 1, kStays) {}
 };
-struct OwnBvh {
-    BvhVisibility visibility;
-    OwnBvh(World const& world, bool holes) : visibility(world, holes, kStays) {}
-};
-
 /// The rays of kernels, one at a time.
-struct KernelForm {
+struct OwnBvh {
     struct Visibility {
         WorldView world;
         WorldBvh<Space::host> bvh;
@@ -56,13 +51,13 @@ struct KernelForm {
             for (std::size_t i = 0; i < queries.size(); ++i) blocked[i] = bvh.rays().occluded(world, queries[i]);
         }
     } visibility;
-    KernelForm(World const& world, bool holes) : visibility{view(world), {view(world), holes, kStays}} {}
+    OwnBvh(World const& world, bool holes) : visibility{view(world), {view(world), holes, kStays}} {}
 };
 
 template <class Rays>
 class MovingVisibility : public testing::Test {
 };
-using AllRays = testing::Types<Embree, OwnBvh, KernelForm>;
+using AllRays = testing::Types<Embree, OwnBvh>;
 TYPED_TEST_SUITE(MovingVisibility, AllRays);
 
 /// Do rays find in `moving` what they find in `now`? @return how many of them hit what moves

@@ -3,7 +3,7 @@
 
 #include "gi/core/error.h"
 #include "gi/hit_buffers/settings.h"
-#include "gi/methods/reference/reference.h"
+#include "gi/methods/registry.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -116,13 +116,15 @@ TEST_P(Pairs, ThatAreStoppedHaveAsManyPathsOnBothSides)
     EXPECT_EQ(both.with.end, RenderEnd::interrupted);
 }
 
-TEST(PairsOfOtherMethods, AreRefused)
+TEST(PairsByMethod, AreWhatTheTraitSays)
 {
     Report report;
     MovingWorld world(std::make_shared<Scene const>(box_with_block_and_lamp()), 0, report);
     Camera const eye = look_at({-0.6, 0.1, 0.9}, {0, 0, 0}, 60);
-    auto const frames = start_reference_frames(world, eye, small_settings(8, 1, 1), report);
-    EXPECT_EQ(ask<PairFrames>(*frames), nullptr);
+    for (Method const& m : methods()) {
+        auto const frames = m.frames(world, eye, small_settings(8, 1, 1), report);
+        EXPECT_EQ(ask<PairFrames>(*frames) != nullptr, m.pairs) << m.name;
+    }
 }
 
 } // namespace

@@ -1,8 +1,8 @@
+#include "study/adaptive/staircase.h"
 #include "study/analysis/groups.h"
 #include "study/analysis/result_tables.h"
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 #include "study/stats/ratings.h"
-#include "study/stats/staircase.h"
 #include "study/tables/export.h"
 #include "tests/study_analysis/made_sessions.h"
 

@@ -2,13 +2,13 @@
 // Simulated experiments of known truth, analysed by the function that `study analyze` calls: biases of estimates
 // and coverage of intervals.
 
+#include "study/adaptive/questplus.h"
+#include "study/adaptive/staircase.h"
 #include "study/analysis/analysis.h"
+#include "study/numeric/random.h"
 #include "study/script/procedure_settings.h"
 #include "study/script/script_file.h"
 #include "study/stats/detection_model.h"
-#include "study/stats/questplus.h"
-#include "study/stats/random.h"
-#include "study/stats/staircase.h"
 #include "tests/study_tables/recorded.h"
 
 #include <cmath>

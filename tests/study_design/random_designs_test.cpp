@@ -1,6 +1,6 @@
 // 1,000 designs by chance: each plan keeps the rules of its script, or the script is refused with the reason.
 
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 #include "tests/study_design/samples.h"
 
 #include <map>

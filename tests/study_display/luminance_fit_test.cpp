@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "study/display/luminance_fit.h"
 #include "study/display/model_file.h"
+#include "tests/study_display/luminance_of.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #pragma once
 #include "study/journal/entries.h"
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 
 namespace study::test {
 

@@ -1,6 +1,6 @@
 // Power by simulation, compared with the power of the t test that the simulated design has.
 
-#include "study/power/power_report.h"
+#include "study/power/power_study.h"
 #include "study/script/script_file.h"
 
 #include <cmath>

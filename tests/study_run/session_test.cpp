@@ -295,19 +295,15 @@ TEST(Session, EndsWhereTheDisplayIsLostAndGoesOnLater)
     EXPECT_EQ(entries_of<TrialDone>(journal_in(dir.path())).size(), 26u);
 }
 
-TEST(Session, CallsWhatMakesTablesAtItsEnd)
+TEST(Session, TellsEachEntryThatIsKept)
 {
     TemporaryFolder const dir;
     TestPresenter p;
     SessionSettings settings = settings_in(dir.path());
-    std::size_t kept = 0, in_record = 0;
+    std::size_t kept = 0;
     settings.on_kept = [&](JournalEntry const&) { ++kept; };
-    settings.on_ended = [&](fs::path const& folder, SessionRecord const& record) {
-        in_record = record.entries.size();
-        EXPECT_EQ(read_journal(folder / "journal.jsonl").record.entries.size(), in_record);
-    };
-    run_session(rating_script(), 1, p, settings);
-    EXPECT_EQ(kept, in_record);
+    SessionOutcome const o = run_session(rating_script(), 1, p, settings);
+    EXPECT_EQ(read_journal(o.folder / "journal.jsonl").record.entries.size(), kept);
     EXPECT_GT(kept, 26u);
 }
 

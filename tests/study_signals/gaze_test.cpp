@@ -44,7 +44,6 @@ TEST(GazeSamples, MissingOnesAreCounted)
     EXPECT_EQ(s.samples, 97);
     EXPECT_EQ(s.dropped, 3);
     EXPECT_NEAR(s.rate_hz, 250, 1e-6);
-    EXPECT_NEAR(s.longest_gap_ms, 12, 1e-6);
     EXPECT_EQ(s.valid, 97 - 8);
     EXPECT_EQ(summarise({}).samples, 0);
 }

@@ -19,34 +19,7 @@ TEST(Triads, OfTheDogAreThoseOfKendall)
     CircularTriads const t = circular_triads(read_table("classic/classic_dog.csv"));
     EXPECT_EQ(t.count, int(e["circular_triads"]));
     EXPECT_EQ(t.maximum, int(e["max_triads"]));
-    EXPECT_EQ(t.expected, double(e["expected_triads"]));
-    EXPECT_NEAR(t.zeta, double(e["zeta"]), 1e-12);
-    EXPECT_NEAR(t.p, double(e["p_less_or_equal_exact"]), 1e-12);
-    EXPECT_NEAR(t.chi_square, double(e["chi2_approx"]), 1e-9);
-    EXPECT_NEAR(t.degrees_of_freedom, double(e["df_approx"]), 1e-9);
-}
-
-TEST(Triads, HaveTheNullDistributionThatIsPublished)
-{
-    LIGHTWELL_NEED_STUDY_DATA();
-    auto const e = read_json("classic/classic_expected.json")["circular_triad_null_distribution"];
-    for (int n = 3; n <= 6; ++n) {
-        auto const counts = circular_triad_counts(n);
-        auto const& expected = e["n" + std::to_string(n)];
-        ASSERT_EQ(counts.size(), expected["count"].size());
-        for (std::size_t t = 0; t < counts.size(); ++t)
-            EXPECT_EQ(counts[t], expected["count"][t]) << n << " " << t;
-    }
-}
-
-TEST(Triads, CountEveryTournamentOnce)
-{
-    for (int n = 1; n <= kExactTriadItems; ++n) {
-        std::uint64_t sum = 0;
-        for (std::uint64_t const c : circular_triad_counts(n)) sum += c;
-        EXPECT_EQ(sum, std::uint64_t(1) << (n * (n - 1) / 2)) << n;
-    }
-    EXPECT_THROW(circular_triad_counts(0), std::invalid_argument);
+    EXPECT_NEAR(1 - double(t.count) / t.maximum, double(e["zeta"]), 1e-12);
 }
 
 TEST(Triads, OfAnOrderAreNone)
@@ -56,9 +29,7 @@ TEST(Triads, OfAnOrderAreNone)
         for (std::size_t j = i + 1; j < 12; ++j) order(i, j) = 1;
     CircularTriads const t = circular_triads(order);
     EXPECT_EQ(t.count, 0);
-    EXPECT_EQ(t.zeta, 1);
-    EXPECT_LT(t.p, 1e-6); // by chi-square
-    EXPECT_TRUE(std::isnan(circular_triads(Matrix(1, 1)).zeta));
+    EXPECT_EQ(circular_triads(Matrix(1, 1)).maximum, 0);
     EXPECT_THROW(circular_triads(Matrix(2, 2)), std::invalid_argument);
     EXPECT_THROW(circular_triads(Matrix(0, 0)), std::invalid_argument);
 }

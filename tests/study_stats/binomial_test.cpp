@@ -2,7 +2,7 @@
 
 #include "study/stats/binomial.h"
 
-#include "study/stats/special.h"
+#include "study/numeric/special.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

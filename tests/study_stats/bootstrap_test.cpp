@@ -1,9 +1,11 @@
-// Resampling of observers, and power.
+// Resampling of observers.
 
 #include "study/stats/bootstrap.h"
-#include "study/stats/power.h"
-#include "study/stats/summary.h"
 
+#include "gi/core/quantile.h"
+#include "study/numeric/random.h"
+#include "study/stats/summary.h"
+#include "tests/study_stats/bootstrap_pairs.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>
@@ -31,9 +33,10 @@ TEST(Bootstrap, OfAMeanHasItsStandardError)
     Bootstrap const b = bootstrap(40, mean_of, {.replicates = 4000});
     double const expected = standard_deviation(x) / std::sqrt(40.0);
     EXPECT_NEAR(b.standard_error[0] / expected, 1, 0.06);
-    Bootstrap const plain =
-        bootstrap(40, mean_of, {.replicates = 4000, .interval = BootstrapInterval::percentile});
-    EXPECT_LT(plain.interval[0].high - plain.interval[0].low, b.interval[0].high - b.interval[0].low);
+    std::vector<double> replicates;
+    for (auto const& r : b.replicates) replicates.push_back(r[0]);
+    EXPECT_LT(b.interval[0].low, gi::quantile(replicates, 0.025));
+    EXPECT_GT(b.interval[0].high, gi::quantile(replicates, 0.975));
     EXPECT_EQ(bootstrap(40, mean_of, {.replicates = 50}).interval[0].low,
               bootstrap(40, mean_of, {.replicates = 50}).interval[0].low);
 }
@@ -43,7 +46,7 @@ TEST(Bootstrap, OfPairsDrawsObserversAndNotTrials)
     // Two kinds of observers who answer every one of 50 trials alike: trials say p = 1/2 +- 0.03, people do not.
     std::vector<std::vector<PairCount>> observers;
     for (int o = 0; o < 8; ++o) observers.push_back({{0, 1, o % 2 ? 45.0 : 5.0, o % 2 ? 5.0 : 45.0}});
-    Bootstrap const b = bootstrap_pairs(observers, 2, {}, {.replicates = 500});
+    Bootstrap const b = bootstrap_pairs(observers, 2, {.replicates = 500});
     PairScale const pooled = fit_pairs(pool(observers), 2);
     EXPECT_NEAR(pooled.score[0], 0, 1e-12);
     EXPECT_GT(b.standard_error[0], 3 * pooled.standard_error[0] * jod_per_unit(PairModel::thurstone_v));
@@ -69,7 +72,7 @@ TEST(Bootstrap, OfToneMappersOverlapsTheErrorsOfTheFit)
     std::vector<std::vector<PairCount>> observers;
     for (auto const& [unused, pairs] : by_observer) observers.push_back(pairs);
     ASSERT_EQ(observers.size(), 18u);
-    Bootstrap const b = bootstrap_pairs(observers, 7, {}, {.replicates = 300});
+    Bootstrap const b = bootstrap_pairs(observers, 7, {.replicates = 300});
     std::vector<double> const jod =
         read_json("pairs_tmo_video.expected.json")["all"]["thurstone_case5"]["jod_mean0"]
             .get<std::vector<double>>();
@@ -85,48 +88,17 @@ TEST(Bootstrap, CountsReplicatesThatHaveNoResult)
     // Items 2 and 3 hang on one observer: without him or her there is no scale.
     std::vector<std::vector<PairCount>> observers(5, {{0, 1, 3, 2}, {1, 2, 2, 3}});
     observers[0].push_back({2, 3, 2, 3});
-    Bootstrap const b = bootstrap_pairs(observers, 4, {}, {.replicates = 400});
+    Bootstrap const b = bootstrap_pairs(observers, 4, {.replicates = 400});
     EXPECT_NEAR(b.failed / 400.0, std::pow(0.8, 5), 0.08);
     EXPECT_EQ(b.replicates.size() + std::size_t(b.failed), 400u);
     auto const always_refuses = [](std::span<int const>) -> std::vector<double> {
         throw std::invalid_argument("nothing (why) else");
     };
     EXPECT_THROW(bootstrap(5, always_refuses), std::invalid_argument);
-    EXPECT_THROW(bootstrap_pairs({{{0, 1, 1, 1}}}, 2), std::invalid_argument);
-    EXPECT_THROW(bootstrap_pairs({}, 2), std::invalid_argument);
+    EXPECT_THROW(bootstrap_pairs({{{0, 1, 1, 1}}}, 2, {}), std::invalid_argument);
+    EXPECT_THROW(bootstrap_pairs({}, 2, {}), std::invalid_argument);
     EXPECT_THROW(bootstrap(5, always_refuses, {.replicates = 1}), std::invalid_argument);
     EXPECT_THROW(bootstrap(5, always_refuses, {.confidence = 1}), std::invalid_argument);
-}
-
-TEST(Power, IsThatOfTheBinomialTest)
-{
-    auto const significant = [](Random& random, int trials) {
-        int k = 0;
-        for (int i = 0; i < trials; ++i) k += random.uniform() < 0.75;
-        return binomial_test(k, trials) < 0.05;
-    };
-    double exact = 0;
-    for (int k = 0; k <= 30; ++k)
-        if (binomial_test(k, 30) < 0.05) exact += std::exp(log_binomial(k, 30, 0.75));
-    Power const p = simulate_power(4000, 3, [&](Random& random) { return significant(random, 30); });
-    EXPECT_NEAR(p.power, exact, 0.03);
-    EXPECT_LE(p.interval.low, exact);
-    EXPECT_GE(p.interval.high, exact);
-
-    auto const enough = smallest_size(std::vector<int>{10, 20, 40, 60}, 0.8, 1000, 3, significant);
-    ASSERT_TRUE(enough);
-    EXPECT_GE(enough->power, 0.8);
-    EXPECT_EQ(enough->size, 40);
-    EXPECT_FALSE(smallest_size(std::vector<int>{5}, 0.8, 100, 3, significant));
-}
-
-TEST(Power, CountsWhatTheTestRefused)
-{
-    Power const p =
-        simulate_power(10, 1, [](Random&) -> bool { throw std::invalid_argument("too few (why) more"); });
-    EXPECT_EQ(p.refused, 10);
-    EXPECT_EQ(p.power, 0);
-    EXPECT_THROW(simulate_power(0, 1, [](Random&) { return true; }), std::invalid_argument);
 }
 
 } // namespace

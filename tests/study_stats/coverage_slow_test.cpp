@@ -1,11 +1,11 @@
 // Do intervals that say 95 % hold the truth in 95 % of experiments?
 
+#include "study/numeric/special.h"
 #include "study/stats/observer_scale.h"
-#include "study/stats/psychometric.h"
+#include "study/stats/psychometric_fit.h"
 #include "study/stats/ratings.h"
-#include "study/stats/special.h"
 
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 
 #include <algorithm>
 #include <cmath>

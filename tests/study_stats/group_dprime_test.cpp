@@ -2,9 +2,9 @@
 
 #include "study/stats/group_dprime.h"
 
-#include "study/stats/dprime.h"
-#include "study/stats/random.h"
-#include "study/stats/special.h"
+#include "study/numeric/random.h"
+#include "study/numeric/special.h"
+#include "tests/study_stats/dprime_by_rates.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -23,12 +23,11 @@ TEST(DetectionModel, IsTheInverseOfDPrime)
             auto const yes = rates(DetectionTask::yes_no, c);
             EXPECT_NEAR(normal_quantile(yes.hit.yes) - normal_quantile(yes.false_alarm.yes), d, 1e-12);
             auto const same = rates(DetectionTask::same_different, c);
-            EXPECT_NEAR(same_different_dprime(same.hit.yes, same.false_alarm.yes, Strategy::differencing), d,
-                        1e-9);
+            EXPECT_NEAR(same_different_dprime(same.hit.yes, same.false_alarm.yes), d, 1e-9);
             auto const abx = rates(DetectionTask::abx, c);
-            EXPECT_NEAR(abx_dprime(abx.hit.yes, abx.false_alarm.yes, Strategy::differencing), d, 1e-9);
+            EXPECT_NEAR(abx_dprime(abx.hit.yes, abx.false_alarm.yes), d, 1e-9);
         }
-        EXPECT_NEAR(rates(DetectionTask::two_interval, 0).hit.yes, mafc_proportion(d, 2), 1e-12);
+        EXPECT_NEAR(rates(DetectionTask::two_interval, 0).hit.yes, normal_cdf(d / std::sqrt(2.0)), 1e-12);
         EXPECT_NEAR(oddity_dprime(rates(DetectionTask::oddity, 0).hit.yes), d, 1e-9);
     }
 }

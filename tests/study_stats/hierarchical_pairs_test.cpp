@@ -1,7 +1,7 @@
 // Scales with observers as random effects.
 
+#include "study/numeric/random.h"
 #include "study/stats/hierarchical_pairs.h"
-#include "study/stats/random.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "study/stats/effect_size.h"
 #include "study/stats/mixed_anova.h"
 
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Scales with errors over observers.
 
-#include "study/stats/bootstrap.h"
+#include "study/numeric/random.h"
 #include "study/stats/observer_scale.h"
-#include "study/stats/random.h"
+#include "tests/study_stats/bootstrap_pairs.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(ObserverScale, OfObserversWhoDifferHasLargerErrors)
     auto const data = simulated(60, 8, {-0.3, 0.3}, 0.8, 0, 6);
     ObserverScale const s = scale_observers(data, 2);
     EXPECT_GT(s.dispersion, 3);
-    Bootstrap const b = bootstrap_pairs(data, 2, {}, {.replicates = 800});
+    Bootstrap const b = bootstrap_pairs(data, 2, {.replicates = 800});
     double const jod = jod_per_unit(PairModel::thurstone_v);
     EXPECT_NEAR(score_of(s, 0).standard_error * jod / b.standard_error[0], 1, 0.12);
 }

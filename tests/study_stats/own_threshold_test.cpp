@@ -1,8 +1,8 @@
 // Do intervals of own thresholds hold them as often as they say, also near the ends of the levels?
 
+#include "study/numeric/random.h"
+#include "study/numeric/special.h"
 #include "study/stats/own_threshold.h"
-#include "study/stats/random.h"
-#include "study/stats/special.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

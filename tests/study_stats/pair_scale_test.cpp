@@ -1,10 +1,10 @@
 // Scores of paired comparisons against R (BradleyTerry2, eba, glm), choix and pwcmp.
 
+#include "study/numeric/special.h"
 #include "study/stats/distance_prior.h"
 #include "study/stats/pair_scale.h"
-#include "study/stats/special.h"
 
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>

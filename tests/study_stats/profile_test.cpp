@@ -1,9 +1,9 @@
 // The limit of likelihood ratios of means over observers, and rates of several observers.
 
+#include "study/numeric/random.h"
+#include "study/numeric/special.h"
 #include "study/stats/profile.h"
-#include "study/stats/random.h"
 #include "study/stats/shrunken_rates.h"
-#include "study/stats/special.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

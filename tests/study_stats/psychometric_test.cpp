@@ -1,11 +1,11 @@
 // Psychometric functions against R's glm, and against observers that are simulated.
 
 #include "study/stats/group_threshold.h"
-#include "study/stats/psychometric.h"
+#include "study/stats/psychometric_fit.h"
 #include "study/stats/psychometric_posterior.h"
 
-#include "study/stats/random.h"
-#include "study/stats/special.h"
+#include "study/numeric/random.h"
+#include "study/numeric/special.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>

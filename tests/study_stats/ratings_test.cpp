@@ -5,7 +5,7 @@
 #include "study/stats/ratings.h"
 #include "study/stats/summary.h"
 
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>

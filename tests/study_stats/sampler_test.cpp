@@ -2,7 +2,7 @@
 
 #include "study/stats/sampler.h"
 
-#include "study/stats/random.h"
+#include "study/numeric/random.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -80,7 +80,7 @@ struct Outcome {
     std::string out, err;
 };
 
-constexpr std::chrono::seconds kProgramLimit{120}; ///< no test waits longer for a program, unless it says so
+constexpr std::chrono::seconds kProgramLimit{600}; ///< of a program that hangs; machines may be busy
 
 /// A running lightwell. Whatever still runs at the end is killed.
 class Program {

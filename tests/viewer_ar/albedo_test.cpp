@@ -11,19 +11,19 @@
 namespace viewer::test {
 namespace {
 
-ArReal place(gi::dvec3 table, gi::dvec3 block, bool is_estimated)
+ar::RealPlace place(gi::dvec3 table, gi::dvec3 block, bool is_estimated)
 {
-    ProxySurface top, side;
+    ar::ProxySurface top, side;
     top.albedo = table;
     side.albedo = block;
     if (is_estimated) {
-        top.from = AlbedoFrom::estimate_texture;
+        top.from = ar::AlbedoFrom::estimate_texture;
         top.texels = 16;
-        side.from = AlbedoFrom::estimate;
+        side.from = ar::AlbedoFrom::estimate;
     }
-    ArReal real;
-    real.proxies.push_back({"table", top, ProxyPlane{{-0.6, 0, 0.5}, {1.2, 0, 0}, {0, 0, -1}}});
-    real.proxies.push_back({"block", side, ProxyBox{{0.2, 0.15, 0.2}, {{1, 0, 0, 0}, {0.1, 0.075, 0}}}});
+    ar::RealPlace real;
+    real.proxies.push_back({"table", top, ar::ProxyPlane{{-0.6, 0, 0.5}, {1.2, 0, 0}, {0, 0, -1}}});
+    real.proxies.push_back({"block", side, ar::ProxyBox{{0.2, 0.15, 0.2}, {{0.1, 0.075, 0}, {1, 0, 0, 0}}}});
     return real;
 }
 
@@ -33,33 +33,33 @@ protected:
     {
         cv::Mat map(16, 32, CV_32FC3, cv::Scalar(0.5, 0.45, 0.4));
         cv::rectangle(map, {18, 2, 3, 3}, cv::Scalar(6, 6, 5), cv::FILLED);
-        light_ = std::make_shared<gi::EnvironmentMap const>(environment_of(map));
+        light_ = std::make_shared<gi::EnvironmentMap const>(ar::environment_of(map));
     }
 
-    std::vector<PosedFrame> frames(gi::Scene scene)
+    std::vector<ar::PosedFrame> frames(gi::Scene scene)
     {
         scene.environment = *light_;
-        SyntheticQuality quality;
+        ar::SyntheticQuality quality;
         quality.paths = 48;
-        std::vector<PosedFrame> out;
+        std::vector<ar::PosedFrame> out;
         for (double const t : {0.1, 0.8}) {
-            ar::Pose const pose = synthetic_pose(t);
+            gi::RigidPose const pose = ar::synthetic_pose(t);
             cv::Mat const radiance =
-                synthetic_radiance(scene, std::nullopt, camera_.model, pose, quality, 5, {}, report_);
-            out.push_back({synthetic_frame(radiance, camera_, out.size()), {}, pose, 1});
+                ar::synthetic_radiance(scene, std::nullopt, camera_.model, pose, quality, 5, {}, report_);
+            out.push_back({ar::synthetic_frame(radiance, camera_, out.size()), {}, pose, 1});
         }
         return out;
     }
 
-    AlbedoEstimate estimate(std::span<PosedFrame const> seen)
+    ar::AlbedoEstimate estimate(std::span<ar::PosedFrame const> seen)
     {
-        EstimateSettings s;
+        ar::EstimateSettings s;
         s.resolution = 1;
-        return estimate_albedos(model_of(place({}, {}, true), report_), light_,
-                                {camera_.model, camera_.photometry, {}}, seen, s, {}, report_);
+        return ar::estimate_albedos(model_of(place({}, {}, true), report_), light_,
+                                    {camera_.model, camera_.photometry, {}}, seen, s, {}, report_);
     }
 
-    SyntheticCamera camera_ = synthetic_camera({96, 72});
+    ar::SyntheticCamera camera_ = ar::synthetic_camera({96, 72});
     std::shared_ptr<gi::EnvironmentMap const> light_;
     gi::Report report_;
 };
@@ -67,7 +67,7 @@ protected:
 TEST_F(Albedos, AreThoseOfThePlace)
 {
     gi::dvec3 const table(0.42, 0.3, 0.2), block(0.15, 0.25, 0.5);
-    AlbedoEstimate const e = estimate(frames(model_of(place(table, block, false), report_).scene));
+    ar::AlbedoEstimate const e = estimate(frames(model_of(place(table, block, false), report_).scene));
     ASSERT_EQ(e.entries.size(), 2u);
     for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(e.entries[0].albedo[c] / table[c], 1, 0.04) << c;
@@ -84,14 +84,15 @@ TEST_F(Albedos, AreThoseOfThePlace)
 TEST_F(Albedos, WithNothingToGoByAreRefused)
 {
     EXPECT_THROW(estimate({}), gi::InputError) << "no frame";
-    std::vector<PosedFrame> const one{{cv::Mat(72, 96, CV_8UC3, cv::Scalar::all(90)), {}, synthetic_pose(0), 1}};
+    std::vector<ar::PosedFrame> const one{
+        {cv::Mat(72, 96, CV_8UC3, cv::Scalar::all(90)), {}, ar::synthetic_pose(0), 1}};
     light_ = nullptr;
     EXPECT_THROW(estimate(one), gi::InputError) << "no light";
 }
 
 TEST(FramesApart, AreSpreadOverAll)
 {
-    SpacedFrames<int> kept(4);
+    ar::SpacedFrames<int> kept(4);
     for (int i = 0; i < 1000; ++i)
         if (kept.wants_next())
             kept.add(i);
@@ -102,7 +103,7 @@ TEST(FramesApart, AreSpreadOverAll)
     EXPECT_EQ(some.front(), 0);
     EXPECT_GE(some.back(), 600);
     for (std::size_t i = 1; i < some.size(); ++i) EXPECT_GT(some[i] - some[i - 1], 100);
-    SpacedFrames<int> few(4);
+    ar::SpacedFrames<int> few(4);
     few.add(7);
     EXPECT_EQ(few.take(), std::vector<int>{7});
 }

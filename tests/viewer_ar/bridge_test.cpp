@@ -15,14 +15,14 @@ TEST(GiCameras, SeeThroughThePixelsOfArCameras)
     pinhole.fy = 530;
     pinhole.cx = 300.5;
     pinhole.cy = 250.25;
-    ar::Pose const pose = synthetic_pose(0.3);
-    gi::CameraRays const rays = gi::camera_rays(gi_camera(pinhole, pose), 640, 480, gi::dvec3(0));
+    gi::RigidPose const pose = ar::synthetic_pose(0.3);
+    gi::CameraRays const rays = gi::camera_rays(ar::gi_camera(pinhole, pose), 640, 480, gi::dvec3(0));
     for (glm::dvec2 const pixel : {glm::dvec2(0, 0), glm::dvec2(639, 479), glm::dvec2(320.25, 17.5)}) {
         glm::dvec3 const expected = pose.rotation * *ar::direction_of(pinhole, pixel);
         gi::Ray const ray = rays.through(gi::vec2(pixel) + 0.5f); // pixel centres lie at + 0.5 there
         for (int i = 0; i < 3; ++i) {
             EXPECT_NEAR(ray.direction[i], expected[i], 1e-6);
-            EXPECT_NEAR(ray.origin[i], pose.position_m[i], 1e-6);
+            EXPECT_NEAR(ray.origin[i], pose.position[i], 1e-6);
         }
     }
 }
@@ -31,7 +31,7 @@ TEST(Environments, KeepTheirTexels)
 {
     cv::Mat map(2, 4, CV_32FC3, cv::Scalar(1, 2, 3));
     map.at<cv::Vec3f>(1, 2) = {4, -1, std::numeric_limits<float>::quiet_NaN()};
-    gi::EnvironmentMap const environment = environment_of(map);
+    gi::EnvironmentMap const environment = ar::environment_of(map);
     ASSERT_EQ(environment.radiance.size(), 8u);
     EXPECT_EQ(environment.radiance[0], gi::vec3(1, 2, 3));
     EXPECT_EQ(environment.radiance[6], gi::vec3(4, 0, 0));

@@ -12,15 +12,14 @@
 namespace viewer::test {
 namespace {
 
-ar::Pose view_pose(cv::RNG& rng, glm::dvec3 middle)
+gi::RigidPose view_pose(cv::RNG& rng, glm::dvec3 middle)
 {
     double const distance = rng.uniform(0.34, 0.55);
     double const a = rng.uniform(-0.6, 0.6), b = rng.uniform(-0.6, 0.6);
     glm::dvec3 const eye = middle + distance * glm::normalize(glm::dvec3(std::sin(a), std::sin(b), std::cos(a)));
     glm::dvec3 const target = middle + glm::dvec3(rng.uniform(-0.1, 0.1), rng.uniform(-0.08, 0.08), 0);
-    ar::Pose const p = ar::test::looking(eye, target);
-    return {glm::normalize(p.rotation * glm::angleAxis(rng.uniform(-0.4, 0.4), glm::dvec3(0, 0, 1))),
-            p.position_m};
+    gi::RigidPose const p = ar::test::looking(eye, target);
+    return {p.position, glm::normalize(p.rotation * glm::angleAxis(rng.uniform(-0.4, 0.4), glm::dvec3(0, 0, 1)))};
 }
 
 void draw_views(std::filesystem::path const& folder, ar::MarkerMap const& map, ar::CameraModel const& camera,

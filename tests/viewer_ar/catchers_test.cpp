@@ -16,7 +16,7 @@ std::shared_ptr<gi::EnvironmentMap const> sky(float lamp)
 {
     cv::Mat map(32, 64, CV_32FC3, cv::Scalar::all(0.3));
     cv::rectangle(map, {40, 8, 2, 2}, cv::Scalar::all(lamp), cv::FILLED);
-    return std::make_shared<gi::EnvironmentMap const>(environment_of(map));
+    return std::make_shared<gi::EnvironmentMap const>(ar::environment_of(map));
 }
 
 gi::Scene ball(gi::Material const& material)
@@ -26,21 +26,23 @@ gi::Scene ball(gi::Material const& material)
     return b.finish("ball");
 }
 
-PairPictures rendered(ProxySurface const& floor, gi::Material const& material, float lamp, std::uint32_t paths)
+ar::PairPictures rendered(ar::ProxySurface const& floor, gi::Material const& material, float lamp,
+                          std::uint32_t paths)
 {
     gi::Report report;
-    ArProxy const plane{"floor", floor, ProxyPlane{{-0.6, 0, 0.6}, {1.2, 0, 0}, {0, 0, -1.2}}};
+    ar::Proxy const plane{"floor", floor, ar::ProxyPlane{{-0.6, 0, 0.6}, {1.2, 0, 0}, {0, 0, -1.2}}};
     gi::RenderSettings settings;
     settings.bounces = 4;
     settings.of<gi::SlhbSettings>().directions = "icosahedron:80";
     settings.of<gi::SlhbSettings>().resolution = 48;
     settings.of<gi::SlhbSettings>().light_samples = 4;
     settings.of<gi::SlhbSettings>().shadow_resolution = 64;
-    PairRenderer renderer(join_scenes(scene_of(plane, report), ball(material), gi::dmat4(1)), settings, report, "slhb");
+    ar::PairRenderer renderer(ar::join_scenes(ar::scene_of(plane, report), ball(material), gi::dmat4(1)), settings,
+                              report, "slhb");
     renderer.set_environment(sky(lamp));
-    ar::CameraModel camera = synthetic_camera({40, 30}).model;
+    ar::CameraModel camera = ar::synthetic_camera({40, 30}).model;
     camera.lens = ar::LensModel::pinhole;
-    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 40, 30, paths, 0,
+    return renderer.render(ar::gi_camera(camera, ar::synthetic_pose(0.5)), 40, 30, paths, 0,
                            {.denoiser = gi::Denoiser::none}, {});
 }
 
@@ -53,7 +55,7 @@ gi::Material red()
 }
 
 /// What is added where no virtual object is seen itself.
-cv::Mat added_beside(PairPictures const& p)
+cv::Mat added_beside(ar::PairPictures const& p)
 {
     cv::Mat added = p.with - p.without;
     added.setTo(cv::Scalar::all(0), p.coverage > 0);
@@ -62,17 +64,17 @@ cv::Mat added_beside(PairPictures const& p)
 
 TEST(Catchers, ThatAreMirrorsShowVirtualThings)
 {
-    ProxySurface mirror;
+    ar::ProxySurface mirror;
     mirror.albedo = gi::dvec3(0.9);
     mirror.metallic = 1;
     mirror.roughness = 0;
-    PairPictures const p = rendered(mirror, red(), 0.3f, 4);
+    ar::PairPictures const p = rendered(mirror, red(), 0.3f, 4);
     // Grey sky with ball: green goes, red much less.
     cv::Mat channels[3];
     cv::split(added_beside(p), channels);
     int const image = cv::countNonZero((channels[1] < -0.1f) & (channels[0] > 0.5f * channels[1]));
     EXPECT_GT(image, 20);
-    ProxySurface glossy = mirror;
+    ar::ProxySurface glossy = mirror;
     glossy.roughness = 0.3;
     cv::split(added_beside(rendered(glossy, red(), 0.3f, 8)), channels);
     EXPECT_GT(cv::countNonZero((channels[1] < -0.05f) & (channels[0] > 0.6f * channels[1])), 20);
@@ -80,7 +82,7 @@ TEST(Catchers, ThatAreMirrorsShowVirtualThings)
 
 TEST(Catchers, OfCausticsOfVirtualMirrorsAndGlass)
 {
-    ProxySurface matt;
+    ar::ProxySurface matt;
     matt.albedo = gi::dvec3(0.5);
     gi::Material steel, glass;
     steel.metallic = 1;

@@ -13,7 +13,7 @@ namespace {
 
 class CounterChecks : public testing::Test {
 protected:
-    CounterChecks() : session_(make_counter_session(folder_.path(), {320, 240}, 30, report_)) {}
+    CounterChecks() : session_(ar::make_counter_session(folder_.path(), {320, 240}, 30, report_)) {}
 
     /// What the camera of frame `number` would show with the ball of frame `ball`.
     cv::Mat shown(std::uint32_t number, std::uint32_t ball) const
@@ -25,9 +25,9 @@ protected:
         return rgb;
     }
     /// Captured at 100 s + number / 30, shown 60 ms later.
-    static ArFrameRecord record(std::uint32_t number)
+    static ar::RunFrame record(std::uint32_t number)
     {
-        ArFrameRecord f;
+        ar::RunFrame f;
         f.sequence = number;
         f.captured_steady_s = 100 + number / 30.0;
         f.age_ms = 5;
@@ -38,9 +38,9 @@ protected:
         f.swapped_ms = 60;
         return f;
     }
-    CounterVerdict verdict(ArFrameRecord const& f, cv::Mat const& picture, double late_s = 0)
+    ar::CounterVerdict verdict(ar::RunFrame const& f, cv::Mat const& picture, double late_s = 0)
     {
-        CounterCheck check(session_);
+        ar::CounterCheck check(session_);
         double const s = *f.captured_steady_s + 0.06 + late_s;
         check.add(f, picture, true, s - 0.004, s + 0.001);
         return check.verdict();
@@ -48,7 +48,7 @@ protected:
 
     TemporaryFolder folder_;
     gi::Report report_;
-    CounterSession session_;
+    ar::CounterSession session_;
 };
 
 TEST_F(CounterChecks, AcceptWhatBelongsTogether)
@@ -62,7 +62,7 @@ TEST_F(CounterChecks, AcceptWhatBelongsTogether)
 
 TEST_F(CounterChecks, NoticeThingsOfAnotherFrame)
 {
-    CounterVerdict const v = verdict(record(7), shown(7, 8));
+    ar::CounterVerdict const v = verdict(record(7), shown(7, 8));
     EXPECT_EQ(v.misplaced, 1);
     EXPECT_NEAR(v.most_off_px, 0.02 * 320, 1);
     EXPECT_EQ(v.other + v.unread + v.mistimed, 0);
@@ -70,7 +70,7 @@ TEST_F(CounterChecks, NoticeThingsOfAnotherFrame)
 
 TEST_F(CounterChecks, NoticeAPictureOfAnotherFrame)
 {
-    CounterVerdict const v = verdict(record(7), shown(6, 6));
+    ar::CounterVerdict const v = verdict(record(7), shown(6, 6));
     EXPECT_EQ(v.other, 1);
     EXPECT_EQ(v.misplaced, 0);
     EXPECT_EQ(verdict(record(7), cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(0))).unread, 1);
@@ -78,7 +78,7 @@ TEST_F(CounterChecks, NoticeAPictureOfAnotherFrame)
 
 TEST_F(CounterChecks, NoticeTimesThatDoNotAddUp)
 {
-    ArFrameRecord f = record(7);
+    ar::RunFrame f = record(7);
     f.times.render_ms += 1;
     EXPECT_EQ(verdict(f, shown(7, 7)).mistimed, 1) << "stages";
     f = record(7);

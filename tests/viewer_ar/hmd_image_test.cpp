@@ -62,14 +62,14 @@ protected:
     /// What the eye should see of a composite that stands 1 m before a camera in the middle of the head.
     cv::Mat expected(std::size_t eye, cv::Mat const& composite, glm::ivec2 size_px) const
     {
-        ar::CameraModel const camera = load_ar_camera(folder / "desk/camera.yaml").model;
+        ar::CameraModel const camera = ar::load_camera(folder / "desk/camera.yaml").model;
         ar::CameraModel const pinhole = ar::covering_pinhole(camera);
         cv::Mat const lens = ar::remap_table(pinhole, camera);
         gi::Camera seen;
         auto const& f = kFov[eye];
         seen.off_axis = gi::ViewTangents{std::tan(f[0]), std::tan(f[1]), std::tan(f[3]), std::tan(f[2])};
         seen.world_from_camera[3] = glm::dvec4(eye == 0 ? -kEyes_m : kEyes_m, 1.6, 0, 1);
-        ar::Pose const room_from_camera{glm::dquat(0, 1, 0, 0), {0, 1.6, 0}};
+        gi::RigidPose const room_from_camera{{0, 1.6, 0}, glm::dquat(0, 1, 0, 0)};
         glm::dmat3 const m = pinhole_from_eye(seen, size_px, pinhole, room_from_camera, 1);
         cv::Mat at(size_px.y, size_px.x, CV_32FC2), map, picture;
         for (int y = 0; y < size_px.y; ++y)

@@ -20,10 +20,10 @@ TEST(LightOfSharedMaps, AgreesWithTheMapThatLitTheFrame)
     for (Limits const& l : {Limits{"hilly_terrain_01_1k", 0.06, 0.6},
                             {"kloppenheim_05_1k", 0.06, 4},
                             {"dancing_hall_1k", 0.12, -1}}) {
-        LightCheckSettings s;
+        ar::LightCheckSettings s;
         s.paths = 32;
         gi::Report report;
-        LightChecked const c = check_light(
+        ar::LightChecked const c = ar::check_light(
             ar::read_map(gi::test::shared_data() / "envmaps" / fmt::format("{}.hdr", l.map)), s, {}, report);
         fmt::print(
             "{}: irradiance {:.3f} rms, up {:.3f}, white {:.2f} deg, lamp {:.2f} deg, FLIP {:.4f} ({:.4f} even "

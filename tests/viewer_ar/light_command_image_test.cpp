@@ -20,9 +20,9 @@ cv::Mat sunny(double sun)
     return map;
 }
 
-LightCheckSettings quick()
+ar::LightCheckSettings quick()
 {
-    LightCheckSettings s;
+    ar::LightCheckSettings s;
     s.size_px = {240, 180};
     s.paths = 24;
     s.composites = false;
@@ -32,7 +32,7 @@ LightCheckSettings quick()
 TEST(LightFromFrame, FindsTheSunOfASyntheticDesk)
 {
     gi::Report report;
-    LightChecked const c = check_light(sunny(300), quick(), {}, report);
+    ar::LightChecked const c = ar::check_light(sunny(300), quick(), {}, report);
     EXPECT_LT(c.lamp_deg, 3); // the sun's texel is 5.6 degrees wide
     EXPECT_GE(c.lamp_deg, 0);
     EXPECT_NEAR(c.up_ratio, 1, 0.03);
@@ -46,9 +46,9 @@ TEST(LightFromFrame, FindsTheSunOfASyntheticDesk)
 TEST(LightFromFrame, FindsAlbedosWithIt)
 {
     gi::Report report;
-    LightCheckSettings s = quick();
+    ar::LightCheckSettings s = quick();
     s.unknown_albedo = true;
-    LightChecked const c = check_light(sunny(300), s, {}, report);
+    ar::LightChecked const c = ar::check_light(sunny(300), s, {}, report);
     EXPECT_GE(c.lamp_deg, 0);
     EXPECT_LT(c.lamp_deg, 4);
     EXPECT_NEAR(c.up_ratio, 1, 0.12);

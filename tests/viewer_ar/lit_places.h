@@ -18,7 +18,7 @@ inline gi::Material matt(float albedo)
 
 inline std::shared_ptr<gi::EnvironmentMap const> environment(cv::Mat const& map)
 {
-    return std::make_shared<gi::EnvironmentMap const>(environment_of(map));
+    return std::make_shared<gi::EnvironmentMap const>(ar::environment_of(map));
 }
 
 inline cv::Mat uniform(double radiance) { return cv::Mat(32, 64, CV_32FC3, cv::Scalar::all(radiance)); }

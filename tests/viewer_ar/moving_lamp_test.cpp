@@ -29,7 +29,7 @@ ar::Frame frame(Lamp lamp, std::uint64_t sequence)
 }
 
 /// Mean radiance of the left and the right rim of the virtual ball, where a lamp from aside is seen.
-std::pair<double, double> rims(ArResult const& r)
+std::pair<double, double> rims(ar::FrameResult const& r)
 {
     cv::Mat const whole = r.pair->coverage > 0.99;
     cv::Rect const box = cv::boundingRect(whole);
@@ -51,7 +51,7 @@ TEST(MovingLamp, IsFollowedInTheFrameThatShowsIt)
     white.specular = 0;
     b.sphere(b.add_material("ball", white), {0, 0, 0}, 0.1f, 32);
     gi::write_glb(folder / "ball.glb", b.finish("ball"), report);
-    ArSession session;
+    ar::Session session;
     session.virtual_things.scene = folder / "ball.glb";
     ar::write_map(folder / "dark.exr", cv::Mat(32, 64, CV_32FC3, cv::Scalar::all(0.0212)));
     session.light = folder / "dark.exr"; // what the camera never sees: as bright as the wall
@@ -65,19 +65,19 @@ TEST(MovingLamp, IsFollowedInTheFrameThatShowsIt)
     session.render.settings.of<gi::SlhbSettings>().light_samples = 8;
     session.render.settings.of<gi::SlhbSettings>().shadow_resolution = 64;
     // Wide, so that a lamp at its borders stands beside the ball and not behind it.
-    ArCamera camera;
+    ar::CalibratedCamera camera;
     camera.model = {ar::LensModel::pinhole, {120, 90}, 35, 35, 59.5, 44.5, {}};
     camera.photometry = ar::srgb_photometry();
     ar::MarkerMap markers;
     markers.markers = {{"DICT_4X4_50", 0, 0.05, {}}};
-    ArPipeline pipeline(session, camera, markers, report);
+    ar::Pipeline pipeline(session, camera, markers, report);
     // A quarter of a metre before the ball, looking along -z: x is to the right.
-    ar::Pose const pose{glm::angleAxis(glm::radians(180.0), glm::dvec3(1, 0, 0)), {0, 0, 0.25}};
+    gi::RigidPose const pose{{0, 0, 0.25}, glm::angleAxis(glm::radians(180.0), glm::dvec3(1, 0, 0))};
     std::uint64_t sequence = 0;
     auto const seen = [&](Lamp lamp) {
         double const time_s = double(sequence) / 10;
         ar::Frame const f = frame(lamp, sequence++);
-        ArResult r = pipeline.find(f, time_s, pose);
+        ar::FrameResult r = pipeline.find(f, time_s, pose);
         pipeline.add(r, f, time_s, {});
         return rims(r);
     };

@@ -14,25 +14,25 @@ namespace {
 constexpr glm::ivec2 kSize(96, 72);
 
 /// A red ball on a table, behind a block.
-LocalScene scene()
+ar::LocalScene scene()
 {
     gi::Report report;
     gi::Scene real;
-    for (ArProxy const& p :
-         {ArProxy{"table", {}, ProxyPlane{{-0.6, 0, 0.5}, {1.2, 0, 0}, {0, 0, -1}}},
-          ArProxy{"block", {}, ProxyBox{{0.12, 0.25, 0.05}, {{1, 0, 0, 0}, {0.07, 0.125, 0.15}}}}})
-        gi::append(real, scene_of(p, report), p.name, gi::dmat4(1));
+    for (ar::Proxy const& p :
+         {ar::Proxy{"table", {}, ar::ProxyPlane{{-0.6, 0, 0.5}, {1.2, 0, 0}, {0, 0, -1}}},
+          ar::Proxy{"block", {}, ar::ProxyBox{{0.12, 0.25, 0.05}, {{0.07, 0.125, 0.15}, {1, 0, 0, 0}}}}})
+        gi::append(real, ar::scene_of(p, report), p.name, gi::dmat4(1));
     gi::SceneBuilder b;
     gi::Material red;
     red.base_color = {0.7f, 0.1f, 0.1f};
     red.specular = 0;
     b.sphere(b.add_material("ball", red), {0, 0.13f, 0}, 0.12f, 48);
-    return join_scenes(std::move(real), b.finish("ball"), gi::dmat4(1));
+    return ar::join_scenes(std::move(real), b.finish("ball"), gi::dmat4(1));
 }
 
 struct Finished {
     ar::RenderedPair pair;
-    FinishCounts counts;
+    ar::FinishCounts counts;
 };
 
 gi::RenderSettings quick_settings()
@@ -46,20 +46,21 @@ gi::RenderSettings quick_settings()
     return settings;
 }
 
-Finished finished(double resolution, ArFinish const& finish, std::uint32_t paths, cv::Mat const& radiance = {})
+Finished finished(double resolution, ar::FinishSettings const& finish, std::uint32_t paths,
+                  cv::Mat const& radiance = {})
 {
-    ArSession session;
+    ar::Session session;
     session.render.resolution = resolution;
     session.finish = finish;
     gi::Report report;
-    PairRenderer renderer(scene(), quick_settings(), report, "slhb");
+    ar::PairRenderer renderer(scene(), quick_settings(), report, "slhb");
     renderer.set_environment(std::make_shared<gi::EnvironmentMap const>(
-        environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
-    PairFinish finisher(session, synthetic_camera(kSize).model, {});
-    ar::Pose const pose = synthetic_pose(0.5);
+        ar::environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
+    ar::PairFinish finisher(session, ar::synthetic_camera(kSize).model, {});
+    gi::RigidPose const pose = ar::synthetic_pose(0.5);
     ar::CameraModel const& pinhole = finisher.pinhole();
-    PairPictures const p = renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, paths,
-                                           0, gi::DenoiseSettings{}, {});
+    ar::PairPictures const p = renderer.render(ar::gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y,
+                                               paths, 0, gi::DenoiseSettings{}, {});
     Finished f;
     f.pair = finisher(p, {radiance, pose, 0, 0}, renderer.world_with(0));
     f.counts = finisher.counts();
@@ -76,7 +77,7 @@ double mean_difference(cv::Mat const& a, cv::Mat const& b)
 TEST(PairFinishes, KeepBordersSharpAtHalfSize)
 {
     cv::Mat const full = finished(1, {}, 12).pair.coverage;
-    ArFinish plain;
+    ar::FinishSettings plain;
     plain.upsample = false;
     Finished const enlarged = finished(0.5, plain, 12), sharp = finished(0.5, {}, 12);
     ASSERT_EQ(sharp.pair.coverage.size(), cv::Size(kSize.x, kSize.y));
@@ -91,21 +92,21 @@ TEST(PairFinishes, KeepBordersSharpAtHalfSize)
 /// Mean over the ball of the standard deviation of what it shows, over frames of one pose.
 double flicker(double smoothing)
 {
-    ArSession session;
+    ar::Session session;
     session.render.resolution = 0.5;
     session.smoothing = smoothing;
     gi::Report report;
-    PairRenderer renderer(scene(), quick_settings(), report, "slhb");
+    ar::PairRenderer renderer(scene(), quick_settings(), report, "slhb");
     renderer.set_environment(std::make_shared<gi::EnvironmentMap const>(
-        environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
-    PairFinish finisher(session, synthetic_camera(kSize).model, {});
-    ar::Pose const pose = synthetic_pose(0.5);
+        ar::environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
+    ar::PairFinish finisher(session, ar::synthetic_camera(kSize).model, {});
+    gi::RigidPose const pose = ar::synthetic_pose(0.5);
     ar::CameraModel const& pinhole = finisher.pinhole();
     cv::Mat sum(kSize.y, kSize.x, CV_32FC1, cv::Scalar(0)), squares = sum.clone(), covered;
     constexpr int kFirst = 6, kFrames = 14;
     for (int k = 0; k < kFrames; ++k) {
-        PairPictures const p = renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, 1,
-                                               0, {.denoiser = gi::Denoiser::none}, {});
+        ar::PairPictures const p = renderer.render(ar::gi_camera(pinhole, pose), pinhole.size_px.x,
+                                                   pinhole.size_px.y, 1, 0, {.denoiser = gi::Denoiser::none}, {});
         ar::RenderedPair const pair = finisher(p, {{}, pose, k / 30.0, 0}, renderer.world_with(0));
         if (k < kFirst) continue;
         cv::Mat red;
@@ -127,11 +128,11 @@ TEST(PairFinishes, SmoothWhatVirtualThingsShow) { EXPECT_LT(flicker(0.2), 0.6 * 
 TEST(PairFinishes, RefineBordersOfOccludersByTheCamera)
 {
     // The block is black in the camera's picture, and three pixels wider to the left than its proxy.
-    ArFinish finish;
+    ar::FinishSettings finish;
     Finished const before = finished(1, finish, 4);
     finish.mattes = true;
-    ar::CameraModel const camera = synthetic_camera(kSize).model;
-    ar::Pose const from_world = ar::inverse(synthetic_pose(0.5));
+    ar::CameraModel const camera = ar::synthetic_camera(kSize).model;
+    gi::RigidPose const from_world = gi::inverse(ar::synthetic_pose(0.5));
     cv::Mat radiance(kSize.y, kSize.x, CV_32FC3, cv::Scalar::all(0.6));
     auto const low = ar::project(camera, from_world * glm::dvec3(0.01, 0, 0.175)),
                high = ar::project(camera, from_world * glm::dvec3(0.13, 0.25, 0.175));

@@ -13,38 +13,38 @@
 namespace viewer::test {
 namespace {
 
-PaperOnTable blank_paper() { return {cv::Mat(4, 4, CV_8UC1, cv::Scalar(255)), 0.3, 0.2, {-0.15, 0.3}}; }
+ar::PaperOnTable blank_paper() { return {cv::Mat(4, 4, CV_8UC1, cv::Scalar(255)), 0.3, 0.2, {-0.15, 0.3}}; }
 
 std::shared_ptr<gi::EnvironmentMap const> sky()
 {
     cv::Mat map(16, 32, CV_32FC3, cv::Scalar(0.5, 0.6, 0.8));
     cv::rectangle(map, {20, 3, 3, 3}, cv::Scalar(20, 18, 14), cv::FILLED);
-    return std::make_shared<gi::EnvironmentMap const>(environment_of(map));
+    return std::make_shared<gi::EnvironmentMap const>(ar::environment_of(map));
 }
 
-PairPictures rendered(gi::Scene virtual_things, std::uint32_t paths, gi::Report& report, double time_s = 0,
-                      bool is_denoised = false)
+ar::PairPictures rendered(gi::Scene virtual_things, std::uint32_t paths, gi::Report& report, double time_s = 0,
+                          bool is_denoised = false)
 {
     gi::RenderSettings settings;
     settings.bounces = 2;
-    LocalScene local =
-        join_scenes(generate_desk(DeskPart::near, blank_paper()), std::move(virtual_things), gi::dmat4(1));
-    PairRenderer renderer(std::move(local), settings, report);
+    ar::LocalScene local = ar::join_scenes(ar::generate_desk(ar::DeskPart::near, blank_paper()),
+                                           std::move(virtual_things), gi::dmat4(1));
+    ar::PairRenderer renderer(std::move(local), settings, report);
     renderer.set_environment(sky());
-    ar::CameraModel camera = synthetic_camera({80, 60}).model;
+    ar::CameraModel camera = ar::synthetic_camera({80, 60}).model;
     camera.lens = ar::LensModel::pinhole;
-    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 80, 60, paths, time_s,
+    return renderer.render(ar::gi_camera(camera, ar::synthetic_pose(0.5)), 80, 60, paths, time_s,
                            {.denoiser = is_denoised ? gi::Denoiser::atrous : gi::Denoiser::none}, {});
 }
 
 TEST(PairRenderers, WithNothingVirtualChangeNothing)
 {
     gi::Report report;
-    PairPictures const p = rendered({}, 2, report);
+    ar::PairPictures const p = rendered({}, 2, report);
     EXPECT_EQ(cv::norm(p.with, p.without, cv::NORM_INF), 0);
     EXPECT_EQ(cv::countNonZero(p.coverage), 0);
     EXPECT_GT(cv::mean(p.without)[1], 0.01) << "the place is lit";
-    PairPictures const smooth = rendered({}, 2, report, 0, true);
+    ar::PairPictures const smooth = rendered({}, 2, report, 0, true);
     EXPECT_EQ(cv::norm(smooth.with, smooth.without, cv::NORM_INF), 0);
     EXPECT_GT(cv::norm(smooth.with, p.with, cv::NORM_INF), 0);
 }
@@ -52,7 +52,7 @@ TEST(PairRenderers, WithNothingVirtualChangeNothing)
 TEST(PairRenderers, PutThingsOnTheTable)
 {
     gi::Report report;
-    PairPictures const p = rendered(generate_statue(), 8, report);
+    ar::PairPictures const p = rendered(ar::generate_statue(), 8, report);
     int const covered = cv::countNonZero(p.coverage > 0.5);
     EXPECT_GT(covered, 100);
     EXPECT_LT(covered, 80 * 60 / 3);
@@ -66,8 +66,8 @@ TEST(PairRenderers, PutThingsOnTheTable)
 TEST(PairRenderers, MoveWhatHasClips)
 {
     gi::Report report;
-    PairPictures const a = rendered(generate_statue(), 1, report, 0),
-                       b = rendered(generate_statue(), 1, report, 0.4);
+    ar::PairPictures const a = rendered(ar::generate_statue(), 1, report, 0),
+                           b = rendered(ar::generate_statue(), 1, report, 0.4);
     EXPECT_GT(cv::norm(a.coverage, b.coverage, cv::NORM_L1), 5);
 }
 
@@ -82,7 +82,7 @@ TEST(PairRenderers, TakeAwayVirtualLampsToo)
     node.light = 0;
     lamp.nodes.push_back(node);
     gi::Report report;
-    PairPictures const p = rendered(lamp, 16, report), dark = rendered({}, 16, report);
+    ar::PairPictures const p = rendered(lamp, 16, report), dark = rendered({}, 16, report);
     EXPECT_GT(cv::mean(p.with)[0], 1.2 * cv::mean(p.without)[0]);
     EXPECT_NEAR(cv::mean(p.without)[0], cv::mean(dark.without)[0], 0.05 * cv::mean(dark.without)[0]);
 }
@@ -110,9 +110,9 @@ TEST(LocalScenes, TakeAwayAllOfSkins)
     holder.meshes = {0};
     holder.skin = 0;
     scene.nodes.push_back(holder);
-    LocalScene const local = join_scenes({}, scene, gi::dmat4(1));
+    ar::LocalScene const local = ar::join_scenes({}, scene, gi::dmat4(1));
     auto const size = [&](gi::PairSide side) {
-        gi::Pose const pose = local_pose(local, std::nullopt, side);
+        gi::Pose const pose = ar::local_pose(local, std::nullopt, side);
         std::size_t const node = local.scene->nodes.size() - 1;
         auto const at = gi::deform(*local.scene, pose, node, local.scene->meshes[0]).positions;
         return glm::distance(at[0], at[1]) + glm::distance(at[0], at[2]);
@@ -123,7 +123,7 @@ TEST(LocalScenes, TakeAwayAllOfSkins)
 
 TEST(LocalScenes, WithRealThingsThatMoveAreRefused)
 {
-    EXPECT_THROW(join_scenes(gi::generate_avatar(), {}, gi::dmat4(1)), gi::InputError);
+    EXPECT_THROW(ar::join_scenes(gi::generate_avatar(), {}, gi::dmat4(1)), gi::InputError);
 }
 
 } // namespace

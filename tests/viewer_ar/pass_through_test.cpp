@@ -1,6 +1,6 @@
 // Composites for two eyes: each from its own camera, both of the same moment.
 
-#include "ar/runtime/hmd_run.h"
+#include "viewer/camera_view/hmd_run.h"
 
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
@@ -17,13 +17,13 @@ TEST(HeadPaths, AreInterpolatedAndHeldAtTheirEnds)
     HeadPath path;
     EXPECT_FALSE(path.at(1));
     for (int i = 0; i <= 10; ++i)
-        path.add(5 + 0.01 * i, {glm::angleAxis(0.1 * i, glm::dvec3(0, 1, 0)), {0.2 * i, 1.6, 0}});
+        path.add(5 + 0.01 * i, {{0.2 * i, 1.6, 0}, glm::angleAxis(0.1 * i, glm::dvec3(0, 1, 0))});
     auto const between = path.at(5.035);
     ASSERT_TRUE(between);
-    EXPECT_NEAR(between->position_m.x, 0.7, 1e-9);
+    EXPECT_NEAR(between->position.x, 0.7, 1e-9);
     EXPECT_NEAR(ar::angle_between_deg(between->rotation, {1, 0, 0, 0}), glm::degrees(0.35), 1e-9);
-    EXPECT_NEAR(path.at(1)->position_m.x, 0, 1e-12);
-    EXPECT_NEAR(path.at(9)->position_m.x, 2, 1e-12);
+    EXPECT_NEAR(path.at(1)->position.x, 0, 1e-12);
+    EXPECT_NEAR(path.at(9)->position.x, 2, 1e-12);
     path.add(8, {}); // what is older than two seconds is forgotten
     EXPECT_EQ(path.at(5), path.at(8));
 }
@@ -38,9 +38,9 @@ protected:
     static void TearDownTestSuite() { delete made_; }
     TwoCameras() : folder_(*made_)
     {
-        session_ = read_ar_session(folder_ / "desk/session.yaml");
+        session_ = ar::read_session(folder_ / "desk/session.yaml");
         session_.hmd.emplace().right = {(folder_ / "desk/frames").string(), folder_ / "desk/camera.yaml",
-                                        ar::Pose{glm::angleAxis(0.05, glm::dvec3(0, 1, 0)), {0.06, 0, 0}}};
+                                        gi::RigidPose{{0.06, 0, 0}, glm::angleAxis(0.05, glm::dvec3(0, 1, 0))}};
         options_.pace = ar::Pace::fastest;
         options_.poses = ar::read_poses(folder_ / "desk/poses.csv", {30}).poses;
     }
@@ -54,7 +54,7 @@ protected:
 
     static inline TemporaryFolder* made_ = nullptr;
     TemporaryFolder const& folder_;
-    ArSession session_;
+    ar::Session session_;
     PassThroughOptions options_;
     gi::Report report_;
 };
@@ -73,11 +73,11 @@ TEST_F(TwoCameras, AreEachCompositedFromWhereTheyAre)
 
     // The right one is what one camera at that place would have made of these frames.
     gi::StopRequest const stop;
-    ArPipeline alone(session_, load_ar_camera(session_.camera), ar::read_marker_map(session_.markers), report_);
+    ar::Pipeline alone(session_, ar::load_camera(session_.camera), ar::read_marker_map(session_.markers), report_);
     ar::OpenOptions open = session_.frames.options;
     open.pace = ar::Pace::fastest;
     auto const source = ar::open_source(session_.frames.source, open);
-    ArResult r;
+    ar::FrameResult r;
     for (int f = 0; f < 2; ++f) {
         auto const frame = source->next(std::chrono::seconds(5));
         ASSERT_TRUE(frame);

@@ -109,7 +109,7 @@ TEST_F(ArPasses, AreOneFileAFrameWithAllThatIsPromised)
     Imf::MultiPartInputFile flat_file((desk() / "flat/000001.exr").c_str());
     Imath::V3f ndc;
     Imf::worldToNDC(flat_file.header(0)).multVecMatrix(Imath::V3f(0.1f, 0, -0.05f), ndc);
-    ar::Pose const world_from_camera = ar::read_poses(desk() / "poses.csv", {30}).poses[1].world_from_camera;
+    gi::RigidPose const world_from_camera = ar::read_poses(desk() / "poses.csv", {30}).poses[1].world_from_camera;
     glm::dvec3 const seen = inverse(world_from_camera) * glm::dvec3(0.1, 0, -0.05);
     auto const two = [&](char const* key) {
         std::istringstream in(flat.metadata.at(key));
@@ -132,7 +132,7 @@ TEST_F(ArPasses, MotionLeadsToTheSamePlaceInTheFrameBefore)
     EXPECT_EQ(before.find("motion_place"), nullptr);
     ar::CameraModel const camera = ar::read_calibration(desk() / "camera.yaml").camera;
     auto const poses = ar::read_poses(desk() / "poses.csv", {30}).poses;
-    ar::Pose const before_from_now = inverse(poses[0].world_from_camera) * poses[1].world_from_camera;
+    gi::RigidPose const before_from_now = inverse(poses[0].world_from_camera) * poses[1].world_from_camera;
     std::vector<float> const &depth = now.find("depth_place")->data,
                              &depth_before = before.find("depth_place")->data,
                              &motion = now.find("motion_place")->data;

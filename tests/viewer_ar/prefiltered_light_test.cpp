@@ -20,15 +20,15 @@ namespace fs = std::filesystem;
 /// Virtual objects on real ones, under a map.
 struct Place {
     Place(gi::Scene real, gi::Scene things, std::shared_ptr<gi::EnvironmentMap const> map)
-        : local(join_scenes(std::move(real), std::move(things), gi::dmat4(1))), moving(local.scene, 0, report)
+        : local(ar::join_scenes(std::move(real), std::move(things), gi::dmat4(1))), moving(local.scene, 0, report)
     {
         moving.set_environment(std::move(map));
     }
     gi::World const& world() const { return moving.world(); }
     /// The point where a line along -normal meets the first triangle that faces it.
-    LitPoint point(gi::vec3 at, gi::vec3 normal) const
+    ar::LitPoint point(gi::vec3 at, gi::vec3 normal) const
     {
-        LitPoint p{at, normal, normal, gi::kNoPrimitive, {}, {}};
+        ar::LitPoint p{at, normal, normal, gi::kNoPrimitive, {}, {}};
         float nearest = gi::kInf;
         for (std::size_t t = 0; t < world().triangles.size(); ++t) {
             gi::Surface const& s = world().surfaces[t];
@@ -45,7 +45,7 @@ struct Place {
     }
 
     gi::Report report;
-    LocalScene local;
+    ar::LocalScene local;
     gi::MovingWorld moving;
 };
 
@@ -54,7 +54,7 @@ struct Place {
 double worst_face(cv::Mat const& map)
 {
     Place const place({}, box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, matt(0.5f)), environment(map));
-    PrefilteredLight const light(place.world());
+    ar::PrefilteredLight const light(place.world());
     std::vector<cv::Vec3d> wanted;
     std::vector<gi::vec3> got;
     for (gi::vec3 const n : kAxes) {
@@ -108,9 +108,9 @@ TEST(PrefilteredLights, ASquareAboveTheFloorHidesItsFormFactor)
     gi::SceneBuilder b;
     b.quad(b.add_material("square", matt(0)), {-0.5f, 0.5f, 0.5f}, {1, 0, 0}, {0, 0, -1});
     Place const place(floor(4, matt(0.5f)), b.finish("square"), environment(uniform(1)));
-    PrefilteredLight const light(place.world());
+    ar::PrefilteredLight const light(place.world());
     for (double const off : {0.0, 0.25, 0.5}) {
-        LitPoint const at = place.point({float(off), 0, 0}, {0, 1, 0});
+        ar::LitPoint const at = place.point({float(off), 0, 0}, {0, 1, 0});
         // Differential area to parallel rectangle with a corner above it (Howell, B-3), for four quarters.
         auto const corner = [](double a, double c) {
             double const x = a / 0.5, y = c / 0.5;
@@ -123,7 +123,7 @@ TEST(PrefilteredLights, ASquareAboveTheFloorHidesItsFormFactor)
         std::printf("%.2f m beside the middle: hidden %.4f, closed form %.4f\n", off, got, f);
         EXPECT_NEAR(got, f, 0.03);
     }
-    LitPoint const far = place.point({3.9f, 0, 3.9f}, {0, 1, 0});
+    ar::LitPoint const far = place.point({3.9f, 0, 3.9f}, {0, 1, 0});
     EXPECT_GT(light.change_on_still(far).irradiance.x, -0.02f);
 }
 
@@ -133,14 +133,14 @@ TEST(PrefilteredLights, AWhiteRoomCornerUnderAWhiteSkyIsWhite)
     // beyond the second bounce is lost.
     Place const place(floor(2, matt(1)), box({-0.2f, 0.001f, -0.2f}, {0.2f, 0.4f, 0.2f}, matt(1)),
                       environment(uniform(1)));
-    PrefilteredLight const light(place.world());
+    ar::PrefilteredLight const light(place.world());
     for (gi::vec3 const n : {kAxes[0], kAxes[2], kAxes[4]}) {
         gi::vec3 const at = gi::vec3(0, 0.2f, 0) + 0.2f * n;
         double const radiance = double(light.on_moving(place.point(at, n)).irradiance.x) / gi::kPiD;
         std::printf("side %g %g %g: %.4f\n", double(n.x), double(n.y), double(n.z), radiance);
         EXPECT_NEAR(radiance, 1, 0.06);
     }
-    LitPoint const beside = place.point({0.3f, 0, 0}, {0, 1, 0});
+    ar::LitPoint const beside = place.point({0.3f, 0, 0}, {0, 1, 0});
     double const radiance =
         double((light.on_still(beside).irradiance + light.change_on_still(beside).irradiance).x) / gi::kPiD;
     std::printf("floor beside it: %.4f\n", radiance);
@@ -153,13 +153,13 @@ TEST(EnvironmentCells, KeepAllLightAndAngle)
     cv::rectangle(map, {40, 5, 1, 1}, cv::Scalar(5000, 4000, 3000), cv::FILLED);
     cv::rectangle(map, {2, 12, 6, 8}, cv::Scalar(3, 4, 5), cv::FILLED);
     Place place({}, {}, environment(map));
-    EnvironmentTexels const texels = environment_texels(place.world());
-    EnvironmentCells cells;
+    ar::EnvironmentTexels const texels = ar::environment_texels(place.world());
+    ar::EnvironmentCells cells;
     EXPECT_TRUE(cells.update(texels));
     EXPECT_EQ(cells.cells().size(), 128u);
     gi::dvec3 light(0);
     double sr = 0, share = 0;
-    for (EnvironmentCell const& c : cells.cells()) {
+    for (ar::EnvironmentCell const& c : cells.cells()) {
         light += gi::dvec3(c.light);
         sr += double(c.solid_angle_sr);
         share += double(c.share);
@@ -173,9 +173,9 @@ TEST(EnvironmentCells, KeepAllLightAndAngle)
     cv::Mat moved = uniform(0.2);
     cv::rectangle(moved, {10, 25, 1, 1}, cv::Scalar(5000, 4000, 3000), cv::FILLED);
     place.moving.set_environment(environment(moved));
-    EXPECT_TRUE(cells.update(environment_texels(place.world()))) << "the lamp has moved";
+    EXPECT_TRUE(cells.update(ar::environment_texels(place.world()))) << "the lamp has moved";
     place.moving.set_environment(nullptr);
-    EXPECT_TRUE(cells.update(environment_texels(place.world())));
+    EXPECT_TRUE(cells.update(ar::environment_texels(place.world())));
     EXPECT_TRUE(cells.cells().empty());
 }
 
@@ -187,15 +187,15 @@ TEST(PrefilteredLights, HardCases)
     sun.at<cv::Vec3f>(6, 20) = cv::Vec3f(1e6f, 1e6f, 1e6f);
     auto const lit = [&](gi::Scene real, gi::Scene virtual_things, std::shared_ptr<gi::EnvironmentMap const> map) {
         Place const place(std::move(real), std::move(virtual_things), std::move(map));
-        PrefilteredLight light(place.world());
+        ar::PrefilteredLight light(place.world());
         light.moved();
-        ReceivedLight sum;
+        ar::ReceivedLight sum;
         for (std::size_t t = 0; t < place.world().triangles.size(); ++t) {
             gi::Surface const& s = place.world().surfaces[t];
             gi::vec3 const n = gi::shading_detail::triangle_normal(s);
-            LitPoint const at{
+            ar::LitPoint const at{
                 s.corner + (s.edge1 + s.edge2) / 3.0f, n, n, std::uint32_t(t), n, {0.3f, gi::vec3(0.1f)}};
-            for (ReceivedLight const& r :
+            for (ar::ReceivedLight const& r :
                  {light.on_moving(at), light.change_on_still(at), light.on_still(at), light.on_still(at, 8, 7)}) {
                 EXPECT_TRUE(gi::all_finite(r.irradiance) && gi::all_finite(r.glossy));
                 sum.irradiance += r.irradiance;
@@ -251,12 +251,12 @@ TEST(PrefilteredLights, GlossyLobesReflectWhatTheBsdfDoes)
             m.metallic = 1;
             m.roughness = roughness;
             Place const place({}, box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, m), environment(map));
-            PrefilteredLight const light(place.world());
+            ar::PrefilteredLight const light(place.world());
             gi::Bsdf const bsdf = gi::make_bsdf(m);
             for (gi::vec3 const& to_viewer : {gi::vec3(0, 0, 1), glm::normalize(gi::vec3(0.5f, 0.3f, 1))}) {
-                LitPoint at = place.point({0.1f, 0.1f, 0.5f}, {0, 0, 1});
+                ar::LitPoint at = place.point({0.1f, 0.1f, 0.5f}, {0, 0, 1});
                 at.to_viewer = to_viewer;
-                at.lobe = glossy_lobe_of(bsdf, to_viewer.z);
+                at.lobe = ar::glossy_lobe_of(bsdf, to_viewer.z);
                 double const got = double(light.on_moving(at).glossy.y);
                 double const wanted = reflected(map, gi::glossy_lobe(bsdf), {0, 0, 1}, to_viewer).y;
                 std::printf("%s, roughness %.1f: %.4f, by the BSDF %.4f\n", name, double(roughness), got, wanted);
@@ -269,14 +269,14 @@ TEST(PrefilteredLights, DrawMapsOfManyTrianglesOverSeveralFrames)
 {
     gi::Scene things = box({-0.1f, 0.1f, -0.1f}, {0.1f, 0.3f, 0.1f}, matt(0.5f));
     Place place(floor(1, matt(0.5f)), things, environment(uniform(1)));
-    PrefilteredLight whole(place.world()), parts(place.world(), {}, {.triangles_at_once = 1});
-    gi::Pose pose = local_pose(place.local, std::nullopt, gi::PairSide::with);
+    ar::PrefilteredLight whole(place.world()), parts(place.world(), {}, {.triangles_at_once = 1});
+    gi::Pose pose = ar::local_pose(place.local, std::nullopt, gi::PairSide::with);
     for (std::size_t n = place.local.first_virtual_node; n < pose.world_from_node.size(); ++n)
         pose.world_from_node[n][3].x += 0.02;
     place.moving.advance(pose);
     whole.moved();
     parts.moved();
-    auto const on_floor = [&](PrefilteredLight const& light) {
+    auto const on_floor = [&](ar::PrefilteredLight const& light) {
         std::vector<float> changes;
         for (float x = -0.5f; x < 0.5f; x += 0.05f)
             changes.push_back(light.change_on_still(place.point({x, 0, 0.02f}, {0, 1, 0})).irradiance.x);
@@ -300,14 +300,14 @@ TEST(PrefilteredLights, FitPatchesToObjectsThatGrow)
 {
     Place place(floor(1, matt(0.5f)), box({-0.1f, 0.1f, -0.1f}, {0.1f, 0.3f, 0.1f}, matt(0.5f)),
                 environment(uniform(1)));
-    PrefilteredLight const grown(place.world());
-    gi::Pose const pose = local_pose(place.local, std::nullopt, gi::PairSide::with);
-    place.moving.advance(local_pose(place.local, std::nullopt, gi::PairSide::without));
-    PrefilteredLight light(place.world());
+    ar::PrefilteredLight const grown(place.world());
+    gi::Pose const pose = ar::local_pose(place.local, std::nullopt, gi::PairSide::with);
+    place.moving.advance(ar::local_pose(place.local, std::nullopt, gi::PairSide::without));
+    ar::PrefilteredLight light(place.world());
     place.moving.advance(pose);
     light.moved();
     EXPECT_GT(light.counts().patches, grown.counts().patches / 2);
-    LitPoint const below = place.point({0, 0.1f, 0}, {0, -1, 0});
+    ar::LitPoint const below = place.point({0, 0.1f, 0}, {0, -1, 0});
     EXPECT_NEAR(light.on_moving(below).irradiance.x / grown.on_moving(below).irradiance.x, 1, 0.05);
 }
 

@@ -18,43 +18,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-PairPictures pictures(PairRenderer& renderer, double time_s = 0)
+ar::PairPictures pictures(ar::PairRenderer& renderer, double time_s = 0)
 {
-    ar::CameraModel camera = synthetic_camera({160, 120}).model;
+    ar::CameraModel camera = ar::synthetic_camera({160, 120}).model;
     camera.lens = ar::LensModel::pinhole;
-    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 160, 120, 1, time_s, {}, {});
+    return renderer.render(ar::gi_camera(camera, ar::synthetic_pose(0.5)), 160, 120, 1, time_s, {}, {});
 }
 
 TEST(PrefilteredPairs, AreTheSameInEveryFrame)
 {
     gi::Report report;
-    PaperOnTable const paper{cv::Mat(4, 4, CV_8UC1, cv::Scalar(255)), 0.3, 0.2, {-0.15, 0.3}};
-    PairRenderer renderer(join_scenes(generate_desk(DeskPart::near, paper), generate_statue(), gi::dmat4(1)), {},
-                          report);
+    ar::PaperOnTable const paper{cv::Mat(4, 4, CV_8UC1, cv::Scalar(255)), 0.3, 0.2, {-0.15, 0.3}};
+    ar::PairRenderer renderer(
+        ar::join_scenes(ar::generate_desk(ar::DeskPart::near, paper), ar::generate_statue(), gi::dmat4(1)), {},
+        report);
     cv::Mat map = uniform(0.5);
     cv::rectangle(map, {20, 6, 3, 3}, cv::Scalar(20, 18, 14), cv::FILLED);
     renderer.set_environment(environment(map));
-    EXPECT_EQ(renderer.choose(PairLight::automatic), "");
-    PairPictures const first = pictures(renderer);
+    EXPECT_EQ(renderer.choose(ar::PairLight::automatic), "");
+    ar::PairPictures const first = pictures(renderer);
     EXPECT_GT(cv::countNonZero(first.coverage), 100);
     for (int frame = 0; frame < 3; ++frame) {
-        PairPictures const again = pictures(renderer);
+        ar::PairPictures const again = pictures(renderer);
         EXPECT_EQ(cv::norm(again.with, first.with, cv::NORM_INF), 0);
         EXPECT_EQ(cv::norm(again.without, first.without, cv::NORM_INF), 0);
     }
     EXPECT_GT(cv::norm(pictures(renderer, 0.4).coverage, first.coverage, cv::NORM_L1), 5) << "clips play";
-    PairPictures const back = pictures(renderer, 0);
+    ar::PairPictures const back = pictures(renderer, 0);
     EXPECT_LT(cv::norm(back.with, first.with, cv::NORM_L1), 0.01 * cv::norm(first.with, cv::NORM_L1));
-    PairRenderer nothing(join_scenes(generate_desk(DeskPart::near, paper), {}, gi::dmat4(1)), {}, report);
+    ar::PairRenderer nothing(ar::join_scenes(ar::generate_desk(ar::DeskPart::near, paper), {}, gi::dmat4(1)), {},
+                             report);
     nothing.set_environment(environment(map));
-    nothing.choose(PairLight::prefiltered);
-    PairPictures const same = pictures(nothing);
+    nothing.choose(ar::PairLight::prefiltered);
+    ar::PairPictures const same = pictures(nothing);
     EXPECT_EQ(cv::norm(same.with, same.without, cv::NORM_INF), 0);
     EXPECT_GT(cv::mean(same.without)[1], 0.01);
 }
 
 /// Mean radiance of a face's middle, looked up in a picture.
-double face_mean(cv::Mat const& picture, ar::CameraModel const& camera, ar::Pose const& pose, gi::vec3 normal)
+double face_mean(cv::Mat const& picture, ar::CameraModel const& camera, gi::RigidPose const& pose, gi::vec3 normal)
 {
     gi::vec3 const u = std::abs(normal.y) > 0.5f ? gi::vec3(1, 0, 0) : gi::vec3(0, 1, 0),
                    v = glm::cross(normal, u);
@@ -63,7 +65,7 @@ double face_mean(cv::Mat const& picture, ar::CameraModel const& camera, ar::Pose
     for (int j = -9; j <= 9; ++j)
         for (int i = -9; i <= 9; ++i) {
             gi::vec3 const p = gi::vec3(0, 0.1f, 0) + 0.1f * normal + 0.008f * (float(i) * u + float(j) * v);
-            glm::dvec3 const seen = glm::conjugate(pose.rotation) * (glm::dvec3(p) - pose.position_m);
+            glm::dvec3 const seen = glm::conjugate(pose.rotation) * (glm::dvec3(p) - pose.position);
             cv::Point const at(int(std::lround(camera.fx * seen.x / seen.z + camera.cx)),
                                int(std::lround(camera.fy * seen.y / seen.z + camera.cy)));
             if (!cv::Rect({0, 0}, picture.size()).contains(at)) continue;
@@ -82,28 +84,29 @@ TEST(PrefilteredPairs, DoNotFlickerWhenTheCameraTrembles)
     for (char const* const name : {"dancing_hall_1k.hdr", "autoshop_01_1k.hdr", "kloppenheim_05_1k.hdr"})
         if (fs::path const file = gi::test::shared_data() / "envmaps" / name; fs::exists(file))
             maps.emplace_back(name, ar::read_map(file));
-    ar::CameraModel camera = synthetic_camera({640, 480}).model;
+    ar::CameraModel camera = ar::synthetic_camera({640, 480}).model;
     camera.lens = ar::LensModel::pinhole;
     ar::CameraModel const half = ar::scaled(camera, {320, 240});
     for (auto const& [name, map] : maps) {
         gi::Report report;
-        PairRenderer renderer(join_scenes(floor(0.7f, matt(0.6f)),
-                                          box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)), gi::dmat4(1)),
-                              {}, report);
+        ar::PairRenderer renderer(ar::join_scenes(floor(0.7f, matt(0.6f)),
+                                                  box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)),
+                                                  gi::dmat4(1)),
+                                  {}, report);
         renderer.set_environment(environment(map));
-        renderer.choose(PairLight::prefiltered);
+        renderer.choose(ar::PairLight::prefiltered);
         gi::Pcg32 rng = gi::Pcg32::for_path(7, 0, 0);
         auto const normal = [&] { return double(rng.uniform() + rng.uniform() + rng.uniform() - 1.5f) * 2; };
         std::map<int, std::vector<double>> means;
         for (int frame = 0; frame < 16; ++frame) {
-            ar::Pose pose = synthetic_pose(0.35);
-            pose.position_m += 5e-4 * glm::dvec3(normal(), normal(), normal());
+            gi::RigidPose pose = ar::synthetic_pose(0.35);
+            pose.position += 5e-4 * glm::dvec3(normal(), normal(), normal());
             glm::dvec3 const axis(normal(), normal(), normal());
             pose.rotation =
                 glm::normalize(pose.rotation * glm::dquat(1, 2.5e-4 * axis.x, 2.5e-4 * axis.y, 2.5e-4 * axis.z));
-            PairPictures const p = renderer.render(gi_camera(half, pose), 320, 240, 1, 0, {}, {});
+            ar::PairPictures const p = renderer.render(ar::gi_camera(half, pose), 320, 240, 1, 0, {}, {});
             for (int k : {0, 1, 2, 4, 5})
-                if (glm::dot(glm::dvec3(kAxes[k]), pose.position_m - glm::dvec3(0, 0.1, 0)) > 0.2)
+                if (glm::dot(glm::dvec3(kAxes[k]), pose.position - glm::dvec3(0, 0.1, 0)) > 0.2)
                     means[k].push_back(face_mean(p.with, half, pose, kAxes[k]));
         }
         for (auto const& [k, m] : means) {
@@ -121,17 +124,17 @@ TEST(PrefilteredPairs, DoNotFlickerWhenTheCameraTrembles)
 TEST(PrefilteredPairs, FollowALampInTheFrameAfter)
 {
     gi::Report report;
-    PairRenderer renderer(join_scenes({}, box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)), gi::dmat4(1)),
-                          {}, report);
-    renderer.choose(PairLight::prefiltered);
-    ar::CameraModel camera = synthetic_camera({160, 120}).model;
+    ar::PairRenderer renderer(
+        ar::join_scenes({}, box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)), gi::dmat4(1)), {}, report);
+    renderer.choose(ar::PairLight::prefiltered);
+    ar::CameraModel camera = ar::synthetic_camera({160, 120}).model;
     camera.lens = ar::LensModel::pinhole;
-    ar::Pose const pose = synthetic_pose(0.35);
+    gi::RigidPose const pose = ar::synthetic_pose(0.35);
     for (int const column : {4, 20, 36, 52}) {
         cv::Mat map = uniform(0.05);
         cv::rectangle(map, {column, 10, 2, 2}, cv::Scalar(40, 60, 80), cv::FILLED);
         renderer.set_environment(environment(map));
-        PairPictures const p = renderer.render(gi_camera(camera, pose), 160, 120, 1, 0, {}, {});
+        ar::PairPictures const p = renderer.render(ar::gi_camera(camera, pose), 160, 120, 1, 0, {}, {});
         double const top = face_mean(p.with, camera, pose, {0, 1, 0});
         double const wanted = 0.5 / gi::kPiD * ar::irradiance_exact(map, {0, 1, 0})[1];
         EXPECT_NEAR(top / wanted, 1, 0.02) << column;
@@ -142,12 +145,13 @@ TEST(PrefilteredPairs, FollowALampInTheFrameAfter)
 TEST(PrefilteredPairs, CastShadowsUnderMapsOfFewTexels)
 {
     gi::Report report;
-    PairRenderer renderer(join_scenes(floor(0.7f, matt(0.6f)),
-                                      box({-0.1f, 0.05f, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)), gi::dmat4(1)),
-                          {}, report);
+    ar::PairRenderer renderer(ar::join_scenes(floor(0.7f, matt(0.6f)),
+                                              box({-0.1f, 0.05f, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f)),
+                                              gi::dmat4(1)),
+                              {}, report);
     renderer.set_environment(environment(cv::Mat(2, 4, CV_32FC3, cv::Scalar::all(1))));
-    renderer.choose(PairLight::prefiltered);
-    PairPictures const p = pictures(renderer);
+    renderer.choose(ar::PairLight::prefiltered);
+    ar::PairPictures const p = pictures(renderer);
     // Beside the box the shadow is as dark in one column of pixels as in the next.
     cv::Mat change;
     cv::cvtColor(p.without - p.with, change, cv::COLOR_RGB2GRAY);
@@ -172,28 +176,28 @@ TEST(PrefilteredPairs, AreRefusedWhereTheyCannotLight)
     gi::Material mirror = matt(0.9f);
     mirror.metallic = 1;
     mirror.roughness = 0;
-    auto const why = [&](gi::Scene real, gi::Scene things, PairLight light) {
-        PairRenderer renderer(join_scenes(std::move(real), std::move(things), gi::dmat4(1)), {}, report);
+    auto const why = [&](gi::Scene real, gi::Scene things, ar::PairLight light) {
+        ar::PairRenderer renderer(ar::join_scenes(std::move(real), std::move(things), gi::dmat4(1)), {}, report);
         return renderer.choose(light);
     };
     gi::Scene const things = box({-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, matt(0.5f));
-    EXPECT_EQ(why(floor(1, matt(0.5f)), things, PairLight::automatic), "");
-    EXPECT_NE(why(floor(1, matt(0.5f)), things, PairLight::paths), "");
-    EXPECT_EQ(why(floor(1, matt(0.5f)), box(gi::vec3(0), gi::vec3(1), glass), PairLight::automatic),
+    EXPECT_EQ(why(floor(1, matt(0.5f)), things, ar::PairLight::automatic), "");
+    EXPECT_NE(why(floor(1, matt(0.5f)), things, ar::PairLight::paths), "");
+    EXPECT_EQ(why(floor(1, matt(0.5f)), box(gi::vec3(0), gi::vec3(1), glass), ar::PairLight::automatic),
               "surfaces are glass");
-    EXPECT_EQ(why(floor(1, mirror), things, PairLight::automatic), "real surfaces are mirrors");
-    EXPECT_EQ(why(floor(1, matt(0.5f)), box(gi::vec3(0), gi::vec3(1), mirror), PairLight::automatic),
+    EXPECT_EQ(why(floor(1, mirror), things, ar::PairLight::automatic), "real surfaces are mirrors");
+    EXPECT_EQ(why(floor(1, matt(0.5f)), box(gi::vec3(0), gi::vec3(1), mirror), ar::PairLight::automatic),
               "virtual objects are mirrors");
-    EXPECT_THROW(why(floor(1, mirror), things, PairLight::prefiltered), gi::InputError);
+    EXPECT_THROW(why(floor(1, mirror), things, ar::PairLight::prefiltered), gi::InputError);
     gi::Scene worn = box(gi::vec3(0), gi::vec3(1), matt(0.9f));
     gi::Material& polished = worn.materials[0];
     polished.metallic = 1; // its roughness is in a texture, here and there smooth
     polished.metallic_roughness_map.texture = gi::add_procedural_texture(
         worn.textures, 16, false, [](gi::vec2 uv) { return gi::vec4(0, uv.x < 0.2f ? 0.04f : 0.8f, 1, 1); });
-    EXPECT_EQ(why(floor(1, matt(0.5f)), worn, PairLight::automatic), "virtual objects are mirrors");
+    EXPECT_EQ(why(floor(1, matt(0.5f)), worn, ar::PairLight::automatic), "virtual objects are mirrors");
     gi::Material lamp = matt(0);
     lamp.emission = gi::vec3(1);
-    EXPECT_EQ(why(floor(1, lamp), things, PairLight::automatic), "surfaces emit light");
+    EXPECT_EQ(why(floor(1, lamp), things, ar::PairLight::automatic), "surfaces emit light");
 }
 
 } // namespace

@@ -34,13 +34,13 @@ ar::Calibration camera()
 }
 
 /// The board and a bright backdrop, before them the ball; 2 x 2 rays per pixel of it.
-cv::Mat traced(ar::test::DrawnWorld const& world, ar::Pose const& pose, ar::test::Environment const& light,
+cv::Mat traced(ar::test::DrawnWorld const& world, gi::RigidPose const& pose, ar::test::Environment const& light,
                cv::Vec3d lit)
 {
     cv::Mat picture;
     cv::cvtColor(world.light(pose), picture, cv::COLOR_GRAY2RGB);
     picture = picture.mul(cv::Scalar(lit[0], lit[1], lit[2]));
-    glm::dvec3 const eye = pose.position_m - kBall;
+    glm::dvec3 const eye = pose.position - kBall;
     for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x) {
             cv::Vec3d sum(0, 0, 0);

@@ -165,10 +165,10 @@ TEST_F(ArRuns, TimeNumberedPosesAsTheirSource)
     write(desk() / "video.yaml", with("source: slow.mkv"));
     std::vector<ar::TimedPose> poses = ar::read_poses(desk() / "poses.csv", {30}).poses;
     auto const image = [&](int k) {
-        ar::Pose const p = inverse(poses[std::size_t(k)].world_from_camera);
+        gi::RigidPose const p = inverse(poses[std::size_t(k)].world_from_camera);
         glm::dquat const q = p.rotation;
-        return fmt::format("{} {} {} {} {} {} {} {} 1 {:03}.png\n\n", k + 1, q.w, q.x, q.y, q.z, p.position_m.x,
-                           p.position_m.y, p.position_m.z, k + 7);
+        return fmt::format("{} {} {} {} {} {} {} {} 1 {:03}.png\n\n", k + 1, q.w, q.x, q.y, q.z, p.position.x,
+                           p.position.y, p.position.z, k + 7);
     };
     write(desk() / "all.txt", image(0) + image(1) + image(2));
     write(desk() / "late.txt", image(1) + image(2)); // the first picture could not be registered

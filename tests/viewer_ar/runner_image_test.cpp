@@ -21,7 +21,7 @@ protected:
     static void SetUpTestSuite()
     {
         folder = std::make_unique<TemporaryFolder>();
-        SynthesizeOptions o;
+        ar::SynthesizeOptions o;
         o.folder = folder->path();
         o.size_px = {240, 180};
         o.frames = 5;
@@ -29,27 +29,27 @@ protected:
         o.quality.denoise = false;
         o.truth = false;
         gi::Report report;
-        synthesize(o, {}, report);
+        ar::synthesize(o, {}, report);
     }
     static void TearDownTestSuite() { folder.reset(); }
 
-    static ArSession session()
+    static ar::Session session()
     {
-        ArSession s = read_ar_session(*folder / "session.yaml");
+        ar::Session s = ar::read_session(*folder / "session.yaml");
         s.render.paths = 2;
         s.render.resolution = 0.5;
         return s;
     }
     /// Numbered frames without markers, 100 per second.
-    static ArSession counted()
+    static ar::Session counted()
     {
-        ArSession s = session();
+        ar::Session s = session();
         s.frames.source = "counter";
         s.frames.options.size_px = {240, 180};
         s.frames.options.frames_per_s = 100;
         return s;
     }
-    static std::uint64_t all_of(ArSummary const& s)
+    static std::uint64_t all_of(ar::RunSummary const& s)
     {
         return s.frames.size() + s.refused + s.overtaken + s.unfinished;
     }
@@ -57,24 +57,25 @@ protected:
     static inline std::unique_ptr<TemporaryFolder> folder;
     gi::Report report;
     gi::StopRequest stop;
-    ArSummary summary;
+    ar::RunSummary summary;
 };
 
 TEST_F(ArThreads, GiveWhatOneAloneGives)
 {
-    ArSession s = session(); // what one frame leaves for the next is in it
+    ar::Session s = session(); // what one frame leaves for the next is in it
     s.live_light = 2;
     s.smoothing = 0.5;
-    ArRunOptions o;
+    ar::RunOptions o;
     o.pace = ar::Pace::fastest;
     o.poses = ar::read_poses(*folder / "poses.csv", {30}).poses;
     std::vector<cv::Mat> composites;
-    run_ar(
-        s, o, [&](ArFrameRecord&, ArResult const& r) { composites.push_back(r.rgb); }, stop, report, summary);
+    ar::run_frames(
+        s, o, [&](ar::RunFrame&, ar::FrameResult const& r) { composites.push_back(r.rgb); }, stop, report,
+        summary);
     ASSERT_EQ(composites.size(), 5u);
     EXPECT_EQ(all_of(summary), 5u);
 
-    ArPipeline pipeline(s, load_ar_camera(s.camera), ar::read_marker_map(s.markers), report);
+    ar::Pipeline pipeline(s, ar::load_camera(s.camera), ar::read_marker_map(s.markers), report);
     ar::OpenOptions open = s.frames.options;
     open.pace = ar::Pace::fastest;
     auto const source = ar::open_source(s.frames.source, open);
@@ -82,8 +83,8 @@ TEST_F(ArThreads, GiveWhatOneAloneGives)
         auto const frame = source->next(std::chrono::seconds(5));
         ASSERT_TRUE(frame);
         double const time_s = double(k) / 30;
-        ArResult r = pipeline.find(*frame, time_s,
-                                   KnownPose(ar::pose_at(o.poses, std::min(time_s, o.poses.back().time_s))));
+        ar::FrameResult r =
+            pipeline.find(*frame, time_s, ar::pose_at(o.poses, std::min(time_s, o.poses.back().time_s)));
         pipeline.add(r, *frame, time_s, stop);
         EXPECT_EQ(cv::norm(r.rgb, composites[k], cv::NORM_INF), 0) << "frame " << k;
         EXPECT_GT(cv::norm(r.rgb, r.camera, cv::NORM_INF), 20) << "something is there";
@@ -94,13 +95,13 @@ TEST_F(ArThreads, GiveWhatOneAloneGives)
 TEST_F(ArThreads, GiveUpOldFramesForNewerOnes)
 {
     std::atomic<int> taken{0};
-    ArRunOptions o;
+    ar::RunOptions o;
     o.frames = 4;
     o.taken = [&](ar::Frame const&) { ++taken; };
     int const while_shown = 6; // more than all threads and what waits between them can hold
-    run_ar(
+    ar::run_frames(
         counted(), o,
-        [&](ArFrameRecord&, ArResult const&) {
+        [&](ar::RunFrame&, ar::FrameResult const&) {
             for (int const before = taken; taken < before + while_shown;)
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
         },
@@ -111,12 +112,12 @@ TEST_F(ArThreads, GiveUpOldFramesForNewerOnes)
     EXPECT_EQ(summary.source.delivered, all_of(summary));
     std::uint64_t told = 0;
     for (std::size_t k = 0; k < 4; ++k) {
-        ArFrameRecord const& f = summary.frames[k];
+        ar::RunFrame const& f = summary.frames[k];
         told += f.overtaken;
         if (k > 0) {
             EXPECT_GT(f.sequence - summary.frames[k - 1].sequence, f.overtaken);
         }
-        ArTimes const& t = f.times;
+        ar::StageTimes const& t = f.times;
         EXPECT_NEAR(f.age_ms + t.decode_ms + t.detect_ms + t.pose_ms + t.wait_ms + t.light_ms + t.render_ms +
                         t.composite_ms,
                     f.latency_ms, 1e-6);
@@ -128,14 +129,14 @@ TEST_F(ArThreads, GiveUpOldFramesForNewerOnes)
 
 TEST_F(ArThreads, WaitWhereNothingMayBeLost)
 {
-    ArRunOptions o;
+    ar::RunOptions o;
     o.pace = ar::Pace::fastest;
     o.find_poses_only = true;
     o.frames = 3;
     std::vector<std::uint64_t> seen;
-    run_ar(
+    ar::run_frames(
         session(), o,
-        [&](ArFrameRecord& f, ArResult const&) {
+        [&](ar::RunFrame& f, ar::FrameResult const&) {
             seen.push_back(f.sequence);
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         },
@@ -148,14 +149,14 @@ TEST_F(ArThreads, TakeFramesThatComeAgainAndAgain)
 {
     ar::OpenOptions open = session().frames.options;
     open.pace = ar::Pace::fastest;
-    LoopSource source(read_frames(*ar::open_source(session().frames.source, open), 3), 200);
-    ArRunOptions o;
+    ar::LoopSource source(ar::read_frames(*ar::open_source(session().frames.source, open), 3), 200);
+    ar::RunOptions o;
     o.frames = 5;
     o.find_poses_only = true;
     std::map<std::uint64_t, cv::Mat> shown;
-    run_ar(
-        session(), source, o, [&](ArFrameRecord& f, ArResult const& r) { shown[f.sequence] = r.camera; }, stop,
-        report, summary);
+    ar::run_frames(
+        session(), source, o, [&](ar::RunFrame& f, ar::FrameResult const& r) { shown[f.sequence] = r.camera; },
+        stop, report, summary);
     ASSERT_EQ(shown.size(), 5u);
     EXPECT_EQ(summary.source.delivered, all_of(summary));
     for (auto const& [number, rgb] : shown) {
@@ -168,18 +169,19 @@ TEST_F(ArThreads, TakeFramesThatComeAgainAndAgain)
 
 TEST_F(ArThreads, HandOnWhatIsThrown)
 {
-    auto const thrown = [&](ArRunOptions const& o, auto const& shown) {
-        ArSummary mine;
+    auto const thrown = [&](ar::RunOptions const& o, auto const& shown) {
+        ar::RunSummary mine;
         try {
-            run_ar(counted(), o, shown, stop, report, mine);
+            ar::run_frames(counted(), o, shown, stop, report, mine);
         } catch (std::runtime_error const& e) {
             return std::string(e.what());
         }
         return std::string();
     };
-    auto const nothing = [](ArFrameRecord&, ArResult const&) {};
-    ArRunOptions o;
-    EXPECT_EQ(thrown(o, [](ArFrameRecord&, ArResult const&) { throw std::runtime_error("shown"); }), "shown");
+    auto const nothing = [](ar::RunFrame&, ar::FrameResult const&) {};
+    ar::RunOptions o;
+    EXPECT_EQ(thrown(o, [](ar::RunFrame&, ar::FrameResult const&) { throw std::runtime_error("shown"); }),
+              "shown");
     o.taken = [](ar::Frame const& f) {
         if (f.sequence > 1) throw std::runtime_error("taken");
     };
@@ -191,11 +193,11 @@ TEST_F(ArThreads, HandOnWhatIsThrown)
 
 TEST_F(ArThreads, EndWhenAsked)
 {
-    ArRunOptions o;
+    ar::RunOptions o;
     o.idle = [&] {
         if (!summary.frames.empty()) stop.request();
     };
-    run_ar(counted(), o, {}, stop, report, summary); // the counter never ends
+    ar::run_frames(counted(), o, {}, stop, report, summary); // the counter never ends
     EXPECT_EQ(summary.source.delivered, all_of(summary));
 }
 

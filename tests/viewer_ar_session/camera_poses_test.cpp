@@ -30,14 +30,14 @@ TEST(CameraPoses, ComeFromAnAnimatedCamera)
     TemporaryFolder const folder;
     std::ofstream(folder / "shot.gltf") << scene();
     gi::Report report;
-    auto const poses = read_camera_poses(folder / "shot.gltf", {10}, report).poses;
+    auto const poses = ar::read_camera_poses(folder / "shot.gltf", {10}, report).poses;
     ASSERT_EQ(poses.size(), 11u);
     for (std::size_t f = 0; f < poses.size(); ++f) {
         double const t = double(f) / 10;
         EXPECT_NEAR(poses[f].time_s, t, 1e-12);
         // A quarter turn clockwise seen from above takes (x, y, z) to (-z, y, x).
         glm::dvec3 const wanted(-4, 2, 2 * t);
-        EXPECT_LT(glm::distance(poses[f].world_from_camera.position_m, wanted), 1e-6) << f;
+        EXPECT_LT(glm::distance(poses[f].world_from_camera.position, wanted), 1e-6) << f;
         glm::dvec3 const ahead = poses[f].world_from_camera.rotation * glm::dvec3(0, 0, 1),
                          down = poses[f].world_from_camera.rotation * glm::dvec3(0, 1, 0);
         EXPECT_LT(glm::distance(ahead, glm::dvec3(1, 0, 0)), 1e-6);
@@ -50,11 +50,11 @@ TEST(CameraPoses, NeedOneCamera)
     TemporaryFolder const folder;
     gi::Report report;
     std::ofstream(folder / "two.gltf") << scene(R"(, {"camera": 0})", "0, 2");
-    EXPECT_THROW(read_camera_poses(folder / "two.gltf", {10}, report), gi::InputError);
+    EXPECT_THROW(ar::read_camera_poses(folder / "two.gltf", {10}, report), gi::InputError);
     std::ofstream(folder / "none.gltf") << R"({"asset": {"version": "2.0"}, "nodes": [{}]})";
-    EXPECT_THROW(read_camera_poses(folder / "none.gltf", {10}, report), gi::InputError);
-    EXPECT_THROW(read_camera_poses(folder / "shot.gltf", {10, 4}, report), gi::InputError) << "has no numbers";
-    EXPECT_THROW(read_camera_poses(folder / "missing.glb", {10}, report), gi::InputError);
+    EXPECT_THROW(ar::read_camera_poses(folder / "none.gltf", {10}, report), gi::InputError);
+    EXPECT_THROW(ar::read_camera_poses(folder / "shot.gltf", {10, 4}, report), gi::InputError) << "has no numbers";
+    EXPECT_THROW(ar::read_camera_poses(folder / "missing.glb", {10}, report), gi::InputError);
 }
 
 } // namespace

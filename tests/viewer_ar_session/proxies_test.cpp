@@ -17,7 +17,7 @@ namespace {
 
 std::string const kLeast = "schema: ar/1\nframes: {source: frames}\ncamera: camera.yaml\nmarkers: markers.yaml\n";
 
-ArReal real_of(std::string const& text) { return parse_ar_session(kLeast + text, "folder/s.yaml").real; }
+ar::RealPlace real_of(std::string const& text) { return ar::parse_session(kLeast + text, "folder/s.yaml").real; }
 
 std::string refusal(std::string const& text)
 {
@@ -38,7 +38,7 @@ gi::World world_of(gi::Scene scene)
 
 TEST(Proxies, AreReadFromSessions)
 {
-    ArReal const r = real_of(R"(real:
+    ar::RealPlace const r = real_of(R"(real:
   planes:
     - {name: table, corner_m: [0, 0, 1], edge_u_m: [2, 0, 0], edge_v_m: [0, 0, -1], albedo: [0.5, 0.4, 0.3]}
     - {centre_m: [0, 1, 0], size_m: [0.6, 0.4], rotation_deg: [-90, 0, 0], texture: estimate, texels: 64}
@@ -50,19 +50,19 @@ TEST(Proxies, AreReadFromSessions)
     EXPECT_EQ(r.estimates, "folder/albedo.yaml");
     EXPECT_TRUE(r.scene.empty());
     EXPECT_EQ(r.proxies[0].name, "table");
-    EXPECT_EQ(std::get<ProxyPlane>(r.proxies[0].shape).edge_u_m, gi::dvec3(2, 0, 0));
+    EXPECT_EQ(std::get<ar::ProxyPlane>(r.proxies[0].shape).edge_u_m, gi::dvec3(2, 0, 0));
     EXPECT_EQ(r.proxies[0].surface.albedo, gi::dvec3(0.5, 0.4, 0.3));
-    auto const& flat = std::get<ProxyPlane>(r.proxies[1].shape);
+    auto const& flat = std::get<ar::ProxyPlane>(r.proxies[1].shape);
     EXPECT_EQ(r.proxies[1].name, "planes-2");
     EXPECT_NEAR(glm::distance(flat.corner_m, gi::dvec3(-0.3, 1, 0.2)), 0, 1e-12);
     EXPECT_NEAR(glm::normalize(glm::cross(flat.edge_u_m, flat.edge_v_m)).y, 1, 1e-12);
-    EXPECT_EQ(r.proxies[1].surface.from, AlbedoFrom::estimate_texture);
+    EXPECT_EQ(r.proxies[1].surface.from, ar::AlbedoFrom::estimate_texture);
     EXPECT_EQ(r.proxies[1].surface.texels, 64);
     EXPECT_EQ(r.proxies[2].surface.metallic, 1);
-    EXPECT_EQ(std::get<ProxyMesh>(r.proxies[3].shape).placed.scene, "folder/bust.ply");
-    EXPECT_EQ(r.proxies[3].surface.from, AlbedoFrom::materials);
-    EXPECT_EQ(r.proxies[4].surface.from, AlbedoFrom::estimate);
-    EXPECT_EQ(std::get<ProxyDepth>(r.proxies[5].shape).step_px, 2);
+    EXPECT_EQ(std::get<ar::ProxyMesh>(r.proxies[3].shape).placed.scene, "folder/bust.ply");
+    EXPECT_EQ(r.proxies[3].surface.from, ar::AlbedoFrom::materials);
+    EXPECT_EQ(r.proxies[4].surface.from, ar::AlbedoFrom::estimate);
+    EXPECT_EQ(std::get<ar::ProxyDepth>(r.proxies[5].shape).step_px, 2);
     EXPECT_EQ(r.proxies[5].surface.texture, "folder/t.png");
 }
 
@@ -96,8 +96,8 @@ TEST(Proxies, ThatAreWrongAreRefusedWithTheirPlace)
 TEST(Proxies, BoxesAreClosed)
 {
     gi::Report report;
-    ProxyBox box{{0.2, 0.4, 0.6}, {glm::angleAxis(0.7, glm::normalize(gi::dvec3(1, 2, 3))), {1, 2, 3}}};
-    gi::World const w = world_of(scene_of({"box", {}, box}, report));
+    ar::ProxyBox box{{0.2, 0.4, 0.6}, {{1, 2, 3}, glm::angleAxis(0.7, glm::normalize(gi::dvec3(1, 2, 3)))}};
+    gi::World const w = world_of(ar::scene_of({"box", {}, box}, report));
     ASSERT_EQ(w.triangles.size(), 12u);
     double volume = 0, texture = 0;
     for (gi::uvec3 const& t : w.triangles) {
@@ -123,13 +123,13 @@ TEST(Proxies, OfDepthMapsAreCutAtJumps)
     map(cv::Rect(60, 0, 4, 60)) = 0;
     cv::imwrite((folder / "d.png").string(), map);
     gi::Report report;
-    ProxyDepth depth;
+    ar::ProxyDepth depth;
     depth.file = folder / "d.png";
     depth.camera = folder / "c.yaml";
     depth.step_px = 2;
     // Looks along -z of the world, from y = 1.
-    depth.world_from_camera = {glm::angleAxis(glm::pi<double>(), gi::dvec3(1, 0, 0)), {0, 1, 0}};
-    gi::Mesh const mesh = mesh_of(depth, report);
+    depth.world_from_camera = {{0, 1, 0}, glm::angleAxis(glm::pi<double>(), gi::dvec3(1, 0, 0))};
+    gi::Mesh const mesh = ar::mesh_of(depth, report);
     EXPECT_EQ(report.losses().at("pixels of depth maps without a depth").count, 60u);
     EXPECT_GT(report.losses().at("triangles of depth maps left out at jumps").count, 40u);
     for (gi::uvec3 const& t : mesh.triangles) {
@@ -141,7 +141,7 @@ TEST(Proxies, OfDepthMapsAreCutAtJumps)
     }
     // What a pixel sees is where the camera would draw it.
     for (std::size_t v = 0; v < mesh.positions.size(); v += 37) {
-        gi::dvec3 const p = ar::inverse(depth.world_from_camera) * gi::dvec3(mesh.positions[v]);
+        gi::dvec3 const p = gi::inverse(depth.world_from_camera) * gi::dvec3(mesh.positions[v]);
         auto const pixel = ar::project(c.camera, p);
         ASSERT_TRUE(pixel);
         EXPECT_NEAR(pixel->x + 0.5, double(mesh.uv0[v].x) * 80, 1e-3);
@@ -157,31 +157,32 @@ TEST(Proxies, OfDepthMapsAreCutAtJumps)
     gi::write_exr(folder / "d.exr", half, gi::PixelType::single, report);
     depth.file = folder / "d.exr";
     depth.step_px = 1;
-    EXPECT_EQ(mesh_of(depth, report).triangles.size(), 2u * 39 * 29);
+    EXPECT_EQ(ar::mesh_of(depth, report).triangles.size(), 2u * 39 * 29);
     depth.metres_per_unit = 1e-3;
-    EXPECT_NEAR(mesh_of(depth, report).positions[0].z, -2e-3, 1e-6);
+    EXPECT_NEAR(ar::mesh_of(depth, report).positions[0].z, -2e-3, 1e-6);
     cv::imwrite((folder / "d.png").string(), cv::Mat(60, 40, CV_16UC1, cv::Scalar(2000)));
     depth.file = folder / "d.png";
-    EXPECT_THROW(mesh_of(depth, report), gi::InputError) << "another shape";
+    EXPECT_THROW(ar::mesh_of(depth, report), gi::InputError) << "another shape";
     cv::imwrite((folder / "d.png").string(), cv::Mat(60, 80, CV_8UC1, cv::Scalar(20)));
-    EXPECT_THROW(mesh_of(depth, report), gi::InputError) << "8 bits";
+    EXPECT_THROW(ar::mesh_of(depth, report), gi::InputError) << "8 bits";
 }
 
 TEST(Proxies, TakeEstimatedAlbedos)
 {
     TemporaryFolder const folder;
-    ArReal real = real_of("real: {boxes: [{name: a, size_m: [1, 1, 1], albedo: estimate}], planes: [{name: b, "
-                          "centre_m: [0, 0, 0], size_m: [1, 1], texture: estimate}]}\n");
+    ar::RealPlace real =
+        real_of("real: {boxes: [{name: a, size_m: [1, 1, 1], albedo: estimate}], planes: [{name: b, "
+                "centre_m: [0, 0, 0], size_m: [1, 1], texture: estimate}]}\n");
     real.estimates = folder / "albedo.yaml";
     gi::Report report;
-    EXPECT_THROW(real_scene(real, report), gi::InputError) << "no estimates yet";
+    EXPECT_THROW(ar::real_scene(real, report), gi::InputError) << "no estimates yet";
     gi::write_png(folder / "b.png", 1, 1, std::array<unsigned char, 3>{255, 188, 0});
-    std::vector<AlbedoEntry> entries{{"a", {0.5, 0.25, 0.125}, {0.1, 0, 0}, 0, {}}};
-    gi::write_text(real.estimates, format_albedos(entries));
-    EXPECT_THROW(real_scene(real, report), gi::InputError) << "nothing is said of b";
+    std::vector<ar::AlbedoEntry> entries{{"a", {0.5, 0.25, 0.125}, {0.1, 0, 0}, 0, {}}};
+    gi::write_text(real.estimates, ar::format_albedos(entries));
+    EXPECT_THROW(ar::real_scene(real, report), gi::InputError) << "nothing is said of b";
     entries.push_back({"b", {0.1, 0.2, 0.3}, {}, 70, folder / "b.png"});
-    gi::write_text(real.estimates, format_albedos(entries));
-    gi::Scene const scene = real_scene(real, report);
+    gi::write_text(real.estimates, ar::format_albedos(entries));
+    gi::Scene const scene = ar::real_scene(real, report);
     ASSERT_EQ(scene.materials.size(), 2u);
     for (std::size_t k = 0; k < 2; ++k)
         if (scene.material_names[k] == "a")
@@ -189,7 +190,7 @@ TEST(Proxies, TakeEstimatedAlbedos)
         else
             EXPECT_EQ(scene.materials[k].base_color_map.texture, 0);
     EXPECT_EQ(report.losses().at("surfaces whose albedo no frame has shown: grey").count, 1u);
-    EXPECT_EQ(parse_albedos(format_albedos({{"\"x\\: {", {}, {}, 1, {}}}), "f").at(0).name, "\"x\\: {");
+    EXPECT_EQ(ar::parse_albedos(ar::format_albedos({{"\"x\\: {", {}, {}, 1, {}}}), "f").at(0).name, "\"x\\: {");
 }
 
 } // namespace

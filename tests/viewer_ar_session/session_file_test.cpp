@@ -15,7 +15,7 @@ std::string const kLeastSession =
 std::string session_refusal(std::string const& text)
 {
     try {
-        parse_ar_session(text, "folder/s.yaml");
+        ar::parse_session(text, "folder/s.yaml");
     } catch (gi::InputError const& e) {
         return e.what();
     }
@@ -24,14 +24,14 @@ std::string session_refusal(std::string const& text)
 
 TEST(ArSessions, SayWhatTheyAreMadeOf)
 {
-    ArSession const s =
-        parse_ar_session(kLeastSession + R"(light: {map: probe.exr, turn_deg: 30, scale: 2, live: 10}
+    ar::Session const s =
+        ar::parse_session(kLeastSession + R"(light: {map: probe.exr, turn_deg: 30, scale: 2, live: 10}
 real: {scene: near.glb}
 virtual: {scene: statue.glb, at: [0, 0, -0.1], turn_deg: 90, scale: 0.5}
 render: {paths: 4, resolution: 0.75, bounces: 2, seed: 9}
 composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3}
 )",
-                         "folder/s.yaml");
+                          "folder/s.yaml");
     EXPECT_EQ(s.frames.source, "folder/frames");
     EXPECT_EQ(s.camera, "folder/camera.yaml");
     EXPECT_EQ(s.light, "folder/probe.exr");
@@ -44,7 +44,7 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
     EXPECT_EQ(s.composite.blend, ar::Blend::ratio);
     EXPECT_EQ(s.composite.clipped, ar::ClippedBytes::as_measured);
     EXPECT_EQ(s.smoothing, 0.3);
-    ArSession const least = parse_ar_session(kLeastSession, "s.yaml");
+    ar::Session const least = ar::parse_session(kLeastSession, "s.yaml");
     EXPECT_TRUE(least.real.scene.empty());
     EXPECT_TRUE(least.light.empty());
 }
@@ -52,7 +52,7 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
 /// The example of the documentation of an earlier version: its keys are still understood.
 TEST(ArSessions, OfAnEarlierVersionAreRead)
 {
-    ArSession const s = parse_ar_session(
+    ar::Session const s = ar::parse_session(
         file_text(std::filesystem::path(LIGHTWELL_SOURCE_DIR) / "tests/data/old/0d0c255/ar_session.yaml"),
         "s.yaml");
     EXPECT_EQ(s.render.paths, 4u);
@@ -66,11 +66,11 @@ TEST(ArSessions, OfAnEarlierVersionAreRead)
 TEST(ArSessions, TakeOptionsOfSlhb)
 {
     gi::RenderSettings const s =
-        parse_ar_session(kLeastSession +
-                             "render: {bounces: 2, seed: 9, directions: 'icosahedron:80', hit_buffer: 64, "
-                             "lamps: 8, fresh_light_samples: 2, shadow_map: 128, roulette: 0.5, "
-                             "packed: true, shadows: maps}\n",
-                         "s.yaml")
+        ar::parse_session(kLeastSession +
+                              "render: {bounces: 2, seed: 9, directions: 'icosahedron:80', hit_buffer: 64, "
+                              "lamps: 8, fresh_light_samples: 2, shadow_map: 128, roulette: 0.5, "
+                              "packed: true, shadows: maps}\n",
+                          "s.yaml")
             .render.settings;
     EXPECT_EQ(s.bounces, 2);
     EXPECT_EQ(s.seed, 9u);
@@ -82,7 +82,7 @@ TEST(ArSessions, TakeOptionsOfSlhb)
     EXPECT_EQ(s.of<gi::PathsSettings>().roulette, 0.5f);
     EXPECT_TRUE(s.of<gi::SlhbSettings>().packed);
     EXPECT_EQ(s.of<gi::FormerSlhbSettings>().shadows, gi::FormerShadows::maps);
-    EXPECT_EQ(parse_ar_session(kLeastSession, "s.yaml").render.settings.bounces, 3);
+    EXPECT_EQ(ar::parse_session(kLeastSession, "s.yaml").render.settings.bounces, 3);
     for (char const* wrong : {"hit_buffer: 1e9", "directions: 'cube:6'", "shadows: some", "packed: 1"})
         EXPECT_NE(session_refusal(kLeastSession + "render: {" + wrong + "}\n").find("s.yaml:5:"),
                   std::string::npos)
@@ -97,18 +97,21 @@ TEST(ArSessions, TakeOptionsOfSlhb)
 TEST(ArSessions, NameTheirMethod)
 {
     std::string const present = "schema: ar/2" + kLeastSession.substr(kLeastSession.find('\n'));
-    auto const render = [](std::string const& text) { return parse_ar_session(text, "s.yaml").render; };
+    auto const render = [](std::string const& text) { return ar::parse_session(text, "s.yaml").render; };
     EXPECT_EQ(render(kLeastSession).method, "slhb_0_1");
     EXPECT_EQ(render(present).method, "auto");
     EXPECT_EQ(render(present + "render: {method: slhb, hit_buffer: 64}\n").settings.of<gi::SlhbSettings>().resolution, 64);
     for (char const* wrong : {"method: slhp", "method: paths, hit_buffer: 64", "hit_buffer: 64", "shadows: maps"})
         EXPECT_NE(session_refusal(present + "render: {" + wrong + "}\n").find("s.yaml:5:"), std::string::npos) << wrong;
+    std::string const refusal = session_refusal(present + "render: {method: reference}\n");
+    EXPECT_NE(refusal.find("s.yaml:5:"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("auto, paths, slhb"), std::string::npos) << refusal;
     EXPECT_NE(session_refusal(kLeastSession + "render: {method: slhb}\n").find("s.yaml:5:"), std::string::npos);
 }
 
 TEST(ArSessions, SayHowPairsAreFinishedAndPosesUsed)
 {
-    ArSession const s = parse_ar_session(
+    ar::Session const s = ar::parse_session(
         kLeastSession + R"(composite: {upsample: false, mattes: true, match_blur: true, noise: false}
 pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
 )",
@@ -121,29 +124,30 @@ pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
     EXPECT_EQ(s.pose.tracker.position.beta, 3);
     EXPECT_EQ(s.pose.predict_s, 0.4);
     EXPECT_GE(s.pose.tracker.lost_after_s, 0.8);
-    ArSession const still = parse_ar_session(kLeastSession + "pose: {tripod: true}\n", "s.yaml");
+    ar::Session const still = ar::parse_session(kLeastSession + "pose: {tripod: true}\n", "s.yaml");
     EXPECT_EQ(still.pose.tracker.motion, ar::CameraMotion::tripod);
-    ArSession const averaged =
-        parse_ar_session(kLeastSession + "pose: {tripod: true, smoothing: false}\n", "s.yaml");
+    ar::Session const averaged =
+        ar::parse_session(kLeastSession + "pose: {tripod: true, smoothing: false}\n", "s.yaml");
     EXPECT_EQ(averaged.pose.tracker.motion, ar::CameraMotion::tripod);
     EXPECT_TRUE(averaged.pose.filtered);
-    ArSession const least = parse_ar_session(kLeastSession, "s.yaml");
+    ar::Session const least = ar::parse_session(kLeastSession, "s.yaml");
     EXPECT_FALSE(least.pose.filtered || least.finish.mattes || least.finish.match_blur);
     EXPECT_TRUE(least.match_noise);
     EXPECT_EQ(least.pose.trust.least_confidence, 0.5);
-    ArSession const cautious =
-        parse_ar_session(kLeastSession + "pose: {least_confidence: 0.6, hold_s: 0.5, fade_s: 0}\n", "s.yaml");
+    ar::Session const cautious =
+        ar::parse_session(kLeastSession + "pose: {least_confidence: 0.6, hold_s: 0.5, fade_s: 0}\n", "s.yaml");
     EXPECT_EQ(cautious.pose.trust.least_confidence, 0.6);
     EXPECT_EQ(cautious.pose.trust.hold_s, 0.5);
     EXPECT_EQ(cautious.pose.trust.fade_s, 0);
-    EXPECT_EQ(parse_ar_session(kLeastSession + "pose: {tracker: head, hold_s: 0.2}\n", "s.yaml").pose.trust.hold_s,
-              0.2);
-    EXPECT_EQ(parse_ar_session(kLeastSession + "pose: {features: maps/m.txt}\n", "there/s.yaml").pose.features,
+    EXPECT_EQ(
+        ar::parse_session(kLeastSession + "pose: {tracker: head, hold_s: 0.2}\n", "s.yaml").pose.trust.hold_s,
+        0.2);
+    EXPECT_EQ(ar::parse_session(kLeastSession + "pose: {features: maps/m.txt}\n", "there/s.yaml").pose.features,
               "there/maps/m.txt");
-    EXPECT_TRUE(parse_ar_session(kLeastSession + "pose: {smoothing: true, fuse: true}\n", "s.yaml").pose.fused);
+    EXPECT_TRUE(ar::parse_session(kLeastSession + "pose: {smoothing: true, fuse: true}\n", "s.yaml").pose.fused);
     EXPECT_TRUE(least.pose.fused);
     EXPECT_FALSE(still.pose.fused);
-    EXPECT_FALSE(parse_ar_session(kLeastSession + "pose: {fuse: false}\n", "s.yaml").pose.fused);
+    EXPECT_FALSE(ar::parse_session(kLeastSession + "pose: {fuse: false}\n", "s.yaml").pose.fused);
     EXPECT_NE(session_refusal(kLeastSession + "pose: {tripod: true, fuse: true}\n").find("averaged"),
               std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "pose: {tracker: head, fuse: true}\n").find("tracker"),
@@ -161,9 +165,10 @@ pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
 
 TEST(ArSessions, OfDevicesKeepTheirNames)
 {
-    ArSession const s = parse_ar_session("schema: ar/1\nframes: {source: 'camera:/base/cam0', size: [1280, 720], "
-                                         "format: mjpeg}\ncamera: c.yaml\nmarkers: m.yaml\n",
-                                         "folder/s.yaml");
+    ar::Session const s =
+        ar::parse_session("schema: ar/1\nframes: {source: 'camera:/base/cam0', size: [1280, 720], "
+                          "format: mjpeg}\ncamera: c.yaml\nmarkers: m.yaml\n",
+                          "folder/s.yaml");
     EXPECT_EQ(s.frames.source, "camera:/base/cam0");
     EXPECT_EQ(s.frames.options.size_px, glm::ivec2(1280, 720));
     EXPECT_EQ(s.frames.options.format, ar::PixelFormat::mjpeg);
@@ -171,7 +176,7 @@ TEST(ArSessions, OfDevicesKeepTheirNames)
 
 TEST(ArSessions, SayWhatOccludesAndWhichPassesAreWritten)
 {
-    ArSession const s = parse_ar_session(kLeastSession + R"(occlusion:
+    ar::Session const s = ar::parse_session(kLeastSession + R"(occlusion:
   depth: {source: d_%04d.png, first: 5, rate_hz: 15}
   matte: mattes
   camera: depth.yaml
@@ -182,14 +187,14 @@ TEST(ArSessions, SayWhatOccludesAndWhichPassesAreWritten)
   soft_px: 2
 passes: {folder: parts, bits: 32, undistorted: true}
 )",
-                                         "/home/s.yaml");
+                                            "/home/s.yaml");
     ASSERT_TRUE(s.occlusion && s.occlusion->depth && s.occlusion->matte);
     EXPECT_EQ(s.occlusion->depth->source, "/home/d_%04d.png");
     EXPECT_EQ(s.occlusion->depth->first, 5);
     EXPECT_EQ(s.occlusion->depth->rate_hz, 15);
     EXPECT_EQ(s.occlusion->matte->source, "/home/mattes");
     EXPECT_EQ(s.occlusion->camera, "/home/depth.yaml");
-    EXPECT_EQ(s.occlusion->camera_from_depth.position_m.x, 0.02);
+    EXPECT_EQ(s.occlusion->camera_from_depth.position.x, 0.02);
     EXPECT_EQ(s.occlusion->metres_per_unit, 0.0002);
     EXPECT_EQ(s.occlusion->settings.margin_m, 0.03);
     EXPECT_EQ(s.occlusion->settings.soft_m, 0);
@@ -197,7 +202,7 @@ passes: {folder: parts, bits: 32, undistorted: true}
     EXPECT_EQ(s.passes.folder, "/home/parts");
     EXPECT_EQ(s.passes.bits, 32);
     EXPECT_TRUE(s.passes.is_undistorted);
-    EXPECT_FALSE(parse_ar_session(kLeastSession, "s.yaml").occlusion);
+    EXPECT_FALSE(ar::parse_session(kLeastSession, "s.yaml").occlusion);
     EXPECT_NE(session_refusal(kLeastSession + "occlusion: {depth: {first: 3}}\n").find("source"),
               std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "occlusion: {matte: m, soft_m: 1}\n").find("s.yaml:5:"),
@@ -215,7 +220,7 @@ TEST(ArSessions, ThatAreWrongAreRefusedWithTheirPlace)
     EXPECT_NE(session_refusal(kLeastSession + "light: {turn_deg: 3}\n").find("no 'map'"), std::string::npos);
     std::string const real = "real: {scene: near.glb}\n";
     EXPECT_TRUE(
-        parse_ar_session(kLeastSession + real + "light: {from: frame, live: 5}\n", "s.yaml").light_from_frame);
+        ar::parse_session(kLeastSession + real + "light: {from: frame, live: 5}\n", "s.yaml").light_from_frame);
     EXPECT_NE(session_refusal(kLeastSession + "light: {from: frame}\n").find("'from: frame' without 'real'"),
               std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + real + "light: {from: frame, map: p.exr}\n")

@@ -1,6 +1,6 @@
 // What a session reads, and that nothing of it is written over.
 
-#include "ar/scene/session_inputs.h"
+#include "viewer/camera_view/session_inputs.h"
 
 #include "tests/viewer/run_program.h"
 
@@ -25,7 +25,7 @@ protected:
     std::vector<std::string> files(std::string const& text) const
     {
         std::vector<std::string> names;
-        for (fs::path const& f : files_read_by(parse_ar_session(text, folder_ / "s.yaml")))
+        for (fs::path const& f : files_read_by(ar::parse_session(text, folder_ / "s.yaml")))
             names.push_back(fs::relative(f, folder_.path()).string());
         return names;
     }

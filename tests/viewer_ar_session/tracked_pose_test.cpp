@@ -1,6 +1,6 @@
 // Cameras by trackers: what recorded and live ones say of a motion that is known.
 
-#include "ar/scene/tracked_pose.h"
+#include "viewer/camera_view/camera_tracker.h"
 
 #include "ar/scene/hmd_cameras.h"
 #include "ar/scene/session_file.h"
@@ -21,7 +21,7 @@ std::string const kSession = "schema: ar/1\nframes: {source: f}\ncamera: c.yaml\
 std::string pose_refusal(std::string const& more)
 {
     try {
-        parse_ar_session(kSession + more, "folder/s.yaml");
+        ar::parse_session(kSession + more, "folder/s.yaml");
     } catch (gi::InputError const& e) {
         return e.what();
     }
@@ -33,14 +33,14 @@ RoomPose sensor_at(double t) { return {{t, 1.5, 0}, glm::angleAxis(t, gi::dvec3(
 
 TEST(TrackedCameras, KeysAreReadAndRefusedWithTheirPlace)
 {
-    ArSession const s = parse_ar_session(
+    ar::Session const s = ar::parse_session(
         kSession + "pose: {display: room.yaml, tracker: head, offset_s: 0.5, camera_from_sensor: {position_m: [0, "
                    "-0.05, 0]}, world_from_room: {rotation_deg: [0, 90, 0]}}\n",
         "folder/s.yaml");
     ASSERT_TRUE(s.tracked);
     EXPECT_EQ(s.tracked->display, "folder/room.yaml");
     EXPECT_EQ(s.tracked->tracker, "head");
-    EXPECT_EQ(s.tracked->camera_from_sensor.position_m, glm::dvec3(0, -0.05, 0));
+    EXPECT_EQ(s.tracked->camera_from_sensor.position, glm::dvec3(0, -0.05, 0));
     EXPECT_EQ(s.tracked->camera_from_sensor.rotation, glm::dquat(0, 1, 0, 0)) << "as heads look";
     EXPECT_NEAR(ar::angle_between_deg(s.tracked->world_from_room.rotation, {1, 0, 0, 0}), 90, 1e-9);
     EXPECT_NE(pose_refusal("pose: {trackr: x}\n").find("s.yaml:5:"), std::string::npos);
@@ -51,7 +51,7 @@ TEST(TrackedCameras, KeysAreReadAndRefusedWithTheirPlace)
 
 TEST(TrackedCameras, OfHeadsetsAreReadAndRefusedWithTheirPlace)
 {
-    ArSession const s = parse_ar_session(
+    ar::Session const s = ar::parse_session(
         kSession + "hmd: {plane_m: 2, head_from_camera: {position_m: [0, 0.02, -0.05]}, right: {source: right, "
                    "camera: right.yaml, left_from_right: {position_m: [0.064, 0, 0]}}}\n",
         "folder/s.yaml");
@@ -59,7 +59,7 @@ TEST(TrackedCameras, OfHeadsetsAreReadAndRefusedWithTheirPlace)
     EXPECT_EQ(s.hmd->plane_m, 2);
     EXPECT_EQ(s.hmd->right->source, "folder/right");
     EXPECT_EQ(s.hmd->right->calibration, "folder/right.yaml");
-    EXPECT_EQ(s.hmd->right->left_from_right, (ar::Pose{{1, 0, 0, 0}, {0.064, 0, 0}}));
+    EXPECT_EQ(s.hmd->right->left_from_right, (gi::RigidPose{{0.064, 0, 0}, {1, 0, 0, 0}}));
     EXPECT_EQ(s.hmd->head_from_camera.rotation, glm::dquat(0, 1, 0, 0));
     EXPECT_NE(pose_refusal("hmd: {plane_m: 0}\n").find("s.yaml:5:"), std::string::npos);
     EXPECT_NE(pose_refusal("hmd: {right: {source: right}}\n").find("no 'camera'"), std::string::npos);
@@ -79,14 +79,14 @@ protected:
         }
         write_poses(folder_ / "walk.csv", text);
     }
-    ArTracked room(std::string const& tracker) const
+    ar::TrackerUse room(std::string const& tracker) const
     {
         write_poses(
             folder_ / "room.yaml",
             "windows: [{name: w, size_px: [64, 48]}]\nwalls: [{name: w, window: w, lower_left_m: [-1, 0, 0], "
             "lower_right_m: [1, 0, 0], upper_left_m: [-1, 1, 0]}]\ntrackers: [" +
                 tracker + "]\nusers: [{name: a, head_position_m: [0, 1.7, 0], head_tracker: sensor}]\n");
-        ArTracked t;
+        ar::TrackerUse t;
         t.display = folder_ / "room.yaml";
         return t;
     }
@@ -96,16 +96,16 @@ protected:
 
 TEST_F(RecordedTrackers, SayWhereTheCameraIsByTheTimeOfFrames)
 {
-    ArTracked t = room("{name: sensor, type: file, file: walk.csv, body: camera}");
-    t.camera_from_sensor.position_m = {0, -0.1, 0}; // 0.1 m above the camera, whose y is down
-    t.world_from_room = {glm::angleAxis(glm::radians(90.0), glm::dvec3(0, 1, 0)), {0, 0, 1}};
+    ar::TrackerUse t = room("{name: sensor, type: file, file: walk.csv, body: camera}");
+    t.camera_from_sensor.position = {0, -0.1, 0}; // 0.1 m above the camera, whose y is down
+    t.world_from_room = {{0, 0, 1}, glm::angleAxis(glm::radians(90.0), glm::dvec3(0, 1, 0))};
     t.offset_s = 0.2;
-    TrackedCamera const camera(t, report_);
+    CameraTracker const camera(t, report_);
     EXPECT_FALSE(camera.is_live());
     auto const p = ar::pose_at(camera.recorded(), 0.31);
     ASSERT_TRUE(p);
     // Half a metre along x is half a metre along -z of the world, which begins at z = 1.
-    EXPECT_LT(glm::length(p->position_m - glm::dvec3(0, 1.4, 0.49)), 1e-4);
+    EXPECT_LT(glm::length(p->position - glm::dvec3(0, 1.4, 0.49)), 1e-4);
     glm::dvec3 const ahead = p->rotation * glm::dvec3(0, 0, 1), down = p->rotation * glm::dvec3(0, 1, 0);
     double const angle = 0.51 + glm::radians(90.0);
     EXPECT_LT(glm::length(ahead - glm::dvec3(-std::sin(angle), 0, -std::cos(angle))), 1e-6);
@@ -115,10 +115,10 @@ TEST_F(RecordedTrackers, SayWhereTheCameraIsByTheTimeOfFrames)
 TEST_F(RecordedTrackers, ThatCannotBeAreRefused)
 {
     auto const problem = [&](std::string const& tracker, std::string const& name = "") {
-        ArTracked t = room(tracker);
+        ar::TrackerUse t = room(tracker);
         t.tracker = name;
         try {
-            TrackedCamera const camera(t, report_);
+            CameraTracker const camera(t, report_);
         } catch (gi::InputError const& e) {
             return std::string(e.what());
         }
@@ -128,7 +128,7 @@ TEST_F(RecordedTrackers, ThatCannotBeAreRefused)
               std::string::npos);
     EXPECT_NE(problem("{name: sensor, type: fake}").find("move no camera"), std::string::npos);
     EXPECT_NE(problem("{name: sensor, type: fake}", "sensr").find("one of sensor"), std::string::npos);
-    EXPECT_THROW(TrackedCamera(ArTracked{}, report_), gi::InputError) << "no display";
+    EXPECT_THROW(CameraTracker(ar::TrackerUse{}, report_), gi::InputError) << "no display";
 }
 
 /// Samples of the motion at 100 Hz, until a moment.
@@ -160,17 +160,17 @@ TEST(TrackedCameras, LiveOnesAreAskedForTheMomentOfTheExposure)
     sources.push_back(std::make_unique<KnownTracker>());
     auto hub = std::make_unique<TrackerHub>(std::vector{settings}, std::move(sources), Polling::by_caller);
     for (int i = 0; i <= 200; ++i) hub->poll(0.005 * i);
-    TrackedCamera camera(ArTracked{}, std::move(hub));
+    CameraTracker camera(ar::TrackerUse{}, std::move(hub));
     ASSERT_TRUE(camera.is_live());
     for (double const t : {0.905, 0.95, 0.9871}) { // the past: between samples
         auto const p = camera.at(t);
         ASSERT_TRUE(p) << t;
-        EXPECT_NEAR(p->position_m.x, t, 1e-3);
+        EXPECT_NEAR(p->position.x, t, 1e-3);
         EXPECT_NEAR(std::asin(-(p->rotation * glm::dvec3(0, 0, 1)).x), t, 2e-3);
     }
     auto const soon = camera.at(1.03); // predicted
     ASSERT_TRUE(soon);
-    EXPECT_NEAR(soon->position_m.x, 1.03, 0.01);
+    EXPECT_NEAR(soon->position.x, 1.03, 0.01);
     EXPECT_FALSE(camera.at(3)) << "lost";
     EXPECT_NE(camera.describe().find("5 frames, 4 with a pose"), std::string::npos) << camera.describe();
 }

@@ -2,6 +2,7 @@
 // they need, and the resampled picture.
 
 #include "tests/viewer_display/display_samples.h"
+#include "tests/viewer_display/face_pictures.h"
 #include "viewer/displays/views.h"
 
 #include <numbers>

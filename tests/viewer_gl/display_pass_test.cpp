@@ -1,3 +1,4 @@
+#include "tests/study_display/luminance_of.h"
 #include "tests/viewer_gl/stereo_check.h"
 #include "tests/viewer_gl/surfaceless.h"
 

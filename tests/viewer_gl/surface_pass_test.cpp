@@ -1,5 +1,6 @@
 // The picture of a dome on the GPU against the reference on the CPU, pixel by pixel.
 
+#include "tests/viewer_display/face_pictures.h"
 #include "tests/viewer_gl/surfaceless.h"
 #include "viewer/devices/gl/surface_pass.h"
 

@@ -103,7 +103,7 @@ TEST_F(ArStimuli, SettingsGoOverThoseOfTheSession)
                                          {"ar.composite.blend", "ratio"},
                                          {"ar.virtual.at", "[0.1, 0, 0]"},
                                          {"ar.light.map", "probe.exr"}});
-    ArSession const session = session_of(*s.ar);
+    ar::Session const session = session_of(*s.ar);
     EXPECT_EQ(session.render.paths, 16u);
     EXPECT_EQ(session.composite.blend, ar::Blend::ratio);
     EXPECT_EQ(session.virtual_things.at_m, gi::dvec3(0.1, 0, 0));

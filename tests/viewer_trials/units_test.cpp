@@ -1,10 +1,10 @@
 // The parts that need no window.
 
 #include "gi/core/error.h"
+#include "study/numeric/random.h"
 #include "study/run/adaptive_run.h"
 #include "study/script/examples.h"
 #include "study/script/script_file.h"
-#include "study/stats/random.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/experiment/answer_keys.h"
 #include "viewer/experiment/experimenter.h"
@@ -413,7 +413,8 @@ TEST(Stimuli, SettingsOfTheScriptBecomeThoseOfTheRenderer)
     auto const method_of = [](study::Patch const& patch, MadeFor made) {
         return stimulus_settings(patch, "", {}, made).settings.method;
     };
-    EXPECT_EQ(method_of({{"scene", "cornell"}, {"gi.method", "slhb"}, {"look_ups", "all"}}, MadeFor::version_0_1), "slhb_0_1");
+    EXPECT_EQ(method_of({{"scene", "cornell"}, {"gi.method", "slhb"}, {"look_ups", "all"}}, MadeFor::version_0_1),
+              "slhb_0_1");
     EXPECT_EQ(method_of({{"scene", "cornell"}}, MadeFor::version_0_1), "slhb_0_1");
     EXPECT_EQ(method_of({{"scene", "cornell"}}, MadeFor::this_version), "auto");
     EXPECT_EQ(method_of({{"scene", "cornell"}, {"method", "slhb"}}, MadeFor::this_version), "slhb");

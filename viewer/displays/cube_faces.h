@@ -31,21 +31,4 @@ std::vector<FaceView> faces_for(Surface const& surface, glm::ivec2 viewport_px, 
 /// The camera of one face at an eye, in the room.
 gi::Camera face_camera(Surface const& surface, FaceView const& face, gi::dvec3 eye_m);
 
-/// Where a direction is seen: index of the face, and the position in its picture, 0..1 from the lower left corner.
-struct FacePlace {
-    std::size_t index = 0;
-    glm::dvec2 picture{0};
-};
-/// @param in_cube  not zero. None: its face is not rendered.
-std::optional<FacePlace> place_in(std::span<FaceView const> faces, gi::dvec3 in_cube);
-
-/// Bytes R, G, B, rows from the top.
-struct BytePicture {
-    int width = 0, height = 0;
-    std::vector<unsigned char> rgb;
-};
-/// The surface's picture from those of the faces: bilinear, black where nothing is lit. Reference for the GPU's.
-BytePicture resample(Surface const& surface, glm::ivec2 viewport_px, gi::dvec3 eye_m,
-                     std::span<FaceView const> faces, std::span<BytePicture const> pictures);
-
 } // namespace viewer

@@ -30,7 +30,7 @@ std::string read_marked(std::filesystem::path const& file, std::string_view mark
     return marked ? "" : kNotMarked;
 }
 
-std::string missing(std::string const& words) { return "<p class=\"missing\">" + gi::escaped(words) + "</p>"; }
+std::string missing(std::string const& words) { return gi::html_paragraph(words, "missing"); }
 
 } // namespace
 

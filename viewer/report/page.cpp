@@ -45,8 +45,9 @@ std::string origin_html(BenchTable const& t)
     std::vector<std::pair<std::string, std::string>> entries{
         {"machine", to_text(t.machine)}, {"program", t.program}, {"date", t.date}};
     entries.insert(entries.end(), t.facts.begin(), t.facts.end());
-    return gi::html_details("how it was measured: " + to_text(t.machine),
-                            gi::html_definitions(entries) + "<p>To repeat it:</p>\n" + gi::html_code(t.command));
+    return gi::html_details("how it was measured: " + to_text(t.machine), gi::html_definitions(entries) +
+                                                                              gi::html_paragraph("To repeat it:") +
+                                                                              gi::html_code(t.command));
 }
 
 std::string section(BenchTable const& t, std::filesystem::path const& folder, PagePictures pictures)
@@ -57,7 +58,7 @@ std::string section(BenchTable const& t, std::filesystem::path const& folder, Pa
         rows = gi::html_note("Medians; below them the smallest and largest measured values.") + rows;
     return gi::html_section(t.title.empty() ? t.name : t.title,
                             origin_html(t) + figures +
-                                (figures.empty() ? "<h3>Rows</h3>\n" + rows : gi::html_details("rows", rows)));
+                                (figures.empty() ? gi::html_part("Rows", rows) : gi::html_details("rows", rows)));
 }
 
 } // namespace
@@ -65,7 +66,7 @@ std::string section(BenchTable const& t, std::filesystem::path const& folder, Pa
 std::string make_page(Page const& page)
 {
     std::string html, next;
-    if (!page.lead.empty()) html += "<p>" + gi::escaped(page.lead) + "</p>\n";
+    if (!page.lead.empty()) html += gi::html_paragraph(page.lead);
     for (BenchFolder const& folder : page.folders) html += render_figures(folder);
     for (BenchFolder const& folder : page.folders)
         for (BenchTable const& table : folder.tables) html += section(table, folder.path, page.pictures);

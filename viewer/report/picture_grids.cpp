@@ -43,9 +43,9 @@ public:
 
     std::string group(PictureGroup const& g) const
     {
-        std::string html = fmt::format("<h3>{}, {}</h3>\n", gi::escaped(g.scene), gi::escaped(g.budget));
+        std::string html;
         if (g.worst > 0)
-            html += gi::html_note(fmt::format("largest error, relative to the method reference: {:.3g}", g.worst));
+            html = gi::html_note(fmt::format("largest error, relative to the method reference: {:.3g}", g.worst));
         std::vector<std::pair<std::string, std::string>> strips;
         for (auto const* row : g.rows) {
             std::string const heading = "filter " + text(*row, "filter");
@@ -53,8 +53,9 @@ public:
             if (at == strips.end()) at = strips.emplace(at, heading, "");
             at->second += figure(*row);
         }
-        return html +
-               picture_strips(picture(*g.rows.front(), "reference_file", g.scene + ", reference picture"), strips);
+        html +=
+            picture_strips(picture(*g.rows.front(), "reference_file", g.scene + ", reference picture"), strips);
+        return gi::html_part(g.scene + ", " + g.budget, html);
     }
 
 private:

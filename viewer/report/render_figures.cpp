@@ -43,8 +43,8 @@ std::string pair_html(BenchFolder const& folder, RenderStats const& left, Render
         return captioned(embedded_png(folder.path / r.png, r.eye + " eye"), r.eye + " eye", r);
     };
     std::string html = "<label><input type=\"checkbox\" class=\"swap\"> swap the pictures, for viewing with "
-                       "crossed eyes</label>\n<div class=\"pair\">\n" +
-                       eye(left) + eye(right) + "</div>\n";
+                       "crossed eyes</label>\n" +
+                       gi::html_group("pair", eye(left) + eye(right));
     std::string words = fmt::format("The same moment from two eyes {:.3g} mm apart, with a common virtual screen",
                                     1000 * left.eye_distance_m);
     if (left.screen_distance_m > 0) words += fmt::format(" {:.3g} m away", left.screen_distance_m);
@@ -74,9 +74,9 @@ std::vector<gi::HtmlCell> cost_row(RenderStats const& r)
 
 std::string costs_html(std::vector<RenderStats const*> const& renders)
 {
-    std::string html = "<h3>Times and memory</h3>\n", commands;
+    std::string html, commands;
     if (std::string const& machine = renders.front()->machine; !machine.empty())
-        html += gi::html_note(gi::escaped(machine + "; " + renders.front()->program));
+        html = gi::html_note(gi::escaped(machine + "; " + renders.front()->program));
     std::vector<gi::HtmlColumn> columns{{"file", false, ""}, {"what", false, ""}};
     for (char const* column : {"structures, s", "tracing, s", "filter, s", "whole, s", "median of frames, s",
                                "95 % of frames, s", "estimated relMSE, unfiltered", "most memory, MiB"})
@@ -86,7 +86,8 @@ std::string costs_html(std::vector<RenderStats const*> const& renders)
         rows.push_back(cost_row(*r));
         commands += r->command + "\n";
     }
-    return html + gi::html_table(columns, rows) + gi::html_details("to repeat them", gi::html_code(commands));
+    return gi::html_part("Times and memory", html + gi::html_table(columns, rows) +
+                                                 gi::html_details("to repeat them", gi::html_code(commands)));
 }
 
 } // namespace
@@ -94,23 +95,22 @@ std::string costs_html(std::vector<RenderStats const*> const& renders)
 std::string render_figures(BenchFolder const& folder)
 {
     if (folder.renders.empty()) return "";
-    std::string html;
+    std::string html, pictures;
     std::vector<bool> shown(folder.renders.size(), false);
     for (auto const& [left, right] : stereo_pairs(folder.renders)) {
         html += pair_html(folder, folder.renders[left], folder.renders[right]);
         shown[left] = shown[right] = true;
     }
-    html += "<div class=\"renders\">\n";
     std::vector<RenderStats const*> all;
     for (std::size_t i = 0; i < folder.renders.size(); ++i) {
         RenderStats const& r = folder.renders[i];
         all.push_back(&r);
         if (!r.video.empty())
-            html += captioned(embedded_video(folder.path / r.video, r.name), r.name, r);
+            pictures += captioned(embedded_video(folder.path / r.video, r.name), r.name, r);
         else if (!r.png.empty() && r.frames == 0 && !shown[i])
-            html += captioned(embedded_png(folder.path / r.png, r.name), r.name, r);
+            pictures += captioned(embedded_png(folder.path / r.png, r.name), r.name, r);
     }
-    return gi::html_section("Pictures", html + "</div>\n" + costs_html(all));
+    return gi::html_section("Pictures", html + gi::html_group("renders", pictures) + costs_html(all));
 }
 
 } // namespace viewer

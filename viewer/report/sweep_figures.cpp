@@ -105,7 +105,7 @@ std::string picture_strips(std::string const& reference_html,
     std::string html = "<div class=\"pictures\">\n<div>\n<h4>reference picture</h4>\n<figure>\n" + reference_html +
                        "</figure>\n</div>\n<div>\n";
     for (auto const& [heading, figures] : strips)
-        html += "<h4>" + gi::escaped(heading) + "</h4>\n<div class=\"strip\">\n" + figures + "</div>\n";
+        html += "<h4>" + gi::escaped(heading) + "</h4>\n" + gi::html_group("strip", figures);
     return html + "</div>\n</div>\n";
 }
 
@@ -123,9 +123,9 @@ std::string sweep_figures(BenchTable const& table, std::filesystem::path const& 
     for (Row const& row : table.rows) all.push_back(&row);
     std::string html;
     for (Group const& scene : group_by(table, all, "scene"))
-        html += "<h3>" + gi::escaped(scene.value) + "</h3>\n<div class=\"charts\">\n" +
-                chart_html(table, scene, "relmse", "relMSE") + chart_html(table, scene, "flip", "FLIP") +
-                "</div>\n" + pictures_html(table, scene, folder);
+        html += gi::html_part(scene.value, gi::html_group("charts", chart_html(table, scene, "relmse", "relMSE") +
+                                                                        chart_html(table, scene, "flip", "FLIP")) +
+                                               pictures_html(table, scene, folder));
     return html;
 }
 

@@ -1,8 +1,9 @@
-#include "viewer/study/gaze_records.h"
+#include "viewer/study/study_records.h"
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "gi/core/text.h"
+#include "study/signals/gaze.h"
 #include "study/tables/bids.h"
 
 #include <array>
@@ -69,7 +70,12 @@ std::string gzip(std::string const& text)
     return packed;
 }
 
-} // namespace
+/// The samples of a session: the tables that its parts name in the journal (gaze_table), with times since the
+/// session's beginning. Places are px from the window's top left corner.
+struct RecordedGaze {
+    std::vector<study::GazeSample> samples;
+    std::vector<int> steps; ///< of the plan, from 0; -1 = none
+};
 
 RecordedGaze read_gaze(std::filesystem::path const& dir, study::Script const& script,
                        study::RecordedSession const& session)
@@ -103,6 +109,8 @@ RecordedGaze read_gaze(std::filesystem::path const& dir, study::Script const& sc
     }
     return gaze;
 }
+
+} // namespace
 
 std::vector<study::TextFile> gaze_files(std::filesystem::path const& dir, study::Script const& script,
                                         study::RecordedSession const& session)

@@ -3,7 +3,6 @@
 #include "gi/core/durable_file.h"
 #include "study/tables/bids.h"
 #include "viewer/base/version.h"
-#include "viewer/study/gaze_records.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <queue>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr int kMostRows = 64;
@@ -174,4 +174,4 @@ void EnvironmentCells::measure(EnvironmentTexels const& texels, std::vector<doub
     for (EnvironmentCell& c : cells_) c.share = total > 0 ? float(double(c.share) / total) : 0;
 }
 
-} // namespace viewer
+} // namespace ar

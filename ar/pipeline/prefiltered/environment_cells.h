@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace viewer {
+namespace ar {
 
 /// The map in texels of at most 128 x 64; each keeps its light and where it comes from.
 struct EnvironmentTexels {
@@ -61,4 +61,4 @@ private:
     std::vector<EnvironmentCell> cells_;
 };
 
-} // namespace viewer
+} // namespace ar

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tbb/parallel_for.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr int kSides[] = {96, 96, 64, 40, 24};
@@ -105,4 +105,4 @@ gi::vec3 GlossyTable::radiance(gi::vec3 direction, float alpha) const
     return glm::mix(levels_[low].at(direction), levels_[low + 1].at(direction), level - float(low));
 }
 
-} // namespace viewer
+} // namespace ar

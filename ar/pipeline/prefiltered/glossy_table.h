@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace viewer {
+namespace ar {
 
 /// The glossy lobe of a surface.
 struct GlossyLobe {
@@ -34,4 +34,4 @@ private:
     std::vector<NormalTable<gi::vec3>> levels_; ///< each twice as wide as the one before
 };
 
-} // namespace viewer
+} // namespace ar

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace viewer {
+namespace ar {
 
 template <class T>
 class NormalTable {
@@ -49,4 +49,4 @@ private:
     std::vector<T> values_;
 };
 
-} // namespace viewer
+} // namespace ar

@@ -2,7 +2,7 @@
 
 #include "gi/raster/deep_raster.h"
 
-namespace viewer {
+namespace ar {
 
 void OcclusionMap::start(gi::Bounds const& bounds, gi::vec3 towards, std::uint32_t texels, gi::vec2 jitter,
                          float turn_rad)
@@ -51,4 +51,4 @@ float OcclusionMap::hidden(gi::View<gi::Surface const> surfaces, gi::vec3 p, gi:
     return share;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -4,7 +4,7 @@
 
 #include "gi/hit_buffers/shadow_maps/shadow_map.h"
 
-namespace viewer {
+namespace ar {
 
 class OcclusionMap {
 public:
@@ -52,4 +52,4 @@ private:
     gi::NearestTexel const* texels_ = nullptr;
 };
 
-} // namespace viewer
+} // namespace ar

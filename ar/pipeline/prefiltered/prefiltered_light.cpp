@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <tbb/parallel_for.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr double kLampShare = 0.003; ///< of the light, in one texel: too much to interpolate its cosine
@@ -408,4 +408,4 @@ ReceivedLight PrefilteredLight::on_still(LitPoint const& at, std::size_t every, 
     return gather.result();
 }
 
-} // namespace viewer
+} // namespace ar

@@ -15,7 +15,7 @@
 #include "ar/pipeline/prefiltered/glossy_table.h"
 #include "ar/pipeline/prefiltered/still_surfaces.h"
 
-namespace viewer {
+namespace ar {
 
 /// A point of a surface that receives light.
 struct LitPoint {
@@ -133,4 +133,4 @@ private:
     float moving_radius_ = 0; ///< m; 0 = nothing moves
 };
 
-} // namespace viewer
+} // namespace ar

@@ -5,7 +5,7 @@
 #include <set>
 #include <tbb/parallel_for.h>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 /// Subsets of the directions, by pixel, for the picture without virtual objects: at most, and directions in each.
@@ -163,4 +163,4 @@ PairPictures PrefilteredPairs::render(gi::Camera const& camera, int width, int h
     return p;
 }
 
-} // namespace viewer
+} // namespace ar

@@ -10,7 +10,7 @@
 
 #include <string>
 
-namespace viewer {
+namespace ar {
 
 /// Why a world cannot be lit by prefiltered light; empty: it can. It knows matt and broadly
 /// glossy surfaces under an environment map.
@@ -38,4 +38,4 @@ private:
     SurfaceRaster all_raster_, still_raster_; ///< reused
 };
 
-} // namespace viewer
+} // namespace ar

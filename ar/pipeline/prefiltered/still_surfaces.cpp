@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 #include <unordered_map>
 
-namespace viewer {
+namespace ar {
 namespace {
 
 constexpr std::uint32_t kStillTexels = 96, kSharpStillTexels = 512;
@@ -149,4 +149,4 @@ std::uint32_t StillSurfaces::in_the_way(std::size_t k, gi::vec3 p, gi::vec3 norm
     return still_[k].blocker(surfaces, p, normal, triangle) == gi::kNoPrimitive ? kOpen : kUnknown;
 }
 
-} // namespace viewer
+} // namespace ar

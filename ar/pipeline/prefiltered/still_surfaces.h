@@ -7,7 +7,7 @@
 
 #include <span>
 
-namespace viewer {
+namespace ar {
 
 /// A direction from which light comes, for a part of the sphere.
 struct LightDirection {
@@ -65,4 +65,4 @@ private:
 /// Bounds of triangles first..last - 1.
 gi::Bounds bounds_of(gi::World const& world, std::size_t first, std::size_t last);
 
-} // namespace viewer
+} // namespace ar

@@ -45,6 +45,21 @@ std::string html_section(std::string_view title, std::string_view html)
     return fmt::format("<section>\n<h2>{}</h2>\n{}</section>\n", escaped(title), html);
 }
 
+std::string html_part(std::string_view title, std::string_view html)
+{
+    return fmt::format("<h3>{}</h3>\n{}", escaped(title), html);
+}
+
+std::string html_paragraph(std::string_view text, std::string_view style)
+{
+    return fmt::format("<p{}>{}</p>\n", style.empty() ? "" : fmt::format(" class=\"{}\"", style), escaped(text));
+}
+
+std::string html_group(std::string_view style, std::string_view html)
+{
+    return fmt::format("<div class=\"{}\">\n{}</div>\n", style, html);
+}
+
 std::string html_note(std::string_view html) { return fmt::format("<p class=\"note\">{}</p>\n", html); }
 
 std::string html_cautions(std::vector<std::string> const& warnings)

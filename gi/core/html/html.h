@@ -18,6 +18,12 @@ std::string escaped_lines(std::string_view text);
 /// A whole page. @param header_html below the title
 std::string html_page(std::string_view title, std::string_view main_html, std::string_view header_html = {});
 std::string html_section(std::string_view title, std::string_view html);
+/// A part of a section.
+std::string html_part(std::string_view title, std::string_view html);
+/// @param style  a class of the style sheet
+std::string html_paragraph(std::string_view text, std::string_view style = {});
+/// Elements that a class of the style sheet lays out.
+std::string html_group(std::string_view style, std::string_view html);
 /// A remark in smaller, fainter letters.
 std::string html_note(std::string_view html);
 /// A list of warnings; empty if there is none.

@@ -54,7 +54,6 @@ public:
     void text(double tx, double ty, std::string_view words, std::string_view anchor = "start",
               std::string_view style = "");
     void polyline(std::vector<std::pair<double, double>> const& points, std::string_view style);
-    void svg_element(std::string_view element) { body_ += element; }
 
     /// @param title  accessible title
     std::string svg(std::string const& title) const;

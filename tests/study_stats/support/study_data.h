@@ -1,7 +1,7 @@
 #pragma once
 // The reference data of study statistics lie beside the checkout, where they are present.
 
-#include "study/stats/matrix.h"
+#include "study/numeric/matrix.h"
 
 #include <filesystem>
 #include <gtest/gtest.h>

@@ -34,7 +34,7 @@ cv::Mat rays(ar::CameraModel const& c)
 }
 
 /// Random pose in front of the board, up to 35 degrees off its normal, with the board anywhere in the picture.
-ar::Pose board_from_camera(cv::RNG& rng, glm::dvec2 size_m)
+gi::RigidPose board_from_camera(cv::RNG& rng, glm::dvec2 size_m)
 {
     glm::dvec3 const middle(0.5 * size_m, 0);
     double const a = rng.uniform(-0.6, 0.6), b = rng.uniform(-0.6, 0.6);
@@ -44,7 +44,7 @@ ar::Pose board_from_camera(cv::RNG& rng, glm::dvec2 size_m)
         middle + 0.3 * distance * glm::dvec3(rng.uniform(-1.0, 1.0), rng.uniform(-0.8, 0.8), 0);
     glm::dvec3 const z = glm::normalize(target - eye), x = glm::normalize(glm::cross(z, glm::dvec3(0, 1, 0)));
     glm::dquat const level = glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z));
-    return {glm::normalize(level * glm::angleAxis(rng.uniform(-0.3, 0.3), glm::dvec3(0, 0, 1))), eye};
+    return {eye, glm::normalize(level * glm::angleAxis(rng.uniform(-0.3, 0.3), glm::dvec3(0, 0, 1)))};
 }
 
 } // namespace
@@ -64,11 +64,11 @@ void write_board_views(std::filesystem::path const& folder, ar::CharucoBoard boa
     cv::Mat const ray = rays(c);
     cv::RNG rng(20261122);
     for (int i = 1; i <= count; ++i) {
-        ar::Pose const pose = board_from_camera(rng, {sheet.width_m, sheet.height_m});
+        gi::RigidPose const pose = board_from_camera(rng, {sheet.width_m, sheet.height_m});
         cv::Mat at(ray.size(), CV_32FC2);
         ray.forEach<cv::Vec2d>([&](cv::Vec2d const& r, int const* yx) {
             glm::dvec3 const d = pose.rotation * glm::dvec3(r[0], r[1], 1);
-            glm::dvec3 const p = pose.position_m - pose.position_m.z / d.z * d;
+            glm::dvec3 const p = pose.position - pose.position.z / d.z * d;
             bool const seen = d.z < 0 && std::abs(r[0]) < 1e5;
             at.at<cv::Vec2f>(yx[0], yx[1]) =
                 seen ? cv::Vec2f(float((p.x + sheet.origin_m.x) * dots_per_m - 0.5),

@@ -4,6 +4,7 @@
 #include "ar/markers/marker_map_file.h"
 #include "ar/pipeline/pose_finder.h"
 #include "ar/runtime/runner.h"
+#include "viewer/camera_view/camera_tracker.h"
 #include "viewer/cli/ar/pose_arguments.h"
 
 namespace viewer {
@@ -11,7 +12,8 @@ namespace viewer {
 /// Camera poses from the --poses file, from a recorded tracker, or found in the frames as `ar run` finds them.
 class CameraPath {
 public:
-    CameraPath(PoseArguments const& poses, ArSession const& session, ArCamera const& camera, gi::Report& report)
+    CameraPath(PoseArguments const& poses, ar::Session const& session, ar::CalibratedCamera const& camera,
+               gi::Report& report)
         : finder_(session.pose, ar::read_marker_map(session.markers), camera.model)
     {
         if (!poses.file.empty())
@@ -20,22 +22,22 @@ public:
             poses_ = recorded_poses(*session.tracked, report);
     }
     /// Pose and its confidence; nothing if this frame has none that is trusted.
-    std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s,
-                                                  gi::StopRequest const& stop)
+    std::optional<std::pair<gi::RigidPose, double>> at(ar::Frame const& frame, double time_s,
+                                                       gi::StopRequest const& stop)
     {
         if (!poses_.empty()) {
-            auto const pose = recorded_pose(poses_, time_s);
+            auto const pose = ar::recorded_pose(poses_, time_s);
             if (!pose) return std::nullopt;
             return std::pair(*pose, 1.0);
         }
-        FoundPose const f = finder_.next(time_s, ar::gray_of(frame), &stop);
+        ar::FoundPose const f = finder_.next(time_s, ar::gray_of(frame), &stop);
         if (f.used.state != ar::PoseState::tracked || f.pose.ambiguous) return std::nullopt;
         return std::pair(*f.used.world_from_camera, f.pose.confidence);
     }
 
 private:
     std::vector<ar::TimedPose> poses_;
-    PoseFinder finder_;
+    ar::PoseFinder finder_;
 };
 
 } // namespace viewer

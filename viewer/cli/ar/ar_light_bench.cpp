@@ -22,11 +22,11 @@ BenchTable measure_light_estimates(LightBenchSettings const& s, gi::StopRequest 
     std::vector<cv::Mat> maps;
     for (std::string const& file : s.maps) maps.push_back(ar::read_map(file));
     for (std::size_t k = 0; k < maps.size(); ++k) {
-        LightCheckSettings settings;
+        ar::LightCheckSettings settings;
         settings.views = s.views;
         settings.paths = s.paths;
         settings.unknown_albedo = s.unknown_albedo;
-        LightChecked const c = check_light(maps[k], settings, stop, report);
+        ar::LightChecked const c = ar::check_light(maps[k], settings, stop, report);
         if (stop.requested()) break;
         // Between the strongest lamps: only where the truth has one that matters.
         Cell const lamp = c.truth_lamp_share >= 0.1 && c.lamp_deg >= 0 ? Cell(c.lamp_deg) : Cell();

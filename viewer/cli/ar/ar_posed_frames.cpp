@@ -8,8 +8,8 @@
 
 namespace viewer {
 
-PosedFrames read_posed_frames(PosedFrameChoice const& a, ArSession const& session, ArCamera const& camera,
-                              gi::StopRequest const& stop, gi::Report& report)
+PosedFrames read_posed_frames(PosedFrameChoice const& a, ar::Session const& session,
+                              ar::CalibratedCamera const& camera, gi::StopRequest const& stop, gi::Report& report)
 {
     CameraPath path(a.poses, session, camera, report);
     ar::OpenOptions open = session.frames.options;
@@ -18,9 +18,9 @@ PosedFrames read_posed_frames(PosedFrameChoice const& a, ArSession const& sessio
     if (a.frames == 0 && (source->description().is_live || session.frames.source == "counter"))
         throw gi::InputError("frames of '" + session.frames.source + "', all of them", "the source never ends",
                              "limit their number: --frames 300");
-    FrameClock clock(session.frames.source, source->description(), false);
+    ar::FrameClock clock(session.frames.source, source->description(), false);
     PosedFrames seen;
-    SpacedFrames<PosedFrame> kept(std::size_t(a.views));
+    ar::SpacedFrames<ar::PosedFrame> kept(std::size_t(a.views));
     for (int n = 0; !stop.requested() && (a.frames == 0 || n < a.frames);) {
         std::optional<ar::Frame> const frame = source->next(std::chrono::milliseconds(200));
         if (!frame) {
@@ -51,7 +51,7 @@ PosedFrames read_posed_frames(PosedFrameChoice const& a, ArSession const& sessio
             report.lose("frames that could not be used", 1, e.what());
         }
     }
-    report_losses(source->counts(), source->state(), report);
+    ar::report_losses(source->counts(), source->state(), report);
     seen.refused += int(source->counts().refused);
     seen.kept = kept.take();
     return seen;

@@ -17,12 +17,12 @@ struct PosedFrameChoice {
 };
 
 struct PosedFrames {
-    std::vector<PosedFrame> kept{};
+    std::vector<ar::PosedFrame> kept{};
     int found = 0, without_pose = 0, refused = 0; ///< frames read: with a pose, without one, unusable
 };
 
 /// @throws gi::InputError the source cannot be opened, or never ends and `frames` is 0
-PosedFrames read_posed_frames(PosedFrameChoice const& choice, ArSession const& session, ArCamera const& camera,
-                              gi::StopRequest const& stop, gi::Report& report);
+PosedFrames read_posed_frames(PosedFrameChoice const& choice, ar::Session const& session,
+                              ar::CalibratedCamera const& camera, gi::StopRequest const& stop, gi::Report& report);
 
 } // namespace viewer

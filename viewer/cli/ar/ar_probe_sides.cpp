@@ -14,8 +14,8 @@ namespace viewer {
 namespace {
 
 /// Camera pose from the picture with the most markers; dark pictures of an exposure bracket show none.
-ar::Pose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& map, ar::CameraModel const& camera,
-                   std::string const& name)
+gi::RigidPose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& map, ar::CameraModel const& camera,
+                        std::string const& name)
 {
     ar::Sighting best;
     for (cv::Mat const& picture : rgb) {

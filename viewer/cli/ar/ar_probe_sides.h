@@ -14,7 +14,7 @@ namespace viewer {
 struct ProbeSide {
     std::string name; ///< file name of the first picture
     cv::Mat radiance; ///< CV_32FC3
-    ar::Pose world_from_camera;
+    gi::RigidPose world_from_camera;
     cv::Mat clipped{}; ///< CV_8UC1: 255 where a channel is white in the shortest exposure
 };
 

@@ -15,8 +15,8 @@ ArRecording::ArRecording(ArRecordingSettings settings) : settings_(std::move(set
 {
     if (settings_.pictures.empty()) return;
     folder_.emplace(settings_.pictures);
-    to_folder_ = std::make_unique<PictureThread>(
-        [this](NumberedPicture const& p) { folder_->add(p.sequence, p.rgb); }, settings_.when_full);
+    to_folder_ = std::make_unique<ar::PictureThread>(
+        [this](ar::KeptPicture const& p) { folder_->add(p.sequence, p.rgb); }, settings_.when_full);
 }
 
 void ArRecording::begin(ar::SourceDescription const& source, ar::CameraModel const& camera,
@@ -24,12 +24,12 @@ void ArRecording::begin(ar::SourceDescription const& source, ar::CameraModel con
 {
     if (source.frames_per_s > 0) video_hz_ = source.frames_per_s;
     if (!settings_.passes.folder.empty())
-        passes_ = std::make_unique<PassFolder>(settings_.passes, camera, compositor, source.frames_per_s,
-                                               settings_.when_full, report);
+        passes_ = std::make_unique<ar::PassFolder>(settings_.passes, camera, compositor, source.frames_per_s,
+                                                   settings_.when_full, report);
     if (!settings_.video.empty()) {
         video_ = std::make_unique<VideoWriter>(settings_.video, source.size_px.x, source.size_px.y, video_hz_);
-        to_video_ = std::make_unique<PictureThread>([this](NumberedPicture const& p) { add_to_video(p); },
-                                                    settings_.when_full);
+        to_video_ = std::make_unique<ar::PictureThread>([this](ar::KeptPicture const& p) { add_to_video(p); },
+                                                        settings_.when_full);
     }
     if (settings_.input.empty()) return;
     ar::SessionHeader header;
@@ -44,7 +44,7 @@ void ArRecording::add_input(ar::Frame const& frame)
 }
 
 /// Videos have a constant frame rate: each picture is repeated until the next one is due.
-void ArRecording::add_to_video(NumberedPicture const& p)
+void ArRecording::add_to_video(ar::KeptPicture const& p)
 {
     constexpr double longest_s = 10; // longest time that one picture is shown, even if the clock jumps
     cv::Mat const bytes = ar::eight_bits_of(p.rgb), rgb = bytes.isContinuous() ? bytes : bytes.clone();
@@ -61,10 +61,10 @@ void ArRecording::add_to_video(NumberedPicture const& p)
     held_ = rgb;
 }
 
-void ArRecording::add(ArFrameRecord const& record, ArResult const& result)
+void ArRecording::add(ar::RunFrame const& record, ar::FrameResult const& result)
 {
     if (passes_) passes_->add(record, result);
-    for (PictureThread* const t : {to_folder_.get(), to_video_.get()})
+    for (ar::PictureThread* const t : {to_folder_.get(), to_video_.get()})
         if (t != nullptr) t->add({record.sequence, record.captured_s, result.rgb});
 }
 

@@ -17,8 +17,8 @@ namespace viewer {
 struct ArRecordingSettings {
     std::string pictures, video, input; ///< folder, file, folder; empty = none
     std::string calibration;            ///< file name stored with the input
-    PictureThread::WhenFull when_full = PictureThread::WhenFull::lose;
-    ArPassSettings passes = {};
+    ar::PictureThread::WhenFull when_full = ar::PictureThread::WhenFull::lose;
+    ar::PassSettings passes = {};
 };
 
 class ArRecording {
@@ -33,7 +33,7 @@ public:
     /// Called by the thread that captures frames.
     void add_input(ar::Frame const& frame);
     /// @throws the error of an earlier picture
-    void add(ArFrameRecord const& record, ArResult const& result);
+    void add(ar::RunFrame const& record, ar::FrameResult const& result);
     /// Waits until all files are written, also if one of them fails, and renames the video to its final name.
     /// @throws the first error
     void finish();
@@ -43,13 +43,13 @@ public:
     std::string failure() const { return input_ ? input_->failure() : std::string(); }
 
 private:
-    void add_to_video(NumberedPicture const& picture);
+    void add_to_video(ar::KeptPicture const& picture);
 
     ArRecordingSettings settings_;
-    std::optional<PictureFolder> folder_;
+    std::optional<ar::PictureFolder> folder_;
     std::unique_ptr<VideoWriter> video_;
     std::unique_ptr<ar::SessionWriter> input_;
-    std::unique_ptr<PassFolder> passes_;
+    std::unique_ptr<ar::PassFolder> passes_;
     double video_hz_ = 30;
     cv::Mat held_;     ///< last picture of the video
     double cut_s_ = 0; ///< seconds without frames that were cut from the video
@@ -57,7 +57,7 @@ private:
     int reduced_ = 0;  ///< composites of the video that had more than 8 bits
     bool is_video_done_ = false, is_video_lost_ = false;
     int repeated_ = 0;                                    ///< pictures repeated in place of missing frames
-    std::unique_ptr<PictureThread> to_folder_, to_video_; // destroyed before the outputs they fill
+    std::unique_ptr<ar::PictureThread> to_folder_, to_video_; // destroyed before the outputs they fill
 };
 
 } // namespace viewer

@@ -2,7 +2,6 @@
 #include "ar/pipeline/estimate_albedo.h"
 #include "ar/pose/pose_file.h"
 #include "ar/runtime/runner.h"
-#include "ar/scene/session_inputs.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "gi/image_io/picture_file.h"
@@ -10,6 +9,7 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/camera_view/session_inputs.h"
 #include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/ar/ar_posed_frames.h"
 #include "viewer/cli/commands.h"
@@ -27,7 +27,7 @@ struct AlbedoArguments {
     std::string session, out;
     PosedFrameChoice read;
     bool scene = false;
-    EstimateSettings settings;
+    ar::EstimateSettings settings;
 };
 
 void write_texture(fs::path const& file, cv::Mat const& linear)
@@ -36,13 +36,13 @@ void write_texture(fs::path const& file, cv::Mat const& linear)
     gi::write_png(file, srgb.cols, srgb.rows, {srgb.ptr(), srgb.total() * 3});
 }
 
-std::string describe(AlbedoEstimate const& e, PosedFrames const& seen)
+std::string describe(ar::AlbedoEstimate const& e, PosedFrames const& seen)
 {
     ar::AlbedoFit const& fit = e.solution.fit;
     std::string text = fmt::format("camera found in {} frames ({} without, {} unusable); {} compared\n",
                                    seen.found, seen.without_pose, seen.refused, seen.kept.size());
     text += fmt::format("{:<28} {:^23} {:^23} {:>8}\n", "", "albedo", "spread of pixels", "pixels");
-    for (AlbedoEntry const& p : e.entries)
+    for (ar::AlbedoEntry const& p : e.entries)
         text += p.samples == 0 ? fmt::format("{:<28} not seen\n", p.name)
                                : fmt::format("{:<28} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:>8}\n",
                                              p.name, p.albedo.x, p.albedo.y, p.albedo.z, p.spread.x, p.spread.y,
@@ -65,7 +65,8 @@ fs::path texture_beside(fs::path const& out, std::size_t patch)
 }
 
 /// Throws if an input would be overwritten; earlier estimates may be.
-void check_albedo_outputs(AlbedoArguments const& a, ArSession session, fs::path const& out, RealScene const& real)
+void check_albedo_outputs(AlbedoArguments const& a, ar::Session session, fs::path const& out,
+                          ar::RealScene const& real)
 {
     session.real.estimates.clear();
     if (!a.read.poses.file.empty()) session.tracked.reset();
@@ -78,7 +79,7 @@ void check_albedo_outputs(AlbedoArguments const& a, ArSession session, fs::path 
 
 int run_albedo(AlbedoArguments const& a)
 {
-    ArSession session = read_ar_session(a.session);
+    ar::Session session = ar::read_session(a.session);
     if (a.scene) {
         if (session.real.scene.empty())
             throw gi::InputError("--scene with '" + a.session + "'", "the session has no real.scene",
@@ -93,20 +94,20 @@ int run_albedo(AlbedoArguments const& a)
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    ArCamera const camera = load_ar_camera(session.camera);
-    RealScene real = model_of(session.real, report);
+    ar::CalibratedCamera const camera = ar::load_camera(session.camera);
+    ar::RealScene real = model_of(session.real, report);
     check_albedo_outputs(a, session, out, real);
     PosedFrames const seen = read_posed_frames(a.read, session, camera, stop, report);
     if (stop.requested()) return interrupted_code();
-    AlbedoEstimate estimate = estimate_albedos(std::move(real), PlaceLight(session).begin(), camera, seen.kept,
-                                               a.settings, stop, report);
+    ar::AlbedoEstimate estimate = ar::estimate_albedos(std::move(real), ar::PlaceLight(session).begin(), camera,
+                                                       seen.kept, a.settings, stop, report);
     if (stop.requested()) return interrupted_code(); // too few paths to keep
     for (std::size_t k = 0; k < estimate.entries.size(); ++k) {
         if (estimate.textures[k].empty()) continue;
         estimate.entries[k].texture = texture_beside(out, k);
         write_texture(estimate.entries[k].texture, estimate.textures[k]);
     }
-    gi::write_text(out, format_albedos(estimate.entries));
+    gi::write_text(out, ar::format_albedos(estimate.entries));
     fmt::print("{}{}\n", describe(estimate, seen), out.string());
     print_losses(report);
     return exit_code_of(

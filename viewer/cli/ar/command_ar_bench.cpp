@@ -3,7 +3,6 @@
 #include "ar/markers/marker_map_file.h"
 #include "ar/pipeline/plain_composite.h"
 #include "ar/pipeline/synthesize.h"
-#include "ar/runtime/measured_run.h"
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "viewer/base/arguments.h"
@@ -11,6 +10,7 @@
 #include "viewer/base/report_json.h"
 #include "viewer/base/validators.h"
 #include "viewer/bench/bench_record.h"
+#include "viewer/camera_view/measured_run.h"
 #include "viewer/cli/ar/ar_chain_check.h"
 #include "viewer/cli/ar/ar_light_bench.h"
 #include "viewer/cli/ar/ar_outcome.h"
@@ -46,37 +46,37 @@ std::string size_text(glm::ivec2 px) { return fmt::format("{}x{}", px.x, px.y); 
 fs::path synthetic_session(BenchArguments const& a, glm::ivec2 size_px, gi::StopRequest const& stop,
                            gi::Report& report)
 {
-    SynthesizeOptions o;
+    ar::SynthesizeOptions o;
     fs::path const all = a.folder.empty() ? fs::temp_directory_path() / "lightwell_ar_bench" : fs::path(a.folder);
     o.folder = all / fmt::format("desk {} {} frames {} paths", size_text(size_px), a.frames, a.truth_paths);
     o.size_px = size_px;
     o.frames = a.frames;
     o.truth = a.truth_paths > 0;
     o.quality.paths = std::max(a.truth_paths, 2u);
-    synthesize(o, stop, report);
+    ar::synthesize(o, stop, report);
     return o.folder / "session.yaml";
 }
 
 Cell cell_of(std::vector<double> const& values) { return values.empty() ? Cell() : Cell(summarise(values)); }
 
-std::vector<double> values_of(std::vector<ArFrameRecord> const& frames, double (*value)(ArFrameRecord const&))
+std::vector<double> values_of(std::vector<ar::RunFrame> const& frames, double (*value)(ar::RunFrame const&))
 {
     std::vector<double> values;
-    for (ArFrameRecord const& f : frames) values.push_back(value(f));
+    for (ar::RunFrame const& f : frames) values.push_back(value(f));
     return values;
 }
 
 /// Frames with a trusted pose of their own.
-double found_percent(std::vector<ArFrameRecord> const& frames)
+double found_percent(std::vector<ar::RunFrame> const& frames)
 {
-    return frames.empty() ? 0 : 100 * double(count_found(frames)) / double(frames.size());
+    return frames.empty() ? 0 : 100 * double(ar::count_found(frames)) / double(frames.size());
 }
 
 /// Median, 95th percentile and maximum of each stage.
 void add_stages(BenchTable& table, std::string const& size, std::string const& light, double paths,
-                double resolution, std::string const& pace, std::vector<ArFrameRecord> const& frames)
+                double resolution, std::string const& pace, std::vector<ar::RunFrame> const& frames)
 {
-    using Record = ArFrameRecord const&;
+    using Record = ar::RunFrame const&;
     std::pair<char const*, double (*)(Record)> const stages[] = {
         {"read", [](Record f) { return f.read_ms; }},
         {"age when handed over", [](Record f) { return f.age_ms; }},
@@ -93,14 +93,14 @@ void add_stages(BenchTable& table, std::string const& size, std::string const& l
         {"capture to swap", [](Record f) { return f.swapped_ms; }},
     };
     for (auto const& [name, value] : stages) {
-        Spread const s = spread_of(values_of(frames, value));
+        ar::Spread const s = ar::spread_of(values_of(frames, value));
         if (s.most > 0)
             table.add({size, light, paths, resolution, pace, std::string(name), s.median, s.p95, s.most});
     }
 }
 
 /// Share of marker detection that the library's search (OpenCV or apriltag) takes, measured in the same rounds.
-Cell share_of_search(ArSession const& session, ArResult const& last)
+Cell share_of_search(ar::Session const& session, ar::FrameResult const& last)
 {
     ar::MarkerMap const map = ar::read_marker_map(session.markers);
     if (last.camera.empty()) return {};
@@ -134,24 +134,24 @@ std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
     ar::Compositor compositor(p); // without noise, so that differences are comparable
     cv::Mat ours, plain;
     auto const times = measure_interleaved(7, {[&] { compositor(m.last.camera, *m.last.pair, {}, ours); },
-                                               [&] { plain = plain_composite(m.last.camera, *m.last.pair); }});
+                                               [&] { plain = ar::plain_composite(m.last.camera, *m.last.pair); }});
     // The median of some, since OpenCV's result is now and then another one for the same input.
     std::vector<double> bytes;
     for (int k = 0; k < 3; ++k) {
         cv::Mat difference;
-        cv::absdiff(ours, plain_composite(m.last.camera, *m.last.pair), difference);
+        cv::absdiff(ours, ar::plain_composite(m.last.camera, *m.last.pair), difference);
         cv::Scalar const mean = cv::mean(difference);
         bytes.push_back((mean[0] + mean[1] + mean[2]) / 3);
     }
     return {ratio(times[1], times[0]), summarise(bytes).median};
 }
 
-void measure(BenchArguments const& a, ArSession session, MeasureSettings const& settings, bool given,
+void measure(BenchArguments const& a, ar::Session session, MeasureSettings const& settings, bool given,
              BenchTable& table, BenchTable& stages, BenchTable& curve, FrameTally& tally, gi::StopRequest& stop,
              gi::Report& report)
 {
-    std::string const size = size_text(load_ar_camera(session.camera).model.size_px);
-    auto const one = [&](PairLight light, std::uint32_t most_paths, std::optional<double> rendered) {
+    std::string const size = size_text(ar::load_camera(session.camera).model.size_px);
+    auto const one = [&](ar::PairLight light, std::uint32_t most_paths, std::optional<double> rendered) {
         session.render.light = light;
         session.render.paths = most_paths;
         session.render.resolution = rendered;
@@ -161,23 +161,23 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
             table.facts.emplace_back("ended early", fmt::format("{}, {} paths", size, most_paths));
         }
         tally.looked_at += m.fast.size();
-        tally.found += count_found(m.fast);
+        tally.found += ar::count_found(m.fast);
         tally.refused += m.refused;
         bool const swapped = settings.in_window;
         auto const [plain, bytes] = plain_over_ours(m);
         std::string const by = m.is_prefiltered ? "prefiltered" : "paths";
         double const paths = m.is_prefiltered ? 0 : double(most_paths);
-        double const resolution = resolution_of(session.render, m.is_prefiltered);
+        double const resolution = ar::resolution_of(session.render, m.is_prefiltered);
         table.add({size, by, paths, resolution, m.frames_per_s, found_percent(m.fast),
                    cell_of(values_of(
-                       m.own, swapped ? [](ArFrameRecord const& f) { return f.swapped_ms; }
-                                      : [](ArFrameRecord const& f) { return f.latency_ms; })),
+                       m.own, swapped ? [](ar::RunFrame const& f) { return f.swapped_ms; }
+                                      : [](ar::RunFrame const& f) { return f.latency_ms; })),
                    double(m.own.size()), double(m.overtaken), cell_of(m.errors.flip_affected),
                    cell_of(m.errors.camera_affected), cell_of(m.errors.flip_elsewhere),
                    cell_of(m.flicker.blocks_percent), m.flicker.frames > 1 ? Cell(m.flicker.bytes) : Cell(),
                    cell_of(m.errors.position_mm), cell_of(m.errors.rotation_deg), share_of_search(session, m.last),
                    plain, bytes});
-        for (ConfidenceBin const& b : confidence_curve(m.errors.poses.estimates()))
+        for (ar::ConfidenceBin const& b : ar::confidence_curve(m.errors.poses.estimates()))
             if (b.frames > 0)
                 curve.add({size, by, paths, resolution, b.low, b.high, double(b.frames), b.median_mm, b.p95_mm,
                            b.median_deg, b.p95_deg});
@@ -187,7 +187,7 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
     };
     if (given) return one(session.render.light, session.render.paths, session.render.resolution);
     struct Quality {
-        PairLight light;
+        ar::PairLight light;
         std::uint32_t paths;
         double resolution;
     };
@@ -196,7 +196,7 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
         for (std::uint32_t const paths : light == "paths" ? a.paths : std::vector<std::uint32_t>{1})
             for (double const resolution : a.resolutions)
                 qualities.push_back(
-                    {light == "paths" ? PairLight::paths : PairLight::prefiltered, paths, resolution});
+                    {light == "paths" ? ar::PairLight::paths : ar::PairLight::prefiltered, paths, resolution});
     for (std::size_t k = 0; k < qualities.size(); ++k) {
         if (stop.requested()) return;
         double const begun_s = ar::steady_now_s();
@@ -246,7 +246,7 @@ int run_bench(BenchArguments const& a)
         table.facts.emplace_back("latency", "without a window: until the composite is ready, not shown");
     table.facts.emplace_back("first frames", "left out: they build lasting structures");
     if (!a.session.empty()) {
-        ArSession const session = read_ar_session(a.session);
+        ar::Session const session = ar::read_session(a.session);
         fs::path const folder = fs::path(a.session).parent_path();
         MeasureSettings settings{a.frames, {}, {}, a.window, a.still_frames};
         if (fs::is_directory(folder / "truth")) settings.truth = folder / "truth";
@@ -259,7 +259,7 @@ int run_bench(BenchArguments const& a)
             if (stop.requested()) break;
             MeasureSettings settings{a.frames, {}, file.parent_path() / "poses.csv", a.window, a.still_frames};
             if (a.truth_paths > 0) settings.truth = file.parent_path() / "truth";
-            measure(a, read_ar_session(file), settings, false, table, stages, curve, tally, stop, report);
+            measure(a, ar::read_session(file), settings, false, table, stages, curve, tally, stop, report);
             if (stop.requested()) break;
         }
         table.facts.emplace_back("paths of frames and truth", fmt::format("{}", std::max(a.truth_paths, 2u)));
@@ -370,7 +370,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_option("-o,--out", a->out, "Folder for the tables, as JSON and CSV");
     c->add_flag("--json", a->json, "Print the tables as JSON, in one object by their names");
     c->footer(R"(Examples:
-  lightwell ar bench --size 640x480 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
+  lightwell ar bench --size 320x240 --frames 2 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
   lightwell ar bench --counter --size 320x240 --frames 10
 
 Each quality is run twice: as fast as possible (frames per second, error; no frame is skipped) and at the camera's

@@ -1,12 +1,12 @@
 #include "ar/light/lamps.h"
 #include "ar/pipeline/frame_light_report.h"
 #include "ar/runtime/runner.h"
-#include "ar/scene/session_inputs.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/camera_view/session_inputs.h"
 #include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/ar/ar_posed_frames.h"
 #include "viewer/cli/commands.h"
@@ -25,17 +25,17 @@ struct LightArguments {
     std::string session, out, stats;
     PosedFrameChoice read{{}, 1, 0, -1};
     bool json = false;
-    FrameLightSettings settings;
+    ar::FrameLightSettings settings;
 };
 
 ordered_json numbers(cv::Vec3d const& v) { return {v[0], v[1], v[2]}; }
 ordered_json numbers(glm::dvec3 const& v) { return {v.x, v.y, v.z}; }
 
-ordered_json json_of_light(FrameLight const& light)
+ordered_json json_of_light(ar::FrameLight const& light)
 {
     ordered_json j;
     j["scale_is_known"] = light.scale_is_known;
-    for (FrameLight::Face const& f : light.faces)
+    for (ar::FrameLight::Face const& f : light.faces)
         j["faces"].push_back(
             {{"normal", numbers(f.normal)}, {"irradiance", numbers(f.irradiance)}, {"relative_sigma", f.sigma}});
     j["lights"] = ordered_json::array();
@@ -50,7 +50,7 @@ ordered_json json_of_light(FrameLight const& light)
     j["albedos"] = ordered_json::object();
     for (auto const& a : light.albedos)
         j["albedos"][a.name] = {{"albedo", numbers(a.albedo)}, {"pixels", a.samples}};
-    FrameLightCounts const& n = light.counts;
+    ar::FrameLightCounts const& n = light.counts;
     j["pixels"] = {{"used", n.used},
                    {"clipped", n.clipped},
                    {"dark", n.dark},
@@ -64,11 +64,11 @@ ordered_json json_of_light(FrameLight const& light)
     j["undetermined_share"] = light.undetermined_share;
     j["undetermined_share_above"] = light.undetermined_above;
     j["seen_share"] = light.seen_share;
-    j["warnings"] = warnings_of(light);
+    j["warnings"] = ar::warnings_of(light);
     return j;
 }
 
-void check_light_outputs(LightArguments const& a, ArSession session)
+void check_light_outputs(LightArguments const& a, ar::Session session)
 {
     session.light.clear(); // may be what is written
     session.real.estimates.clear();
@@ -82,23 +82,23 @@ void check_light_outputs(LightArguments const& a, ArSession session)
 int run_light(LightArguments& a)
 {
     if (a.read.only >= 0) a.read.views = 1;
-    ArSession const session = read_ar_session(a.session);
+    ar::Session const session = ar::read_session(a.session);
     check_light_outputs(a, session);
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    ArCamera const camera = load_ar_camera(session.camera);
-    RealScene real = model_of(session.real, report);
+    ar::CalibratedCamera const camera = ar::load_camera(session.camera);
+    ar::RealScene real = model_of(session.real, report);
     PosedFrames const seen = read_posed_frames(a.read, session, camera, stop, report);
     if (stop.requested()) return interrupted_code();
     if (seen.kept.empty() && a.read.only >= 0)
         throw gi::InputError(fmt::format("--frame {}", a.read.only),
                              "it does not exist or has no trusted camera pose",
                              "check with lightwell ar track --table");
-    FrameLight const light =
-        estimate_light(std::move(real), camera.model, camera.photometry, seen.kept, a.settings, stop, report);
+    ar::FrameLight const light =
+        ar::estimate_light(std::move(real), camera.model, camera.photometry, seen.kept, a.settings, stop, report);
     if (stop.requested()) return interrupted_code();
-    write_light(a.out, light, report);
+    ar::write_light(a.out, light, report);
     ordered_json j = json_of_light(light);
     j["frames"] = {{"compared", seen.kept.size()},
                    {"found", seen.found},
@@ -114,7 +114,7 @@ int run_light(LightArguments& a)
     else {
         fmt::print("camera found in {} frames ({} without, {} unusable); {} compared\n{}", seen.found,
                    seen.without_pose, seen.refused, seen.kept.size(), describe(light));
-        for (std::string const& w : warnings_of(light)) fmt::print("not to be trusted: {}\n", w);
+        for (std::string const& w : ar::warnings_of(light)) fmt::print("not to be trusted: {}\n", w);
         fmt::print("{}: {} x {}\n", a.out, light.map.cols, light.map.rows);
     }
     print_losses(report);

@@ -1,13 +1,13 @@
 #include "ar/features/map_builder.h"
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/source_losses.h"
-#include "ar/scene/session_inputs.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "gi/core/quantile.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/camera_view/session_inputs.h"
 #include "viewer/cli/ar/ar_camera_path.h"
 #include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/commands.h"
@@ -25,18 +25,18 @@ struct MapArguments {
     int frames = 0;
 };
 
-FrameTally look(MapArguments const& a, ArSession const& session, ArCamera const& camera, ar::MapBuilder& builder,
-                gi::StopRequest const& stop, gi::Report& report)
+FrameTally look(MapArguments const& a, ar::Session const& session, ar::CalibratedCamera const& camera,
+                ar::MapBuilder& builder, gi::StopRequest const& stop, gi::Report& report)
 {
     CameraPath path(a.poses, session, camera, report);
     ar::OpenOptions open = session.frames.options;
     open.pace = ar::Pace::fastest;
     auto const source = ar::open_source(session.frames.source, open);
-    check_size(source->description().size_px, camera);
+    ar::check_size(source->description().size_px, camera);
     if (a.frames == 0 && (source->description().is_live || session.frames.source == "counter"))
         throw gi::InputError("frames of '" + session.frames.source + "', all of them", "the source never ends",
                              "limit their number: --frames 300");
-    FrameClock clock(session.frames.source, source->description(), false);
+    ar::FrameClock clock(session.frames.source, source->description(), false);
     FrameTally tally;
     gi::ProgressBar bar("map");
     for (int n = 0; !stop.requested() && (a.frames == 0 || n < a.frames);) {
@@ -50,7 +50,7 @@ FrameTally look(MapArguments const& a, ArSession const& session, ArCamera const&
         try {
             auto const pose = path.at(*frame, time_s, stop);
             cv::Mat const gray = ar::gray_of(*frame);
-            check_size({gray.cols, gray.rows}, camera);
+            ar::check_size({gray.cols, gray.rows}, camera);
             ++tally.looked_at;
             tally.found += pose.has_value();
             if (pose)
@@ -62,7 +62,7 @@ FrameTally look(MapArguments const& a, ArSession const& session, ArCamera const&
             report.lose("frames that could not be used", 1, e.what());
         }
     }
-    report_losses(source->counts(), source->state(), report);
+    ar::report_losses(source->counts(), source->state(), report);
     tally.refused += source->counts().refused;
     return tally;
 }
@@ -85,7 +85,7 @@ std::string describe(ar::FeatureMap const& map, ar::MapBuilderCounts const& c, F
 int run_map(MapArguments const& a)
 {
     auto const required = parse_share("--require-found", a.require_found);
-    ArSession session = read_ar_session(a.session);
+    ar::Session session = ar::read_session(a.session);
     session.pose.features.clear(); // a map is made from markers, a tracker or a file
     std::vector<std::string> read{a.poses.file};
     for (std::filesystem::path const& file : files_read_by(session)) read.push_back(file.string());
@@ -93,7 +93,7 @@ int run_map(MapArguments const& a)
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    ArCamera const camera = load_ar_camera(session.camera);
+    ar::CalibratedCamera const camera = ar::load_camera(session.camera);
     ar::MapBuilder builder(camera.model);
     FrameTally const tally = look(a, session, camera, builder, stop, report);
     if (stop.requested()) return interrupted_code();

@@ -82,7 +82,7 @@ Played play(ar::FrameSource& source, ReplayOptions const& o, gi::StopRequest con
 
 nlohmann::ordered_json played_json(Played const& p, ar::SourceDescription const& d)
 {
-    Spread const age = spread_of(p.ages_ms);
+    ar::Spread const age = ar::spread_of(p.ages_ms);
     nlohmann::ordered_json j;
     j["source"] = d.name;
     j["size_px"] = {d.size_px.x, d.size_px.y};
@@ -104,7 +104,7 @@ nlohmann::ordered_json played_json(Played const& p, ar::SourceDescription const&
 
 void print(Played const& p, ar::SourceDescription const& d)
 {
-    Spread const age = spread_of(p.ages_ms);
+    ar::Spread const age = ar::spread_of(p.ages_ms);
     fmt::print("{}: {} x {} px, {}\n", d.name, d.size_px.x, d.size_px.y, name_of(d.format));
     fmt::print("{} frames in {:.2f} s: {:.2f} per second ({:g} nominal)\n", p.frames, p.span_s(), p.rate_hz(),
                d.frames_per_s);

@@ -1,13 +1,14 @@
-#include "ar/runtime/ar_window.h"
 #include "ar/runtime/frame_table.h"
 #include "ar/runtime/frame_truth.h"
-#include "ar/runtime/hmd_run.h"
-#include "ar/scene/session_inputs.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/camera_view/ar_window.h"
+#include "viewer/camera_view/camera_tracker.h"
+#include "viewer/camera_view/hmd_run.h"
+#include "viewer/camera_view/session_inputs.h"
 #include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/ar/ar_recording.h"
 #include "viewer/cli/ar/pose_arguments.h"
@@ -36,7 +37,7 @@ struct RunArguments {
 };
 
 /// Throws if an input would be overwritten.
-void check_arguments(RunArguments const& a, ArSession const& session)
+void check_arguments(RunArguments const& a, ar::Session const& session)
 {
     std::vector<std::string> read{a.poses.file, a.true_poses};
     for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
@@ -75,9 +76,9 @@ void check_arguments(RunArguments const& a, ArSession const& session)
 }
 
 /// Reads the session and applies the tracker options of the command line.
-ArSession session_of(RunArguments const& a)
+ar::Session session_of(RunArguments const& a)
 {
-    ArSession session = read_ar_session(a.session);
+    ar::Session session = ar::read_session(a.session);
     if (!a.poses.file.empty())
         session.tracked.reset();
     else if (!a.display.empty()) {
@@ -90,8 +91,8 @@ ArSession session_of(RunArguments const& a)
     return session;
 }
 
-int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions const& o, gi::StopRequest const& stop,
-               std::optional<TrackedCamera> const& tracker, gi::Report& report)
+int run_in_hmd(RunArguments const& a, ar::Session const& session, ar::RunOptions const& o,
+               gi::StopRequest const& stop, std::optional<CameraTracker> const& tracker, gi::Report& report)
 {
     ArHmdOptions hmd;
     hmd.pass_through = {o.frames, o.pace, o.poses, o.tracked};
@@ -127,21 +128,21 @@ int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions con
 int run_session(RunArguments const& a, bool poses_only)
 {
     auto const required = parse_share("--require-found", a.require_found);
-    ArSession const session = session_of(a);
+    ar::Session const session = session_of(a);
     check_arguments(a, session);
     if (!a.video.empty()) {
-        glm::ivec2 const size_px = load_ar_camera(session.camera).model.size_px;
+        glm::ivec2 const size_px = ar::load_camera(session.camera).model.size_px;
         check_video(a.video, size_px.x, size_px.y, 30);
     }
-    ArRunOptions o;
+    ar::RunOptions o;
     o.frames = a.frames;
     o.pace = a.fast ? ar::Pace::fastest : ar::Pace::own;
     o.find_poses_only = poses_only;
     o.keeps_depth = !session.passes.folder.empty();
-    if (a.gpu) o.composite = CompositeBy::window;
+    if (a.gpu) o.composite = ar::CompositeBy::window;
     gi::Report report;
     o.poses = poses_of(a.poses, session, report);
-    std::optional<TrackedCamera> tracker;
+    std::optional<CameraTracker> tracker;
     if (session.tracked) {
         tracker.emplace(*session.tracked, report);
         o.poses = tracker->recorded();
@@ -150,13 +151,13 @@ int run_session(RunArguments const& a, bool poses_only)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
-    FrameTruth truth(a.truth, true_poses_of(a.true_poses, session, report));
+    ar::FrameTruth truth(a.truth, true_poses_of(a.true_poses, session, report));
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
-                           a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose,
-                           poses_only ? ArPassSettings{} : session.passes});
+                           a.fast ? ar::PictureThread::WhenFull::wait : ar::PictureThread::WhenFull::lose,
+                           poses_only ? ar::PassSettings{} : session.passes});
     std::optional<ArWindow> window;
     std::optional<ar::Compositor> compositor;
-    o.opened = [&](ar::SourceDescription const& source, ArPipeline const& pipeline) {
+    o.opened = [&](ar::SourceDescription const& source, ar::Pipeline const& pipeline) {
         if (a.gpu) compositor = pipeline.compositor();
         ArWindowSettings settings{.size_px = source.size_px, .monitor = a.monitor};
         settings.compositor = compositor ? &*compositor : nullptr;
@@ -171,24 +172,24 @@ int run_session(RunArguments const& a, bool poses_only)
         if (window) window->idle();
         look();
     };
-    ArSummary summary;
+    ar::RunSummary summary;
     auto const keep = [&](std::string const& recorded) {
         if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
         if (tracker) fmt::print("{}", tracker->describe());
-        if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
+        if (!a.frame_table.empty()) gi::write_text(a.frame_table, ar::frame_table(summary));
         if (!a.confidence.empty())
-            gi::write_text(a.confidence, to_csv(confidence_curve(truth.errors().poses.estimates())));
+            gi::write_text(a.confidence, to_csv(ar::confidence_curve(truth.errors().poses.estimates())));
         fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recorded);
         print_losses(report);
     };
-    auto const shown = [&](ArFrameRecord& f, ArResult const& r) {
+    auto const shown = [&](ar::RunFrame& f, ar::FrameResult const& r) {
         if (window) window->show(f, r);
         look();
         recording.add(f, r);
         truth.add(f, r);
     };
     try {
-        run_ar(session, o, shown, stop, report, summary);
+        ar::run_frames(session, o, shown, stop, report, summary);
         recording.finish();
     } catch (...) {
         try {
@@ -215,7 +216,8 @@ int run_session(RunArguments const& a, bool poses_only)
     bool const was_closed = window && window->wants_close();
     if (stop.requested()) return was_closed ? 0 : interrupted_code();
     return exit_code_of(shortfall(
-        {summary.frames.size(), count_found(summary.frames), summary.refused + summary.source.refused}, required));
+        {summary.frames.size(), ar::count_found(summary.frames), summary.refused + summary.source.refused},
+        required));
 }
 
 void add_session_options(CLI::App& c, RunArguments& a)

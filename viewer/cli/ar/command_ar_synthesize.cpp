@@ -13,26 +13,26 @@ namespace viewer {
 namespace {
 
 struct SynthesizeArguments {
-    SynthesizeOptions options;
+    ar::SynthesizeOptions options;
     std::string folder, size = "640x480", markers = "board";
     bool no_truth = false, no_denoise = false;
 };
 
 int run_synthesize(SynthesizeArguments const& a)
 {
-    SynthesizeOptions o = a.options;
+    ar::SynthesizeOptions o = a.options;
     o.folder = a.folder;
     auto const [width, height] = parse_size(a.size);
     o.size_px = {width, height};
     o.truth = !a.no_truth && !o.quick;
-    o.markers = a.markers == "one"    ? DeskMarkers::one
-                : a.markers == "none" ? DeskMarkers::none
-                                      : DeskMarkers::board;
+    o.markers = a.markers == "one"    ? ar::DeskMarkers::one
+                : a.markers == "none" ? ar::DeskMarkers::none
+                                      : ar::DeskMarkers::board;
     o.quality.denoise = !a.no_denoise;
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    int const done = synthesize(o, stop, report);
+    int const done = ar::synthesize(o, stop, report);
     fmt::print("{}: {} of {} frames\n", (o.folder / "session.yaml").string(), done, o.frames);
     print_losses(report);
     return stop.requested() ? interrupted_code() : 0;

@@ -6,11 +6,12 @@
 namespace viewer {
 namespace {
 
-std::vector<ar::TimedPose> timed_poses(PoseArguments const& a, ArSession const& session, char const* hint,
+std::vector<ar::TimedPose> timed_poses(PoseArguments const& a, ar::Session const& session, char const* hint,
                                        gi::Report& report)
 {
     if (a.file.empty()) return {};
-    ar::PoseFile poses = read_camera_poses(a.file, {frames_per_s_of(session.frames), a.first_frame}, report);
+    ar::PoseFile poses =
+        ar::read_camera_poses(a.file, {ar::frames_per_s_of(session.frames), a.first_frame}, report);
     if (poses.first_frame && !a.first_frame)
         std::fputs(
             fmt::format("lightwell: the first frame is taken for number {:.15g} of '{}' (its first pose); {}\n",
@@ -36,12 +37,12 @@ void declare_poses(CLI::App& c, PoseArguments& a)
         ->check(CLI::Range(-1e9, 1e9));
 }
 
-std::vector<ar::TimedPose> poses_of(PoseArguments const& a, ArSession const& session, gi::Report& report)
+std::vector<ar::TimedPose> poses_of(PoseArguments const& a, ar::Session const& session, gi::Report& report)
 {
     return timed_poses(a, session, "if it is another: --first-pose N", report);
 }
 
-std::vector<ar::TimedPose> true_poses_of(std::string const& file, ArSession const& session, gi::Report& report)
+std::vector<ar::TimedPose> true_poses_of(std::string const& file, ar::Session const& session, gi::Report& report)
 {
     return timed_poses({file, {}}, session, "if it is another, give the poses times", report);
 }

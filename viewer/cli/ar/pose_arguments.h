@@ -18,8 +18,9 @@ void declare_poses(CLI::App& command, PoseArguments& arguments);
 
 /// Poses of a file for the session's frames. Says on stderr which number its first frame is taken for, if the file
 /// numbers frames and the caller did not say. @throws gi::InputError
-std::vector<ar::TimedPose> poses_of(PoseArguments const& arguments, ArSession const& session, gi::Report& report);
+std::vector<ar::TimedPose> poses_of(PoseArguments const& arguments, ar::Session const& session,
+                                    gi::Report& report);
 /// The same of a file of true poses; if it numbers frames, its first pose is the first frame's.
-std::vector<ar::TimedPose> true_poses_of(std::string const& file, ArSession const& session, gi::Report& report);
+std::vector<ar::TimedPose> true_poses_of(std::string const& file, ar::Session const& session, gi::Report& report);
 
 } // namespace viewer

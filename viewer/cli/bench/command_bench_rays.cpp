@@ -3,8 +3,8 @@
 #include "gi/core/rng.h"
 #include "gi/hit_buffers/directions/directions.h"
 #include "gi/hit_buffers/query_batch.h"
-#include "gi/render/bvh_visibility.h"
 #include "gi/render/exact_visibility.h"
+#include "gi/render/world_bvh.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/shading/warp.h"
 #include "viewer/bench/bench_record.h"
@@ -104,7 +104,8 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
     World const world = load_world(options, report);
     Camera const camera = choose_camera(world, camera_choice(options)).camera;
     ExactVisibility const exact(world, false, 1);
-    BvhVisibility const own(world, false);
+    WorldView const viewed = view(world);
+    WorldBvh<Space::host> const own(viewed, false, ~std::size_t(0));
     TriangleSoup const soup = make_soup(world);
     DirectionSet const set = make_directions(o.directions);
     Pcg32 rng(1, 1);
@@ -176,7 +177,10 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
          [&] {
              for (std::size_t k = 0; k < used; ++k) nearest_layers(pool, k * step, world.surfaces, few[k]);
          },
-         [&] { nearest_layers(pool, the_one, world.surfaces, one); }, [&] { own.nearest(rays, hits); }});
+         [&] { nearest_layers(pool, the_one, world.surfaces, one); },
+         [&] {
+             for (std::size_t k = 0; k < n; ++k) hits[k] = own.rays().nearest(viewed, rays[k]);
+         }});
     if (sink == 0)
         throw InputError("no ray of '" + scene + "' hits anything", "the camera sees nothing",
                          "choose another view");

@@ -59,7 +59,7 @@ int main(int argc, char** argv)
     words.push_back(nullptr);
     if (!failed) execv(file.c_str(), const_cast<char* const*>(words.data()));
     std::string const why = failed ? "/proc/self/exe: " + failed.message() : file + ": " + std::strerror(errno);
-    std::fprintf(stderr, "lightwell: '%s' cannot be started (%s) build all programs: scripts/build release\n",
-                 words[1], why.c_str());
+    std::fprintf(stderr, "lightwell: '%s' cannot be started (%s) build it: scripts/build release %s\n",
+                 words[1], why.c_str(), program.c_str());
     return 2;
 }

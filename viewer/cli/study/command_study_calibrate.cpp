@@ -36,11 +36,8 @@ using study::PatchColour;
 
 PatchColour patch_colour(std::string_view word, std::string const& where)
 {
-    for (auto const& [name, colour] : {std::pair{"white", PatchColour::white},
-                                       {"red", PatchColour::red},
-                                       {"green", PatchColour::green},
-                                       {"blue", PatchColour::blue}})
-        if (word == name) return colour;
+    for (PatchColour const colour : study::kPatchColours)
+        if (word == study::name_of(colour)) return colour;
     throw gi::InputError(fmt::format("{}: '{}' is no colour", where, word), "patches have one",
                          "write white, red, green or blue");
 }
@@ -125,15 +122,6 @@ void take_size(study::DisplayModel& model, CalibrateOptions const& o, std::optio
                              "add --width-cm, or --card to measure it");
 }
 
-std::string readings_csv(std::vector<study::LuminanceReading> const& readings)
-{
-    constexpr char const* kNames[]{"white", "red", "green", "blue"};
-    std::string text = "channel,value,cd_m2\n";
-    for (study::LuminanceReading const& r : readings)
-        text += fmt::format("{},{:.6f},{}\n", kNames[int(r.colour)], r.value, r.cd_m2);
-    return text;
-}
-
 void check_date(std::string const& date)
 {
     int year = 0, month = 0, day = 0, read = 0;
@@ -170,7 +158,8 @@ int run_calibrate(CalibrateOptions const& o)
 
     check_size(o, model);
     auto const keep_readings = [&] {
-        if (!o.readings_out.empty() && !readings.empty()) gi::write_text(o.readings_out, readings_csv(readings));
+        if (!o.readings_out.empty() && !readings.empty())
+            gi::write_text(o.readings_out, study::readings_text(readings));
     };
 
     gi::Report report;
@@ -187,7 +176,7 @@ int run_calibrate(CalibrateOptions const& o)
         if (o.card) px_per_cm = match_card(screen);
         // Kept one by one: typing them takes long, and what follows may be refused or ended.
         std::vector<study::LuminanceReading> const before = readings;
-        measure_patches(screen, measured_colours, series_values(o.levels),
+        measure_patches(screen, measured_colours, study::series_values(o.levels),
                         [&](std::vector<study::LuminanceReading> const& so_far) {
                             readings = before;
                             readings.insert(readings.end(), so_far.begin(), so_far.end());

@@ -2,7 +2,7 @@
 #include "gi/core/file.h"
 #include "gi/core/progress.h"
 #include "gi/core/text.h"
-#include "study/power/power_report.h"
+#include "study/power/power_study.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/commands.h"

@@ -4,10 +4,10 @@
 #include "viewer/base/report_json.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
-#include "viewer/displays/calibration.h"
 #include "viewer/displays/display_file.h"
 #include "viewer/displays/examples.h"
 #include "viewer/displays/import.h"
+#include "viewer/displays/test_pattern.h"
 #include "viewer/displays/view_summary.h"
 
 #include <CLI/CLI.hpp>
@@ -150,11 +150,10 @@ std::string picture_name(std::size_t index, std::string const& view)
 
 int run_calibrate(DisplayOptions const& o)
 {
-    auto const pattern = calibration_pattern(o.pattern);
+    auto const pattern = test_pattern(o.pattern);
     if (!pattern) {
         std::string known;
-        for (CalibrationPattern const p : kCalibrationPatterns)
-            known += (known.empty() ? "" : ", ") + std::string(name_of(p));
+        for (TestPattern const p : kTestPatterns) known += (known.empty() ? "" : ", ") + std::string(name_of(p));
         throw gi::InputError("'" + o.pattern + "' is no pattern", "no pattern has this name",
                              "there are: " + known);
     }
@@ -169,12 +168,12 @@ int run_calibrate(DisplayOptions const& o)
         Wall const& wall = d.walls[std::size_t(views[i].wall)];
         bool const is_next_face = i > 0 && wall.surface && views[i - 1].wall == views[i].wall;
         if (is_next_face) continue; // one picture for the whole surface
-        if (wall.surface && *pattern != CalibrationPattern::grid) {
+        if (wall.surface && *pattern != TestPattern::grid) {
             report.lose("projections that are not flat, which have only the pattern grid", 1, wall.name);
             continue;
         }
-        CalibrationPicture const picture =
-            wall.surface ? draw_curved_grid(d, wall) : draw_calibration(*pattern, d, views[i]);
+        PatternPicture const picture =
+            wall.surface ? draw_curved_grid(d, wall) : draw_pattern(*pattern, d, views[i]);
         auto const file =
             std::filesystem::path(o.out_folder) / picture_name(i, wall.surface ? wall.name : views[i].name);
         gi::write_png(file, picture.width, picture.height, picture.rgb);

@@ -8,7 +8,7 @@
 namespace viewer {
 
 glm::dmat3 pinhole_from_eye(gi::Camera const& eye, glm::ivec2 eye_px, ar::CameraModel const& c,
-                            ar::Pose const& room_from_camera, double plane_m)
+                            gi::RigidPose const& room_from_camera, double plane_m)
 {
     gi::ViewTangents const t = eye.off_axis.value_or(gi::ViewTangents{-1, 1, -1, 1});
     // Columns: contributions of one pixel right, one pixel down, and the corner to the direction.
@@ -17,7 +17,7 @@ glm::dmat3 pinhole_from_eye(gi::Camera const& eye, glm::ivec2 eye_px, ar::Camera
                                         glm::dvec3(t.left, t.top, -1));
     glm::dmat3 const camera_from_room = glm::transpose(glm::mat3_cast(room_from_camera.rotation));
     glm::dvec3 const origin =
-        camera_from_room * (glm::dvec3(eye.world_from_camera[3]) - room_from_camera.position_m);
+        camera_from_room * (glm::dvec3(eye.world_from_camera[3]) - room_from_camera.position);
     // A ray o + s d meets z = plane at s = (plane - o.z) / d.z; all times d.z.
     double const ahead_m = plane_m - origin.z;
     glm::dmat3 const on_plane(glm::dvec3(ahead_m, 0, 0), glm::dvec3(0, ahead_m, 0),
@@ -43,7 +43,7 @@ void PassThroughPass::take(cv::Mat const& rgb)
     fill_texture(picture_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
 }
 
-void PassThroughPass::draw(DrawTarget const& target, gi::Camera const& eye, ar::Pose const& room_from_camera,
+void PassThroughPass::draw(DrawTarget const& target, gi::Camera const& eye, gi::RigidPose const& room_from_camera,
                            double plane_m)
 {
     bind(target);

@@ -15,7 +15,7 @@ namespace viewer {
 /// integers); the third homogeneous coordinate is > 0 in front of the camera.
 /// @param eye  with an off-axis lens   @param room_from_camera  x right, y down, z ahead
 glm::dmat3 pinhole_from_eye(gi::Camera const& eye, glm::ivec2 eye_px, ar::CameraModel const& pinhole,
-                            ar::Pose const& room_from_camera, double plane_m);
+                            gi::RigidPose const& room_from_camera, double plane_m);
 
 /// Belongs to the context that was current at its creation.
 class PassThroughPass {
@@ -23,7 +23,8 @@ public:
     explicit PassThroughPass(ar::CameraModel const& camera);
     /// @param rgb  CV_8UC3, of the camera's size
     void take(cv::Mat const& rgb);
-    void draw(DrawTarget const& target, gi::Camera const& eye, ar::Pose const& room_from_camera, double plane_m);
+    void draw(DrawTarget const& target, gi::Camera const& eye, gi::RigidPose const& room_from_camera,
+              double plane_m);
 
 private:
     ar::CameraModel pinhole_;

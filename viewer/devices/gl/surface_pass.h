@@ -1,7 +1,7 @@
 #pragma once
 // The picture of a wall that is not flat, from finished pictures of the faces of a cube around an eye: each pixel
-// takes the colour in the direction from the eye to the point of the surface that it lights (cube_faces.h, whose
-// resample() gives the same pixels). Input and output are display-encoded.
+// takes the colour in the direction from the eye to the point of the surface that it lights (cube_faces.h).
+// Input and output are display-encoded.
 
 #include "viewer/devices/gl/draw_target.h"
 #include "viewer/devices/gl/gl_program.h"

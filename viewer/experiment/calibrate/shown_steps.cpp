@@ -25,12 +25,6 @@ ImU32 colour_of(study::PatchColour colour, double value)
                     all || colour == PatchColour::blue ? v : 0, 255);
 }
 
-char const* name_of_colour(study::PatchColour colour)
-{
-    constexpr char const* kNames[]{"white", "red", "green", "blue"};
-    return kNames[int(colour)];
-}
-
 /// A line at the bottom of the window; dim, so that it hardly lights the patch.
 void draw_hint(glm::vec2 px, std::string const& text)
 {
@@ -100,14 +94,6 @@ bool is_key(InputEvent const& e, int code) { return e.kind == InputKind::key && 
 
 } // namespace
 
-std::vector<double> series_values(int count)
-{
-    std::vector<double> values;
-    for (int i = 0; i < count; ++i)
-        values.push_back(std::round(double(kByteSteps) * i / (count - 1)) / kByteSteps);
-    return values;
-}
-
 void measure_patches(Screen& screen, std::vector<study::PatchColour> const& colours,
                      std::vector<double> const& values,
                      std::function<void(std::vector<study::LuminanceReading> const&)> const& keep)
@@ -123,7 +109,7 @@ void measure_patches(Screen& screen, std::vector<study::PatchColour> const& colo
             glm::vec2 const half(0.25f * std::min(px.x, px.y));
             fill(0.5f * px - half, 0.5f * px + half, colour_of(colour, value));
             draw_hint(px, fmt::format("{} of {}: {} {:.0f}/255   cd/m2: {}_   enter   backspace: back", i + 1,
-                                      count, name_of_colour(colour), kByteSteps * value, typed));
+                                      count, name_of(colour), kByteSteps * value, typed));
         };
         std::optional<double> luminance;
         StepEnd const end = run_step(screen, draw, [&](InputEvent const& e) {
@@ -178,7 +164,7 @@ std::vector<study::GammaMatch> match_patterns(Screen& screen, std::vector<study:
             draw_hint(px,
                       fmt::format("{} of {}: {} {}   up, down, page up, page down: make both halves alike, from "
                                   "afar   enter",
-                                  i + 1, count, name_of_colour(colour), value));
+                                  i + 1, count, name_of(colour), value));
         };
         StepEnd const end = run_step(screen, draw, [&](InputEvent const& e) {
             value = std::clamp(value + steps_of(e), 1, kByteSteps - 1);

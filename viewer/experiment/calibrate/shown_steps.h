@@ -8,9 +8,6 @@
 
 namespace viewer {
 
-/// Values of a photometer's series: `count` from 0 to 1, evenly spaced in whole 255ths.
-std::vector<double> series_values(int count);
-
 /// Shows each patch; its luminance is typed (a comma is a decimal point) and entered.
 /// @param keep  called with all readings after each, so that they outlive what follows
 /// @throws gi::InputError the window was closed, or escape was pressed

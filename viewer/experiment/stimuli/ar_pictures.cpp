@@ -8,6 +8,7 @@
 #include "ar/scene/camera_poses.h"
 #include "ar/scene/read_values.h"
 #include "gi/core/error.h"
+#include "viewer/camera_view/camera_tracker.h"
 #include "viewer/experiment/screens/screen.h"
 
 #include <algorithm>
@@ -26,9 +27,9 @@ constexpr double kRounding_s = 2e-6;
 /// Numbered frames of files, each with its time in the session.
 class Frames {
 public:
-    Frames(ArSession const& session, gi::Report& report) : name_(session.frames.source), report_(report)
+    Frames(ar::Session const& session, gi::Report& report) : name_(session.frames.source), report_(report)
     {
-        if (is_device(name_))
+        if (ar::is_device(name_))
             throw gi::InputError("frames of '" + name_ + "' as a stimulus",
                                  name_ == "counter" ? "they never end" : "live frames cannot be repeated",
                                  "record them (lightwell ar record) and name the recording");
@@ -41,7 +42,7 @@ public:
 
     ~Frames()
     {
-        if (source_ && !was_told_) report_losses(source_->counts(), {}, report_);
+        if (source_ && !was_told_) ar::report_losses(source_->counts(), {}, report_);
     }
     Frames(Frames const&) = delete;
     Frames& operator=(Frames const&) = delete;
@@ -56,7 +57,7 @@ public:
         while (!(frame = source_->next(std::chrono::milliseconds(200))))
             if (source_->state().kind != ar::SourceState::Kind::running) {
                 was_told_ = true;
-                report_losses(source_->counts(), source_->state(), report_);
+                ar::report_losses(source_->counts(), source_->state(), report_);
                 return std::nullopt;
             }
         if (!first_) first_ = frame->sequence;
@@ -74,7 +75,7 @@ private:
     std::string name_;
     gi::Report& report_;
     std::unique_ptr<ar::FrameSource> source_;
-    std::optional<FrameClock> clock_;
+    std::optional<ar::FrameClock> clock_;
     bool was_told_ = false;
     std::optional<std::uint64_t> first_;
     std::uint64_t last_ = 0;
@@ -110,10 +111,10 @@ cv::Mat read_truth(ArStimulus const& s, ar::Frame const& frame)
     return truth;
 }
 
-std::vector<ar::TimedPose> poses_of(ArStimulus const& s, ArFrames const& frames, gi::Report& report)
+std::vector<ar::TimedPose> poses_of(ArStimulus const& s, ar::SessionFrames const& frames, gi::Report& report)
 {
     try {
-        return read_camera_poses(s.poses, {frames_per_s_of(frames), {}}, report).poses;
+        return ar::read_camera_poses(s.poses, {ar::frames_per_s_of(frames), {}}, report).poses;
     } catch (gi::InputError const& e) {
         throw ArSettingError("ar.poses", s.poses.filename().string(), "the camera's poses", e.what(),
                              "name a file of a format in docs/ar.md (Poses)");
@@ -126,11 +127,11 @@ public:
     Maker(ArStimulus const& stimulus, gi::StopRequest const& stop, gi::Report& report)
         : stimulus_(stimulus), stop_(stop), report_(report)
     {
-        ArSession const session = session_of(stimulus);
+        ar::Session const session = session_of(stimulus);
         if (!stimulus.poses.empty()) poses_ = poses_of(stimulus, session.frames, report);
         if (stimulus.show != ArShow::composite) return;
         if (poses_.empty() && session.tracked) poses_ = recorded_poses(*session.tracked, report);
-        pipeline_.emplace(session, load_ar_camera(session.camera), ar::read_marker_map(session.markers), report);
+        pipeline_.emplace(session, ar::load_camera(session.camera), ar::read_marker_map(session.markers), report);
     }
 
     ArPicture operator()(Frames::Timed const& f)
@@ -139,9 +140,9 @@ public:
         if (stimulus_.show == ArShow::camera) p.rgb = ar::rgb_of(f.frame).clone();
         if (stimulus_.show == ArShow::truth) p.rgb = read_truth(stimulus_, f.frame);
         if (stimulus_.show != ArShow::composite) return p;
-        std::optional<KnownPose> known;
-        if (!poses_.empty()) known.emplace(recorded_pose(poses_, f.time_s));
-        ArResult r = pipeline_->find(f.frame, f.time_s, known, {}, &stop_);
+        std::optional<std::optional<gi::RigidPose>> known;
+        if (!poses_.empty()) known = ar::recorded_pose(poses_, f.time_s);
+        ar::FrameResult r = pipeline_->find(f.frame, f.time_s, known, {}, &stop_);
         pipeline_->add(r, f.frame, f.time_s, stop_);
         p.rgb = ar::eight_bits_of(r.rgb).clone();
         if (r.rgb.depth() != CV_8U)
@@ -157,7 +158,7 @@ private:
     ArStimulus const& stimulus_;
     gi::StopRequest const& stop_;
     gi::Report& report_;
-    std::optional<ArPipeline> pipeline_;
+    std::optional<ar::Pipeline> pipeline_;
     std::vector<ar::TimedPose> poses_;
 };
 
@@ -219,14 +220,14 @@ std::vector<ArPicture> make_ar_pictures(ArStimulus const& s, StimulusView const&
 
 void check_ar_pictures(ArStimulus const& s)
 {
-    ArSession const session = session_of(s);
+    ar::Session const session = session_of(s);
     gi::Report report;
     Frames frames(session, report);
     gi::StopRequest const stop;
     Maker make(s, stop, report);
-    ArCamera const camera = load_ar_camera(session.camera);
+    ar::CalibratedCamera const camera = ar::load_camera(session.camera);
     while (auto f = frames.next()) {
-        check_size(f->frame.size_px, camera);
+        ar::check_size(f->frame.size_px, camera);
         if (!is_first_shown(s, *f)) continue;
         if (s.show == ArShow::truth) read_truth(s, f->frame);
         return;

@@ -14,7 +14,7 @@ namespace viewer {
 struct ArPicture {
     double time_s = 0; ///< start of its presentation, since the onset
     cv::Mat rgb;       ///< CV_8UC3, of the place's size: the frame scaled to fit, grey around it
-    std::optional<ar::Pose> world_from_camera;
+    std::optional<gi::RigidPose> world_from_camera;
 };
 
 /// Makes one picture, those for `view.duration_s`, or all there are if fewer. @throws gi::InputError,

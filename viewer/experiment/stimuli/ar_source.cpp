@@ -83,7 +83,7 @@ std::shared_ptr<LiveFrame const> frame_of(ArPicture const& p, Settings const& se
         ar::CameraModel any; // only its pose matters
         any.size_px = {p.rgb.cols, p.rgb.rows};
         any.fx = any.fy = p.rgb.cols;
-        order.camera = gi_camera(any, *p.world_from_camera);
+        order.camera = ar::gi_camera(any, *p.world_from_camera);
     }
     frame->command.views.push_back(order);
     frame->result.views.push_back({std::move(picture), {}});

@@ -1,9 +1,9 @@
 #include "viewer/experiment/stimuli/ar_stimulus.h"
 
-#include "ar/scene/session_inputs.h"
 #include "gi/core/file.h"
 #include "gi/core/sha256.h"
 #include "gi/core/text.h"
+#include "viewer/camera_view/session_inputs.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -66,7 +66,7 @@ void check_overrides(std::string const& text, ArStimulus const& s)
 {
     auto const problem_of = [&](study::Patch const& overrides) -> std::optional<std::string> {
         try {
-            parse_ar_session(with(text, overrides), s.session);
+            ar::parse_session(with(text, overrides), s.session);
         } catch (gi::InputError const& e) {
             return e.what();
         }
@@ -173,13 +173,13 @@ ArStimulus ar_stimulus(study::Patch const& patch, fs::path const& folder)
             s.overrides.emplace_back(own, value);
     }
     std::string const text = text_of_file(s.session);
-    parse_ar_session(text, s.session); // errors in the file itself are reported with their own position
+    ar::parse_session(text, s.session); // errors in the file itself are reported with their own position
     check_overrides(text, s);
     s.text = with(text, s.overrides);
     return s;
 }
 
-ArSession session_of(ArStimulus const& s) { return parse_ar_session(s.text, s.session); }
+ar::Session session_of(ArStimulus const& s) { return ar::parse_session(s.text, s.session); }
 
 std::string content_hash(ArStimulus const& s)
 {

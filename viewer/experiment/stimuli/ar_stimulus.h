@@ -40,7 +40,7 @@ bool is_ar_setting(std::string const& key);
 /// Builds a stimulus from the settings that begin with `ar`. @param folder  base folder of the session's path
 /// @throws ArSettingError; gi::InputError with file:line:column for errors within the session's file
 ArStimulus ar_stimulus(study::Patch const& patch, std::filesystem::path const& folder);
-ArSession session_of(ArStimulus const& stimulus);
+ar::Session session_of(ArStimulus const& stimulus);
 
 /// Hash of all files of the session (frames, calibration, maps, scenes), of poses and of truth pictures.
 std::string content_hash(ArStimulus const& stimulus);
