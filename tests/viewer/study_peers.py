@@ -76,7 +76,7 @@ def tone_mappers():
 def counts():
     file = DATA / "study/psychometric_qpdat.csv"
     t = analysed("--table", file, "--columns", "participant=participant,level=phase,yes_count=k,trials=n", "--factors",
-                 "cond", "--guess", 0, "--lapse", 0)
+                 "cond", "--guess", 0, "--lapse", 0, "--draws", 0)
     data = pd.read_csv(file)
     ours, peer = [], []
     for r in t["runs"]:
@@ -191,7 +191,7 @@ def groups():
 QUEST = """schema: study/1
 id: quest
 seed: 9
-participants: {count: 2}
+participants: {count: 3}
 factors: {scene: [hall]}
 reference: {scene: hall}
 defaults: {stimulus_ms: 500}
@@ -201,7 +201,7 @@ blocks:
     task: 2ifc
     cross: [scene]
     compare: {vary: contrast, against: reference, scale: log10, range: [0.01, 1], harder: down}
-    procedure: {name: qp, method: questplus, threshold: 0.01..1/41, slope: 1..8/8, guess: 0.5, lapse: 0.02, stop: {trials: 20}}
+    procedure: {name: qp, method: questplus, threshold: 0.01..1/41, slope: 1..8/8, guess: 0.5, lapse: 0.02, stop: {trials: 30}}
 """
 
 
@@ -235,7 +235,7 @@ def quest():
         peer.append(10 ** (np.interp(0.5, middle, at[order]) / 20))
         ours.append(next(r for r in t["runs"] if r["participant"] == who and r["method"] == "QUEST+ posterior")["level"])
     compare(f"questplus: levels that differ, of {len(data)} choices", different, 0, 0.5)
-    compare("questplus: thresholds of 2 runs (75 %)", ours, peer, 1e-6, relative=True)
+    compare("questplus: thresholds of 3 runs (75 %)", ours, peer, 1e-6, relative=True)
 
 
 def main():
