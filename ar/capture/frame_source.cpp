@@ -59,4 +59,13 @@ std::vector<std::string> cannot_set(Controls const& c, std::string const& why)
     return all;
 }
 
+void report_losses(SourceCounts const& counts, SourceState const& state, gi::Report& report)
+{
+    if (counts.refused > 0)
+        report.lose("frames that could not be read", std::size_t(counts.refused), counts.last_refusal);
+    if (state.kind == SourceState::Kind::lost)
+        throw gi::InputError("the source was lost: " + state.reason, describe(counts),
+                             "check the file, or the camera's cable");
+}
+
 } // namespace ar

@@ -3,6 +3,7 @@
 // frames may be passed to other threads, and may outlive their source.
 
 #include "ar/camera/frame.h"
+#include "gi/core/report.h"
 
 #include <chrono>
 #include <optional>
@@ -91,5 +92,8 @@ std::string describe(SourceCounts const& counts);
 
 /// Returns the sentence "NAME cannot be set: WHY" for each value set in `controls`; for sources without controls.
 std::vector<std::string> cannot_set(Controls const& controls, std::string const& why);
+
+/// Counts refused frames. @throws gi::InputError if the source was lost
+void report_losses(SourceCounts const& counts, SourceState const& state, gi::Report& report);
 
 } // namespace ar

@@ -1,7 +1,7 @@
 #include "ar/light/clipped_light.h"
 
-#include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
+#include "ar/light/lat_long.h"
 
 namespace ar {
 namespace {

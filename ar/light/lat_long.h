@@ -54,4 +54,7 @@ struct FilledMap {
 /// @throws gi::InputError if nothing was measured at all
 FilledMap filled(PartialMap const& map);
 
+/// Irradiance of a face with that normal, W/m^2: E(n) = integral of L(w) max(0, n.w) dw, summed over all texels.
+cv::Vec3d irradiance_exact(cv::Mat const& map, glm::dvec3 normal);
+
 } // namespace ar

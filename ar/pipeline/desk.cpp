@@ -1,5 +1,4 @@
-#include "ar/pipeline/desk.h"
-
+#include "ar/pipeline/synthetic.h"
 #include "gi/core/rng.h"
 #include "gi/scene/generate/builder.h"
 #include "gi/scene/generate/generate.h"

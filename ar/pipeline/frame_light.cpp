@@ -1,7 +1,7 @@
 #include "ar/pipeline/frame_light.h"
 
 #include "ar/composite/warp.h"
-#include "ar/light/irradiance.h"
+#include "ar/light/lat_long.h"
 #include "ar/pipeline/bridge.h"
 #include "ar/pipeline/light_samples.h"
 #include "ar/pipeline/local_scene.h"

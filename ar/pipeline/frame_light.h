@@ -66,4 +66,10 @@ FrameLight estimate_light(RealScene real, CameraModel const& camera, Photometry 
                           std::span<PosedFrame const> frames, FrameLightSettings const& settings,
                           gi::StopRequest const& stop, gi::Report& report);
 
+std::string describe(FrameLight const& light);
+/// Warnings about numbers that are unreliable; empty = none.
+std::vector<std::string> warnings_of(FrameLight const& light);
+/// Writes the map as OpenEXR: R, G, B, and the layer "known" (1 = determined by the frames, 0 = a guess).
+void write_light(std::filesystem::path const& file, FrameLight const& light, gi::Report& report);
+
 } // namespace ar

@@ -1,6 +1,5 @@
-#include "ar/pipeline/frame_light_report.h"
-
 #include "ar/light/lamps.h"
+#include "ar/pipeline/frame_light.h"
 #include "gi/image_io/picture_file.h"
 
 #include <algorithm>

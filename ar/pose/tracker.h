@@ -2,9 +2,11 @@
 // Tracks the camera's motion: takes timed pose estimates and returns the pose at any nearby time. All times are
 // seconds on the clock of `Frame::captured_s`.
 
+#include "ar/camera/pose.h"
 #include "ar/pose/estimate.h"
-#include "ar/pose/one_euro.h"
 #include "ar/pose/still_camera.h"
+#include "gi/core/one_euro.h"
+#include "gi/core/rotation.h"
 
 #include <cstdint>
 
@@ -48,6 +50,39 @@ struct TrackerCounts {
     std::uint64_t jumps_believed = 0;
     std::uint64_t recoveries = 0; ///< restarts after a loss
     std::uint64_t moves = 0;      ///< of the tripod
+};
+
+/// The one-euro filter of a pose (gi/core/one_euro.h), with prediction.
+class OneEuroPose {
+public:
+    explicit OneEuroPose(gi::OneEuroSettings const& position = {}, gi::OneEuroSettings const& rotation = {})
+        : position_settings_(position), rotation_settings_(rotation)
+    {
+    }
+
+    void restart(gi::RigidPose const& pose)
+    {
+        position_ = gi::start(pose.position);
+        rotation_ = gi::start(pose.rotation);
+    }
+    /// @param dt_s since the input before, > 0
+    void step(gi::RigidPose const& pose, double dt_s)
+    {
+        position_ = gi::step(position_settings_, position_, pose.position, dt_s);
+        rotation_ = gi::step(rotation_settings_, rotation_, pose.rotation, dt_s);
+    }
+    /// The filtered pose extrapolated at constant velocity by `ahead_s` and by the lag of the filter.
+    gi::RigidPose moved_on(double ahead_s) const
+    {
+        return {
+            position_.value + (ahead_s + position_.lag_s) * position_.velocity,
+            glm::normalize(rotation_.value * gi::exp_rotation((ahead_s + rotation_.lag_s) * rotation_.velocity))};
+    }
+
+private:
+    gi::OneEuroSettings position_settings_, rotation_settings_;
+    gi::OneEuroPosition position_;
+    gi::OneEuroRotation rotation_;
 };
 
 class PoseTracker {

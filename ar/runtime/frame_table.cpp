@@ -1,4 +1,4 @@
-#include "ar/runtime/frame_table.h"
+#include "ar/runtime/runner.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "ar/runtime/light_check.h"
 
 #include "ar/capture/clock.h"
-#include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
+#include "ar/light/lat_long.h"
 #include "ar/light/map_file.h"
 #include "ar/pipeline/bridge.h"
 #include "ar/pipeline/pipeline.h"

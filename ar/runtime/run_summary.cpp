@@ -1,6 +1,5 @@
 // Describes a session's results as text.
 
-#include "ar/runtime/pose_text.h"
 #include "ar/runtime/runner.h"
 #include "gi/core/quantile.h"
 
@@ -62,6 +61,20 @@ std::string describe(RunSummary const& s)
     line("capture to swap (ms)", [](auto const& f) { return f.swapped_ms; });
     line("reprojection RMS (px)", [](auto const& f) { return f.rms_px; });
     return text;
+}
+
+std::string describe(PoseTally const& t)
+{
+    std::string states;
+    for (std::size_t k = 0; k < kPoseStates; ++k)
+        if (t.states[k] > 0)
+            states += fmt::format("{}{} {}", states.empty() ? "" : ", ", t.states[k], name_of(PoseState(k)));
+    if (states.empty()) return {};
+    std::string text = "poses: " + states;
+    if (!t.confidence.empty())
+        text += fmt::format("; confidence {:.3f} (median), {:.3f} (5 %)", gi::quantile(t.confidence, 0.5),
+                            gi::quantile(t.confidence, 0.05));
+    return text + "\n";
 }
 
 } // namespace ar

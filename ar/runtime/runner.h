@@ -10,8 +10,11 @@
 #include "ar/pipeline/pipeline.h"
 #include "ar/pose/pose_file.h"
 
+#include <array>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace ar {
 
@@ -93,5 +96,25 @@ std::size_t count_found(std::vector<RunFrame> const& frames);
 
 /// Lines of text: median, 95 % quantile and maximum of each stage, frames per second, latency, poses.
 std::string describe(RunSummary const& summary);
+
+/// CSV with a header line and one line per frame. Numbers missing between two lines are lost frames.
+std::string frame_table(RunSummary const& summary);
+
+/// How far the poses of a run could be trusted.
+struct PoseTally {
+    std::array<std::uint64_t, kPoseStates> states{}; ///< number of frames in each
+    std::vector<double> confidence;                  ///< of the frames' own estimates
+
+    void add(PoseState state, double confidence_, bool is_estimated)
+    {
+        ++states[std::size_t(state)];
+        if (is_estimated) confidence.push_back(confidence_);
+    }
+    /// Frames with a trusted pose of their own.
+    std::uint64_t found() const { return states[std::size_t(PoseState::tracked)]; }
+};
+
+/// A line of text: frames in each state, median and 5 % quantile of the confidence; empty without frames.
+std::string describe(PoseTally const& tally);
 
 } // namespace ar

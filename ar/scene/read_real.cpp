@@ -1,5 +1,3 @@
-#include "ar/scene/read_real.h"
-
 #include "ar/scene/read_values.h"
 
 #include <algorithm>

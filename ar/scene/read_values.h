@@ -1,7 +1,8 @@
 #pragma once
-// Reads values that occur in several parts of a session file.
+// Reads parts of a session file, and values that occur in several of them. All throw gi::InputError with
+// file:line:column.
 
-#include "ar/scene/proxies.h"
+#include "ar/scene/session_file.h"
 #include "gi/core/yaml.h"
 
 #include <utility>
@@ -29,5 +30,10 @@ PlacedScene read_placed(gi::Yaml const& map, std::string const& file_key, std::f
 gi::RigidPose read_pose(gi::Yaml const& map);
 /// The same, without other keys; the rotation stays as it is where none is given.
 void read_turned(gi::Yaml const& map, gi::RigidPose& pose);
+
+/// Reads the key `real`: the modelled part of the real place.
+RealPlace read_real(gi::Yaml const& real, std::filesystem::path const& folder);
+/// Reads the key `hmd`.
+HmdCameras read_hmd(gi::Yaml const& hmd, std::filesystem::path const& folder);
 
 } // namespace ar

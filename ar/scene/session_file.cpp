@@ -1,6 +1,5 @@
 #include "ar/scene/session_file.h"
 
-#include "ar/scene/read_real.h"
 #include "ar/scene/read_values.h"
 #include "gi/core/file.h"
 #include "gi/filter/filter_names.h"

@@ -5,7 +5,6 @@
 #include "ar/composite/composite.h"
 #include "ar/pose/tracker.h"
 #include "ar/pose/trust.h"
-#include "ar/scene/hmd_cameras.h"
 #include "ar/scene/occlusion.h"
 #include "ar/scene/proxies.h"
 #include "gi/filter/denoise.h"
@@ -84,6 +83,20 @@ struct PassSettings {
     std::filesystem::path folder; ///< empty = none
     int bits = 16;                ///< of radiance, 16 or 32; depths and motion always have 32
     bool is_undistorted = false;  ///< as a pinhole that covers the camera's view, not in its lens
+};
+
+struct RightCamera {
+    std::string source; ///< name for open_source
+    std::filesystem::path calibration;
+    gi::RigidPose left_from_right; ///< its pose in the left camera's frame
+};
+
+/// Cameras that are fixed to a headset: key `hmd`.
+struct HmdCameras {
+    /// The head's axes are x right, y up, z back; the camera's x right, y down, z ahead. Default: same direction.
+    gi::RigidPose head_from_camera{glm::dvec3(0), glm::dquat(0, 1, 0, 0)};
+    double plane_m = 1; ///< distance of the picture plane; objects at this distance appear at their true position
+    std::optional<RightCamera> right; ///< camera of the right eye; none: one camera for both eyes
 };
 
 struct Session {

@@ -1,5 +1,4 @@
-#include "ar/light/irradiance.h"
-
+#include "ar/light/lat_long.h"
 #include "tests/ar_light/environments.h"
 #include "tests/ar_light/irradiance_maps.h"
 

@@ -1,7 +1,7 @@
 // The light found again from the irradiance of known surfaces, some of them in the shadow of a wall.
 
-#include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
+#include "ar/light/lat_long.h"
 #include "ar/light/light_fit.h"
 #include "ar/light/nonnegative.h"
 #include "gi/core/error.h"

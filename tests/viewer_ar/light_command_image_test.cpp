@@ -1,6 +1,6 @@
 // lightwell ar light, and a session that takes its light from its first frame.
 
-#include "ar/light/irradiance.h"
+#include "ar/light/lat_long.h"
 #include "ar/light/map_file.h"
 #include "ar/runtime/light_check.h"
 #include "tests/viewer/run_program.h"

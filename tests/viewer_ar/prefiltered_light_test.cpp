@@ -1,6 +1,6 @@
 // Prefiltered light: exact where nothing is in the way, near closed forms where something is, the same every time.
 
-#include "ar/light/irradiance.h"
+#include "ar/light/lat_long.h"
 #include "ar/light/map_file.h"
 #include "ar/pipeline/local_scene.h"
 #include "ar/pipeline/prefiltered/prefiltered_light.h"

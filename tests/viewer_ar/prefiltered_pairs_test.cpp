@@ -1,6 +1,6 @@
 // Pairs by prefiltered light: the same in every frame, following what moves, and refused where they cannot light.
 
-#include "ar/light/irradiance.h"
+#include "ar/light/lat_long.h"
 #include "ar/light/map_file.h"
 #include "ar/pipeline/pair_renderer.h"
 #include "ar/pipeline/synthetic.h"

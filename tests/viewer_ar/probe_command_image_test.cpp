@@ -2,8 +2,8 @@
 // to the light that was there.
 
 #include "ar/calibration/calibration_file.h"
-#include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
+#include "ar/light/lat_long.h"
 #include "ar/light/map_file.h"
 #include "ar/markers/marker_map_file.h"
 #include "tests/ar_light/environments.h"

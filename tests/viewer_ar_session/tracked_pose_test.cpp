@@ -2,7 +2,6 @@
 
 #include "viewer/camera_view/camera_tracker.h"
 
-#include "ar/scene/hmd_cameras.h"
 #include "ar/scene/session_file.h"
 #include "gi/core/error.h"
 #include "tests/viewer/run_program.h"

@@ -1,9 +1,9 @@
 #include "viewer/camera_view/measured_run.h"
 
 #include "ar/capture/clock.h"
+#include "ar/capture/frame_source.h"
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/loop_source.h"
-#include "ar/runtime/source_losses.h"
 #include "ar/scene/camera_poses.h"
 
 namespace viewer {

@@ -4,7 +4,6 @@
 // composited for the same moment of the same world.
 
 #include "ar/capture/frame_source.h"
-#include "ar/runtime/pose_text.h"
 #include "ar/runtime/runner.h"
 #include "gi/core/progress.h"
 

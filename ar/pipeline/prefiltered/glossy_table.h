@@ -4,12 +4,55 @@
 // at grazing angles they are too round.
 
 #include "ar/pipeline/prefiltered/environment_cells.h"
-#include "ar/pipeline/prefiltered/normal_table.h"
+#include "gi/core/math.h"
 #include "gi/scene/shading/bsdf.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace ar {
+
+/// Values by direction: an octahedral table (Meyer et al. 2010) with bilinear interpolation.
+/// Nodes lie on the square's border, so that no read crosses it.
+template <class T>
+class NormalTable {
+public:
+    explicit NormalTable(int side) : side_(side), values_(std::size_t(side) * std::size_t(side)) {}
+
+    int nodes() const { return side_ * side_; }
+    T& operator[](int node) { return values_[std::size_t(node)]; }
+    /// Unit direction of a node.
+    gi::vec3 direction(int node) const
+    {
+        gi::vec2 const p = 2.0f / float(side_ - 1) * gi::vec2(float(node % side_), float(node / side_)) - 1.0f;
+        gi::vec3 d(p.x, p.y, 1 - std::abs(p.x) - std::abs(p.y));
+        if (d.z < 0) {
+            gi::vec2 const folded = 1.0f - glm::abs(gi::vec2(d.y, d.x));
+            d.x = std::copysign(folded.x, p.x);
+            d.y = std::copysign(folded.y, p.y);
+        }
+        return glm::normalize(d);
+    }
+    /// @param d  unit
+    T at(gi::vec3 d) const
+    {
+        gi::vec3 const a = glm::abs(d);
+        gi::vec2 p = gi::vec2(d.x, d.y) / (a.x + a.y + a.z);
+        if (d.z < 0) {
+            gi::vec2 const folded = 1.0f - glm::abs(gi::vec2(p.y, p.x));
+            p = {std::copysign(folded.x, p.x), std::copysign(folded.y, p.y)};
+        }
+        gi::vec2 const s = glm::clamp(0.5f * (p + 1.0f), 0.0f, 1.0f) * float(side_ - 1);
+        int const x = glm::min(int(s.x), side_ - 2), y = glm::min(int(s.y), side_ - 2);
+        float const u = s.x - float(x), v = s.y - float(y);
+        T const* const t = &values_[std::size_t(y * side_ + x)];
+        return (1 - v) * ((1 - u) * t[0] + u * t[1]) + v * ((1 - u) * t[side_] + u * t[side_ + 1]);
+    }
+
+private:
+    int side_;
+    std::vector<T> values_;
+};
 
 /// The glossy lobe of a surface.
 struct GlossyLobe {

@@ -1,8 +1,8 @@
 #include "viewer/cli/ar/ar_posed_frames.h"
 
+#include "ar/capture/frame_source.h"
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/frames_apart.h"
-#include "ar/runtime/source_losses.h"
 #include "gi/core/error.h"
 #include "viewer/cli/ar/ar_camera_path.h"
 

@@ -1,7 +1,8 @@
+#include "ar/camera/photometry.h"
 #include "ar/capture/clock.h"
+#include "ar/composite/rendered_pair.h"
 #include "ar/markers/aruco.h"
 #include "ar/markers/marker_map_file.h"
-#include "ar/pipeline/plain_composite.h"
 #include "ar/pipeline/synthesize.h"
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
@@ -25,6 +26,30 @@
 
 namespace viewer {
 namespace {
+
+/// The compositing equation written directly with OpenCV, one whole picture per step, to compare with: with + (1 - a)(camera -
+/// without), for a camera with sRGB bytes: decoded by table, encoded by powers.
+/// @param rgb CV_8UC3
+cv::Mat plain_composite(cv::Mat const& rgb, ar::RenderedPair const& pair)
+{
+    ar::Photometry const srgb = ar::srgb_photometry();
+    cv::Mat const table(1, 256, CV_32FC1, const_cast<float*>(srgb.unit_of_byte[0].data()));
+    cv::Mat light, uncovered, dark, bright;
+    cv::LUT(rgb, table, light);
+    cv::subtract(light, pair.without, light);
+    cv::subtract(1, pair.coverage, uncovered);
+    cv::merge(std::vector<cv::Mat>(3, uncovered), uncovered);
+    cv::multiply(light, uncovered, light);
+    cv::add(light, pair.with, light);
+    light = cv::max(light, 0);
+    cv::pow(light, 1 / 2.4, bright);
+    bright.convertTo(bright, -1, 255 * 1.055, -255 * 0.055);
+    light.convertTo(dark, -1, 255 * 12.92);
+    dark.copyTo(bright, light <= 0.0031308);
+    cv::Mat out;
+    bright.convertTo(out, CV_8U);
+    return out;
+}
 
 namespace fs = std::filesystem;
 
@@ -134,12 +159,12 @@ std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
     ar::Compositor compositor(p); // without noise, so that differences are comparable
     cv::Mat ours, plain;
     auto const times = measure_interleaved(7, {[&] { compositor(m.last.camera, *m.last.pair, {}, ours); },
-                                               [&] { plain = ar::plain_composite(m.last.camera, *m.last.pair); }});
+                                               [&] { plain = plain_composite(m.last.camera, *m.last.pair); }});
     // The median of some, since OpenCV's result is now and then another one for the same input.
     std::vector<double> bytes;
     for (int k = 0; k < 3; ++k) {
         cv::Mat difference;
-        cv::absdiff(ours, ar::plain_composite(m.last.camera, *m.last.pair), difference);
+        cv::absdiff(ours, plain_composite(m.last.camera, *m.last.pair), difference);
         cv::Scalar const mean = cv::mean(difference);
         bytes.push_back((mean[0] + mean[1] + mean[2]) / 3);
     }

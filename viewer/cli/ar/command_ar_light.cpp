@@ -1,5 +1,5 @@
 #include "ar/light/lamps.h"
-#include "ar/pipeline/frame_light_report.h"
+#include "ar/pipeline/frame_light.h"
 #include "ar/runtime/runner.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"

@@ -1,6 +1,6 @@
+#include "ar/capture/frame_source.h"
 #include "ar/features/map_builder.h"
 #include "ar/runtime/frame_clock.h"
-#include "ar/runtime/source_losses.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "gi/core/quantile.h"

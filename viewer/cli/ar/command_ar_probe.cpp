@@ -1,7 +1,7 @@
 #include "ar/calibration/calibration_file.h"
 #include "ar/light/clipped_light.h"
-#include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
+#include "ar/light/lat_long.h"
 #include "ar/light/map_file.h"
 #include "ar/light/mirror_ball.h"
 #include "ar/markers/marker_map_file.h"

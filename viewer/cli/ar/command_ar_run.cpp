@@ -1,5 +1,5 @@
-#include "ar/runtime/frame_table.h"
 #include "ar/runtime/frame_truth.h"
+#include "ar/runtime/runner.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/interrupt.h"

@@ -1,10 +1,10 @@
 #include "viewer/experiment/stimuli/ar_pictures.h"
 
+#include "ar/capture/frame_source.h"
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/runner.h"
-#include "ar/runtime/source_losses.h"
 #include "ar/scene/camera_poses.h"
 #include "ar/scene/read_values.h"
 #include "gi/core/error.h"

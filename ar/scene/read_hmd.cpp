@@ -1,5 +1,3 @@
-#include "ar/scene/hmd_cameras.h"
-
 #include "ar/scene/read_values.h"
 
 namespace ar {
