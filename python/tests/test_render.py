@@ -193,16 +193,20 @@ def test_a_stopped_render_continues_bit_for_bit(cornell, tmp_path):
 
 def test_the_program_continues_a_state_of_python(program, cornell, tmp_path):
     state, out = tmp_path / "a.state", tmp_path / "a.exr"
-    call = {"size": SIZE, "state": state, "resume": True}
-    first = cornell.render(until_relmse=1e6, denoise="atrous", **call)
+    first = cornell.render("reference", size=SIZE, until_relmse=1e6, denoise="atrous", state=state, resume=True)
     assert first.resumable and first.end == "error_target" and state.exists() and "afresh" in first.note
-    assert first.method == "paths" and "exact rays" in first.why_method
-    options = ["--size", "48x32", "--paths", "32", "--state", state, "--resume", "--out", out, "--quiet"]
-    subprocess.run([program, "render", "cornell", *options], check=True, capture_output=True)
-    whole = cornell.render(size=SIZE, paths=32)
+    options = ["--method", "reference", "--size", "48x32", "--paths", "32", "--state", state, "--resume"]
+    subprocess.run([program, "render", "cornell", *options, "--out", out], check=True, capture_output=True)
+    whole = cornell.render("reference", size=SIZE, paths=32)
     np.testing.assert_array_equal(lightwell.read_picture(out)["color"], whole.color)
-    assert first.paths < whole.paths and not whole.resumable
-    assert cornell.render("reference", size=SIZE, paths=1).why_method == ""
+    assert first.paths < whole.paths and not whole.resumable and not state.exists()
+
+
+def test_the_method_is_said_that_auto_chose(cornell):
+    by_plan = cornell.render(size=SIZE, paths=1)
+    assert by_plan.method == "paths" and "exact rays" in by_plan.why_method
+    asked = cornell.render("reference", size=SIZE, paths=1)
+    assert asked.method == "reference" and asked.why_method == ""
 
 
 def test_pictures_are_compared_as_the_program_does(program, cornell, tmp_path):
