@@ -15,7 +15,7 @@ protected:
 
 TEST_F(Sessions, RequiredVsyncIsRefusedWithTheReason)
 {
-    RunningSession run(folder, script("vsync: required", "[better]", kPair));
+    RunningSession run(folder, tiny_script("vsync: required", "[better]", kPair));
     Outcome const o = run.wait();
     EXPECT_EQ(o.code, 2) << o.err;
     EXPECT_NE(o.err.find("do not wait for the display"), std::string::npos) << o.err;
@@ -28,7 +28,7 @@ TEST_F(Sessions, ReactionTimesAreThoseOfTheKeys)
 {
     std::string pair = kPair;
     pair.replace(pair.find("repeats: 10"), 11, "repeats: 3");
-    RunningSession run(folder, script("vsync: record, on_bad_trial: keep", "[better]", pair));
+    RunningSession run(folder, tiny_script("vsync: record, on_bad_trial: keep", "[better]", pair));
     NEED_KEYS(run);
     std::vector<double> before, after;
     for (int i = 0; i < 3; ++i) {
@@ -69,7 +69,7 @@ TEST_F(Sessions, ReactionTimesAreThoseOfTheKeys)
 TEST_F(Sessions, TheExperimenterSeesPausesNotesAndEndsIt)
 {
     RunningSession run(
-        folder, script("vsync: record, on_bad_trial: keep", "[{instructions: \"# Hello\"}, better]", kPair));
+        folder, tiny_script("vsync: record, on_bad_trial: keep", "[{instructions: \"# Hello\"}, better]", kPair));
     NEED_KEYS(run);
     ASSERT_TRUE(run.wait_until_at("instructions")) << run.program().errors();
     run.session("note", "came late");
@@ -101,7 +101,7 @@ TEST_F(Sessions, TheExperimenterSeesPausesNotesAndEndsIt)
 
 TEST_F(Sessions, OnlyTheParticipantAgrees)
 {
-    std::string text = script("vsync: record, on_bad_trial: keep", "[better]", kPair);
+    std::string text = tiny_script("vsync: record, on_bad_trial: keep", "[better]", kPair);
     std::string const count = "{count: 2}";
     text.replace(text.find(count), count.size(), "{count: 2, consent: \"# May we?\"}");
     RunningSession run(folder, text);
@@ -119,7 +119,7 @@ TEST_F(Sessions, OnlyTheParticipantAgrees)
 
 TEST_F(Sessions, AnInterruptIsTheReason)
 {
-    RunningSession run(folder, script("vsync: record, on_bad_trial: keep", "[better]", kPair));
+    RunningSession run(folder, tiny_script("vsync: record, on_bad_trial: keep", "[better]", kPair));
     NEED_KEYS(run);
     ASSERT_TRUE(run.markers.wait_for("stimulus").is_object()) << run.program().errors();
     run.program().send(SIGINT);
@@ -130,7 +130,7 @@ TEST_F(Sessions, AnInterruptIsTheReason)
 TEST_F(Sessions, TrialsThatAreDoneCountInABreakToo)
 {
     RunningSession run(folder,
-                       script("vsync: record, on_bad_trial: keep", "[better, {break: {min_s: 0}}]",
+                       tiny_script("vsync: record, on_bad_trial: keep", "[better, {break: {min_s: 0}}]",
                               "  better: {task: pair, prompt: better, pairs: {factor: bounces}, repeats: 1}\n"));
     NEED_KEYS(run);
     ASSERT_TRUE(run.markers.wait_for("stimulus").is_object()) << run.program().errors();
@@ -144,7 +144,7 @@ TEST_F(Sessions, TrialsThatAreDoneCountInABreakToo)
 TEST_F(Sessions, EscapeTwiceEndsItAndItGoesOnInTheSameOrder)
 {
     std::string const text =
-        script("vsync: record, on_bad_trial: keep", "[better, {questionnaire: sus_presence}]",
+        tiny_script("vsync: record, on_bad_trial: keep", "[better, {questionnaire: sus_presence}]",
                "  better: {task: pair, prompt: better, pairs: {factor: bounces}, repeats: 3}\n");
     {
         RunningSession run(folder, text);
@@ -187,7 +187,7 @@ TEST_F(Sessions, EscapeTwiceEndsItAndItGoesOnInTheSameOrder)
 
 TEST_F(Sessions, PreparedStimuliAreShownAndRenderedOnlyOnce)
 {
-    std::string const text = script(
+    std::string const text = tiny_script(
         "vsync: record, on_bad_trial: keep", "[better]",
         "  better: {task: pair, prompt: better, pairs: {factor: bounces}, repeats: 2, stimuli: prepared}\n");
     std::ofstream(folder / "x.yaml") << text;
@@ -225,7 +225,7 @@ TEST_F(Sessions, WallsShowOneStimulusAtATime)
 {
     std::ofstream(folder / "corner.yaml") << kCorner;
     RunningSession run(folder,
-                       script("vsync: record, on_bad_trial: keep", "[seen]",
+                       tiny_script("vsync: record, on_bad_trial: keep", "[seen]",
                               "  seen: {task: rating, prompt: how, scale: {min: 1, max: 7}, cross: [bounces]}\n"),
                        "--display corner.yaml");
     NEED_KEYS(run);
@@ -252,7 +252,7 @@ TEST_F(Sessions, WallsShowOneStimulusAtATime)
 TEST_F(Sessions, PairsSideBySideOnWallsAreRefused)
 {
     std::ofstream(folder / "corner.yaml") << kCorner;
-    RunningSession run(folder, script("vsync: record", "[better]", kPair), "--display corner.yaml");
+    RunningSession run(folder, tiny_script("vsync: record", "[better]", kPair), "--display corner.yaml");
     Outcome const o = run.wait();
     EXPECT_EQ(o.code, 2);
     EXPECT_NE(o.err.find("presentation: sequential"), std::string::npos) << o.err;
@@ -260,7 +260,7 @@ TEST_F(Sessions, PairsSideBySideOnWallsAreRefused)
 
 TEST_F(Sessions, PreparedStimuliThatAreNotThereAreRefusedBeforeAnybodySitsDown)
 {
-    RunningSession run(folder, script("vsync: record", "[better]",
+    RunningSession run(folder, tiny_script("vsync: record", "[better]",
                                       "  better: {task: pair, prompt: better, pairs: {factor: bounces}, "
                                       "stimuli: prepared}\n"));
     Outcome const o = run.wait();
@@ -271,7 +271,7 @@ TEST_F(Sessions, PreparedStimuliThatAreNotThereAreRefusedBeforeAnybodySitsDown)
 TEST_F(Sessions, PreparedStimuliThatAreDamagedAreRefusedToo)
 {
     std::string const text =
-        script("vsync: record", "[better]",
+        tiny_script("vsync: record", "[better]",
                "  better: {task: pair, prompt: better, pairs: {factor: bounces}, stimuli: prepared}\n");
     std::ofstream(folder / "x.yaml") << text;
     run_well("study prepare x.yaml --size 240x180 --font 12 --out prepared", folder.path());
@@ -284,7 +284,7 @@ TEST_F(Sessions, PreparedStimuliThatAreDamagedAreRefusedToo)
 
 TEST_F(Sessions, ScenesThatAreNotThereAreRefusedWithTheirPlace)
 {
-    RunningSession run(folder, script("vsync: record", "[seen]",
+    RunningSession run(folder, tiny_script("vsync: record", "[seen]",
                                       "  seen: {task: rating, prompt: how, scale: {min: 1, max: 7}, "
                                       "cross: [bounces], settings: {scene: none.glb}}\n"));
     Outcome const o = run.wait();
@@ -295,7 +295,7 @@ TEST_F(Sessions, ScenesThatAreNotThereAreRefusedWithTheirPlace)
 
 TEST_F(Sessions, SettingsThatTheRendererDoesNotKnowAreRefusedAtOnce)
 {
-    RunningSession run(folder, script("vsync: record", "[seen]",
+    RunningSession run(folder, tiny_script("vsync: record", "[seen]",
                                       "  seen: {task: rating, prompt: how, scale: {min: 1, max: 7}, "
                                       "cross: [bounces], settings: {no_such_thing: 1}}\n"));
     Outcome const o = run.wait();

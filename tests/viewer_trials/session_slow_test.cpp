@@ -15,7 +15,7 @@ protected:
 
 TEST_F(SessionTimes, ReactionTimesAreThoseOfTheKeys)
 {
-    RunningSession run(folder, script("vsync: record, on_bad_trial: keep", "[better]", kPair, 20));
+    RunningSession run(folder, tiny_script("vsync: record, on_bad_trial: keep", "[better]", kPair, 20));
     NEED_KEYS(run);
     std::vector<double> pressed, uncertain_ms, errors_ms;
     for (int i = 0; i < 10; ++i) {
@@ -60,7 +60,7 @@ TEST_F(SessionTimes, ReactionTimesAreThoseOfTheKeys)
 TEST_F(SessionTimes, ADroppedFrameIsSeenFlaggedAndRepeated)
 {
     RunningSession run(folder,
-                       script("vsync: record, max_dropped_frames: 9, on_bad_trial: repeat_at_end", "[seen]",
+                       tiny_script("vsync: record, max_dropped_frames: 9, on_bad_trial: repeat_at_end", "[seen]",
                               "  seen: {task: rating, prompt: how, scale: {min: 1, max: 7}, cross: [bounces], "
                               "stimulus_ms: 1000}\n",
                               20));

@@ -11,7 +11,7 @@ inline double steady_s()
 }
 
 /// @param hz  at which pictures are shown; the test of the display takes 50
-inline std::string script(std::string const& timing, std::string const& sequence, std::string const& blocks,
+inline std::string tiny_script(std::string const& timing, std::string const& sequence, std::string const& blocks,
                           int hz = 100)
 {
     return fmt::format(R"(schema: study/1
