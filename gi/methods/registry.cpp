@@ -39,10 +39,29 @@ constexpr Method virtual_lights(std::string_view name, std::string_view visibili
             .visibility = visibility};
 }
 
-template <SurfacesBy surfaces, ShadowsBy shadows>
+template <PathAlgorithm by>
 std::vector<PlanItem> explain_paths(World const& world, RenderSettings const& asked, Camera const& camera)
 {
-    return explain_choices(world, with({surfaces, shadows, surfaces == SurfacesBy::rays}, asked), camera);
+    return explain_choices(world, with(by, asked), camera);
+}
+
+/// @tparam M  see Mixed
+template <class M>
+constexpr Method mixed(std::string_view summary)
+{
+    return {.name = M::kName,
+            .summary = summary,
+            .render = M::render,
+            .frames = M::frames,
+            .options = hit_buffer_options,
+            .explain = explain_paths<M::kBy>,
+            .ends_frames_early = true,
+            .pairs = true,
+            .variant = M::kLooksUp ? "schedule" : "",
+            .for_display = M::kLooksUp ? slhb_for_display : paths_for_display,
+            .for_exposure = M::exposure,
+            .updates_axes = M::kLooksUp ? slhb_updates_axes : nullptr,
+            .check = check_hit_buffer_options};
 }
 
 constexpr std::array kMethods{
@@ -63,7 +82,7 @@ constexpr std::array kMethods{
            .render = render_paths,
            .frames = start_path_frames,
            .options = paths_options,
-           .explain = explain_paths<SurfacesBy::rays, ShadowsBy::rays>,
+           .explain = explain_paths<PathAlgorithm{}>,
            .ends_frames_early = true,
            .pairs = true,
            .for_display = paths_for_display,
@@ -73,7 +92,7 @@ constexpr std::array kMethods{
            .render = render_slhb,
            .frames = start_slhb_frames,
            .options = hit_buffer_options,
-           .explain = explain_paths<SurfacesBy::look_ups, ShadowsBy::maps>,
+           .explain = explain_paths<kSlhb>,
            .ends_frames_early = true,
            .pairs = true,
            .variant = "schedule",
@@ -83,30 +102,8 @@ constexpr std::array kMethods{
            .check = check_hit_buffer_options},
     Method{"reference", "path tracing with exact rays, simple and unbiased: noisy, to compare others with",
            render_reference, start_reference_frames},
-    Method{.name = "paths_shadow_maps",
-           .summary = "as paths, with the shadow maps of slhb",
-           .render = render_paths_shadow_maps,
-           .frames = start_paths_shadow_maps_frames,
-           .options = hit_buffer_options,
-           .explain = explain_paths<SurfacesBy::rays, ShadowsBy::maps>,
-           .ends_frames_early = true,
-           .pairs = true,
-           .for_display = paths_for_display,
-           .for_exposure = paths_shadow_maps_exposure,
-           .check = check_hit_buffer_options},
-    Method{.name = "slhb_shadow_rays",
-           .summary = "as slhb, with exact rays for shadows",
-           .render = render_slhb_shadow_rays,
-           .frames = start_slhb_shadow_rays_frames,
-           .options = hit_buffer_options,
-           .explain = explain_paths<SurfacesBy::look_ups, ShadowsBy::rays>,
-           .ends_frames_early = true,
-           .pairs = true,
-           .variant = "schedule",
-           .for_display = slhb_for_display,
-           .for_exposure = slhb_shadow_rays_exposure,
-           .updates_axes = slhb_updates_axes,
-           .check = check_hit_buffer_options},
+    mixed<PathsShadowMaps>("as paths, with the shadow maps of slhb"),
+    mixed<SlhbShadowRays>("as slhb, with exact rays for shadows"),
     Method{"whitted", "ray trees: direct light, mirrors and glass, no diffuse interreflection", render_whitted,
            start_whitted_frames, whitted_options},
     Method{"sh_grid", "ray trees, with indirect light from photons in a field of spherical harmonics",
@@ -120,15 +117,17 @@ constexpr std::array kMethods{
     Method{"multi_image", "ray trees, with indirect light from photons that follow distance impostors",
            render_multi_image, start_multi_image_frames, nullptr, explain_multi_image},
     virtual_lights<VisibilityKind::exact>(
-        "vpl_exact", "exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
-                     "    methods differ only in how they find visibility"),
+        "vpl_exact", "exact",
+        "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
+        "    methods differ only in how they find visibility"),
     virtual_lights<VisibilityKind::slhb>("vpl_slhb", "slhb", "... by look-ups in spherical layered hit buffers",
                                          "directions"),
-    virtual_lights<VisibilityKind::imperfect>("vpl_imperfect", "imperfect", "... by imperfect shadow maps, drawn from points",
-                                              "points"),
-    virtual_lights<VisibilityKind::ambient>("vpl_ao", "ao", "... by ambient occlusion within a radius", "ao-radius"),
-    virtual_lights<VisibilityKind::directional>("vpl_dao", "directional_ao", "... by directional occlusion within a radius",
-                                                "ao-radius"),
+    virtual_lights<VisibilityKind::imperfect>("vpl_imperfect", "imperfect",
+                                              "... by imperfect shadow maps, drawn from points", "points"),
+    virtual_lights<VisibilityKind::ambient>("vpl_ao", "ao", "... by ambient occlusion within a radius",
+                                            "ao-radius"),
+    virtual_lights<VisibilityKind::directional>("vpl_dao", "directional_ao",
+                                                "... by directional occlusion within a radius", "ao-radius"),
     virtual_lights<VisibilityKind::none>("vpl_none", "none", "... none: every surface sees every other"),
     Method{.name = "slhb_0_1",
            .summary = "what version 0.1 called slhb: rays or look-ups, by its options",

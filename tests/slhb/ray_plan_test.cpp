@@ -143,8 +143,8 @@ TEST(RayPlan, SlhbOf01DoesWhatItDid)
     EXPECT_TRUE(same(render_slhb, {{"look-ups", "all"}, {"shadows", "maps"}}));
     EXPECT_TRUE(same(render_slhb, {{"axes", "4"}}));
     EXPECT_TRUE(same(render_slhb, {{"hit-buffer", "32"}}));
-    EXPECT_TRUE(same(render_slhb_shadow_rays, {{"look-ups", "all"}, {"shadows", "rays"}}));
-    EXPECT_TRUE(same(render_paths_shadow_maps, {{"light-samples", "4"}}));
+    EXPECT_TRUE(same(SlhbShadowRays::render, {{"look-ups", "all"}, {"shadows", "rays"}}));
+    EXPECT_TRUE(same(PathsShadowMaps::render, {{"light-samples", "4"}}));
     EXPECT_FALSE(same(render_slhb, {}));
 }
 

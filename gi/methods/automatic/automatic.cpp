@@ -34,16 +34,14 @@ struct Candidate {
 };
 constexpr std::array kCandidates{Candidate{"paths", render_paths, start_path_frames},
                                  Candidate{"slhb", render_slhb, start_slhb_frames},
-                                 Candidate{"slhb_shadow_rays", render_slhb_shadow_rays, start_slhb_shadow_rays_frames},
+                                 Candidate{SlhbShadowRays::kName, SlhbShadowRays::render, SlhbShadowRays::frames},
                                  Candidate{"reference", render_reference, start_reference_frames}};
 Candidate const& find(std::string_view name) { return *std::ranges::find(kCandidates, name, &Candidate::name); }
 
 /// What its paths do, for the method named.
 PathAlgorithm algorithm_of(std::string_view name)
 {
-    return name == "slhb"               ? kSlhb
-           : name == "slhb_shadow_rays" ? PathAlgorithm{SurfacesBy::look_ups, ShadowsBy::rays, false}
-                                        : PathAlgorithm{};
+    return name == "slhb" ? kSlhb : name == SlhbShadowRays::kName ? SlhbShadowRays::kBy : PathAlgorithm{};
 }
 
 } // namespace

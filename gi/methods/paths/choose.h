@@ -4,12 +4,16 @@
 #include "gi/hit_buffers/settings.h"
 #include "gi/methods/paths/algorithm.h"
 #include "gi/methods/paths/costs.h"
-#include "gi/methods/paths/options.h"
+#include "gi/methods/paths/settings.h"
 #include "gi/raster/triangle_soup.h"
+#include "gi/render/render_option.h"
 #include "gi/scene/model/camera.h"
 #include "gi/scene/model/plan.h"
 
 namespace gi {
+
+/// Options of all methods whose paths start at the camera.
+RenderOptionTable const& paths_options();
 
 Costs costs_of(World const& world, TriangleSoup const& soup);
 

@@ -1,4 +1,4 @@
-#include "gi/methods/paths/options.h"
+#include "gi/methods/paths/choose.h"
 
 namespace gi {
 namespace {

@@ -4,15 +4,29 @@
 
 #include "gi/core/report.h"
 #include "gi/methods/paths/partner_light.h"
-#include "gi/methods/paths/seen_view.h"
+#include "gi/methods/paths/primary_map.h"
 #include "gi/methods/paths/shared_vertices.h"
+#include "gi/methods/paths/traced_world.h"
 #include "gi/methods/paths/tracer.h"
 #include "gi/render/accumulator.h"
 #include "gi/render/pair_sums.h"
 
+#include <deque>
 #include <functional>
+#include <optional>
 
 namespace gi {
+
+/// A view as used by passes, and its state kept between frames.
+struct SeenView : TracedView {
+    int partner = -1;
+    std::span<std::uint8_t const> hidden; ///< as in FrameView
+    std::optional<PrimaryMap> primary;    ///< none for orthographic cameras
+    std::size_t first = 0;                ///< index of its first pixel among the pixels of all views
+};
+
+/// Views of one moment; a partner precedes the views that reuse its light.
+using SeenViews = std::deque<SeenView>;
 
 /// Callback that includes dynamic geometry in, or excludes it from, the structures that a pass uses.
 using ShowMoving = std::function<void(bool)>;

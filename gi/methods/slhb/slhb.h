@@ -3,8 +3,7 @@
 // look-ups along axes that all paths of a pass share, and test light samples by shadow maps; on the CPU (in the path
 // tracer of gi/methods/paths) and as CUDA kernels. And the two methods that replace one of both by exact rays.
 
-#include "gi/render/method.h"
-#include "gi/methods/paths/algorithm.h"
+#include "gi/methods/paths/paths.h"
 
 namespace gi {
 
@@ -17,23 +16,36 @@ std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camer
 RenderSettings slhb_for_display(RenderSettings settings);
 ExposurePlan slhb_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
                            Triangles triangles);
-ExposurePlan slhb_shadow_rays_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
-                                       Triangles triangles);
-ExposurePlan paths_shadow_maps_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
-                                        Triangles triangles);
+/// Of any method that looks up. @param by  what its paths do
+ExposurePlan look_up_exposure(std::string_view method, PathAlgorithm by, World const& world,
+                              RenderSettings const& asked, Triangles triangles);
 bool slhb_updates_axes(RenderSettings const& settings);
 
-/// Look-ups for surfaces, exact rays for shadows.
-RenderResult render_slhb_shadow_rays(World const& world, Camera const& camera, RenderSettings const& settings,
-                                     StopRequest const& stop, RenderProgress const& progress, Report& report);
-std::unique_ptr<FrameRenderer> start_slhb_shadow_rays_frames(MovingWorld const& world, Camera const& camera,
-                                                             RenderSettings const& settings, Report& report);
+/// The methods that find surfaces in one way and shadows in the other. See Method.
+template <SurfacesBy surfaces>
+struct Mixed {
+    static constexpr bool kLooksUp = surfaces == SurfacesBy::look_ups;
+    static constexpr char const* kName = kLooksUp ? "slhb_shadow_rays" : "paths_shadow_maps";
+    static constexpr PathAlgorithm kBy{surfaces, kLooksUp ? ShadowsBy::rays : ShadowsBy::maps, !kLooksUp};
 
-/// Exact rays for surfaces, shadow maps.
-RenderResult render_paths_shadow_maps(World const& world, Camera const& camera, RenderSettings const& settings,
-                                      StopRequest const& stop, RenderProgress const& progress, Report& report);
-std::unique_ptr<FrameRenderer> start_paths_shadow_maps_frames(MovingWorld const& world, Camera const& camera,
-                                                              RenderSettings const& settings, Report& report);
+    static RenderResult render(World const& world, Camera const& camera, RenderSettings const& settings,
+                               StopRequest const& stop, RenderProgress const& progress, Report& report)
+    {
+        return render_by(kName, world, camera, with(kBy, settings), stop, progress, report);
+    }
+    static std::unique_ptr<FrameRenderer> frames(MovingWorld const& world, Camera const& camera,
+                                                 RenderSettings const& settings, Report& report)
+    {
+        return start_frames_by(world, camera, with(kBy, settings), report);
+    }
+    static ExposurePlan exposure(World const& world, RenderSettings const& asked, Camera const&,
+                                 Triangles triangles)
+    {
+        return look_up_exposure(kName, kBy, world, asked, triangles);
+    }
+};
+using SlhbShadowRays = Mixed<SurfacesBy::look_ups>;
+using PathsShadowMaps = Mixed<SurfacesBy::rays>;
 
 /// The frames of slhb by kernels in a space, see kernel_renderer.h: on the device this is `--device cuda`; on the host
 /// it lets tests compare the kernels with the CPU implementation. Throws InputError on features that kernels lack.

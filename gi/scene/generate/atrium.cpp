@@ -6,7 +6,6 @@
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/generate/masonry.h"
 #include "gi/scene/generate/procedural_texture.h"
-#include "gi/scene/generate/sky.h"
 
 #include <algorithm>
 #include <array>
@@ -271,6 +270,30 @@ void add_objects(SceneBuilder& b, Materials const& m, int bays, auto const& n)
     }
 }
 
+/// A clear sky without the sun (which is a directional light): blue above, pale at the horizon, brighter towards
+/// the sun, and sunlit ground below. @param to_sun unit
+EnvironmentMap clear_sky(vec3 to_sun)
+{
+    EnvironmentMap map;
+    map.width = 128;
+    map.height = 64;
+    constexpr vec3 kZenith{0.22f, 0.42f, 0.85f}, kHorizon{0.85f, 0.95f, 1.05f}, kGlow{1.6f, 1.35f, 1.0f},
+        kGround{0.28f, 0.25f, 0.20f};
+    for (std::uint32_t y = 0; y < map.height; ++y)
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            float const theta = kPi * (float(y) + 0.5f) / float(map.height);
+            float const phi = 2 * kPi * ((float(x) + 0.5f) / float(map.width) - 0.5f);
+            vec3 const d{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+            vec3 radiance = kGround;
+            if (d.y > 0) {
+                float const toward = glm::max(0.0f, glm::dot(d, to_sun));
+                radiance = glm::mix(kHorizon, kZenith, std::pow(d.y, 0.45f)) + kGlow * std::pow(toward, 24.0f);
+            }
+            map.radiance.push_back(radiance);
+        }
+    return map;
+}
+
 } // namespace
 
 Scene generate_atrium(AtriumOptions const& o)
@@ -299,7 +322,7 @@ Scene generate_atrium(AtriumOptions const& o)
     sun.intensity = vec3{5.8f, 5.2f, 4.3f};
     b.add_light("sun", sun, dvec3{0, 20, 0}, -to_sun);
     Scene scene = b.finish("atrium");
-    scene.environment = generate_sky(vec3(to_sun));
+    scene.environment = clear_sky(vec3(to_sun));
     if (o.figure)
         add_figure(
             scene,

@@ -1,4 +1,4 @@
-#include "gi/scene/load/assimp_animation.h"
+#include "gi/scene/load/assimp_parts.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -1,8 +1,7 @@
 #include "gi/scene/load/assimp_convert.h"
 
 #include "gi/core/error.h"
-#include "gi/scene/load/assimp_animation.h"
-#include "gi/scene/load/assimp_material.h"
+#include "gi/scene/load/assimp_parts.h"
 
 #include <algorithm>
 #include <assimp/material.h>

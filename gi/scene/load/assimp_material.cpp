@@ -1,4 +1,4 @@
-#include "gi/scene/load/assimp_material.h"
+#include "gi/scene/load/assimp_parts.h"
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"

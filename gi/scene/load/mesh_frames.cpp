@@ -2,7 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/scene/load/assimp_import.h"
-#include "gi/scene/load/assimp_types.h"
+#include "gi/scene/load/assimp_parts.h"
 
 #include <cstring>
 #include <fmt/format.h>

@@ -7,10 +7,8 @@
 #include "gi/scene/load/assimp_trial.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/load/rotation_value.h"
-#include "gi/scene/load/scene_file_animation.h"
 #include "gi/scene/load/scene_file_keys.h"
-#include "gi/scene/load/scene_file_light.h"
-#include "gi/scene/load/scene_file_material.h"
+#include "gi/scene/load/scene_file_parts.h"
 #include "gi/scene/model/sky.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-#include "gi/scene/load/scene_file_animation.h"
-
 #include "gi/scene/load/scene_file_keys.h"
+#include "gi/scene/load/scene_file_parts.h"
 
 namespace gi {
 namespace {

@@ -47,7 +47,7 @@ Avatar make_avatar(Scene const& scene, AvatarJoints const& joints);
 /// untracked feet may leave the floor. Arms are bent to the hand targets by reach(): elbows point down and
 /// outwards for hands in front of the body, and this direction turns along for hands elsewhere; each bone takes
 /// the shortest rotation. A hand whose target is out of reach still takes the target's orientation. Legs are bent
-/// to the foot targets likewise (avatar_legs.h). Bones keep their lengths.
+/// to the foot targets likewise (drive_leg). Bones keep their lengths.
 void drive(Scene const& scene, Avatar const& avatar, AvatarTargets const& targets, Pose& pose);
 
 } // namespace gi

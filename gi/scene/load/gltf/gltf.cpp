@@ -1,7 +1,6 @@
 #include "gi/core/file.h"
 #include "gi/scene/load/gltf/gltf_accessor.h"
-#include "gi/scene/load/gltf/gltf_material.h"
-#include "gi/scene/load/gltf/gltf_nodes.h"
+#include "gi/scene/load/gltf/gltf_parts.h"
 #include "gi/scene/load/load.h"
 
 #include <algorithm>

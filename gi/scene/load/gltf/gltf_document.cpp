@@ -3,10 +3,10 @@
 #include "gi/core/base64.h"
 #include "gi/core/file.h"
 #include "gi/scene/load/gltf/gltf_meshopt.h"
-#include "gi/scene/load/gltf/uri.h"
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
@@ -28,6 +28,25 @@ constexpr std::array<std::string_view, 15> kKnownExtensions{
 struct Container {
     Bytes text, binary;
 };
+
+/// Decodes percent escapes of a URI: %41 becomes A; text that is not an escape stays.
+std::string decode_percent(std::string_view text)
+{
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        unsigned value = 0;
+        if (text[i] == '%' && i + 2 < text.size()) {
+            char const* const first = text.data() + i + 1;
+            if (std::from_chars(first, first + 2, value, 16).ptr == first + 2) {
+                out += char(value);
+                i += 2;
+                continue;
+            }
+        }
+        out += text[i];
+    }
+    return out;
+}
 
 std::uint32_t read_u32(Bytes b, std::size_t at)
 {

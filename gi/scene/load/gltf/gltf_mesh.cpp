@@ -1,4 +1,4 @@
-#include "gi/scene/load/gltf/gltf_mesh.h"
+#include "gi/scene/load/gltf/gltf_parts.h"
 
 #include "gi/core/step.h"
 #include "gi/scene/load/gltf/gltf_accessor.h"
