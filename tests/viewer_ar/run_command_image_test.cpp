@@ -35,13 +35,20 @@ protected:
     static void SetUpTestSuite()
     {
         made_ = std::make_unique<TemporaryFolder>();
-        run_well("ar synthesize desk --frames 3 --size 240x180 --paths 6", made_->path());
+        run_well("ar synthesize desk --frames 3 --size 160x120 --paths 6", made_->path());
     }
     static void TearDownTestSuite() { made_.reset(); }
     ArRuns() { fs::copy(*made_ / "desk", desk(), fs::copy_options::recursive); }
 
     fs::path desk() const { return folder_ / "desk"; }
     std::string session() const { return file_text(desk() / "session.yaml"); }
+    /// With nothing virtual, whose light takes most of the time.
+    std::string empty_session() const
+    {
+        std::string text = session();
+        std::size_t const at = text.find("virtual:");
+        return text.erase(at, text.find('\n', at) + 1 - at);
+    }
     Outcome run(std::string const& command) const { return viewer::test::run(command, desk()); }
 
     static inline std::unique_ptr<TemporaryFolder> made_;
@@ -50,10 +57,7 @@ protected:
 
 TEST_F(ArRuns, WithNothingVirtualGiveTheCamerasFrames)
 {
-    std::string text = session();
-    std::size_t const at = text.find("virtual:");
-    text.erase(at, text.find('\n', at) + 1 - at);
-    write(desk() / "empty.yaml", text);
+    write(desk() / "empty.yaml", empty_session());
     Outcome const o = run("ar run empty.yaml --fast --poses poses.csv --out unchanged --table t.csv");
     ASSERT_EQ(o.code, 0) << o.err;
     for (int f = 0; f < 3; ++f) {
@@ -94,19 +98,19 @@ TEST_F(ArRuns, FollowTheLight)
 TEST(ArTracking, FindsTheCamera)
 {
     TemporaryFolder folder;
-    run_well("ar synthesize desk --frames 2 --size 640x480 --paths 3 --no-truth", folder.path());
+    run_well("ar synthesize desk --frames 1 --size 640x480 --paths 1 --no-truth", folder.path());
     Outcome const o =
         run("ar track desk/session.yaml --fast --true-poses desk/poses.csv --require-found 100% --table t.csv",
             folder.path());
     ASSERT_EQ(o.code, 0) << o.err;
-    EXPECT_NE(o.out.find("camera found in 2 (100.0 %)"), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("camera found in 1 (100.0 %)"), std::string::npos) << o.out;
     double const mm = number_behind(o.out, "position error (mm)", 2),
                  deg = number_behind(o.out, "rotation error (deg)", 2);
     fmt::print("camera: {:.2f} mm, {:.3f} degrees\n", mm, deg);
     EXPECT_LT(mm, 3);
     EXPECT_LT(deg, 0.2);
     std::string const table = file_text(folder / "t.csv");
-    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2);
 }
 
 TEST_F(ArRuns, WithoutMarkersPassFramesOn)
@@ -157,7 +161,7 @@ TEST_F(ArRuns, TimeNumberedPosesAsTheirSource)
     // A video of 24 Hz in a session that says nothing of it; poses as of COLMAP, and by their times.
     std::string const frames = "source: frames, rate_hz: 30";
     auto const with = [&](std::string const& source) {
-        std::string text = session();
+        std::string text = empty_session();
         return text.replace(text.find(frames), frames.size(), source);
     };
     write(desk() / "slow.yaml", with("source: frames, rate_hz: 24"));
@@ -199,7 +203,7 @@ TEST_F(ArRuns, CountFramesThatAreNoFrames)
     fs::copy(desk() / "frames", desk() / "damaged");
     std::string const bytes = file_text(desk() / "damaged/000001.png");
     write(desk() / "damaged/000001.png", bytes.substr(0, bytes.size() / 2));
-    std::string text = session();
+    std::string text = empty_session();
     text.replace(text.find("source: frames"), 14, "source: damaged");
     write(desk() / "damaged.yaml", text);
     Outcome const o = run("ar run damaged.yaml --fast --poses poses.csv");
@@ -258,7 +262,7 @@ TEST_F(ArRuns, RefuseACalibrationOfAnotherSize)
     write(desk() / "camera.yaml", text);
     Outcome const o = run("ar track session.yaml --fast");
     EXPECT_EQ(o.code, 2);
-    EXPECT_NE(o.err.find("320 x 180"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("320 x 120"), std::string::npos) << o.err;
 }
 
 TEST_F(ArRuns, SayWhatIsWrongWithTheirFiles)
