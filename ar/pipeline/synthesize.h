@@ -25,7 +25,7 @@ struct SynthesizeOptions {
     int frames = 30;
     double rate_hz = 30;
     SyntheticQuality quality;
-    /// Rasterised with a sky as the only light, without shadows (ar/pipeline/quick_view.h), and with a printed
+    /// Rasterised with a sky as the only light, without shadows, and with a printed
     /// cloth on the table: for tracking. Not with `truth`.
     bool quick = false;
     DeskMarkers markers = DeskMarkers::board; ///< others only with `quick`

@@ -23,7 +23,8 @@ RowSpans whole_rows(Picture const& picture)
                     picture.width > 0 ? std::vector<Span>{{0, picture.width}} : std::vector<Span>{});
 }
 
-/// Returns the spans dilated by `reach` pixels in x and y, clipped to `width`.
+} // namespace
+
 RowSpans widened(RowSpans const& rows, int reach, int width)
 {
     int const height = int(rows.size());
@@ -45,8 +46,6 @@ RowSpans widened(RowSpans const& rows, int reach, int width)
     });
     return wide;
 }
-
-} // namespace
 
 FilterArea whole_area(Picture const& picture)
 {

@@ -33,6 +33,9 @@ void for_between(Spans within, Spans holes, F const& call)
     }
 }
 
+/// Returns the spans dilated by `reach` pixels in x and y, clipped to `width`.
+RowSpans widened(RowSpans const& rows, int reach, int width);
+
 struct FilterArea {
     RowSpans wanted; ///< pixels that a filter has to compute
     RowSpans near;   ///< `wanted` and all pixels that the filter reads: at least one pixel around

@@ -178,16 +178,15 @@ void trace_bounce_maps(WorldView const& world, Bounds const& bounds, TriangleSou
         std::vector<LightPath> paths(n);
         std::vector<LightVertex> vertices(n);
         std::vector<std::uint8_t> has_vertex(n);
-        launch(Space::host, "bounce map", n,
-               BounceTexels{world,
-                            v,
-                            {s.count, s.seed, s.pass},
-                            {s.bounces, s.delta_only},
-                            seen,
-                            {},
-                            paths,
-                            vertices,
-                            has_vertex});
+        launch_host(n, BounceTexels{world,
+                                    v,
+                                    {s.count, s.seed, s.pass},
+                                    {s.bounces, s.delta_only},
+                                    seen,
+                                    {},
+                                    paths,
+                                    vertices,
+                                    has_vertex});
         std::size_t left = 0;
         for (std::size_t k = 0; k < n; ++k)
             if (has_vertex[k] != 0) vertices[left++] = vertices[k];

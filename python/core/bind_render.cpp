@@ -58,6 +58,15 @@ py::dict to_result(gi::Picture&& picture, gi::RenderResult const& r, std::string
     return d;
 }
 
+/// Of a render that was interrupted. Throws where Python makes warnings errors.
+void warn_of_lost_state(std::filesystem::path const& state, gi::Report const& report)
+{
+    std::string text = "'" + state.string() + "' does not hold the interrupted render: the next one starts afresh";
+    for (auto const& [what, loss] : report.losses())
+        text += "; " + what + (loss.first.empty() ? "" : " (" + loss.first + ")");
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 py::dict render(LoadedWorld const& scene, std::string const& method, gi::Camera const& camera,
                 py::dict const& keywords, py::dict const& options, std::string const& denoise,
                 py::object const& progress)
@@ -92,7 +101,12 @@ py::dict render(LoadedWorld const& scene, std::string const& method, gi::Camera 
         if (progress.is_none()) return;
         if (auto const s = watched.take()) progress(s->fraction, s->paths, s->relmse);
     };
-    run_interruptible(work, tick);
+    try {
+        run_interruptible(work, tick);
+    } catch (py::error_already_set const&) {
+        if (!settings.checkpoint.empty() && !end.result.resumable) warn_of_lost_state(settings.checkpoint, report);
+        throw;
+    }
     if (end.failure) std::rethrow_exception(end.failure);
     if (!end.note.empty()) note += (note.empty() ? "" : "; ") + end.note;
     return to_result(std::move(picture), end.result, method, report, note);

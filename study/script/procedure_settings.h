@@ -1,5 +1,5 @@
 #pragma once
-// Converts a script's procedures to settings of study/stats: for sessions that run
+// Converts a script's procedures to settings of study/adaptive: for sessions that run
 // them and analyses that replay them.
 
 #include "study/adaptive/questplus.h"

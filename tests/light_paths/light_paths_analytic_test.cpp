@@ -343,10 +343,8 @@ TEST(LightPathsAnalytic, BounceMap)
         std::vector<LightPath> paths(n);
         std::vector<LightVertex> vertices(n);
         std::vector<std::uint8_t> has_vertex(n);
-        launch(
-            Space::host, "bounce map", n,
-            BounceTexels{
-                view(world), v, {s.count, 0, 0}, {s.bounces, false}, seen, texels, paths, vertices, has_vertex});
+        launch_host(n, BounceTexels{view(world), v, {s.count, 0, 0}, {s.bounces, false}, seen, texels, paths,
+                                    vertices, has_vertex});
         for (std::size_t k = 0; k < n; ++k) {
             BounceTexel const& t = texels[k];
             if (t.triangle == kNoTriangle) continue;

@@ -51,6 +51,23 @@ struct Child {
     ~Child() { munmap(appended, sizeof(Appended)); }
 };
 
+inline std::size_t logged_frames(Child const& child)
+{
+    auto const lines = [](std::string const& text) { return std::size_t(std::count(text.begin(), text.end(), '\n')); };
+    std::size_t const all = lines(text_of(child.folder / "frames.csv")), header = lines(frame_times_header());
+    return all - std::min(all, header);
+}
+
+/// Of a running process: whether both files hold a frame.
+inline bool has_kept(Child const& child)
+{
+    try {
+        return logged_frames(child) > 0 && RecordingReader(child.folder / "walk.lwr").next().has_value();
+    } catch (gi::InputError const&) { // without a whole header
+        return false;
+    }
+}
+
 /// The recording has the frames from the first one on, each whole. @return age of the oldest that it lacks, s
 inline double lost_s(Child const& child)
 {
@@ -59,11 +76,8 @@ inline double lost_s(Child const& child)
     std::uint64_t n = 0;
     for (; auto const frame = reader.next(); ++n) EXPECT_EQ(*frame, walk_frame(n));
     EXPECT_EQ(reader.end().state, RecordingState::cut) << describe_loss(reader.end());
-    std::string const log = text_of(child.folder / "frames.csv");
-    std::size_t const lines = std::size_t(std::count(log.begin(), log.end(), '\n'));
-    std::string const header = frame_times_header();
-    std::size_t const logged = lines - std::size_t(std::count(header.begin(), header.end(), '\n'));
-    std::size_t const kept = std::min(std::size_t(n), logged);
+    std::size_t const kept = std::min(std::size_t(n), logged_frames(child));
+    EXPECT_GT(kept, 0u);
     return kept < given ? child.killed_s - child.appended->at_s[kept] : 0;
 }
 
@@ -79,8 +93,7 @@ inline double kill_recordings(int rounds)
             if (c.id == 0) record_until_killed(c.folder.path(), *c.appended);
         }
         for (Child const& c : children)
-            while (c.appended->frames == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        std::this_thread::sleep_for(std::chrono::milliseconds(100)); // the header is written
+            while (!has_kept(c)) std::this_thread::sleep_for(std::chrono::milliseconds(10));
         for (Child& c : children) {
             std::this_thread::sleep_for(std::chrono::microseconds(random() % 500000));
             kill(c.id, SIGKILL);

@@ -104,8 +104,10 @@ std::map<std::string, std::string> frame_metadata(RenderOptions const& o, gi::Re
 
 std::string difference(gi::Picture const& there, std::map<std::string, std::string> const& wanted)
 {
-    for (char const* key : {"frame", "asked_method", "size", "seed", "filter", "denoise", "bounces", "stop",
-                            "reuse", "shutter", "layers", "numbers", "version", "git", "fingerprint", "motion"}) {
+    if (!there.metadata.contains("frame")) return "it is not a frame of a sequence";
+    // The build first: frames of another one may have other keys.
+    for (char const* key : {"version", "git", "frame", "asked_method", "size", "seed", "filter", "denoise", "bounces",
+                            "stop", "reuse", "shutter", "layers", "numbers", "fingerprint", "motion"}) {
         auto const found = there.metadata.find(key);
         if (found == there.metadata.end()) return "it is not a frame of a sequence";
         std::string const& value = wanted.at(key);
