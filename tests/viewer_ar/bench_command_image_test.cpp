@@ -21,7 +21,7 @@ TEST(ArBench, TellsSpeedWithItsError)
 {
     TemporaryFolder const folder;
     std::string const call =
-        "ar bench --size 640x480 --frames 3 --paths 1 --still-frames 4 --truth-paths 2 --folder desks --out table";
+        "ar bench --size 640x480 --frames 2 --paths 1 --still-frames 3 --truth-paths 2 --folder desks --out table";
     Outcome const o = run_well(call, folder.path());
     EXPECT_NE(o.out.find("render"), std::string::npos) << o.out;
     Json const table = Json::parse(file_text(folder / "table/ar.json"));

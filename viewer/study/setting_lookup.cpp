@@ -30,8 +30,9 @@ StimulusSetting const* find_own(std::string const& key)
 
 SettingKey const* find_of_viewer(std::string const& key)
 {
+    std::string const current = current_key(key);
     for (SettingKey const& k : setting_keys())
-        if (k.key == current_key(key)) return &k;
+        if (k.key == current) return &k;
     return nullptr;
 }
 
