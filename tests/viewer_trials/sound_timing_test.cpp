@@ -1,7 +1,7 @@
 // When sounds begin, by clocks of the test: a device that is asked late, that reports wrong times, that runs dry.
 
 #include "viewer/experiment/sound/buffer_times.h"
-#include "viewer/experiment/sound/sound_mixer.h"
+#include "viewer/experiment/sound/cue_player.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,9 +86,14 @@ std::shared_ptr<SoundSamples const> ones(std::size_t frames)
     return std::make_shared<SoundSamples const>(SoundSamples{std::vector<float>(2 * frames, 0.75f), kRate});
 }
 
+struct Mixer : SoundMixer {
+    double lead_s() const override { return 0.03; }
+    bool is_running() const override { return true; }
+};
+
 /// A mixer that plays buffer after buffer, from 100 s on.
 struct Played {
-    SoundMixer mixer;
+    Mixer mixer;
     std::vector<float> out; ///< interleaved
     void buffers(int count)
     {
@@ -151,6 +156,36 @@ TEST(SoundMixer, SoundsThatOverlapAreCutAtFullScaleAndCounted)
     p.buffers(1);
     EXPECT_EQ(p.out[2 * 150], 1);
     EXPECT_EQ(p.mixer.clipped(), 200u) << "100 frames of two channels";
+}
+
+TEST(CuePlayer, SoundsBeginAtTheirOffsetFromTheMoment)
+{
+    study::Script script;
+    script.sounds.resize(1);
+    script.sounds[0].name = "tone";
+    study::Block block;
+    block.cues = {{0, study::CueMoment::each_stimulus, -20},
+                  {0, study::CueMoment::each_stimulus, 40},
+                  {0, study::CueMoment::fixation, 0}};
+    SoundBank const sounds{ones(480)};
+    Played p;
+    CuePlayer player(script, block, &p.mixer, sounds);
+    EXPECT_NEAR(player.lead_s(study::CueMoment::each_stimulus), 0.05, 1e-12);
+    player.start(study::CueMoment::each_stimulus, true, "stimulus 1", 100.1);
+    p.buffers(20);
+    player.came(100.101);
+    auto const played = player.take(100.2);
+    ASSERT_EQ(played.size(), 2u);
+    EXPECT_EQ(p.first_heard(), 3840u);
+    EXPECT_NEAR(played[0].onset_s.value_or(0), 100.08, 1e-9);
+    EXPECT_NEAR(played[1].onset_s.value_or(0), 100.14, 1e-9);
+    for (study::SoundPlayed const& s : played) {
+        EXPECT_EQ(s.sound, "tone");
+        EXPECT_EQ(s.at, "stimulus 1");
+        EXPECT_EQ(s.event_s, 100.101); // when the moment came, not when it was planned
+        EXPECT_EQ(s.duration_s, 0.01);
+        EXPECT_TRUE(s.missing.empty());
+    }
 }
 
 } // namespace

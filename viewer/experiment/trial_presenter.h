@@ -10,6 +10,7 @@
 #include "viewer/experiment/markers.h"
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/screens/screen_settings.h"
+#include "viewer/experiment/sound/audio_output.h"
 #include "viewer/experiment/sound/cue_player.h"
 #include "viewer/experiment/stimuli/stimulus_source.h"
 

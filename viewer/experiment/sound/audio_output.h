@@ -17,13 +17,12 @@ public:
     /// @param latency_ms  wanted; smaller ones risk underruns
     /// Throws InputError: there is none such (all are named), it does not take the rate.
     AudioOutput(std::string const& device, int rate_hz, double latency_ms);
-    ~AudioOutput();
+    ~AudioOutput() override;
     AudioOutput(AudioOutput const&) = delete;
     AudioOutput& operator=(AudioOutput const&) = delete;
 
-    /// How long before its onset a sound must be started to begin in time, s.
-    double lead_s() const;
-    bool is_running() const; ///< false: the device was lost
+    double lead_s() const override;
+    bool is_running() const override;
     /// Facts for the records: audio_device, audio_host, audio_rate_hz, audio_latency_ms, audio_onset_method.
     std::vector<std::pair<std::string, std::string>> about() const;
 

@@ -6,7 +6,7 @@
 
 namespace viewer {
 
-CuePlayer::CuePlayer(study::Script const& script, study::Block const& block, AudioOutput* output,
+CuePlayer::CuePlayer(study::Script const& script, study::Block const& block, SoundMixer* output,
                      SoundBank const& sounds)
     : script_(script), block_(block), output_(output), sounds_(sounds)
 {

@@ -3,7 +3,10 @@
 
 #include "study/journal/entries.h"
 #include "study/script/script.h"
-#include "viewer/experiment/sound/audio_output.h"
+#include "viewer/experiment/sound/sound_mixer.h"
+
+#include <string>
+#include <vector>
 
 namespace viewer {
 
@@ -12,7 +15,7 @@ using SoundBank = std::vector<std::shared_ptr<SoundSamples const>>; ///< by numb
 class CuePlayer {
 public:
     /// @param output  null: without sound   All arguments must outlive it.
-    CuePlayer(study::Script const& script, study::Block const& block, AudioOutput* output,
+    CuePlayer(study::Script const& script, study::Block const& block, SoundMixer* output,
               SoundBank const& sounds);
 
     /// True if the moment has cues that can be heard.
@@ -37,7 +40,7 @@ private:
 
     study::Script const& script_;
     study::Block const& block_;
-    AudioOutput* output_;
+    SoundMixer* output_;
     SoundBank const& sounds_;
     std::vector<Started> started_;
     std::size_t first_of_moment_ = 0;

@@ -22,6 +22,10 @@ struct SoundReport {
 
 class SoundMixer {
 public:
+    virtual ~SoundMixer() = default;
+    /// How long before its onset a sound must be started to begin in time, s.
+    virtual double lead_s() const = 0;
+    virtual bool is_running() const = 0; ///< false: the device was lost
     /// Plays the sound so that its first sample leaves at that time of the steady clock, or as soon as possible.
     /// None if too many sounds are playing.
     std::optional<SoundTicket> start(std::shared_ptr<SoundSamples const> sound, double at_s);
