@@ -121,7 +121,7 @@ if(NOT LIGHTWELL_CUDA)
     <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional> <algorithm> <optional> <span>
     <CLI/CLI.hpp> <nlohmann/json.hpp> <fmt/format.h>)
 endif()
-set(lightwell_quick "$<$<COMPILE_LANGUAGE:CXX>:-O0>")
+set(lightwell_quick "$<$<COMPILE_LANGUAGE:CXX>:-Og>")
 if(NOT LIGHTWELL_FUZZ)
   foreach(headers lightwell_test_headers lightwell_quick_test_headers)
     add_executable(${headers} ${PROJECT_BINARY_DIR}/headers.cpp)
