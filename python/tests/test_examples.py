@@ -15,7 +15,7 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
 
 def test_the_notebook_runs_as_a_script_and_its_errors_fall(tmp_path):
-    options = ["--size", "48x36", "--budgets", "0.05,0.8", "--reference-s", "2", "--out", tmp_path / "e"]
+    options = ["--size", "48x36", "--budgets", "0.05,0.4", "--reference-s", "1", "--out", tmp_path / "e"]
     command = [sys.executable, EXAMPLES / "error_over_time.py", *options]
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     lines = [line.split() for line in printed.splitlines() if " relMSE " in line and " paths " in line]
