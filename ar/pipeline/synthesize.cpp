@@ -172,9 +172,10 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, Mark
     gi::write_glb(o.folder / "statue.glb", generate_statue(), report);
     SyntheticQuality fine = o.quality;
     fine.paths = std::max(4 * fine.paths, 8u);
+    int const height = o.size_px.x < 320 ? 64 : 128; // small frames are for trying things out, and cost less than it
     cv::Mat const probe =
         o.quick ? quick_sky(128)
-                : synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, 128, fine, stop, report);
+                : synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, height, fine, stop, report);
     if (stop.requested()) return; // do not keep an unfinished probe
     write_probe(o.folder / "probe.exr", probe, report);
     gi::write_text(o.folder / "session.yaml", session_text(o));

@@ -143,7 +143,7 @@ TEST_F(Oidn, LeavesPixelsWithoutASurface)
 
 TEST_F(Oidn, TheErrorOfACornellBoxFallsByMoreThanByAtrous)
 {
-    Picture const reference = noisy_cornell(512, 1), noisy = noisy_cornell(8, 2);
+    Picture const reference = noisy_cornell(160, 1), noisy = noisy_cornell(8, 2);
     auto const errors = [&](char const* filter) {
         Picture p = noisy;
         denoise(p, find_filter(filter));

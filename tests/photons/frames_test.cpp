@@ -51,7 +51,7 @@ TEST(PhotonFrames, FrozenLight)
     Camera const here = in_the_room(), there = look_at({-0.8, 0.5, -0.8}, {0.5, -0.5, 0.5}, 70);
     for (PhotonMethod const& m : kPhotonMethods)
         for (bool const frozen : {true, false}) {
-            RenderSettings s = small_photon_picture(16, 8192);
+            RenderSettings s = small_photon_picture(16, 4096);
             s.of<PhotonSettings>().frozen = frozen ? Switch::on : Switch::off;
             s.of<PhotonSettings>().propagation_cascades = s.of<PhotonSettings>().lattice_cascades = 2;
             Picture last[2];
@@ -123,7 +123,7 @@ TEST(PhotonFrames, LatticesFollowTheCamera)
     auto const at = [](double x) { return look_at({x, 1.2, 0.3}, {x + 2, 0.6, -0.2}, 70); };
     for (PhotonMethod const& m : kPhotonMethods) {
         if (std::string_view(m.name) == "ispm") continue;
-        RenderSettings s = small_photon_picture(24, 16384);
+        RenderSettings s = small_photon_picture(16, 8192);
         s.of<PhotonSettings>().lattice_cascades = s.of<PhotonSettings>().propagation_cascades = 4;
         s.of<PhotonSettings>().volume_gathers = 0;
         for (int const steps_at_rest : {0, 2}) {
@@ -182,7 +182,7 @@ TEST(PhotonFrames, AnyNumberOfThreadsGivesTheSameBits)
         for (PhotonRays const rays : {PhotonRays::exact, PhotonRays::look_ups, PhotonRays::impostors})
             for (FirstBounce const first : {FirstBounce::rays, FirstBounce::map}) {
                 if (first == FirstBounce::map && rays != PhotonRays::exact) continue;
-                RenderSettings s = small_photon_picture(24, 8192);
+                RenderSettings s = small_photon_picture(16, 4096);
                 s.paths = 2;
                 s.of<PhotonSettings>().rays = rays;
                 s.of<PhotonSettings>().first_bounce = first;
@@ -192,7 +192,7 @@ TEST(PhotonFrames, AnyNumberOfThreadsGivesTheSameBits)
                 Report report;
                 Picture const one = m.render(world, in_the_room(), s, {}, {}, report).picture;
                 EXPECT_GT(indirect(one), 0) << m.name;
-                for (int const threads : {2, 3}) {
+                for (int const threads : {3}) {
                     s.threads = threads;
                     Picture const other = m.render(world, in_the_room(), s, {}, {}, report).picture;
                     for (Layer const& layer : one.layers) {

@@ -226,7 +226,7 @@ void expect_stops(PhotonMethod const& m, World const& world, RenderSettings cons
 TEST(PhotonStops, WhileLightPathsAreTraced)
 {
     World const world = world_of(room_with_mirror());
-    constexpr int kPaths = 65536;
+    constexpr int kPaths = 16384;
     for (PhotonMethod const& m : kPhotonMethods) {
         RenderSettings const s = small_photon_picture(8, kPaths);
         std::uint64_t const asks = asks_of(m, world, s);

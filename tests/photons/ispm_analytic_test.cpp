@@ -43,7 +43,7 @@ TEST(Ispm, Furnace)
     for (KernelBy const by : {KernelBy::density, KernelBy::footprint})
         for (bool const sphere : {false, true}) {
             RenderSettings s;
-            s.paths = 8;
+            s.paths = 4;
             s.of<PhotonSettings>().kernel_by = by;
             auto const [mean, off] = furnace(sphere, s);
             fmt::print("{}, kernels by {}: mean {:.4f}, off by {:.4f}\n", sphere ? "sphere" : "box",

@@ -149,6 +149,7 @@ TEST(LightPropagation, FreeSpace)
     GridFrame const frame = cube(33, 3.3f);
     for (Reprojection const by : {Reprojection::beams, Reprojection::cosine_lobes})
         for (int const source : {0, 1, 2}) {
+            if (source == 1 && by == Reprojection::cosine_lobes) continue; // as the diagonal one
             LightPropagation light({.cells = 33, .cascades = 1, .steps = 200, .by = by});
             vec3 const n = source == 1 ? vec3{0, 0, 1} : glm::normalize(vec3{1, 1, 1});
             light.propagate(std::span{&frame, 1}, source == 0 ? point_light(frame, vec3{0}, 10)

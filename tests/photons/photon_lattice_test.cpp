@@ -36,8 +36,8 @@ TEST(PhotonLattices, Furnace)
             add_box(scene, {0.6f, -0.4f, -0.5f}, {1, 0.3f, 0.1f}, wall, false);
         }
         if (shape == 1 || shape == 4) turn(scene);
-        TracedScene const traced(scene, 400000, 20);
-        for (int const cells : {8, 16, 32})
+        TracedScene const traced(scene, 300000, 20);
+        for (int const cells : {8, 32})
             for (IrradianceBy const by : {IrradianceBy::normals, IrradianceBy::directions}) {
                 PhotonLattices const light =
                     lattices_of(traced, {.cells = {cells, cells, 32}, .smooth = {true, true, true}, .by = by});

@@ -118,7 +118,7 @@ TEST(Furnace, ObjectsInARoomThatGlows)
         Scene scene;
         add_box(scene, {-2, -2, -2}, {2, 2, 2}, add_material(scene, emitter(vec3{1})), true);
         add_sphere(scene, vec3{0}, 1, 3, add_material(scene, c.material), false);
-        RenderResult const r = render(world_of(scene), look_at({0, 0, 1.8}, {0, 0, 0}, 60), 16, 1024, 1000);
+        RenderResult const r = render(world_of(scene), look_at({0, 0, 1.8}, {0, 0, 0}, 60), 16, 400, 1000);
         Estimate e = mean_of(r.picture);
         e.sigma = std::max(e.sigma, 2e-4 / 3);
         expect_estimate(e, 1, c.name);

@@ -45,8 +45,9 @@ enum class Shape { box, turned_box, sphere };
 TEST(ShGrid, Furnace)
 {
     for (Shape const shape : {Shape::box, Shape::turned_box, Shape::sphere})
-        for (int const voxels : {32, 64, 128})
+        for (int const voxels : {32, 128})
             for (RadianceBy const by : {RadianceBy::normal, RadianceBy::direction}) {
+                if (voxels == 128 && shape != Shape::turned_box) continue; // takes long
                 Scene scene;
                 int const wall = add_material(scene, glowing(1, 0.5f));
                 if (shape == Shape::sphere)
@@ -373,11 +374,11 @@ TEST(ShGrid, NarrowGlossyLobesGetRays)
     add_quad(scene, {-0.3f, 0.5f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{4}, true)));
     World const world = world_of(scene);
     Camera const eye = look_at({0, 0, 0.9}, {0, -1, -0.6}, 60);
-    RenderSettings s = picture_of(48, 64);
-    s.paths = 64;
+    RenderSettings s = picture_of(32, 64);
+    s.paths = 48;
     Report report;
     Picture const own = render_sh_grid(world, eye, s, {}, {}, report).picture;
-    s.paths = 1024;
+    s.paths = 512;
     Picture const truth = render_reference(world, eye, s, {}, {}, report).picture;
     for (char const* const layer : {"L1", "L2"}) {
         double const ratio = mean_of(own, layer).mean / mean_of(truth, layer).mean;

@@ -183,7 +183,7 @@ std::array<double, 2> light_of_frames(StartFrames start, RenderSettings const& s
 
 TEST(InterleavedFrames, HaveTheLightOfAllPixels)
 {
-    constexpr int kFrames = 192;
+    constexpr int kFrames = 96;
     constexpr double kNoTime = 1e-9, kWithin = 0.01; // of which the surfaces' edges have a part
     RenderSettings s;
     s.width = s.height = 48;

@@ -16,12 +16,12 @@ void expect_mean(Picture const& picture, double truth, std::string const& what, 
 
 TEST(SlhbFurnace, SphereUnderAUniformSky)
 {
-    for (float const albedo : {0.5f, 0.9f, 1.0f}) {
+    for (float const albedo : {0.5f, 1.0f}) {
         Scene scene;
         add_sphere(scene, vec3{0}, 1, 3, add_material(scene, lambert(vec3{albedo})), false);
         set_environment(scene, vec3{1});
         World const world = world_of(scene);
-        for (int const bounces : {0, 1, 3, 64}) {
+        for (int const bounces : {0, 3, 64}) {
             RenderSettings s = small_settings(12, 256, bounces);
             s.of<SlhbSettings>().shadow_resolution = 128;
             s.of<SlhbSettings>().resolution = 64;
@@ -43,7 +43,7 @@ TEST(SlhbFurnace, ClosedSphereThatGlows)
         add_sphere(scene, vec3{0}, 1, 3, add_material(scene, wall), false);
         World const world = world_of(scene);
         for (int const bounces : {0, 3, 32}) {
-            RenderSettings s = small_settings(8, 256, bounces);
+            RenderSettings s = small_settings(8, 128, bounces);
             s.of<SlhbSettings>().shadow_resolution = 128;
             s.of<SlhbSettings>().resolution = 64;
             s.of<SlhbSettings>().axes = 8;

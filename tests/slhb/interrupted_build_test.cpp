@@ -67,8 +67,8 @@ TEST(InterruptedPass, ALaterOneLeavesNoTrace)
     World const world = world_of(generate_boxes(2000, 1));
     Camera const camera = look_at({0, 0, 3}, {0, 0, 0}, 50);
     RenderSettings s = settings_of_long_passes();
-    s.width = s.height = 256; // some seconds in all: progress is shown meanwhile
-    s.paths = 64;
+    s.width = s.height = 160; // a second or more in all: progress is shown meanwhile
+    s.paths = 40;
     Report report;
     RenderResult const whole = render_as_set(world, camera, s, {}, {}, report);
     s.checkpoint = std::filesystem::temp_directory_path() / "lightwell_interrupted_pass.state";

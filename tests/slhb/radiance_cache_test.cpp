@@ -195,8 +195,8 @@ void expect_same_light(Picture const& exact, Picture const& cached)
 TEST(RadianceCache, BringsTheSameLightByRays)
 {
     MovingWorld const world = box();
-    Seen const exact = see(world, in_box(), VertexSharing::none, 512),
-               cached = see(world, in_box(), VertexSharing::cached, 512);
+    Seen const exact = see(world, in_box(), VertexSharing::none, 200),
+               cached = see(world, in_box(), VertexSharing::cached, 200);
     EXPECT_EQ(exact.ended, 0);
     EXPECT_GT(cached.ended, 0.3 * kCachedSize * kCachedSize);
     expect_same_light(exact.picture, cached.picture);

@@ -78,7 +78,7 @@ TEST_P(Shutter, AMovingSquareLeavesATrapezoid)
     move_last_node(scene, metres(kWay_px));
     Report report;
     MovingWorld world(std::make_shared<Scene const>(std::move(scene)), 0, report);
-    RenderSettings const s = blur_settings(2048);
+    RenderSettings const s = blur_settings(512);
     Moments const moments = [&](std::uint32_t pass) {
         return Moment{world.advance(moment_of_pass(s.seed, pass)), eye()};
     };
@@ -92,7 +92,7 @@ TEST_P(Shutter, AMovingCameraLeavesATrapezoid)
 {
     Report report;
     MovingWorld const world(std::make_shared<Scene const>(luminous_square()), 0, report);
-    RenderSettings const s = blur_settings(2048);
+    RenderSettings const s = blur_settings(512);
     Moments const moments = [&](std::uint32_t pass) {
         Camera camera = eye();
         camera.world_from_camera[3].x = -metres(kWay_px) * moment_of_pass(s.seed, pass);

@@ -85,7 +85,7 @@ TEST(Cave, WallsAreContinuousAcrossTheirEdges)
     }
     RenderSession session(room, 0, report);
     session.apply({"method", "slhb"});
-    session.apply({"directions", "icosahedron:1280"});
+    session.apply({"directions", "icosahedron:320"});
     session.apply({"denoise", "none"});
     session.apply({"bounces", 3}); // the noise of more would need more frames
     session.apply({"scene", "room"});

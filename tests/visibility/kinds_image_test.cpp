@@ -128,7 +128,7 @@ TEST(VisibilityKinds, HitBuffersComeNearerToExactWithTheirQuality)
 TEST(VisibilityKinds, ImperfectMapsComeNearerToExactWithTheirPoints)
 {
     World const world = world_of(box_with_block());
-    RenderSettings s = small_picture(24, 8, 2);
+    RenderSettings s = small_picture(16, 4, 2);
     auto const exact = indirect(VisibilityKind::exact, world, s);
     std::vector<double> errors;
     for (auto const& [points, map] : {std::pair{64, 32}, std::pair{2048, 128}, std::pair{131072, 512}}) {

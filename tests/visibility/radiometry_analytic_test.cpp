@@ -25,10 +25,10 @@ TEST(VisibilityFurnace, RoomOfGlowingWallsHasTheRadianceOfItsSeries)
         wall.emission = vec3{0.5f};
         add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, wall), true);
         World const world = world_of(scene);
-        RenderSettings s = small_picture(12, 48, 1000);
+        RenderSettings s = small_picture(12, 24, 1000);
         s.of<VirtualLightSettings>().light_paths = 256;
         RunningMean const m =
-            mean_over_seeds(VisibilityKind::exact, world, look_at({0.3, 0.1, 0.2}, {-1, -0.5, -0.7}, 70), s, 24);
+            mean_over_seeds(VisibilityKind::exact, world, look_at({0.3, 0.1, 0.2}, {-1, -0.5, -0.7}, 70), s, 12);
         expect_mean(m, 0.5 / (1 - double(rho)), fmt::format("albedo {}", rho));
     }
 }
@@ -181,9 +181,9 @@ TEST(VisibilityCornell, MaterialsOfAllKindsAreThoseOfTheReference)
         add_sphere(scene, {-0.2f, -0.4f, -0.1f}, 0.5f, 3, add_material(scene, material), true);
         add_quad(scene, {-0.5f, 0.99f, -0.5f}, {1, 0, 0}, {0, 0, 1}, add_material(scene, emitter(vec3{5})));
         World const world = world_of(scene);
-        Picture const truth = reference_picture(world, in_the_box(), small_picture(16, 4096, 2));
+        Picture const truth = reference_picture(world, in_the_box(), small_picture(12, 2048, 2));
         RunningMean const m =
-            mean_over_seeds(VisibilityKind::exact, world, in_the_box(), small_picture(16, 32, 2), 16);
+            mean_over_seeds(VisibilityKind::exact, world, in_the_box(), small_picture(12, 16, 2), 12);
         double const sigma = std::hypot(m.sigma(), mean_of(truth).sigma), mean = mean_of(truth).mean;
         EXPECT_NEAR(m.mean(), mean, 3.5 * sigma) << name;
         EXPECT_LT(sigma, 0.015 * mean) << name << ": the test sees little";

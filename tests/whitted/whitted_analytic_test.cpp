@@ -50,7 +50,7 @@ TEST(Whitted, ShowsWhatTheReferenceShowsDirectly)
     for (bool const smooth : {false, true}) {
         World const world = room(smooth);
         Report report;
-        RenderSettings s = picture_of(24, smooth ? 1500 : 64);
+        RenderSettings s = picture_of(16, smooth ? 1500 : 64);
         s.of<WhittedSettings>().recursion = 20;
         s.of<WhittedSettings>().cutoff = 1e-4f;
         Picture const trees = render_whitted(world, eye, s, {}, {}, report).picture;
