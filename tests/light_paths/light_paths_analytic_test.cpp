@@ -86,10 +86,10 @@ TEST(LightPathsAnalytic, FluxInClosedRooms)
         World const world = world_of(scene);
         for (Way const way : {Way::rays, Way::maps}) {
             std::array<double, 5> found{};
-            int const kSets = kind == 1 && way == Way::rays ? 4 : 1; // of a spot, the share in its cone varies
-            for (std::uint32_t set = 0; set < kSets; ++set)
+            std::uint32_t const sets = kind == 1 && way == Way::rays ? 4 : 1; // of a spot, the share in its cone varies
+            for (std::uint32_t set = 0; set < sets; ++set)
                 for (LightVertex const& v : trace(way, world, paths_of(1 << 18, 5, set)))
-                    if (v.scatterings < 5) found[std::size_t(v.scatterings)] += double(v.power.x) / kSets;
+                    if (v.scatterings < 5) found[std::size_t(v.scatterings)] += double(v.power.x) / sets;
             double expected = flux;
             for (std::size_t k = 0; k < found.size(); ++k, expected *= double(kAlbedo)) {
                 fmt::print("light {} by {}: {} scatterings {:.5f} of the flux\n", kind, name(way), k,

@@ -24,7 +24,7 @@ std::pair<double, double> furnace(bool sphere, RenderSettings s)
         add_sphere(scene, vec3{0}, 1, 5, wall, false);
     else
         add_box(scene, {-1, -1, -1}, {1, 1, 1}, wall, true);
-    s.width = s.height = 48;
+    s.width = s.height = 32;
     Report report;
     Picture const p =
         render_ispm(world_of(scene), look_at({0, 0, 0.3}, {0, -0.2, -1}, 90), s, {}, {}, report).picture;
@@ -43,7 +43,7 @@ TEST(Ispm, Furnace)
     for (KernelBy const by : {KernelBy::density, KernelBy::footprint})
         for (bool const sphere : {false, true}) {
             RenderSettings s;
-            s.paths = 4;
+            s.paths = 8;
             s.of<PhotonSettings>().kernel_by = by;
             auto const [mean, off] = furnace(sphere, s);
             fmt::print("{}, kernels by {}: mean {:.4f}, off by {:.4f}\n", sphere ? "sphere" : "box",

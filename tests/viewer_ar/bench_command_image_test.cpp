@@ -21,8 +21,10 @@ TEST(ArBench, TellsSpeedWithItsError)
 {
     TemporaryFolder const folder;
     std::string const call =
-        "ar bench --size 640x480 --frames 2 --paths 1 --still-frames 3 --truth-paths 2 --folder desks --out table";
-    Outcome const o = run_well(call, folder.path());
+        "ar bench --size 640x480 --frames 2 --paths 1 --truth-paths 2 --folder desks --out table";
+    EXPECT_NE(run_well("ar bench --help", folder.path()).out.find("  lightwell " + call + "\n"), std::string::npos)
+        << "the example, which is run here";
+    Outcome const o = run_well(call + " --still-frames 3", folder.path());
     EXPECT_NE(o.out.find("render"), std::string::npos) << o.out;
     Json const table = Json::parse(file_text(folder / "table/ar.json"));
     ASSERT_EQ(table.at("rows").size(), 2u);

@@ -22,19 +22,19 @@ TEST(ArMap, FindsTheCameraWithoutMarkers)
 {
     TemporaryFolder const folder;
     // The camera moves by 4 cm a frame.
-    run_well("ar synthesize walk --quick --frames 20 --size 320x240", folder.path());
-    run_well("ar synthesize bare --quick --apart --markers none --frames 20 --size 320x240", folder.path());
+    run_well("ar synthesize walk --quick --frames 14 --size 320x240", folder.path());
+    run_well("ar synthesize bare --quick --apart --markers none --frames 14 --size 320x240", folder.path());
     Outcome const made =
         run("ar map walk/session.yaml --poses walk/poses.csv --out map.txt --require-found 100%", folder.path());
     ASSERT_EQ(made.code, 0) << made.err;
-    EXPECT_NE(made.out.find("camera found in 20 of 20 frames"), std::string::npos) << made.out;
+    EXPECT_NE(made.out.find("camera found in 14 of 14 frames"), std::string::npos) << made.out;
     with_pose(folder / "bare/session.yaml", "features: ../map.txt", "features.yaml");
     cv::imwrite((folder / "bare/frames/000010.png").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(40)));
     Outcome const o = run("ar track bare/features.yaml --fast --true-poses bare/poses.csv --require-found 90% "
                           "--confidence-table c.csv --table t.csv",
                           folder.path());
     ASSERT_EQ(o.code, 0) << o.out << o.err;
-    EXPECT_NE(o.out.find("poses: 19 tracked, 1 held"), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("poses: 13 tracked, 1 held"), std::string::npos) << o.out;
     EXPECT_NE(o.out.find("jumps of more than 20 mm: "), std::string::npos) << o.out;
     EXPECT_EQ(file_text(folder / "c.csv").find("confidence_low,"), 0u);
     std::istringstream values(o.out.substr(o.out.find("position error (mm)") + 19));
@@ -46,7 +46,7 @@ TEST(ArMap, FindsTheCameraWithoutMarkers)
     Outcome const albedo = run(
         "ar albedo bare/features.yaml --scene --views 1 --paths 1 --resolution 0.1 --out a.yaml", folder.path());
     EXPECT_EQ(albedo.code, 0) << albedo.err;
-    EXPECT_NE(albedo.out.find("camera found in 19 frames (1 without"), std::string::npos) << albedo.out;
+    EXPECT_NE(albedo.out.find("camera found in 13 frames (1 without"), std::string::npos) << albedo.out;
 
     // Markers alone find nothing there.
     EXPECT_EQ(run("ar track bare/session.yaml --fast", folder.path()).code, 1);

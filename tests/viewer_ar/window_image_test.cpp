@@ -13,10 +13,10 @@ protected:
 
 TEST_F(ArWindows, ShowTheSessionUntilEscape)
 {
-    run_well("ar synthesize desk --frames 40 --size 160x120 --paths 1 --no-truth --no-denoise", folder.path());
+    run_well("ar synthesize desk --frames 16 --size 160x120 --paths 1 --no-truth --no-denoise", folder.path());
     // So slow that it does not end by itself meanwhile.
     std::string session = file_text(folder / "desk/session.yaml");
-    session.replace(session.find("rate_hz: 30"), 11, "rate_hz: 4");
+    session.replace(session.find("rate_hz: 30"), 11, "rate_hz: 2");
     std::ofstream(folder / "desk/session.yaml") << session;
     Program program(words("ar run desk/session.yaml --window --poses desk/poses.csv --table t.csv"),
                     folder.path());
@@ -32,7 +32,7 @@ TEST_F(ArWindows, ShowTheSessionUntilEscape)
     EXPECT_EQ(o.code, 0) << o.err;
     EXPECT_NE(o.out.find("capture to swap (ms)"), std::string::npos) << o.out;
     std::string const table = file_text(folder / "t.csv");
-    EXPECT_LT(std::count(table.begin(), table.end(), '\n'), 41) << "Escape ends it";
+    EXPECT_LT(std::count(table.begin(), table.end(), '\n'), 17) << "Escape ends it";
 }
 
 TEST_F(ArWindows, ShowEachFrameWithItsOwnThings)

@@ -269,7 +269,7 @@ TEST_F(Ranks, OneThatComputesSomethingElseIsFound)
 
 TEST_F(Ranks, WorkIsNoStall)
 {
-    for (char const* busy : {"3 stop --busy 2 5", "3 stop --busy 0 5"}) {
+    for (char const* busy : {"3 stop --busy 2 4", "3 stop --busy 0 4"}) {
         auto const mpirun = start(20, busy);
         EXPECT_EQ(mpirun->wait(), 0) << mpirun->text();
         for (int r = 0; r < kRanks; ++r) EXPECT_EQ(log(r).code, 0) << log(r).all_said() << mpirun->text();

@@ -183,7 +183,7 @@ void kill_rank(int rank, std::filesystem::path const& folder, std::string const&
 }
 
 constexpr char const* kLong = LIGHTWELL_PROGRAM
-    " render cornell --frames 0:12@24 --size 96x96 --paths 40 --threads 1 --quiet --out f_%02d.exr ";
+    " render cornell --frames 0:12@24 --size 96x96 --paths 20 --threads 1 --quiet --out f_%02d.exr ";
 
 TEST_F(RenderByRanks, AKilledRankIsNamedAndTheRestResumes)
 {

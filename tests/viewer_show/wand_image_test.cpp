@@ -96,7 +96,7 @@ trackers:
                                                             port);
         wand.emplace(port);
         view.emplace("cornell --display " + (folder_ / "room.yaml").string() +
-                     " --set refine=false --set reproject=false --set paths=1 --set scale=1");
+                     " --set refine=false --set reproject=false --set paths=1 --set scale=1 --set bounces=1");
     }
     gi::Picture picture(std::string const& name)
     {

@@ -395,7 +395,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_option("-o,--out", a->out, "Folder for the tables, as JSON and CSV");
     c->add_flag("--json", a->json, "Print the tables as JSON, in one object by their names");
     c->footer(R"(Examples:
-  lightwell ar bench --size 640x480 --frames 2 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
+  lightwell ar bench --size 640x480 --frames 2 --paths 1 --truth-paths 2 --folder desks --out table
   lightwell ar bench --counter --size 320x240 --frames 10
 
 Each quality is run twice: as fast as possible (frames per second, error; no frame is skipped) and at the camera's
