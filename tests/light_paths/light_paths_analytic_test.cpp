@@ -86,7 +86,8 @@ TEST(LightPathsAnalytic, FluxInClosedRooms)
         World const world = world_of(scene);
         for (Way const way : {Way::rays, Way::maps}) {
             std::array<double, 5> found{};
-            std::uint32_t const sets = kind == 1 && way == Way::rays ? 4 : 1; // of a spot, the share in its cone varies
+            std::uint32_t const sets =
+                kind == 1 && way == Way::rays ? 4 : 1; // of a spot, the share in its cone varies
             for (std::uint32_t set = 0; set < sets; ++set)
                 for (LightVertex const& v : trace(way, world, paths_of(1 << 18, 5, set)))
                     if (v.scatterings < 5) found[std::size_t(v.scatterings)] += double(v.power.x) / sets;
@@ -343,8 +344,10 @@ TEST(LightPathsAnalytic, BounceMap)
         std::vector<LightPath> paths(n);
         std::vector<LightVertex> vertices(n);
         std::vector<std::uint8_t> has_vertex(n);
-        launch_host(n, BounceTexels{view(world), v, {s.count, 0, 0}, {s.bounces, false}, seen, texels, paths,
-                                    vertices, has_vertex});
+        launch_host(
+            n,
+            BounceTexels{
+                view(world), v, {s.count, 0, 0}, {s.bounces, false}, seen, texels, paths, vertices, has_vertex});
         for (std::size_t k = 0; k < n; ++k) {
             BounceTexel const& t = texels[k];
             if (t.triangle == kNoTriangle) continue;

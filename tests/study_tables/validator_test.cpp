@@ -112,14 +112,14 @@ TEST(Validator, OfBidsFindsNoErrorInTheRecordsOfAnyShippedExperiment)
         below += !is_first;
         if (!is_first) // .bidsignore holds for the first alone
             for (fs::directory_entry const& file : fs::recursive_directory_iterator(folder))
-                for (char const* ignored : {"journal.jsonl", "plan.tsv", "script.yaml", "session.json", "_frames.csv",
-                                            "_pose.csv.gz"})
+                for (char const* ignored :
+                     {"journal.jsonl", "plan.tsv", "script.yaml", "session.json", "_frames.csv", "_pose.csv.gz"})
                     if (file.path().filename().string().ends_with(ignored)) fs::remove(file.path());
     }
     fs::path const out = root.string() + ".json";
-    int const status = std::system(
-        fmt::format("'{}' '{}' --recursive --format json > '{}' 2>/dev/null", validator.string(), root.string(), out.string())
-            .c_str());
+    int const status = std::system(fmt::format("'{}' '{}' --recursive --format json > '{}' 2>/dev/null",
+                                               validator.string(), root.string(), out.string())
+                                       .c_str());
     auto const all = nlohmann::json::parse(std::ifstream(out), nullptr, false);
     fs::remove_all(root);
     fs::remove(out);
