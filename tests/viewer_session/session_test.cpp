@@ -8,6 +8,7 @@
 #include "gi/metrics/metrics.h"
 #include "gi/scene/generate/generate.h"
 #include "tests/support/scenes.h"
+#include "tests/support/stop_at_ask.h"
 #include "viewer/engine/picking.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -124,6 +125,42 @@ TEST(RenderSession, AFrameThatWasStoppedCanBeRenderedAgain)
         FrameCommand recorded = wanted;
         recorded.paths = seen.paths;
         EXPECT_EQ(color(again.render(recorded, {})), color(seen)) << frame;
+    }
+}
+
+/// Wherever it was stopped: the frames that follow are those of a session that never began it.
+TEST(RenderSession, AFrameThatIsGivenUpLeavesNoTrace)
+{
+    for (bool const stereo : {false, true}) {
+        gi::Report report;
+        RenderSession asked = started(report), never = started(report);
+        for (RenderSession* const s : {&asked, &never}) s->apply({"method", "paths"});
+        int given_up = 0, whole = 0;
+        for (std::uint64_t frame = 0; frame < 9; ++frame) {
+            // It walks, stands and refines at full size, and walks again.
+            bool const stands = frame >= 3 && frame < 7;
+            FrameCommand wanted = command(frame, 0.01 * double(stands ? 3 : frame), stereo);
+            wanted.light_scale = wanted.surface_scale = stands ? 1 : 0.5;
+            wanted.paths = stands ? 2 : 1;
+            bool ends = false;
+            for (std::uint64_t ask = 1; stands && !ends; ask = ask * 3 / 2 + 1) {
+                gi::test::StopAtAsk const stop(ask);
+                try {
+                    SessionFrame const seen = asked.render(wanted, stop, OnStop::give_up);
+                    ends = true; // not asked so often, or it had taught the cache
+                    EXPECT_EQ(seen.paths, 2);
+                    EXPECT_EQ(color(seen), color(never.render(wanted, {}))) << frame;
+                } catch (gi::Interrupted const&) {
+                    ++given_up;
+                    EXPECT_LE(stop.asks(), ask + gi::test::asks_until_noticed());
+                }
+            }
+            whole += ends;
+            if (stands) continue;
+            EXPECT_EQ(color(asked.render(wanted, {})), color(never.render(wanted, {}))) << frame;
+        }
+        EXPECT_EQ(whole, 4);
+        EXPECT_GE(given_up, 8);
     }
 }
 
