@@ -78,7 +78,7 @@ void run(Options const& o)
     int presented = 0;
     // While the head moves: time between what was shown, and since the pose for which it was rendered.
     std::vector<double> shown_gaps_ms, ages_ms;
-    std::optional<double> shown_at_s;
+    double shown_at_s = 0; // 0: the head did not move then
     double draw_s = 0;
     double begun = 0;
     std::size_t first_frame = 0;
@@ -123,11 +123,11 @@ void run(Options const& o)
             glFinish();
             draw_s += clock.now_s() - drawing;
             if (double const s = clock.now_s(); walk.moves(now)) {
-                if (shown_at_s) shown_gaps_ms.push_back(1e3 * (s - *shown_at_s));
+                if (shown_at_s > 0) shown_gaps_ms.push_back(1e3 * (s - shown_at_s));
                 shown_at_s = s;
                 ages_ms.push_back(1e3 * (s - newest->command.pose_s));
             } else {
-                shown_at_s.reset();
+                shown_at_s = 0;
             }
             // The first second is not scored.
             if (now >= 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored) {
