@@ -164,6 +164,30 @@ TEST(RenderSession, AFrameThatIsGivenUpLeavesNoTrace)
     }
 }
 
+/// Nor that of a view whose hidden pixels are kept for one size at a time.
+TEST(RenderSession, AFrameThatIsGivenUpLeavesNoTraceOfItsHiddenPixels)
+{
+    gi::Report report;
+    RenderSession asked = started(report), never = started(report);
+    for (RenderSession* const s : {&asked, &never}) {
+        s->apply({"method", "paths"});
+        s->apply({"first_surfaces", false});
+        s->apply(hidden_change("left", {{{-9, 0.1f}, {9, 0.1f}, {9, 9}, {-9, 9}}, {0, 1, 2, 0, 2, 3}})); // upper part
+    }
+    for (std::uint64_t frame = 0; frame < 4; ++frame) {
+        FrameCommand small = command(frame);
+        small.views[0] = scaled(small.views[0], 0.5);
+        if (frame == 2) {
+            gi::test::StopAtAsk const stop(1);
+            EXPECT_THROW(asked.render(command(frame), stop, OnStop::give_up), gi::Interrupted);
+        }
+        SessionFrame const a = asked.render(small, {}), b = never.render(small, {});
+        EXPECT_EQ(color(a), color(b)) << frame;
+        EXPECT_EQ(a.still_frames, b.still_frames);
+        EXPECT_EQ(a.still_frames, int(frame) + 1);
+    }
+}
+
 TEST(RenderSession, WhatStandsStillConvergesToTheReference)
 {
     gi::Report report;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <utility>
 #include <tbb/parallel_for.h>
 
 namespace viewer {
@@ -85,6 +86,8 @@ std::vector<std::uint32_t> same_surfaces(gi::Picture const& here, gi::Picture co
     return same;
 }
 
+bool same_pixels(HiddenPixels const& a, HiddenPixels const& b) { return a == b || (a && b && *a == *b); }
+
 /// Share of the filtered picture in what is shown.
 float filtered_share(double paths)
 {
@@ -152,7 +155,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         bool const follows = s.name == now.name && s.width == now.width && s.height == now.height;
         bool const same = s.reuse && follows && s.most_frames == settings.reuse && s.punctual != left_out_punctual_ &&
                           s.small == small;
-        bool const moved = !same || !(s.camera == now.camera) || s.hidden != hidden[k];
+        bool const moved = !same || !(s.camera == now.camera) || !same_pixels(s.hidden, hidden[k]);
         anything_moved |= moved;
         gi::CameraRays const rays = gi::camera_rays(now.camera, now.width, now.height, origin_);
         next.push_back({same, moved, rays, follows ? s.rays : rays});
@@ -173,9 +176,9 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     if (auto* const live = gi::ask<gi::LiveSettings>(*renderer_)) live->follow(settings.render);
     if (auto* const axes = gi::ask<gi::FollowingAxes>(*renderer_)) axes->update_axes(gi::updates_axes(method_, settings.render) ? settings.updated_axes : 0);
     auto* const given_up = gi::ask<gi::FramesGivenUp>(*renderer_);
-    if (given_up != nullptr && on_stop == OnStop::give_up && !first_ && !changes.any()) given_up->may_give_up();
+    bool const is_first = std::exchange(first_, false);
+    if (given_up != nullptr && on_stop == OnStop::give_up && !is_first && !changes.any()) given_up->may_give_up();
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
-    first_ = false;
     still_ = still;
     seen_.resize(command.views.size());
     for (std::size_t k = 0; k < command.views.size(); ++k) {

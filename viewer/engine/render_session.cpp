@@ -256,6 +256,16 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
 
 SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop)
 {
+    try {
+        return render_whole(command, stop, on_stop);
+    } catch (gi::Interrupted const&) {
+        static_cast<void>(added_.times()); // are not the next frame's
+        throw;
+    }
+}
+
+SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop)
+{
     if (!world_) throw gi::InputError("there is nothing to render", "no scene is loaded", "load one first");
     gi::Changes changes;
     {

@@ -92,6 +92,7 @@ private:
     void restart();
     gi::Changes move_to(FrameCommand const& command);
     void forget_smoothed();
+    SessionFrame render_whole(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop);
     void draw_surfaces(FrameCommand const& command, SessionFrame& frame);
 
     LoadScene load_;

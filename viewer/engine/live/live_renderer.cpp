@@ -75,6 +75,7 @@ void LiveRenderer::post(Change change, std::function<void(std::string const&)> d
             }
             if (done) done(error);
         });
+        asked_ = true;
         if (refining_) refining_->request();
     }
     wake_.notify_all();
@@ -117,7 +118,7 @@ void LiveRenderer::look(Viewpoint viewpoint)
                 viewpoint.others != viewpoint_.others || !same_sizes(viewpoint.views, viewpoint_.views);
         anticipation_.see(viewpoint);
         viewpoint_ = std::move(viewpoint);
-        if (moved) looked_ = moved_ = true;
+        if (moved) looked_ = asked_ = true;
         if (moved && refining_) refining_->request();
     }
     if (moved) wake_.notify_all();
@@ -217,7 +218,8 @@ bool LiveRenderer::scene_may_move(Viewpoint const& now) const
 
 bool LiveRenderer::anything_moves(Viewpoint const& now) const
 {
-    return scene_may_move(now) || !same_cameras(now.views, last_look_.views);
+    return scene_may_move(now) || !same_cameras(now.views, last_look_.views) ||
+           !same_sizes(now.views, last_look_.views);
 }
 
 /// Posts the choice as a change, like the user's, so that a replay and the other ranks apply it too.
@@ -276,6 +278,7 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
 
 void LiveRenderer::run_leading()
 {
+    bool gave_up = false;
     while (!quit_) {
         Viewpoint now, ahead, last; // last: when the picture is replaced
         bool looked = false;
@@ -289,7 +292,7 @@ void LiveRenderer::run_leading()
                 last = anticipation_.at(now_s, now_s + 2 * frame_s_);
             }
             looked = looked_.exchange(false);
-            moved_ = false;
+            asked_ = false;
             if (looked || !jobs_.empty()) resting_ = false;
         }
         bool const awaited_look = awaits_look_;
@@ -334,12 +337,17 @@ void LiveRenderer::run_leading()
             resting_ = false;
             // Ranks must trace the same number of paths, and so must both methods of a comparison.
             bool const may_end_early = still && link_ == nullptr && gi::find_method(s.method).ends_frames_early && s.compare.empty();
-            refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
-            if (refining_ && moved_) refining_->request();
+            // After a frame that was given up, the next is rendered whatever comes.
+            refining_ = may_end_early && !gave_up ? std::make_shared<gi::StopRequest>() : nullptr;
+            if (refining_ && asked_) refining_->request();
         }
         ahead_s_ = command.scene_s != scene_s_ ? seen_after_s() : 0;
         Rendered const rendered = render(std::move(command), budget, ahead_s_);
-        if (rendered == Rendered::given_up) continue;
+        gave_up = rendered == Rendered::given_up;
+        if (gave_up) {
+            if (looked) looked_ = true; // the next frame is for it
+            continue;
+        }
         if (rendered == Rendered::failed) wait_until(clock_.now_s() + 0.2);
         if (!still) wait_until(begun + 1 / s.rate_hz);
     }

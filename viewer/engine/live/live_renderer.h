@@ -156,7 +156,7 @@ private:
     Viewpoint viewpoint_;
     Anticipation anticipation_;
     std::atomic<bool> looked_{false}; ///< a frame is wanted, as of a viewpoint that changed since the current one began
-    bool moved_ = false;              ///< the viewpoint changed since then
+    bool asked_ = false;              ///< the viewpoint changed since then, or a change was posted
     std::shared_ptr<gi::StopRequest> refining_;
     std::shared_ptr<LiveFrame const> newest_;
     bool resting_ = false;
