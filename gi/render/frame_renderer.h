@@ -134,6 +134,15 @@ public:
     virtual void leave_out_punctual(bool on) = 0;
 };
 
+/// Frames that may still change when they are half done.
+class FramesGivenUp {
+public:
+    virtual ~FramesGivenUp() = default;
+    /// In the next call of `views`, a stop ends the frame within milliseconds: it throws Interrupted, and all is as if
+    /// the call had not been made. If the frame has taught what later ones use, it is rendered to its end instead.
+    virtual void may_give_up() = 0;
+};
+
 class PairFrames {
 public:
     virtual ~PairFrames() = default;

@@ -3,19 +3,29 @@
 
 #include "gi/core/progress.h"
 
+#include <cstdint>
+
 namespace gi {
 
-/// After a stop request, the first pass continues as BuildStop says, so that there is a picture to keep;
-/// a later one ends at once. Once given up, it remains so.
+/// Once given up, it remains so.
 class PassStop {
 public:
-    enum class Pass : bool { first, later };
+    enum class Pass : std::uint8_t {
+        first,   ///< after a stop request it continues as BuildStop says, so that there is a picture to keep
+        later,   ///< ends at once
+        untaught ///< ends at once, unless something has learnt from it that later passes use
+    };
     static Pass of(std::uint32_t paths) { return paths > 0 ? Pass::later : Pass::first; }
     /// @param stop  must outlive this object; null = never abandon
     explicit PassStop(StopRequest const* stop, Pass pass = Pass::first) : stop_(stop), first_(stop), pass_(pass) {}
     bool given_up() const
     {
         return pass_ == Pass::first ? first_.given_up() : stop_ != nullptr && stop_->requested();
+    }
+    /// Something has learnt from the pass.
+    void taught()
+    {
+        if (pass_ == Pass::untaught) stop_ = nullptr;
     }
     void check() const
     {

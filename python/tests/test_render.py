@@ -1,6 +1,7 @@
 """Scenes and pictures."""
 
 import _thread
+import shutil
 import subprocess
 import threading
 import time
@@ -189,6 +190,20 @@ def test_a_stopped_render_continues_bit_for_bit(cornell, tmp_path):
     whole = cornell.render("reference", size=(320, 240), bounces=2, paths=ours.paths)
     for name, layer in whole.layers.items():
         np.testing.assert_array_equal(ours.layers[name], layer, err_msg=name)
+
+
+def test_a_state_that_could_not_be_written_is_warned_of(cornell, tmp_path):
+    folder = tmp_path / "gone"
+    folder.mkdir()
+
+    def stop(*_):
+        shutil.rmtree(folder, ignore_errors=True)
+        raise RuntimeError("enough")
+
+    call = dict(size=(320, 240), paths=1_000_000, state=folder / "a.state", progress=stop)
+    with pytest.warns(RuntimeWarning, match="does not hold the interrupted render"):
+        with pytest.raises(RuntimeError, match="enough"):
+            cornell.render("reference", **call)
 
 
 def test_the_program_continues_a_state_of_python(program, cornell, tmp_path):

@@ -59,7 +59,7 @@ TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
     Accumulator sums(settings.width, settings.height);
     for (std::uint32_t pass = 0; pass < 6; ++pass) {
         Accumulator unused(settings.width, settings.height);
-        renderer.pass(pass, {pass < 4 ? &unused : &sums, 1});
+        renderer.pass(pass, {pass < 4 ? &unused : &sums, 1}, VertexSharing::exact, PassStop(nullptr));
     }
     EXPECT_EQ(last.find("color")->data, sums.picture(anew.world()).find("color")->data);
 }

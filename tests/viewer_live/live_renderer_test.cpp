@@ -195,6 +195,47 @@ TEST(LiveRenderer, ALeaderWithoutWallsSaysWhatOthersDo)
     EXPECT_EQ(frame->schedule, "stored: all 160 directions; nothing has moved so far");
 }
 
+/// Who walks on does not wait for the large picture that was begun while they stood.
+TEST(LiveRenderer, ALookGivesUpAPictureThatRefines)
+{
+    Live live;
+    live.renderer.reset();
+    live.session.apply({"method", "paths"});
+    std::atomic<int> begun{0}, finished{0};
+    LiveRenderer::Hooks hooks;
+    hooks.own_views = [&](FrameCommand const& command) {
+        ++begun;
+        return command.views;
+    };
+    hooks.finished = [&](LiveFrame const& f) {
+        live.commands.push_back(f.command);
+        ++finished;
+    };
+    live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, nullptr, hooks);
+    auto const look = [&](double aside) {
+        Viewpoint at;
+        gi::Camera camera = live.eye;
+        camera.world_from_camera = live.eye.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{aside, 0, 0});
+        at.views = {{"window", camera, 1280, 1280, -1}};
+        live.renderer->look(at);
+    };
+    int given_up = 0;
+    for (int k = 0; k < 20 && given_up < 2; ++k) {
+        look(0.01 * k);
+        ASSERT_NE(live.renderer->next_frame(60), nullptr);
+        int const before = begun;
+        while (begun == before) std::this_thread::sleep_for(std::chrono::milliseconds(1)); // it refines
+        int const already = finished;
+        look(0.01 * k + 0.005);
+        ASSERT_NE(live.renderer->next_frame(60), nullptr);
+        given_up += finished == already + 1;
+    }
+    live.renderer->stop();
+    EXPECT_EQ(given_up, 2);
+    for (std::size_t i = 1; i < live.commands.size(); ++i)
+        EXPECT_EQ(live.commands[i].frame, live.commands[i - 1].frame + 1);
+}
+
 TEST(LiveRenderer, RendersWhatIsLookedAtAndConverges)
 {
     Live live;

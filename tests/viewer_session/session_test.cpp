@@ -8,6 +8,7 @@
 #include "gi/metrics/metrics.h"
 #include "gi/scene/generate/generate.h"
 #include "tests/support/scenes.h"
+#include "tests/support/stop_at_ask.h"
 #include "viewer/engine/picking.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -124,6 +125,66 @@ TEST(RenderSession, AFrameThatWasStoppedCanBeRenderedAgain)
         FrameCommand recorded = wanted;
         recorded.paths = seen.paths;
         EXPECT_EQ(color(again.render(recorded, {})), color(seen)) << frame;
+    }
+}
+
+/// Wherever it was stopped: the frames that follow are those of a session that never began it.
+TEST(RenderSession, AFrameThatIsGivenUpLeavesNoTrace)
+{
+    for (bool const stereo : {false, true}) {
+        gi::Report report;
+        RenderSession asked = started(report), never = started(report);
+        for (RenderSession* const s : {&asked, &never}) s->apply({"method", "paths"});
+        int given_up = 0, whole = 0;
+        for (std::uint64_t frame = 0; frame < 9; ++frame) {
+            // It walks, stands and refines at full size, and walks again.
+            bool const stands = frame >= 3 && frame < 7;
+            FrameCommand wanted = command(frame, 0.01 * double(stands ? 3 : frame), stereo);
+            wanted.light_scale = wanted.surface_scale = stands ? 1 : 0.5;
+            wanted.paths = stands ? 2 : 1;
+            bool ends = false;
+            for (std::uint64_t ask = 1; stands && !ends; ask = ask * 3 / 2 + 1) {
+                gi::test::StopAtAsk const stop(ask);
+                try {
+                    SessionFrame const seen = asked.render(wanted, stop, OnStop::give_up);
+                    ends = true; // not asked so often, or it had taught the cache
+                    EXPECT_EQ(seen.paths, 2);
+                    EXPECT_EQ(color(seen), color(never.render(wanted, {}))) << frame;
+                } catch (gi::Interrupted const&) {
+                    ++given_up;
+                    EXPECT_LE(stop.asks(), ask + gi::test::asks_until_noticed());
+                }
+            }
+            whole += ends;
+            if (stands) continue;
+            EXPECT_EQ(color(asked.render(wanted, {})), color(never.render(wanted, {}))) << frame;
+        }
+        EXPECT_EQ(whole, 4);
+        EXPECT_GE(given_up, 8);
+    }
+}
+
+/// Nor that of a view whose hidden pixels are kept for one size at a time.
+TEST(RenderSession, AFrameThatIsGivenUpLeavesNoTraceOfItsHiddenPixels)
+{
+    gi::Report report;
+    RenderSession asked = started(report), never = started(report);
+    for (RenderSession* const s : {&asked, &never}) {
+        s->apply({"method", "paths"});
+        s->apply({"first_surfaces", false});
+        s->apply(hidden_change("left", {{{-9, 0.1f}, {9, 0.1f}, {9, 9}, {-9, 9}}, {0, 1, 2, 0, 2, 3}})); // upper part
+    }
+    for (std::uint64_t frame = 0; frame < 4; ++frame) {
+        FrameCommand small = command(frame);
+        small.views[0] = scaled(small.views[0], 0.5);
+        if (frame == 2) {
+            gi::test::StopAtAsk const stop(1);
+            EXPECT_THROW(asked.render(command(frame), stop, OnStop::give_up), gi::Interrupted);
+        }
+        SessionFrame const a = asked.render(small, {}), b = never.render(small, {});
+        EXPECT_EQ(color(a), color(b)) << frame;
+        EXPECT_EQ(a.still_frames, b.still_frames);
+        EXPECT_EQ(a.still_frames, int(frame) + 1);
     }
 }
 

@@ -136,7 +136,7 @@ TEST(UpdateGovernor, WhatOnlyMayMoveIsNotFollowedForLong)
 TEST(UpdateGovernor, SaysWhatItDoesAndWhy)
 {
     EXPECT_EQ(schedule_sentence("streamed", 8, 160, 1), "streamed, as it was set");
-    EXPECT_EQ(schedule_sentence("auto", 0, 0, 0).find("none"), 0u);
+    EXPECT_EQ(schedule_sentence("auto", 0, 0, 0), "");
     EXPECT_NE(schedule_sentence("auto", 0, 160, 0).find("nothing has moved"), std::string::npos);
     EXPECT_NE(schedule_sentence("auto", 0, 160, 0.1).find("all 160 directions"), std::string::npos);
     std::string const some = schedule_sentence("auto", 16, 160, 0.6);

@@ -56,16 +56,20 @@ void edit_setting(ViewState& s, SettingKey const& k)
         ImGui::SetTooltip("%s\n%s, %s", k.meaning.c_str(), k.key.c_str(), k.values_text().c_str());
 }
 
-/// Settings under the headings of their groups, the viewer's own first.
+/// Settings that the methods in use read, under the headings of their groups, the viewer's own first.
 void edit_settings(ViewState& s)
 {
+    auto const is_read = [&](SettingKey const& k) {
+        return k.is_offered() && (k.option == nullptr || k.option->read_by(s.settings().method) ||
+                                  k.option->read_by(s.settings().compare));
+    };
     std::vector<std::string> groups{""};
     for (SettingKey const& k : setting_keys())
-        if (k.is_offered() && std::ranges::find(groups, k.group) == groups.end()) groups.push_back(k.group);
+        if (is_read(k) && std::ranges::find(groups, k.group) == groups.end()) groups.push_back(k.group);
     for (std::string const& group : groups)
         if (ImGui::CollapsingHeader(group.empty() ? "Settings" : group.c_str()))
             for (SettingKey const& k : setting_keys())
-                if (k.group == group) edit_setting(s, k);
+                if (k.group == group && is_read(k)) edit_setting(s, k);
 }
 
 void show_numbers(ViewState& s, double frames_per_s)
@@ -75,8 +79,9 @@ void show_numbers(ViewState& s, double frames_per_s)
     LiveFrame const& f = *s.frame;
     ViewCommand const& v = f.command.views[0];
     ImGui::Text("%.1f Hz, frame %.1f ms", frames_per_s, 1e3 * (f.done_s - f.begun_s));
-    ImGui::Text("%d view(s) of %d x %d, %d path(s)", int(f.command.views.size()), v.width, v.height,
-                f.command.paths);
+    std::size_t const views = f.command.views.size();
+    ImGui::TextWrapped("%s%d x %d, %d path%s per pixel", views > 1 ? fmt::format("{} views of ", views).c_str() : "",
+                       v.width, v.height, f.command.paths, f.command.paths == 1 ? "" : "s");
     ImGui::ProgressBar(float(f.still_paths) / float(kConvergedPaths), ImVec2(-1, 0),
                        fmt::format("{} paths while still", f.still_paths).c_str());
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("rests at %u", kConvergedPaths);
@@ -169,7 +174,8 @@ void fill_panel(ViewState& s, double frames_per_s)
     ImGui::SetNextWindowPos(ImVec2(8, 8), ImGuiCond_FirstUseEver);
     float const em = ImGui::GetFontSize();
     ImVec2 const screen = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowSize(ImVec2(std::min(24 * em, 0.6f * screen.x), std::min(34 * em, screen.y - 16)),
+    constexpr float kShare = 0.35f; // of a small window's width, so that the picture is seen beside it
+    ImGui::SetNextWindowSize(ImVec2(std::min(24 * em, kShare * screen.x), std::min(34 * em, screen.y - 16)),
                              ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Lightwell  (F1 hides this)")) {
         show_numbers(s, frames_per_s);
@@ -177,10 +183,9 @@ void fill_panel(ViewState& s, double frames_per_s)
         if (ImGui::Button("open scene")) s.open_dialog.toggle(s.facts.scene);
         ImGui::SameLine();
         if (ImGui::Button("help")) s.shows_help = !s.shows_help;
-        ImGui::SameLine();
         if (ImGui::Button("screenshot")) s.wants_screenshot = s.own_screenshot = true;
-        if (ImGui::Button("first camera")) s.navigation.go_to(s.first_camera.world_from_camera);
         ImGui::SameLine();
+        if (ImGui::Button("first camera")) s.navigation.go_to(s.first_camera.world_from_camera);
         if (ImGui::Button(name_of(s.navigation.mode())))
             s.navigation.set_mode(NavigationMode((int(s.navigation.mode()) + 1) % 3));
         edit_settings(s);

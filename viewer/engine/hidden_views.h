@@ -8,8 +8,7 @@
 
 namespace viewer {
 
-/// One value per pixel of a view, rows from the top: 1 = not rendered. Null = all pixels are rendered. A different
-/// pointer means that the pixels changed.
+/// One value per pixel of a view, rows from the top: 1 = not rendered. Null = all pixels are rendered.
 using HiddenPixels = std::shared_ptr<std::vector<std::uint8_t> const>;
 
 class HiddenViews {

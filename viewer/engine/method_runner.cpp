@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <utility>
 #include <tbb/parallel_for.h>
 
 namespace viewer {
@@ -85,6 +86,8 @@ std::vector<std::uint32_t> same_surfaces(gi::Picture const& here, gi::Picture co
     return same;
 }
 
+bool same_pixels(HiddenPixels const& a, HiddenPixels const& b) { return a == b || (a && b && *a == *b); }
+
 /// Share of the filtered picture in what is shown.
 float filtered_share(double paths)
 {
@@ -132,41 +135,37 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
                                                    std::span<HiddenPixels const> hidden,
                                                    gi::Changes const& changes, Settings const& settings,
                                                    gi::SeenSurfaces* seen, bool leaves_out_punctual,
-                                                   gi::StopRequest const& stop)
+                                                   gi::StopRequest const& stop, OnStop on_stop)
 {
     auto* const punctual = gi::ask<gi::PunctualLeftOut>(*renderer_);
     if (punctual != nullptr) punctual->leave_out_punctual(leaves_out_punctual);
     left_out_punctual_ = punctual != nullptr && leaves_out_punctual;
     if (!first_ || ahead_) renderer_->changed(changes);
     bool const small = command.light_scale < 1;
+    struct Next {
+        bool same, moved; ///< as in the last frame: what reuse needs; camera or hidden pixels
+        gi::CameraRays rays, earlier;
+    };
+    std::vector<Next> next;
+    Seen const none;
     bool anything_moved = first_ || seen_.size() != command.views.size() || changes.any();
-    seen_.resize(command.views.size());
-    std::vector<bool> moved(command.views.size());
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& now = command.views[k];
-        Seen& s = seen_[k];
-        bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
-                          s.most_frames == settings.reuse && s.punctual != left_out_punctual_ && s.small == small;
-        if (!same)
-            s.reuse = std::make_unique<gi::TemporalReuse>(
-                small ? gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse, 17, 2, true}
-                      : gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse});
-        s.small = small;
-        moved[k] = !same || !(s.camera == now.camera) || s.hidden != hidden[k];
-        anything_moved |= moved[k];
-        gi::CameraRays const rays = gi::camera_rays(now.camera, now.width, now.height, origin_);
+        Seen const& s = k < seen_.size() ? seen_[k] : none;
         bool const follows = s.name == now.name && s.width == now.width && s.height == now.height;
-        s = {now.name,           now.camera,     now.width, now.height,
-             std::move(s.reuse), settings.reuse, hidden[k], std::move(s.light),
-             s.punctual,         small,          rays,      follows ? s.rays : rays};
+        bool const same = s.reuse && follows && s.most_frames == settings.reuse && s.punctual != left_out_punctual_ &&
+                          s.small == small;
+        bool const moved = !same || !(s.camera == now.camera) || !same_pixels(s.hidden, hidden[k]);
+        anything_moved |= moved;
+        gi::CameraRays const rays = gi::camera_rays(now.camera, now.width, now.height, origin_);
+        next.push_back({same, moved, rays, follows ? s.rays : rays});
     }
-    first_ = false;
-    still_ = anything_moved ? 1 : still_ + 1;
+    int const still = anything_moved ? 1 : still_ + 1;
     std::vector<gi::FrameView> views;
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& v = command.views[k];
         views.push_back(
-            {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
+            {v.camera, v.width, v.height, settings.share_eyes && still <= kSharedFrames ? v.partner : -1});
         if (hidden[k]) views.back().hidden = *hidden[k];
         // A smaller picture is of light only: nobody sees its outlines, and their
         // pixels show one surface for longer.
@@ -176,12 +175,28 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
     auto const sharing = anything_moved ? gi::VertexSharing::cached : gi::VertexSharing::exact;
     if (auto* const live = gi::ask<gi::LiveSettings>(*renderer_)) live->follow(settings.render);
     if (auto* const axes = gi::ask<gi::FollowingAxes>(*renderer_)) axes->update_axes(gi::updates_axes(method_, settings.render) ? settings.updated_axes : 0);
+    auto* const given_up = gi::ask<gi::FramesGivenUp>(*renderer_);
+    bool const is_first = std::exchange(first_, false);
+    if (given_up != nullptr && on_stop == OnStop::give_up && !is_first && !changes.any()) given_up->may_give_up();
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
+    still_ = still;
+    seen_.resize(command.views.size());
+    for (std::size_t k = 0; k < command.views.size(); ++k) {
+        ViewCommand const& now = command.views[k];
+        Seen& s = seen_[k];
+        if (!next[k].same)
+            s.reuse = std::make_unique<gi::TemporalReuse>(
+                small ? gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse, 17, 2, true}
+                      : gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse});
+        s = {now.name,           now.camera,     now.width, now.height,
+             std::move(s.reuse), settings.reuse, hidden[k], std::move(s.light),
+             s.punctual,         small,          next[k].rays, next[k].earlier};
+    }
     // Counts the paths actually traced: for a stopped frame, a replay is given only these.
     still_paths_ = (anything_moved ? 0 : still_paths_) + results[0].paths;
     std::vector<gi::MirrorLayers> mirrors;
     for (std::size_t k = 0; k < results.size(); ++k)
-        mirrors.push_back(reuse(k, results, views[k].partner, scene_change(changes, moved[k]), settings, seen));
+        mirrors.push_back(reuse(k, results, views[k].partner, scene_change(changes, next[k].moved), settings, seen));
     std::vector<gi::Picture> unfiltered(results.size());
     bool const filtered = is_filtered(results[0], settings);
     for (std::size_t k = 0; k < results.size() && filtered && filtered_share(still_paths_) < 1; ++k)

@@ -16,6 +16,13 @@ namespace viewer {
 /// Classifies the changes between two frames for temporal reuse.
 gi::SceneChange scene_change(gi::Changes const& changes, bool camera_moved);
 
+/// What becomes of a frame that is stopped.
+enum class OnStop : bool {
+    shorten, ///< it has fewer paths, at least one
+    give_up, ///< if nothing changed in the scene, and if the method can (gi::FramesGivenUp), it throws Interrupted, and
+             ///< all is as if it had never begun; else as `shorten`
+};
+
 class MethodRunner {
 public:
     /// The world and the report must outlive it. @param start  what the plan is made for
@@ -29,7 +36,7 @@ public:
     std::vector<gi::RenderResult> render(FrameCommand const& command, std::span<HiddenPixels const> hidden,
                                          gi::Changes const& changes, Settings const& settings,
                                          gi::SeenSurfaces* seen, bool leaves_out_punctual,
-                                         gi::StopRequest const& stop);
+                                         gi::StopRequest const& stop, OnStop on_stop);
     /// The last frame lacks the light of punctual lights.
     bool left_out_punctual() const { return left_out_punctual_; }
     /// Light of a view of the last frame; null without `seen`.

@@ -254,7 +254,17 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
     report_.count("surfaces that found no light of a similar surface", double(counts.unlike));
 }
 
-SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest const& stop)
+SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop)
+{
+    try {
+        return render_whole(command, stop, on_stop);
+    } catch (gi::Interrupted const&) {
+        static_cast<void>(added_.times()); // are not the next frame's
+        throw;
+    }
+}
+
+SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop)
 {
     if (!world_) throw gi::InputError("there is nothing to render", "no scene is loaded", "load one first");
     gi::Changes changes;
@@ -289,7 +299,8 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
     for (ViewCommand const& v : light.views)
         hidden_light.push_back(smaller ? hidden_light_.pixels(v) : hidden_.pixels(v));
     std::vector<gi::RenderResult> results =
-        main_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
+        main_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop,
+                      settings_.compare.empty() ? on_stop : OnStop::shorten);
     frame.still_frames = main_->still_frames();
     frame.dynamic_update = main_->dynamic_update();
     frame.options = results[0].options;
@@ -304,7 +315,7 @@ SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest 
             compared_ =
                 std::make_unique<MethodRunner>(settings_.compare, *world_, settings_, threads_, start, report_);
         std::vector<gi::RenderResult> others =
-            compared_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop);
+            compared_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop, OnStop::shorten);
         for (std::size_t k = 0; k < others.size(); ++k) {
             frame.rays += others[k].rays;
             frame.views[k].compared = std::move(others[k].picture);

@@ -71,7 +71,7 @@ public:
     /// Makes it the current scene, as apply(prepared.change) does.
     void adopt(PreparedScene prepared);
     /// Renders a frame command, whose changes must have been applied already. Throws InputError without a scene.
-    SessionFrame render(FrameCommand const& command, gi::StopRequest const& stop);
+    SessionFrame render(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop = OnStop::shorten);
 
     /// Sets a callback for every following frame.
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
@@ -92,6 +92,7 @@ private:
     void restart();
     gi::Changes move_to(FrameCommand const& command);
     void forget_smoothed();
+    SessionFrame render_whole(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop);
     void draw_surfaces(FrameCommand const& command, SessionFrame& frame);
 
     LoadScene load_;

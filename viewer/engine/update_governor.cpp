@@ -63,7 +63,7 @@ int UpdateGovernor::next(bool may_move)
 std::string schedule_sentence(std::string const& schedule, int updated, int stored, double share_of_all)
 {
     if (schedule != "auto") return schedule + ", as it was set";
-    if (stored == 0) return "none: the method makes no look-ups along axes";
+    if (stored == 0) return {};
     std::string const share = fmt::format("{:.0f} % of the time between frames", 100 * share_of_all);
     if (!(share_of_all > 0)) return fmt::format("stored: all {} directions; nothing has moved so far", stored);
     int const parts = parts_of(updated, stored);

@@ -17,7 +17,7 @@
 namespace gi {
 
 /// What only paths on the CPU can do.
-class OnlyOnCpu : public PairFrames, public PunctualLeftOut {};
+class OnlyOnCpu : public PairFrames, public PunctualLeftOut, public FramesGivenUp {};
 class Nothing {};
 
 /// @tparam Renderer  PathsRenderer, or a KernelRenderer of slhb
@@ -59,8 +59,9 @@ public:
 
     void follow(RenderSettings const& settings) override { cache_ = settings.of<PathsSettings>().cache; }
 
-    /// With PairFrames and PunctualLeftOut as bases, overrides them.
+    // With OnlyOnCpu as base, these override it, and so does `pair`.
     void leave_out_punctual(bool on) { leaves_out_punctual_ = on; }
+    void may_give_up() { may_give_up_ = true; }
 
     DynamicUpdate dynamic_update() const override
     {
@@ -112,13 +113,16 @@ public:
         bool const never = cache_ == RadianceCaching::off || (cache_ == RadianceCaching::automatic && !may);
         if (never && sharing == VertexSharing::cached) sharing = VertexSharing::exact;
         auto const begun = std::chrono::steady_clock::now();
-        see_all(views);
-        if constexpr (!kByKernels) renderer_->leave_out_punctual(leaves_out_punctual_);
-        double const earlier = renderer_->rays();
+        double earlier = renderer_->rays();
         sums_.resize(views.size());
         for (std::size_t k = 0; k < views.size(); ++k) sums_[k].start(views[k].width, views[k].height);
-        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, sums_, sharing); });
+        if (!std::exchange(may_give_up_, false) || !views_whole(views, paths, sharing, stop)) {
+            see_all(views);
+            earlier = renderer_->rays(); // it may be a new renderer
+            if constexpr (!kByKernels) renderer_->leave_out_punctual(leaves_out_punctual_);
+            for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
+                pass_of_views(sharing, nullptr);
+        }
         std::vector<RenderResult> results(views.size());
         PathCounts lost;
         for (std::size_t k = 0; k < views.size(); ++k) {
@@ -146,6 +150,41 @@ public:
     }
 
 private:
+    void pass_of_views(VertexSharing sharing, StopRequest const* stop)
+    {
+        on_threads(settings_.threads, [&] {
+            if constexpr (kByKernels)
+                renderer_->pass(passes_++, sums_, sharing);
+            else
+                renderer_->pass(passes_++, sums_, sharing, PassStop(stop, PassStop::Pass::untaught));
+        });
+    }
+
+    /// Renders all paths of the views, or throws Interrupted and is as before.
+    /// @return false, and nothing is done, if a frame that is given up would leave traces
+    bool views_whole(std::span<FrameView const> views, std::uint32_t paths, VertexSharing sharing,
+                     StopRequest const& stop)
+    {
+        PathAlgorithm const& by = settings_.of<PathAlgorithm>();
+        if (kByKernels || restart_ || by.surfaces != SurfacesBy::rays || by.shadows != ShadowsBy::rays) return false;
+        if constexpr (!kByKernels) {
+            auto const before = renderer_->before();
+            std::uint32_t const passes = passes_;
+            bool const teaches = sharing == VertexSharing::cached;
+            try {
+                renderer_->see(views);
+                renderer_->leave_out_punctual(leaves_out_punctual_);
+                for (std::uint32_t i = 0; i < paths; ++i) pass_of_views(sharing, teaches && i > 0 ? nullptr : &stop);
+                if (stop.requested() && !teaches) throw Interrupted();
+            } catch (Interrupted const&) {
+                renderer_->go_back(before);
+                passes_ = passes;
+                throw;
+            }
+        }
+        return true;
+    }
+
     void one_pass(std::span<Accumulator> sums, VertexSharing sharing, StopRequest const& stop)
     {
         if constexpr (kByKernels) {
@@ -153,7 +192,7 @@ private:
         } else {
             settings_.of<PathsSettings>().interleave = interleaving_->n();
             renderer_->interleave(interleaving_->n());
-            renderer_->pass(passes_++, sums, sharing, &stop);
+            renderer_->pass(passes_++, sums, sharing, PassStop(&stop, PassStop::of(sums[0].paths)));
             interleaving_->pass_ended(renderer_->indirect_share());
         }
     }
@@ -239,7 +278,7 @@ private:
                     see(view);
                 }
                 on_threads(settings_.threads, [&] {
-                    renderer_->pass(passes_, {&sums_[std::size_t(now)], 1}, VertexSharing::none);
+                    renderer_->pass(passes_, {&sums_[std::size_t(now)], 1}, VertexSharing::none, PassStop(nullptr));
                 });
                 if (now == PairSide::with) renderer_->add_coverage(0, both.coverage, both.covered);
             }
@@ -312,7 +351,7 @@ private:
     std::vector<Accumulator> sums_;                 ///< of the views
     PairSums pair_sums_;
     RadianceCaching cache_ = RadianceCaching::automatic; ///< as set by the user; automatic: as callers request it
-    bool leaves_out_punctual_ = false;
+    bool leaves_out_punctual_ = false, may_give_up_ = false;
     std::uint32_t passes_ = 0, updated_axes_ = 0;
     std::uint64_t lost_ = 0, refused_ = 0; ///< layers and cache notes already reported as lost
     bool restart_ = false;

@@ -24,7 +24,8 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
             renderer.pass(loop.first_path() + sums.paths, {&sums, 1},
-                          cached ? VertexSharing::cached : VertexSharing::exact, &stop);
+                          cached ? VertexSharing::cached : VertexSharing::exact,
+                          PassStop(&stop, PassStop::of(sums.paths)));
     });
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());

@@ -67,6 +67,9 @@ public:
     /// Adds notes to cells. The order of notes affects the last bits, the number of threads does not.
     void learn(std::span<std::vector<CacheNote> const> notes);
     void end_pass() { ++passes_; }
+    /// Passes that have ended; go_back: that many, as the later ones taught nothing.
+    std::uint32_t passes() const { return passes_; }
+    void go_back(std::uint32_t passes) { passes_ = passes; }
     /// Empties the cache, as light or geometry has changed.
     void clear();
 

@@ -160,13 +160,39 @@ void PathsRenderer::see(std::span<FrameView const> views)
         v.hidden = now.hidden;
         v.first = first;
         first += v.pixels();
-        if (v.rays.orthographic || first_surfaces_ == FirstSurfaces::by_rays)
-            v.primary.reset();
-        else if (!known || !v.primary)
-            v.primary.emplace(traced_.soup, traced_.cut_outs, settings_, v.width, v.height);
-        if (v.primary) v.primary->set_filter(v.filter);
+        fit_primary(v, known);
     }
     if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
+}
+
+PathsRenderer::Before PathsRenderer::before() const
+{
+    return {{views_.begin(), views_.end()}, cache_ ? cache_->passes() : 0};
+}
+
+void PathsRenderer::go_back(Before const& before)
+{
+    if (cache_) cache_->go_back(before.cache_passes);
+    std::vector<TracedView> const& seen = before.views;
+    views_.resize(seen.size());
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+        SeenView& v = views_[k];
+        bool const same = v.width == seen[k].width && v.height == seen[k].height;
+        static_cast<TracedView&>(v) = seen[k];
+        v.first = first;
+        first += v.pixels();
+        fit_primary(v, same);
+    }
+}
+
+void PathsRenderer::fit_primary(SeenView& v, bool has_same_size)
+{
+    if (v.rays.orthographic || first_surfaces_ == FirstSurfaces::by_rays)
+        v.primary.reset();
+    else if (!has_same_size || !v.primary)
+        v.primary.emplace(traced_.soup, traced_.cut_outs, settings_, v.width, v.height);
+    if (v.primary) v.primary->set_filter(v.filter);
 }
 
 void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& stop)
@@ -189,7 +215,7 @@ void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& st
     }
 }
 
-PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassStop const& stop)
+PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassStop& stop)
 {
     bool const walks = axes_.walks();
     std::uint32_t const gathered = slhb_.gather && walks
@@ -218,13 +244,11 @@ PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassS
             .no_punctual = leaves_out_punctual_};
 }
 
-void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing,
-                        StopRequest const* stop)
+void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing, PassStop stop)
 {
-    PassStop const given_up(stop, PassStop::of(sums[0].paths));
-    prepare(index, Sides::one, given_up);
+    prepare(index, Sides::one, stop);
     StageTimer const timer(report_, "paths");
-    paths_.trace(tracing(index, sharing == VertexSharing::cached, given_up), views_, sharing, sums);
+    paths_.trace(tracing(index, sharing == VertexSharing::cached, stop), views_, sharing, sums);
     if (cache_) cache_->end_pass();
     for (Accumulator& s : sums) ++s.paths;
 }
@@ -233,7 +257,7 @@ void PathsRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& c
 {
     if (!std::exchange(shadow_maps_, true))
         make_light_points(); // shadow maps show which paths change
-    PassStop const never(nullptr);
+    PassStop never(nullptr);
     prepare(index, Sides::pair, never);
     StageTimer const timer(report_, "paths");
     PathsTracer::Pass now = tracing(index, false, never);

@@ -36,11 +36,17 @@ public:
     DynamicUpdate dynamic_update() const { return axes_.dynamic_update(); }
     /// Sets the views from the next pass on. Each continues the previous frame's view of the same index.
     void see(std::span<FrameView const> views);
+    /// What `see` and passes of PassStop::Pass::untaught change, for a frame that is given up.
+    struct Before {
+        std::vector<TracedView> views;
+        std::uint32_t cache_passes = 0;
+    };
+    Before before() const;
+    void go_back(Before const& before);
     /// Traces one more path for every pixel. @param index  of the pass; selects the random numbers
-    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted:
-    ///   then there can be no further pass; null = never
-    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::exact,
-              StopRequest const* stop = nullptr);
+    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted. Then all is as before the pass
+    ///   if it was PassStop::Pass::untaught and there are no look-ups; else there can be no further pass
+    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing, PassStop stop);
 
     /// Traces a pass of one view with and without dynamic geometry, with the same random numbers; without it,
     /// only paths that dynamic geometry may affect are traced. Not for orthographic cameras, nor with ExactParts.
@@ -91,7 +97,8 @@ private:
     bool walks() const;
     enum class Sides : std::uint8_t { one, pair };
     void prepare(std::uint32_t index, Sides sides, PassStop const& stop);
-    PathsTracer::Pass tracing(std::uint32_t index, bool cached, PassStop const& stop);
+    PathsTracer::Pass tracing(std::uint32_t index, bool cached, PassStop& stop);
+    void fit_primary(SeenView& view, bool has_same_size);
 
     World const& world_;
     RenderSettings settings_;

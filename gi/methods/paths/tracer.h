@@ -66,7 +66,7 @@ public:
         AxisSet const& axes;
         LightPoints const& light_points;
         ExactVisibility const* exact;
-        PassStop const& stop;      ///< once given up, samples are not valid
+        PassStop& stop;            ///< once given up, samples are not valid
         std::uint32_t index;       ///< index of each pixel's path
         std::uint32_t gather_axis; ///< axis used by every first bounce; kNoPrimitive = random
         /// Index of the first watched triangle: PathSample::near_moving is set if a triangle from here on may

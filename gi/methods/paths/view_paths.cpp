@@ -172,10 +172,14 @@ void ViewPaths::trace_view(PathsTracer::Pass const& pass, SeenViews const& views
                 if (!in_turns || turn_of(first / block_) == turn) trace_block(first, last, local);
             },
             block_);
-        pass.stop.check();
+        if (pass.stop.given_up()) {
+            for (std::vector<CacheNote>& notes : notes_) notes.clear();
+            throw Interrupted();
+        }
         if (pass.cache == nullptr) continue;
         pass.cache->learn(notes_);
         for (std::vector<CacheNote>& notes : notes_) notes.clear();
+        pass.stop.taught();
     }
 }
 

@@ -76,6 +76,9 @@ void run(Options const& o)
         return score(o, scenes, seen, origin);
     }
     int presented = 0;
+    // While the head moves: time between what was shown, and since the pose for which it was rendered.
+    std::vector<double> shown_gaps_ms, ages_ms;
+    double shown_at_s = 0; // 0: the head did not move then
     double draw_s = 0;
     double begun = 0;
     std::size_t first_frame = 0;
@@ -119,6 +122,13 @@ void run(Options const& o)
             ++presented;
             glFinish();
             draw_s += clock.now_s() - drawing;
+            if (double const s = clock.now_s(); walk.moves(now)) {
+                if (shown_at_s > 0) shown_gaps_ms.push_back(1e3 * (s - shown_at_s));
+                shown_at_s = s;
+                ages_ms.push_back(1e3 * (s - newest->command.pose_s));
+            } else {
+                shown_at_s = 0;
+            }
             // The first second is not scored.
             if (now >= 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored) {
                 Seen s{at, scene_now(*newest, begun + now), {}};
@@ -154,6 +164,14 @@ void run(Options const& o)
         o.scene, fs::path(o.head).stem().string(), o.width, o.height, o.eyes, frames / took, presented / took,
         gaps[gaps.size() / 2], gaps[gaps.size() * 95 / 100], gaps.back(), 1e3 * draw_s / presented,
         light_scale / frames, surfaces / frames, paths / frames);
+    auto const spread = [](std::vector<double> v) {
+        if (v.empty()) return std::string("none");
+        std::ranges::sort(v);
+        return fmt::format("median {:.0f}, 95 % {:.0f}, 99 % {:.0f}, most {:.0f}", v[v.size() / 2],
+                           v[v.size() * 95 / 100], v[v.size() * 99 / 100], v.back());
+    };
+    fmt::print("  while the head moves: ms between shown: {}; age of the pose that the picture was rendered for, ms: {}\n",
+               spread(shown_gaps_ms), spread(ages_ms));
     for (auto const& [stage, s] : stages_s)
         if (1e3 * s / frames >= 0.5) fmt::print("  {}: {:.1f} ms\n", stage, 1e3 * s / frames);
     for (auto const& [loss, entry] : report.losses()) fmt::print("  lost: {}\n", loss);

@@ -64,6 +64,11 @@ Walk::Walk(Options const& o, gi::Camera const& first, std::optional<Stance> cons
 {
 }
 
+bool Walk::moves(double time_s) const
+{
+    return !(head_at(samples_, time_s) == head_at(samples_, time_s - 0.001));
+}
+
 Viewpoint Walk::at(double time_s, double step_s)
 {
     gi::dmat4 const head = start_ * head_at(samples_, time_s);

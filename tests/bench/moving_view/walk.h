@@ -32,6 +32,7 @@ public:
     double seconds() const { return samples_.back().time_s; }
     void begin(double s) { begun_s = s; } ///< session clock
     Viewpoint at(double time_s, double step_s);
+    bool moves(double time_s) const; ///< the head, then
 
 private:
     Options const& o_;

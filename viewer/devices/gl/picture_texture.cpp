@@ -6,7 +6,6 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <limits>
-#include <tbb/parallel_for.h>
 
 namespace viewer {
 namespace {
@@ -38,7 +37,8 @@ void PictureTexture::upload(glm::ivec2 size_px, std::span<float const> rgb, std:
     texels_.resize(pixels);
     glm::ivec2 const tiles = (size_px + kTile - 1) / kTile;
     std::vector<Range> own(std::size_t(tiles.x) * std::size_t(tiles.y));
-    tbb::parallel_for(0, tiles.y, [&](int row) {
+    // On this thread alone: TBB's workers render, at a lower priority, and it would wait for them.
+    for (int row = 0; row < tiles.y; ++row)
         for (int y = row * kTile; y < std::min(size_px.y, (row + 1) * kTile); ++y)
             for (int x = 0; x < size_px.x; ++x) {
                 std::size_t const i = std::size_t(y) * std::size_t(size_px.x) + std::size_t(x);
@@ -46,7 +46,6 @@ void PictureTexture::upload(glm::ivec2 size_px, std::span<float const> rgb, std:
                 texels_[i] = {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], w};
                 own[std::size_t(row) * std::size_t(tiles.x) + std::size_t(x / kTile)].add({w, w});
             }
-    });
     if (resized || color_.id() == 0) color_ = texture_2d(GL_RGBA32F, size_px, GL_NEAREST);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTextureSubImage2D(color_.id(), 0, 0, 0, size_px.x, size_px.y, GL_RGBA, GL_FLOAT, texels_.data());

@@ -75,6 +75,7 @@ void LiveRenderer::post(Change change, std::function<void(std::string const&)> d
             }
             if (done) done(error);
         });
+        asked_ = true;
         if (refining_) refining_->request();
     }
     wake_.notify_all();
@@ -117,7 +118,7 @@ void LiveRenderer::look(Viewpoint viewpoint)
                 viewpoint.others != viewpoint_.others || !same_sizes(viewpoint.views, viewpoint_.views);
         anticipation_.see(viewpoint);
         viewpoint_ = std::move(viewpoint);
-        if (moved) looked_ = true;
+        if (moved) looked_ = asked_ = true;
         if (moved && refining_) refining_->request();
     }
     if (moved) wake_.notify_all();
@@ -217,7 +218,8 @@ bool LiveRenderer::scene_may_move(Viewpoint const& now) const
 
 bool LiveRenderer::anything_moves(Viewpoint const& now) const
 {
-    return scene_may_move(now) || !same_cameras(now.views, last_look_.views);
+    return scene_may_move(now) || !same_cameras(now.views, last_look_.views) ||
+           !same_sizes(now.views, last_look_.views);
 }
 
 /// Posts the choice as a change, like the user's, so that a replay and the other ranks apply it too.
@@ -276,6 +278,7 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
 
 void LiveRenderer::run_leading()
 {
+    bool gave_up = false;
     while (!quit_) {
         Viewpoint now, ahead, last; // last: when the picture is replaced
         bool looked = false;
@@ -289,6 +292,7 @@ void LiveRenderer::run_leading()
                 last = anticipation_.at(now_s, now_s + 2 * frame_s_);
             }
             looked = looked_.exchange(false);
+            asked_ = false;
             if (looked || !jobs_.empty()) resting_ = false;
         }
         bool const awaited_look = awaits_look_;
@@ -333,10 +337,18 @@ void LiveRenderer::run_leading()
             resting_ = false;
             // Ranks must trace the same number of paths, and so must both methods of a comparison.
             bool const may_end_early = still && link_ == nullptr && gi::find_method(s.method).ends_frames_early && s.compare.empty();
-            refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
+            // After a frame that was given up, the next is rendered whatever comes.
+            refining_ = may_end_early && !gave_up ? std::make_shared<gi::StopRequest>() : nullptr;
+            if (refining_ && asked_) refining_->request();
         }
         ahead_s_ = command.scene_s != scene_s_ ? seen_after_s() : 0;
-        if (!render(std::move(command), budget, ahead_s_)) wait_until(clock_.now_s() + 0.2);
+        Rendered const rendered = render(std::move(command), budget, ahead_s_);
+        gave_up = rendered == Rendered::given_up;
+        if (gave_up) {
+            if (looked) looked_ = true; // the next frame is for it
+            continue;
+        }
+        if (rendered == Rendered::failed) wait_until(clock_.now_s() + 0.2);
         if (!still) wait_until(begun + 1 / s.rate_hz);
     }
 }
@@ -367,13 +379,14 @@ void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
         update_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
 }
 
-bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, double ahead_s)
+LiveRenderer::Rendered LiveRenderer::render(FrameCommand command, FrameBudget const& budget, double ahead_s)
 {
     auto frame = std::make_shared<LiveFrame>();
     frame->begun_s = clock_.now_s();
     frame->budget = budget;
     frame->ahead_s = ahead_s;
     gi::StopRequest never;
+    bool given_up = false;
     std::shared_ptr<gi::StopRequest> const stop = refining_;
     if (hooks_.own_views) {
         frame->ordered = command.views;
@@ -386,8 +399,9 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
         if (hooks_.at_step) hooks_.at_step(step);
     });
     try {
-        frame->result = session_.render(command, stop ? *stop : never);
+        frame->result = session_.render(command, stop ? *stop : never, OnStop::give_up);
     } catch (gi::Interrupted const&) {
+        given_up = stop && stop->requested() && !quit_;
         frame->result = {};
     } catch (gi::InputError const& e) {
         if (hooks_.failed) hooks_.failed(e.what());
@@ -396,6 +410,11 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
     {
         std::lock_guard const lock(mutex_);
         refining_ = nullptr;
+    }
+    if (given_up) { // as if it had never begun
+        changes_.insert(changes_.begin(), command.changes.begin(), command.changes.end());
+        --frame_;
+        return Rendered::given_up;
     }
     frame->done_s = clock_.now_s();
     bool const done = !frame->result.views.empty() || command.views.empty(); // a rank may have no walls to draw
@@ -425,7 +444,7 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
     if (!done) { // what it was to change belongs to the next frame, else no recording would have it
         std::vector<Change> const& lost = frame->command.changes;
         if (link_ == nullptr) changes_.insert(changes_.begin(), lost.begin(), lost.end());
-        return false;
+        return Rendered::failed;
     }
     FrameCommand const shown = frame->command;
     {
@@ -434,11 +453,11 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget, doubl
     }
     published_.notify_all();
     if (hooks_.published) hooks_.published();
-    if (link_ == nullptr) return true;
+    if (link_ == nullptr) return Rendered::whole;
     FrameWork const slowest = link_->wait_for_all(shown, own);
     if (shown.views.empty()) stored_ = slowest.dynamic_update.stored; // this rank has no hit buffers of its own
     if (link_->leads()) measure(slowest, budget);
-    return true;
+    return Rendered::whole;
 }
 
 } // namespace viewer

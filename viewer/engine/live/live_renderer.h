@@ -3,8 +3,8 @@
 // the newest frame. No other thread waits for it; windows, sockets and trackers have their own threads.
 //
 // While something moves, it holds the frame rate of the settings. While nothing moves, it refines the picture up
-// to kConvergedPaths per pixel and then rests. If the viewpoint changes during refinement, the current frame ends
-// after its next path.
+// to kConvergedPaths per pixel and then rests. If the viewpoint changes during refinement, the current frame is
+// given up, or ends after its next path if the method cannot give it up.
 
 #include "viewer/engine/governor.h"
 #include "viewer/engine/live/viewpoint.h"
@@ -141,7 +141,8 @@ private:
     FrameCommand make_command(Viewpoint const& now, bool still, FrameBudget& budget);
     double seen_after_s() const;
     void add_margins(FrameCommand& command, Viewpoint const& last) const;
-    bool render(FrameCommand command, FrameBudget const& budget, double ahead_s = 0);
+    enum class Rendered : std::uint8_t { whole, failed, given_up };
+    Rendered render(FrameCommand command, FrameBudget const& budget, double ahead_s = 0);
     void wait_until(double time_s);
 
     RenderSession& session_;
@@ -154,7 +155,8 @@ private:
     std::deque<std::function<void()>> jobs_;
     Viewpoint viewpoint_;
     Anticipation anticipation_;
-    std::atomic<bool> looked_{false}; ///< the viewpoint changed since the current frame began
+    std::atomic<bool> looked_{false}; ///< a frame is wanted, as of a viewpoint that changed since the current one began
+    bool asked_ = false;              ///< the viewpoint changed since then, or a change was posted
     std::shared_ptr<gi::StopRequest> refining_;
     std::shared_ptr<LiveFrame const> newest_;
     bool resting_ = false;
