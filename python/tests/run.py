@@ -4,6 +4,7 @@ Exit code 77: skipped, as the tools are not there (scripts/setup --tests)."""
 
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -24,6 +25,9 @@ def main() -> int:
         pip = [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check"]
         subprocess.run([*pip, "--no-index", "--no-deps", "--target", folder, str(PACKAGE)], check=True)
         environment = {**os.environ, "PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"}
+        memory = Path("/dev/shm")  # as cmake/suites.cmake.in
+        if memory.is_dir() and shutil.disk_usage(memory).free >= 4 << 30:
+            environment["TMPDIR"] = str(memory)
         pytest = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", str(PACKAGE)]
         return subprocess.run([*pytest, *sys.argv[1:], str(PACKAGE / "tests")], env=environment).returncode
 
