@@ -73,7 +73,7 @@ py::dict render(LoadedWorld const& scene, std::string const& method, gi::Camera 
 {
     gi::Method const& chosen = gi::find_method(method);
     viewer::StillPicture still{settings_of(keywords, options, method)};
-    gi::RenderSettings const& settings = still.settings;
+    gi::RenderSettings const settings = still.settings; // `still` is moved from below
     still.filter = denoise_of(denoise, settings);
     viewer::check_distance(*scene.world, camera);
     gi::check_lens(camera);
