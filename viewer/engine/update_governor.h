@@ -49,7 +49,8 @@ private:
     bool may_move_ = true;              ///< in the current frame
 };
 
-/// A sentence that names the schedule in use and why; empty if no axes are stored. @param updated  the frame's setting `updated_axes`
+/// A sentence that names the schedule in use and why; empty if no axes are stored.
+/// @param updated  the frame's setting `updated_axes`
 std::string schedule_sentence(std::string const& schedule, int updated, int stored, double share_of_all);
 
 } // namespace viewer
