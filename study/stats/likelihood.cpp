@@ -48,6 +48,7 @@ std::optional<Factor> cholesky(Eigen::MatrixXd const& a)
 /// Step of the free parameters, with damping increased until the information is positive definite.
 Eigen::VectorXd damped_step(Eigen::MatrixXd const& information, Eigen::VectorXd const& gradient, double& damping)
 {
+    if (gradient.size() == 0) return gradient; // nothing is free
     for (;; damping = std::max(1e-6, damping * 10)) {
         Eigen::MatrixXd damped = information;
         for (double& d : damped.diagonal()) d += damping * (d > 0 ? d : 1);

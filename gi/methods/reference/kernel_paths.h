@@ -63,7 +63,7 @@ private:
     ColumnBuffer<PathSlot, S> slots_;
     ColumnBuffer<PathCarry, S> carried_;
     ColumnBuffer<PathLight, S> lights_;
-    ColumnBuffer<SeenSurface, S> seen_;
+    ColumnBuffer<FirstSurface, S> seen_;
     ColumnBuffer<RayQuery, S> queries_, shadows_;
     ColumnBuffer<Hit, S> hits_;
     Buffer<std::uint8_t, S> blocked_;

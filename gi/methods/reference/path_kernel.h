@@ -44,7 +44,7 @@ struct PathCarry {
 };
 
 /// What the camera sees, as in PathSample.
-struct SeenSurface {
+struct FirstSurface {
     vec3 albedo, normal, position;
     float depth;
     std::uint32_t hit;
@@ -78,7 +78,7 @@ struct PathSlots {
     ColumnView<PathSlot> slots;
     ColumnView<PathCarry> carried;
     ColumnView<PathLight> lights;
-    ColumnView<SeenSurface> seen;          ///< at the first surface
+    ColumnView<FirstSurface> seen;          ///< at the first surface
     ColumnView<RayQuery> queries, shadows; ///< no_query() where there is none
     ColumnView<Hit> hits;                  ///< of queries
     View<std::uint8_t> blocked;            ///< of shadows
@@ -206,7 +206,7 @@ struct EndPaths : PathSlots {
         PathLight light = lights.load(i);
         if (is_lit) light = lit(light);
         if (!may_add) return lights.store(i, light);
-        SeenSurface const at = seen.load(i);
+        FirstSurface const at = seen.load(i);
         PathSample sample;
         sample.radiance = light.radiance;
         sample.albedo = at.albedo;
