@@ -2,14 +2,13 @@
 
 #include "gi/filter/filter_input.h"
 #include "gi/render/surface_likeness.h"
+#include "gi/surfaces/light_picture.h"
 
 #include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
 
-/// Distance from the plane of a surface at which another one begins, relative to the depth.
-constexpr float kOfDepth = 0.005f;
 /// Limits of the factor by which light changes if it is taken by a surface that faces another way.
 constexpr float kLeastTurned = 0.2f, kMostTurned = 4;
 

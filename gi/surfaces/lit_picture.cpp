@@ -1,5 +1,7 @@
 #include "gi/surfaces/lit_picture.h"
 
+#include "gi/filter/filter_input.h"
+
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -14,7 +16,8 @@ void put(Layer& layer, std::size_t pixel, vec3 v)
 } // namespace
 
 Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
-                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before, vec2 margin)
+                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before, vec2 margin,
+                    LightPicture* light_found)
 {
     Picture picture{width, height, {}, {}};
     picture.add("color", 3);
@@ -26,6 +29,12 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
     std::optional<Projection> const project_before = before ? std::optional<Projection>(*before) : std::nullopt;
     vec2 const of_light{light.width(), light.height()}, smaller = of_light / (vec2{width, height} - 2.0f * margin);
     tbb::combinable<LitCounts> sums;
+    if (light_found) {
+        light_found->width = width;
+        light_found->height = height;
+        light_found->at = seen.at();
+        light_found->texels.assign(std::size_t(width) * std::size_t(height), {});
+    }
     tbb::parallel_for(0, height, [&](int y) {
         thread_local std::vector<SeenSurface> row;
         row.assign(std::size_t(width), {});
@@ -41,6 +50,10 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
                 vec2 const at = glm::clamp(smaller * (place - margin), vec2{0.5f}, of_light - 0.5f);
                 FoundLight const found = light.find(s.position, s.normal, at);
                 radiance += s.albedo * (found.direct + found.indirect);
+                if (light_found && !s.in_mirror)
+                    light_found->texels[i] =
+                        light_texel(s.position - seen.camera().origin, s.normal,
+                                    found.direct + found.indirect + over_albedo(s.direct, s.albedo), 0, s.depth);
                 ++local.surfaces;
                 local.unlike += found.likeness < KeptLight::kUnlike;
             }
@@ -57,6 +70,7 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
         counts.surfaces += c.surfaces;
         counts.unlike += c.unlike;
     });
+    if (light_found) find_mean(*light_found);
     return picture;
 }
 

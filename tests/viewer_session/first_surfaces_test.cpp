@@ -115,7 +115,8 @@ TEST(FirstSurfaces, MayBeDrawnBeyondTheView)
         std::vector<float> const &depths = a.views[0].picture.find("depth")->data,
                                  &same = inner.find("depth")->data;
         std::size_t others = 0; // where two samples are equally near, rounding decides
-        for (std::size_t i = 0; i < depths.size(); ++i) others += std::abs(same[i] - depths[i]) > 1e-4f * depths[i];
+        for (std::size_t i = 0; i < depths.size(); ++i)
+            others += std::abs(same[i] - depths[i]) > 1e-4f * depths[i];
         EXPECT_LT(others, depths.size() / 20) << f;
         EXPECT_LT(relmse(inner.find("color")->data, color(a)), 2e-3);
         for (std::size_t i = 0; i < color(b).size(); i += 3) ASSERT_GT(color(b)[i], 0) << i / 3;
@@ -241,6 +242,35 @@ TEST(FirstSurfaces, FullLightBeginsWithWhatWasKnown)
     double const with = relmse(color(s.render(command(10, 1), {})), color(truth)),
                  without = relmse(color(fresh.render(command(10, 1), {})), color(truth));
     EXPECT_LT(with, 0.8 * without);
+}
+
+/// What windows need to draw surfaces for newer cameras; without the setting, frames are as they were.
+TEST(FirstSurfaces, BringWhatOthersNeedToDrawThem)
+{
+    gi::Report report;
+    RenderSession plain = started(report), s = started(report);
+    s.apply({"draw_surfaces", true});
+    SessionFrame const before = plain.render(command(0, 0.5, false, 0.5), {});
+    EXPECT_EQ(before.scene, nullptr);
+    EXPECT_EQ(before.views[0].light, nullptr);
+    SessionFrame const first = s.render(command(0, 0.5, false, 0.5), {}),
+                       moved = s.render(command(9, 0.5, false, 0.5), {});
+    EXPECT_EQ(first.scene->world, moved.scene->world);
+    EXPECT_EQ(first.scene->moved, moved.scene->moved); // nothing has moved
+    EXPECT_EQ(moved.views[0].picture.width, 40);       // nobody sees it: not made smooth
+    for (SessionFrame const* f : {&first, &moved}) {
+        gi::LightPicture const& light = *f->views[0].light;
+        EXPECT_EQ(light.width, 40);
+        EXPECT_GT(std::ranges::count_if(light.texels, [](gi::LightTexel const& t) { return t.depth_dark > 7; }),
+                  40 * 30 / 2);
+        for (int c = 0; c < 3; ++c) EXPECT_GT(light.mean[c], 0);
+    }
+    SessionFrame const still = s.render(command(9, 0.5, false, 0.5), {});
+    EXPECT_EQ(still.views[0].picture.width, 80);
+    EXPECT_EQ(color(s.render(command(9, 1), {})).size(), color(plain.render(command(9, 1), {})).size());
+    EXPECT_EQ(s.render(command(9, 1), {}).views[0].light, nullptr); // its layers are its light
+    s.apply({"object.block.position", nlohmann::json::array({0.1, 0, 0})});
+    EXPECT_NE(s.render(command(9, 1), {}).scene->world, moved.scene->world);
 }
 
 } // namespace

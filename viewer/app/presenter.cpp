@@ -41,6 +41,10 @@ void Presenter::upload(std::optional<Shown>& to, gi::Picture const& picture) con
 void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes)
 {
     frame_ = std::move(frame);
+    if (frame_->result.scene) {
+        if (!renderer_ && why_no_surfaces_.empty()) renderer_.emplace();
+        if (renderer_) renderer_->take(frame_->result.scene);
+    }
     shown_.resize(frame_->result.views.size());
     std::vector<char> is_uploaded(shown_.size());
     for (Pane const& pane : panes) {
@@ -52,6 +56,7 @@ void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> c
             ShownView& s = shown_[std::size_t(view)];
             ViewPicture const& v = frame_->result.views[std::size_t(view)];
             upload(s.own, v.picture);
+            s.is_light = false;
             if (v.compared)
                 upload(s.other, *v.compared);
             else
@@ -63,22 +68,69 @@ void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> c
         if (!is_uploaded[view]) shown_[view] = {};
 }
 
+bool Presenter::can_draw_surfaces(double most_s)
+{
+    prepares_ = false;
+    if (!(surfaces_scale_ > 0) || !renderer_ || !frame_ || !frame_->result.scene) return false;
+    try {
+        prepares_ = !renderer_->prepare(most_s);
+    } catch (std::runtime_error const& e) { // a driver that compiles them not: pictures are reprojected
+        why_no_surfaces_ = e.what();
+        renderer_.reset();
+        return false;
+    }
+    return !prepares_;
+}
+
+std::optional<ShownPicture> Presenter::surfaces(int view, gi::Camera const& from, gi::Camera const& to,
+                                                glm::ivec2 size_px)
+{
+    constexpr double kPrepare_s = 0.01;
+    constexpr std::size_t kMostTexels = 1u << 18;
+    if (!can_draw_surfaces(kPrepare_s)) return std::nullopt;
+    ShownView& shown = shown_[std::size_t(view)];
+    ViewPicture const& rendered = frame_->result.views[std::size_t(view)];
+    if (shown.other || rendered.hidden) return std::nullopt;
+    if (!std::exchange(shown.is_light, true)) {
+        if (rendered.light)
+            renderer_->add_light(view, *rendered.light);
+        else
+            renderer_->add_light(view, gi::light_picture(rendered.picture, from, kMostTexels));
+    }
+    if (!renderer_->has_light()) return std::nullopt;
+    glm::ivec2 const size = glm::max(glm::ivec2(glm::round(surfaces_scale_ * glm::dvec2(size_px))), glm::ivec2(1));
+    return renderer_->draw(view, to, size, shown.own->picture, from);
+}
+
 EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
 {
     if (!frame_ || view < 0 || std::size_t(view) >= frame_->command.views.size()) return {};
     if (std::size_t(view) >= shown_.size() || !shown_[std::size_t(view)].own) return {};
-    auto& [own, other] = shown_[std::size_t(view)];
+    auto& own = shown_[std::size_t(view)].own;
+    auto& other = shown_[std::size_t(view)].other;
     ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
     EyeView e{own->picture.shown(), other ? other->picture.shown() : own->picture.shown()};
     glm::ivec2 const margin = frame_->result.views[std::size_t(view)].margin_px,
-                     size = e.picture.size_px - 2 * margin;
+                     size(rendered.width, rendered.height);
     bool const moved = std::size_t(view) < now.size() && !rendered.camera.orthographic &&
                        !(now[std::size_t(view)] == rendered.camera);
     own->reprojection.keep_only(size);
     if (other) other->reprojection.keep_only(size);
-    if (!moved && margin == glm::ivec2(0)) return e;
+    bool const coarse =
+        frame_->result.views[std::size_t(view)].light && e.picture.size_px.x < size.x; // to be drawn
     gi::Camera const from = with_margin(rendered.camera, size, margin),
                      &to = moved ? now[std::size_t(view)] : rendered.camera;
+    // The first time takes long, as drivers compile then: it is done while nothing moves.
+    if (!moved && !coarse && surfaces_scale_ > 0 && renderer_ && frame_->result.scene &&
+        tried_ != frame_->result.scene->world.get() && surfaces(view, from, to, glm::ivec2(16)))
+        tried_ = frame_->result.scene->world.get();
+    if (!moved && !coarse && margin == glm::ivec2(0)) return e;
+    if (moved || coarse)
+        if (auto const drawn = surfaces(view, from, to, size)) {
+            drew_surfaces_ = true;
+            e.picture = e.other = *drawn;
+            return e;
+        }
     e.picture = e.other = own->reprojection.draw(own->picture, from, to, size);
     if (other) e.other = other->reprojection.draw(other->picture, from, to, size);
     return e;
@@ -170,6 +222,10 @@ void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, 
 void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& all,
                      PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
+    surfaces_scale_ = s.surfaces_scale;
+    drew_surfaces_ = false;
+    bool const can_draw = can_draw_surfaces(0);
+    if (can_draw && s.pose && renderer_->can_move()) renderer_->move(s.pose(*frame_));
     std::vector<Pane> panes = all;
     for (Pane& pane : panes)
         if (has_overlay(pane, s)) pane.wall = pane.of_wall; // also through a wall pass that changes nothing

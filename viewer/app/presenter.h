@@ -6,6 +6,7 @@
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/reprojection.h"
 #include "viewer/devices/gl/surface_pass.h"
+#include "viewer/devices/gl/surface_renderer.h"
 #include "viewer/devices/gl/wall_pass.h"
 #include "viewer/displays/wall_ray.h"
 #include "viewer/engine/live/live_renderer.h"
@@ -47,6 +48,10 @@ struct PresentSettings {
     Comparison comparison = Comparison::off;
     float split = 0.5f;
     bool swap_eyes = false;
+    /// Where the scene's objects are when a picture is shown, on the presenting thread; empty: where they were in the frame.
+    std::function<gi::Pose(LiveFrame const&)> pose;
+    double surfaces_scale =
+        0; ///< side of surfaces drawn for a newer camera over that of the view; 0: pictures are reprojected
 };
 
 class Presenter {
@@ -62,6 +67,11 @@ public:
     /// @param now  one camera per view, for reprojection; empty = as rendered
     void draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
               PresentSettings const& settings, std::vector<gi::Camera> const& now);
+    /// True if surfaces are about to be drawn, once more of the scene is on the GPU: draw again soon.
+    bool prepares() const { return prepares_; }
+    bool drew_surfaces() const { return drew_surfaces_; } ///< in the last draw
+    /// Why surfaces are not drawn although they should be; empty: they are, or will be.
+    std::string const& why_no_surfaces() const { return why_no_surfaces_; }
 
 private:
     struct Shown {
@@ -71,9 +81,14 @@ private:
     /// Draws one view; none = not shown.
     struct ShownView {
         std::optional<Shown> own, other;
+        bool is_light = false; ///< its light is in the ring
     };
     void upload(std::optional<Shown>& to, gi::Picture const& picture) const;
     EyeView eye(int view, std::vector<gi::Camera> const& now);
+    bool can_draw_surfaces(double most_s);
+    /// The surfaces of a view for another camera than that of its picture; none if they cannot be drawn.
+    std::optional<ShownPicture> surfaces(int view, gi::Camera const& from, gi::Camera const& to,
+                                         glm::ivec2 size_px);
     /// Bends the pictures of one wall into bent_. False if it has none.
     bool bend(Pane const& pane, PresentSettings const& shown, DisplaySettings const& settings,
               std::vector<gi::Camera> const& now, WallPass::Outside outside);
@@ -86,6 +101,11 @@ private:
     std::optional<TextureTarget> overlay_picture_;
     std::shared_ptr<ReprojectionPrograms const> reprojection_ = std::make_shared<ReprojectionPrograms>();
     std::vector<ShownView> shown_;
+    std::optional<SurfaceRenderer> renderer_;
+    double surfaces_scale_ = 0;
+    bool prepares_ = false, drew_surfaces_ = false;
+    std::string why_no_surfaces_;
+    gi::World const* tried_ = nullptr; ///< scene whose surfaces were drawn once
     std::shared_ptr<LiveFrame const> frame_;
     DisplayPass pass_;
     std::deque<WallPass> walls_;

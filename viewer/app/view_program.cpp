@@ -4,7 +4,9 @@
 #include "viewer/app/display_windows.h"
 #include "viewer/app/layout.h"
 #include "viewer/app/panel_contents.h"
+#include "viewer/app/pose_at.h"
 #include "viewer/app/present_thread.h"
+#include "viewer/app/surfaces_scale.h"
 #include "viewer/app/user_body.h"
 #include "viewer/app/user_tracking.h"
 #include "viewer/app/view_core.h"
@@ -31,10 +33,21 @@ constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture,
 constexpr double kDrawings = 5;         // at most 1/5 of the time, as software drivers slow the renderer
 constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
+/// Windows draw surfaces unless told otherwise; ranks show what all of them have rendered.
+ViewOptions with_surfaces(ViewOptions options, FrameLink const* link)
+{
+    if (link == nullptr) options.settings.insert(options.settings.begin(), {"draw_surfaces", true});
+    return options;
+}
+
 class WindowLoop {
 public:
     WindowLoop(ViewOptions const& options, FrameLink* link, gi::Report& report)
-        : core_(options, report), state_(core_.state), link_(link), bodies_(options.avatars)
+        : options_(with_surfaces(options, link)),
+          core_(options_, report),
+          state_(core_.state),
+          link_(link),
+          bodies_(options.avatars)
     {
         if (options.display) {
             if (!follows()) tracking_.emplace(*core_.display);
@@ -259,6 +272,7 @@ private:
         }
         at.views = std::move(layout.views);
         at.jump = state_.navigation.jump();
+        if (link_ == nullptr) anticipation_.see(at);
         if (link_ == nullptr) {
             cameras_.clear();
             for (ViewCommand const& v : at.views) cameras_.push_back(v.camera);
@@ -321,12 +335,13 @@ private:
         bool const fresh = newest != state_.frame;
         bool const moved = state_.settings().reproject && link_ == nullptr && has_moved() &&
                            since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_);
+        bool const draws = prepares_ && since_s > 1 / kMessages_Hz;
         bool const flickers = state_.settings().view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
         bool const messages = has_messages();
         bool const tells = messages != had_messages_ || (messages && since_s > 1 / kMessages_Hz);
-        if (fresh || moved || flickers || dirty_ || resized || tells || state_.wants_screenshot)
+        if (fresh || moved || draws || flickers || dirty_ || resized || tells || state_.wants_screenshot)
             present(newest, fresh);
     }
 
@@ -334,6 +349,8 @@ private:
     struct Presentation {
         std::shared_ptr<LiveFrame const> frame;
         bool fresh = false, panel = false, messages = false, wants_bytes = false, reprojected = false;
+        bool surfaces = false, prepares = false; ///< drawn; or about to be
+        std::string why_no_surfaces;
         PresentSettings settings;
         std::vector<gi::Camera> cameras;
         std::vector<glm::ivec2> sizes;
@@ -358,6 +375,11 @@ private:
             for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
         bool const reprojects =
             state_.settings().reproject && link_ == nullptr && cameras_.size() == rendered.size();
+        p->settings = present_settings(p->begun_s);
+        if (reprojects && p->settings.surfaces_scale > 0) {
+            cameras_.clear();
+            for (ViewCommand const& v : expected(p->begun_s).views) cameras_.push_back(v.camera);
+        }
         shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
         p->reprojected = !(shown_cameras_ == rendered);
         if (fresh) {
@@ -368,7 +390,6 @@ private:
             meter_.see(newest);
             if (!follows()) core_.expose(*newest);
         }
-        p->settings = present_settings();
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();
@@ -425,6 +446,9 @@ private:
             if (p.frame)
                 shown.pictures().draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
                                       p.cameras);
+            p.surfaces |= shown.pictures().drew_surfaces();
+            p.prepares |= shown.pictures().prepares();
+            p.why_no_surfaces = shown.pictures().why_no_surfaces();
             if (p.wants_bytes) shoot(target_of(shown.window), p.shots);
             if (shown.panel && (p.messages || p.panel)) shown.panel->draw();
             p.times.upload_ms += 1e3 * (uploaded - from);
@@ -448,7 +472,18 @@ private:
 
     void presented(Presentation const& p)
     {
-        if (p.reprojected) draw_s_ = 1e-3 * p.times.draw_ms;
+        prepares_ = p.prepares;
+        if (!p.why_no_surfaces.empty() && !std::exchange(no_surfaces_told_, true)) {
+            core_.report.lose("surfaces not drawn, pictures are reprojected", 1, p.why_no_surfaces);
+            tell("surfaces are not drawn for newer poses (" + p.why_no_surfaces +
+                 ") pictures are reprojected instead");
+        }
+        if (p.surfaces) {
+            surfaces_scale_.measured(p.settings.surfaces_scale, p.shown_s - p.begun_s);
+            surfaces_s_ = surfaces_s_ > 0 ? surfaces_s_ + 0.2 * (p.shown_s - p.begun_s - surfaces_s_)
+                                          : p.shown_s - p.begun_s;
+        }
+        if (p.reprojected) draw_s_ = p.surfaces ? 0 : 1e-3 * p.times.draw_ms;
         Snapshot const shot = p.shots.empty() ? Snapshot{} : side_by_side(p.shots);
         if (!shot.empty() && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(shot);
         state_.drawing = false;
@@ -489,7 +524,13 @@ private:
         last_fresh_s_ = shown_s;
     }
 
-    PresentSettings present_settings() const
+    /// Where the users will be in the middle of the time for which a picture that is begun now is shown.
+    Viewpoint expected(double now_s) const
+    {
+        return anticipation_.at(now_s, now_s + (state_.settings().predict ? 1.5 * surfaces_s_ : 0));
+    }
+
+    PresentSettings present_settings(double now_s) const
     {
         Settings const& s = state_.settings();
         PresentSettings p;
@@ -497,6 +538,13 @@ private:
         p.light = light_;
         p.split = float(s.split);
         p.swap_eyes = s.swap_eyes;
+        if (s.draw_surfaces) {
+            p.surfaces_scale = surfaces_scale_.next();
+            double const seen_s = now_s + (s.predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0);
+            p.pose = [at = expected(now_s), drive = core_.options.drive, seen_s](LiveFrame const& f) {
+                return pose_at(f, at, drive, seen_s);
+            };
+        }
         if (s.compare.empty()) return p;
         bool const second = std::fmod(state_.clock.now_s() * kFlicker_Hz, 1.0) < 0.5;
         p.comparison = s.view == "split"               ? Comparison::split
@@ -506,6 +554,7 @@ private:
         return p;
     }
 
+    ViewOptions const options_;
     ViewCore core_;
     DisplayLight const light_ = light_of(core_.options);
     ViewState& state_;
@@ -518,12 +567,16 @@ private:
     Panel* panel_ = nullptr;     ///< of the first window, for the user; not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
+    Anticipation anticipation_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
-    bool dirty_ = true, fallback_told_ = false, had_messages_ = false;
+    bool dirty_ = true, fallback_told_ = false, no_surfaces_told_ = false, had_messages_ = false;
     std::string message_; ///< the last message, shown until message_until_s_
     double message_until_s_ = 0;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
     double draw_s_ = 0; ///< that the last reprojected picture took
+    SurfacesScale surfaces_scale_;
+    double surfaces_s_ = 0; ///< from the start of a picture whose surfaces are drawn until it is shown, smoothed
+    bool prepares_ = false; ///< surfaces will be drawn when more of the scene is on the GPU
 };
 
 } // namespace

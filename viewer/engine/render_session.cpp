@@ -144,6 +144,7 @@ void RenderSession::adopt(PreparedScene p)
     main_.reset(); // method runners refer to the old world
     compared_.reset();
     seen_.reset();
+    shown_world_.reset();
     forget_smoothed();
     placed_.clear();
     edits_.clear();
@@ -160,6 +161,7 @@ void RenderSession::rebuild(std::shared_ptr<gi::Scene const> scene)
     auto world = std::make_unique<gi::MovingWorld>(scene, time_s_, report_);
     restart(); // method runners refer to the old world
     seen_.reset();
+    shown_world_.reset();
     forget_smoothed();
     world_ = std::move(world);
     scene_ = std::move(scene);
@@ -231,19 +233,34 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
             auto const lights =
                 runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
             gi::CameraRays const rays = gi::camera_rays(v.camera, v.width, v.height, world_->world().origin);
-            if (smoothed.name != v.name) smoothed = {v.name, rays, v.width, v.height, {}};
+            // Pictures that nobody sees, since surfaces are drawn for newer cameras, need not be smooth.
+            bool const is_seen =
+                !settings_.draw_surfaces || frame.views[k].compared || hides || smoothed.camera == v.camera;
+            if (smoothed.name != v.name || !is_seen) smoothed = {v.name, v.camera, rays, v.width, v.height, {}};
             gi::CameraRays before = smoothed.rays; // in pixels of this picture, which may have another size
             before.step_x *= float(smoothed.width) / float(v.width);
             before.step_y *= float(smoothed.height) / float(v.height);
             seen_->look(rays, v.width, v.height, lights, smoothed.antialiasing.sample());
-            gi::Picture const picture = gi::lit_picture(
+            auto const light =
+                settings_.draw_surfaces && &runner == main_.get() ? std::make_shared<gi::LightPicture>() : nullptr;
+            gi::Picture picture = gi::lit_picture(
                 *seen_, v.width, v.height, *runner.light(k),
-                hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(), counts, &before,
-                gi::vec2(margin) * gi::vec2(v.width, v.height) / gi::vec2(whole_view.width, whole_view.height));
+                hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(), counts,
+                is_seen ? &before : nullptr,
+                gi::vec2(margin) * gi::vec2(v.width, v.height) / gi::vec2(whole_view.width, whole_view.height),
+                light.get());
+            if (light) {
+                light->camera = v.camera;
+                light->camera_width = v.width;
+                light->camera_height = v.height;
+                frame.views[k].light = light;
+            }
+            smoothed.camera = v.camera;
             smoothed.rays = rays;
             smoothed.width = v.width;
             smoothed.height = v.height;
-            gi::Picture whole = smoothed.antialiasing.add(picture, whole_view.width, whole_view.height);
+            gi::Picture whole = is_seen ? smoothed.antialiasing.add(picture, whole_view.width, whole_view.height)
+                                        : std::move(picture);
             if (frame.views[k].hidden) blacken(whole, *frame.views[k].hidden);
             return whole;
         };
@@ -272,7 +289,13 @@ SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRe
         gi::StageTimer const timer(report_, "world");
         changes = move_to(command);
     }
+    if (!settings_.draw_surfaces)
+        shown_world_.reset();
+    else
+        shown_world_ = gi::shown_scene(world_, changes, shown_world_.get());
     SessionFrame frame;
+    frame.scene = shown_world_;
+    if (shown_world_) frame.placed = placed_;
     frame.moved = changes.geometry;
     if (command.views.empty()) return frame;
     if (seen_) {

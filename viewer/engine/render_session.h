@@ -4,6 +4,7 @@
 // number of threads. The live viewer, the ranks of a cluster and the replay of a recording all drive it.
 
 #include "gi/surfaces/antialiasing.h"
+#include "gi/surfaces/shown_scene.h"
 #include "viewer/engine/hidden_views.h"
 #include "viewer/engine/method_runner.h"
 #include "viewer/engine/scene_edits.h"
@@ -36,6 +37,8 @@ struct ViewPicture {
     std::optional<gi::Picture> compared; ///< of the second method, if any
     HiddenPixels hidden{};               ///< pixels that were not rendered
     glm::ivec2 margin_px{0}; ///< of the pictures: on each side beyond the view, see viewer/engine/picture_margin.h
+    /// Of a picture whose surfaces were drawn apart; null: its layers are its light, or nobody draws surfaces.
+    std::shared_ptr<gi::LightPicture const> light{};
 };
 
 struct SessionFrame {
@@ -48,6 +51,8 @@ struct SessionFrame {
     std::map<std::string, double> stages_s;
     std::string options; ///< options that the method chose
     std::string choice;  ///< of a method that chooses another: which and why, a sentence; else empty
+    std::shared_ptr<gi::ShownScene const> scene; ///< null: nobody draws surfaces
+    std::vector<PlacedObject> placed;            ///< where they are then
 };
 
 /// Stage of SessionFrame::stages_s in which surfaces of another size than light are drawn.
@@ -71,7 +76,8 @@ public:
     /// Makes it the current scene, as apply(prepared.change) does.
     void adopt(PreparedScene prepared);
     /// Renders a frame command, whose changes must have been applied already. Throws InputError without a scene.
-    SessionFrame render(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop = OnStop::shorten);
+    SessionFrame render(FrameCommand const& command, gi::StopRequest const& stop,
+                        OnStop on_stop = OnStop::shorten);
 
     /// Sets a callback for every following frame.
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
@@ -102,7 +108,7 @@ private:
     Settings settings_;
     SceneChange shown_;
     std::shared_ptr<gi::Scene const> scene_;
-    std::unique_ptr<gi::MovingWorld> world_;
+    std::shared_ptr<gi::MovingWorld> world_; ///< shared with those who draw its surfaces
     std::vector<PlacedObject> placed_;
     std::vector<Change> edits_; ///< of lights, materials, environment: one per key, reapplied to a new world
     HiddenViews hidden_, hidden_surfaces_,
@@ -111,11 +117,13 @@ private:
     /// A view whose pictures are antialiased.
     struct SmoothedView {
         std::string name;
+        gi::Camera camera;   ///< of its last picture
         gi::CameraRays rays; ///< of its last picture of surfaces
         int width = 0, height = 0;
         gi::Antialiasing antialiasing;
     };
     std::vector<SmoothedView> smoothed_, smoothed_compared_; ///< since surfaces are drawn and light is the same
+    std::shared_ptr<gi::ShownScene const> shown_world_;      ///< of the last frame
     DriveBodies drive_;
     gi::Changes pending_; ///< edits since the last frame
     double time_s_ = 0;   ///< of the last frame

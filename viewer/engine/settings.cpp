@@ -98,6 +98,10 @@ std::vector<SettingKey> make_keys()
          own("predict", {}, "render pictures for the moment in which they will be seen, by the motion so far",
              &S::predict),
          own("reproject", {}, "reproject the last picture to the current head pose", &S::reproject),
+         own("draw_surfaces", {},
+             "draw surfaces for the current head pose, with the light of the last picture (windows of this "
+             "program do unless told otherwise)",
+             &S::draw_surfaces),
          own("refine", {}, "keep adding paths while nothing moves", &S::refine),
          own("panel", {}, "show the panel", &S::panel),
          own("font-scale", {0.5, 4}, "size of letters in the panel and of messages, 1 = usual on this monitor",

@@ -14,8 +14,9 @@
 namespace viewer {
 
 struct Settings {
-    std::string method{gi::kDefaultMethod}, compare; ///< compare: second method, shown beside the first; empty = none
-    gi::RenderSettings render;            ///< those of gi::render_options() that are live count
+    std::string method{gi::kDefaultMethod},
+        compare;               ///< compare: second method, shown beside the first; empty = none
+    gi::RenderSettings render; ///< those of gi::render_options() that are live count
     int updated_axes = 0; ///< stored axes per bounce updated each frame for dynamic geometry; 0 = all. With the
                           ///< schedule auto, the live viewer sets it every frame (update_governor.h)
     int reuse = 16;       ///< frames of temporal reuse; 1 = none
@@ -39,7 +40,9 @@ struct Settings {
     double split = 0.5;           ///< position of the split, as a share of the width
     bool predict = true;          ///< render for where users and clips will be when the picture is seen
     bool reproject = true;        ///< reproject the last picture to the current head pose
-    bool refine = true;           ///< keep adding paths while nothing moves
+    /// Pictures are to be shown by the surfaces of the current head pose, with the light of the last one.
+    bool draw_surfaces = false;
+    bool refine = true; ///< keep adding paths while nothing moves
     bool panel = true;
     double font_scale = 1; ///< of the letters in the panel, over the usual size on the monitor
 };

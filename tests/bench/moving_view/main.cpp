@@ -1,21 +1,23 @@
 // What people see while they move: the viewer's rendering thread and its presenter run in real time, driven by a
-// recorded head, and what they show at given moments is compared with converged pictures of those moments.
+// recorded head, and what is shown at given moments is compared with converged pictures of those moments.
 //   bench_moving_view SCENE HEAD.csv --out DIR [--truth DIR] [--truth-paths N] [--truth-filter NAME] [--size WxH]
 //   [--eyes 1|2] [--fov DEG]
 //   [--avatar FILE] [--scored N] [--set KEY=VALUE]... [--offline HZ] [--light-scale S] [--surface-scale S]
-//   [--late S] [--paths N] [--young N]
+//   [--late S] [--drawn-scale S] [--paths N] [--young N]
 // HEAD.csv: time_s, then the head relative to the scene's first camera: x_m,y_m,z_m (right, up, back), yaw_deg,
 // pitch_deg (left, up). --fov is the vertical field of view (60). The truth is that of the method reference at the
 // session's bounces, through a filter (oidn-high); it is kept in its folder and reused. With two eyes (0.063 m
 // apart), rivalry is the mean difference of the eyes' errors at points that both see. --offline: frames at a fixed
 // rate instead of real time, with light and surfaces at fixed scales and --paths (1); with
-// --late, reprojected to the head of S seconds later; --young: N frames of a head
+// --late, shown for the head of S seconds later, its surfaces drawn at --drawn-scale (1) of the size; --young: N frames of a head
 // that holds still, scored after 1, 2, 4, ... Writes shown_K_E.png, truth_K_E.png, error_K_E.png (K scored moment,
 // E eye) and prints a row of figures.
 
 #include "gi/core/error.h"
 #include "tests/bench/moving_view/offline.h"
+#include "viewer/app/pose_at.h"
 #include "viewer/app/presenter.h"
+#include "viewer/app/surfaces_scale.h"
 #include "viewer/devices/gl/context.h"
 #include "viewer/engine/live/live_renderer.h"
 #include "viewer/offline/choose_camera.h"
@@ -30,13 +32,6 @@ namespace {
 
 using namespace viewer;
 
-/// Time of the scene's clips at a moment, if the frame's is that of the moment in which it is seen.
-double scene_now(LiveFrame const& f, double now_s)
-{
-    return f.command.scene_s - f.ahead_s * f.settings.speed +
-           f.settings.speed * (f.settings.play ? now_s - f.begun_s : 0);
-}
-
 void run(Options const& o)
 {
     fs::create_directories(o.out);
@@ -45,6 +40,7 @@ void run(Options const& o)
     std::vector<AvatarChoice> const avatars = avatar_choices(o.avatar, kEyeHeight_m, {}, {});
     RecordedScenes const scenes = scenes_with({}, avatars, report);
     RenderSession session(scenes.load, 0, report);
+    session.apply({"draw_surfaces", true});
     if (scenes.drive) session.drive_bodies(scenes.drive);
     for (Change const& c : o.settings) session.apply(c);
     session.apply({"scene", o.scene});
@@ -87,12 +83,18 @@ void run(Options const& o)
         Presenter presenter({});
         PresentSettings settings;
         settings.tone = tone_settings(session.settings());
+        bool const draws_surfaces = session.settings().draw_surfaces;
+        SurfacesScale surfaces_scale;
+        Anticipation anticipation;
+        double surfaces_s = 0; ///< that drawing them takes
         std::vector<Pane> panes;
         std::vector<TextureTarget> targets;
         for (int e = 0; e < o.eyes; ++e) {
             panes.push_back({{0, 0}, {o.width, o.height}, StereoMode::off, e, -1});
-            targets.emplace_back(TextureTarget::Format::bytes, glm::ivec2(o.width, o.height));
+            for (int k = 0; k < 2; ++k)
+                targets.emplace_back(TextureTarget::Format::bytes, glm::ivec2(o.width, o.height));
         }
+        std::size_t turn = 0; // of an eye's two targets: one is shown while the other is drawn
         renderer.look(walk.at(0, 0));
         if (!renderer.next_frame(60)) throw gi::InputError("no frame in 60 s", "", "");
         std::shared_ptr<LiveFrame const> shown;
@@ -112,13 +114,22 @@ void run(Options const& o)
             std::vector<gi::Camera> cameras;
             for (ViewCommand const& v : at.views) cameras.push_back(v.camera);
             renderer.look(at);
+            anticipation.see(at);
+            double const seen_s = begun + now + std::min(1.5 * surfaces_s, Anticipation::kFarthest_s);
+            Viewpoint const expected = anticipation.at(begun + now, seen_s);
+            if (surfaces_s > 0) {
+                cameras.clear();
+                for (ViewCommand const& v : expected.views) cameras.push_back(v.camera);
+            }
             auto const newest = renderer.newest();
             if (newest != shown) presenter.take(newest, panes);
             shown = newest;
             double const drawing = clock.now_s();
+            settings.pose = [&](LiveFrame const& f) { return pose_at(f, expected, scenes.drive, seen_s); };
+            settings.surfaces_scale = draws_surfaces ? surfaces_scale.next() : 0;
             for (int e = 0; e < o.eyes; ++e)
-                presenter.draw(targets[std::size_t(e)].target(), {0, 0}, {panes[std::size_t(e)]}, settings,
-                               cameras);
+                presenter.draw(targets[2 * std::size_t(e) + turn].target(), {0, 0}, {panes[std::size_t(e)]},
+                               settings, cameras);
             ++presented;
             glFinish();
             draw_s += clock.now_s() - drawing;
@@ -129,21 +140,29 @@ void run(Options const& o)
             } else {
                 shown_at_s = 0;
             }
-            // The first second is not scored.
-            if (now >= 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored) {
-                Seen s{at, scene_now(*newest, begun + now), {}};
-                for (TextureTarget const& t : targets) s.shown.push_back(read_bytes(t.target()));
+            read_bytes(part_of(targets[turn].target(), {0, 0}, {1, 1})); // waits as a swap does
+            turn = 1 - turn;
+            // What is still shown at a moment is compared with what should be seen then. The first second is not scored.
+            double const moment = 1 + (walk.seconds() - 1) * (k + 0.5) / o.scored;
+            if (clock.now_s() - begun >= moment && presented > 1) {
+                Seen s{walk.at(moment, 0), scene_time_at(*newest, begun + moment), {}};
+                for (int e = 0; e < o.eyes; ++e)
+                    s.shown.push_back(read_bytes(targets[2 * std::size_t(e) + turn].target()));
                 seen.push_back(std::move(s));
                 ++k;
-            } else if (!targets.empty()) {
-                read_bytes(part_of(targets[0].target(), {0, 0}, {1, 1})); // waits as a swap does
             }
             double const drew_s = clock.now_s() - drawing;
-            double const next_s = std::max(now + 1.0 / 60, begun + now + 5 * drew_s - begun);
+            if (presenter.drew_surfaces()) {
+                surfaces_scale.measured(settings.surfaces_scale, drew_s);
+                surfaces_s = surfaces_s > 0 ? surfaces_s + 0.2 * (drew_s - surfaces_s) : drew_s;
+            }
+            double const next_s = now + std::max(1.0 / 60, presenter.drew_surfaces() ? 0 : 5 * drew_s);
             while (clock.now_s() - begun < next_s) { // as the window's loop does
                 double const t = clock.now_s() - begun;
                 if (t - last > 0.004) {
-                    renderer.look(walk.at(t, t - last));
+                    Viewpoint const next = walk.at(t, t - last);
+                    renderer.look(next);
+                    anticipation.see(next);
                     last = t;
                 }
                 if (renderer.newest() != shown) break;
@@ -170,7 +189,8 @@ void run(Options const& o)
         return fmt::format("median {:.0f}, 95 % {:.0f}, 99 % {:.0f}, most {:.0f}", v[v.size() / 2],
                            v[v.size() * 95 / 100], v[v.size() * 99 / 100], v.back());
     };
-    fmt::print("  while the head moves: ms between shown: {}; age of the pose that the picture was rendered for, ms: {}\n",
+    fmt::print("  while the head moves: ms between shown: {}; age of the pose that the picture was rendered for, "
+               "ms: {}\n",
                spread(shown_gaps_ms), spread(ages_ms));
     for (auto const& [stage, s] : stages_s)
         if (1e3 * s / frames >= 0.5) fmt::print("  {}: {:.1f} ms\n", stage, 1e3 * s / frames);
@@ -212,6 +232,8 @@ try {
             o.light_scale = std::stod(value());
         else if (a == "--late")
             o.late_s = std::stod(value());
+        else if (a == "--drawn-scale")
+            o.drawn_scale = std::stod(value());
         else if (a == "--surface-scale")
             o.surface_scale = std::stod(value());
         else if (a == "--avatar")

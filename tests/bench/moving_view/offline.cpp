@@ -12,9 +12,11 @@ Seen reprojected(Options const& o, SessionFrame const& frame, FrameCommand const
 {
     auto shown = std::make_shared<LiveFrame>();
     shown->command = command;
-    for (ViewPicture const& v : frame.views) shown->result.views.push_back({v.picture, {}, v.hidden});
+    shown->result.views = frame.views;
+    shown->result.scene = frame.scene;
     PresentSettings present;
     present.tone = tone_settings(settings);
+    present.surfaces_scale = settings.draw_surfaces ? o.drawn_scale : 0;
     Seen s{now, command.scene_s, {}};
     std::vector<Pane> panes;
     std::vector<gi::Camera> cameras;
@@ -24,6 +26,10 @@ Seen reprojected(Options const& o, SessionFrame const& frame, FrameCommand const
     }
     Presenter presenter({});
     presenter.take(shown, panes);
+    do { // until all is on the GPU
+        TextureTarget const target(TextureTarget::Format::bytes, {8, 8});
+        presenter.draw(target.target(), {0, 0}, {panes[0]}, present, cameras);
+    } while (presenter.prepares());
     for (int e = 0; e < o.eyes; ++e) {
         TextureTarget const target(TextureTarget::Format::bytes, {o.width, o.height});
         presenter.draw(target.target(), {0, 0}, {panes[std::size_t(e)]}, present, cameras);

@@ -14,7 +14,7 @@ struct Options {
     std::string scene, head, avatar, truth_filter = "oidn-high";
     fs::path out, truth;
     int truth_paths = 128, width = 640, height = 480, eyes = 1, scored = 8, young = 0, paths = 1;
-    double fov_deg = 60, offline_hz = 0, light_scale = 0.25, surface_scale = 1, late_s = 0;
+    double fov_deg = 60, offline_hz = 0, light_scale = 0.25, surface_scale = 1, late_s = 0, drawn_scale = 1;
     std::vector<Change> settings;
 };
 

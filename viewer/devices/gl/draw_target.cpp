@@ -66,7 +66,10 @@ std::vector<unsigned char> read_bytes(DrawTarget const& target, unsigned buffer)
 
 TextureTarget::TextureTarget(Format format, glm::ivec2 size_px)
     : size_px_(size_px),
-      texture_(texture_2d(format == Format::bytes ? GL_RGBA8 : GL_RGBA32F, size_px, GL_NEAREST)),
+      texture_(texture_2d(format == Format::bytes   ? GL_RGBA8
+                          : format == Format::words ? GL_RGBA32UI
+                                                    : GL_RGBA32F,
+                          size_px, GL_NEAREST)),
       framebuffer_(GlObject::Kind::framebuffer)
 {
     glNamedFramebufferTexture(framebuffer_.id(), GL_COLOR_ATTACHMENT0, texture_.id(), 0);

@@ -44,8 +44,8 @@ struct ShownPicture {
 /// A texture to draw into.
 class TextureTarget {
 public:
-    /// bytes: display-encoded RGBA8; linear: RGBA32F.
-    enum class Format { bytes, linear };
+    /// bytes: display-encoded RGBA8; linear: RGBA32F; words: RGBA32UI.
+    enum class Format { bytes, linear, words };
     TextureTarget(Format format, glm::ivec2 size_px);
     DrawTarget target() const;
     ShownPicture shown() const { return {texture_.id(), size_px_}; }

@@ -1,7 +1,7 @@
 #include "viewer/devices/gl/reprojection.h"
 
 #include "gi/core/error.h"
-#include "gi/scene/model/camera.h"
+#include "viewer/devices/gl/view_matrices.h"
 
 #include <cmath>
 #include <epoxy/gl.h>
@@ -12,46 +12,30 @@ namespace {
 using glm::dmat3;
 using glm::dvec3;
 
-gi::ViewTangents tangents_of(gi::Camera const& camera, glm::ivec2 size)
+void check(gi::Camera const& camera)
 {
     if (camera.orthographic)
         throw gi::InputError("the orthographic camera '" + camera.name + "' cannot be reprojected",
                              "its rays do not share one origin", "show its pictures as they are");
-    return gi::view_edges(camera, size.x, size.y);
-}
-
-/// (right, up, forward) of a point at depth 1 from its pixel.
-dmat3 frame_from_pixel(gi::ViewTangents const& v, glm::ivec2 size)
-{
-    dmat3 m(0.0);
-    m[0][0] = (v.right - v.left) / size.x;
-    m[1][1] = (v.bottom - v.top) / size.y;
-    m[2] = dvec3(v.left, v.top, 1);
-    return m;
-}
-
-/// Axes right, up, forward in the world.
-dmat3 axes_of(gi::Camera const& camera)
-{
-    auto const& m = camera.world_from_camera;
-    return {dvec3(m[0]), dvec3(m[1]), -dvec3(m[2])};
 }
 
 } // namespace
 
 ReprojectionMaps reprojection_maps(gi::Camera const& a, glm::ivec2 a_px, gi::Camera const& b, glm::ivec2 b_px)
 {
-    dmat3 const pixel_from_frame = glm::inverse(frame_from_pixel(tangents_of(a, a_px), a_px));
-    dmat3 const a_from_world = pixel_from_frame * glm::transpose(axes_of(a));
+    check(a);
+    check(b);
+    dmat3 const a_from_world = pixel_from_world(a, a_px);
     ReprojectionMaps maps;
-    maps.a_from_b = glm::mat3(a_from_world * axes_of(b) * frame_from_pixel(tangents_of(b, b_px), b_px));
+    maps.a_from_b = glm::mat3(a_from_world * axes_of(b) * frame_from_pixel(b, b_px));
     maps.b_in_a = glm::vec3(a_from_world * (dvec3(b.world_from_camera[3]) - dvec3(a.world_from_camera[3])));
     return maps;
 }
 
 ReprojectionPrograms::ReprojectionPrograms()
-    : turn({"full_screen.vert"}, {"reprojection.frag"}, "#define SEARCHES 0\n#define TILE 1\n"),
-      search({"full_screen.vert"}, {"reprojection.frag"},
+    : turn({"full_screen.vert"}, {"reprojection.glsl", "reprojection.frag"},
+           "#define SEARCHES 0\n#define TILE 1\n"),
+      search({"full_screen.vert"}, {"reprojection.glsl", "reprojection.frag"},
              "#define SEARCHES 1\n#define TILE " + std::to_string(PictureTexture::kTile) + "\n")
 {
 }

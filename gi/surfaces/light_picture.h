@@ -1,0 +1,43 @@
+#pragma once
+// The light that falls on the surfaces of one picture, to be looked up by the surfaces of pictures of other cameras:
+// where a surface lies in this picture, the nearest texels that show a similar one are averaged, by the rule of
+// KeptLight (kept_light.h). Plain data, for a shader.
+
+#include "gi/image_io/picture.h"
+#include "gi/scene/model/camera.h"
+
+namespace gi {
+
+/// What one pixel shows, packed as shaders unpack it.
+struct LightTexel {
+    std::uint32_t normal = 0; ///< of shading: octahedral, 16 bits each (unpackSnorm2x16)
+    float plane_m = 0;        ///< distance of its plane from the camera along the normal
+    std::uint32_t light = 0;  ///< radiance over albedo: nine bits each and an exponent (GL_RGB9_E5)
+    std::uint32_t depth_dark =
+        0; ///< a float: depth along the camera's axis, m, 0 = no surface. In its last three bits:
+           ///< the channels in which the albedo is too dark to know the light
+};
+
+/// @param position  relative to the camera, m  @param normal  unit  @param light  >= 0  @param dark  bits of channels
+LightTexel light_texel(vec3 position, vec3 normal, vec3 light, unsigned dark, float depth);
+
+struct LightPicture {
+    int width = 0, height = 0;
+    Camera camera;                           ///< of the picture
+    int camera_width = 0, camera_height = 0; ///< pixels that it is for
+    float texels_per_pixel = 1;
+    vec2 at{0.5f};                  ///< where rays pass texels, 0..1 from their top left corners
+    vec3 mean{0};                   ///< of the light of its surfaces
+    std::vector<LightTexel> texels; ///< rows from the top
+};
+
+/// Distance from the plane of a surface at which another one begins, relative to the depth.
+inline constexpr float kOfDepth = 0.005f;
+
+/// The light of a picture with layers L1, L2, albedo, normal and position; empty if one is missing. At most
+/// `most_texels` texels: every second (third...) pixel of a larger picture.
+LightPicture light_picture(Picture const& picture, Camera const& camera, std::size_t most_texels);
+/// Sets LightPicture::mean, of some of its texels.
+void find_mean(LightPicture& light);
+
+} // namespace gi

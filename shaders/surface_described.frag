@@ -1,0 +1,22 @@
+// The first pass of viewer/devices/gl/surface_renderer.h: what a pixel shows, to be lit once.
+
+#if MOVES
+in vec3 lit_position, lit_normal;
+
+uniform vec3 moved_low, moved_size; // of the box of lit positions
+#endif
+
+out uvec4 described;
+
+void main()
+{
+#if MASKED
+    if (coverage() < more.y) discard;
+#endif
+    Shaded s = shade();
+#if MOVES && !EMITS
+    described = describe_moved(s.albedo, normalize(s.normal + lit_normal - normal), (lit_position - moved_low) / moved_size);
+#else
+    described = describe(s.albedo, s.normal, s.emitted, 1.0 / gl_FragCoord.w);
+#endif
+}

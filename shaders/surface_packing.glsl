@@ -1,0 +1,72 @@
+// A surface in four words: normal (octahedral), albedo (square roots of 11, 11 and 10 bits), depth, m, and emission
+// (8 bits each and an exponent). One that has moved since its light was found: instead of depth and emission a bit and
+// the place then in the box of all such places, 21 bits each.
+
+uint pack_normal(vec3 n)
+{
+    vec2 o = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    if (n.z < 0.0) o = (1.0 - abs(o.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(o, vec2(0.0)));
+    return packSnorm2x16(o);
+}
+
+vec3 unpack_normal(uint bits)
+{
+    vec2 o = unpackSnorm2x16(bits);
+    vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
+    float fold = max(-n.z, 0.0);
+    n.xy -= mix(vec2(-fold), vec2(fold), greaterThanEqual(n.xy, vec2(0.0)));
+    return n * inversesqrt(dot(n, n));
+}
+
+vec3 unpack_light(uint bits) // GL_RGB9_E5
+{
+    vec3 m = vec3(bits & 511u, bits >> 9 & 511u, bits >> 18 & 511u);
+    return m * uintBitsToFloat((bits >> 27) + 127u - 24u << 23);
+}
+
+uint pack_albedo(vec3 albedo)
+{
+    uvec3 a = uvec3(sqrt(clamp(albedo, 0.0, 1.0)) * vec3(2047.0, 2047.0, 1023.0) + 0.5);
+    return a.r | a.g << 11 | a.b << 22;
+}
+
+uvec4 describe_moved(vec3 albedo, vec3 n, vec3 in_box)
+{
+    uvec3 p = uvec3(clamp(in_box, 0.0, 1.0) * 2097151.0 + 0.5);
+    return uvec4(pack_normal(n), pack_albedo(albedo), 0x80000000u | p.x << 10 | p.y >> 11, p.y << 21 | p.z);
+}
+
+bool has_moved(uvec4 described) { return described.z >> 31 != 0u; }
+
+vec3 place_in_box(uvec4 described)
+{
+    uvec3 p = uvec3(described.z >> 10 & 0x1fffffu, (described.z & 0x3ffu) << 11 | described.w >> 21, described.w & 0x1fffffu);
+    return vec3(p) / 2097151.0;
+}
+
+uvec4 describe(vec3 albedo, vec3 n, vec3 emitted, float depth)
+{
+    uint e = 0u;
+#if EMITS
+    float most = max(max(emitted.r, emitted.g), emitted.b);
+    if (most > 1e-30) {
+        int power = int(ceil(log2(most * (256.0 / 255.0))));
+        uvec3 m = uvec3(emitted * exp2(float(-power)) * 255.0 + 0.5);
+        e = m.r | m.g << 8 | m.b << 16 | uint(power + 128) << 24;
+    }
+#endif
+    return uvec4(pack_normal(n), pack_albedo(albedo), floatBitsToUint(depth), e);
+}
+
+vec3 albedo_of(uvec4 described)
+{
+    vec3 root = vec3(described.y & 2047u, described.y >> 11 & 2047u, described.y >> 22) / vec3(2047.0, 2047.0, 1023.0);
+    return root * root;
+}
+
+vec3 emission_of(uvec4 described)
+{
+    if (has_moved(described)) return vec3(0.0);
+    vec3 m = vec3(described.w & 255u, described.w >> 8 & 255u, described.w >> 16 & 255u) / 255.0;
+    return m * exp2(float(int(described.w >> 24) - 128));
+}

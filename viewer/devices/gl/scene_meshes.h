@@ -1,0 +1,87 @@
+#pragma once
+// A scene on the GPU: its triangles, sorted by material, and its materials with their textures. What moves is uploaded
+// for every frame; all else once, a little at a time, so that nobody waits for a large scene.
+
+#include "gi/surfaces/shown_scene.h"
+#include "viewer/devices/gl/scene_textures.h"
+
+#include <array>
+
+namespace viewer {
+
+/// How the fragments of a material are drawn: one shader for each.
+struct SurfaceKind {
+    unsigned maps = 0;   ///< bits of the maps that it has, in the order of Material
+    bool mirror = false; ///< may show other surfaces
+    bool emits = false;
+    bool moves = false;
+    gi::AlphaMode alpha = gi::AlphaMode::opaque;
+
+    auto operator<=>(SurfaceKind const&) const = default;
+};
+
+/// Triangles near each other.
+struct SurfaceCluster {
+    std::uint32_t first = 0, count = 0; ///< in the mesh's order
+    gi::Bounds bounds;                  ///< m, from the world's origin; infinite: they move
+};
+
+/// Triangles of one material.
+struct SurfaceBatch {
+    SurfaceKind kind;
+    std::uint32_t material = 0, first = 0, count = 0; ///< in the mesh's order
+    std::vector<SurfaceCluster> clusters;
+};
+
+class SceneMeshes {
+public:
+    /// Of this scene from now on; what is on the GPU already stays. Moving vertices are uploaded at once.
+    void take(std::shared_ptr<gi::ShownScene const> scene);
+    /// Moves what can move, until the next take(); light stays with the surfaces that it was found on.
+    void move(gi::ShownScene::Moved const& now);
+    /// Uploads for about so long. Returns true when all is there. @param most_s  0 = one step
+    bool upload(double most_s);
+
+    gi::ShownScene const& scene() const { return *scene_; }
+    bool has_colors() const { return !scene_->world->colors.empty(); }
+    std::size_t meshes() const { return meshes_.size(); }
+    std::vector<SurfaceBatch> const& batches(std::size_t mesh) const { return meshes_[mesh].batches; }
+    void bind_mesh(std::size_t mesh) const;
+    void bind_material(std::uint32_t material) const; ///< to block 0, and its maps to units 5 to 11
+    gi::Bounds const& moved_bounds() const
+    {
+        return moved_bounds_;
+    }                                                          ///< of what can move, where its light was found
+    unsigned environment() const { return environment_.id(); } ///< 0 = none
+
+private:
+    struct Mesh {
+        std::uint32_t first_vertex = 0, vertices = 0, first_triangle = 0, triangles = 0; ///< in the world
+        bool moves = false;
+        GlObject array, indices, positions, normals, tangents, uv0, uv1, colors;
+        GlObject lit_positions, lit_normals; ///< of what moves: where its light was found
+        std::vector<std::uint32_t> order;    ///< triangles of the world, sorted
+        std::vector<SurfaceBatch> batches;
+    };
+    void make(Mesh& mesh);
+    void sort(Mesh& mesh) const;
+    void cluster(Mesh& mesh) const;
+    void upload_moved();
+    gi::uvec3 corners(Mesh const& mesh, std::uint32_t triangle) const;
+    void upload_materials();
+    void upload_environment();
+
+    std::shared_ptr<gi::ShownScene const> scene_;
+    std::shared_ptr<gi::ShownScene::Moved const> moved_; ///< on the GPU
+    gi::Bounds moved_bounds_;
+    std::shared_ptr<std::vector<gi::Material> const> materials_; ///< on the GPU
+    std::shared_ptr<gi::EnvironmentMap const> map_;              ///< on the GPU
+    std::vector<Mesh> meshes_;                                   ///< what never moves, and what can
+    std::size_t made_ = 0;                                       ///< meshes on the GPU
+    SceneTextures textures_;
+    std::vector<std::size_t> missing_; ///< textures
+    GlObject blocks_, environment_;
+    std::ptrdiff_t block_step_ = 0; ///< bytes
+};
+
+} // namespace viewer
