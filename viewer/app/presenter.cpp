@@ -111,21 +111,19 @@ EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
     ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
     EyeView e{own->picture.shown(), other ? other->picture.shown() : own->picture.shown()};
     glm::ivec2 const margin = frame_->result.views[std::size_t(view)].margin_px,
-                     size(rendered.width, rendered.height);
+                     size = e.picture.size_px - 2 * margin;
     bool const moved = std::size_t(view) < now.size() && !rendered.camera.orthographic &&
                        !(now[std::size_t(view)] == rendered.camera);
     own->reprojection.keep_only(size);
     if (other) other->reprojection.keep_only(size);
-    bool const coarse =
-        frame_->result.views[std::size_t(view)].light && e.picture.size_px.x < size.x; // to be drawn
     gi::Camera const from = with_margin(rendered.camera, size, margin),
                      &to = moved ? now[std::size_t(view)] : rendered.camera;
     // The first time takes long, as drivers compile then: it is done while nothing moves.
-    if (!moved && !coarse && surfaces_scale_ > 0 && renderer_ && frame_->result.scene &&
+    if (!moved && !rendered.camera.orthographic && surfaces_scale_ > 0 && renderer_ && frame_->result.scene &&
         tried_ != frame_->result.scene->world.get() && surfaces(view, from, to, glm::ivec2(16)))
         tried_ = frame_->result.scene->world.get();
-    if (!moved && !coarse && margin == glm::ivec2(0)) return e;
-    if (moved || coarse)
+    if (!moved && margin == glm::ivec2(0)) return e;
+    if (moved)
         if (auto const drawn = surfaces(view, from, to, size)) {
             drew_surfaces_ = true;
             e.picture = e.other = *drawn;

@@ -233,20 +233,16 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
             auto const lights =
                 runner.left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none;
             gi::CameraRays const rays = gi::camera_rays(v.camera, v.width, v.height, world_->world().origin);
-            // Pictures that nobody sees, since surfaces are drawn for newer cameras, need not be smooth.
-            bool const is_seen =
-                !settings_.draw_surfaces || frame.views[k].compared || hides || smoothed.camera == v.camera;
-            if (smoothed.name != v.name || !is_seen) smoothed = {v.name, v.camera, rays, v.width, v.height, {}};
+            if (smoothed.name != v.name) smoothed = {v.name, rays, v.width, v.height, {}};
             gi::CameraRays before = smoothed.rays; // in pixels of this picture, which may have another size
             before.step_x *= float(smoothed.width) / float(v.width);
             before.step_y *= float(smoothed.height) / float(v.height);
             seen_->look(rays, v.width, v.height, lights, smoothed.antialiasing.sample());
             auto const light =
                 settings_.draw_surfaces && &runner == main_.get() ? std::make_shared<gi::LightPicture>() : nullptr;
-            gi::Picture picture = gi::lit_picture(
+            gi::Picture const picture = gi::lit_picture(
                 *seen_, v.width, v.height, *runner.light(k),
-                hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(), counts,
-                is_seen ? &before : nullptr,
+                hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(), counts, &before,
                 gi::vec2(margin) * gi::vec2(v.width, v.height) / gi::vec2(whole_view.width, whole_view.height),
                 light.get());
             if (light) {
@@ -255,12 +251,10 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
                 light->camera_height = v.height;
                 frame.views[k].light = light;
             }
-            smoothed.camera = v.camera;
             smoothed.rays = rays;
             smoothed.width = v.width;
             smoothed.height = v.height;
-            gi::Picture whole = is_seen ? smoothed.antialiasing.add(picture, whole_view.width, whole_view.height)
-                                        : std::move(picture);
+            gi::Picture whole = smoothed.antialiasing.add(picture, whole_view.width, whole_view.height);
             if (frame.views[k].hidden) blacken(whole, *frame.views[k].hidden);
             return whole;
         };

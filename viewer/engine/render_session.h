@@ -117,7 +117,6 @@ private:
     /// A view whose pictures are antialiased.
     struct SmoothedView {
         std::string name;
-        gi::Camera camera;   ///< of its last picture
         gi::CameraRays rays; ///< of its last picture of surfaces
         int width = 0, height = 0;
         gi::Antialiasing antialiasing;
