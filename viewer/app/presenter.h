@@ -50,8 +50,8 @@ struct PresentSettings {
     bool swap_eyes = false;
     /// Where the scene's objects are when a picture is shown, on the presenting thread; empty: where they were in the frame.
     std::function<gi::Pose(LiveFrame const&)> pose;
-    double surfaces_scale =
-        0; ///< side of surfaces drawn for a newer camera over that of the view; 0: pictures are reprojected
+    /// Side of surfaces drawn for a newer camera over that of the view; 0: pictures are reprojected.
+    double surfaces_scale = 0;
 };
 
 class Presenter {

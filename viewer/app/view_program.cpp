@@ -375,8 +375,7 @@ private:
             for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
         bool const reprojects =
             state_.settings().reproject && link_ == nullptr && cameras_.size() == rendered.size();
-        p->settings = present_settings(p->begun_s);
-        if (reprojects && p->settings.surfaces_scale > 0) {
+        if (reprojects && state_.settings().draw_surfaces) {
             cameras_.clear();
             for (ViewCommand const& v : expected(p->begun_s).views) cameras_.push_back(v.camera);
         }
@@ -390,6 +389,7 @@ private:
             meter_.see(newest);
             if (!follows()) core_.expose(*newest);
         }
+        p->settings = present_settings(p->begun_s);
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();

@@ -48,10 +48,8 @@ public:
     std::vector<SurfaceBatch> const& batches(std::size_t mesh) const { return meshes_[mesh].batches; }
     void bind_mesh(std::size_t mesh) const;
     void bind_material(std::uint32_t material) const; ///< to block 0, and its maps to units 5 to 11
-    gi::Bounds const& moved_bounds() const
-    {
-        return moved_bounds_;
-    }                                                          ///< of what can move, where its light was found
+    /// Of what can move, where its light was found.
+    gi::Bounds const& moved_bounds() const { return moved_bounds_; }
     unsigned environment() const { return environment_.id(); } ///< 0 = none
 
 private:
