@@ -1,5 +1,5 @@
 // The light of a surface, found in the newest pictures of light: the rule of gi/surfaces/kept_light.h. Where the newest shows
-// nothing similar, older ones are asked, then the pixels around.
+// nothing similar, older ones are asked, then the pixels around in the newest; what it does not show has the mean light of the last pictures.
 
 layout(binding = 2) uniform usampler2DArray lights; // LightTexel of gi/surfaces/light_picture.h
 
@@ -11,23 +11,26 @@ uniform mat3 texel_from_world[kPictures];    // to places in them, times the dep
 uniform vec2 texel_at[kPictures];            // where rays pass texels
 uniform vec3 mean_light;
 
-const float kAlike = 0.3, kLeast = 1e-4, kOfDepth = 0.005; // as KeptLight
+const float kAlike = 0.3, kUnlike = 0.01, kLeast = 1e-4, kOfDepth = 0.005; // as KeptLight
 
 vec3 find_light(vec3 at, vec3 n)
 {
     vec3 sum = vec3(0.0), weights = vec3(0.0);
     float best = 0.0;
     ivec2 size = textureSize(lights, 0).xy;
-    vec2 newest = vec2(0.0);
+    bool shown = true; // by the newest picture
     for (int k = 0; k <= pictures && best <= kAlike; ++k) {
         bool around = k == pictures;
         int picture = around ? 0 : k;
         vec3 from = at - light_eye[picture], h = texel_from_world[picture] * from;
         vec2 u = h.xy / max(h.z, 1e-9) - texel_at[picture];
-        if (around) u = clamp(u, vec2(0.0), vec2(size - 1));
+        bool inside = h.z > 0.0 && all(greaterThan(u, vec2(-1.0))) && all(lessThan(u, vec2(size)));
+        if (around) {
+            shown = inside;
+            u = clamp(u, vec2(0.0), vec2(size - 1)); // beyond its edge, a plane that goes on there
+        }
         vec2 whole = floor(u), f = u - whole;
-        bool inside = around || (h.z > 0.0 && all(greaterThan(u, vec2(-1.0))) && all(lessThan(u, vec2(size))));
-        ivec2 left = inside ? ivec2(whole) : ivec2(-8);
+        ivec2 left = inside || around ? ivec2(whole) : ivec2(-8);
         for (int j = 0; j < 4; ++j) {
             ivec2 step = ivec2(j & 1, j >> 1);
             float w = (step.x == 0 ? 1.0 - f.x : f.x) * (step.y == 0 ? 1.0 - f.y : f.y) + 0.02;
@@ -49,5 +52,6 @@ vec3 find_light(vec3 at, vec3 n)
             best = max(best, w > 0.0 ? like : 0.0);
         }
     }
+    if (best < kUnlike && !shown) return mean_light; // not that of what happens to be at the edge
     return mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0)));
 }

@@ -43,7 +43,8 @@ void LightRing::add(int view, gi::LightPicture const& light, gi::dvec3 origin)
         for (int r = 0; r < 2; ++r) m[c][r] *= double(light.texels_per_pixel);
     next.texel_from_world = glm::mat3(m);
     next.at = light.at;
-    next.mean = light.mean;
+    constexpr float kNewest = 0.15f;
+    mean_ = entries_.empty() ? light.mean : glm::mix(mean_, light.mean, kNewest);
     entries_.push_back(next);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTextureSubImage3D(texels_.id(), 0, 0, 0, next.layer, width_, height_, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
@@ -67,7 +68,7 @@ void LightRing::bind(GlProgram const& program, int view) const
     std::vector<Entry> const asked = sorted_for(view);
     glBindTextureUnit(2, texels_.id());
     program.set("pictures", int(asked.size()));
-    program.set("mean_light", asked.empty() ? glm::vec3(0) : asked[0].mean);
+    program.set("mean_light", mean_);
     for (std::size_t k = 0; k < asked.size(); ++k) {
         std::string const of = "[" + std::to_string(k) + "]";
         program.set(("light_layers" + of).c_str(), asked[k].layer);

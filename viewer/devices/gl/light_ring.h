@@ -24,7 +24,7 @@ private:
     struct Entry {
         int view = 0, layer = 0;
         std::uint64_t number = 0; ///< counts pictures
-        glm::vec3 eye{0}, mean{0};
+        glm::vec3 eye{0};
         glm::mat3 texel_from_world{1};
         glm::vec2 at{0.5f};
     };
@@ -33,6 +33,7 @@ private:
     GlObject texels_; ///< a layer for each
     int width_ = 0, height_ = 0, layers_ = 0;
     std::uint64_t count_ = 0;
+    glm::vec3 mean_{0}; ///< of the light of the last dozen pictures, smoothed
     std::vector<Entry> entries_;
 };
 
