@@ -21,7 +21,6 @@ public:
     {
         ring_.add(view, light, meshes_.scene().world->origin);
     }
-    bool has_scene() const { return has_scene_; }
     bool has_light() const { return !ring_.empty(); }
     /// Moves what can move, until the next take().
     void move(gi::Pose const& pose) { meshes_.move(*gi::moved_to(meshes_.scene(), pose)); }
