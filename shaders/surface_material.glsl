@@ -24,7 +24,6 @@ in vec2 uv0, uv1;
 #define SPECULAR 4
 #define SPECULAR_COLOR 5
 #define TRANSMISSION 6
-#define HAS(map) ((MAPS & (1 << map)) != 0)
 #define MAP(map) texture(maps[map], at_map(map))
 
 vec2 at_map(int map)

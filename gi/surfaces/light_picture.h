@@ -13,9 +13,9 @@ struct LightTexel {
     std::uint32_t normal = 0; ///< of shading: octahedral, 16 bits each (unpackSnorm2x16)
     float plane_m = 0;        ///< distance of its plane from the camera along the normal
     std::uint32_t light = 0;  ///< radiance over albedo: nine bits each and an exponent (GL_RGB9_E5)
-    std::uint32_t depth_dark =
-        0; ///< a float: depth along the camera's axis, m, 0 = no surface. In its last three bits:
-           ///< the channels in which the albedo is too dark to know the light
+    /// A float: depth along the camera's axis, m, 0 = no surface. In its last three bits: the channels in which the
+    /// albedo is too dark to know the light.
+    std::uint32_t depth_dark = 0;
 };
 
 /// @param position  relative to the camera, m  @param normal  unit  @param light  >= 0  @param dark  bits of channels

@@ -45,8 +45,10 @@ std::shared_ptr<gi::Scene const> scene_with(dvec3 far = dvec3{0})
                       gi::test::add_material(scene, gi::test::lambert({0.2f, 0.6f, 0.3f})), false);
     gi::test::add_sphere(scene, {0.8f, -0.2f, -0.4f}, 0.7f, 4, gi::test::add_material(scene, metal), true);
     gi::test::add_quad(scene, {-0.4f, -1, 0.4f}, {0.8f, 0, 0}, {0, 1, 0}, gi::test::add_material(scene, mask));
-    gi::test::add_quad(scene, {1.5f, -1, 0.5f}, {0, 0, -0.6f}, {0, 0.6f, 0},
-                       gi::test::add_material(scene, gi::test::emitter({0.7f, 0.4f, 0.1f}, true)));
+    // Lamps of one side, from the front and from behind.
+    int const lamp = gi::test::add_material(scene, gi::test::emitter({0.7f, 0.4f, 0.1f}));
+    gi::test::add_quad(scene, {1.5f, -1, -0.1f}, {0, 0, 0.6f}, {0, 0.6f, 0}, lamp);
+    gi::test::add_quad(scene, {1.5f, -0.3f, 0.5f}, {0, 0, -0.6f}, {0, 0.6f, 0}, lamp);
     gi::Scene ball;
     gi::test::add_sphere(ball, {0, 0.8f, -0.5f}, 0.3f, 4,
                          gi::test::add_material(ball, gi::test::lambert({0.7f, 0.2f, 0.2f})), true);
