@@ -55,7 +55,7 @@ protected:
             "{} -std=c++20 -O1 -Wall -Wextra -Werror {} '{}/tests/ar_capture/libcamera04/camera_client.cpp' "
             "'{}' '{}' '{}' '{}' $('{}' flags) -lopencv_imgcodecs -lopencv_imgproc -lopencv_core -lOpenEXR "
             "-lIlmThread "
-            "-lIex -lImath -lyaml-cpp -ltbb -lfmt -lz -ldl -o "
+            "-lIex -lImath -lyaml-cpp -ltbb -lfmt -lpng -lnettle -lz -ldl -o "
             "'{}'",
             CXX_COMPILER,
             "-DGLM_FORCE_SILENT_WARNINGS -DGLM_FORCE_XYZW_ONLY -DFMT_SHARED -isystem "

@@ -15,7 +15,7 @@ AnalysisSettings without_hierarchical()
     return settings;
 }
 
-TEST(Coverage, OfDPrimeOfAllTasksIs92To98PerCent)
+TEST(CoverageOfManyStudies, OfDPrimeOfAllTasksIs92To98PerCent)
 {
     for (double const mean : {0.0, 1.0})
         for (int k = 0; k < 5; ++k) {
@@ -37,7 +37,7 @@ TEST(Coverage, OfDPrimeOfAllTasksIs92To98PerCent)
         }
 }
 
-TEST(Coverage, OfThresholdsOfEveryMethodIs90To99PerCent)
+TEST(CoverageOfManyStudies, OfThresholdsOfEveryMethodIs90To99PerCent)
 {
     for (char const* const method : {"constant", "staircase", "questplus"})
         for (double const lapse : {0.02, 0.05}) {
@@ -84,7 +84,7 @@ Tally tally_of(ThresholdExperiment const& e, char const* method, std::vector<dou
     return own;
 }
 
-TEST(Coverage, OfMeansOfReversalsIs93To97PerCentAndMissesToBothSides)
+TEST(CoverageOfManyStudies, OfMeansOfReversalsIs93To97PerCentAndMissesToBothSides)
 {
     ThresholdExperiment e;
     e.method = "staircase";
@@ -95,7 +95,7 @@ TEST(Coverage, OfMeansOfReversalsIs93To97PerCentAndMissesToBothSides)
     EXPECT_GE(3 * std::min(own.below, own.above), std::max(own.below, own.above));
 }
 
-TEST(Coverage, OfQuestPlusWithManyLapsesIs94To97PerCentAndMissesToBothSides)
+TEST(CoverageOfManyStudies, OfQuestPlusWithManyLapsesIs94To97PerCentAndMissesToBothSides)
 {
     ThresholdExperiment e;
     e.method = "questplus";
@@ -107,7 +107,7 @@ TEST(Coverage, OfQuestPlusWithManyLapsesIs94To97PerCentAndMissesToBothSides)
     EXPECT_GE(2 * std::min(own.below, own.above), std::max(own.below, own.above));
 }
 
-TEST(Coverage, OfObserversByHierarchicalModelsIs93To97PerCent)
+TEST(CoverageOfManyStudies, OfObserversByHierarchicalModelsIs93To97PerCent)
 {
     DetectionExperiment e;
     e.task = DetectionTask::yes_no;

@@ -31,7 +31,7 @@ TEST(PlanFiles, AreTheSameFromGccAndClang)
     std::string const build =
         "bash -c 'clang++-14 -std=c++20 -O1 -ffp-contract=off -isystem " EIGEN_HEADERS " -I " + root + " " + root +
         "/study/script/*.cpp " + root + "/study/plan/*.cpp " + root + "/study/{numeric,adaptive}/*.cpp " + root +
-        "/gi/core/{error,edit_distance,text,yaml}.cpp " + STUDY_EXAMPLES_SOURCE + " " + root +
+        "/gi/core/{error,edit_distance,mistakes,text,yaml}.cpp " + STUDY_EXAMPLES_SOURCE + " " + root +
         "/tests/study_design/plan_writer.cpp -lyaml-cpp -lfmt -o " + other + "' 2>&1";
     std::string const messages = output_of(build);
     ASSERT_TRUE(std::filesystem::exists(other)) << messages;

@@ -1,6 +1,7 @@
 #pragma once
 // Processes that record until they are killed, at random moments.
 
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"
 #include "viewer/protocol/recording/frame_log.h"

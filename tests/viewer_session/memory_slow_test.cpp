@@ -60,8 +60,14 @@ TEST(SessionMemory, IsTheSameAfterManyChangesOfMethod)
         }
         rounds.push_back(memory_now());
     }
-    EXPECT_LT(rounds.back().in_use_mib, 1.02 * rounds[2].in_use_mib);
-    EXPECT_LT(rounds.back().resident_mib, 1.05 * rounds[2].resident_mib);
+    // What threads keep for themselves comes and goes: the least of the last rounds is compared.
+    auto const least = [&](std::size_t first, std::size_t end, double Memory::*what) {
+        double least_mib = rounds[first].*what;
+        for (std::size_t k = first; k < end; ++k) least_mib = std::min(least_mib, rounds[k].*what);
+        return least_mib;
+    };
+    EXPECT_LT(least(5, 8, &Memory::in_use_mib), 1.02 * least(0, 3, &Memory::in_use_mib));
+    EXPECT_LT(least(5, 8, &Memory::resident_mib), 1.05 * least(0, 3, &Memory::resident_mib));
     EXPECT_LT(after_mib, 0.6 * most_mib) << "what a method has left is given back";
 }
 
