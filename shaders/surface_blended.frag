@@ -7,5 +7,9 @@ out vec4 color;
 void main()
 {
     Shaded s = shade();
-    color = vec4(s.emitted + s.albedo * find_light(eye + from_eye, s.normal), clamp(coverage(), 0.0, 1.0));
+    vec4 light = find_light(eye + from_eye, s.normal);
+    color = vec4(s.emitted + s.albedo * light.rgb, clamp(coverage(), 0.0, 1.0));
+#if PUNCTUAL
+    color.rgb += light.a * punctual_light(eye + from_eye, s.normal, -normalize(from_eye), s.albedo, s.gloss);
+#endif
 }

@@ -15,8 +15,8 @@ void main()
 #endif
     Shaded s = shade();
 #if MOVES && !EMITS
-    described = describe_moved(s.albedo, normalize(s.normal + lit_normal - normal), (lit_position - moved_low) / moved_size);
+    described = describe_moved(s.albedo, normalize(s.normal + lit_normal - normal), s.gloss, (lit_position - moved_low) / moved_size);
 #else
-    described = describe(s.albedo, s.normal, s.emitted, 1.0 / gl_FragCoord.w);
+    described = describe(s.albedo, s.normal, s.gloss, s.emitted);
 #endif
 }

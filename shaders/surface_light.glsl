@@ -1,57 +1,114 @@
 // The light of a surface, found in the newest pictures of light: the rule of gi/surfaces/kept_light.h. Where the newest shows
-// nothing similar, older ones are asked, then the pixels around in the newest; what it does not show has the mean light of the last pictures.
+// nothing similar, older ones are asked, then the pixels around in the newest, then cells of space; what none of them know has the mean light of the last pictures.
 
 layout(binding = 2) uniform usampler2DArray lights; // LightTexel of gi/surfaces/light_picture.h
+layout(binding = 3) uniform usampler2DArray slopes; // LightSlope
 
 const int kPictures = 3;
 uniform int pictures;
 uniform int light_layers[kPictures];
 uniform vec3 light_eye[kPictures];           // positions of their cameras
 uniform mat3 texel_from_world[kPictures];    // to places in them, times the depth
+uniform ivec2 light_size[kPictures];         // of each picture, texels
 uniform vec2 texel_at[kPictures];            // where rays pass texels
+uniform float lacks_punctual[kPictures];     // 1 = their light is without that of punctual lights
 uniform vec3 mean_light;
 
+const float kEdge = 0.05; // trust in outermost texels, which are noisier, as they were seen for the shortest time
+const float kLeastTurned = 0.2, kMostTurned = 4.0;
 const float kAlike = 0.3, kUnlike = 0.01, kLeast = 1e-4, kOfDepth = 0.005; // as KeptLight
 
-vec3 find_light(vec3 at, vec3 n)
+// Its fourth component: the share that lacks the light of punctual lights.
+layout(binding = 14) uniform usampler2D cells; // LightCellTable of gi/surfaces/light_cells.h: keys and light
+
+const int kLevels = 6, kBucketsWidth = 256, kBuckets = 65536;
+uniform float narrowest_cell;   // m; 0 = there are none
+uniform float cells_lack_punctual;
+
+uint cell_key(ivec3 cell, int level, int side)
+{
+    uvec3 c = uvec3(cell);
+    uint h = c.x * 73856093u ^ c.y * 19349663u ^ c.z * 83492791u ^ uint(6 * level + side) * 2654435761u;
+    h = (h ^ h >> 16) * 0x85ebca6bu;
+    h = (h ^ h >> 13) * 0xc2b2ae35u;
+    return (h ^ h >> 16) | 1u;
+}
+
+// Between the cells around a place, of the narrowest level that has any; a: 0 = none has.
+vec4 find_in_cells(vec3 at, vec3 n, float distance)
+{
+    vec3 size = abs(n);
+    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2, side = 2 * axis + (n[axis] < 0.0 ? 1 : 0);
+    vec4 sum = vec4(0.0);
+    int narrowest = narrowest_cell > 0.0 ? clamp(int(floor(log2(0.04 * distance / narrowest_cell))), 0, kLevels - 1) : kLevels;
+    for (int level = narrowest; level < kLevels && sum.a < 0.05; ++level) {
+        vec3 u = at / (narrowest_cell * exp2(float(level))) - 0.5, low = floor(u), f = u - low;
+        sum = vec4(0.0);
+        for (int j = 0; j < 8; ++j) {
+            ivec3 step = ivec3(j & 1, j >> 1 & 1, j >> 2);
+            vec3 w = mix(1.0 - f, f, vec3(step));
+            uint key = cell_key(ivec3(low) + step, level, side);
+            uvec4 bucket = uvec4(0u);
+            for (int b = 0; b < 3; ++b) { // those that do not fit are in the next ones
+                int k = int((key >> 1) + uint(b)) & kBuckets - 1;
+                bucket = texelFetch(cells, ivec2(k % kBucketsWidth, k / kBucketsWidth), 0);
+                if (bucket.x == key || bucket.z == key || bucket.z == 0u) break;
+            }
+            bool first = bucket.x == key;
+            sum += first || bucket.z == key ? w.x * w.y * w.z * vec4(unpack_light(first ? bucket.y : bucket.w), 1.0) : vec4(0.0);
+        }
+    }
+    return sum;
+}
+
+vec4 find_light(vec3 at, vec3 n)
 {
     vec3 sum = vec3(0.0), weights = vec3(0.0);
-    float best = 0.0;
-    ivec2 size = textureSize(lights, 0).xy;
+    float best = 0.0, lacks = 0.0, counted = 0.0;
+    ivec3 nearest = ivec3(0);
     bool shown = true; // by the newest picture
-    for (int k = 0; k <= pictures && best <= kAlike; ++k) {
+    for (int k = 0; k <= pictures && best <= kAlike && shown; ++k) {
         bool around = k == pictures;
         int picture = around ? 0 : k;
+        ivec2 size = light_size[picture];
         vec3 from = at - light_eye[picture], h = texel_from_world[picture] * from;
         vec2 u = h.xy / max(h.z, 1e-9) - texel_at[picture];
         bool inside = h.z > 0.0 && all(greaterThan(u, vec2(-1.0))) && all(lessThan(u, vec2(size)));
-        if (around) {
-            shown = inside;
-            u = clamp(u, vec2(0.0), vec2(size - 1)); // beyond its edge, a plane that goes on there
-        }
+        float trust = all(greaterThan(u, vec2(0.5))) && all(lessThan(u, vec2(size) - 1.5)) ? 1.0 : kEdge;
         vec2 whole = floor(u), f = u - whole;
-        ivec2 left = inside || around ? ivec2(whole) : ivec2(-8);
-        for (int j = 0; j < 4; ++j) {
+        int taps = inside ? 4 : 0;
+        for (int j = 0; j < taps; ++j) {
             ivec2 step = ivec2(j & 1, j >> 1);
             float w = (step.x == 0 ? 1.0 - f.x : f.x) * (step.y == 0 ? 1.0 - f.y : f.y) + 0.02;
             if (around) {
                 step = 3 * step - 1; // the corners of the ring
                 w = 0.25;
             }
-            ivec2 p = left + step;
+            ivec2 p = ivec2(whole) + step;
             bool there = all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, size));
-            uvec4 t = texelFetch(lights, ivec3(clamp(p, ivec2(0), size - 1), light_layers[picture]), 0);
+            ivec3 texel = ivec3(clamp(p, ivec2(0), size - 1), light_layers[picture]);
+            uvec4 t = texelFetch(lights, texel, 0);
             vec3 facing = unpack_normal(t.x);
-            vec3 light = unpack_light(t.z);
             float depth = uintBitsToFloat(t.w & ~7u), off = (dot(facing, from) - uintBitsToFloat(t.y)) / (kOfDepth * max(depth, 1e-30));
             float cosine = max(0.0, dot(facing, n)), c2 = cosine * cosine, c4 = c2 * c2, like = c4 * c4 / (1.0 + off * off * off * off);
-            w = there && depth > 0.0 ? w * (like + kLeast) : 0.0;
+            w = there && depth > 0.0 ? w * trust * (like + kLeast) : 0.0;
+            like *= trust;
             vec3 by_channel = w * vec3(1u - (uvec3(t.w) >> uvec3(0u, 1u, 2u) & 1u));
-            sum += by_channel * light;
+            sum += by_channel * unpack_light(t.z);
             weights += by_channel;
+            lacks += w * lacks_punctual[picture];
+            counted += w;
+            nearest = w > 0.0 && like > best ? texel : nearest;
             best = max(best, w > 0.0 ? like : 0.0);
         }
+        shown = !around || inside;
     }
-    if (best < kUnlike && !shown) return mean_light; // not that of what happens to be at the edge
-    return mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0)));
+    vec4 known = vec4(0.0);
+    for (int once = 0; once < 1 && best < kUnlike; ++once) known = find_in_cells(at, n, distance(at, light_eye[0]));
+    if (known.a > 0.0) return vec4(known.rgb / known.a, cells_lack_punctual);
+    if (best < kUnlike && (!shown || counted == 0.0)) return vec4(mean_light, lacks_punctual[0]);
+    uvec2 bent = texelFetch(slopes, nearest, 0).xy;
+    vec3 slope = (vec3(bent.yyy >> uvec3(0u, 10u, 20u) & 1023u) - 512.0) / 64.0;
+    float turned = clamp(1.0 + (best < kUnlike ? 0.0 : dot(slope, n - unpack_normal(bent.x))), kLeastTurned, kMostTurned);
+    return vec4(turned * mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0))), lacks / counted);
 }

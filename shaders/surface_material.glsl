@@ -7,7 +7,7 @@ layout(std140, binding = 0) uniform Material
     vec4 specular_color; // a: specular
     vec4 phong_specular; // a: 1 = the phong model
     vec4 factors;        // metallic, roughness, transmission, scale of the normal map
-    vec4 more;           // reflectance by the index of refraction, least alpha of a mask
+    vec4 more;           // reflectance by the index of refraction, least alpha of a mask, roughness of the phong lobe
     vec4 rows[7];        // of the transform of texture coordinates
     vec4 places[7];      // its offset, and the set of coordinates
 };

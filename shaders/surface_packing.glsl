@@ -1,6 +1,6 @@
-// A surface in four words: normal (octahedral), albedo (square roots of 11, 11 and 10 bits), depth, m, and emission
-// (8 bits each and an exponent). One that has moved since its light was found: instead of depth and emission a bit and
-// the place then in the box of all such places, 21 bits each.
+// A surface in four words: normal (octahedral), albedo (square roots of 11, 11 and 10 bits), gloss (roughness,
+// metallic and reflectance of the coat: 7, 4 and 4 bits), and emission (8 bits each and an exponent). One that has moved
+// since its light was found: a bit, and instead of emission the place then in the box of all such places, 16 bits each.
 
 uint pack_normal(vec3 n)
 {
@@ -30,21 +30,31 @@ uint pack_albedo(vec3 albedo)
     return a.r | a.g << 11 | a.b << 22;
 }
 
-uvec4 describe_moved(vec3 albedo, vec3 n, vec3 in_box)
+uint pack_gloss(vec3 gloss)
 {
-    uvec3 p = uvec3(clamp(in_box, 0.0, 1.0) * 2097151.0 + 0.5);
-    return uvec4(pack_normal(n), pack_albedo(albedo), 0x80000000u | p.x << 10 | p.y >> 11, p.y << 21 | p.z);
+    uvec3 g = uvec3(clamp(gloss * vec3(1.0, 1.0, 1.0 / 0.15), 0.0, 1.0) * vec3(127.0, 15.0, 15.0) + 0.5);
+    return g.x << 24 | g.y << 20 | g.z << 16;
+}
+
+vec3 gloss_of(uvec4 described)
+{
+    return vec3(described.z >> 24 & 127u, described.z >> 20 & 15u, described.z >> 16 & 15u) * vec3(1.0 / 127.0, 1.0 / 15.0, 0.01);
+}
+
+uvec4 describe_moved(vec3 albedo, vec3 n, vec3 gloss, vec3 in_box)
+{
+    uvec3 p = uvec3(clamp(in_box, 0.0, 1.0) * 65535.0 + 0.5);
+    return uvec4(pack_normal(n), pack_albedo(albedo), 0x80000000u | pack_gloss(gloss) | p.x, p.y << 16 | p.z);
 }
 
 bool has_moved(uvec4 described) { return described.z >> 31 != 0u; }
 
 vec3 place_in_box(uvec4 described)
 {
-    uvec3 p = uvec3(described.z >> 10 & 0x1fffffu, (described.z & 0x3ffu) << 11 | described.w >> 21, described.w & 0x1fffffu);
-    return vec3(p) / 2097151.0;
+    return vec3(described.z & 0xffffu, described.w >> 16, described.w & 0xffffu) / 65535.0;
 }
 
-uvec4 describe(vec3 albedo, vec3 n, vec3 emitted, float depth)
+uvec4 describe(vec3 albedo, vec3 n, vec3 gloss, vec3 emitted)
 {
     uint e = 0u;
 #if EMITS
@@ -55,7 +65,7 @@ uvec4 describe(vec3 albedo, vec3 n, vec3 emitted, float depth)
         e = m.r | m.g << 8 | m.b << 16 | uint(power + 128) << 24;
     }
 #endif
-    return uvec4(pack_normal(n), pack_albedo(albedo), floatBitsToUint(depth), e);
+    return uvec4(pack_normal(n), pack_albedo(albedo), pack_gloss(gloss), e);
 }
 
 vec3 albedo_of(uvec4 described)

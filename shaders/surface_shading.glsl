@@ -10,7 +10,11 @@ in vec3 vertex_color;
 
 struct Shaded {
     vec3 albedo, normal, emitted;
+    vec3 gloss;     // roughness, metallic, reflectance of the coat
     bool is_mirror; // or a pane: what it shows is seen instead of it
+#if MIRROR
+    vec3 reflected; // share of the light from there
+#endif
 };
 
 vec3 face_viewer(vec3 n, vec3 to_viewer)
@@ -94,12 +98,15 @@ Shaded shade()
     s.albedo = phong ? base + phong_specular.rgb : opaque * base + f0 + clear * base;
     s.albedo = min(s.albedo, vec3(1.0));
     s.normal = n;
+    s.gloss = phong ? vec3(more.z, 0.0, dot(phong_specular.rgb, vec3(1.0 / 3.0)))
+                    : vec3(roughness, metallic, dot(min(more.x * tint, vec3(1.0)), vec3(1.0 / 3.0)) * specular);
     s.emitted = front || emission.a > 0.0 ? emitted : vec3(0.0);
 #if MIRROR
     const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
     float alpha = roughness * roughness, grazing = pow(clamp(1.0 - dot(n, to_viewer), 0.0, 1.0), 5.0);
     vec3 reflected = f0 + (vec3(opaque * specular + metallic) - f0) * grazing;
     float shown = max(alpha < SMOOTH_ALPHA && !phong ? dot(kLuminance, reflected) : 0.0, clear * dot(kLuminance, base));
+    s.reflected = reflected;
     s.is_mirror = shown > 0.5 * dot(kLuminance, s.albedo);
 #else
     s.is_mirror = false;

@@ -12,6 +12,7 @@ layout(location = 7) in vec3 lit_normal_in;
 uniform mat3 clip_from_world; // to x, y and w
 uniform vec3 eye;
 uniform float nearest_m;
+uniform vec4 kept; // plane before which surfaces are drawn: normal, distance from the world's origin (GL_CLIP_DISTANCE0)
 
 invariant gl_Position;
 
@@ -34,6 +35,7 @@ void main()
     from_eye = position_in - eye;
     vec3 c = clip_from_world * from_eye;
     gl_Position = vec4(c.xy, nearest_m, c.z); // depth nearest / distance: 0 is infinitely far
+    gl_ClipDistance[0] = dot(kept.xyz, position_in) - kept.w;
     normal = normal_in;
 #if MAPS
     uv0 = uv0_in;

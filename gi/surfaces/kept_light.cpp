@@ -2,7 +2,6 @@
 
 #include "gi/filter/filter_input.h"
 #include "gi/render/surface_likeness.h"
-#include "gi/surfaces/light_picture.h"
 
 #include <tbb/parallel_for.h>
 
@@ -140,6 +139,51 @@ FoundLight KeptLight::find(vec3 position, vec3 normal, vec2 place) const
         for (int i = -1; i < 3; ++i)
             if (i < 0 || j < 0 || i > 1 || j > 1) take(left + i, top + j, 0.25f);
     return sum.mean();
+}
+
+LightPicture KeptLight::picture() const
+{
+    LightPicture light;
+    light.width = width_;
+    light.height = height_;
+    light.texels.resize(texels_.size());
+    light.slopes.resize(texels_.size());
+    tbb::parallel_for(0, height_, [&](int y) {
+        for (int x = 0; x < width_; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
+            Texel const& t = texels_[i];
+            if (!(t.reach > 0)) continue;
+            vec3 const from = t.position - camera_.origin;
+            light.texels[i] =
+                light_texel(from, t.normal, t.direct + t.indirect, t.dark, glm::dot(from, camera_.forward));
+            light.slopes[i] = light_slope(t.mean_normal, t.slope);
+        }
+    });
+    // A pixel that nobody saw before has the noise of its few paths: it is no brighter or darker than those around it.
+    constexpr float kBeyond = 1.2f, kAlike = 0.3f;
+    tbb::parallel_for(0, height_, [&](int y) {
+        for (int x = 0; x < width_; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
+            Texel const& t = texels_[i];
+            if (!(t.reach > 0)) continue;
+            float low = kInf, high = 0;
+            for (int v = std::max(0, y - 1); v <= std::min(height_ - 1, y + 1); ++v)
+                for (int u = std::max(0, x - 1); u <= std::min(width_ - 1, x + 1); ++u) {
+                    Texel const& o = texels_[std::size_t(v) * std::size_t(width_) + std::size_t(u)];
+                    if ((u == x && v == y) || !(o.reach > 0) || !(likeness(o, t.position, t.normal) > kAlike))
+                        continue;
+                    float const l = luminance(o.direct + o.indirect);
+                    low = std::min(low, l);
+                    high = std::max(high, l);
+                }
+            vec3 const own = t.direct + t.indirect;
+            float const l = luminance(own), wanted = std::clamp(l, low / kBeyond, std::max(low, high) * kBeyond);
+            if (!(low < kInf) || wanted == l) continue;
+            light.texels[i].light = packed_light(l > 0 ? own * (wanted / l) : vec3{wanted});
+        }
+    });
+    find_mean(light);
+    return light;
 }
 
 std::optional<FoundLight> KeptLight::find(vec3 position, vec3 normal) const

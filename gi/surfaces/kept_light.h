@@ -12,6 +12,7 @@
 
 #include "gi/image_io/picture.h"
 #include "gi/scene/model/projection.h"
+#include "gi/surfaces/light_picture.h"
 
 #include <optional>
 
@@ -37,6 +38,9 @@ public:
     std::optional<FoundLight> find(vec3 position, vec3 normal) const;
     /// The same, for a place in this picture, in its pixels from the top left corner.
     FoundLight find(vec3 position, vec3 normal, vec2 place) const;
+
+    /// The same light for shaders; without its camera.
+    LightPicture picture() const;
 
     int width() const { return width_; }
     int height() const { return height_; }

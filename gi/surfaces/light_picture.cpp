@@ -7,7 +7,10 @@
 
 namespace gi {
 
-LightTexel light_texel(vec3 position, vec3 normal, vec3 light, unsigned dark, float depth)
+namespace {
+
+/// Octahedral, as unpackSnorm2x16 unpacks it.
+std::uint32_t packed_normal(vec3 normal)
 {
     float const size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
     vec2 o = vec2(normal) / size;
@@ -15,8 +18,27 @@ LightTexel light_texel(vec3 position, vec3 normal, vec3 light, unsigned dark, fl
         auto const fold = [](float a, float b) { return (1 - std::abs(b)) * (a < 0 ? -1.0f : 1.0f); };
         o = {fold(o.x, o.y), fold(o.y, o.x)};
     }
-    return {glm::packSnorm2x16(o), glm::dot(normal, position), glm::packF3x9_E1x5(glm::max(light, vec3{0})),
+    return glm::packSnorm2x16(o);
+}
+
+} // namespace
+
+std::uint32_t packed_light(vec3 light) { return glm::packF3x9_E1x5(glm::max(light, vec3{0})); }
+
+LightTexel light_texel(vec3 position, vec3 normal, vec3 light, unsigned dark, float depth)
+{
+    return {packed_normal(normal), glm::dot(normal, position), packed_light(light),
             (std::bit_cast<std::uint32_t>(depth) & ~7u) | dark};
+}
+
+LightSlope light_slope(vec3 mean_normal, vec3 slope)
+{
+    LightSlope s{packed_normal(mean_normal), 0};
+    for (int c = 0; c < 3; ++c) {
+        int const steps = int(std::lround(glm::clamp(slope[c] / kSlopeStep, -511.0f, 511.0f)));
+        s.slope |= std::uint32_t(steps + 512) << (10 * c);
+    }
+    return s;
 }
 
 void find_mean(LightPicture& light)

@@ -18,8 +18,17 @@ struct LightTexel {
     std::uint32_t depth_dark = 0;
 };
 
+/// How its light changes with the normal, see KeptLight: by the factor 1 + dot(slope, normal - mean normal).
+struct LightSlope {
+    std::uint32_t mean_normal = 0; ///< of the surfaces whose light this is, as LightTexel::normal
+    std::uint32_t slope = 0;       ///< ten bits each, 512 = 0, in steps of kSlopeStep
+};
+inline constexpr float kSlopeStep = 1.0f / 64;
+
 /// @param position  relative to the camera, m  @param normal  unit  @param light  >= 0  @param dark  bits of channels
 LightTexel light_texel(vec3 position, vec3 normal, vec3 light, unsigned dark, float depth);
+std::uint32_t packed_light(vec3 light); ///< LightTexel::light
+LightSlope light_slope(vec3 mean_normal, vec3 slope);
 
 struct LightPicture {
     int width = 0, height = 0;
@@ -28,7 +37,10 @@ struct LightPicture {
     float texels_per_pixel = 1;
     vec2 at{0.5f};                  ///< where rays pass texels, 0..1 from their top left corners
     vec3 mean{0};                   ///< of the light of its surfaces
+    std::uint64_t lamps = 0;        ///< counts changes of the scene's light: pictures of other lamps are not mixed
+    bool without_punctual = false;  ///< light of punctual lights is not part of it
     std::vector<LightTexel> texels; ///< rows from the top
+    std::vector<LightSlope> slopes; ///< of the same; empty = light is the same for all normals
 };
 
 /// Distance from the plane of a surface at which another one begins, relative to the depth.

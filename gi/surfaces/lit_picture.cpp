@@ -16,8 +16,7 @@ void put(Layer& layer, std::size_t pixel, vec3 v)
 } // namespace
 
 Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
-                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before, vec2 margin,
-                    LightPicture* light_found)
+                    std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before, vec2 margin)
 {
     Picture picture{width, height, {}, {}};
     picture.add("color", 3);
@@ -29,12 +28,6 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
     std::optional<Projection> const project_before = before ? std::optional<Projection>(*before) : std::nullopt;
     vec2 const of_light{light.width(), light.height()}, smaller = of_light / (vec2{width, height} - 2.0f * margin);
     tbb::combinable<LitCounts> sums;
-    if (light_found) {
-        light_found->width = width;
-        light_found->height = height;
-        light_found->at = seen.at();
-        light_found->texels.assign(std::size_t(width) * std::size_t(height), {});
-    }
     tbb::parallel_for(0, height, [&](int y) {
         thread_local std::vector<SeenSurface> row;
         row.assign(std::size_t(width), {});
@@ -50,10 +43,6 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
                 vec2 const at = glm::clamp(smaller * (place - margin), vec2{0.5f}, of_light - 0.5f);
                 FoundLight const found = light.find(s.position, s.normal, at);
                 radiance += s.albedo * (found.direct + found.indirect);
-                if (light_found && !s.in_mirror)
-                    light_found->texels[i] =
-                        light_texel(s.position - seen.camera().origin, s.normal,
-                                    found.direct + found.indirect + over_albedo(s.direct, s.albedo), 0, s.depth);
                 ++local.surfaces;
                 local.unlike += found.likeness < KeptLight::kUnlike;
             }
@@ -70,7 +59,42 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
         counts.surfaces += c.surfaces;
         counts.unlike += c.unlike;
     });
-    if (light_found) find_mean(*light_found);
+    return picture;
+}
+
+Picture mirror_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
+                       Picture const& of_light)
+{
+    Picture picture{width, height, {}, {}};
+    Layer const& from = *of_light.find("color");
+    std::vector<float>&color = picture.add("color", 3).data, &depth = picture.add("depth", 1).data;
+    vec2 const smaller = vec2{light.width(), light.height()} / vec2{width, height};
+    tbb::parallel_for(0, height, [&](int y) {
+        thread_local std::vector<SeenSurface> row;
+        row.assign(std::size_t(width), {});
+        seen.row_of_mirrors(y, row);
+        for (int x = 0; x < width; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            SeenSurface const& s = row[std::size_t(x)];
+            vec2 const place = smaller * (vec2{float(x), float(y)} + seen.at());
+            std::size_t const j = std::size_t(place.y * float(of_light.height) / float(light.height())) *
+                                      std::size_t(of_light.width) +
+                                  std::size_t(place.x * float(of_light.width) / float(light.width()));
+            vec3 radiance = rgb(from, j);
+            depth[i] = seen.depth(x, y);
+            if (s.in_mirror) {
+                radiance = s.emitted + s.direct;
+                if (s.depth > 0) {
+                    FoundLight const found =
+                        light.find(s.position, s.normal,
+                                   glm::clamp(place, vec2{0.5f}, vec2{light.width(), light.height()} - 0.5f));
+                    radiance += s.albedo * (found.direct + found.indirect);
+                }
+                depth[i] = s.depth;
+            }
+            for (std::size_t c = 0; c < 3; ++c) color[3 * i + c] = radiance[int(c)];
+        }
+    });
     return picture;
 }
 

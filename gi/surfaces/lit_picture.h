@@ -3,7 +3,6 @@
 // and whose light is that of a smaller one.
 
 #include "gi/surfaces/kept_light.h"
-#include "gi/surfaces/light_picture.h"
 #include "gi/surfaces/seen_surfaces.h"
 
 namespace gi {
@@ -17,10 +16,14 @@ struct LitCounts {
 /// @param hidden  1 for each pixel that stays black and without a surface; empty = none
 /// @param before  of the previous frame: adds the layer "motion" for Antialiasing::add; null = none
 /// @param margin  pixels on each side that lie beyond the picture of light, whose edge they take it from
-/// @param found  becomes the light of all surfaces but of those in mirrors, without its camera; null = not needed
 Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
                     std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before = nullptr,
-                    vec2 margin = vec2{0}, LightPicture* found = nullptr);
+                    vec2 margin = vec2{0});
+
+/// The last view of `seen`, lit in mirrors and panes alone: all else, and what is behind nothing, is as bright as in
+/// a picture of light of the same camera. Layers color and depth, as lit_picture.
+Picture mirror_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
+                       Picture const& of_light);
 
 /// Layers of a method's picture for pixels that show a mirror or a pane.
 struct MirrorLayers {

@@ -88,6 +88,18 @@ void SeenSurfaces::changed(Changes const& changes)
     if (changes.materials || changes.coverage || changes.lights) find_needs();
 }
 
+float SeenSurfaces::depth(int x, int y) const
+{
+    NearestTexel const& t = map_.texels[std::size_t(y) * map_.width + std::size_t(x)];
+    return t.primitive == kNoPrimitive ? 0 : 1 / t.key;
+}
+
+void SeenSurfaces::look_at_mirrors(CameraRays const& camera, int width, int height, Lights lights)
+{
+    look(camera, width, height);
+    lights_ = lights == Lights::few && has_few_lights(world_) ? std::uint32_t(world_.lights.size()) : 0;
+}
+
 void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights lights, vec2 at)
 {
     constexpr float kNear = 1e-5f;         // of the world's radius
@@ -98,11 +110,11 @@ void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights 
     clear(map_, std::uint32_t(width), std::uint32_t(height));
     grid_ = camera_grid(camera_, width, height, at, kNear * glm::max(world_.bounds.radius(), 1e-30f));
     draw_view(soup_, 0, soup_.count, cut_outs_, grid_, kSeed, map_);
+    coarse_.clear();
     lights_ = lights == Lights::few && has_few_lights(world_) ? std::uint32_t(world_.lights.size()) : 0;
     if (lights_ == 0) return;
     // First every fourth row and column: a pixel whose surrounding ones agree needs no shadow ray of its own.
     int const columns = (width + kCoarse - 1) / kCoarse, rows = (height + kCoarse - 1) / kCoarse;
-    coarse_.clear();
     std::vector<SeenSurface> found(std::size_t(columns) * std::size_t(rows));
     tbb::parallel_for(0, rows, [&](int k) {
         thread_local std::vector<SeenSurface> row;

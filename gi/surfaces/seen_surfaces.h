@@ -45,10 +45,13 @@ public:
     /// @param at  where rays pass their pixels, 0..1 from the top left corner
     enum class Lights : std::uint8_t { none, few };
     void look(CameraRays const& camera, int width, int height, Lights lights = Lights::none, vec2 at = vec2{0.5f});
+    /// The same if only row_of_mirrors will be asked.
+    void look_at_mirrors(CameraRays const& camera, int width, int height, Lights lights);
     CameraRays const& camera() const { return camera_; } ///< of the last view, with a pinhole
     vec2 at() const { return at_; }
     /// Surfaces of a row of the last view. Safe for concurrent calls.
     void row(int y, std::span<SeenSurface> out) const { fill(y, out, Pixels::all); }
+    float depth(int x, int y) const; ///< of the last view, m along its axis; 0 = nothing
     /// The same for those pixels of a row that show a mirror or a pane; the others stay as they are.
     void row_of_mirrors(int y, std::span<SeenSurface> out) const { fill(y, out, Pixels::mirrors); }
     /// True if some triangle's material is a mirror or a pane all over.

@@ -1,5 +1,7 @@
 #include "gi/surfaces/shown_scene.h"
 
+#include "gi/surfaces/seen_surfaces.h"
+
 namespace gi {
 namespace {
 
@@ -32,6 +34,7 @@ std::shared_ptr<ShownScene const> shown_scene(std::shared_ptr<MovingWorld const>
     if (!last || changes.materials || changes.coverage || changes.emitters)
         next->materials = std::make_shared<std::vector<Material> const>(w.materials);
     WorldView const of = view(w);
+    next->lights = SeenSurfaces::has_few_lights(w) ? w.lights : std::vector<Light>();
     next->environment = w.environment;
     next->environment_cos = of.environment_cos;
     next->environment_sin = of.environment_sin;

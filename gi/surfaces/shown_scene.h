@@ -29,6 +29,7 @@ struct ShownScene {
     std::shared_ptr<EnvironmentMap const> environment; ///< null = none
     float environment_cos = 1, environment_sin = 0;    ///< of its rotation about +Y
     vec3 environment_scale{1};
+    std::vector<Light> lights; ///< punctual ones; empty: there are more than SeenSurfaces::kMostLights
     Background background;
     float radius_m = 0; ///< of the scene's bounds
 };

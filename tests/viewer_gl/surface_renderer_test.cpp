@@ -23,7 +23,9 @@ vec3 light_at(vec3 p)
     return {0.5f + 0.3f * std::sin(p.x), 0.6f + 0.3f * std::cos(2 * p.y), 0.5f + 0.2f * std::sin(p.z + p.x)};
 }
 
-std::shared_ptr<gi::Scene const> scene_with(dvec3 far = dvec3{0})
+constexpr float kMirror_m = -2;
+
+std::shared_ptr<gi::Scene const> scene_with(dvec3 far, std::vector<gi::Light> const& lights, bool mirror)
 {
     gi::Scene scene;
     gi::Material floor = gi::test::lambert(vec3{1});
@@ -54,9 +56,14 @@ std::shared_ptr<gi::Scene const> scene_with(dvec3 far = dvec3{0})
                          gi::test::add_material(ball, gi::test::lambert({0.7f, 0.2f, 0.2f})), true);
     append(scene, std::move(ball), "ball", gi::dmat4(1));
     for (gi::Node& n : scene.nodes) n.driven = n.name == "ball";
+    // Its plane is x = kMirror_m.
+    if (mirror)
+        gi::test::add_quad(scene, {kMirror_m, -1, -1.5f}, {0, 0, 2}, {0, 2, 0},
+                           gi::test::add_material(scene, gi::test::mirror(vec3{0.9f, 0.8f, 0.7f})));
     gi::Scene whole;
     append(whole, std::move(scene), "all", glm::translate(gi::dmat4(1), far));
     whole.background = {gi::BackgroundKind::color, {0.1f, 0.2f, 0.4f}};
+    for (gi::Light const& l : lights) gi::test::add_light(whole, l);
     return std::make_shared<gi::Scene const>(std::move(whole));
 }
 
@@ -67,21 +74,22 @@ gi::Camera camera_at(dvec3 from, dvec3 far = dvec3{0})
 
 class SurfaceRendererTest : public Surfaceless {
 protected:
-    void load(dvec3 far = dvec3{0})
+    void load(dvec3 far = dvec3{0}, std::vector<gi::Light> const& lights = {}, bool mirror = false)
     {
         far_ = far;
-        world = std::make_shared<gi::MovingWorld>(scene_with(far), 0.0, report);
+        world = std::make_shared<gi::MovingWorld>(scene_with(far, lights, mirror), 0.0, report);
         shown = gi::shown_scene(world, {}, nullptr);
     }
     gi::World const& w() const { return world->world(); }
     vec3 light(vec3 p) const { return light_at(vec3(dvec3(p) + w().origin - far_)); }
 
-    /// What the camera sees, lit by light_at; its light, if asked for.
-    gi::Picture exact(gi::Camera const& camera, gi::LightPicture* found = nullptr) const
+    /// What the camera sees, lit by light_at and punctual lights; its light without these, if asked for.
+    gi::Picture exact(gi::Camera const& camera, gi::LightPicture* found = nullptr,
+                      gi::World const* of = nullptr) const
     {
-        gi::SeenSurfaces seen(w(), 0);
+        gi::SeenSurfaces seen(of ? *of : w(), 0);
         gi::CameraRays const rays = gi::camera_rays(camera, kSize.x, kSize.y, w().origin);
-        seen.look(rays, kSize.x, kSize.y);
+        seen.look(rays, kSize.x, kSize.y, gi::SeenSurfaces::Lights::few);
         gi::Picture p{kSize.x, kSize.y, {}, {}};
         for (char const* name : {"L1", "L2", "albedo", "normal", "position", "color"}) p.add(name, 3);
         p.add("depth", 1);
@@ -91,19 +99,24 @@ protected:
             for (int x = 0; x < kSize.x; ++x) {
                 gi::SeenSurface const& s = row[std::size_t(x)];
                 std::size_t const i = std::size_t(y * kSize.x + x);
-                vec3 const l = s.depth > 0 ? s.albedo * light(s.position) : vec3{0};
+                // Where a mirror shows it, it is on this side.
+                vec3 place = s.position;
+                float const plane = float(double(kMirror_m) + far_.x - w().origin.x);
+                if (s.in_mirror) place.x = 2 * plane - place.x;
+                vec3 const l = s.depth > 0 ? s.albedo * light(place) : vec3{0};
                 auto const put = [&](char const* layer, vec3 v) {
                     for (int c = 0; c < 3; ++c) p.find(layer)->data[3 * i + std::size_t(c)] = v[c];
                 };
                 put("L1", l);
                 put("albedo", s.albedo);
-                put("normal", s.normal);
+                put("normal", s.in_mirror ? vec3{0} : s.normal);
                 put("position", vec3(dvec3(s.position) + w().origin));
-                put("color", s.emitted + l);
+                put("color", s.emitted + s.direct + l);
                 p.find("depth")->data[i] = s.depth;
             }
         }
         if (found) *found = gi::light_picture(p, camera, std::size_t(kSize.x * kSize.y));
+        if (found) found->without_punctual = true;
         return p;
     }
 
@@ -119,8 +132,8 @@ protected:
         return rgb;
     }
 
-    /// Share of pixels that differ by more than 2/255 as shown.
-    static double differing(std::vector<float> const& a, std::vector<float> const& b)
+    /// Share of pixels that differ by more than 2/255 (or as much) as shown.
+    static double differing(std::vector<float> const& a, std::vector<float> const& b, float allowed = 2)
     {
         auto const shown_as = [](float v) { return std::pow(std::clamp(v, 0.0f, 1.0f), 1 / 2.2f) * 255; };
         std::size_t n = 0;
@@ -128,7 +141,7 @@ protected:
             float most = 0;
             for (std::size_t c = 0; c < 3; ++c)
                 most = std::max(most, std::abs(shown_as(a[i + c]) - shown_as(b[i + c])));
-            n += !(most <= 2);
+            n += !(most <= allowed);
         }
         return 3 * double(n) / double(a.size());
     }
@@ -176,6 +189,32 @@ TEST_F(SurfaceRendererTest, FindsLightFromAnotherPose)
     EXPECT_GT(still, 0.25);
 }
 
+TEST_F(SurfaceRendererTest, WhatNoPictureShowsIsLitFromCells)
+{
+    load();
+    // What looks up at the sky shows nothing that the other camera sees.
+    gi::Camera const of = gi::look_at({0.4, 0.8, 3.2}, {0.4, 5, 3.0}, 55), now = camera_at({0.4, 0.8, 3.2});
+    gi::LightPicture nothing, earlier;
+    gi::Picture const last = exact(of, &nothing), truth = exact(now, &earlier);
+    nothing.texels[0] = gi::light_texel(vec3{0, 1, 0}, vec3{0, 1, 0}, vec3{9}, 0, 1); // is not empty
+    gi::LightCells cells(w().bounds.radius());
+    for (int k = 0; k < 4; ++k) cells.learn(earlier, earlier.texels.size(), w().origin);
+    SurfaceRenderer plain, renderer;
+    start(plain, nothing);
+    start(renderer, nothing);
+    renderer.take(cells.table());
+    auto const off = [&](std::vector<float> const& a) {
+        double sum = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - truth.find("color")->data[i]);
+        return sum / double(a.size());
+    };
+    double const with = off(drawn(renderer, now, last, of)), without = off(drawn(plain, now, last, of));
+    RecordProperty("with", std::to_string(with));
+    RecordProperty("without", std::to_string(without));
+    EXPECT_LT(with, 0.02); // mean radiance is about 0.3
+    EXPECT_GT(without, 5 * with);
+}
+
 TEST_F(SurfaceRendererTest, MovesObjectsWithTheirLight)
 {
     load();
@@ -213,6 +252,97 @@ TEST_F(SurfaceRendererTest, MovesObjectsWithTheirLight)
     }
     EXPECT_GT(red, 50u);
     EXPECT_GT(double(found_red), 0.95 * double(red));
+}
+
+/// Lights of each type that throw shadows of boxes, balls and masks on the floor.
+std::vector<std::pair<char const*, gi::Light>> lights_of_each_type()
+{
+    gi::Light sun, lamp, spot, wide;
+    sun.type = gi::LightType::directional;
+    sun.direction = glm::normalize(vec3{0.5f, -1, -0.4f});
+    sun.intensity = vec3{2, 1.8f, 1.5f};
+    lamp.position = {-0.2f, 1.6f, 0.9f};
+    lamp.intensity = vec3{3};
+    lamp.range = 5;
+    spot.type = wide.type = gi::LightType::spot;
+    spot.position = wide.position = {-1, 2.2f, 1.5f};
+    spot.direction = wide.direction = glm::normalize(vec3{0.4f, -1, -0.7f});
+    spot.intensity = wide.intensity = vec3{8};
+    spot.cos_inner = std::cos(0.3f);
+    spot.cos_outer = std::cos(0.6f);
+    wide.cos_outer = std::cos(1.2f);
+    return {{"sun", sun}, {"lamp", lamp}, {"spot", spot}, {"wide spot", wide}};
+}
+
+TEST_F(SurfaceRendererTest, PunctualLightsAndTheirShadowsAreThoseOfTheCpuForm)
+{
+    for (auto const& [name, light] : lights_of_each_type()) {
+        load(dvec3{0}, {light});
+        gi::Camera const camera = camera_at({0.4, 0.8, 3.2});
+        gi::LightPicture found;
+        gi::Picture const truth = exact(camera, &found);
+        SurfaceRenderer renderer;
+        start(renderer, found);
+        double const share = differing(drawn(renderer, camera, truth, camera), truth.find("color")->data);
+        RecordProperty(name, std::to_string(share));
+        EXPECT_LT(share, 0.01) << name;
+    }
+}
+
+TEST_F(SurfaceRendererTest, ShadowsFollowWhatMoves)
+{
+    for (auto const& [name, light] : lights_of_each_type()) {
+        load(dvec3{0}, {light});
+        gi::Camera const camera = camera_at({0.4, 0.8, 3.2});
+        gi::LightPicture found;
+        gi::Picture const before = exact(camera, &found);
+        SurfaceRenderer renderer;
+        start(renderer, found);
+        for (dvec3 const to : {dvec3(-0.7, 0.2, 0), dvec3(0.4, -0.6, 1.2)}) {
+            gi::Pose pose = gi::evaluate_pose(*w().scene, 0.0);
+            gi::dmat4& ball = pose.world_from_node[shown->moving->instances[0].node];
+            ball = glm::translate(gi::dmat4(1), to) * ball;
+            renderer.move(pose);
+            std::vector<float> moved = drawn(renderer, camera, before, camera);
+            gi::MovingWorld after(world->world().scene, 0.0, report);
+            after.advance(pose);
+            gi::Picture const truth = exact(camera, nullptr, &after.world());
+            std::vector<float> const& expected = truth.find("color")->data;
+            for (std::size_t i = 0; i < truth.pixels(); ++i) // the ball's other light is older
+                if (glm::length(gi::rgb(*truth.find("albedo"), i) - vec3{0.7f, 0.2f, 0.2f}) < 0.01f)
+                    std::copy_n(&expected[3 * i], 3, &moved[3 * i]);
+            double const share = differing(moved, expected);
+            RecordProperty(std::string(name) + std::to_string(to.y), std::to_string(share));
+            EXPECT_LT(share, 0.01) << name;
+        }
+    }
+}
+
+TEST_F(SurfaceRendererTest, FlatMirrorsShowWhatIsBeforeThemNow)
+{
+    for (double const far : {0.0, 4e6}) {
+        load({far, 0, -far}, {lights_of_each_type()[0].second}, true);
+        gi::Camera const of = camera_at({0.9, 0.7, 3}, far_), now = camera_at({0.4, 0.8, 3.2}, far_),
+                         beside = gi::look_at(dvec3(-1.9, 0.3, -0.2) + far_, dvec3(1, -0.3, -0.5) + far_, 100);
+        gi::LightPicture found, of_the_rest, of_all;
+        exact(beside, &of_the_rest);
+        gi::Picture const last = exact(of, &found), truth = exact(now, &of_all);
+        gi::LightCells cells(w().bounds.radius());
+        for (gi::LightPicture const* l : {&of_all, &of_the_rest, &of_all, &of_the_rest})
+            cells.learn(*l, l->texels.size(), w().origin);
+        std::size_t in_mirror = 0;
+        for (std::size_t i = 0; i < truth.pixels(); ++i)
+            in_mirror += truth.find("depth")->data[i] > 0 && gi::rgb(*truth.find("normal"), i) == vec3{0};
+        EXPECT_GT(in_mirror, 300u);
+        SurfaceRenderer renderer;
+        start(renderer, of_the_rest);
+        renderer.add_light(0, found);
+        renderer.take(cells.table());
+        // Cells are wide beside these patterns of light.
+        double const share = differing(drawn(renderer, now, last, of), truth.find("color")->data, 8);
+        RecordProperty(far > 0 ? "far" : "near", std::to_string(share));
+        EXPECT_LT(share, far > 0 ? 0.05 : 0.03);
+    }
 }
 
 TEST_F(SurfaceRendererTest, LeavesTheStateOfOtherPasses)

@@ -110,7 +110,7 @@ TEST(FrameCommand, LightMayBeSmaller)
         EXPECT_NE(why.find("of the size of the views"), std::string::npos) << wrong << why;
     }
     std::vector<std::uint8_t> unknown = full;
-    for (std::uint8_t const version : {std::uint8_t(0), std::uint8_t(5), std::uint8_t(255)}) {
+    for (std::uint8_t const version : {std::uint8_t(0), std::uint8_t(6), std::uint8_t(255)}) {
         unknown[0] = version;
         EXPECT_THROW(command_from_bytes(unknown), gi::InputError) << int(version);
     }
@@ -152,6 +152,21 @@ TEST(FrameCommand, PicturesMayHaveMargins)
     o.views[0].margin_x = 12;
     o.light_scale = 1;
     EXPECT_NE(why_refused(o).find("whose light has its size"), std::string::npos);
+}
+
+/// The fifth version may leave surfaces to others.
+TEST(FrameCommand, OthersMayDrawSurfaces)
+{
+    FrameCommand o = cave_order();
+    o.light_scale = 0.375;
+    std::size_t const bytes = to_bytes(o).size();
+    o.only_light = true;
+    std::vector<std::uint8_t> alone = to_bytes(o);
+    EXPECT_EQ(alone[0], 5);
+    EXPECT_EQ(alone.size(), bytes + 8 + 2 * o.views.size());
+    EXPECT_EQ(command_from_bytes(alone), o);
+    o.light_scale = 1;
+    EXPECT_NE(why_refused(o).find("light alone"), std::string::npos);
 }
 
 TEST(FrameCommand, RandomNumbersComeBackExactly)
@@ -196,12 +211,12 @@ TEST(FrameCommand, EveryCutAndEveryFlippedByteIsAnOrderOrAnInputError)
     longer.push_back(0);
     EXPECT_THROW(command_from_bytes(longer), gi::InputError);
     longer = whole;
-    longer[0] = 5;
+    longer[0] = 6;
     try {
         command_from_bytes(longer);
         FAIL();
     } catch (gi::InputError const& e) {
-        EXPECT_NE(std::string(e.what()).find("version 5"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("version 6"), std::string::npos) << e.what();
     }
 }
 

@@ -262,6 +262,7 @@ TEST(FirstSurfaces, BringWhatOthersNeedToDrawThem)
         EXPECT_EQ(light.width, 40);
         EXPECT_GT(std::ranges::count_if(light.texels, [](gi::LightTexel const& t) { return t.depth_dark > 7; }),
                   40 * 30 / 2);
+        EXPECT_EQ(light.slopes.size(), light.texels.size());
         for (int c = 0; c < 3; ++c) EXPECT_GT(light.mean[c], 0);
     }
     EXPECT_EQ(color(first), color(before)); // pictures are the same
@@ -270,6 +271,32 @@ TEST(FirstSurfaces, BringWhatOthersNeedToDrawThem)
     EXPECT_EQ(s.render(command(9, 1), {}).views[0].light, nullptr); // its layers are its light
     s.apply({"object.block.position", nlohmann::json::array({0.1, 0, 0})});
     EXPECT_NE(s.render(command(9, 1), {}).scene->world, moved.scene->world);
+}
+
+/// Where others draw the surfaces, what they are lit by is the same, and so is every other picture.
+TEST(FirstSurfaces, OfLightAloneLeaveTheRestAsItIs)
+{
+    gi::Report report;
+    RenderSession quick = started(report), whole = started(report);
+    whole.draw_all_surfaces();
+    for (RenderSession* const s : {&quick, &whole}) s->apply({"draw_surfaces", true});
+    std::uint64_t f = 0;
+    for (bool const only_light : {false, true, true, false, false}) {
+        FrameCommand c = command(f++, 0.5, false, 0.5);
+        c.only_light = only_light;
+        SessionFrame const a = quick.render(c, {}), b = whole.render(c, {});
+        EXPECT_EQ(a.views[0].picture.width, only_light ? 40 : 80);
+        EXPECT_EQ(b.views[0].picture.width, 80);
+        auto const same = [](gi::LightTexel const& p, gi::LightTexel const& q) {
+            return p.normal == q.normal && p.plane_m == q.plane_m && p.light == q.light &&
+                   p.depth_dark == q.depth_dark;
+        };
+        EXPECT_TRUE(std::ranges::equal(a.views[0].light->texels, b.views[0].light->texels, same));
+        if (!only_light) {
+            EXPECT_EQ(color(a), color(b));
+        }
+    }
+    EXPECT_EQ(color(quick.render(command(f, 1), {})), color(whole.render(command(f, 1), {})));
 }
 
 } // namespace

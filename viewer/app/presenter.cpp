@@ -4,6 +4,7 @@
 #include "viewer/displays/compose.h"
 #include "viewer/engine/picture_margin.h"
 
+#include <algorithm>
 #include <epoxy/gl.h>
 
 namespace viewer {
@@ -44,6 +45,7 @@ void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> c
     if (frame_->result.scene) {
         if (!renderer_ && why_no_surfaces_.empty()) renderer_.emplace();
         if (renderer_) renderer_->take(frame_->result.scene);
+        if (renderer_) renderer_->take(frame_->result.cells);
     }
     shown_.resize(frame_->result.views.size());
     std::vector<char> is_uploaded(shown_.size());
@@ -82,6 +84,13 @@ bool Presenter::can_draw_surfaces(double most_s)
     return !prepares_;
 }
 
+bool Presenter::draws_surfaces() const
+{
+    return surfaces_scale_ > 0 && !prepares_ && renderer_ && frame_ && frame_->result.scene &&
+           tried_ == frame_->result.scene->world.get() &&
+           std::ranges::none_of(frame_->result.views, [](ViewPicture const& v) { return v.hidden || v.compared; });
+}
+
 std::optional<ShownPicture> Presenter::surfaces(int view, gi::Camera const& from, gi::Camera const& to,
                                                 glm::ivec2 size_px)
 {
@@ -92,10 +101,13 @@ std::optional<ShownPicture> Presenter::surfaces(int view, gi::Camera const& from
     ViewPicture const& rendered = frame_->result.views[std::size_t(view)];
     if (shown.other || rendered.hidden) return std::nullopt;
     if (!std::exchange(shown.is_light, true)) {
-        if (rendered.light)
+        if (rendered.light) {
             renderer_->add_light(view, *rendered.light);
-        else
-            renderer_->add_light(view, gi::light_picture(rendered.picture, from, kMostTexels));
+        } else {
+            gi::LightPicture light = gi::light_picture(rendered.picture, from, kMostTexels);
+            light.lamps = frame_->result.lamps;
+            renderer_->add_light(view, light);
+        }
     }
     if (!renderer_->has_light()) return std::nullopt;
     glm::ivec2 const size = glm::max(glm::ivec2(glm::round(surfaces_scale_ * glm::dvec2(size_px))), glm::ivec2(1));
@@ -111,7 +123,8 @@ EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
     ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
     EyeView e{own->picture.shown(), other ? other->picture.shown() : own->picture.shown()};
     glm::ivec2 const margin = frame_->result.views[std::size_t(view)].margin_px,
-                     size = e.picture.size_px - 2 * margin;
+                     size = frame_->command.only_light ? glm::ivec2(rendered.width, rendered.height)
+                                                       : e.picture.size_px - 2 * margin;
     bool const moved = std::size_t(view) < now.size() && !rendered.camera.orthographic &&
                        !(now[std::size_t(view)] == rendered.camera);
     own->reprojection.keep_only(size);
@@ -122,8 +135,9 @@ EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
     if (!moved && !rendered.camera.orthographic && surfaces_scale_ > 0 && renderer_ && frame_->result.scene &&
         tried_ != frame_->result.scene->world.get() && surfaces(view, from, to, glm::ivec2(16)))
         tried_ = frame_->result.scene->world.get();
-    if (!moved && margin == glm::ivec2(0)) return e;
-    if (moved)
+    bool const only_light = frame_->command.only_light; // else it shows surfaces itself
+    if (!moved && !only_light && margin == glm::ivec2(0)) return e;
+    if (moved || only_light)
         if (auto const drawn = surfaces(view, from, to, size)) {
             drew_surfaces_ = true;
             e.picture = e.other = *drawn;

@@ -70,6 +70,8 @@ public:
     /// True if surfaces are about to be drawn, once more of the scene is on the GPU: draw again soon.
     bool prepares() const { return prepares_; }
     bool drew_surfaces() const { return drew_surfaces_; } ///< in the last draw
+    /// True if surfaces of every view can be drawn: pictures may be of light alone.
+    bool draws_surfaces() const;
     /// Why surfaces are not drawn although they should be; empty: they are, or will be.
     std::string const& why_no_surfaces() const { return why_no_surfaces_; }
 

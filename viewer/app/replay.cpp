@@ -103,6 +103,8 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     RecordedScenes const scenes = load(header.settings.value("load", nlohmann::json::object()));
     RenderSession session(scenes.load, o.threads, report);
     session.drive_bodies(scenes.drive);
+    bool const shows = !o.out.empty() || !o.video.empty();
+    if (shows) session.draw_all_surfaces();
     std::set<std::string> overridden;
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
     for (Change const& c : o.settings) overridden.insert(current_key(c.key));
@@ -140,7 +142,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
         SessionFrame const result = session.render(command, {});
         ++summary.frames;
         bar.update(0, fmt::format("{} frames", summary.frames));
-        if (frame->pixel_hash && as_recorded(o)) {
+        if (frame->pixel_hash && as_recorded(o) && !(command.only_light && shows)) {
             bool const same = frame_hash(result) == *frame->pixel_hash;
             ++(same ? summary.same : summary.other);
             if (!same && !summary.first_other) summary.first_other = command.frame;

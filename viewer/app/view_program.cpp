@@ -272,6 +272,7 @@ private:
         }
         at.views = std::move(layout.views);
         at.jump = state_.navigation.jump();
+        at.draws_surfaces = draws_surfaces_ && !state_.wants_screenshot;
         if (link_ == nullptr) anticipation_.see(at);
         if (link_ == nullptr) {
             cameras_.clear();
@@ -333,7 +334,8 @@ private:
         if (presenting_->busy()) return;
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
-        bool const moved = state_.settings().reproject && link_ == nullptr && has_moved() &&
+        bool const moved = state_.settings().reproject && link_ == nullptr &&
+                           (has_moved() || (newest && newest->command.only_light)) &&
                            since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_);
         bool const draws = prepares_ && since_s > 1 / kMessages_Hz;
         bool const flickers = state_.settings().view == "flicker" && since_s > 0.5 / kFlicker_Hz;
@@ -350,6 +352,7 @@ private:
         std::shared_ptr<LiveFrame const> frame;
         bool fresh = false, panel = false, messages = false, wants_bytes = false, reprojected = false;
         bool surfaces = false, prepares = false; ///< drawn; or about to be
+        bool can_draw = true;                    ///< surfaces of all views
         std::string why_no_surfaces;
         PresentSettings settings;
         std::vector<gi::Camera> cameras;
@@ -369,7 +372,8 @@ private:
         p->frame = newest;
         p->fresh = fresh;
         p->begun_s = state_.clock.now_s();
-        p->wants_bytes = newest && std::exchange(state_.wants_screenshot, false);
+        if (newest && state_.wants_screenshot && !newest->command.only_light) // its picture is saved, too
+            p->wants_bytes = std::exchange(state_.wants_screenshot, false);
         std::vector<gi::Camera> rendered;
         if (newest)
             for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
@@ -380,7 +384,7 @@ private:
             for (ViewCommand const& v : expected(p->begun_s).views) cameras_.push_back(v.camera);
         }
         shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
-        p->reprojected = !(shown_cameras_ == rendered);
+        p->reprojected = !(shown_cameras_ == rendered) || (newest && newest->command.only_light);
         if (fresh) {
             state_.frame = newest;
             state_.follow(newest->settings);
@@ -448,6 +452,7 @@ private:
                                       p.cameras);
             p.surfaces |= shown.pictures().drew_surfaces();
             p.prepares |= shown.pictures().prepares();
+            p.can_draw &= shown.pictures().draws_surfaces();
             p.why_no_surfaces = shown.pictures().why_no_surfaces();
             if (p.wants_bytes) shoot(target_of(shown.window), p.shots);
             if (shown.panel && (p.messages || p.panel)) shown.panel->draw();
@@ -473,6 +478,7 @@ private:
     void presented(Presentation const& p)
     {
         prepares_ = p.prepares;
+        draws_surfaces_ = p.can_draw;
         if (!p.why_no_surfaces.empty() && !std::exchange(no_surfaces_told_, true)) {
             core_.report.lose("surfaces not drawn, pictures are reprojected", 1, p.why_no_surfaces);
             tell("surfaces are not drawn for newer poses (" + p.why_no_surfaces +
@@ -576,7 +582,8 @@ private:
     double draw_s_ = 0; ///< that the last reprojected picture took
     SurfacesScale surfaces_scale_;
     double surfaces_s_ = 0; ///< from the start of a picture whose surfaces are drawn until it is shown, smoothed
-    bool prepares_ = false; ///< surfaces will be drawn when more of the scene is on the GPU
+    bool draws_surfaces_ = false; ///< pictures may be of light alone
+    bool prepares_ = false;       ///< surfaces will be drawn when more of the scene is on the GPU
 };
 
 } // namespace

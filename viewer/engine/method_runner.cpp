@@ -8,8 +8,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <utility>
 #include <tbb/parallel_for.h>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -116,7 +116,11 @@ gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
 
 MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings,
                            int threads, SceneStart const& start, gi::Report& report, bool ahead)
-    : method_(gi::find_method(method)), report_(report), threads_(threads), origin_(world.world().origin), ahead_(ahead)
+    : method_(gi::find_method(method)),
+      report_(report),
+      threads_(threads),
+      origin_(world.world().origin),
+      ahead_(ahead)
 {
     gi::RenderSettings s = settings.render;
     s.threads = threads;
@@ -131,11 +135,10 @@ MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& wor
     renderer_ = method_.frames(world, start.camera, s, report);
 }
 
-std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
-                                                   std::span<HiddenPixels const> hidden,
-                                                   gi::Changes const& changes, Settings const& settings,
-                                                   gi::SeenSurfaces* seen, bool leaves_out_punctual,
-                                                   gi::StopRequest const& stop, OnStop on_stop)
+std::vector<gi::RenderResult>
+MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> hidden, gi::Changes const& changes,
+                     Settings const& settings, gi::SeenSurfaces* seen, bool leaves_out_punctual,
+                     gi::StopRequest const& stop, OnStop on_stop, gi::FrameView const& around)
 {
     auto* const punctual = gi::ask<gi::PunctualLeftOut>(*renderer_);
     if (punctual != nullptr) punctual->leave_out_punctual(leaves_out_punctual);
@@ -153,8 +156,8 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         ViewCommand const& now = command.views[k];
         Seen const& s = k < seen_.size() ? seen_[k] : none;
         bool const follows = s.name == now.name && s.width == now.width && s.height == now.height;
-        bool const same = s.reuse && follows && s.most_frames == settings.reuse && s.punctual != left_out_punctual_ &&
-                          s.small == small;
+        bool const same = s.reuse && follows && s.most_frames == settings.reuse &&
+                          s.punctual != left_out_punctual_ && s.small == small;
         bool const moved = !same || !(s.camera == now.camera) || !same_pixels(s.hidden, hidden[k]);
         anything_moved |= moved;
         gi::CameraRays const rays = gi::camera_rays(now.camera, now.width, now.height, origin_);
@@ -171,14 +174,21 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         // pixels show one surface for longer.
         if (small) views.back().filter = gi::PixelFilter::centre;
     }
+    if (around.width > 0) views.push_back(around);
     // The blur of a radiance cache would stay in the mean of a still picture.
     auto const sharing = anything_moved ? gi::VertexSharing::cached : gi::VertexSharing::exact;
     if (auto* const live = gi::ask<gi::LiveSettings>(*renderer_)) live->follow(settings.render);
-    if (auto* const axes = gi::ask<gi::FollowingAxes>(*renderer_)) axes->update_axes(gi::updates_axes(method_, settings.render) ? settings.updated_axes : 0);
+    if (auto* const axes = gi::ask<gi::FollowingAxes>(*renderer_))
+        axes->update_axes(gi::updates_axes(method_, settings.render) ? settings.updated_axes : 0);
     auto* const given_up = gi::ask<gi::FramesGivenUp>(*renderer_);
     bool const is_first = std::exchange(first_, false);
     if (given_up != nullptr && on_stop == OnStop::give_up && !is_first && !changes.any()) given_up->may_give_up();
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
+    around_ = {};
+    if (around.width > 0) {
+        around_ = gi::light_picture(results.back().picture, around.camera, results.back().picture.pixels());
+        results.pop_back();
+    }
     still_ = still;
     seen_.resize(command.views.size());
     for (std::size_t k = 0; k < command.views.size(); ++k) {
@@ -188,15 +198,15 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
             s.reuse = std::make_unique<gi::TemporalReuse>(
                 small ? gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse, 17, 2, true}
                       : gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse});
-        s = {now.name,           now.camera,     now.width, now.height,
-             std::move(s.reuse), settings.reuse, hidden[k], std::move(s.light),
-             s.punctual,         small,          next[k].rays, next[k].earlier};
+        s = {now.name,  now.camera,         now.width,  now.height, std::move(s.reuse), settings.reuse,
+             hidden[k], std::move(s.light), s.punctual, small,      next[k].rays,       next[k].earlier};
     }
     // Counts the paths actually traced: for a stopped frame, a replay is given only these.
     still_paths_ = (anything_moved ? 0 : still_paths_) + results[0].paths;
     std::vector<gi::MirrorLayers> mirrors;
     for (std::size_t k = 0; k < results.size(); ++k)
-        mirrors.push_back(reuse(k, results, views[k].partner, scene_change(changes, next[k].moved), settings, seen));
+        mirrors.push_back(
+            reuse(k, results, views[k].partner, scene_change(changes, next[k].moved), settings, seen));
     std::vector<gi::Picture> unfiltered(results.size());
     bool const filtered = is_filtered(results[0], settings);
     for (std::size_t k = 0; k < results.size() && filtered && filtered_share(still_paths_) < 1; ++k)

@@ -33,10 +33,12 @@ public:
     /// Returns one picture per view. @param hidden  per view  @param changes  of the world since the last frame
     /// @param seen  surfaces of the world; null = not needed
     /// @param leaves_out_punctual  as gi::FrameRenderer::leave_out_punctual, if the method can
+    /// @param around  a further view, for light_around(); width 0 = none
     std::vector<gi::RenderResult> render(FrameCommand const& command, std::span<HiddenPixels const> hidden,
                                          gi::Changes const& changes, Settings const& settings,
                                          gi::SeenSurfaces* seen, bool leaves_out_punctual,
-                                         gi::StopRequest const& stop, OnStop on_stop);
+                                         gi::StopRequest const& stop, OnStop on_stop,
+                                         gi::FrameView const& around = {});
     /// The last frame lacks the light of punctual lights.
     bool left_out_punctual() const { return left_out_punctual_; }
     /// Light of a view of the last frame; null without `seen`.
@@ -44,6 +46,8 @@ public:
     {
         return seen_[view].light ? &*seen_[view].light : nullptr;
     }
+    /// Unfiltered light of the further view of the last frame; empty without.
+    gi::LightPicture const& light_around() const { return around_; }
     int still_frames() const { return still_; }
     /// For a method that chooses another: which and why, a sentence; else empty.
     std::string const& choice() const { return choice_; }
@@ -89,6 +93,7 @@ private:
     gi::dvec3 origin_; ///< of the world
     std::unique_ptr<gi::FrameRenderer> renderer_;
     std::vector<Seen> seen_;
+    gi::LightPicture around_;
     bool first_ = true, left_out_punctual_ = false;
     bool ahead_;
     gi::FireflyCounts fireflies_; ///< of all frames

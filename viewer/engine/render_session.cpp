@@ -37,6 +37,21 @@ void release_memory()
     malloc_trim(0);
 }
 
+/// A view of all that is around the eye, of a quarter of it in each frame.
+gi::FrameView around(FrameCommand const& command)
+{
+    constexpr int kSide_px = 56;
+    constexpr double kFov_rad = 2.0; // of a tetrahedron's faces and a little more
+    constexpr double k = 0.5773502691896258;
+    static constexpr std::array<gi::dvec3, 4> kForward{gi::dvec3{k, k, k}, {-k, -k, k}, {-k, k, -k}, {k, -k, -k}};
+    gi::dvec3 const eye(command.views.front().camera.world_from_camera[3]);
+    gi::FrameView view;
+    view.camera = gi::look_at(eye, eye + kForward[command.frame % kForward.size()], glm::degrees(kFov_rad));
+    view.width = view.height = kSide_px;
+    view.filter = gi::PixelFilter::centre;
+    return view;
+}
+
 } // namespace
 
 ViewCommand scaled(ViewCommand view, double scale)
@@ -145,6 +160,7 @@ void RenderSession::adopt(PreparedScene p)
     compared_.reset();
     seen_.reset();
     shown_world_.reset();
+    forget_cells();
     forget_smoothed();
     placed_.clear();
     edits_.clear();
@@ -162,6 +178,7 @@ void RenderSession::rebuild(std::shared_ptr<gi::Scene const> scene)
     restart(); // method runners refer to the old world
     seen_.reset();
     shown_world_.reset();
+    forget_cells();
     forget_smoothed();
     world_ = std::move(world);
     scene_ = std::move(scene);
@@ -203,10 +220,54 @@ gi::Changes RenderSession::move_to(FrameCommand const& command)
     return changes;
 }
 
+void RenderSession::forget_cells()
+{
+    cells_.reset();
+    known_.reset();
+}
+
 void RenderSession::forget_smoothed()
 {
     smoothed_.clear();
     smoothed_compared_.clear();
+}
+
+/// Brings the light of all views for those who draw surfaces. @param light  its views are those of light
+void RenderSession::learn_light(FrameCommand const& light, SessionFrame& frame)
+{
+    constexpr std::size_t kTexels = 1u << 13; // of a view
+    if (!cells_) cells_.emplace(world_->world().bounds.radius());
+    for (std::size_t k = 0; k < light.views.size(); ++k) {
+        ViewCommand const& v = light.views[k];
+        auto found = std::make_shared<gi::LightPicture>(main_->light(k)->picture());
+        found->without_punctual = main_->left_out_punctual();
+        found->lamps = lamps_;
+        found->camera = v.camera;
+        found->camera_width = v.width;
+        found->camera_height = v.height;
+        cells_->learn(*found, kTexels, world_->world().origin);
+        frame.views[k].light = std::move(found);
+    }
+    gi::LightPicture around = main_->light_around();
+    around.without_punctual = main_->left_out_punctual();
+    if (!around.texels.empty()) cells_->learn(around, around.texels.size(), world_->world().origin);
+    known_ = cells_->table();
+    report_.count("cells of light for which there was no room", double(known_->left_out));
+}
+
+/// Replaces the pictures of light by larger ones, if they show mirrors or panes.
+void RenderSession::draw_mirrors(FrameCommand const& command, SessionFrame& frame)
+{
+    if (!seen_->has_mirrors()) return;
+    gi::StageTimer const timer(report_, kSurfacesStage);
+    for (std::size_t k = 0; k < command.views.size(); ++k) {
+        ViewCommand const v = scaled(command.views[k], command.surface_scale);
+        seen_->look_at_mirrors(
+            gi::camera_rays(v.camera, v.width, v.height, world_->world().origin), v.width, v.height,
+            main_->left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none);
+        gi::Picture& picture = frame.views[k].picture;
+        picture = gi::mirror_picture(*seen_, v.width, v.height, *main_->light(k), picture);
+    }
 }
 
 /// Replaces the pictures of light by pictures of the views' size.
@@ -238,19 +299,10 @@ void RenderSession::draw_surfaces(FrameCommand const& command, SessionFrame& fra
             before.step_x *= float(smoothed.width) / float(v.width);
             before.step_y *= float(smoothed.height) / float(v.height);
             seen_->look(rays, v.width, v.height, lights, smoothed.antialiasing.sample());
-            auto const light =
-                settings_.draw_surfaces && &runner == main_.get() ? std::make_shared<gi::LightPicture>() : nullptr;
             gi::Picture const picture = gi::lit_picture(
                 *seen_, v.width, v.height, *runner.light(k),
                 hidden ? std::span<std::uint8_t const>(*hidden) : std::span<std::uint8_t const>(), counts, &before,
-                gi::vec2(margin) * gi::vec2(v.width, v.height) / gi::vec2(whole_view.width, whole_view.height),
-                light.get());
-            if (light) {
-                light->camera = v.camera;
-                light->camera_width = v.width;
-                light->camera_height = v.height;
-                frame.views[k].light = light;
-            }
+                gi::vec2(margin) * gi::vec2(v.width, v.height) / gi::vec2(whole_view.width, whole_view.height));
             smoothed.rays = rays;
             smoothed.width = v.width;
             smoothed.height = v.height;
@@ -283,14 +335,24 @@ SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRe
         gi::StageTimer const timer(report_, "world");
         changes = move_to(command);
     }
-    if (!settings_.draw_surfaces)
+    constexpr float kOtherLight = 0.01f, kMoved = 0.8f; // what cells of light are worth then
+    bool const other_light = scene_change(changes, false) == gi::SceneChange::light;
+    lamps_ += other_light;
+    if (cells_ && other_light)
+        cells_->doubt(kOtherLight);
+    else if (cells_ && changes.geometry)
+        cells_->doubt(kMoved);
+    if (!settings_.draw_surfaces) {
         shown_world_.reset();
-    else
+        forget_cells();
+    } else {
         shown_world_ = gi::shown_scene(world_, changes, shown_world_.get());
+    }
     SessionFrame frame;
     frame.scene = shown_world_;
     if (shown_world_) frame.placed = placed_;
     frame.moved = changes.geometry;
+    frame.lamps = lamps_;
     if (command.views.empty()) return frame;
     if (seen_) {
         gi::StageTimer const timer(report_, "update of surfaces");
@@ -317,7 +379,8 @@ SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRe
         hidden_light.push_back(smaller ? hidden_light_.pixels(v) : hidden_.pixels(v));
     std::vector<gi::RenderResult> results =
         main_->render(light, hidden_light, changes, settings_, seen, leaves_out, stop,
-                      settings_.compare.empty() ? on_stop : OnStop::shorten);
+                      settings_.compare.empty() ? on_stop : OnStop::shorten,
+                      smaller && settings_.draw_surfaces ? around(command) : gi::FrameView());
     frame.still_frames = main_->still_frames();
     frame.dynamic_update = main_->dynamic_update();
     frame.options = results[0].options;
@@ -338,8 +401,15 @@ SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRe
             frame.views[k].compared = std::move(others[k].picture);
         }
     }
-    if (!smaller || scene_change(changes, false) == gi::SceneChange::light) forget_smoothed();
-    if (smaller) draw_surfaces(command, frame);
+    bool const only_light = smaller && command.only_light;
+    if (!smaller || only_light || other_light) forget_smoothed();
+    if (smaller && settings_.draw_surfaces) learn_light(light, frame);
+    frame.cells = known_;
+    if (only_light && !draws_all_)
+        draw_mirrors(command, frame);
+    else if (smaller)
+        draw_surfaces(command, frame);
+    if (only_light) forget_smoothed();
     frame.stages_s = added_.times();
     return frame;
 }

@@ -4,6 +4,7 @@
 // number of threads. The live viewer, the ranks of a cluster and the replay of a recording all drive it.
 
 #include "gi/surfaces/antialiasing.h"
+#include "gi/surfaces/light_cells.h"
 #include "gi/surfaces/shown_scene.h"
 #include "viewer/engine/hidden_views.h"
 #include "viewer/engine/method_runner.h"
@@ -43,6 +44,7 @@ struct ViewPicture {
 
 struct SessionFrame {
     std::vector<ViewPicture> views;   ///< in the order of the frame command
+    std::uint64_t lamps = 0;          ///< LightPicture::lamps
     bool moved = false;               ///< something in the scene moved since the previous frame
     gi::DynamicUpdate dynamic_update; ///< of the main method, not the compared one
     int still_frames = 0;             ///< frames since anything moved or changed, this one included
@@ -53,6 +55,8 @@ struct SessionFrame {
     std::string choice;  ///< of a method that chooses another: which and why, a sentence; else empty
     std::shared_ptr<gi::ShownScene const> scene; ///< null: nobody draws surfaces
     std::vector<PlacedObject> placed;            ///< where they are then
+    std::shared_ptr<gi::LightCellTable const>
+        cells; ///< light of what no picture shows; null: nobody draws surfaces
 };
 
 /// Stage of SessionFrame::stages_s in which surfaces of another size than light are drawn.
@@ -82,6 +86,9 @@ public:
     /// Sets a callback for every following frame.
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
 
+    /// Draws surfaces of all following frames, also of commands that leave it to others.
+    void draw_all_surfaces() { draws_all_ = true; }
+
     Settings const& settings() const { return settings_; }
     std::string const& scene_name() const { return shown_.name; }
     SceneChange const& shown_scene() const { return shown_; } ///< as it was prepared
@@ -98,8 +105,11 @@ private:
     void restart();
     gi::Changes move_to(FrameCommand const& command);
     void forget_smoothed();
+    void forget_cells();
+    void learn_light(FrameCommand const& light, SessionFrame& frame);
     SessionFrame render_whole(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop);
     void draw_surfaces(FrameCommand const& command, SessionFrame& frame);
+    void draw_mirrors(FrameCommand const& command, SessionFrame& frame);
 
     LoadScene load_;
     int threads_;
@@ -123,9 +133,13 @@ private:
     };
     std::vector<SmoothedView> smoothed_, smoothed_compared_; ///< since surfaces are drawn and light is the same
     std::shared_ptr<gi::ShownScene const> shown_world_;      ///< of the last frame
+    std::shared_ptr<gi::LightCellTable const> known_;        ///< to cells_, in the last frame
+    std::optional<gi::LightCells> cells_;                    ///< of the world, if surfaces are drawn by others
     DriveBodies drive_;
     gi::Changes pending_; ///< edits since the last frame
     double time_s_ = 0;   ///< of the last frame
+    bool draws_all_ = false;
+    std::uint64_t lamps_ = 0; ///< changes of light so far
     std::unique_ptr<MethodRunner> main_, compared_;
 };
 

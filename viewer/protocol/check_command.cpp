@@ -112,6 +112,8 @@ void check_command(FrameCommand const& o)
     if (!(o.light_scale > 0 && o.light_scale <= 1))
         refuse(fmt::format("light at {} of the size of the views", o.light_scale),
                "it is more than 0 and at most 1");
+    if (o.only_light && !(o.light_scale < 1))
+        refuse("a picture of light alone that has the size of the view", "it shows surfaces, too");
     if (!(o.surface_scale >= o.light_scale && o.surface_scale <= 1))
         refuse(fmt::format("surfaces at {} of the size of the views", o.surface_scale),
                fmt::format("it is at least that of light, {}, and at most 1", o.light_scale));

@@ -10,9 +10,9 @@
 namespace viewer {
 namespace {
 
-/// The second version has a light scale, the third also a surface scale, the fourth also margins. They are written
-/// only where these are not 1, and not 0.
-constexpr std::uint8_t kVersion = 4;
+/// The second version has a light scale, the third also a surface scale, the fourth also margins; the fifth is of
+/// only_light. They are written only where these are not 1, and not 0.
+constexpr std::uint8_t kVersion = 5;
 
 gi::dmat4 const kIdentity{1};
 std::array<double, 7> constexpr kNoPose{0, 0, 0, 0, 0, 0, 1};
@@ -136,6 +136,7 @@ FrameCommand get_order(ByteReader& from)
     o.paths = int(from.count(CommandLimits::paths));
     if (version > 1) o.light_scale = from.number();
     if (version > 2) o.surface_scale = from.number();
+    o.only_light = version > 4;
     o.world_from_room = get_matrix(from);
     bool others = false;
     o.tracked = get_tracked(from, others);
@@ -167,11 +168,12 @@ std::vector<std::uint8_t> to_bytes(FrameCommand const& o)
 {
     check_command(o);
     ByteWriter to;
-    bool const margins = std::ranges::any_of(o.views,
+    bool const margins = o.only_light ||
+                         std::ranges::any_of(o.views,
                                              [](ViewCommand const&v) { return v.margin_x > 0 || v.margin_y > 0; }),
                small_surfaces = margins || o.surface_scale != 1,
                small_light = small_surfaces || o.light_scale != 1;
-    to.put_byte(margins ? kVersion : small_surfaces ? 3 : small_light ? 2 : 1);
+    to.put_byte(o.only_light ? kVersion : margins ? 4 : small_surfaces ? 3 : small_light ? 2 : 1);
     to.put_count(o.frame);
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) to.put_number(t);
     to.put_count(std::uint64_t(o.paths));

@@ -97,7 +97,18 @@ void run(Options const& o)
         std::size_t turn = 0; // of an eye's two targets: one is shown while the other is drawn
         renderer.look(walk.at(0, 0));
         if (!renderer.next_frame(60)) throw gi::InputError("no frame in 60 s", "", "");
-        std::shared_ptr<LiveFrame const> shown;
+        std::shared_ptr<LiveFrame const> shown = renderer.newest();
+        presenter.take(shown, panes);
+        double const uploads = clock.now_s();
+        if (draws_surfaces) { // as a window does before anybody moves
+            settings.surfaces_scale = surfaces_scale.next();
+            std::vector<gi::Camera> cameras;
+            for (ViewCommand const& v : shown->command.views) cameras.push_back(v.camera);
+            do
+                presenter.draw(targets[0].target(), {0, 0}, {panes[0]}, settings, cameras);
+            while (presenter.prepares());
+            fmt::print("surfaces can be drawn after {:.2f} s\n", clock.now_s() - uploads);
+        }
         begun = clock.now_s();
         walk.begin(begun);
         {
@@ -109,7 +120,8 @@ void run(Options const& o)
         double last = 0;
         for (int k = 0; k < o.scored;) {
             double const now = clock.now_s() - begun;
-            Viewpoint const at = walk.at(now, now - last);
+            Viewpoint at = walk.at(now, now - last);
+            at.draws_surfaces = presenter.draws_surfaces();
             last = now;
             std::vector<gi::Camera> cameras;
             for (ViewCommand const& v : at.views) cameras.push_back(v.camera);
@@ -160,7 +172,8 @@ void run(Options const& o)
             while (clock.now_s() - begun < next_s) { // as the window's loop does
                 double const t = clock.now_s() - begun;
                 if (t - last > 0.004) {
-                    Viewpoint const next = walk.at(t, t - last);
+                    Viewpoint next = walk.at(t, t - last);
+                    next.draws_surfaces = presenter.draws_surfaces();
                     renderer.look(next);
                     anticipation.see(next);
                     last = t;

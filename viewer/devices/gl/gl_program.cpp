@@ -90,5 +90,9 @@ void GlProgram::set(char const* name, glm::mat3 const& v) const
 {
     glProgramUniformMatrix3fv(program_.id(), location(name), 1, GL_FALSE, glm::value_ptr(v));
 }
+void GlProgram::set(char const* name, glm::mat4 const& v) const
+{
+    glProgramUniformMatrix4fv(program_.id(), location(name), 1, GL_FALSE, glm::value_ptr(v));
+}
 
 } // namespace viewer

@@ -4,6 +4,7 @@
 #include "viewer/devices/gl/gl_object.h"
 
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -28,6 +29,7 @@ public:
     void set(char const* name, glm::vec3 value) const;
     void set(char const* name, glm::vec4 value) const;
     void set(char const* name, glm::mat3 const& value) const;
+    void set(char const* name, glm::mat4 const& value) const;
 
 private:
     int location(char const* name) const;

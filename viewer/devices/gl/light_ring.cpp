@@ -8,21 +8,32 @@
 
 namespace viewer {
 
+namespace {
+
+/// A bucket of LightCellTable each; of surface_light.glsl.
+constexpr glm::ivec2 kCells_px{256, int(gi::LightCellTable::kBuckets) / 256};
+
+} // namespace
+
 void LightRing::add(int view, gi::LightPicture const& light, gi::dvec3 origin)
 {
     constexpr int kOfAView = 2;
     static_assert(sizeof(gi::LightTexel) == 4 * sizeof(std::uint32_t));
     if (light.texels.empty()) return;
+    make_cells();
+    if (std::exchange(lamps_, light.lamps) != light.lamps) entries_.clear();
     int const layers = kOfAView * (view + 1);
-    if (light.width != width_ || light.height != height_ || layers > layers_) {
+    if (light.width > width_ || light.height > height_ || layers > layers_) {
         entries_.clear();
-        width_ = light.width;
-        height_ = light.height;
+        width_ = std::max(width_, light.width);
+        height_ = std::max(height_, light.height);
         layers_ = std::max({layers, layers_, kPictures});
-        texels_ = GlObject(GlObject::Kind::texture, GL_TEXTURE_2D_ARRAY);
-        glTextureStorage3D(texels_.id(), 1, GL_RGBA32UI, width_, height_, layers_);
-        glTextureParameteri(texels_.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-        glTextureParameteri(texels_.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        for (GlObject* const to : {&texels_, &slopes_}) {
+            *to = GlObject(GlObject::Kind::texture, GL_TEXTURE_2D_ARRAY);
+            glTextureStorage3D(to->id(), 1, to == &texels_ ? GL_RGBA32UI : GL_RG32UI, width_, height_, layers_);
+            glTextureParameteri(to->id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+            glTextureParameteri(to->id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        }
     }
     Entry next;
     next.view = view;
@@ -43,12 +54,46 @@ void LightRing::add(int view, gi::LightPicture const& light, gi::dvec3 origin)
         for (int r = 0; r < 2; ++r) m[c][r] *= double(light.texels_per_pixel);
     next.texel_from_world = glm::mat3(m);
     next.at = light.at;
+    next.size = {light.width, light.height};
+    next.without_punctual = light.without_punctual;
     constexpr float kNewest = 0.15f;
-    mean_ = entries_.empty() ? light.mean : glm::mix(mean_, light.mean, kNewest);
+    mean_ = entries_.empty() || entries_.back().without_punctual != light.without_punctual
+                ? light.mean
+                : glm::mix(mean_, light.mean, kNewest);
     entries_.push_back(next);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTextureSubImage3D(texels_.id(), 0, 0, 0, next.layer, width_, height_, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
-                        light.texels.data());
+    glTextureSubImage3D(texels_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RGBA_INTEGER,
+                        GL_UNSIGNED_INT, light.texels.data());
+    gi::LightSlope const none = gi::light_slope(gi::vec3{0, 0, 1}, gi::vec3{0});
+    if (light.slopes.empty())
+        glClearTexSubImage(slopes_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RG_INTEGER,
+                           GL_UNSIGNED_INT, &none);
+    else
+        glTextureSubImage3D(slopes_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RG_INTEGER,
+                            GL_UNSIGNED_INT, light.slopes.data());
+}
+
+void LightRing::take(std::shared_ptr<gi::LightCellTable const> cells)
+{
+    if (known_ == cells) return;
+    known_ = std::move(cells);
+    if (!known_) return;
+    make_cells();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTextureSubImage2D(cells_.id(), 0, 0, 0, kCells_px.x, kCells_px.y, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                        known_->buckets.data());
+}
+
+/// Also while there are none: a driver may compile shaders once more for a texture that was missing.
+void LightRing::make_cells()
+{
+    if (cells_.id() == 0) cells_ = texture_2d(GL_RGBA32UI, kCells_px, GL_NEAREST);
+}
+
+void LightRing::clear()
+{
+    entries_.clear();
+    known_ = nullptr;
 }
 
 std::vector<LightRing::Entry> LightRing::sorted_for(int view) const
@@ -67,14 +112,20 @@ void LightRing::bind(GlProgram const& program, int view) const
 {
     std::vector<Entry> const asked = sorted_for(view);
     glBindTextureUnit(2, texels_.id());
+    glBindTextureUnit(3, slopes_.id());
     program.set("pictures", int(asked.size()));
+    program.set("narrowest_cell", known_ ? known_->narrowest_m : 0.0f);
+    program.set("cells_lack_punctual", known_ && known_->without_punctual ? 1.0f : 0.0f);
+    glBindTextureUnit(14, cells_.id());
     program.set("mean_light", mean_);
     for (std::size_t k = 0; k < asked.size(); ++k) {
         std::string const of = "[" + std::to_string(k) + "]";
         program.set(("light_layers" + of).c_str(), asked[k].layer);
         program.set(("light_eye" + of).c_str(), asked[k].eye);
         program.set(("texel_from_world" + of).c_str(), asked[k].texel_from_world);
+        program.set(("light_size" + of).c_str(), asked[k].size);
         program.set(("texel_at" + of).c_str(), asked[k].at);
+        program.set(("lacks_punctual" + of).c_str(), asked[k].without_punctual ? 1.0f : 0.0f);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <epoxy/gl.h>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 namespace viewer {
@@ -32,7 +33,7 @@ MaterialBlock block_of(gi::Material const& m)
                     {m.specular_color, m.specular},
                     {m.phong_specular, m.model == gi::MaterialModel::phong ? 1.0f : 0.0f},
                     {m.metallic, m.roughness, m.transmission, m.normal_scale},
-                    {r, m.alpha_cutoff, 0, 0},
+                    {r, m.alpha_cutoff, std::pow(2 / (m.phong_exponent + 2), 0.25f), 0},
                     {},
                     {}};
     std::array<gi::TextureRef const*, 7> const maps = maps_of(m);
@@ -53,6 +54,14 @@ SurfaceKind kind_of(gi::Material const& m)
     kind.emits = gi::emits(m);
     kind.mirror = gi::may_mirror(gi::make_bsdf(m));
     return kind;
+}
+
+gi::Bounds bounds_of(std::span<gi::vec3 const> positions)
+{
+    gi::Bounds b;
+    for (gi::vec3 const& p : positions)
+        if (gi::all_finite(p)) b = gi::joined(b, {p, p});
+    return b;
 }
 
 template <class T>
@@ -88,6 +97,9 @@ void SceneMeshes::take(std::shared_ptr<gi::ShownScene const> scene)
     gi::World const& w = *scene_->world;
     if (other) {
         meshes_.clear();
+        now_.clear();
+        moving_bounds_ = {};
+        still_bounds_ = bounds_of({w.positions.data(), w.static_vertices});
         made_ = 0;
         materials_ = nullptr;
         moved_ = nullptr;
@@ -260,9 +272,7 @@ void SceneMeshes::upload_moved()
         put(mesh.lit_positions, moved_->positions);
         put(mesh.lit_normals, moved_->normals);
     }
-    moved_bounds_ = {};
-    for (gi::vec3 const& p : moved_->positions)
-        if (gi::all_finite(p)) moved_bounds_ = gi::joined(moved_bounds_, {p, p});
+    moved_bounds_ = bounds_of(moved_->positions);
     move(*moved_);
 }
 
@@ -274,6 +284,10 @@ void SceneMeshes::move(gi::ShownScene::Moved const& now)
         put(mesh.normals, now.normals);
         put(mesh.tangents, now.tangents);
     }
+    if (now_ == now.positions) return;
+    now_ = now.positions;
+    moving_bounds_ = bounds_of(now_);
+    ++moves_so_far_;
 }
 
 void SceneMeshes::upload_environment()

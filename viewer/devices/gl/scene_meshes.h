@@ -50,7 +50,12 @@ public:
     void bind_material(std::uint32_t material) const; ///< to block 0, and its maps to units 5 to 11
     /// Of what can move, where its light was found.
     gi::Bounds const& moved_bounds() const { return moved_bounds_; }
-    unsigned environment() const { return environment_.id(); } ///< 0 = none
+    /// Of what never moves; and of what can, where it is now. m, from the world's origin.
+    gi::Bounds const& still_bounds() const { return still_bounds_; }
+    gi::Bounds const& moving_bounds() const { return moving_bounds_; }
+    bool moves(std::size_t mesh) const { return meshes_[mesh].moves; }
+    std::uint64_t moves_so_far() const { return moves_so_far_; } ///< counts changes of moving_bounds
+    unsigned environment() const { return environment_.id(); }   ///< 0 = none
 
 private:
     struct Mesh {
@@ -71,7 +76,9 @@ private:
 
     std::shared_ptr<gi::ShownScene const> scene_;
     std::shared_ptr<gi::ShownScene::Moved const> moved_; ///< on the GPU
-    gi::Bounds moved_bounds_;
+    gi::Bounds moved_bounds_, still_bounds_, moving_bounds_;
+    std::vector<gi::vec3> now_; ///< positions of what can move
+    std::uint64_t moves_so_far_ = 0;
     std::shared_ptr<std::vector<gi::Material> const> materials_; ///< on the GPU
     std::shared_ptr<gi::EnvironmentMap const> map_;              ///< on the GPU
     std::vector<Mesh> meshes_;                                   ///< what never moves, and what can

@@ -11,7 +11,8 @@
 namespace viewer {
 namespace {
 
-constexpr float kNear = 1e-5f; // of the scene's radius, as SeenSurfaces
+/// Of the scene's radius: what is nearer to a flat mirror is not seen in it.
+constexpr float kApart = 1e-4f;
 
 /// Of points relative to the eye, to x, y and w; the target's top row is its first.
 glm::mat3 clip_from_world(gi::Camera const& camera, glm::ivec2 size_px)
@@ -36,6 +37,21 @@ float nearest_seen(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
     for (glm::vec3 const edge : {w, w - x, w + x, w - y, w + y})
         if (!(most(edge) > 0)) return gi::kInf;
     return std::max(0.0f, -most(-w));
+}
+
+/// Corners in clip space of the rectangle that a box covers; none: a part of it is behind the eye.
+std::optional<std::pair<glm::vec2, glm::vec2>> box_on(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
+{
+    glm::vec2 low(gi::kInf), high(-gi::kInf);
+    for (int k = 0; k < 8; ++k) {
+        glm::vec3 const corner((k & 1) != 0 ? box.high.x : box.low.x, (k & 2) != 0 ? box.high.y : box.low.y,
+                               (k & 4) != 0 ? box.high.z : box.low.z);
+        glm::vec3 const c = clip * (corner - eye);
+        if (!(c.z > 0)) return std::nullopt;
+        low = glm::min(low, glm::vec2(c) / c.z);
+        high = glm::max(high, glm::vec2(c) / c.z);
+    }
+    return std::pair(glm::clamp(low, -1.0f, 1.0f), glm::clamp(high, -1.0f, 1.0f));
 }
 
 /// Depths from 1 (near) to 0 (infinitely far), while it exists.
@@ -65,9 +81,23 @@ void SurfaceRenderer::take(std::shared_ptr<gi::ShownScene const> scene)
         ring_.clear();
         is_ready_ = false;
     }
-    if (has_scene_ && meshes_.scene().materials != scene->materials) is_ready_ = false;
+    if (has_scene_ &&
+        (meshes_.scene().materials != scene->materials || meshes_.scene().lights.empty() != scene->lights.empty()))
+        is_ready_ = false;
+    if (!has_scene_ || meshes_.scene().world != scene->world || meshes_.scene().materials != scene->materials) {
+        planar_.take(*scene);
+        has_drawn_mirrors_ = false;
+    }
     has_scene_ = true;
+    shadows_.take(*scene);
     meshes_.take(std::move(scene));
+}
+
+void SurfaceRenderer::move(gi::Pose const& pose)
+{
+    auto const now = gi::moved_to(meshes_.scene(), pose);
+    meshes_.move(*now);
+    planar_.move(*now);
 }
 
 bool SurfaceRenderer::takes_part(SurfaceKind const& kind, Pass pass)
@@ -81,9 +111,12 @@ GlProgram& SurfaceRenderer::program(SurfaceKind const& kind, Pass pass)
     std::string const defines = fmt::format(
         "#define MASKED {}\n#define MAPS {}\n#define COLORS {}\n#define MIRROR {}\n#define EMITS {}\n#define "
         "MOVES {}\n"
-        "#define SMOOTH_ALPHA {:.9e}\n#define SEARCHES 1\n#define TILE {}\n",
-        int(kind.alpha == gi::AlphaMode::mask), kind.maps, int(meshes_.has_colors()), int(pass == Pass::mirrors),
-        int(kind.emits), int(kind.moves && pass == Pass::described), gi::kSmoothAlpha, PictureTexture::kTile);
+        "#define SMOOTH_ALPHA {:.9e}\n#define SEARCHES 1\n#define TILE {}\n#define PUNCTUAL {}\n#define PLANAR "
+        "{}\n",
+        int(kind.alpha == gi::AlphaMode::mask), kind.maps, int(meshes_.has_colors()),
+        int(pass == Pass::mirrors || pass == Pass::planar), int(kind.emits),
+        int(kind.moves && pass == Pass::described), gi::kSmoothAlpha, PictureTexture::kTile,
+        int(shadows_.any() && pass == Pass::blended), int(pass == Pass::planar));
     std::string const key = std::to_string(int(pass)) + defines;
     auto const at = programs_.find(key);
     if (at != programs_.end()) return at->second;
@@ -95,8 +128,12 @@ GlProgram& SurfaceRenderer::program(SurfaceKind const& kind, Pass pass)
         : pass == Pass::mirrors
             ? GlProgram({"surfaces.vert"}, {kMaterial, kShading, "reprojection.glsl", "surface_mirror.frag"},
                         defines)
+        : pass == Pass::planar
+            ? GlProgram({"surfaces.vert"}, {kMaterial, kShading, "surface_mirror.frag"}, defines)
             : GlProgram({"surfaces.vert"},
-                        {kMaterial, kShading, kPacking, "surface_light.glsl", "surface_blended.frag"}, defines);
+                        {kMaterial, kShading, kPacking, "surface_light.glsl", "surface_punctual.glsl",
+                         "surface_blended.frag"},
+                        defines);
     return programs_.emplace(key, std::move(made)).first->second;
 }
 
@@ -105,27 +142,29 @@ bool SurfaceRenderer::prepare(double most_s)
     if (!has_scene_) return false;
     if (is_ready_) return true;
     if (!meshes_.upload(most_s)) return false;
+    if (!shadows_.prepare(meshes_, eye_)) return false;
     std::size_t const compiled = programs_.size();
     for (std::size_t m = 0; m < meshes_.meshes(); ++m)
         for (SurfaceBatch const& b : meshes_.batches(m)) {
-            for (Pass const pass : {Pass::described, Pass::mirrors, Pass::blended})
+            for (Pass const pass : {Pass::described, Pass::mirrors, Pass::planar, Pass::blended})
                 if (takes_part(b.kind, pass) && programs_.size() == compiled) program(b.kind, pass); // one a step
         }
     if (programs_.size() > compiled) return false;
-    if (!lit_)
-        lit_.emplace(GlProgram({"full_screen.vert"},
-                               {"surface_packing.glsl", "surface_light.glsl", "surface_lit.frag"},
-                               "#define EMITS 1\n"));
+    if (!lit_ || lit_punctual_ != shadows_.any()) {
+        lit_punctual_ = shadows_.any();
+        lit_.emplace(
+            GlProgram({"full_screen.vert"},
+                      {"surface_packing.glsl", "surface_light.glsl", "surface_punctual.glsl", "surface_lit.frag"},
+                      fmt::format("#define EMITS 1\n#define PUNCTUAL {}\n#define SMOOTH_ALPHA {:.9e}\n",
+                                  int(lit_punctual_), gi::kSmoothAlpha)));
+    }
     if (!sky_) sky_.emplace(GlProgram({"full_screen.vert"}, {"sky.frag"}));
     is_ready_ = true;
     return true;
 }
 
-void SurfaceRenderer::draw_batches(Pass pass, int view, gi::Camera const& camera, glm::ivec2 size_px)
+void SurfaceRenderer::draw_batches(Pass pass, Eye const& eye)
 {
-    gi::ShownScene const& scene = meshes_.scene();
-    glm::mat3 const clip = clip_from_world(camera, size_px);
-    glm::vec3 const eye(gi::dvec3(camera.world_from_camera[3]) - scene.world->origin);
     struct Seen {
         float depth;
         SurfaceCluster const* cluster;
@@ -142,7 +181,7 @@ void SurfaceRenderer::draw_batches(Pass pass, int view, gi::Camera const& camera
             if (!takes_part(b.kind, pass)) continue;
             SeenBatch seen{gi::kInf, &b, {}};
             for (SurfaceCluster const& c : b.clusters)
-                if (float const depth = nearest_seen(c.bounds, eye, clip); depth < gi::kInf) {
+                if (float const depth = nearest_seen(c.bounds, eye.at, eye.clip_from_world); depth < gi::kInf) {
                     seen.clusters.push_back({depth, &c});
                     seen.depth = std::min(seen.depth, depth);
                 }
@@ -161,15 +200,23 @@ void SurfaceRenderer::draw_batches(Pass pass, int view, gi::Camera const& camera
             if (&p != last) {
                 last = &p;
                 p.use();
-                p.set("clip_from_world", clip);
-                p.set("eye", eye);
-                p.set("nearest_m", kNear * std::max(scene.radius_m, 1e-30f));
+                p.set("clip_from_world", eye.clip_from_world);
+                p.set("eye", eye.at);
+                p.set("kept", eye.kept);
+                p.set("nearest_m", nearest_m());
                 if (pass == Pass::described) set_moved_box(p);
-                if (pass == Pass::blended) ring_.bind(p, view);
+                if (pass == Pass::blended) {
+                    ring_.bind(p, eye.view);
+                    shadows_.bind(p);
+                }
                 if (pass == Pass::mirrors) {
                     p.set("a_from_b", maps_.a_from_b);
                     p.set("b_in_a", maps_.b_in_a);
                     p.set("nearest", nearest_);
+                }
+                if (pass == Pass::planar) {
+                    p.set("mirror_plane", plane_);
+                    p.set("mirror_tolerance", 4 * kApart * meshes_.scene().radius_m);
                 }
             }
             meshes_.bind_material(seen.batch->material);
@@ -182,6 +229,13 @@ void SurfaceRenderer::draw_batches(Pass pass, int view, gi::Camera const& camera
     }
 }
 
+/// Of depths, as SeenSurfaces.
+float SurfaceRenderer::nearest_m() const
+{
+    constexpr float kNear = 1e-5f; // of the scene's radius
+    return kNear * std::max(meshes_.scene().radius_m, 1e-30f);
+}
+
 void SurfaceRenderer::set_moved_box(GlProgram const& program) const
 {
     gi::Bounds const& box = meshes_.moved_bounds();
@@ -190,27 +244,14 @@ void SurfaceRenderer::set_moved_box(GlProgram const& program) const
     program.set("moved_size", glm::max(box.high - box.low, glm::vec3(1e-30f)));
 }
 
-/// Where a surface is.
-void SurfaceRenderer::light(int view, gi::Camera const& camera, glm::ivec2 size_px, TextureTarget const& described)
-{
-    lit_->use();
-    ring_.bind(*lit_, view);
-    lit_->set("eye", glm::vec3(gi::dvec3(camera.world_from_camera[3]) - meshes_.scene().world->origin));
-    lit_->set("world_from_pixel", glm::mat3(axes_of(camera) * frame_from_pixel(camera, size_px)));
-    set_moved_box(*lit_);
-    glBindTextureUnit(4, described.shown().texture);
-    glBindVertexArray(no_vertices_.id());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-void SurfaceRenderer::draw_sky(gi::Camera const& camera, glm::ivec2 size_px)
+void SurfaceRenderer::draw_sky(Eye const& eye)
 {
     gi::ShownScene const& scene = meshes_.scene();
     if (scene.background.kind != gi::BackgroundKind::map || meshes_.environment() == 0) return;
     float const c = scene.environment_cos, s = scene.environment_sin;
-    glm::dmat3 const map_from_world(gi::dvec3(c, 0, s), gi::dvec3(0, 1, 0), gi::dvec3(-s, 0, c));
+    glm::mat3 const map_from_world(glm::vec3(c, 0, s), glm::vec3(0, 1, 0), glm::vec3(-s, 0, c));
     sky_->use();
-    sky_->set("map_from_pixel", glm::mat3(map_from_world * axes_of(camera) * frame_from_pixel(camera, size_px)));
+    sky_->set("map_from_pixel", map_from_world * eye.world_from_pixel);
     sky_->set("scale", scene.environment_scale);
     glBindTextureUnit(3, meshes_.environment());
     glBindVertexArray(no_vertices_.id());
@@ -218,44 +259,146 @@ void SurfaceRenderer::draw_sky(gi::Camera const& camera, glm::ivec2 size_px)
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+SurfaceRenderer::Eye SurfaceRenderer::eye_of(int view, gi::Camera const& camera, glm::ivec2 size_px) const
+{
+    return {view,
+            clip_from_world(camera, size_px),
+            glm::vec3(gi::dvec3(camera.world_from_camera[3]) - meshes_.scene().world->origin),
+            glm::mat3(axes_of(camera) * frame_from_pixel(camera, size_px)),
+            glm::vec4(0),
+            false};
+}
+
+/// Behind a mirror, of which it keeps what is more than `apart` before it.
+SurfaceRenderer::Eye SurfaceRenderer::mirrored(Eye const& eye, PlanarMirror const& mirror, float apart)
+{
+    float const before = glm::dot(mirror.normal, eye.at) - mirror.distance_m, side = before < 0 ? -1.0f : 1.0f;
+    glm::vec3 const n = mirror.normal;
+    glm::mat3 const reflect = glm::mat3(1) - 2.0f * glm::outerProduct(n, n);
+    return {eye.view,
+            eye.clip_from_world * reflect,
+            eye.at - 2 * before * n,
+            reflect * eye.world_from_pixel,
+            glm::vec4(side * n, side * mirror.distance_m + apart),
+            true};
+}
+
+void SurfaceRenderer::fit(Target& to, glm::ivec2 size_px)
+{
+    if (to.color && to.color->shown().size_px == size_px) return;
+    to.described.emplace(TextureTarget::Format::words, size_px);
+    to.color.emplace(TextureTarget::Format::linear, size_px);
+    to.depth = texture_2d(GL_DEPTH_COMPONENT32F, size_px, GL_NEAREST);
+    for (auto const* target : {&to.described, &to.color})
+        glNamedFramebufferTexture((*target)->target().framebuffer, GL_DEPTH_ATTACHMENT, to.depth.id(), 0);
+}
+
+/// Surfaces and what is behind them, without mirrors and blended surfaces. Leaves the target of colours bound.
+void SurfaceRenderer::draw_lit(Eye const& eye, Target const& to)
+{
+    gi::ShownScene const& scene = meshes_.scene();
+    float const far = 0;
+    glDepthMask(GL_TRUE);
+    glBindFramebuffer(GL_FRAMEBUFFER, to.described->target().framebuffer);
+    glClearNamedFramebufferfv(to.described->target().framebuffer, GL_DEPTH, 0, &far);
+    glDepthFunc(GL_GREATER);
+    draw_batches(Pass::described, eye);
+    glBindFramebuffer(GL_FRAMEBUFFER, to.color->target().framebuffer);
+    bool const colored = scene.background.kind == gi::BackgroundKind::color && !eye.in_mirror; // as the CPU form
+    glm::vec4 const behind(colored ? scene.background.color : glm::vec3(0), 1);
+    glClearNamedFramebufferfv(to.color->target().framebuffer, GL_COLOR, 0, &behind.x);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_LESS); // than where a surface is
+    lit_->use();
+    ring_.bind(*lit_, eye.view);
+    lit_->set("eye", eye.at);
+    lit_->set("world_from_pixel", eye.world_from_pixel);
+    set_moved_box(*lit_);
+    lit_->set("nearest_m", nearest_m());
+    shadows_.bind(*lit_);
+    glBindTextureUnit(4, to.described->shown().texture);
+    glBindTextureUnit(12, to.depth.id());
+    glBindVertexArray(no_vertices_.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    draw_sky(eye);
+}
+
+void SurfaceRenderer::draw_blended(Eye const& eye)
+{
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    glDepthFunc(GL_GREATER);
+    draw_batches(Pass::blended, eye);
+    glDisable(GL_BLEND);
+}
+
+/// What flat mirrors show, from behind them; the largest ones of the picture.
+void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 size_px)
+{
+    constexpr std::size_t kMost = 2;
+    float const apart = kApart * std::max(meshes_.scene().radius_m, 1e-30f);
+    struct Seen {
+        PlanarMirror const* mirror;
+        glm::ivec2 low_px, size_px;
+    };
+    std::vector<Seen> seen;
+    for (PlanarMirror const& m : planar_.all()) {
+        bool const is_seen = std::abs(glm::dot(m.normal, eye.at) - m.distance_m) > apart &&
+                             nearest_seen(m.bounds, eye.at, eye.clip_from_world) < gi::kInf;
+        if (!is_seen && has_drawn_mirrors_) continue;
+        glm::ivec2 low(0), high = is_seen ? size_px : glm::ivec2(1);
+        if (auto const box = is_seen ? box_on(m.bounds, eye.at, eye.clip_from_world) : std::nullopt) {
+            glm::vec2 const px = 0.5f * glm::vec2(size_px);
+            low = glm::clamp(glm::ivec2(glm::floor((box->first + 1.0f) * px)), glm::ivec2(0), size_px);
+            high = glm::clamp(glm::ivec2(glm::ceil((box->second + 1.0f) * px)), glm::ivec2(0), size_px);
+        }
+        if (high.x > low.x && high.y > low.y) seen.push_back({&m, low, high - low});
+    }
+    auto const pixels = [](Seen const& s) { return std::int64_t(s.size_px.x) * s.size_px.y; };
+    std::ranges::sort(seen, [&](Seen const& a, Seen const& b) { return pixels(a) > pixels(b); });
+    if (seen.size() > kMost) seen.resize(kMost);
+    has_drawn_mirrors_ = true;
+    for (Seen const& s : seen) {
+        fit(mirror_image_, size_px);
+        Eye const behind = mirrored(eye, *s.mirror, apart);
+        plane_ = glm::vec4(s.mirror->normal, s.mirror->distance_m);
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(s.low_px.x, s.low_px.y, s.size_px.x, s.size_px.y);
+        glEnable(GL_CLIP_DISTANCE0);
+        glFrontFace(GL_CW);
+        draw_lit(behind, mirror_image_);
+        draw_blended(behind);
+        glFrontFace(GL_CCW);
+        glDisable(GL_CLIP_DISTANCE0);
+        glBindFramebuffer(GL_FRAMEBUFFER, to.color->target().framebuffer);
+        glBindTextureUnit(0, mirror_image_.color->shown().texture);
+        glDepthFunc(GL_EQUAL);
+        draw_batches(Pass::planar, eye);
+        glDisable(GL_SCISSOR_TEST);
+    }
+}
+
 ShownPicture SurfaceRenderer::draw(int view, gi::Camera const& camera, glm::ivec2 size_px,
                                    PictureTexture const& picture, gi::Camera const& of)
 {
     Target& to = targets_[view];
-    if (!to.color || to.color->shown().size_px != size_px) {
-        to.described.emplace(TextureTarget::Format::words, size_px);
-        to.color.emplace(TextureTarget::Format::linear, size_px);
-        to.depth = texture_2d(GL_DEPTH_COMPONENT32F, size_px, GL_NEAREST);
-        for (auto const* target : {&to.described, &to.color})
-            glNamedFramebufferTexture((*target)->target().framebuffer, GL_DEPTH_ATTACHMENT, to.depth.id(), 0);
-    }
-    gi::ShownScene const& scene = meshes_.scene();
+    fit(to, size_px);
+    Eye const eye = eye_of(view, camera, size_px);
+    eye_ = eye.at;
+    shadows_.update(meshes_, eye_);
     maps_ = reprojection_maps(of, picture.shown().size_px, camera, size_px);
     bool const searches = picture.around() != 0 && std::isfinite(picture.nearest_m());
     if (!searches) maps_.b_in_a = glm::vec3(0);
     nearest_ = searches ? 1 / picture.nearest_m() : 0;
     bind(to.described->target());
     ReversedDepth const state;
-    float const far = 0;
-    glClearNamedFramebufferfv(to.described->target().framebuffer, GL_DEPTH, 0, &far);
-    glDepthFunc(GL_GREATER);
-    draw_batches(Pass::described, view, camera, size_px);
-    glBindFramebuffer(GL_FRAMEBUFFER, to.color->target().framebuffer);
-    glm::vec4 const behind(
-        scene.background.kind == gi::BackgroundKind::color ? scene.background.color : glm::vec3(0), 1);
-    glClearNamedFramebufferfv(to.color->target().framebuffer, GL_COLOR, 0, &behind.x);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_LESS); // than where a surface is
-    light(view, camera, size_px, *to.described);
-    draw_sky(camera, size_px);
+    draw_lit(eye, to);
     glBindTextureUnit(0, picture.shown().texture);
     glBindTextureUnit(1, searches ? picture.around() : picture.shown().texture);
     glDepthFunc(GL_EQUAL);
-    draw_batches(Pass::mirrors, view, camera, size_px);
-    glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-    glDepthFunc(GL_GREATER);
-    draw_batches(Pass::blended, view, camera, size_px);
+    draw_batches(Pass::mirrors, eye);
+    draw_mirrors(eye, to, size_px);
+    draw_blended(eye);
     return to.color->shown();
 }
 

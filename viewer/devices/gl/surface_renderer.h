@@ -1,12 +1,15 @@
 #pragma once
 // Draws the surfaces of a scene for a newer camera than that of the last finished picture, with the light of that
 // picture. The first pass describes what each pixel shows, the second lights it, once a pixel; then come the sky, what
-// mirrors and panes show (that of the last picture, by reprojection), and blended surfaces. Textures, outlines and
-// parallax are those of the new camera; light is as old as its pictures.
+// flat mirrors show (all of this once more, from behind them), what other mirrors and panes show (that of the last
+// picture, by reprojection), and blended surfaces. Textures, outlines, parallax, hard shadows and flat mirrors are
+// those of the new camera; other light is as old as its pictures.
 
 #include "viewer/devices/gl/light_ring.h"
+#include "viewer/devices/gl/planar_mirrors.h"
 #include "viewer/devices/gl/reprojection.h"
 #include "viewer/devices/gl/scene_meshes.h"
+#include "viewer/devices/gl/shadow_maps.h"
 
 #include <map>
 
@@ -21,9 +24,11 @@ public:
     {
         ring_.add(view, light, meshes_.scene().world->origin);
     }
+    /// What is known of places that no picture shows; null = nothing.
+    void take(std::shared_ptr<gi::LightCellTable const> cells) { ring_.take(std::move(cells)); }
     bool has_light() const { return !ring_.empty(); }
     /// Moves what can move, until the next take().
-    void move(gi::Pose const& pose) { meshes_.move(*gi::moved_to(meshes_.scene(), pose)); }
+    void move(gi::Pose const& pose);
     bool can_move() const { return has_scene_ && !meshes_.scene().moving->instances.empty(); }
     /// Uploads and compiles for about so long; true when surfaces can be drawn.
     bool prepare(double most_s);
@@ -38,22 +43,44 @@ private:
         std::optional<TextureTarget> described, color;
         GlObject depth;
     };
-    enum class Pass : std::uint8_t { described, mirrors, blended };
+    enum class Pass : std::uint8_t { described, mirrors, planar, blended };
+    /// What a picture is drawn with.
+    struct Eye {
+        int view = 0; ///< whose light is asked first
+        glm::mat3 clip_from_world{
+            1};          ///< of points relative to `at`, to x, y and w; the target's top row is its first
+        glm::vec3 at{0}; ///< from the world's origin
+        glm::mat3 world_from_pixel{1}; ///< directions with a depth of 1
+        glm::vec4 kept{0};             ///< of surfaces.vert
+        bool in_mirror = false;
+    };
+    Eye eye_of(int view, gi::Camera const& camera, glm::ivec2 size_px) const;
+    static Eye mirrored(Eye const& eye, PlanarMirror const& mirror, float apart);
+    static void fit(Target& to, glm::ivec2 size_px);
+    float nearest_m() const;
     void set_moved_box(GlProgram const& program) const;
     static bool takes_part(SurfaceKind const& kind, Pass pass);
     GlProgram& program(SurfaceKind const& kind, Pass pass);
-    void draw_batches(Pass pass, int view, gi::Camera const& camera, glm::ivec2 size_px);
-    void light(int view, gi::Camera const& camera, glm::ivec2 size_px, TextureTarget const& described);
-    void draw_sky(gi::Camera const& camera, glm::ivec2 size_px);
+    void draw_batches(Pass pass, Eye const& eye);
+    void draw_lit(Eye const& eye, Target const& to);
+    void draw_sky(Eye const& eye);
+    void draw_blended(Eye const& eye);
+    void draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 size_px);
 
-    bool has_scene_ = false, is_ready_ = false;
+    bool has_scene_ = false, is_ready_ = false, lit_punctual_ = false;
     SceneMeshes meshes_;
     LightRing ring_;
+    ShadowMaps shadows_;
+    PlanarMirrors planar_;
+    bool has_drawn_mirrors_ = false; ///< once: drivers compile then
+    glm::vec4 plane_{0};             ///< of the flat mirror that is drawn
+    glm::vec3 eye_{0};               ///< of the last picture, m, from the world's origin
     std::map<std::string, GlProgram> programs_;
     std::optional<GlProgram> lit_, sky_;
     ReprojectionMaps maps_; ///< from the last picture, and its greatest 1 / depth
     float nearest_ = 0;
     std::map<int, Target> targets_;
+    Target mirror_image_;
     GlObject no_vertices_{GlObject::Kind::vertex_array};
 };
 

@@ -241,7 +241,8 @@ double LiveRenderer::seen_after_s() const { return std::min(1.5 * frame_s_, Anti
 void LiveRenderer::add_margins(FrameCommand& command, Viewpoint const& last) const
 {
     bool const has_time = command.light_scale > Governor::kLeastScale;
-    if (!(command.light_scale < 1) || !has_time || last.views.size() != command.views.size()) return;
+    if (!(command.light_scale < 1) || command.only_light || !has_time || last.views.size() != command.views.size())
+        return;
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         glm::ivec2 const margin = margin_for(command.views[k], last.views[k].camera);
         command.views[k].margin_x = margin.x;
@@ -270,6 +271,7 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
     if (own_surfaces) {
         command.light_scale = budget.scale;
         command.surface_scale = budget.surfaces;
+        command.only_light = now.draws_surfaces && s.draw_surfaces && s.compare.empty() && budget.scale < 1;
     } else {
         for (ViewCommand& v : command.views) v = scaled(v, budget.scale);
     }
@@ -311,7 +313,7 @@ void LiveRenderer::run_leading()
         last_begun_s_ = begun;
         bool const still = !anything_moves(now);
         bool const rests = !session_.has_scene() || now.views.empty() ||
-                           (still && (!s.refine || still_paths_ >= kConvergedPaths));
+                           (still && !last_.only_light && (!s.refine || still_paths_ >= kConvergedPaths));
         if (rests && !looked) {
             if (link_ != nullptr) link_->check();
             if (++rests_for_ == kRestsBeforeTrim) malloc_trim(0);
@@ -336,7 +338,8 @@ void LiveRenderer::run_leading()
             std::lock_guard const lock(mutex_);
             resting_ = false;
             // Ranks must trace the same number of paths, and so must both methods of a comparison.
-            bool const may_end_early = still && link_ == nullptr && gi::find_method(s.method).ends_frames_early && s.compare.empty();
+            bool const may_end_early =
+                still && link_ == nullptr && gi::find_method(s.method).ends_frames_early && s.compare.empty();
             // After a frame that was given up, the next is rendered whatever comes.
             refining_ = may_end_early && !gave_up ? std::make_shared<gi::StopRequest>() : nullptr;
             if (refining_ && asked_) refining_->request();
@@ -375,8 +378,7 @@ void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
     FrameBudget done = budget;
     done.paths = last_.paths;
     governor_.measured(done, pixels_of(last_look_.views), work.seconds, s.rate_hz, work.surfaces_s);
-    if (updates_axes(s))
-        update_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
+    if (updates_axes(s)) update_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
 }
 
 LiveRenderer::Rendered LiveRenderer::render(FrameCommand command, FrameBudget const& budget, double ahead_s)

@@ -16,6 +16,7 @@ struct Viewpoint {
     std::vector<Tracked> others;    ///< as in FrameCommand
     std::vector<ViewCommand> views; ///< at full size
     std::uint64_t jump = 0;         ///< Navigation::jump
+    bool draws_surfaces = false;    ///< who shows the pictures draws surfaces himself
 
     double time_s() const { return valid_s < 0 ? pose_s : valid_s; }
 };

@@ -49,6 +49,7 @@ std::vector<CsvColumn> columns(Most const& most)
                              {"paths", "paths per pixel of the pictures of light"},
                              {"light_scale", "side of the pictures of light over that of the views"},
                              {"surface_scale", "side of the pictures of surfaces over that of the views"},
+                             {"only_light", "1 = surfaces were drawn by OpenGL, the picture is of light alone; else 0"},
                              {"pixel_hash", "XXH64 of the pixels, hexadecimal; empty = not recorded"},
                              {"swap_s", "s, when the frame was shown; empty = not measured"},
                              {"render_ms", "ms of rendering; empty = not measured"},
@@ -132,6 +133,7 @@ std::string row_of(RecordedFrame const& f, Most const& most)
     row.add(o.paths);
     row.add(o.light_scale);
     row.add(o.surface_scale);
+    row.add(int(o.only_light));
     row.add(f.pixel_hash ? fmt::format("{:016x}", *f.pixel_hash) : "");
     row.add(f.times ? fmt::format("{}", f.times->swap_s) : "");
     row.add(f.times ? fmt::format("{}", f.times->render_ms) : "");

@@ -1,0 +1,168 @@
+#include "gi/surfaces/light_cells.h"
+
+#include "gi/scene/model/projection.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+
+namespace gi {
+namespace {
+
+/// Width of the narrowest cells, m, in rooms; smaller scenes have narrower ones.
+constexpr float kNarrowest_m = 0.15f, kOfRadius = 1.0f / 48;
+/// Cells narrower than this share of their distance learn nothing: texels are farther apart.
+constexpr float kOfDistance = 0.02f;
+/// Weight up to which a cell takes the mean, then the last ones count more; and that of the wider cell's light.
+constexpr float kMostWeight = 64, kPrior = 4;
+/// A single path that found more light than so many times the mean counts as so much.
+constexpr float kBrightest = 8;
+
+vec3 unpacked_normal(std::uint32_t bits)
+{
+    vec2 const o = glm::unpackSnorm2x16(bits);
+    vec3 n{o.x, o.y, 1 - std::abs(o.x) - std::abs(o.y)};
+    float const fold = std::max(-n.z, 0.0f);
+    n.x -= n.x < 0 ? -fold : fold;
+    n.y -= n.y < 0 ? -fold : fold;
+    return glm::normalize(n);
+}
+
+int side_of(vec3 n)
+{
+    vec3 const a = glm::abs(n);
+    int const axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+    return 2 * axis + (n[axis] < 0 ? 1 : 0);
+}
+
+} // namespace
+
+std::uint32_t light_cell_key(glm::ivec3 cell, int level, int side)
+{
+    uvec3 const c(cell);
+    std::uint32_t h =
+        c.x * 73856093u ^ c.y * 19349663u ^ c.z * 83492791u ^ std::uint32_t(6 * level + side) * 2654435761u;
+    h = (h ^ h >> 16) * 0x85ebca6bu;
+    h = (h ^ h >> 13) * 0xc2b2ae35u;
+    return (h ^ h >> 16) | 1u;
+}
+
+LightCells::LightCells(float radius)
+    : narrowest_m_(std::clamp(kOfRadius * radius, 1e-30f, kNarrowest_m)), cells_(2 * LightCellTable::kBuckets)
+{
+}
+
+LightCells::Cell& LightCells::cell(std::uint32_t key)
+{
+    std::size_t at = key / 2 % cells_.size();
+    while (cells_[at].key != 0 && cells_[at].key != key) at = (at + 1) % cells_.size();
+    if (cells_[at].key == 0) {
+        cells_[at].key = key;
+        ++used_;
+    }
+    return cells_[at];
+}
+
+LightCells::Cell const* LightCells::find(std::uint32_t key) const
+{
+    for (std::size_t at = key / 2 % cells_.size(); cells_[at].key != 0; at = (at + 1) % cells_.size())
+        if (cells_[at].key == key) return &cells_[at];
+    return nullptr;
+}
+
+void LightCells::forget_oldest()
+{
+    std::vector<std::uint32_t> ages;
+    for (Cell const& c : cells_)
+        if (c.key != 0) ages.push_back(c.last);
+    auto const middle = ages.begin() + std::ptrdiff_t(ages.size() / 2);
+    std::ranges::nth_element(ages, middle);
+    std::vector<Cell> old(cells_.size());
+    old.swap(cells_);
+    used_ = 0;
+    for (Cell const& c : old)
+        if (c.key != 0 && c.last > *middle) cell(c.key) = c;
+}
+
+void LightCells::doubt(float share)
+{
+    for (Cell& c : cells_) {
+        c.sum *= share;
+        c.weight *= share;
+    }
+}
+
+void LightCells::learn(LightPicture const& light, std::size_t most, dvec3 origin)
+{
+    if (light.without_punctual != without_punctual_) {
+        cells_.assign(cells_.size(), {});
+        used_ = 0;
+        without_punctual_ = light.without_punctual;
+    }
+    ++pictures_;
+    CameraRays const rays = camera_rays(light.camera, light.camera_width, light.camera_height, origin);
+    std::size_t const step = std::max<std::size_t>(1, light.texels.size() / std::max<std::size_t>(1, most)),
+                      first = pictures_ % step;
+    for (std::size_t i = first; i < light.texels.size(); i += step) {
+        LightTexel const& t = light.texels[i];
+        if (t.depth_dark <= 7) continue;
+        if (used_ + LightCellTable::kLevels > kMostCells) forget_oldest();
+        vec2 const place =
+            (vec2{float(i % std::size_t(light.width)), float(i / std::size_t(light.width))} + light.at) /
+            light.texels_per_pixel;
+        Ray const ray = rays.through(place);
+        float const depth = std::bit_cast<float>(t.depth_dark & ~7u);
+        vec3 const position = ray.origin + ray.direction * (depth / glm::dot(ray.direction, rays.forward));
+        vec3 const found = glm::min(glm::unpackF3x9_E1x5(t.light), kBrightest * light.mean);
+        int const side = side_of(unpacked_normal(t.normal));
+        vec3 known;
+        for (int c = 0; c < 3; ++c) known[c] = (t.depth_dark >> c & 1) == 0 ? 1.0f : 0.0f;
+        std::uint32_t wider = 0;
+        for (int level = LightCellTable::kLevels - 1; level >= 0; --level) {
+            float const width = std::ldexp(narrowest_m_, level);
+            if (width < kOfDistance * depth) break;
+            vec3 const at = glm::floor(position / width);
+            if (!(max_component(glm::abs(at)) < 0x1p30f)) break;
+            std::uint32_t const key = light_cell_key(glm::ivec3(at), level, side);
+            Cell& c = cell(key);
+            c.wider = std::exchange(wider, key);
+            c.last = pictures_;
+            c.sum += known * found;
+            c.weight += known;
+            if (float const over = max_component(c.weight) / kMostWeight; over > 1) {
+                c.sum /= over;
+                c.weight /= over;
+            }
+        }
+    }
+}
+
+std::shared_ptr<LightCellTable const> LightCells::table() const
+{
+    auto table = std::make_shared<LightCellTable>();
+    table->narrowest_m = narrowest_m_;
+    table->without_punctual = without_punctual_;
+    for (Cell const& c : cells_) {
+        if (c.key == 0) continue;
+        std::array<Cell const*, LightCellTable::kLevels> around{};
+        std::size_t n = 0;
+        for (Cell const* at = &c; at != nullptr && n < around.size();
+             at = at->wider != 0 ? find(at->wider) : nullptr)
+            around[n++] = at;
+        vec3 mean = around[n - 1]->sum / glm::max(around[n - 1]->weight, vec3{1e-20f});
+        while (n-- > 1) mean = (around[n - 1]->sum + kPrior * mean) / (around[n - 1]->weight + kPrior);
+        bool is_in = false;
+        for (std::uint32_t b = 0; b < 3 && !is_in; ++b)
+            for (LightCellTable::Cell& free : table->buckets[(c.key / 2 + b) % LightCellTable::kBuckets]) {
+                if (free.key != 0 || is_in) continue;
+                free = {c.key, glm::packF3x9_E1x5(mean)};
+                is_in = true;
+            }
+        table->left_out += !is_in;
+    }
+    return table;
+}
+
+} // namespace gi

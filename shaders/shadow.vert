@@ -1,0 +1,20 @@
+// See viewer/devices/gl/shadow_maps.h.
+
+layout(location = 0) in vec3 position_in;
+layout(location = 3) in vec2 uv0_in;
+layout(location = 4) in vec2 uv1_in;
+
+uniform mat4 clip_from_world;
+
+#if MAPS
+out vec2 uv0, uv1;
+#endif
+
+void main()
+{
+    gl_Position = clip_from_world * vec4(position_in, 1.0);
+#if MAPS
+    uv0 = uv0_in;
+    uv1 = uv1_in;
+#endif
+}

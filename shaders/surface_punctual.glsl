@@ -1,0 +1,84 @@
+// The light of punctual lights, through shadow maps (viewer/devices/gl/shadow_maps.h): sample_punctual and evaluate of
+// gi/scene/shading.
+
+struct PunctualLight {
+    vec4 position;  // w: 1 = directional
+    vec4 direction; // w: 1 = a spot
+    vec4 intensity; // w: range, m; 0 = unlimited
+    vec4 cone;      // cosines of the inner and outer angle; width of a texel of the second map
+    vec4 map;       // first, number, width of a texel (at a distance of 1 m, if in perspective)
+};
+
+layout(std140, binding = 1) uniform Punctual
+{
+    PunctualLight punctual[4];
+    mat4 map_from_world[24];
+};
+
+layout(binding = 13) uniform sampler2DArrayShadow shadows;
+
+uniform int punctual_lights;
+
+float schlick(float f0, float f90, float cosine)
+{
+    float m = clamp(1.0 - cosine, 0.0, 1.0), m2 = m * m;
+    return f0 + (f90 - f0) * m2 * m2 * m;
+}
+
+// 1 = lit
+float reached(PunctualLight light, vec3 at, vec3 n)
+{
+    const float kOff = 1.5; // texels
+    int map = int(light.map.x), face = 0;
+    vec3 away = at - light.position.xyz, size = abs(away);
+    if (light.map.y == 6.0) {
+        bool x = size.x >= size.y && size.x >= size.z, y = !x && size.y >= size.z;
+        face = x ? (away.x < 0.0 ? 1 : 0) : y ? (away.y < 0.0 ? 3 : 2) : (away.z < 0.0 ? 5 : 4);
+    }
+    vec4 p = map_from_world[map + face] * vec4(at, 1.0);
+    vec3 off = at + kOff * light.map.z * max(p.w, 0.0) * n;
+    p = map_from_world[map + face] * vec4(off, 1.0);
+    if (light.map.y == 2.0 && any(greaterThan(abs(p.xy), vec2(1.0)))) {
+        face = 1;
+        p = map_from_world[map + 1] * vec4(at + kOff * light.cone.z * n, 1.0);
+    }
+    vec3 q = p.xyz / max(p.w, 1e-6);
+    return any(greaterThan(abs(q.xy), vec2(1.0))) || q.z >= 1.0 ? 1.0 : texture(shadows, vec4(0.5 * q.xy + 0.5, float(map + face), q.z));
+}
+
+// Radiance towards `to_viewer`. gloss: roughness, metallic, reflectance of the coat
+vec3 punctual_light(vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec3 gloss)
+{
+    const float kPi = 3.14159265359;
+    vec3 sum = vec3(0.0), base = max(albedo - (1.0 - gloss.y) * gloss.z, vec3(0.0));
+    vec3 f0 = mix(vec3(gloss.z), base, gloss.y);
+    float coat = gloss.z > 0.0 ? 1.0 : 0.0, f90 = mix(coat, 1.0, gloss.y), alpha = gloss.x * gloss.x, a2 = alpha * alpha;
+    float cos_o = max(dot(n, to_viewer), 1e-3);
+    for (int k = 0; k < punctual_lights; ++k) {
+        PunctualLight light = punctual[k];
+        vec3 way = light.position.xyz - at, wi = -light.direction.xyz;
+        float factor = 1.0;
+        if (light.position.w == 0.0) {
+            float squared = max(dot(way, way), 1e-12), reach = light.intensity.w;
+            wi = way * inversesqrt(squared);
+            float window = 1.0 - squared * squared / max(reach * reach * reach * reach, 1e-30);
+            factor = (reach > 0.0 ? clamp(window, 0.0, 1.0) : 1.0) / squared;
+            float cone = clamp((-dot(wi, light.direction.xyz) - light.cone.y) / max(light.cone.x - light.cone.y, 1e-3), 0.0, 1.0);
+            factor *= light.direction.w > 0.0 ? cone * cone : 1.0;
+        }
+        float cos_i = dot(n, wi);
+        factor *= max(cos_i, 0.0);
+        // Loops, as both sides of a condition would be executed for all pixels that are drawn together.
+        for (int once = 0; once < 1 && factor > 0.0; ++once) factor *= reached(light, at, n);
+        for (int once = 0; once < 1 && factor > 0.0; ++once) {
+            float passes = (1.0 - schlick(gloss.z, coat, cos_o)) * (1.0 - schlick(gloss.z, coat, cos_i)) / (1.0 - mix(gloss.z, coat, 1.0 / 21.0));
+            vec3 h = normalize(to_viewer + wi), across = cross(n, h);
+            float cos_h = dot(n, h), t = dot(across, across) / max(a2, 1e-12) + cos_h * cos_h, grazing = schlick(0.0, 1.0, dot(to_viewer, h));
+            float visible = 0.5 / (cos_i * sqrt(a2 + (1.0 - a2) * cos_o * cos_o) + cos_o * sqrt(a2 + (1.0 - a2) * cos_i * cos_i));
+            float lobe = alpha < SMOOTH_ALPHA ? 0.0 : visible / (kPi * a2 * t * t);
+            vec3 f = (1.0 - gloss.y) * passes / kPi * base + lobe * (f0 + (f90 - f0) * grazing);
+            sum += factor * light.intensity.rgb * f;
+        }
+    }
+    return sum;
+}

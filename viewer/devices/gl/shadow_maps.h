@@ -1,0 +1,53 @@
+#pragma once
+// Shadow maps of a scene's punctual lights, so that hard shadows are those of the surfaces that are drawn, however
+// old their other light is. What never moves is drawn once; what moves, over a copy of that.
+
+#include "viewer/devices/gl/gl_program.h"
+#include "viewer/devices/gl/scene_meshes.h"
+
+#include <glm/mat4x4.hpp>
+#include <map>
+
+namespace viewer {
+
+class ShadowMaps {
+public:
+    /// Of the lights of this scene from now on.
+    void take(gi::ShownScene const& scene);
+    /// Draws what is missing, one map a call; true when nothing is. @param eye  around it maps are finest; m, from
+    /// the world's origin
+    bool prepare(SceneMeshes const& meshes, glm::vec3 eye);
+    /// Draws all that is missing or has moved.
+    void update(SceneMeshes const& meshes, glm::vec3 eye);
+    /// To block 1 and unit 13, and the uniform of shaders/surface_punctual.glsl.
+    void bind(GlProgram const& program) const;
+    bool any() const { return !lights_.empty(); }
+
+private:
+    struct Map {
+        glm::mat4 clip_from_world{1};
+        bool is_drawn = false;
+        glm::ivec2 low_px{0}, high_px{0}; ///< what moving surfaces may have covered
+    };
+    void place(SceneMeshes const& meshes, glm::vec3 eye);
+    void draw_still(SceneMeshes const& meshes, std::size_t map);
+    void draw_moving(SceneMeshes const& meshes);
+    enum class Part : std::uint8_t { still, moving };
+    void draw(SceneMeshes const& meshes, std::size_t map, GlObject const& into, Part part);
+    GlProgram& program(SurfaceKind const& kind);
+
+    std::vector<gi::Light> lights_;
+    std::shared_ptr<gi::World const> world_;
+    std::shared_ptr<std::vector<gi::Material> const> materials_;
+    bool is_placed_ = false;
+    glm::vec3 middle_{0}; ///< of the window of maps that do not cover the whole scene
+    float window_m_ = 0;  ///< its side; 0 = there is none
+    int side_px_ = 0;
+    std::vector<Map> maps_;
+    GlObject still_, shown_; ///< a layer for each; shown_: with what moves, if anything can
+    GlObject block_, framebuffer_;
+    std::uint64_t moves_ = 0; ///< SceneMeshes::moves_so_far of what is drawn
+    std::map<std::string, GlProgram> programs_;
+};
+
+} // namespace viewer
