@@ -18,7 +18,8 @@ TEST(SurfacesScale, IsTheLargestThatIsFastEnough)
     EXPECT_EQ(s.next(), 0.5);
     EXPECT_EQ(after(s, 200, 0.01), 1);
     EXPECT_EQ(after(s, 200, 0.07), 0.75);
-    EXPECT_EQ(after(s, 200, 1), 0.5); // there is nothing smaller
+    EXPECT_EQ(after(s, 200, 0.15), 0.5);
+    EXPECT_EQ(after(s, 200, 1), 0.4); // there is nothing smaller
 }
 
 TEST(SurfacesScale, DoesNotChangeToAndFro)

@@ -26,7 +26,7 @@ public:
     }
 
 private:
-    static constexpr std::array kScales{1.0, 0.75, 0.5};
+    static constexpr std::array kScales{1.0, 0.75, 0.5, 0.4};
     static constexpr double kMost_s = 0.045, kToGrow = 0.8;
     static constexpr int kFrames = 4, kLongestWait = 1024; ///< frames before a change; and before it grows again
 
