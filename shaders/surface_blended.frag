@@ -10,6 +10,6 @@ void main()
     vec4 light = find_light(eye + from_eye, s.normal);
     color = vec4(s.emitted + s.albedo * light.rgb, clamp(coverage(), 0.0, 1.0));
 #if PUNCTUAL
-    color.rgb += light.a * punctual_light(eye + from_eye, s.normal, -normalize(from_eye), s.albedo, s.gloss);
+    if (light.a > 0.0) color.rgb += light.a * punctual_light(eye + from_eye, s.normal, -normalize(from_eye), s.albedo, s.gloss);
 #endif
 }

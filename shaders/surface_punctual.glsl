@@ -71,7 +71,8 @@ vec3 punctual_light(vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec3 gloss)
         // Loops, as both sides of a condition would be executed for all pixels that are drawn together.
         for (int once = 0; once < 1 && factor > 0.0; ++once) factor *= reached(light, at, n);
         for (int once = 0; once < 1 && factor > 0.0; ++once) {
-            float passes = (1.0 - schlick(gloss.z, coat, cos_o)) * (1.0 - schlick(gloss.z, coat, cos_i)) / (1.0 - mix(gloss.z, coat, 1.0 / 21.0));
+            float mean = 1.0 - mix(gloss.z, coat, 1.0 / 21.0);
+            float passes = mean > 0.0 ? (1.0 - schlick(gloss.z, coat, cos_o)) * (1.0 - schlick(gloss.z, coat, cos_i)) / mean : 0.0;
             vec3 h = normalize(to_viewer + wi), across = cross(n, h);
             float cos_h = dot(n, h), t = dot(across, across) / max(a2, 1e-12) + cos_h * cos_h, grazing = schlick(0.0, 1.0, dot(to_viewer, h));
             float visible = 0.5 / (cos_i * sqrt(a2 + (1.0 - a2) * cos_o * cos_o) + cos_o * sqrt(a2 + (1.0 - a2) * cos_i * cos_i));

@@ -156,7 +156,7 @@ LightPicture KeptLight::picture() const
             vec3 const from = t.position - camera_.origin;
             light.texels[i] =
                 light_texel(from, t.normal, t.direct + t.indirect, t.dark, glm::dot(from, camera_.forward));
-            light.slopes[i] = light_slope(t.mean_normal, t.slope);
+            light.slopes[i] = light_slope(t.mean_normal == vec3{0} ? t.normal : t.mean_normal, t.slope);
         }
     });
     // A pixel that nobody saw before has the noise of its few paths: it is no brighter or darker than those around it.

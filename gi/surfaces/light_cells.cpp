@@ -88,9 +88,12 @@ void LightCells::forget_oldest()
 
 void LightCells::doubt(float share)
 {
+    constexpr float kLeastWeight = 0.01f; // what was known is better than nothing
     for (Cell& c : cells_) {
-        c.sum *= share;
-        c.weight *= share;
+        float const weight = max_component(c.weight), by = std::max(share, std::min(1.0f, kLeastWeight / weight));
+        if (!(weight > 0)) continue;
+        c.sum *= by;
+        c.weight *= by;
     }
 }
 
@@ -103,7 +106,8 @@ void LightCells::learn(LightPicture const& light, std::size_t most, dvec3 origin
     }
     ++pictures_;
     CameraRays const rays = camera_rays(light.camera, light.camera_width, light.camera_height, origin);
-    std::size_t const step = std::max<std::size_t>(1, light.texels.size() / std::max<std::size_t>(1, most)),
+    std::size_t const step = std::max<std::size_t>(1, (light.texels.size() + most) /
+                                                          std::max<std::size_t>(1, most + 1)),
                       first = pictures_ % step;
     for (std::size_t i = first; i < light.texels.size(); i += step) {
         LightTexel const& t = light.texels[i];

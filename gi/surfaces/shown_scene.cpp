@@ -31,7 +31,8 @@ std::shared_ptr<ShownScene const> shown_scene(std::shared_ptr<MovingWorld const>
     if (!last || changes.geometry)
         next->moved = std::make_shared<ShownScene::Moved const>(
             ShownScene::Moved{moving_part(w, w.positions), moving_part(w, w.normals), moving_part(w, w.tangents)});
-    if (!last || changes.materials || changes.coverage || changes.emitters)
+    if (!last ||
+        ((changes.materials || changes.coverage || changes.emitters) && !(*last->materials == w.materials)))
         next->materials = std::make_shared<std::vector<Material> const>(w.materials);
     WorldView const of = view(w);
     next->lights = SeenSurfaces::has_few_lights(w) ? w.lights : std::vector<Light>();

@@ -282,7 +282,7 @@ void Requests::presented(double shown_s, Snapshot const& picture)
     if (!state_.frame) return;
     LiveFrame const& f = *state_.frame;
     std::erase_if(shots_, [&](Shot const& shot) {
-        if (!has_seen(shot.since_s)) return false;
+        if (!has_seen(shot.since_s) || f.command.only_light) return false;
         if (picture.empty() && shot.view < 0 && !shot.file.ends_with(".exr")) return false;
         if (shot.converged && state_.settings().refine && f.still_paths < kConvergedPaths) return false;
         save(shot, picture);

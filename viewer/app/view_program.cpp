@@ -272,7 +272,8 @@ private:
         }
         at.views = std::move(layout.views);
         at.jump = state_.navigation.jump();
-        at.draws_surfaces = draws_surfaces_ && !state_.wants_screenshot;
+        at.draws_surfaces = draws_surfaces_ && !state_.wants_screenshot && !core_.requests.wants_bytes() &&
+                            link_ == nullptr && state_.settings().reproject && !shown_.windows.empty();
         if (link_ == nullptr) anticipation_.see(at);
         if (link_ == nullptr) {
             cameras_.clear();

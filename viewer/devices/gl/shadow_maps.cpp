@@ -104,8 +104,9 @@ void ShadowMaps::place(SceneMeshes const& meshes, glm::vec3 eye)
     int const side = count <= 2 ? kSide_px : count <= 8 ? kSide_px / 2 : kSide_px / 4;
     maps_.assign(count, {});
     if (bool const moves = !meshes.moving_bounds().empty();
-        side != side_px_ || still_.id() == 0 || moves != (shown_.id() != 0)) {
+        side != side_px_ || int(count) != layers_ || still_.id() == 0 || moves != (shown_.id() != 0)) {
         side_px_ = side;
+        layers_ = int(count);
         for (GlObject* const to : {&still_, &shown_}) {
             *to = {};
             if (to == &shown_ && !moves) continue;
@@ -136,7 +137,9 @@ void ShadowMaps::place(SceneMeshes const& meshes, glm::vec3 eye)
                              glm::min(all.high, eye + 0.5f * kWindow_m)};
                 if (!glm::all(glm::lessThanEqual(shown.low, shown.high))) shown = all; // the eye is far outside
                 m = beam(l.direction, all, shown);
-                (f == 0 ? texel : widest) = 2 / (float(side) * glm::length(glm::vec3(m[0][0], m[1][0], m[2][0])));
+                (f == 0 ? texel : widest) =
+                    2 / (float(side) * std::min(glm::length(glm::vec3(m[0][0], m[1][0], m[2][0])),
+                                                glm::length(glm::vec3(m[0][1], m[1][1], m[2][1]))));
             } else if (faces == 1) {
                 float const tangent = std::sqrt(1 / gi::square(l.cos_outer) - 1) + 1e-3f;
                 m = cone(l.position, l.direction, tangent, all);
@@ -169,15 +172,17 @@ bool ShadowMaps::prepare(SceneMeshes const& meshes, glm::vec3 eye)
 
 void ShadowMaps::update(SceneMeshes const& meshes, glm::vec3 eye)
 {
-    bool drawn = false;
-    while (!prepare(meshes, eye)) drawn = true;
-    if (shown_.id() != 0 && (drawn || moves_ != meshes.moves_so_far())) draw_moving(meshes);
+    while (!prepare(meshes, eye)) {
+    }
+    if (!lights_.empty() && shown_.id() != 0 && (copies_are_old_ || moves_ != meshes.moves_so_far()))
+        draw_moving(meshes);
 }
 
 void ShadowMaps::draw_still(SceneMeshes const& meshes, std::size_t map)
 {
     draw(meshes, map, still_, Part::still);
     maps_[map].is_drawn = true;
+    copies_are_old_ = true;
     maps_[map].low_px = glm::ivec2(0); // all of shown_ is to be copied
     maps_[map].high_px = glm::ivec2(side_px_);
 }
@@ -185,6 +190,7 @@ void ShadowMaps::draw_still(SceneMeshes const& meshes, std::size_t map)
 void ShadowMaps::draw_moving(SceneMeshes const& meshes)
 {
     moves_ = meshes.moves_so_far();
+    copies_are_old_ = false;
     gi::Bounds const& box = meshes.moving_bounds();
     for (std::size_t k = 0; k < maps_.size(); ++k) {
         Map& map = maps_[k];

@@ -40,9 +40,10 @@ private:
     std::shared_ptr<gi::World const> world_;
     std::shared_ptr<std::vector<gi::Material> const> materials_;
     bool is_placed_ = false;
-    glm::vec3 middle_{0}; ///< of the window of maps that do not cover the whole scene
-    float window_m_ = 0;  ///< its side; 0 = there is none
-    int side_px_ = 0;
+    glm::vec3 middle_{0};          ///< of the window of maps that do not cover the whole scene
+    float window_m_ = 0;           ///< its side; 0 = there is none
+    int side_px_ = 0, layers_ = 0; ///< of the textures
+    bool copies_are_old_ = true;   ///< in shown_
     std::vector<Map> maps_;
     GlObject still_, shown_; ///< a layer for each; shown_: with what moves, if anything can
     GlObject block_, framebuffer_;

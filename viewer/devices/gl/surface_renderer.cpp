@@ -247,7 +247,7 @@ void SurfaceRenderer::set_moved_box(GlProgram const& program) const
 void SurfaceRenderer::draw_sky(Eye const& eye)
 {
     gi::ShownScene const& scene = meshes_.scene();
-    if (scene.background.kind != gi::BackgroundKind::map || meshes_.environment() == 0) return;
+    if ((scene.background.kind != gi::BackgroundKind::map && !eye.in_mirror) || meshes_.environment() == 0) return;
     float const c = scene.environment_cos, s = scene.environment_sin;
     glm::mat3 const map_from_world(glm::vec3(c, 0, s), glm::vec3(0, 1, 0), glm::vec3(-s, 0, c));
     sky_->use();
@@ -318,6 +318,7 @@ void SurfaceRenderer::draw_lit(Eye const& eye, Target const& to)
     shadows_.bind(*lit_);
     glBindTextureUnit(4, to.described->shown().texture);
     glBindTextureUnit(12, to.depth.id());
+    glTextureBarrier(); // depths are read while they are attached
     glBindVertexArray(no_vertices_.id());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     draw_sky(eye);
