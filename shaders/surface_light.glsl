@@ -18,7 +18,6 @@ const float kEdge = 0.05; // trust in outermost texels, which are noisier, as th
 const float kLeastTurned = 0.2, kMostTurned = 4.0;
 const float kAlike = 0.3, kUnlike = 0.01, kLeast = 1e-4, kOfDepth = 0.005; // as KeptLight
 
-// Its fourth component: the share that lacks the light of punctual lights.
 layout(binding = 14) uniform usampler2D cells; // LightCellTable of gi/surfaces/light_cells.h: keys and light
 
 const int kLevels = 6, kBucketsWidth = 256, kBuckets = 65536;
@@ -61,6 +60,7 @@ vec4 find_in_cells(vec3 at, vec3 n, float distance)
     return sum;
 }
 
+// a: the share that lacks the light of punctual lights.
 vec4 find_light(vec3 at, vec3 n)
 {
     vec3 sum = vec3(0.0), weights = vec3(0.0);

@@ -12,8 +12,8 @@
 
 namespace gi {
 
-/// For a shader: buckets of two cells each. That of a key is in bucket key / 2 % kBuckets (keys are odd) or, where that is full, in the
-/// next one. Key 0 = none.
+/// For a shader: buckets of two cells each. That of a key is in bucket key / 2 % kBuckets (keys are odd) or, where that
+/// is full, in one of the next two. Key 0 = none.
 struct LightCellTable {
     static constexpr std::uint32_t kBuckets = 1u << 16;
     static constexpr int kLevels = 6;

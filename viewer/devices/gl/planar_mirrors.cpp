@@ -8,7 +8,7 @@
 namespace viewer {
 namespace {
 
-constexpr std::size_t kMost = 64;   // planes; a mirror with more is curved, all but the largest are left out
+constexpr std::size_t kMost = 64;   // planes; a mirror with more is curved: the smallest make room for larger ones
 constexpr float kLeastArea = 2e-5f; // of the square of the scene's radius
 constexpr float kSameNormal = 0.9999f, kSamePlane = 1e-4f; // cosine; of the radius
 constexpr float kReflects = 0.3f;                          // least luminance of what a mirror reflects
@@ -60,10 +60,18 @@ void PlanarMirrors::take(gi::ShownScene const& scene)
                !(groups_[k].moves == moves && glm::dot(mirrors_[k].normal, own.normal) > kSameNormal &&
                  std::abs(mirrors_[k].distance_m - own.distance_m) < apart))
             ++k;
-        if (k == kMost) continue;
+        if (k == kMost) {
+            k = std::size_t(std::ranges::min_element(mirrors_, {}, &PlanarMirror::area_m2) - mirrors_.begin());
+            if (own.area_m2 <= mirrors_[k].area_m2) continue;
+            mirrors_[k] = own;
+            groups_[k] = {moves, {corners}};
+            continue;
+        }
         if (k == mirrors_.size()) {
             mirrors_.push_back(own);
             groups_.push_back({moves, {}});
+        } else {
+            mirrors_[k].area_m2 += own.area_m2;
         }
         groups_[k].triangles.push_back(corners);
     }

@@ -1,6 +1,7 @@
 #include "viewer/devices/gl/shadow_maps.h"
 
 #include "viewer/devices/gl/draw_target.h"
+#include "viewer/devices/gl/view_matrices.h"
 
 #include <algorithm>
 #include <array>
@@ -39,9 +40,7 @@ glm::mat4 beam(glm::vec3 direction, gi::Bounds const& all, gi::Bounds const& sho
     glm::mat4 const view = facing(glm::vec3(0), direction);
     auto const seen = [&](gi::Bounds const& b) {
         gi::Bounds s;
-        for (int k = 0; k < 8; ++k) {
-            glm::vec3 const corner((k & 1) != 0 ? b.high.x : b.low.x, (k & 2) != 0 ? b.high.y : b.low.y,
-                                   (k & 4) != 0 ? b.high.z : b.low.z);
+        for (glm::vec3 const corner : corners_of(b)) {
             gi::vec3 const p(view * glm::vec4(corner, 1));
             s = gi::joined(s, {p, p});
         }
@@ -196,9 +195,7 @@ void ShadowMaps::draw_moving(SceneMeshes const& meshes)
         Map& map = maps_[k];
         glm::vec2 low(1e9f), high(-1e9f);
         bool behind = false, before = false;
-        for (int c = 0; c < 8; ++c) {
-            glm::vec3 const corner((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y,
-                                   (c & 4) != 0 ? box.high.z : box.low.z);
+        for (glm::vec3 const corner : corners_of(box)) {
             glm::vec4 const p = map.clip_from_world * glm::vec4(corner, 1);
             (p.w > 1e-6f ? before : behind) = true;
             if (p.w > 1e-6f) {

@@ -43,9 +43,7 @@ float nearest_seen(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
 std::optional<std::pair<glm::vec2, glm::vec2>> box_on(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
 {
     glm::vec2 low(gi::kInf), high(-gi::kInf);
-    for (int k = 0; k < 8; ++k) {
-        glm::vec3 const corner((k & 1) != 0 ? box.high.x : box.low.x, (k & 2) != 0 ? box.high.y : box.low.y,
-                               (k & 4) != 0 ? box.high.z : box.low.z);
+    for (glm::vec3 const corner : corners_of(box)) {
         glm::vec3 const c = clip * (corner - eye);
         if (!(c.z > 0)) return std::nullopt;
         low = glm::min(low, glm::vec2(c) / c.z);

@@ -23,4 +23,13 @@ glm::dmat3 pixel_from_world(gi::Camera const& camera, glm::ivec2 size_px)
     return glm::inverse(frame_from_pixel(camera, size_px)) * glm::transpose(axes_of(camera));
 }
 
+std::array<glm::vec3, 8> corners_of(gi::Bounds const& box)
+{
+    std::array<glm::vec3, 8> corners;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        corners[k] = {(k & 1) != 0 ? box.high.x : box.low.x, (k & 2) != 0 ? box.high.y : box.low.y,
+                      (k & 4) != 0 ? box.high.z : box.low.z};
+    return corners;
+}
+
 } // namespace viewer

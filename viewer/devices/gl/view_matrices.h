@@ -3,6 +3,9 @@
 // orthographic cameras; a lens is a pinhole.
 
 #include "gi/scene/model/camera.h"
+#include "gi/scene/model/world.h"
+
+#include <array>
 
 namespace viewer {
 
@@ -12,5 +15,7 @@ glm::dmat3 frame_from_pixel(gi::Camera const& camera, glm::ivec2 size_px);
 glm::dmat3 axes_of(gi::Camera const& camera);
 /// Pixel times depth, and depth, m, of a point relative to the camera's position.
 glm::dmat3 pixel_from_world(gi::Camera const& camera, glm::ivec2 size_px);
+
+std::array<glm::vec3, 8> corners_of(gi::Bounds const& box);
 
 } // namespace viewer
