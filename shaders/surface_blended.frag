@@ -7,9 +7,9 @@ out vec4 color;
 void main()
 {
     Shaded s = shade();
-    vec4 light = find_light(eye + from_eye, s.normal);
-    color = vec4(s.emitted + s.albedo * light.rgb, clamp(coverage(), 0.0, 1.0));
+    FoundLight f = find_light(eye + from_eye, s.normal);
+    color = vec4(s.emitted + s.albedo * turned_to(f, s.normal), clamp(coverage(), 0.0, 1.0));
 #if PUNCTUAL
-    if (light.a > 0.0) color.rgb += light.a * punctual_light(eye + from_eye, s.normal, -normalize(from_eye), s.albedo, s.gloss);
+    if (f.lacks > 0.0) color.rgb += f.lacks * punctual_light(eye + from_eye, s.normal, -normalize(from_eye), s.albedo, s.gloss);
 #endif
 }

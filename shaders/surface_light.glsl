@@ -15,7 +15,6 @@ uniform float lacks_punctual[kPictures];     // 1 = their light is without that 
 uniform vec3 mean_light;
 
 const float kEdge = 0.05; // trust in outermost texels, which are noisier, as they were seen for the shortest time
-const float kLeastTurned = 0.2, kMostTurned = 4.0;
 const float kAlike = 0.3, kUnlike = 0.01, kLeast = 1e-4, kOfDepth = 0.005; // as KeptLight
 
 layout(binding = 14) uniform usampler2D cells; // LightCellTable of gi/surfaces/light_cells.h: keys and light
@@ -60,8 +59,22 @@ vec4 find_in_cells(vec3 at, vec3 n, float distance)
     return sum;
 }
 
-// a: the share that lacks the light of punctual lights.
-vec4 find_light(vec3 at, vec3 n)
+struct FoundLight {
+    vec3 light;
+    uvec2 bent;  // LightSlope: the normal for which it is, and how it changes with the normal
+    float lacks; // the share that lacks the light of punctual lights
+};
+
+const uint kNoSlope = 512u | 512u << 10 | 512u << 20;
+
+vec3 turned_to(FoundLight found, vec3 n)
+{
+    const float kLeastTurned = 0.2, kMostTurned = 4.0;
+    vec3 slope = (vec3(found.bent.yyy >> uvec3(0u, 10u, 20u) & 1023u) - 512.0) / 64.0;
+    return clamp(1.0 + dot(slope, n - unpack_normal(found.bent.x)), kLeastTurned, kMostTurned) * found.light;
+}
+
+FoundLight find_light(vec3 at, vec3 n)
 {
     vec3 sum = vec3(0.0), weights = vec3(0.0);
     float best = 0.0, lacks = 0.0, counted = 0.0;
@@ -103,12 +116,16 @@ vec4 find_light(vec3 at, vec3 n)
         }
         shown = !around || inside;
     }
+    FoundLight found = FoundLight(mean_light, uvec2(pack_normal(n), kNoSlope), lacks_punctual[0]);
     vec4 known = vec4(0.0);
     for (int once = 0; once < 1 && best < kUnlike; ++once) known = find_in_cells(at, n, distance(at, light_eye[0]));
-    if (known.a > 0.0) return vec4(known.rgb / known.a, cells_lack_punctual);
-    if (best < kUnlike && (!shown || counted == 0.0)) return vec4(mean_light, lacks_punctual[0]);
-    uvec2 bent = texelFetch(slopes, nearest, 0).xy;
-    vec3 slope = (vec3(bent.yyy >> uvec3(0u, 10u, 20u) & 1023u) - 512.0) / 64.0;
-    float turned = clamp(1.0 + (best < kUnlike ? 0.0 : dot(slope, n - unpack_normal(bent.x))), kLeastTurned, kMostTurned);
-    return vec4(turned * mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0))), lacks / counted);
+    if (known.a > 0.0) {
+        found.light = known.rgb / known.a;
+        found.lacks = cells_lack_punctual;
+    } else if (best >= kUnlike || (shown && counted > 0.0)) {
+        found.light = mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0)));
+        found.lacks = lacks / counted;
+        if (best >= kUnlike) found.bent = texelFetch(slopes, nearest, 0).xy;
+    }
+    return found;
 }

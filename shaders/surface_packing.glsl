@@ -24,6 +24,14 @@ vec3 unpack_light(uint bits) // GL_RGB9_E5
     return m * uintBitsToFloat((bits >> 27) + 127u - 24u << 23);
 }
 
+uint pack_light(vec3 light)
+{
+    float most = min(max(max(light.r, light.g), light.b), 65000.0) * (512.0 / 511.0); // rounding adds no bit
+    uint power = uint(clamp(int(floatBitsToUint(most) >> 23) - 111, 0, 31));
+    uvec3 m = min(uvec3(max(light, vec3(0.0)) * uintBitsToFloat(127u + 24u - power << 23) + 0.5), uvec3(511u));
+    return m.r | m.g << 9 | m.b << 18 | power << 27;
+}
+
 uint pack_albedo(vec3 albedo)
 {
     uvec3 a = uvec3(sqrt(clamp(albedo, 0.0, 1.0)) * vec3(2047.0, 2047.0, 1023.0) + 0.5);
@@ -78,5 +86,5 @@ vec3 emission_of(uvec4 described)
 {
     if (has_moved(described)) return vec3(0.0);
     vec3 m = vec3(described.w & 255u, described.w >> 8 & 255u, described.w >> 16 & 255u) / 255.0;
-    return m * exp2(float(int(described.w >> 24) - 128));
+    return m * uintBitsToFloat(clamp(described.w >> 24, 2u, 254u) - 1u << 23);
 }

@@ -252,6 +252,38 @@ TEST(BenchCommand, WrongCallsLeaveNothing)
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"damaged", "empty", "file", "statistics"}));
 }
 
+/// A head that steps aside for half a second, then stands.
+TEST(BenchCommand, ShownMeasuresWhatAHeadSees)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "aside.csv")
+        << "time_s,x_m,y_m,z_m,yaw_deg,pitch_deg\n0,0,0,0,0,0\n1,0,0,0,0,0\n1.5,0.2,0,0,10,0\n";
+    run_well("bench shown cornell --head aside.csv --size 96x64 --eyes 2 --moments 2 --truth-paths 4 --out d",
+             folder.path());
+    std::vector<BenchTable> const tables = read_bench_folder(folder / "d").tables;
+    ASSERT_EQ(tables.size(), 1u);
+    BenchTable const& t = tables[0];
+    ASSERT_EQ(t.rows.size(), 1u);
+    auto const value = [&](char const* column) { return number(cell(t, t.rows[0], column)); };
+    EXPECT_GT(value("interval_ms"), 0);
+    EXPECT_GE(value("longest_interval_ms"), value("interval_99_ms"));
+    EXPECT_GE(value("light_age_95_ms"), value("light_age_ms"));
+    EXPECT_GT(value("flip"), 0);
+    EXPECT_LT(value("flip"), 0.6);
+    EXPECT_GE(value("most_flip"), value("flip"));
+    EXPECT_GE(value("rivalry"), 0);
+    EXPECT_LT(value("still_flicker"), 5);
+    for (char const* file : {"shown_1_0.png", "truth_1_1.png", "error_0_1.png"}) {
+        gi::Picture const p = gi::read_picture(folder / "d" / file);
+        EXPECT_EQ(p.width, 96) << file;
+        EXPECT_EQ(p.height, 64) << file;
+    }
+    Outcome const wrong = run("bench shown cornell --head nowhere --out e", folder.path());
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_NE(wrong.err.find("nowhere"), std::string::npos) << wrong.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "e"));
+}
+
 TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
 {
     TemporaryFolder const folder;

@@ -65,6 +65,42 @@ TEST(Recording, ComesBackAsItWas)
     }
 }
 
+TEST(Recording, HasWhatWasShownBetweenItsFrames)
+{
+    TemporaryFolder const folder;
+    gi::Report report;
+    std::vector<ShownFrame> shown;
+    {
+        Recorder recorder(folder / "walk.lwr", walk_header(), report);
+        for (std::uint64_t n = 0; n < 6; ++n) {
+            recorder.append(walk_frame(n));
+            for (std::uint64_t k = 0; k < n % 3; ++k) {
+                ShownFrame s{walk_frame(n).command, 0.25 * double(k), {}};
+                s.moment.display_s += double(k);
+                if (k == 1) s.pixel_hash = n;
+                recorder.append(s);
+                shown.push_back(s);
+            }
+        }
+        recorder.finish();
+        EXPECT_EQ(recorder.written_frames(), 6u);
+    }
+    RecordingReader reader(folder / "walk.lwr");
+    std::size_t n = 0, k = 0;
+    while (auto const record = reader.next_record()) {
+        if (auto const* const frame = std::get_if<RecordedFrame>(&*record))
+            EXPECT_EQ(*frame, walk_frame(n++));
+        else
+            EXPECT_EQ(std::get<ShownFrame>(*record), shown.at(k++));
+    }
+    EXPECT_EQ(n, 6u);
+    EXPECT_EQ(k, shown.size());
+    EXPECT_EQ(reader.end().state, RecordingState::finished);
+    reader.rewind();
+    for (n = 0; auto const frame = reader.next(); ++n) EXPECT_EQ(*frame, walk_frame(n));
+    EXPECT_EQ(n, 6u) << "frames alone";
+}
+
 TEST(Recording, OfAnEarlierVersionIsRead)
 {
     for (std::string const commit : {"7d477989"}) {
@@ -85,10 +121,11 @@ TEST(Recording, OfAnEarlierVersionIsRead)
 TEST(Recording, OfALaterFormatIsRefusedWithTheWayOut)
 {
     std::string bytes = recorded(1, true);
-    bytes[8] = 2;
+    bytes[8] = 3;
     std::string const why = why_unreadable(bytes);
-    EXPECT_NE(why.find("its format is 2, this version reads 1) use the version of the program that recorded it"),
-              std::string::npos)
+    EXPECT_NE(
+        why.find("its format is 3, this version reads 1 to 2) use the version of the program that recorded it"),
+        std::string::npos)
         << why;
 }
 
@@ -140,8 +177,8 @@ TEST(Recording, NoFlippedBitGoesUnseen)
 TEST(Recording, OtherVersionsAndOtherFilesAreRefused)
 {
     std::string bytes = recorded(1, true);
-    bytes[8] = 2;
-    EXPECT_NE(why_unreadable(bytes).find("its format is 2, this version reads 1"), std::string::npos);
+    bytes[8] = 3;
+    EXPECT_NE(why_unreadable(bytes).find("its format is 3, this version reads 1 to 2"), std::string::npos);
     EXPECT_NE(why_unreadable("").find("does not begin as one"), std::string::npos);
     EXPECT_NE(why_unreadable("PNG, or so").find("does not begin as one"), std::string::npos);
     EXPECT_THROW(RecordingReader("/nowhere/walk.lwr"), gi::InputError);

@@ -1,10 +1,7 @@
 #include "viewer/app/hmd_eyes.h"
 
-#include "gi/surfaces/lit_picture.h"
-#include "viewer/app/fill_hidden.h"
-#include "viewer/engine/picture_margin.h"
-
 #include <cstdlib>
+#include <epoxy/gl.h>
 
 namespace viewer {
 
@@ -26,43 +23,29 @@ void HmdEyes::make_targets(std::array<glm::ivec2, 2> const& sizes_px)
     }
 }
 
-void HmdEyes::take(LiveFrame const& frame)
-{
-    for (std::size_t eye = 0; eye < 2; ++eye) {
-        ViewPicture const& view = frame.result.views[eye];
-        gi::Picture const& p = view.picture;
-        gi::Layer const* const depth = p.find(gi::seen_depth_of(p));
-        std::span<float const> color = p.find("color")->data,
-                               depths = depth == nullptr ? std::span<float const>() : depth->data;
-        if (view.hidden) {
-            color_.assign(color.begin(), color.end());
-            depth_.assign(depths.begin(), depths.end());
-            fill_hidden(*view.hidden, p.width, color_, 3);
-            if (depth != nullptr) fill_hidden(*view.hidden, p.width, depth_, 1);
-            color = color_;
-            depths = depth_;
-        }
-        pictures_[eye].upload({p.width, p.height}, color, depths);
-    }
-}
-
-void HmdEyes::draw(LiveFrame const& frame, std::array<gi::Camera, 2> const& now,
-                   std::array<glm::ivec2, 2> const& sizes_px, bool reproject, gi::ToneMapSettings const& tone)
+void HmdEyes::draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 2> const& sizes_px,
+                   gi::ToneMapSettings const& tone)
 {
     make_targets(sizes_px);
+    GLint is_known = 0;
+    if (is_timed_) glGetQueryObjectiv(ended_.id(), GL_QUERY_RESULT_AVAILABLE, &is_known);
+    if (is_known != 0) {
+        GLuint64 from = 0, to = 0;
+        glGetQueryObjectui64v(begun_.id(), GL_QUERY_RESULT, &from);
+        glGetQueryObjectui64v(ended_.id(), GL_QUERY_RESULT, &to);
+        drawing_s_ = to > from ? 1e-9 * double(to - from) : 0;
+        is_timed_ = false;
+    }
+    bool const times = !is_timed_;
+    if (times) glQueryCounter(begun_.id(), GL_TIMESTAMP);
+    DisplaySettings settings;
+    settings.tone = tone;
     for (std::size_t eye = 0; eye < 2; ++eye) {
-        gi::Camera const &rendered = frame.command.views[eye].camera, &to = reproject ? now[eye] : rendered;
-        glm::ivec2 const margin = frame.result.views[eye].margin_px;
-        EyeView view;
-        view.picture = pictures_[eye].shown();
-        if (!(rendered == to) || margin != glm::ivec2(0))
-            view.picture = reprojections_[eye].draw(
-                pictures_[eye], with_margin(rendered, view.picture.size_px - 2 * margin, margin), to,
-                sizes_px[eye]);
-        DisplaySettings settings;
-        settings.tone = tone;
+        EyeView const view = views_.eye(int(eye), now ? &(*now)[eye] : nullptr);
         pass_.draw(targets_[eye]->target(), view, view, settings);
     }
+    if (times) glQueryCounter(ended_.id(), GL_TIMESTAMP);
+    is_timed_ = true;
 }
 
 void HmdEyes::clear(std::array<glm::ivec2, 2> const& sizes_px, float grey)

@@ -1,12 +1,9 @@
 #pragma once
-// The two eye pictures of a frame for a headset, reprojected to the current eye poses,
-// in textures for the runtime.
+// The two eye pictures of a frame for a headset, drawn for the current eye poses, in textures for the runtime.
 
 #include "gi/light_paths/settings.h"
-#include "viewer/devices/gl/display_pass.h"
-#include "viewer/devices/gl/reprojection.h"
+#include "viewer/app/shown_views.h"
 #include "viewer/devices/gl/window.h"
-#include "viewer/engine/live/live_renderer.h"
 
 namespace viewer {
 
@@ -23,11 +20,19 @@ struct HmdContext {
 /// The context must be current in all calls.
 class HmdEyes {
 public:
-    /// Uploads the pictures of both eyes, with hidden pixels filled (fill_hidden).
-    void take(LiveFrame const& frame);
-    /// Draws the frame taken last, reprojected to `now`, into the targets.
-    void draw(LiveFrame const& frame, std::array<gi::Camera, 2> const& now,
-              std::array<glm::ivec2, 2> const& sizes_px, bool reproject, gi::ToneMapSettings const& tone);
+    /// Uploads the pictures of both eyes.
+    void take(std::shared_ptr<LiveFrame const> frame) { views_.take(std::move(frame), {0, 1}); }
+    /// As ShownViews::begin, before draw().
+    void begin(double surfaces_scale, FrameCommand const* moment, DriveBodies const& drive)
+    {
+        views_.begin(surfaces_scale, moment, drive);
+    }
+    /// Draws the frame taken last into the targets. @param now  null: as rendered
+    void draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 2> const& sizes_px,
+              gi::ToneMapSettings const& tone);
+    ShownViews& views() { return views_; }
+    /// That the GPU took for the last draw() that it has finished; 0: not known yet.
+    double drawing_s() const { return drawing_s_; }
     /// Fills both targets with one grey (0..1).
     void clear(std::array<glm::ivec2, 2> const& sizes_px, float grey);
     DrawTarget target(std::size_t eye) const { return targets_[eye]->target(); }
@@ -40,11 +45,12 @@ private:
     void make_targets(std::array<glm::ivec2, 2> const& sizes_px);
 
     DisplayPass pass_;
-    std::array<PictureTexture, 2> pictures_;
-    std::array<Reprojection, 2> reprojections_;
+    ShownViews views_;
     std::array<std::optional<TextureTarget>, 2> targets_;
     std::array<glm::ivec2, 2> sizes_{};
-    std::vector<float> color_, depth_; ///< copies with filled hidden pixels
+    GlObject begun_{GlObject::Kind::time}, ended_{GlObject::Kind::time};
+    bool is_timed_ = false; ///< a draw() whose times are not known yet
+    double drawing_s_ = 0;
 };
 
 } // namespace viewer

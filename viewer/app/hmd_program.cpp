@@ -1,6 +1,8 @@
 #include "viewer/app/hmd_program.h"
 
 #include "viewer/app/hmd_eyes.h"
+#include "viewer/app/pose_at.h"
+#include "viewer/app/surfaces_scale.h"
 #include "viewer/app/user_body.h"
 #include "viewer/app/view_core.h"
 #include "viewer/devices/xr/keeper.h"
@@ -34,15 +36,23 @@ bool same(HiddenMask const& a, HiddenMask const& b)
            std::ranges::equal(std::as_bytes(std::span(a.points)), std::as_bytes(std::span(b.points)));
 }
 
+ViewOptions with_surfaces(ViewOptions options)
+{
+    options.settings.insert(options.settings.begin(), {"draw_surfaces", true});
+    return options;
+}
+
 class HmdLoop {
 public:
     HmdLoop(ViewOptions const& options, HmdOptions const& headset, gi::Report& report)
-        : core_(options, report),
+        : options_(with_surfaces(options)),
+          core_(options_, report),
           state_(core_.state),
           context_(report, hidden()),
           keeper_(&context_.gl(), headset),
           bodies_(options.avatars)
     {
+        if (options_.hash_shown) eyes_.views().hash_pictures();
         core_.start(nullptr, [] { return kEyesPixels; }, {});
     }
 
@@ -57,6 +67,7 @@ public:
                 std::fputs(fmt::format("note: {}; waiting for the headset\n", keeper_.trouble()).c_str(), stderr);
             }
             if (session == nullptr) {
+                at_last_.drawn_scale = 0;
                 core_.look(at_last_);
                 shoot_unseen();
                 std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -76,6 +87,9 @@ public:
                                  {"phases", phases_},
                                  {"shown", shown_},
                                  {"reprojected", reprojected_},
+                                 {"surfaces", surfaces_},
+                                 {"pose_age_ms", shown_ > 0 ? pose_age_ms_ / double(shown_) : 0.0},
+                                 {"longest_pose_age_ms", longest_pose_age_ms_},
                                  {"left_out", left_out_}};
         return core_.summary;
     }
@@ -131,6 +145,16 @@ private:
         }
     }
 
+    static std::array<gi::Camera, 2> cameras(Viewpoint const& at, std::array<HmdView, 2> const& views)
+    {
+        std::array<gi::Camera, 2> now;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            now[eye] = views[eye].camera;
+            now[eye].world_from_camera = at.world_from_room * now[eye].world_from_camera;
+        }
+        return now;
+    }
+
     /// @param seconds  since the previous frame
     void show(HmdSession& session, HmdFrame const& frame, double seconds)
     {
@@ -147,15 +171,15 @@ private:
         at.tracked = frame.tracked;
         if (UserBody* const body = bodies_.first()) body->stand(at.tracked, at.world_from_room, seconds);
         at.jump = state_.navigation.jump();
-        std::array<gi::Camera, 2> now;
-        for (std::size_t eye = 0; eye < 2; ++eye) {
-            now[eye] = frame.views[eye].camera;
-            now[eye].world_from_camera = at.world_from_room * now[eye].world_from_camera;
+        if (eyes_.views().draws_surfaces() && !state_.wants_screenshot && !core_.requests.wants_bytes() &&
+            state_.settings().reproject)
+            at.drawn_scale = surfaces_scale_.next();
+        std::array<gi::Camera, 2> now = cameras(at, frame.views);
+        for (std::size_t eye = 0; eye < 2; ++eye)
             at.views.push_back(
                 {kEyes[eye], now[eye], frame.views[eye].width, frame.views[eye].height, eye == 0 ? -1 : 0});
-        }
         at_last_ = at;
-        core_.look(std::move(at));
+        core_.look(at);
         auto const newest = core_.renderer->newest();
         if (!frame.should_render || !newest || newest->result.views.size() != 2) {
             shoot_unseen();
@@ -166,7 +190,7 @@ private:
         if (fresh) {
             state_.frame = newest;
             state_.follow(newest->settings);
-            eyes_.take(*newest);
+            eyes_.take(newest);
             note_hidden(*newest);
             core_.expose(*newest);
         }
@@ -175,16 +199,38 @@ private:
         picture.views = frame.views;
         picture.values = TextureValues::srgb;
         picture.first_row = FirstRow::top;
+        double const scale = state_.settings().draw_surfaces ? surfaces_scale_.next() : 0;
+        FrameCommand moment = moment_at(*newest, at, at.display_s);
+        eyes_.begin(scale, &moment, core_.options.drive);
+        double located_s = at.pose_s;
+        if (auto const latest = session.latest_views(frame)) { // as late as possible
+            picture.views = *latest;
+            located_s = state_.clock.now_s();
+            now = cameras(at, *latest);
+            for (std::size_t eye = 0; eye < 2; ++eye) moment.views[eye].camera = now[eye];
+        }
         bool const moved =
             !(newest->command.views[0].camera == now[0] && newest->command.views[1].camera == now[1]);
-        eyes_.draw(*newest, now,
+        eyes_.draw(state_.settings().reproject ? &now : nullptr,
                    {glm::ivec2{frame.views[0].width, frame.views[0].height},
                     glm::ivec2{frame.views[1].width, frame.views[1].height}},
-                   state_.settings().reproject, tone_settings(state_.settings()));
+                   tone_settings(state_.settings()));
         picture.textures = eyes_.textures();
+        double const age_ms = 1e3 * (state_.clock.now_s() - located_s);
+        pose_age_ms_ += age_ms;
+        longest_pose_age_ms_ = std::max(longest_pose_age_ms_, age_ms);
         session.end_frame(picture);
+        moment.display_s = at.display_s;
+        core_.note_shown(shown_frame(std::move(moment), eyes_.views()));
         ++shown_;
-        if (moved) ++reprojected_;
+        if (eyes_.views().drew_surfaces()) {
+            ++surfaces_;
+            surfaces_scale_.measured(scale, std::max(state_.clock.now_s() - begun, eyes_.drawing_s()));
+        } else if (moved) {
+            ++reprojected_;
+        }
+        if (!eyes_.views().why_no_surfaces().empty() && !std::exchange(no_surfaces_told_, true))
+            core_.report.lose("surfaces not drawn, pictures are reprojected", 1, eyes_.views().why_no_surfaces());
         ++core_.summary.presented;
         shoot();
         FrameTimes times;
@@ -201,7 +247,7 @@ private:
         times.width = newest->command.views[0].width;
         times.height = newest->command.views[0].height;
         times.late_ms = 1e3 * (times.swap_s - newest->command.display_s);
-        times.reprojected = moved;
+        times.reprojected = moved || newest->command.only_light;
         core_.log(times);
     }
 
@@ -209,7 +255,8 @@ private:
     void shoot()
     {
         Snapshot shot;
-        if (std::exchange(state_.wants_screenshot, false)) {
+        bool const only_light = state_.frame && state_.frame->command.only_light; // its picture is saved, too
+        if (!only_light && std::exchange(state_.wants_screenshot, false)) {
             std::array<Snapshot, 2> eyes;
             for (std::size_t eye = 0; eye < 2; ++eye) {
                 DrawTarget const target = eyes_.target(eye);
@@ -227,18 +274,17 @@ private:
     {
         auto const newest = core_.renderer->newest();
         if (!state_.wants_screenshot || !newest || newest->result.views.size() != 2) return;
-        std::array<gi::Camera, 2> rendered;
+        if (newest->command.only_light) return;
         std::array<glm::ivec2, 2> sizes;
-        for (std::size_t eye = 0; eye < 2; ++eye) {
-            rendered[eye] = newest->command.views[eye].camera;
+        for (std::size_t eye = 0; eye < 2; ++eye)
             sizes[eye] = {newest->command.views[eye].width, newest->command.views[eye].height};
-        }
         state_.frame = newest;
-        eyes_.take(*newest);
-        eyes_.draw(*newest, rendered, sizes, false, tone_settings(state_.settings()));
+        eyes_.take(newest);
+        eyes_.draw(nullptr, sizes, tone_settings(state_.settings()));
         shoot();
     }
 
+    ViewOptions const options_;
     ViewCore core_;
     ViewState& state_;
     HmdContext context_;
@@ -250,7 +296,10 @@ private:
     bool started_ = false;
     int losses_ = 0;
     std::vector<std::string> phases_;
-    std::uint64_t shown_ = 0, reprojected_ = 0;
+    std::uint64_t shown_ = 0, reprojected_ = 0, surfaces_ = 0;
+    double pose_age_ms_ = 0, longest_pose_age_ms_ = 0; ///< of the views, when their pictures are handed over
+    SurfacesScale surfaces_scale_;
+    bool no_surfaces_told_ = false;
     std::array<HiddenMask, 2> told_;
     std::array<double, 2> left_out_{}; ///< share of the pixels of each eye
 };

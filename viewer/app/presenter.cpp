@@ -1,20 +1,12 @@
 #include "viewer/app/presenter.h"
 
-#include "gi/surfaces/lit_picture.h"
 #include "viewer/displays/compose.h"
-#include "viewer/engine/picture_margin.h"
 
 #include <algorithm>
 #include <epoxy/gl.h>
 
 namespace viewer {
 namespace {
-
-std::span<float const> floats(gi::Picture const& picture, char const* layer)
-{
-    gi::Layer const* const l = picture.find(layer);
-    return l == nullptr ? std::span<float const>() : std::span<float const>(l->data);
-}
 
 bool has_overlay(Pane const& pane, PresentSettings const& s)
 {
@@ -32,120 +24,20 @@ Presenter::Presenter(std::vector<WallSettings> const& walls)
     }
 }
 
-void Presenter::upload(std::optional<Shown>& to, gi::Picture const& picture) const
-{
-    if (!to) to.emplace(Shown{{}, Reprojection(reprojection_)});
-    to->picture.upload({picture.width, picture.height}, floats(picture, "color"),
-                       floats(picture, gi::seen_depth_of(picture)));
-}
-
 void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes)
 {
-    frame_ = std::move(frame);
-    if (frame_->result.scene) {
-        if (!renderer_ && why_no_surfaces_.empty()) renderer_.emplace();
-        if (renderer_) renderer_->take(frame_->result.scene);
-        if (renderer_) renderer_->take(frame_->result.cells);
-    }
-    shown_.resize(frame_->result.views.size());
-    std::vector<char> is_uploaded(shown_.size());
+    std::vector<int> views;
     for (Pane const& pane : panes) {
-        std::vector<int> views{pane.left, pane.right};
+        views.insert(views.end(), {pane.left, pane.right});
         for (PaneFaces const* faces : {&pane.left_faces, &pane.right_faces})
             views.insert(views.end(), faces->views.begin(), faces->views.end());
-        for (int const view : views) {
-            if (view < 0 || std::size_t(view) >= shown_.size() || is_uploaded[std::size_t(view)]) continue;
-            ShownView& s = shown_[std::size_t(view)];
-            ViewPicture const& v = frame_->result.views[std::size_t(view)];
-            upload(s.own, v.picture);
-            s.is_light = false;
-            if (v.compared)
-                upload(s.other, *v.compared);
-            else
-                s.other.reset();
-            is_uploaded[std::size_t(view)] = 1;
-        }
     }
-    for (std::size_t view = 0; view < shown_.size(); ++view)
-        if (!is_uploaded[view]) shown_[view] = {};
-}
-
-bool Presenter::can_draw_surfaces(double most_s)
-{
-    prepares_ = false;
-    if (!(surfaces_scale_ > 0) || !renderer_ || !frame_ || !frame_->result.scene) return false;
-    try {
-        prepares_ = !renderer_->prepare(most_s);
-    } catch (std::runtime_error const& e) { // a driver that compiles them not: pictures are reprojected
-        why_no_surfaces_ = e.what();
-        renderer_.reset();
-        return false;
-    }
-    return !prepares_;
-}
-
-bool Presenter::draws_surfaces() const
-{
-    return surfaces_scale_ > 0 && !prepares_ && renderer_ && frame_ && frame_->result.scene &&
-           tried_ == frame_->result.scene->world.get() &&
-           std::ranges::none_of(frame_->result.views, [](ViewPicture const& v) { return v.hidden || v.compared; });
-}
-
-std::optional<ShownPicture> Presenter::surfaces(int view, gi::Camera const& from, gi::Camera const& to,
-                                                glm::ivec2 size_px)
-{
-    constexpr double kPrepare_s = 0.01;
-    constexpr std::size_t kMostTexels = 1u << 18;
-    if (!can_draw_surfaces(kPrepare_s)) return std::nullopt;
-    ShownView& shown = shown_[std::size_t(view)];
-    ViewPicture const& rendered = frame_->result.views[std::size_t(view)];
-    if (shown.other || rendered.hidden) return std::nullopt;
-    if (!std::exchange(shown.is_light, true)) {
-        if (rendered.light) {
-            renderer_->add_light(view, *rendered.light);
-        } else {
-            gi::LightPicture light = gi::light_picture(rendered.picture, from, kMostTexels);
-            light.lamps = frame_->result.lamps;
-            renderer_->add_light(view, light);
-        }
-    }
-    if (!renderer_->has_light()) return std::nullopt;
-    glm::ivec2 const size = glm::max(glm::ivec2(glm::round(surfaces_scale_ * glm::dvec2(size_px))), glm::ivec2(1));
-    return renderer_->draw(view, to, size, shown.own->picture, from);
+    views_.take(std::move(frame), views);
 }
 
 EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
 {
-    if (!frame_ || view < 0 || std::size_t(view) >= frame_->command.views.size()) return {};
-    if (std::size_t(view) >= shown_.size() || !shown_[std::size_t(view)].own) return {};
-    auto& own = shown_[std::size_t(view)].own;
-    auto& other = shown_[std::size_t(view)].other;
-    ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
-    EyeView e{own->picture.shown(), other ? other->picture.shown() : own->picture.shown()};
-    glm::ivec2 const margin = frame_->result.views[std::size_t(view)].margin_px,
-                     size = frame_->command.only_light ? glm::ivec2(rendered.width, rendered.height)
-                                                       : e.picture.size_px - 2 * margin;
-    bool const moved = std::size_t(view) < now.size() && !rendered.camera.orthographic &&
-                       !(now[std::size_t(view)] == rendered.camera);
-    own->reprojection.keep_only(size);
-    if (other) other->reprojection.keep_only(size);
-    gi::Camera const from = with_margin(rendered.camera, size, margin),
-                     &to = moved ? now[std::size_t(view)] : rendered.camera;
-    // The first time takes long, as drivers compile then: it is done while nothing moves.
-    if (!moved && !rendered.camera.orthographic && surfaces_scale_ > 0 && renderer_ && frame_->result.scene &&
-        tried_ != frame_->result.scene->world.get() && surfaces(view, from, to, glm::ivec2(16)))
-        tried_ = frame_->result.scene->world.get();
-    bool const only_light = frame_->command.only_light; // else it shows surfaces itself
-    if (!moved && !only_light && margin == glm::ivec2(0)) return e;
-    if (moved || only_light)
-        if (auto const drawn = surfaces(view, from, to, size)) {
-            drew_surfaces_ = true;
-            e.picture = e.other = *drawn;
-            return e;
-        }
-    e.picture = e.other = own->reprojection.draw(own->picture, from, to, size);
-    if (other) e.other = other->reprojection.draw(other->picture, from, to, size);
-    return e;
+    return views_.eye(view, view >= 0 && std::size_t(view) < now.size() ? &now[std::size_t(view)] : nullptr);
 }
 
 void Presenter::draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings,
@@ -164,7 +56,7 @@ void Presenter::draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySett
             face_px_[k] = picture.picture.size_px;
         }
         pass_.draw(face_targets_[k].target(), picture, picture, settings);
-        gi::Camera const& camera = frame_->command.views[std::size_t(faces.views[k])].camera;
+        gi::Camera const& camera = views_.command(faces.views[k]).camera;
         if (camera.off_axis) shown.push_back({faces.faces[k], *camera.off_axis, face_targets_[k].shown()});
     }
     surfaces_[std::size_t(pane.wall)]->draw(flat_[side]->target(), shown, faces.eye_m);
@@ -210,6 +102,15 @@ bool Presenter::bend(Pane const& pane, PresentSettings const& shown, DisplaySett
     return true;
 }
 
+void Presenter::draw_stretched(DrawTarget const& to, EyeView const& view, DisplaySettings const& settings)
+{
+    glm::ivec2 const size = view.picture.size_px;
+    if (size.x >= to.size_px.x || size.y >= to.size_px.y) return pass_.draw(to, view, view, settings);
+    if (!encoded_ || encoded_->shown().size_px != size) encoded_.emplace(TextureTarget::Format::bytes, size);
+    pass_.draw(encoded_->target(), view, view, settings);
+    stretch(encoded_->target(), to);
+}
+
 /// @param wall_picture  of one eye, before it is bent, top row first
 void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, DrawTarget const& wall_picture)
 {
@@ -234,10 +135,7 @@ void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, 
 void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& all,
                      PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
-    surfaces_scale_ = s.surfaces_scale;
-    drew_surfaces_ = false;
-    bool const can_draw = can_draw_surfaces(0);
-    if (can_draw && s.pose && renderer_->can_move()) renderer_->move(s.pose(*frame_));
+    views_.begin(s.surfaces_scale, s.moment ? &*s.moment : nullptr, s.drive);
     std::vector<Pane> panes = all;
     for (Pane& pane : panes)
         if (has_overlay(pane, s)) pane.wall = pane.of_wall; // also through a wall pass that changes nothing
@@ -258,7 +156,10 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
             if (s.swap_eyes) std::swap(left, right);
             if (pane.right_alone) left = right;
             settings.light = s.light;
-            pass_.draw(part, left, right, settings);
+            if (views_.drew_surfaces() && settings.stereo == StereoMode::off)
+                draw_stretched(part, left, settings);
+            else
+                pass_.draw(part, left, right, settings);
             continue;
         }
         // Walls with meshes may share a viewport.

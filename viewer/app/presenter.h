@@ -1,15 +1,12 @@
 #pragma once
-// Shows the newest frame in one window: pictures are uploaded once, reprojected to the current head pose, composed
-// for stereo, and warped and blended for walls.
+// Shows the newest frame in one window: its views are drawn for the current head pose, composed for stereo, and warped
+// and blended for walls.
 
 #include "gi/light_paths/settings.h"
-#include "viewer/devices/gl/display_pass.h"
-#include "viewer/devices/gl/reprojection.h"
+#include "viewer/app/shown_views.h"
 #include "viewer/devices/gl/surface_pass.h"
-#include "viewer/devices/gl/surface_renderer.h"
 #include "viewer/devices/gl/wall_pass.h"
 #include "viewer/displays/wall_ray.h"
-#include "viewer/engine/live/live_renderer.h"
 
 #include <deque>
 
@@ -48,8 +45,8 @@ struct PresentSettings {
     Comparison comparison = Comparison::off;
     float split = 0.5f;
     bool swap_eyes = false;
-    /// Where the scene's objects are when a picture is shown, on the presenting thread; empty: where they were in the frame.
-    std::function<gi::Pose(LiveFrame const&)> pose;
+    std::optional<FrameCommand> moment; ///< in which objects and bodies are shown; empty: that of the frame
+    DriveBodies drive;                  ///< moves bodies then
     /// Side of surfaces drawn for a newer camera over that of the view; 0: pictures are reprojected.
     double surfaces_scale = 0;
 };
@@ -67,54 +64,31 @@ public:
     /// @param now  one camera per view, for reprojection; empty = as rendered
     void draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
               PresentSettings const& settings, std::vector<gi::Camera> const& now);
-    /// True if surfaces are about to be drawn, once more of the scene is on the GPU: draw again soon.
-    bool prepares() const { return prepares_; }
-    bool drew_surfaces() const { return drew_surfaces_; } ///< in the last draw
-    /// True if surfaces of every view can be drawn: pictures may be of light alone.
-    bool draws_surfaces() const;
-    /// Why surfaces are not drawn although they should be; empty: they are, or will be.
-    std::string const& why_no_surfaces() const { return why_no_surfaces_; }
+    ShownViews const& views() const { return views_; }
+    ShownViews& views() { return views_; }
 
 private:
-    struct Shown {
-        PictureTexture picture;
-        Reprojection reprojection;
-    };
-    /// Draws one view; none = not shown.
-    struct ShownView {
-        std::optional<Shown> own, other;
-        bool is_light = false; ///< its light is in the ring
-    };
-    void upload(std::optional<Shown>& to, gi::Picture const& picture) const;
     EyeView eye(int view, std::vector<gi::Camera> const& now);
-    bool can_draw_surfaces(double most_s);
-    /// The surfaces of a view for another camera than that of its picture; none if they cannot be drawn.
-    std::optional<ShownPicture> surfaces(int view, gi::Camera const& from, gi::Camera const& to,
-                                         glm::ivec2 size_px);
     /// Bends the pictures of one wall into bent_. False if it has none.
     bool bend(Pane const& pane, PresentSettings const& shown, DisplaySettings const& settings,
               std::vector<gi::Camera> const& now, WallPass::Outside outside);
     /// The picture of one eye on a wall that is not flat, in flat_.
     void draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings, std::size_t side,
                     std::vector<gi::Camera> const& now);
+    /// Encodes the picture before it is stretched: a software driver takes a third of the time.
+    void draw_stretched(DrawTarget const& to, EyeView const& view, DisplaySettings const& settings);
     void draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, DrawTarget const& wall_picture);
 
     std::shared_ptr<WallOverlay const> uploaded_;
     std::optional<TextureTarget> overlay_picture_;
-    std::shared_ptr<ReprojectionPrograms const> reprojection_ = std::make_shared<ReprojectionPrograms>();
-    std::vector<ShownView> shown_;
-    std::optional<SurfaceRenderer> renderer_;
-    double surfaces_scale_ = 0;
-    bool prepares_ = false, drew_surfaces_ = false;
-    std::string why_no_surfaces_;
-    gi::World const* tried_ = nullptr; ///< scene whose surfaces were drawn once
-    std::shared_ptr<LiveFrame const> frame_;
+    ShownViews views_;
     DisplayPass pass_;
     std::deque<WallPass> walls_;
     std::deque<std::optional<SurfacePass>> surfaces_; ///< of the walls that have one
     std::deque<TextureTarget> face_targets_;
     std::vector<glm::ivec2> face_px_;
     std::array<std::optional<TextureTarget>, 2> flat_, bent_;
+    std::optional<TextureTarget> encoded_;
     glm::ivec2 bent_px_{};
 };
 

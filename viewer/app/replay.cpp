@@ -2,12 +2,16 @@
 
 #include "gi/image_io/picture_file.h"
 #include "viewer/app/frame_hash.h"
+#include "viewer/app/shown_views.h"
 #include "viewer/base/frame_range.h"
+#include "viewer/devices/gl/context.h"
 #include "viewer/engine/picture_margin.h"
 #include "viewer/offline/video_writer.h"
 
 #include <algorithm>
+#include <epoxy/gl.h>
 #include <fmt/format.h>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
@@ -70,6 +74,60 @@ void save(std::string const& pattern, std::uint64_t frame, gi::Picture const& pi
         gi::write_png(file, picture.width, picture.height, gi::tone_map_bytes(*picture.find("color"), tone));
 }
 
+/// Draws again what people saw.
+class ShownReplay {
+public:
+    ShownReplay(DriveBodies drive, gi::Report& report)
+        : gl_(GlContext::surfaceless(report)), drive_(std::move(drive))
+    {
+        views_.emplace();
+        views_->hash_pictures();
+    }
+    void keep(FrameCommand const& command, SessionFrame result)
+    {
+        auto const frame = std::make_shared<LiveFrame>();
+        frame->command = command;
+        frame->result = std::move(result);
+        newest_ = frame;
+    }
+    /// The linear picture of the first view. Throws InputError if the frame that it shows is not in the recording.
+    gi::Picture draw(ShownFrame const& shown)
+    {
+        FrameCommand const& moment = shown.moment;
+        if (!newest_ || newest_->command.frame < moment.frame)
+            throw gi::InputError("the recording shows a frame that it does not have",
+                                 fmt::format("frame {}", moment.frame), "record the walk again");
+        if (newest_->command.frame == moment.frame && taken_ != newest_) {
+            std::vector<int> all(newest_->result.views.size());
+            std::iota(all.begin(), all.end(), 0);
+            views_->take(newest_, all);
+            taken_ = newest_;
+        }
+        if (shown.surfaces_scale > 0 && !views_->make_ready())
+            throw gi::InputError("surfaces cannot be drawn again", views_->why_no_surfaces(),
+                                 "replay without --shown");
+        views_->begin(shown.surfaces_scale, &moment, drive_);
+        gi::Picture first;
+        for (std::size_t k = 0; k < moment.views.size(); ++k) {
+            EyeView const eye = views_->eye(int(k), &moment.views[k].camera);
+            if (k > 0 || eye.picture.texture == 0) continue;
+            first = {eye.picture.size_px.x, eye.picture.size_px.y, {}, {}};
+            std::vector<float>& rgb = first.add("color", 3).data;
+            glPixelStorei(GL_PACK_ALIGNMENT, 4);
+            glGetTextureImage(eye.picture.texture, 0, GL_RGB, GL_FLOAT, GLsizei(rgb.size() * sizeof(float)),
+                              rgb.data());
+        }
+        return first;
+    }
+    std::uint64_t hash() const { return views_->hash(); }
+
+private:
+    GlContext gl_;
+    DriveBodies drive_;
+    std::optional<ShownViews> views_;
+    std::shared_ptr<LiveFrame const> newest_, taken_;
+};
+
 bool is_known(std::string const& key)
 {
     return key == "scene" || is_setting(key) || is_scene_edit(key) || is_hidden_mask(key);
@@ -104,7 +162,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     RenderSession session(scenes.load, o.threads, report);
     session.drive_bodies(scenes.drive);
     bool const shows = !o.out.empty() || !o.video.empty();
-    if (shows) session.draw_all_surfaces();
+    if (shows && !o.shown) session.draw_all_surfaces();
     std::set<std::string> overridden;
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
     for (Change const& c : o.settings) overridden.insert(current_key(c.key));
@@ -125,11 +183,31 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     session.apply(to_change(scene));
     ReplaySummary summary;
     gi::ProgressBar bar("replay " + o.file);
-    while (auto frame = reader.next()) {
+    std::optional<ShownReplay> shown;
+    if (o.shown) shown.emplace(scenes.drive, report);
+    auto const put_out = [&](gi::Picture const& picture, std::uint64_t number, double time_s) {
+        gi::ToneMapSettings const tone = tone_settings(session.settings());
+        if (!o.out.empty()) save(o.out, number, picture, tone, report);
+        if (video) video->show(picture, tone, time_s);
+    };
+    while (auto record = reader.next_record()) {
         if (stop.requested()) {
             summary.interrupted = true;
             break;
         }
+        if (auto const* const s = std::get_if<ShownFrame>(&*record)) {
+            if (!shown) continue;
+            gi::Picture const picture = shown->draw(*s);
+            if (s->pixel_hash && as_recorded(o)) {
+                bool const same = shown->hash() == *s->pixel_hash;
+                ++(same ? summary.shown_same : summary.shown_other);
+                if (!same && !summary.first_shown_other) summary.first_shown_other = summary.shown;
+            }
+            if (picture.width > 0) put_out(picture, summary.shown, s->moment.display_s);
+            ++summary.shown;
+            continue;
+        }
+        auto* const frame = std::get_if<RecordedFrame>(&*record);
         FrameCommand& command = frame->command;
         for (Change const& c : command.changes)
             if (!overridden.contains(current_key(c.key))) apply_recorded(session, current(c, made), report);
@@ -139,21 +217,21 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
                 std::tie(v.width, v.height) = *o.size;
                 v.margin_x = v.margin_y = 0;
             }
-        SessionFrame const result = session.render(command, {});
+        SessionFrame result = session.render(command, {});
         ++summary.frames;
         bar.update(0, fmt::format("{} frames", summary.frames));
-        if (frame->pixel_hash && as_recorded(o) && !(command.only_light && shows)) {
+        if (frame->pixel_hash && as_recorded(o) && !(command.only_light && shows && !o.shown)) {
             bool const same = frame_hash(result) == *frame->pixel_hash;
             ++(same ? summary.same : summary.other);
             if (!same && !summary.first_other) summary.first_other = command.frame;
         } else {
             ++summary.unknown;
         }
-        if (result.views.empty()) continue;
-        gi::ToneMapSettings const tone = tone_settings(session.settings());
-        gi::Picture const picture = without_margin(result.views[0].picture, result.views[0].margin_px);
-        if (!o.out.empty()) save(o.out, command.frame, picture, tone, report);
-        if (video) video->show(picture, tone, command.display_s);
+        if (shown)
+            shown->keep(command, std::move(result));
+        else if (!result.views.empty())
+            put_out(without_margin(result.views[0].picture, result.views[0].margin_px), command.frame,
+                    command.display_s);
     }
     if (video && summary.frames > 0) video->finish();
     summary.end = reader.end();

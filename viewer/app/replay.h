@@ -17,11 +17,14 @@ struct ReplayOptions {
     std::string video;                       ///< of the first view, at `fps`
     double fps = 30;
     int threads = 0;
+    bool shown = false; ///< what was shown instead of what was rendered, drawn by OpenGL
 };
 
 struct ReplaySummary {
     std::uint64_t frames = 0, same = 0, other = 0, unknown = 0; ///< compared with the recorded pixel hashes
     std::optional<std::uint64_t> first_other;
+    std::uint64_t shown = 0, shown_same = 0, shown_other = 0; ///< pictures drawn; compared with their hashes
+    std::optional<std::uint64_t> first_shown_other;           ///< its number, from 0
     RecordingEnd end;
     bool interrupted = false;
 };

@@ -312,6 +312,11 @@ void ViewCore::expose(LiveFrame const& frame)
     if (ev && *ev != state.settings().exposure_ev) state.expose(*ev);
 }
 
+void ViewCore::note_shown(ShownFrame const& shown)
+{
+    if (recorder_) recorder_->append(shown);
+}
+
 void ViewCore::log(FrameTimes const& times)
 {
     if (times.dropped > 0) report.lose("frames dropped", std::uint64_t(times.dropped));

@@ -36,6 +36,8 @@ public:
     /// Executes a command, except selecting and dragging.
     void obey(Command command);
     void log(FrameTimes const& times);
+    /// Records what was shown, if there is a recording.
+    void note_shown(ShownFrame const& shown);
     /// Ends the rendering thread and closes files. Throws what kept the first scene from being shown.
     void finish();
 

@@ -58,7 +58,10 @@ public:
         } else {
             open_desktop();
         }
-        for (auto const& w : shown_.windows) w->window.gl().release(); // to the presenting thread
+        for (auto const& w : shown_.windows) {
+            if (options_.hash_shown) w->pictures().views().hash_pictures();
+            w->window.gl().release(); // to the presenting thread
+        }
         if (shown_.windows.empty())
             core_.requests.no_picture("this process has no window, those of the display belong to other ranks");
         std::function<std::vector<ViewCommand>(FrameCommand const&)> own;
@@ -272,8 +275,9 @@ private:
         }
         at.views = std::move(layout.views);
         at.jump = state_.navigation.jump();
-        at.draws_surfaces = draws_surfaces_ && !state_.wants_screenshot && !core_.requests.wants_bytes() &&
-                            link_ == nullptr && state_.settings().reproject && !shown_.windows.empty();
+        if (draws_surfaces_ && !state_.wants_screenshot && !core_.requests.wants_bytes() && link_ == nullptr &&
+            state_.settings().reproject && !shown_.windows.empty())
+            at.drawn_scale = surfaces_scale_.next();
         if (link_ == nullptr) anticipation_.see(at);
         if (link_ == nullptr) {
             cameras_.clear();
@@ -351,6 +355,7 @@ private:
     /// Data passed to the presenting thread and back.
     struct Presentation {
         std::shared_ptr<LiveFrame const> frame;
+        std::optional<ShownFrame> shown; ///< for a recording
         bool fresh = false, panel = false, messages = false, wants_bytes = false, reprojected = false;
         bool surfaces = false, prepares = false; ///< drawn; or about to be
         bool can_draw = true;                    ///< surfaces of all views
@@ -380,9 +385,10 @@ private:
             for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
         bool const reprojects =
             state_.settings().reproject && link_ == nullptr && cameras_.size() == rendered.size();
+        Viewpoint const at = expected(p->begun_s);
         if (reprojects && state_.settings().draw_surfaces) {
             cameras_.clear();
-            for (ViewCommand const& v : expected(p->begun_s).views) cameras_.push_back(v.camera);
+            for (ViewCommand const& v : at.views) cameras_.push_back(v.camera);
         }
         shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
         p->reprojected = !(shown_cameras_ == rendered) || (newest && newest->command.only_light);
@@ -394,7 +400,14 @@ private:
             meter_.see(newest);
             if (!follows()) core_.expose(*newest);
         }
-        p->settings = present_settings(p->begun_s);
+        p->settings = present_settings();
+        if (newest && link_ == nullptr) {
+            double const ahead_s =
+                state_.settings().predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0;
+            p->settings.moment = moment_at(*newest, at, p->begun_s + ahead_s);
+            for (std::size_t k = 0; k < p->cameras.size(); ++k)
+                p->settings.moment->views[k].camera = p->cameras[k];
+        }
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();
@@ -451,14 +464,19 @@ private:
             if (p.frame)
                 shown.pictures().draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
                                       p.cameras);
-            p.surfaces |= shown.pictures().drew_surfaces();
-            p.prepares |= shown.pictures().prepares();
-            p.can_draw &= shown.pictures().draws_surfaces();
-            p.why_no_surfaces = shown.pictures().why_no_surfaces();
+            p.surfaces |= shown.pictures().views().drew_surfaces();
+            p.prepares |= shown.pictures().views().prepares();
+            p.can_draw &= shown.pictures().views().draws_surfaces();
+            p.why_no_surfaces = shown.pictures().views().why_no_surfaces();
             if (p.wants_bytes) shoot(target_of(shown.window), p.shots);
             if (shown.panel && (p.messages || p.panel)) shown.panel->draw();
             p.times.upload_ms += 1e3 * (uploaded - from);
             p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
+        }
+        if (p.settings.moment) {
+            bool const in_one = shown_.windows.size() == 1; // else no window has all views
+            p.shown = shown_frame(*p.settings.moment, shown_.windows[0]->pictures().views());
+            if (!in_one) p.shown->pixel_hash.reset();
         }
         p.swap.time = SwapTime::Clock::now();
         if (link_ != nullptr && p.fresh) {
@@ -497,6 +515,11 @@ private:
         core_.requests.presented(p.shown_s, shot);
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
         ++core_.summary.presented;
+        if (p.shown) {
+            ShownFrame shown = *p.shown;
+            shown.moment.display_s = p.shown_s;
+            core_.note_shown(shown);
+        }
         if (p.fresh) log(*p.frame, p.times, p.swap, p.begun_s, p.shown_s, p.reprojected);
         last_swap_s_ = p.shown_s;
     }
@@ -537,7 +560,7 @@ private:
         return anticipation_.at(now_s, now_s + (state_.settings().predict ? 1.5 * surfaces_s_ : 0));
     }
 
-    PresentSettings present_settings(double now_s) const
+    PresentSettings present_settings() const
     {
         Settings const& s = state_.settings();
         PresentSettings p;
@@ -547,10 +570,7 @@ private:
         p.swap_eyes = s.swap_eyes;
         if (s.draw_surfaces) {
             p.surfaces_scale = surfaces_scale_.next();
-            double const seen_s = now_s + (s.predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0);
-            p.pose = [at = expected(now_s), drive = core_.options.drive, seen_s](LiveFrame const& f) {
-                return pose_at(f, at, drive, seen_s);
-            };
+            p.drive = core_.options.drive;
         }
         if (s.compare.empty()) return p;
         bool const second = std::fmod(state_.clock.now_s() * kFlicker_Hz, 1.0) < 0.5;

@@ -30,6 +30,7 @@ struct ViewOptions {
     std::optional<Display> display;
     std::optional<study::DisplayModel> display_model; ///< of the desktop's windows: pictures are linear in light
     std::filesystem::path record, frame_log;
+    bool hash_shown = false;     ///< the recording has hashes of what is shown
     RecordingHeader header;      ///< of the recording, without the settings
     nlohmann::json load_options; ///< options of `load` besides the scene's name, for replays
     RemoteOptions remote;

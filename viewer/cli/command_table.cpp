@@ -32,6 +32,8 @@ constexpr CommandRow kCommands[]{
     {"study calibrate", kTrials, "Measure a display: luminance, gamma, size, distance; write its display model."},
     {"ar", kAr, "Augmented reality: add virtual objects to camera frames."},
     {"bench", kBench, "Compare methods by time and error, and report the results."},
+    {"bench shown", kView,
+     "Measure what the viewer shows while a head moves: intervals, age of light, FLIP, flicker."},
     {"batch", kBatch, "Run many tasks of a manifest: on this machine, under mpirun, on HyperQueue."},
     {"help", kLauncher, "Show the help of a command: lightwell help render."},
     {"completion", kLauncher, "Print a script with which a shell completes commands, options and values."},

@@ -56,6 +56,7 @@ void add_ar_lens(CLI::App& ar, int& exit_code);
 void add_bench_dynamic(CLI::App& bench, int& exit_code);
 void add_bench_sweep(CLI::App& bench, int& exit_code);
 void add_bench_pictures(CLI::App& bench, int& exit_code);
+void add_bench_shown(CLI::App& bench, int& exit_code);
 void add_bench_views(CLI::App& bench, int& exit_code);
 void add_bench_schedules(CLI::App& bench, int& exit_code);
 void add_bench_report(CLI::App& bench, int& exit_code);

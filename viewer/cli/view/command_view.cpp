@@ -44,7 +44,7 @@ struct ViewArguments {
     RankOptions ranks;
     double fps = 30, eye_height_m = 1.6;
     int paths = 0;
-    bool hmd = false, seated = false;
+    bool hmd = false, seated = false, shown = false, hash_shown = false;
     std::optional<int> remote_port;
     std::string remote_token;
     bool remote_open = false;
@@ -110,6 +110,7 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     o.screenshots = a.screenshots;
     o.record = a.record;
     o.frame_log = a.frame_log;
+    o.hash_shown = a.hash_shown;
     o.header.program = version_text();
     o.header.command_line = command_line;
     o.load_options = {{"environment", scene.environment},
@@ -280,6 +281,7 @@ int run_replay(ViewArguments const& a)
     o.out = a.out;
     o.video = a.video;
     o.fps = a.fps;
+    o.shown = a.shown;
     o.threads = a.scene.settings.threads;
     ReplaySummary const done = replay(
         o,
@@ -302,11 +304,15 @@ int run_replay(ViewArguments const& a)
         fmt::print(": {} as recorded bit by bit, {} not, {} unknown", done.same, done.other, done.unknown);
     fmt::print("\n");
     if (done.first_other) fmt::print("first different frame: {}\n", *done.first_other);
+    if (o.shown)
+        fmt::print("{} shown pictures drawn again: {} as recorded bit by bit, {} not, {} unknown\n", done.shown,
+                   done.shown_same, done.shown_other, done.shown - done.shown_same - done.shown_other);
+    if (done.first_shown_other) fmt::print("first different shown picture: {}\n", *done.first_shown_other);
     std::string const loss = describe_loss(done.end);
     if (!loss.empty()) say(loss);
     std::fflush(stdout);
     print_losses(report);
-    return done.interrupted ? interrupted_code() : done.other > 0 ? 1 : 0;
+    return done.interrupted ? interrupted_code() : done.other + done.shown_other > 0 ? 1 : 0;
 }
 
 /// Throws if an option is given that has no effect in the chosen mode.
@@ -322,10 +328,12 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
         refuse({"scene",          "--record",      "--frame-log", "--remote",        "--remote-port",
                 "--remote-token", "--remote-open", "--display",   "--display-model", "--hmd",
                 "--fullscreen",   "--time-limit",  "--navigate",  "--screenshots",   "--stats",
-                "--camera",       "--envmap",      "--avatar",    "--avatar-joints", "--eye-height"},
+                "--camera",       "--envmap",      "--avatar",    "--avatar-joints", "--eye-height",
+                "--hash-shown"},
                "with --replay");
     else
-        refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
+        refuse({"--out", "--video", "--paths", "--fps", "--shown"}, "without --replay");
+    if (a.record.empty()) refuse({"--hash-shown"}, "without --record");
     if (!a.hmd) refuse({"--seated"}, "without --hmd");
     if (a.hmd) refuse({"--size", "--fullscreen", "--no-vsync"}, "with --hmd");
     if (!a.fullscreen.empty()) refuse({"--size"}, "with --fullscreen");
@@ -381,11 +389,17 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_option("--navigate", a->navigate, "navigation: fly, walk or orbit")->capture_default_str();
     declare_option(*c, a->scene.settings, "threads");
     c->add_option("--record", a->record, "recording (.lwr) to write, of everything that determines the pixels");
+    c->add_flag(
+        "--hash-shown", a->hash_shown,
+        "with --record: also hashes of what was shown, which makes a GPU wait; --replay --shown compares them");
     c->add_option("--frame-log", a->frame_log, "CSV file with the times of every frame");
     c->add_option("--remote", a->remote, "Unix socket for remote control (docs/remote.md)");
     c->add_option("--remote-port", a->remote_port, "port on 127.0.0.1 for remote control; 0 = any free port");
     declare_port_options(*c, a->remote_token, a->remote_open);
     c->add_option("--replay", a->replay, "render a recording again, off-screen; --set changes settings");
+    c->add_flag(
+        "--shown", a->shown,
+        "with --replay: every picture that was shown, drawn again by OpenGL, in place of every frame rendered");
     c->add_option("--paths", a->paths, "with --replay: paths per pixel and frame; 0 = as recorded")
         ->check(in_range(0, 1 << 20));
     c->add_option("-o,--out", a->out, "with --replay: frames of the first view, e.g. walk_%05d.png or .exr");

@@ -47,6 +47,16 @@ void clear(DrawTarget const& target, float grey)
     glDisable(GL_SCISSOR_TEST);
 }
 
+void stretch(DrawTarget const& from, DrawTarget const& to)
+{
+    bind(to);
+    glm::ivec2 const a = from.corner_px, b = from.corner_px + from.size_px;
+    glm::ivec2 c = to.corner_px, d = to.corner_px + to.size_px;
+    if (from.rows != to.rows) std::swap(c.y, d.y);
+    glBlitNamedFramebuffer(from.framebuffer, to.framebuffer, a.x, a.y, b.x, b.y, c.x, c.y, d.x, d.y,
+                           GL_COLOR_BUFFER_BIT, GL_LINEAR);
+}
+
 std::vector<unsigned char> read_bytes(DrawTarget const& target, unsigned buffer)
 {
     std::size_t const row = 3 * std::size_t(target.size_px.x), rows = std::size_t(target.size_px.y);

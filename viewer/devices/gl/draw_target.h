@@ -30,6 +30,8 @@ DrawTarget part_of(DrawTarget const& whole, glm::ivec2 top_left_px, glm::ivec2 s
 void bind(DrawTarget const& target);
 /// Fills exactly this rectangle with one grey. @param grey  display-encoded, 0..1
 void clear(DrawTarget const& target, float grey = 0);
+/// Copies one into the other, stretched (bilinear).
+void stretch(DrawTarget const& from, DrawTarget const& to);
 /// R, G, B bytes, rows from the top for any row order of the target, as gi::write_png expects.
 /// For a window call it before the swap, which makes the back buffer undefined. `buffer`:
 /// 0 = the current draw buffer. Waits for the GPU.

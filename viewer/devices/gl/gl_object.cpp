@@ -22,6 +22,9 @@ GlObject::GlObject(Kind kind, unsigned texture_target) : kind_(kind)
     case Kind::program:
         id_ = glCreateProgram();
         break;
+    case Kind::time:
+        glCreateQueries(GL_TIMESTAMP, 1, &id_);
+        break;
     }
 }
 
@@ -43,6 +46,9 @@ GlObject::~GlObject()
         break;
     case Kind::program:
         glDeleteProgram(id_);
+        break;
+    case Kind::time:
+        glDeleteQueries(1, &id_);
         break;
     }
 }

@@ -9,7 +9,7 @@ namespace viewer {
 
 class GlObject {
 public:
-    enum class Kind : std::uint8_t { texture, buffer, framebuffer, vertex_array, program };
+    enum class Kind : std::uint8_t { texture, buffer, framebuffer, vertex_array, program, time };
 
     GlObject() = default;
     /// Creates an object. @param texture_target  GL_TEXTURE_2D, ...; used for textures only

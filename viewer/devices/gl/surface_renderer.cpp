@@ -156,6 +156,10 @@ bool SurfaceRenderer::prepare(double most_s)
                       fmt::format("#define EMITS 1\n#define PUNCTUAL {}\n#define SMOOTH_ALPHA {:.9e}\n",
                                   int(lit_punctual_), gi::kSmoothAlpha)));
     }
+    if (!found_)
+        found_.emplace(GlProgram({"full_screen.vert"},
+                                 {"surface_packing.glsl", "surface_light.glsl", "surface_found.frag"},
+                                 "#define EMITS 1\n"));
     if (!sky_) sky_.emplace(GlProgram({"full_screen.vert"}, {"sky.frag"}));
     is_ready_ = true;
     return true;
@@ -285,40 +289,59 @@ void SurfaceRenderer::fit(Target& to, glm::ivec2 size_px)
 {
     if (to.color && to.color->shown().size_px == size_px) return;
     to.described.emplace(TextureTarget::Format::words, size_px);
+    to.found.emplace(TextureTarget::Format::words, (size_px + 1) / 2);
     to.color.emplace(TextureTarget::Format::linear, size_px);
     to.depth = texture_2d(GL_DEPTH_COMPONENT32F, size_px, GL_NEAREST);
     for (auto const* target : {&to.described, &to.color})
         glNamedFramebufferTexture((*target)->target().framebuffer, GL_DEPTH_ATTACHMENT, to.depth.id(), 0);
 }
 
+/// A pass over what the first one has described.
+void SurfaceRenderer::light_up(GlProgram const& program, Eye const& eye, Target const& to) const
+{
+    program.use();
+    ring_.bind(program, eye.view);
+    program.set("eye", eye.at);
+    program.set("world_from_pixel", eye.world_from_pixel);
+    set_moved_box(program);
+    program.set("nearest_m", nearest_m());
+    glBindTextureUnit(4, to.described->shown().texture);
+    glBindTextureUnit(12, to.depth.id());
+    glBindVertexArray(no_vertices_.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 /// Surfaces and what is behind them, without mirrors and blended surfaces. Leaves the target of colours bound.
-void SurfaceRenderer::draw_lit(Eye const& eye, Target const& to)
+void SurfaceRenderer::draw_lit(Eye const& eye, Target const& to, Part const& part)
 {
     gi::ShownScene const& scene = meshes_.scene();
     float const far = 0;
+    glm::ivec2 const half_low = part.low_px / 2, half_size = (part.low_px + part.size_px) / 2 + 1 - half_low;
+    auto const begin = [](TextureTarget const& target, Part const& p) {
+        bind(target.target());
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(p.low_px.x, p.low_px.y, p.size_px.x, p.size_px.y);
+    };
+    begin(*to.described, part);
+    glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
-    glBindFramebuffer(GL_FRAMEBUFFER, to.described->target().framebuffer);
     glClearNamedFramebufferfv(to.described->target().framebuffer, GL_DEPTH, 0, &far);
     glDepthFunc(GL_GREATER);
     draw_batches(Pass::described, eye);
-    glBindFramebuffer(GL_FRAMEBUFFER, to.color->target().framebuffer);
+    glDepthMask(GL_FALSE);
+    begin(*to.found, {half_low, half_size});
+    light_up(*found_, eye, to);
+    begin(*to.color, part);
+    glEnable(GL_DEPTH_TEST);
     bool const colored = scene.background.kind == gi::BackgroundKind::color && !eye.in_mirror; // as the CPU form
     glm::vec4 const behind(colored ? scene.background.color : glm::vec3(0), 1);
     glClearNamedFramebufferfv(to.color->target().framebuffer, GL_COLOR, 0, &behind.x);
-    glDepthMask(GL_FALSE);
     glDepthFunc(GL_LESS); // than where a surface is
     lit_->use();
-    ring_.bind(*lit_, eye.view);
-    lit_->set("eye", eye.at);
-    lit_->set("world_from_pixel", eye.world_from_pixel);
-    set_moved_box(*lit_);
-    lit_->set("nearest_m", nearest_m());
     shadows_.bind(*lit_);
-    glBindTextureUnit(4, to.described->shown().texture);
-    glBindTextureUnit(12, to.depth.id());
+    glBindTextureUnit(15, to.found->shown().texture);
     glTextureBarrier(); // depths are read while they are attached
-    glBindVertexArray(no_vertices_.id());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    light_up(*lit_, eye, to);
     draw_sky(eye);
 }
 
@@ -338,7 +361,7 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
     float const apart = kApart * std::max(meshes_.scene().radius_m, 1e-30f);
     struct Seen {
         PlanarMirror const* mirror;
-        glm::ivec2 low_px, size_px;
+        Part part;
     };
     std::vector<Seen> seen;
     for (PlanarMirror const& m : planar_.all()) {
@@ -351,9 +374,9 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
             low = glm::clamp(glm::ivec2(glm::floor((box->first + 1.0f) * px)), glm::ivec2(0), size_px);
             high = glm::clamp(glm::ivec2(glm::ceil((box->second + 1.0f) * px)), glm::ivec2(0), size_px);
         }
-        if (high.x > low.x && high.y > low.y) seen.push_back({&m, low, high - low});
+        if (high.x > low.x && high.y > low.y) seen.push_back({&m, {low, high - low}});
     }
-    auto const pixels = [](Seen const& s) { return std::int64_t(s.size_px.x) * s.size_px.y; };
+    auto const pixels = [](Seen const& s) { return std::int64_t(s.part.size_px.x) * s.part.size_px.y; };
     std::ranges::sort(seen, [&](Seen const& a, Seen const& b) { return pixels(a) > pixels(b); });
     if (seen.size() > kMost) seen.resize(kMost);
     has_drawn_mirrors_ = true;
@@ -361,11 +384,9 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
         fit(mirror_image_, size_px);
         Eye const behind = mirrored(eye, *s.mirror, apart);
         plane_ = glm::vec4(s.mirror->normal, s.mirror->distance_m);
-        glEnable(GL_SCISSOR_TEST);
-        glScissor(s.low_px.x, s.low_px.y, s.size_px.x, s.size_px.y);
         glEnable(GL_CLIP_DISTANCE0);
         glFrontFace(GL_CW);
-        draw_lit(behind, mirror_image_);
+        draw_lit(behind, mirror_image_, s.part);
         draw_blended(behind);
         glFrontFace(GL_CCW);
         glDisable(GL_CLIP_DISTANCE0);
@@ -389,9 +410,8 @@ ShownPicture SurfaceRenderer::draw(int view, gi::Camera const& camera, glm::ivec
     bool const searches = picture.around() != 0 && std::isfinite(picture.nearest_m());
     if (!searches) maps_.b_in_a = glm::vec3(0);
     nearest_ = searches ? 1 / picture.nearest_m() : 0;
-    bind(to.described->target());
     ReversedDepth const state;
-    draw_lit(eye, to);
+    draw_lit(eye, to, {glm::ivec2(0), size_px});
     glBindTextureUnit(0, picture.shown().texture);
     glBindTextureUnit(1, searches ? picture.around() : picture.shown().texture);
     glDepthFunc(GL_EQUAL);

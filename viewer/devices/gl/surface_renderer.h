@@ -1,7 +1,7 @@
 #pragma once
 // Draws the surfaces of a scene for a newer camera than that of the last finished picture, with the light of that
-// picture. The first pass describes what each pixel shows, the second lights it, once a pixel; then come the sky, what
-// flat mirrors show (all of this once more, from behind them), what other mirrors and panes show (that of the last
+// picture. The first pass describes what each pixel shows, the second finds the light of every second pixel of every
+// second row, the third lights all of them, by the light of alike surfaces around; then come the sky, what flat mirrors show (all of this once more, from behind them), what other mirrors and panes show (that of the last
 // picture, by reprojection), and blended surfaces. Textures, outlines, parallax, hard shadows and flat mirrors are
 // those of the new camera; other light is as old as its pictures.
 
@@ -40,7 +40,7 @@ public:
 
 private:
     struct Target {
-        std::optional<TextureTarget> described, color;
+        std::optional<TextureTarget> described, found, color;
         GlObject depth;
     };
     enum class Pass : std::uint8_t { described, mirrors, planar, blended };
@@ -62,7 +62,11 @@ private:
     static bool takes_part(SurfaceKind const& kind, Pass pass);
     GlProgram& program(SurfaceKind const& kind, Pass pass);
     void draw_batches(Pass pass, Eye const& eye);
-    void draw_lit(Eye const& eye, Target const& to);
+    struct Part { ///< of a picture
+        glm::ivec2 low_px, size_px;
+    };
+    void light_up(GlProgram const& program, Eye const& eye, Target const& to) const;
+    void draw_lit(Eye const& eye, Target const& to, Part const& part);
     void draw_sky(Eye const& eye);
     void draw_blended(Eye const& eye);
     void draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 size_px);
@@ -76,7 +80,7 @@ private:
     glm::vec4 plane_{0};             ///< of the flat mirror that is drawn
     glm::vec3 eye_{0};               ///< of the last picture, m, from the world's origin
     std::map<std::string, GlProgram> programs_;
-    std::optional<GlProgram> lit_, sky_;
+    std::optional<GlProgram> found_, lit_, sky_;
     ReprojectionMaps maps_; ///< from the last picture, and its greatest 1 / depth
     float nearest_ = 0;
     std::map<int, Target> targets_;

@@ -8,7 +8,7 @@
 namespace viewer {
 namespace {
 
-constexpr int kNice = 3;
+constexpr int kNice = 6;
 
 /// Lowers the priority of this thread only (Linux keeps priorities per thread). If refused, nothing changes.
 void give_way() { static_cast<void>(setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), kNice)); }

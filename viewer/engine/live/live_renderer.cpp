@@ -270,8 +270,10 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
     command.paths = budget.paths;
     if (own_surfaces) {
         command.light_scale = budget.scale;
+        command.only_light = now.drawn_scale > 0 && s.draw_surfaces && s.compare.empty() && budget.scale < 1;
+        if (command.only_light) // mirrors and panes need not be sharper than what is drawn around them
+            budget.surfaces = std::max(budget.scale, std::min(budget.surfaces, now.drawn_scale));
         command.surface_scale = budget.surfaces;
-        command.only_light = now.draws_surfaces && s.draw_surfaces && s.compare.empty() && budget.scale < 1;
     } else {
         for (ViewCommand& v : command.views) v = scaled(v, budget.scale);
     }

@@ -16,7 +16,8 @@ struct Viewpoint {
     std::vector<Tracked> others;    ///< as in FrameCommand
     std::vector<ViewCommand> views; ///< at full size
     std::uint64_t jump = 0;         ///< Navigation::jump
-    bool draws_surfaces = false;    ///< who shows the pictures draws surfaces himself
+    double drawn_scale = 0; ///< side of surfaces, over that of the views, that who shows the pictures draws
+                            ///< himself; 0 = he does not
 
     double time_s() const { return valid_s < 0 ? pose_s : valid_s; }
 };

@@ -192,11 +192,11 @@ ScreenSwap HmdScreen::present(ScreenContent const& content)
     std::array const sizes{size_of(frame.views[0]), size_of(frame.views[1])};
     auto const shown = content.panes.empty() ? nullptr : content.panes[0].frame;
     if (shown && shown->result.views.size() == 2) {
-        if (taken_ != shown) eyes_.take(*shown);
+        if (taken_ != shown) eyes_.take(shown);
         taken_ = shown;
-        std::vector<ViewCommand> const now = own_views(world_from_camera_, 0);
-        eyes_.draw(*shown, {now[0].camera, now[1].camera}, sizes, shown->settings.reproject,
-                   tone_settings(shown->settings));
+        std::vector<ViewCommand> const views = own_views(world_from_camera_, 0);
+        std::array const now{views[0].camera, views[1].camera};
+        eyes_.draw(shown->settings.reproject ? &now : nullptr, sizes, tone_settings(shown->settings));
     } else {
         eyes_.clear(sizes, ScreenContent::kGrey);
     }

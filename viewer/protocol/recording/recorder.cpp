@@ -54,6 +54,7 @@ Recorder::~Recorder() { finish(); }
 
 void Recorder::append(RecordedFrame const& f)
 {
+    std::lock_guard const lock(mutex_);
     if (last_frame_ && f.command.frame <= *last_frame_)
         throw gi::InputError(fmt::format("frame {} cannot be recorded", f.command.frame),
                              fmt::format("it comes after frame {}", *last_frame_), "count frames up");
@@ -66,21 +67,37 @@ void Recorder::append(RecordedFrame const& f)
     put_record(record, kFrameRecord, payload.bytes());
     file_.append(record.bytes());
     last_frame_ = f.command.frame;
-    ++frames_;
+    chunks_until_.push_back(++chunks_);
+}
+
+void Recorder::append(ShownFrame const& shown)
+{
+    std::lock_guard const lock(mutex_);
+    if (finished_) return;
+    ByteWriter payload;
+    payload.put_byte(shown.pixel_hash ? 1 : 0);
+    if (shown.pixel_hash) payload.put_u64(*shown.pixel_hash);
+    payload.put_number(shown.surfaces_scale);
+    payload.put_raw(to_bytes(shown.moment));
+    ByteWriter record;
+    put_record(record, kShownRecord, payload.bytes());
+    file_.append(record.bytes());
+    ++chunks_;
 }
 
 std::uint64_t Recorder::written_frames() const
 {
-    std::uint64_t const chunks = file_.written_chunks();
-    return chunks == 0 ? 0 : std::min(chunks - 1, frames_); // do not count the header and the end record
+    std::lock_guard const lock(mutex_);
+    return std::uint64_t(std::ranges::upper_bound(chunks_until_, file_.written_chunks()) - chunks_until_.begin());
 }
 
 void Recorder::finish()
 {
+    std::lock_guard const lock(mutex_);
     if (finished_) return;
     finished_ = true;
     ByteWriter payload, record;
-    payload.put_u64(frames_);
+    payload.put_u64(chunks_until_.size());
     put_record(record, kEndRecord, payload.bytes());
     if (file_.failure().empty()) file_.append(record.bytes());
     file_.close();

@@ -3,11 +3,11 @@
 // enough to render a session again, bit by bit.
 //
 //   0  8 bytes   "\x89LWR\r\n\x1a\n"
-//   8  u32       version of the format: 1
+//   8  u32       version of the format: 2 (1: without shown frames)
 //   12 records   u32 length of the payload, u8 type, payload, u32 CRC-32 of length, type and payload
 //
 // All numbers are little-endian. Type 1, first and once: the header, as texts. Type 2: a frame. Type 3, last: the
-// number of frames, present only if the recording was closed properly. Frame numbers increase. A file is read up
+// number of frames, present only if the recording was closed properly. Type 4: a shown frame. Frame numbers increase. A file is read up
 // to the first incomplete record: a killed process leaves a recording without the last record.
 
 #include "viewer/protocol/frame_command.h"
@@ -16,6 +16,8 @@
 
 #include <istream>
 #include <memory>
+#include <mutex>
+#include <variant>
 
 namespace viewer {
 
@@ -37,6 +39,17 @@ struct RecordedFrame {
     bool operator==(RecordedFrame const&) const = default;
 };
 
+/// A picture that people saw: of the newest frame then, perhaps drawn for newer poses.
+struct ShownFrame {
+    /// As the frame's, but with the poses, cameras and scene time that were shown, and display_s of the swap.
+    FrameCommand moment;
+    double surfaces_scale = 0;               ///< side of drawn surfaces over that of the views; 0 = none
+    std::optional<std::uint64_t> pixel_hash; ///< ShownViews::hash
+
+    bool operator==(ShownFrame const&) const = default;
+};
+
+/// May be used by several threads.
 class Recorder {
 public:
     /// An empty header.created is set to the current time. Throws InputError if the file exists, cannot be
@@ -47,6 +60,8 @@ public:
     /// Does not wait for the disk. Throws InputError if check_command rejects the frame command, or its frame
     /// number is not above the previous one.
     void append(RecordedFrame const& frame);
+    /// After the frame that it shows. Throws InputError if check_command rejects the moment.
+    void append(ShownFrame const& shown);
     /// Why recording has stopped (e.g. a full disk); empty if it has not.
     std::string failure() const { return file_.failure(); }
     /// Number of frames in the file so far.
@@ -55,8 +70,10 @@ public:
     void finish();
 
 private:
+    mutable std::mutex mutex_;
     AppendFile file_;
-    std::uint64_t frames_ = 0;
+    std::uint64_t chunks_ = 1;                ///< handed over, the header first
+    std::vector<std::uint64_t> chunks_until_; ///< each frame
     std::optional<std::uint64_t> last_frame_;
     bool finished_ = false;
 };
@@ -82,8 +99,11 @@ public:
     RecordingHeader const& header() const { return header_; }
     std::string const& name() const { return name_; }
     std::uint64_t bytes() const { return size_; }
-    /// The next frame; none at the end, which end() then describes.
+    using Record = std::variant<RecordedFrame, ShownFrame>;
+    /// The next frame or shown frame; none at the end, which end() then describes.
     /// A damaged record ends the recording; it is not an error.
+    std::optional<Record> next_record();
+    /// The next frame, without those that were shown.
     std::optional<RecordedFrame> next();
     /// Valid after next() has returned none.
     RecordingEnd const& end() const { return end_; }
@@ -91,11 +111,11 @@ public:
     void rewind();
 
 private:
-    struct Record {
+    struct Raw {
         std::uint8_t type = 0;
         Bytes payload;
     };
-    Record read_record();
+    Raw read_record();
     void read_header();
     void end_at(RecordingState state, std::uint64_t unread, std::string const& why);
 

@@ -49,6 +49,20 @@ RecordedFrame frame_of(Bytes const& payload)
     return f;
 }
 
+ShownFrame shown_of(Bytes const& payload)
+{
+    ByteReader from(payload);
+    ShownFrame s;
+    std::uint8_t const flags = from.byte();
+    if (flags > 1) throw BadBytes("a shown frame has unknown content");
+    if (flags == 1) s.pixel_hash = from.u64();
+    s.surfaces_scale = from.number();
+    if (!(s.surfaces_scale >= 0 && s.surfaces_scale <= 4))
+        throw BadBytes("surfaces of a shown frame have no size");
+    s.moment = command_from_bytes(from.take(from.left()));
+    return s;
+}
+
 } // namespace
 
 RecordingReader::RecordingReader(fs::path const& file)
@@ -64,7 +78,7 @@ RecordingReader::RecordingReader(std::unique_ptr<std::istream> in, std::uint64_t
     rewind();
 }
 
-RecordingReader::Record RecordingReader::read_record()
+RecordingReader::Raw RecordingReader::read_record()
 {
     std::uint64_t const left = size_ - at_;
     if (left < kRecordHead + kRecordTail) throw Cut("it ends within a record");
@@ -74,7 +88,7 @@ RecordingReader::Record RecordingReader::read_record()
     std::uint32_t const length = from.u32();
     if (length > kMostPayload) throw BadBytes(fmt::format("a record claims {} bytes", length));
     if (length > left - kRecordHead - kRecordTail) throw Cut("it ends within a record");
-    Record record{from.byte(), Bytes(length)};
+    Raw record{from.byte(), Bytes(length)};
     in_->read(reinterpret_cast<char*>(record.payload.data()), length);
     Bytes tail(kRecordTail);
     in_->read(reinterpret_cast<char*>(tail.data()), kRecordTail);
@@ -96,12 +110,13 @@ void RecordingReader::read_header()
         ByteReader from(start);
         from.take(kRecordingMagic.size());
         std::uint32_t const version = from.u32();
-        if (version != kRecordingVersion)
+        if (version < kOldestRecordingVersion || version > kRecordingVersion)
             throw no_recording(name_,
-                               fmt::format("its format is {}, this version reads {}", version, kRecordingVersion),
+                               fmt::format("its format is {}, this version reads {} to {}", version,
+                                           kOldestRecordingVersion, kRecordingVersion),
                                "use the version of the program that recorded it");
         at_ = start.size();
-        Record const record = read_record();
+        Raw const record = read_record();
         if (record.type != kHeaderRecord) throw BadBytes("its first record is not a header");
         ByteReader texts(record.payload);
         header_.program = texts.text(kMostHeaderText);
@@ -136,6 +151,13 @@ void RecordingReader::end_at(RecordingState state, std::uint64_t unread, std::st
 
 std::optional<RecordedFrame> RecordingReader::next()
 {
+    while (auto record = next_record())
+        if (auto* const frame = std::get_if<RecordedFrame>(&*record)) return std::move(*frame);
+    return {};
+}
+
+std::optional<RecordingReader::Record> RecordingReader::next_record()
+{
     if (ended_) return {};
     std::uint64_t const before = at_;
     try {
@@ -143,7 +165,7 @@ std::optional<RecordedFrame> RecordingReader::next()
             end_at(RecordingState::cut, 0, "it was not closed properly");
             return {};
         }
-        Record const record = read_record();
+        Raw const record = read_record();
         if (record.type == kEndRecord) {
             if (ByteReader(record.payload).u64() != end_.frames)
                 throw BadBytes("its end record has a different number of frames");
@@ -154,6 +176,7 @@ std::optional<RecordedFrame> RecordingReader::next()
             end_at(RecordingState::finished, 0, "");
             return {};
         }
+        if (record.type == kShownRecord) return shown_of(record.payload);
         if (record.type != kFrameRecord) throw BadBytes(fmt::format("a record is of type {}", record.type));
         RecordedFrame frame = frame_of(record.payload);
         if (end_.last_frame && frame.command.frame <= *end_.last_frame)

@@ -1,0 +1,188 @@
+#include "viewer/app/shown_views.h"
+
+#include "gi/core/xxhash.h"
+#include "gi/surfaces/lit_picture.h"
+#include "viewer/app/fill_hidden.h"
+#include "viewer/app/pose_at.h"
+#include "viewer/engine/picture_margin.h"
+
+#include <algorithm>
+#include <epoxy/gl.h>
+
+namespace viewer {
+namespace {
+
+std::span<float const> floats(gi::Picture const& picture, char const* layer)
+{
+    gi::Layer const* const l = picture.find(layer);
+    return l == nullptr ? std::span<float const>() : std::span<float const>(l->data);
+}
+
+/// The next size that is no power of two, and neither is its half: llvmpipe compiles shaders anew, for half a second, when
+/// a texture's size becomes one.
+int no_power_of_two(int n)
+{
+    auto const is_power = [](int v) { return (v & (v - 1)) == 0; };
+    while (is_power(n) || is_power((n + 1) / 2)) ++n;
+    return n;
+}
+
+} // namespace
+
+void ShownViews::upload(std::optional<Shown>& to, gi::Picture const& picture, HiddenPixels const& hidden)
+{
+    if (!to) to.emplace(Shown{{}, Reprojection(reprojection_)});
+    std::span<float const> color = floats(picture, "color"), depth = floats(picture, gi::seen_depth_of(picture));
+    if (hidden && 3 * hidden->size() == color.size()) {
+        color_.assign(color.begin(), color.end());
+        depth_.assign(depth.begin(), depth.end());
+        fill_hidden(*hidden, picture.width, color_, 3);
+        if (!depth.empty()) fill_hidden(*hidden, picture.width, depth_, 1);
+        color = color_;
+        depth = depth_;
+    }
+    to->picture.upload({picture.width, picture.height}, color, depth);
+}
+
+void ShownViews::take(std::shared_ptr<LiveFrame const> frame, std::vector<int> const& views)
+{
+    frame_ = std::move(frame);
+    if (frame_->result.scene) {
+        if (!renderer_ && why_no_surfaces_.empty()) renderer_.emplace();
+        if (renderer_) renderer_->take(frame_->result.scene);
+        if (renderer_) renderer_->take(frame_->result.cells);
+    }
+    views_.resize(frame_->result.views.size());
+    std::vector<char> is_uploaded(views_.size());
+    for (int const view : views) {
+        if (view < 0 || std::size_t(view) >= views_.size() || is_uploaded[std::size_t(view)]) continue;
+        View& to = views_[std::size_t(view)];
+        ViewPicture const& v = frame_->result.views[std::size_t(view)];
+        upload(to.own, v.picture, v.hidden);
+        to.is_light = false;
+        if (v.compared)
+            upload(to.other, *v.compared, v.hidden);
+        else
+            to.other.reset();
+        is_uploaded[std::size_t(view)] = 1;
+    }
+    for (std::size_t view = 0; view < views_.size(); ++view)
+        if (!is_uploaded[view]) views_[view] = {};
+}
+
+void ShownViews::begin(double surfaces_scale, FrameCommand const* moment, DriveBodies const& drive)
+{
+    constexpr double kPrepare_s = 0.01;
+    surfaces_scale_ = surfaces_scale;
+    drew_surfaces_ = false;
+    hashes_.assign(views_.size(), 0);
+    prepare(kPrepare_s);
+    is_ready_ = has_surfaces() && !prepares_;
+    if (is_ready_ && moment && renderer_->can_move()) renderer_->move(pose_at(frame_->result, *moment, drive));
+}
+
+void ShownViews::prepare(double most_s)
+{
+    prepares_ = false;
+    if (!has_surfaces()) return;
+    try {
+        prepares_ = !renderer_->prepare(most_s);
+    } catch (std::runtime_error const& e) { // a driver that compiles them not: pictures are reprojected
+        why_no_surfaces_ = e.what();
+        renderer_.reset();
+    }
+}
+
+bool ShownViews::make_ready()
+{
+    surfaces_scale_ = 1;
+    do prepare(1);
+    while (prepares_);
+    return has_surfaces();
+}
+
+std::uint64_t ShownViews::hash() const { return gi::xxh64(std::as_bytes(std::span(hashes_))); }
+
+bool ShownViews::draws_surfaces() const
+{
+    return surfaces_scale_ > 0 && !prepares_ && renderer_ && frame_ && frame_->result.scene &&
+           tried_ == frame_->result.scene->world.get() &&
+           std::ranges::none_of(frame_->result.views, [](ViewPicture const& v) { return v.compared.has_value(); });
+}
+
+std::optional<ShownPicture> ShownViews::surfaces(int view, gi::Camera const& from, gi::Camera const& to,
+                                                 glm::ivec2 size_px)
+{
+    constexpr std::size_t kMostTexels = 1u << 18;
+    if (!is_ready_) return std::nullopt;
+    View& shown = views_[std::size_t(view)];
+    ViewPicture const& rendered = frame_->result.views[std::size_t(view)];
+    if (shown.other) return std::nullopt;
+    if (!std::exchange(shown.is_light, true)) {
+        if (rendered.light) {
+            renderer_->add_light(view, *rendered.light);
+        } else {
+            gi::LightPicture light = gi::light_picture(rendered.picture, from, kMostTexels);
+            light.lamps = frame_->result.lamps;
+            renderer_->add_light(view, light);
+        }
+    }
+    if (!renderer_->has_light()) return std::nullopt;
+    glm::ivec2 size = glm::max(glm::ivec2(glm::round(surfaces_scale_ * glm::dvec2(size_px))), glm::ivec2(1));
+    size = {no_power_of_two(size.x), no_power_of_two(size.y)};
+    return renderer_->draw(view, to, size, shown.own->picture, from);
+}
+
+EyeView ShownViews::eye(int view, gi::Camera const* now)
+{
+    EyeView const shown = draw(view, now);
+    if (hashes_pictures_ && shown.picture.texture != 0) {
+        glm::ivec2 const px = shown.picture.size_px;
+        std::vector<float> rgb(std::size_t(3 * px.x * px.y));
+        glPixelStorei(GL_PACK_ALIGNMENT, 4);
+        glGetTextureImage(shown.picture.texture, 0, GL_RGB, GL_FLOAT, GLsizei(rgb.size() * sizeof(float)),
+                          rgb.data());
+        hashes_[std::size_t(view)] = gi::xxh64(std::as_bytes(std::span(rgb)));
+    }
+    return shown;
+}
+
+EyeView ShownViews::draw(int view, gi::Camera const* now)
+{
+    if (!frame_ || view < 0 || std::size_t(view) >= frame_->command.views.size()) return {};
+    if (std::size_t(view) >= views_.size() || !views_[std::size_t(view)].own) return {};
+    auto& own = views_[std::size_t(view)].own;
+    auto& other = views_[std::size_t(view)].other;
+    ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
+    EyeView e{own->picture.shown(), other ? other->picture.shown() : own->picture.shown()};
+    glm::ivec2 const margin = frame_->result.views[std::size_t(view)].margin_px,
+                     size = frame_->command.only_light ? glm::ivec2(rendered.width, rendered.height)
+                                                       : e.picture.size_px - 2 * margin;
+    bool const moved = now != nullptr && !rendered.camera.orthographic && !(*now == rendered.camera);
+    own->reprojection.keep_only(size);
+    if (other) other->reprojection.keep_only(size);
+    gi::Camera const from = with_margin(rendered.camera, size, margin), &to = moved ? *now : rendered.camera;
+    // The first time takes long, as drivers compile then: it is done while nothing moves.
+    if (!moved && !rendered.camera.orthographic && surfaces_scale_ > 0 && renderer_ && frame_->result.scene &&
+        tried_ != frame_->result.scene->world.get() && surfaces(view, from, to, glm::ivec2(16)))
+        tried_ = frame_->result.scene->world.get();
+    bool const only_light = frame_->command.only_light; // else it shows surfaces itself
+    if (!moved && !only_light && margin == glm::ivec2(0)) return e;
+    if (moved || only_light)
+        if (auto const drawn = surfaces(view, from, to, size)) {
+            drew_surfaces_ = true;
+            e.picture = e.other = *drawn;
+            return e;
+        }
+    e.picture = e.other = own->reprojection.draw(own->picture, from, to, size);
+    if (other) e.other = other->reprojection.draw(other->picture, from, to, size);
+    return e;
+}
+
+ShownFrame shown_frame(FrameCommand moment, ShownViews const& views)
+{
+    return {std::move(moment), views.drawn_scale(),
+            views.hashes_pictures() ? std::optional(views.hash()) : std::nullopt};
+}
+
+} // namespace viewer

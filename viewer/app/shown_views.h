@@ -1,0 +1,78 @@
+#pragma once
+// The views of the newest frame as a window or a headset shows them: uploaded once, and drawn for newer cameras, by
+// their surfaces where these can be drawn, else by reprojection.
+
+#include "viewer/devices/gl/display_pass.h"
+#include "viewer/devices/gl/reprojection.h"
+#include "viewer/devices/gl/surface_renderer.h"
+#include "viewer/engine/live/live_renderer.h"
+#include "viewer/protocol/recording/recording.h"
+
+namespace viewer {
+
+/// The context that was current at its creation must be current in all calls.
+class ShownViews {
+public:
+    /// Uploads these views of the frame, hidden pixels filled (fill_hidden), and frees the others. -1 = none.
+    void take(std::shared_ptr<LiveFrame const> frame, std::vector<int> const& views);
+    bool has_frame() const { return frame_ != nullptr; }
+    ViewCommand const& command(int view) const { return frame_->command.views[std::size_t(view)]; }
+
+    /// Before the views of a picture are drawn.
+    /// @param surfaces_scale  side of surfaces over that of the view; 0: pictures are reprojected
+    /// @param moment  in which objects and bodies are shown; null: that of the frame
+    void begin(double surfaces_scale, FrameCommand const* moment, DriveBodies const& drive);
+    /// Valid until the view's next one. @param now  null = as rendered
+    EyeView eye(int view, gi::Camera const* now);
+
+    /// True if surfaces are about to be drawn, once more of the scene is on the GPU: draw again soon.
+    bool prepares() const { return prepares_; }
+    bool drew_surfaces() const { return drew_surfaces_; } ///< since begin()
+    /// Side of surfaces over that of the view, if any could be drawn since begin(); else 0.
+    double drawn_scale() const { return is_ready_ ? surfaces_scale_ : 0; }
+    /// Puts the rest of the scene on the GPU, however long it takes. False: surfaces cannot be drawn.
+    bool make_ready();
+    /// Hash of the linear pictures of all views since begin(), if hash_pictures() was called; reading them waits for the GPU.
+    std::uint64_t hash() const;
+    void hash_pictures() { hashes_pictures_ = true; }
+    bool hashes_pictures() const { return hashes_pictures_; }
+    /// True if surfaces of every view can be drawn: pictures may be of light alone.
+    bool draws_surfaces() const;
+    /// Why surfaces are not drawn although they should be; empty: they are, or will be.
+    std::string const& why_no_surfaces() const { return why_no_surfaces_; }
+
+private:
+    struct Shown {
+        PictureTexture picture;
+        Reprojection reprojection;
+    };
+    /// none = not shown.
+    struct View {
+        std::optional<Shown> own, other;
+        bool is_light = false; ///< its light is in the ring
+    };
+    void upload(std::optional<Shown>& to, gi::Picture const& picture, HiddenPixels const& hidden);
+    bool has_surfaces() const { return surfaces_scale_ > 0 && renderer_ && frame_ && frame_->result.scene; }
+    void prepare(double most_s);
+    EyeView draw(int view, gi::Camera const* now);
+    /// The surfaces of a view for another camera than that of its picture; none if they cannot be drawn.
+    std::optional<ShownPicture> surfaces(int view, gi::Camera const& from, gi::Camera const& to,
+                                         glm::ivec2 size_px);
+
+    std::shared_ptr<ReprojectionPrograms const> reprojection_ = std::make_shared<ReprojectionPrograms>();
+    std::vector<View> views_;
+    std::optional<SurfaceRenderer> renderer_;
+    double surfaces_scale_ = 0;
+    bool is_ready_ = false; ///< at begin()
+    bool prepares_ = false, drew_surfaces_ = false, hashes_pictures_ = false;
+    std::vector<std::uint64_t> hashes_; ///< of views
+    std::string why_no_surfaces_;
+    gi::World const* tried_ = nullptr; ///< scene whose surfaces were drawn once
+    std::shared_ptr<LiveFrame const> frame_;
+    std::vector<float> color_, depth_; ///< copies with filled hidden pixels
+};
+
+/// What was drawn since begin(), for a recording.
+ShownFrame shown_frame(FrameCommand moment, ShownViews const& views);
+
+} // namespace viewer

@@ -1,0 +1,28 @@
+#pragma once
+// Pictures that were shown against converged ones of the same moments.
+
+#include "viewer/app/user_avatars.h"
+#include "viewer/bench/shown/shown_bench.h"
+
+namespace viewer {
+
+/// What was seen at a moment.
+struct SeenMoment {
+    Viewpoint at;
+    double scene_s = 0;
+    std::vector<std::vector<unsigned char>> shown; ///< per eye: R, G, B bytes, rows from the top
+};
+
+/// Means over eyes and moments.
+struct ShownErrors {
+    double flip = 0, most_flip = 0; ///< most: of a moment and an eye
+    double rivalry = 0; ///< mean difference of the eyes' errors (display-encoded, 0..255) at points that both see
+    int moments = 0;    ///< that were scored before a stop
+};
+
+/// Renders the truth by the method reference, and writes pictures and their FLIP maps.
+/// @param origin  of the world
+ShownErrors score(ShownOptions const& options, RecordedScenes const& scenes, std::vector<SeenMoment> const& seen,
+                  gi::dvec3 origin, gi::StopRequest const& stop);
+
+} // namespace viewer

@@ -1,0 +1,290 @@
+#include "viewer/bench/shown/shown_bench.h"
+
+#include "gi/core/error.h"
+#include "viewer/app/pose_at.h"
+#include "viewer/app/presenter.h"
+#include "viewer/app/surfaces_scale.h"
+#include "viewer/base/arguments.h"
+#include "viewer/bench/bench_record.h"
+#include "viewer/bench/shown/head_path.h"
+#include "viewer/bench/shown/score.h"
+#include "viewer/devices/gl/context.h"
+#include "viewer/offline/load_world.h"
+#include "viewer/report/table_file.h"
+
+#include <algorithm>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <mutex>
+
+namespace viewer {
+namespace {
+
+constexpr double kApart_m = 0.063;
+constexpr double kStill_s = 2; ///< that the head holds still after its path
+constexpr double kFirst_s = 1; ///< of the path, which is not scored
+
+/// What is counted while the head moves.
+struct ShownCounts {
+    std::vector<double> gaps_ms, light_ages_ms, drawing_ms, between_ms, flicker;
+    double light_scale = 0, surfaces_scale = 0, paths = 0;
+    std::size_t shown = 0, rendered = 0;
+    std::map<std::string, double> stages_s;
+};
+
+double quantile(std::vector<double> values, double q)
+{
+    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+    std::ranges::sort(values);
+    return values[std::min(values.size() - 1, std::size_t(q * double(values.size())))];
+}
+
+/// Root mean square of what changes between two pictures, 0..255.
+double change(std::vector<unsigned char> const& a, std::vector<unsigned char> const& b)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += gi::square(double(a[i]) - double(b[i]));
+    return std::sqrt(sum / double(std::max<std::size_t>(1, a.size())));
+}
+
+/// Shows a session to a head on its path, as a window does.
+class ShownRun {
+public:
+    ShownRun(ShownOptions const& o, RenderSession& session, RecordedScenes const& scenes, Walker& walker,
+             glm::ivec2 size_px, gi::StopRequest const& stop)
+        : o_(o),
+          scenes_(scenes),
+          walker_(walker),
+          size_px_(size_px),
+          stop_(stop),
+          draws_surfaces_(session.settings().draw_surfaces),
+          renderer_(session, clock_, nullptr, hooks())
+    {
+        settings_.tone = tone_settings(session.settings());
+        for (int e = 0; e < o.eyes; ++e) {
+            panes_.push_back({{0, 0}, size_px, StereoMode::off, e, -1});
+            for (int k = 0; k < 2; ++k) targets_.emplace_back(TextureTarget::Format::bytes, size_px);
+        }
+    }
+
+    void run()
+    {
+        renderer_.look(walker_.at(0, 0, 0));
+        while (!renderer_.newest()) {
+            if (stop_.requested()) throw gi::Interrupted();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        shown_ = renderer_.newest();
+        presenter_.take(shown_, panes_);
+        prepare();
+        begun_s_ = clock_.now_s();
+        {
+            std::lock_guard const lock(counting_);
+            counts_ = {};
+            done_s_ = begun_s_;
+        }
+        double const end_s = walker_.path().seconds() + kStill_s;
+        for (double now = 0; now < end_s; now = clock_.now_s() - begun_s_) {
+            if (stop_.requested()) throw gi::Interrupted();
+            show(now);
+            wait(now);
+        }
+        renderer_.stop();
+    }
+
+    std::vector<SeenMoment> const& seen() const { return seen_; }
+    ShownCounts const& counts() const { return counts_; }
+
+private:
+    LiveRenderer::Hooks hooks()
+    {
+        LiveRenderer::Hooks hooks;
+        hooks.finished = [this](LiveFrame const& f) {
+            std::lock_guard const lock(counting_);
+            if (!walker_.path().moves(f.command.pose_s - begun_s_)) return;
+            counts_.between_ms.push_back(1e3 * (f.done_s - std::exchange(done_s_, f.done_s)));
+            for (auto const& [stage, s] : f.result.stages_s) counts_.stages_s[stage] += s;
+            counts_.light_scale += f.budget.scale;
+            counts_.paths += f.budget.paths;
+            ++counts_.rendered;
+        };
+        hooks.failed = [](std::string const& why) { fmt::print(stderr, "note: {}\n", why); };
+        return hooks;
+    }
+
+    /// As a window does before anybody moves.
+    void prepare()
+    {
+        settings_.surfaces_scale = draws_surfaces_ ? scale_.next() : 0;
+        do draw(turn_, cameras(shown_->command.views));
+        while (presenter_.views().prepares() && !stop_.requested());
+    }
+
+    void draw(std::size_t target, std::vector<gi::Camera> const& now)
+    {
+        for (int e = 0; e < o_.eyes; ++e)
+            presenter_.draw(targets_[std::size_t(2 * e) + target].target(), {0, 0}, {panes_[std::size_t(e)]},
+                            settings_, now);
+        glFinish();
+    }
+
+    static std::vector<gi::Camera> cameras(std::vector<ViewCommand> const& views)
+    {
+        std::vector<gi::Camera> all;
+        for (ViewCommand const& v : views) all.push_back(v.camera);
+        return all;
+    }
+
+    Viewpoint look(double now)
+    {
+        Viewpoint at = walker_.at(now, now - std::exchange(last_s_, now), begun_s_);
+        if (presenter_.views().draws_surfaces()) at.drawn_scale = scale_.next();
+        renderer_.look(at);
+        anticipation_.see(at);
+        return at;
+    }
+
+    std::vector<unsigned char> on_screen(int eye) const
+    {
+        return read_bytes(targets_[std::size_t(2 * eye) + turn_].target());
+    }
+
+    void show(double now)
+    {
+        Viewpoint at = look(now);
+        double const seen_s = begun_s_ + now + std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s);
+        if (surfaces_s_ > 0) at = anticipation_.at(begun_s_ + now, seen_s);
+        auto const newest = renderer_.newest();
+        if (newest != shown_) presenter_.take(newest, panes_);
+        shown_ = newest;
+        double const drawing = clock_.now_s();
+        settings_.moment = moment_at(*newest, at, seen_s);
+        settings_.drive = scenes_.drive;
+        settings_.surfaces_scale = draws_surfaces_ ? scale_.next() : 0;
+        std::size_t const drawn = 1 - turn_;
+        draw(drawn, cameras(at.views));
+        double const done = clock_.now_s();
+        drew_s_ = done - drawing;
+        score_moments(done - begun_s_); // of what is on the screen until now
+        bool const moves = walker_.path().moves(now);
+        if (moves) {
+            if (shown_s_ > 0) counts_.gaps_ms.push_back(1e3 * (done - shown_s_));
+            counts_.light_ages_ms.push_back(1e3 * (done - newest->command.pose_s));
+            counts_.drawing_ms.push_back(1e3 * drew_s_);
+            counts_.surfaces_scale += settings_.surfaces_scale;
+            ++counts_.shown;
+        }
+        shown_s_ = moves ? done : 0;
+        turn_ = drawn;
+        if (now > walker_.path().seconds() + 0.5 * kStill_s) {
+            std::vector<unsigned char> picture = on_screen(0);
+            if (!still_.empty()) counts_.flicker.push_back(change(still_, picture));
+            still_ = std::move(picture);
+        }
+        if (!presenter_.views().drew_surfaces()) return;
+        scale_.measured(settings_.surfaces_scale, drew_s_);
+        surfaces_s_ = surfaces_s_ > 0 ? surfaces_s_ + 0.2 * (drew_s_ - surfaces_s_) : drew_s_;
+    }
+
+    /// What is still shown at a moment is compared with what should be seen then.
+    void score_moments(double until)
+    {
+        double const scored_s = walker_.path().seconds() - kFirst_s;
+        double const moment = kFirst_s + scored_s * (double(seen_.size()) + 0.5) / o_.moments;
+        if (int(seen_.size()) >= o_.moments || until < moment) return;
+        SeenMoment s{walker_.at(moment, 0, begun_s_), scene_time_at(*shown_, begun_s_ + moment), {}};
+        for (int e = 0; e < o_.eyes; ++e) s.shown.push_back(on_screen(e));
+        seen_.push_back(std::move(s));
+    }
+
+    /// Until the next picture is due, as the window's loop.
+    void wait(double now)
+    {
+        constexpr double kPresentation_Hz = 60, kDrawings = 5, kLook_s = 0.004;
+        double const next_s =
+            now + std::max(1 / kPresentation_Hz, presenter_.views().drew_surfaces() ? 0 : kDrawings * drew_s_);
+        while (clock_.now_s() - begun_s_ < next_s && renderer_.newest() == shown_) {
+            if (double const t = clock_.now_s() - begun_s_; t - last_s_ > kLook_s) look(t);
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+    }
+
+    ShownOptions const& o_;
+    RecordedScenes const& scenes_;
+    Walker& walker_;
+    glm::ivec2 size_px_;
+    gi::StopRequest const& stop_;
+    bool draws_surfaces_;
+    SessionClock clock_;
+    Presenter presenter_{{}};
+    PresentSettings settings_;
+    SurfacesScale scale_;
+    Anticipation anticipation_;
+    std::vector<Pane> panes_;
+    std::vector<TextureTarget> targets_; ///< two per eye: one is shown while the other is drawn
+    std::size_t turn_ = 0;               ///< which of an eye's two is shown
+    double begun_s_ = 0, last_s_ = 0, shown_s_ = 0, surfaces_s_ = 0, drew_s_ = 0;
+    std::shared_ptr<LiveFrame const> shown_;
+    std::vector<SeenMoment> seen_;
+    std::vector<unsigned char> still_;
+    ShownCounts counts_;
+    double done_s_ = 0;
+    std::mutex counting_;   ///< of what the rendering thread counts
+    LiveRenderer renderer_; ///< ends first
+};
+
+} // namespace
+
+BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Report& report)
+{
+    auto const [width, height] = parse_size(o.size);
+    HeadPath path(o.head);
+    std::vector<AvatarChoice> const avatars = avatar_choices(o.avatar, kPathEyeHeight_m, {}, {});
+    RecordedScenes const scenes = scenes_with(o.scene, avatars, report);
+    check_folder(o.out);
+    std::filesystem::create_directories(o.out);
+    GlContext const gl = GlContext::surfaceless(report);
+    RenderSession session(scenes.load, o.scene.settings.threads, report);
+    session.apply({"draw_surfaces", true});
+    if (scenes.drive) session.drive_bodies(scenes.drive);
+    for (std::string const& s : o.settings) session.apply(parse_change(s));
+    session.apply({"scene", o.scene.scene});
+    ChosenCamera const chosen = choose_camera(session.world(), camera_choice(o.scene));
+    Walker walker(std::move(path), chosen.camera, o.fov_deg, {width, height}, o.eyes == 2 ? kApart_m : 0,
+                  scenes.avatars.empty() ? std::nullopt : std::optional(scenes.avatars[0].stance));
+    gi::dvec3 const origin = session.world().origin;
+    ShownRun run(o, session, scenes, walker, {width, height}, stop);
+    run.run();
+    ShownErrors const errors = score(o, scenes, run.seen(), origin, stop);
+
+    ShownCounts const& n = run.counts();
+    BenchTable table =
+        start_table("shown", "What is shown while a head moves",
+                    {"scene", "path", "size", "eyes", "interval_ms", "interval_95_ms", "interval_99_ms",
+                     "longest_interval_ms", "drawing_ms", "rendering_ms", "light_age_ms", "light_age_95_ms",
+                     "flip", "most_flip", "rivalry", "still_flicker", "surfaces_scale", "light_scale", "paths"});
+    table.facts = {{"OpenGL", gl.description()},
+                   {"settings", fmt::format("{}", fmt::join(o.settings, " "))},
+                   {"moments", std::to_string(errors.moments)},
+                   {"paths of converged pictures", std::to_string(o.truth_paths)},
+                   {"filter of converged pictures", o.truth_filter}};
+    for (auto const& [stage, s] : n.stages_s)
+        table.facts.emplace_back(stage + " ms",
+                                 fmt::format("{:.1f}", 1e3 * s / double(std::max<std::size_t>(1, n.rendered))));
+    bool const scored = errors.moments > 0;
+    auto const if_any = [](bool any, double value) { return any ? Cell(value) : Cell(); };
+    table.add({std::filesystem::path(o.scene.scene).stem().string(), std::filesystem::path(o.head).stem().string(),
+               o.size, double(o.eyes), quantile(n.gaps_ms, 0.5), quantile(n.gaps_ms, 0.95),
+               quantile(n.gaps_ms, 0.99), quantile(n.gaps_ms, 1), quantile(n.drawing_ms, 0.5),
+               quantile(n.between_ms, 0.5), quantile(n.light_ages_ms, 0.5), quantile(n.light_ages_ms, 0.95),
+               if_any(scored, errors.flip), if_any(scored, errors.most_flip),
+               if_any(scored && o.eyes == 2, errors.rivalry), if_any(!n.flicker.empty(), quantile(n.flicker, 1)),
+               n.surfaces_scale / double(std::max<std::size_t>(1, n.shown)),
+               n.light_scale / double(std::max<std::size_t>(1, n.rendered)),
+               n.paths / double(std::max<std::size_t>(1, n.rendered))});
+    write(table, o.out);
+    return table;
+}
+
+} // namespace viewer

@@ -1,0 +1,22 @@
+#pragma once
+// bench shown: what people see while they move. The viewer's rendering thread and its presenter run in real time, led by
+// the recorded path of a head; what is on the screen at some moments is compared with converged pictures of them.
+
+#include "viewer/offline/render_options.h"
+#include "viewer/report/table.h"
+
+namespace viewer {
+
+struct ShownOptions {
+    RenderOptions scene; ///< scene, camera, sky
+    std::string head = "walk", avatar, size = "1280x800", out, truth_filter = "oidn-high";
+    std::vector<std::string> settings; ///< KEY=VALUE
+    int eyes = 1, moments = 8, truth_paths = 64;
+    double fov_deg = 60; ///< vertical
+};
+
+/// Writes shown_K_E.png, truth_K_E.png and error_K_E.png (K moment, E eye) into the folder. One row; cells that were
+/// not measured are empty. Throws InputError, and Interrupted before there is a result.
+BenchTable run_shown(ShownOptions const& options, gi::StopRequest const& stop, gi::Report& report);
+
+} // namespace viewer
