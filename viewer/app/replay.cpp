@@ -9,6 +9,7 @@
 #include "viewer/offline/video_writer.h"
 
 #include <algorithm>
+#include <deque>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <numeric>
@@ -88,21 +89,26 @@ public:
         auto const frame = std::make_shared<LiveFrame>();
         frame->command = command;
         frame->result = std::move(result);
-        newest_ = frame;
+        constexpr std::size_t kMost = 64; // far more than are finished while a picture is drawn
+        waiting_.push_back(frame);
+        if (waiting_.size() > kMost) waiting_.pop_front();
     }
     /// The linear picture of the first view. Throws InputError if the frame that it shows is not in the recording.
     gi::Picture draw(ShownFrame const& shown)
     {
         FrameCommand const& moment = shown.moment;
-        if (!newest_ || newest_->command.frame < moment.frame)
+        // The next frame may have been finished while this one was drawn for the first time.
+        while (!waiting_.empty() && waiting_.front()->command.frame < moment.frame) waiting_.pop_front();
+        if (!waiting_.empty() && waiting_.front()->command.frame == moment.frame) {
+            taken_ = waiting_.front();
+            waiting_.pop_front();
+            std::vector<int> all(taken_->result.views.size());
+            std::iota(all.begin(), all.end(), 0);
+            views_->take(taken_, all);
+        }
+        if (!taken_ || taken_->command.frame != moment.frame)
             throw gi::InputError("the recording shows a frame that it does not have",
                                  fmt::format("frame {}", moment.frame), "record the walk again");
-        if (newest_->command.frame == moment.frame && taken_ != newest_) {
-            std::vector<int> all(newest_->result.views.size());
-            std::iota(all.begin(), all.end(), 0);
-            views_->take(newest_, all);
-            taken_ = newest_;
-        }
         if (shown.surfaces_scale > 0 && !views_->make_ready())
             throw gi::InputError("surfaces cannot be drawn again", views_->why_no_surfaces(),
                                  "replay without --shown");
@@ -125,7 +131,8 @@ private:
     GlContext gl_;
     DriveBodies drive_;
     std::optional<ShownViews> views_;
-    std::shared_ptr<LiveFrame const> newest_, taken_;
+    std::deque<std::shared_ptr<LiveFrame const>> waiting_; ///< newer than the one that was taken
+    std::shared_ptr<LiveFrame const> taken_;
 };
 
 bool is_known(std::string const& key)
