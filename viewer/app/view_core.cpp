@@ -314,7 +314,12 @@ void ViewCore::expose(LiveFrame const& frame)
 
 void ViewCore::note_shown(ShownFrame const& shown)
 {
-    if (recorder_) recorder_->append(shown);
+    if (!recorder_) return;
+    try {
+        recorder_->append(shown);
+    } catch (gi::InputError const& e) {
+        report.lose("shown pictures not recorded", 1, e.what());
+    }
 }
 
 void ViewCore::log(FrameTimes const& times)
