@@ -22,12 +22,7 @@ class HmdEyes {
 public:
     /// Uploads the pictures of both eyes.
     void take(std::shared_ptr<LiveFrame const> frame) { views_.take(std::move(frame), {0, 1}); }
-    /// As ShownViews::begin, before draw().
-    void begin(double surfaces_scale, FrameCommand const* moment, DriveBodies const& drive)
-    {
-        views_.begin(surfaces_scale, moment, drive);
-    }
-    /// Draws the frame taken last into the targets. @param now  null: as rendered
+    /// Draws the frame taken last into the targets, after views().begin() if surfaces are to be drawn. @param now  null: as rendered
     void draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 2> const& sizes_px,
               gi::ToneMapSettings const& tone);
     ShownViews& views() { return views_; }

@@ -201,7 +201,7 @@ private:
         picture.first_row = FirstRow::top;
         double const scale = state_.settings().draw_surfaces ? surfaces_scale_.next() : 0;
         FrameCommand moment = moment_at(*newest, at, at.display_s);
-        eyes_.begin(scale, &moment, core_.options.drive);
+        eyes_.views().begin(scale, &moment, core_.options.drive);
         double located_s = at.pose_s;
         if (auto const latest = session.latest_views(frame)) { // as late as possible
             picture.views = *latest;
@@ -225,7 +225,8 @@ private:
         ++shown_;
         if (eyes_.views().drew_surfaces()) {
             ++surfaces_;
-            surfaces_scale_.measured(scale, std::max(state_.clock.now_s() - begun, eyes_.drawing_s()));
+            surfaces_scale_.measured(scale, std::max(state_.clock.now_s() - begun, eyes_.drawing_s()),
+                                     frame.period_s);
         } else if (moved) {
             ++reprojected_;
         }

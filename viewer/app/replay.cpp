@@ -81,8 +81,7 @@ public:
     ShownReplay(DriveBodies drive, gi::Report& report)
         : gl_(GlContext::surfaceless(report)), drive_(std::move(drive))
     {
-        views_.emplace();
-        views_->hash_pictures();
+        views_.hash_pictures();
     }
     void keep(FrameCommand const& command, SessionFrame result)
     {
@@ -104,18 +103,18 @@ public:
             waiting_.pop_front();
             std::vector<int> all(taken_->result.views.size());
             std::iota(all.begin(), all.end(), 0);
-            views_->take(taken_, all);
+            views_.take(taken_, all);
         }
         if (!taken_ || taken_->command.frame != moment.frame)
             throw gi::InputError("the recording shows a frame that it does not have",
                                  fmt::format("frame {}", moment.frame), "record the walk again");
-        if (shown.surfaces_scale > 0 && !views_->make_ready())
-            throw gi::InputError("surfaces cannot be drawn again", views_->why_no_surfaces(),
+        if (shown.surfaces_scale > 0 && !views_.make_ready())
+            throw gi::InputError("surfaces cannot be drawn again", views_.why_no_surfaces(),
                                  "replay without --shown");
-        views_->begin(shown.surfaces_scale, &moment, drive_);
+        views_.begin(shown.surfaces_scale, &moment, drive_);
         gi::Picture first;
         for (std::size_t k = 0; k < moment.views.size(); ++k) {
-            EyeView const eye = views_->eye(int(k), &moment.views[k].camera);
+            EyeView const eye = views_.eye(int(k), &moment.views[k].camera);
             if (k > 0 || eye.picture.texture == 0) continue;
             first = {eye.picture.size_px.x, eye.picture.size_px.y, {}, {}};
             std::vector<float>& rgb = first.add("color", 3).data;
@@ -125,12 +124,12 @@ public:
         }
         return first;
     }
-    std::uint64_t hash() const { return views_->hash(); }
+    std::uint64_t hash() const { return views_.hash(); }
 
 private:
     GlContext gl_;
     DriveBodies drive_;
-    std::optional<ShownViews> views_;
+    ShownViews views_;
     std::deque<std::shared_ptr<LiveFrame const>> waiting_; ///< newer than the one that was taken
     std::shared_ptr<LiveFrame const> taken_;
 };

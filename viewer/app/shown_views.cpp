@@ -105,8 +105,7 @@ std::uint64_t ShownViews::hash() const { return gi::xxh64(std::as_bytes(std::spa
 
 bool ShownViews::draws_surfaces() const
 {
-    return surfaces_scale_ > 0 && !prepares_ && renderer_ && frame_ && frame_->result.scene &&
-           tried_ == frame_->result.scene->world.get() &&
+    return has_surfaces() && !prepares_ && tried_ == frame_->result.scene->world.get() &&
            std::ranges::none_of(frame_->result.views, [](ViewPicture const& v) { return v.compared.has_value(); });
 }
 
@@ -163,8 +162,8 @@ EyeView ShownViews::draw(int view, gi::Camera const* now)
     if (other) other->reprojection.keep_only(size);
     gi::Camera const from = with_margin(rendered.camera, size, margin), &to = moved ? *now : rendered.camera;
     // The first time takes long, as drivers compile then: it is done while nothing moves.
-    if (!moved && !rendered.camera.orthographic && surfaces_scale_ > 0 && renderer_ && frame_->result.scene &&
-        tried_ != frame_->result.scene->world.get() && surfaces(view, from, to, glm::ivec2(16)))
+    if (!moved && !rendered.camera.orthographic && has_surfaces() && tried_ != frame_->result.scene->world.get() &&
+        surfaces(view, from, to, glm::ivec2(16)))
         tried_ = frame_->result.scene->world.get();
     bool const only_light = frame_->command.only_light; // else it shows surfaces itself
     if (!moved && !only_light && margin == glm::ivec2(0)) return e;

@@ -11,16 +11,17 @@ public:
     /// Side over that of the view.
     double next() const { return kScales[at_]; }
     /// @param seconds  from the start of a picture of this scale until it was shown
-    void measured(double scale, double seconds)
+    /// @param most_s  that it should take
+    void measured(double scale, double seconds, double most_s = kMost_s)
     {
         if (scale != kScales[at_]) return;
         mean_s_ = mean_s_ > 0 ? mean_s_ + (seconds - mean_s_) * 0.25 : seconds;
         if (++frames_ < kFrames) return;
-        if (mean_s_ > kMost_s && at_ + 1 < kScales.size()) {
+        if (mean_s_ > most_s && at_ + 1 < kScales.size()) {
             change(at_ + 1);
             wait_ = std::min(2 * wait_, kLongestWait);
         } else if (at_ > 0 && frames_ > wait_ &&
-                   mean_s_ * (kScales[at_ - 1] * kScales[at_ - 1]) / (scale * scale) < kToGrow * kMost_s) {
+                   mean_s_ * (kScales[at_ - 1] * kScales[at_ - 1]) / (scale * scale) < kToGrow * most_s) {
             change(at_ - 1);
         }
     }

@@ -21,7 +21,7 @@
 namespace viewer {
 namespace {
 
-constexpr double kApart_m = 0.063;
+constexpr double kApart_m = 0.063, kFov_deg = 60;
 constexpr double kStill_s = 2; ///< that the head holds still after its path
 constexpr double kFirst_s = 1; ///< of the path, which is not scored
 
@@ -78,9 +78,9 @@ public:
         shown_ = renderer_.newest();
         presenter_.take(shown_, panes_);
         prepare();
-        begun_s_ = clock_.now_s();
         {
             std::lock_guard const lock(counting_);
+            begun_s_ = clock_.now_s();
             counts_ = {};
             done_s_ = begun_s_;
         }
@@ -250,8 +250,10 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
     if (scenes.drive) session.drive_bodies(scenes.drive);
     for (std::string const& s : o.settings) session.apply(parse_change(s));
     session.apply({"scene", o.scene.scene});
-    ChosenCamera const chosen = choose_camera(session.world(), camera_choice(o.scene));
-    Walker walker(std::move(path), chosen.camera, o.fov_deg, {width, height}, o.eyes == 2 ? kApart_m : 0,
+    CameraChoice const choice = camera_choice(o.scene);
+    ChosenCamera const chosen = choose_camera(session.world(), choice);
+    Walker walker(std::move(path), chosen.camera, choice.fov_deg.value_or(kFov_deg), {width, height},
+                  o.eyes == 2 ? kApart_m : 0,
                   scenes.avatars.empty() ? std::nullopt : std::optional(scenes.avatars[0].stance));
     gi::dvec3 const origin = session.world().origin;
     ShownRun run(o, session, scenes, walker, {width, height}, stop);

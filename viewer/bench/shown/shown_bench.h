@@ -12,7 +12,6 @@ struct ShownOptions {
     std::string head = "walk", avatar, size = "1280x800", out, truth_filter = "oidn-high";
     std::vector<std::string> settings; ///< KEY=VALUE
     int eyes = 1, moments = 8, truth_paths = 64;
-    double fov_deg = 60; ///< vertical
 };
 
 /// Writes shown_K_E.png, truth_K_E.png and error_K_E.png (K moment, E eye) into the folder. One row; cells that were
