@@ -92,7 +92,8 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
     if (!low_guides.albedo.empty())
         change.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
             cv::Vec3f const albedo = at_least(low_guides.albedo.at<cv::Vec3f>(at[0], at[1]));
-            for (int c = 0; c < 3; ++c) v[c] /= albedo[c];
+            for (int c = 0; c < 3; ++c)
+                if (v[c] != 0) v[c] /= albedo[c]; // where nothing changes, guides may be undefined
         });
 
     // Most of a frame has no change within reach.

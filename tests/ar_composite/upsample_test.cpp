@@ -66,16 +66,19 @@ TEST(Upsampling, FollowsTheSurfaces)
 TEST(Upsampling, KeepsBytesWhereNothingChanges)
 {
     cv::Size const full(64, 48), half(32, 24);
-    Scene low = scene(half);
-    Scene const truth = scene(full);
+    Scene low = scene(half), truth = scene(full);
     low.pair.with = low.pair.without.clone();
     low.pair.with({0, 0, 10, 10}) *= 0.5; // but in one corner
+    for (auto const& [guides, from] : {std::pair{&low.guides, 14}, {&truth.guides, 28}})
+        for (cv::Mat const& guide : {guides->normal, guides->depth, guides->albedo})
+            guide.colRange(from, guide.cols).setTo(cv::Scalar::all(std::nan(""))); // undefined there
     DirectlySeen const nothing{cv::Mat::zeros(full, CV_32FC3), cv::Mat::zeros(full, CV_32FC1)};
     RenderedPair const pair = upsampled(low.pair, low.guides, nothing, truth.guides);
     cv::Mat const camera = camera_frame(full);
     cv::Mat out;
     CompositeCounts const counts = Compositor(srgb_photometry())(camera, pair, {}, out);
     EXPECT_GE(counts.copied, std::size_t(64 * 48 - 24 * 24));
+    EXPECT_EQ(counts.not_finite, 0u);
     EXPECT_TRUE(equal(out.colRange(24, 64), camera.colRange(24, 64)));
 }
 
