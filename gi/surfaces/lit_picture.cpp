@@ -67,7 +67,10 @@ Picture mirror_picture(SeenSurfaces const& seen, int width, int height, KeptLigh
 {
     Picture picture{width, height, {}, {}};
     Layer const& from = *of_light.find("color");
-    std::vector<float>&color = picture.add("color", 3).data, &depth = picture.add("depth", 1).data;
+    picture.add("color", 3);
+    picture.add("depth", 1);
+    std::vector<float>&color = picture.find("color")->data,
+    &depth = picture.find("depth")->data; // after all are added
     vec2 const smaller = vec2{light.width(), light.height()} / vec2{width, height};
     tbb::parallel_for(0, height, [&](int y) {
         thread_local std::vector<SeenSurface> row;
