@@ -1,6 +1,7 @@
 #include "gi/filter/fireflies.h"
 
 #include "gi/filter/filter_input.h"
+#include "gi/filter/for_rows.h"
 
 #include <algorithm>
 #include <array>
@@ -168,7 +169,7 @@ std::vector<Firefly> find_fireflies(FireflyView const& view, FireflyCounts& tota
     if (view.other) other.emplace(*view.other);
     std::vector<std::vector<Firefly>> rows(std::size_t(own.height));
     std::vector<FireflyCounts> counts(rows.size()); // summed in order, so that sums do not depend on threads
-    tbb::parallel_for(0, own.height, [&](int y) {
+    for_rows(own.height, view.stop, [&](int y) {
         FireflyCounts& count = counts[std::size_t(y)];
         for (std::size_t i = std::size_t(y) * std::size_t(own.width), end = i + std::size_t(own.width); i < end;
              ++i) {

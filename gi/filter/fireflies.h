@@ -10,6 +10,7 @@
 // wider window: lost, it would darken scenes that few paths light. This blurs, so it is for what a filter reads,
 // never for a mean that has to converge.
 
+#include "gi/core/progress.h"
 #include "gi/filter/reused_light.h"
 
 #include <vector>
@@ -25,6 +26,7 @@ struct FireflyView {
     /// The other eye's picture of the same moment; null = none.
     Picture const* other = nullptr;
     std::span<std::uint32_t const> same{}; ///< per pixel: where `other` sees this surface, or kOwnLight
+    StopRequest const* stop = nullptr;     ///< once it is requested, find_fireflies() throws Interrupted
 };
 
 /// A pixel to be clamped: factors for its direct and indirect light, 0 to 1.

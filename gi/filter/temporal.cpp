@@ -313,6 +313,7 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
           &direct_variance = *frame.find("variance_direct"), &indirect_variance = *frame.find("variance_indirect");
     bool const first = still_++ == 0;
     float const n = float(still_);
+    std::swap(mean_, last_mean_);
     mean_.resize(frame.pixels());
     tbb::combinable<double> frames;
     tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
@@ -320,7 +321,8 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
         for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i) {
             std::array<vec3, 4> const now{rgb(l0, i), rgb(l1, i), rgb(l2, i), surfaces_[i].normal};
             std::array<vec3, 4>& mean = mean_[i];
-            for (std::size_t k = 0; k < 4; ++k) mean[k] = first ? now[k] : glm::mix(mean[k], now[k], 1 / n);
+            for (std::size_t k = 0; k < 4; ++k)
+                mean[k] = first ? now[k] : glm::mix(last_mean_[i][k], now[k], 1 / n);
             Light const& light = lights_[i];
             // Frames since the last motion are in both means; earlier ones count while they are many in
             // comparison, those of long means for as many frames as those of others.
@@ -361,6 +363,7 @@ TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change, TemporalRe
         frames_ = 0;
         known_.clear();
     }
+    last_still_ = still_;
     if (change != SceneChange::nothing || frames_ == 0) still_ = 0;
     TemporalCounts counts;
     follow(frame, partner, from, counts);
@@ -368,6 +371,15 @@ TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change, TemporalRe
     ++frames_;
     counts.still_frames = still_;
     return counts;
+}
+
+void TemporalReuse::undo()
+{
+    std::swap(surfaces_, last_surfaces_);
+    std::swap(lights_, last_lights_);
+    std::swap(mean_, last_mean_);
+    still_ = last_still_;
+    --frames_;
 }
 
 } // namespace gi

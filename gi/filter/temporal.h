@@ -74,6 +74,8 @@ public:
     ///   source pixels (ReusedLight::from): these pixels take the partner's motion-following means
     TemporalCounts add(Picture& frame, SceneChange change, TemporalReuse const* partner = nullptr,
                        std::span<std::uint32_t const> from = {});
+    /// Takes the last frame back. Only once after a frame that was not the first, and not after SceneChange::light.
+    void undo();
 
 private:
     struct Surface {
@@ -115,11 +117,11 @@ private:
     void rest(Picture& frame, TemporalCounts& counts);
 
     TemporalSettings settings_;
-    int frames_ = 0, still_ = 0;
+    int frames_ = 0, still_ = 0, last_still_ = 0;
     std::vector<KnownLight> known_;
     std::vector<Surface> surfaces_, last_surfaces_;
     std::vector<Light> lights_, last_lights_;
-    std::vector<std::array<vec3, 4>> mean_; ///< of L0, L1, L2 and normals since the last motion
+    std::vector<std::array<vec3, 4>> mean_, last_mean_; ///< of L0, L1, L2 and normals since the last motion
 };
 
 } // namespace gi

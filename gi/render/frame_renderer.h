@@ -134,13 +134,18 @@ public:
     virtual void leave_out_punctual(bool on) = 0;
 };
 
-/// Frames that may still change when they are half done.
+/// Frames that can be undone.
 class FramesGivenUp {
 public:
     virtual ~FramesGivenUp() = default;
     /// In the next call of `views`, a stop ends the frame within milliseconds: it throws Interrupted, and all is as if
-    /// the call had not been made. If the frame has taught what later ones use, it is rendered to its end instead.
+    /// the call had not been made. Costs a copy of what that frame teaches later ones.
     virtual void may_give_up() = 0;
+    /// Whether the last frame can still be undone: it was announced by may_give_up(), and leaves nothing that cannot
+    /// be taken back.
+    virtual bool can_undo() const = 0;
+    /// Makes all as it was before the last frame. Only if can_undo().
+    virtual void undo() = 0;
 };
 
 class PairFrames {

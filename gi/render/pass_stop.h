@@ -11,9 +11,8 @@ namespace gi {
 class PassStop {
 public:
     enum class Pass : std::uint8_t {
-        first,   ///< after a stop request it continues as BuildStop says, so that there is a picture to keep
-        later,   ///< ends at once
-        untaught ///< ends at once, unless something has learnt from it that later passes use
+        first, ///< after a stop request it continues as BuildStop says, so that there is a picture to keep
+        later  ///< ends at once
     };
     static Pass of(std::uint32_t paths) { return paths > 0 ? Pass::later : Pass::first; }
     /// @param stop  must outlive this object; null = never abandon
@@ -21,11 +20,6 @@ public:
     bool given_up() const
     {
         return pass_ == Pass::first ? first_.given_up() : stop_ != nullptr && stop_->requested();
-    }
-    /// Something has learnt from the pass.
-    void taught()
-    {
-        if (pass_ == Pass::untaught) stop_ = nullptr;
     }
     void check() const
     {

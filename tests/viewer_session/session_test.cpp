@@ -147,7 +147,7 @@ TEST(RenderSession, AFrameThatIsGivenUpLeavesNoTrace)
                 gi::test::StopAtAsk const stop(ask);
                 try {
                     SessionFrame const seen = asked.render(wanted, stop, OnStop::give_up);
-                    ends = true; // not asked so often, or it had taught the cache
+                    ends = true; // not asked so often
                     EXPECT_EQ(seen.paths, 2);
                     EXPECT_EQ(color(seen), color(never.render(wanted, {}))) << frame;
                 } catch (gi::Interrupted const&) {

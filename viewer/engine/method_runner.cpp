@@ -145,16 +145,12 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
     left_out_punctual_ = punctual != nullptr && leaves_out_punctual;
     if (!first_ || ahead_) renderer_->changed(changes);
     bool const small = command.light_scale < 1;
-    struct Next {
-        bool same, moved; ///< as in the last frame: what reuse needs; camera or hidden pixels
-        gi::CameraRays rays, earlier;
-    };
     std::vector<Next> next;
     Seen const none;
-    bool anything_moved = first_ || seen_.size() != command.views.size() || changes.any();
+    bool anything_moved = first_ || state_.seen.size() != command.views.size() || changes.any();
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& now = command.views[k];
-        Seen const& s = k < seen_.size() ? seen_[k] : none;
+        Seen const& s = k < state_.seen.size() ? state_.seen[k] : none;
         bool const follows = s.name == now.name && s.width == now.width && s.height == now.height;
         bool const same = s.reuse && follows && s.most_frames == settings.reuse &&
                           s.punctual != left_out_punctual_ && s.small == small;
@@ -163,7 +159,7 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
         gi::CameraRays const rays = gi::camera_rays(now.camera, now.width, now.height, origin_);
         next.push_back({same, moved, rays, follows ? s.rays : rays});
     }
-    int const still = anything_moved ? 1 : still_ + 1;
+    int const still = anything_moved ? 1 : state_.still + 1;
     std::vector<gi::FrameView> views;
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& v = command.views[k];
@@ -181,40 +177,73 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
     if (auto* const axes = gi::ask<gi::FollowingAxes>(*renderer_))
         axes->update_axes(gi::updates_axes(method_, settings.render) ? settings.updated_axes : 0);
     auto* const given_up = gi::ask<gi::FramesGivenUp>(*renderer_);
-    bool const is_first = std::exchange(first_, false);
-    if (given_up != nullptr && on_stop == OnStop::give_up && !is_first && !changes.any()) given_up->may_give_up();
+    bool const is_first = std::exchange(first_, false),
+               may_give_up = given_up != nullptr && on_stop == OnStop::give_up && !is_first && !changes.any();
+    if (may_give_up) given_up->may_give_up();
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
     around_ = {};
     if (around.width > 0) {
         around_ = gi::light_picture(results.back().picture, around.camera, results.back().picture.pixels());
         results.pop_back();
     }
-    still_ = still;
-    seen_.resize(command.views.size());
+    bool const can_undo = may_give_up && given_up->can_undo();
+    gi::StopRequest const* const filters_stop = can_undo ? &stop : nullptr;
+    State before = state_; // shares what it holds
+    std::size_t averaged = 0;
+    std::vector<gi::MirrorLayers> mirrors;
+    std::vector<std::shared_ptr<gi::KeptLight const>> lights;
+    state_.still = still;
+    // Counts the paths actually traced: for a stopped frame, a replay is given only these.
+    state_.still_paths = (anything_moved ? 0 : state_.still_paths) + results[0].paths;
+    follow(command, hidden, next, settings);
+    try {
+        for (; averaged < results.size(); ++averaged) {
+            if (can_undo && stop.requested()) throw gi::Interrupted();
+            mirrors.push_back(reuse(averaged, results, views[averaged].partner,
+                                    scene_change(changes, next[averaged].moved), settings, seen));
+        }
+        bool const filtered = is_filtered(results[0], settings);
+        std::vector<gi::Picture> unfiltered(results.size());
+        for (std::size_t k = 0; k < results.size() && filtered && filtered_share(state_.still_paths) < 1; ++k)
+            unfiltered[k] = results[k].picture;
+        if (filtered) clamp(results, views, filters_stop);
+        for (std::size_t k = 0; k < results.size(); ++k) {
+            if (filtered) filter(k, results, views[k].partner, settings, unfiltered[k], filters_stop);
+            Seen const& own = state_.seen[k];
+            bool const kept = seen != nullptr && !own.rays.orthographic;
+            lights.push_back(kept ? std::make_shared<gi::KeptLight>(results[k].picture, own.rays, origin_)
+                                  : nullptr);
+            gi::describe_mirrors(mirrors[k], results[k].picture);
+        }
+    } catch (gi::Interrupted const&) {
+        if (can_undo) {
+            for (std::size_t k = 0; k < averaged && settings.reuse > 1; ++k)
+                if (next[k].same) state_.seen[k].reuse->undo();
+            state_ = std::move(before);
+            given_up->undo();
+        }
+        throw;
+    }
+    for (std::size_t k = 0; k < results.size(); ++k) state_.seen[k].light = std::move(lights[k]);
+    return results;
+}
+
+/// Makes the views of this frame those that are seen.
+void MethodRunner::follow(FrameCommand const& command, std::span<HiddenPixels const> hidden,
+                          std::span<Next const> next, Settings const& settings)
+{
+    bool const small = command.light_scale < 1;
+    state_.seen.resize(command.views.size());
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& now = command.views[k];
-        Seen& s = seen_[k];
+        Seen& s = state_.seen[k];
         if (!next[k].same)
-            s.reuse = std::make_unique<gi::TemporalReuse>(
+            s.reuse = std::make_shared<gi::TemporalReuse>(
                 small ? gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse, 17, 2, true}
                       : gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse});
         s = {now.name,  now.camera,         now.width,  now.height, std::move(s.reuse), settings.reuse,
              hidden[k], std::move(s.light), s.punctual, small,      next[k].rays,       next[k].earlier};
     }
-    // Counts the paths actually traced: for a stopped frame, a replay is given only these.
-    still_paths_ = (anything_moved ? 0 : still_paths_) + results[0].paths;
-    std::vector<gi::MirrorLayers> mirrors;
-    for (std::size_t k = 0; k < results.size(); ++k)
-        mirrors.push_back(
-            reuse(k, results, views[k].partner, scene_change(changes, next[k].moved), settings, seen));
-    std::vector<gi::Picture> unfiltered(results.size());
-    bool const filtered = is_filtered(results[0], settings);
-    for (std::size_t k = 0; k < results.size() && filtered && filtered_share(still_paths_) < 1; ++k)
-        unfiltered[k] = results[k].picture;
-    if (filtered) clamp(results, command.views);
-    for (std::size_t k = 0; k < results.size(); ++k)
-        finish(k, results, views[k].partner, settings, unfiltered[k], seen, mirrors[k]);
-    return results;
 }
 
 gi::ReusedLight MethodRunner::taken(std::size_t view, int partner, Results const& results) const
@@ -225,7 +254,7 @@ gi::ReusedLight MethodRunner::taken(std::size_t view, int partner, Results const
 
 bool MethodRunner::is_filtered(gi::RenderResult const& result, Settings const& settings) const
 {
-    return filtered_share(still_paths_) > 0 &&
+    return filtered_share(state_.still_paths) > 0 &&
            gi::can_filter(denoise_settings(settings, threads_), result.paths, settings.reuse > 1);
 }
 
@@ -233,7 +262,7 @@ gi::MirrorLayers MethodRunner::reuse(std::size_t view, Results& results, int par
                                      Settings const& settings, gi::SeenSurfaces* seen)
 {
     gi::RenderResult& result = results[view];
-    Seen& own = seen_[view];
+    Seen& own = state_.seen[view];
     if (own.rays.orthographic) seen = nullptr;
     gi::MirrorLayers mirrors;
     if (seen != nullptr && seen->has_mirrors()) {
@@ -250,19 +279,20 @@ gi::MirrorLayers MethodRunner::reuse(std::size_t view, Results& results, int par
             own.reuse->begin_with(known_light(*own.light, result.picture, origin_, add, seen, own.rays));
         }
         gi::ReusedLight const from = taken(view, partner, results);
-        own.reuse->add(result.picture, change, from.partner ? seen_[std::size_t(partner)].reuse.get() : nullptr,
-                       from.from);
+        own.reuse->add(result.picture, change,
+                       from.partner ? state_.seen[std::size_t(partner)].reuse.get() : nullptr, from.from);
     }
     own.punctual = !left_out_punctual_;
     return mirrors;
 }
 
-void MethodRunner::clamp(Results& results, std::span<ViewCommand const> views)
+void MethodRunner::clamp(Results& results, std::span<gi::FrameView const> views, gi::StopRequest const* stop)
 {
     gi::StageTimer const timer(report_, "fireflies");
+    gi::FireflyCounts& counts = state_.fireflies;
     std::vector<std::vector<gi::Firefly>> found;
     for (std::size_t k = 0; k < results.size(); ++k) {
-        gi::FireflyView view{&results[k].picture, results[k].light_from, nullptr, {}};
+        gi::FireflyView view{&results[k].picture, results[k].light_from, nullptr, {}, stop};
         // The other eye: a view's partner, or the view whose partner it is, unless that has taken its light.
         std::size_t other = results.size();
         for (std::size_t j = 0; j < results.size(); ++j)
@@ -271,36 +301,31 @@ void MethodRunner::clamp(Results& results, std::span<ViewCommand const> views)
         std::vector<std::uint32_t> same;
         if (other < results.size()) {
             view.other = &results[other].picture;
-            same = same_surfaces(*view.picture, *view.other, seen_[other].rays, origin_);
+            same = same_surfaces(*view.picture, *view.other, state_.seen[other].rays, origin_);
             view.same = same;
         }
-        found.push_back(gi::find_fireflies(view, fireflies_));
+        found.push_back(gi::find_fireflies(view, counts));
     }
     for (std::size_t k = 0; k < results.size(); ++k) {
         gi::clamp_fireflies(results[k].picture, found[k]);
     }
-    report_.count("fireflies clamped", double(fireflies_.clamped));
-    report_.count("fireflies clamped, as the other eye does not see them", double(fireflies_.by_eye));
-    report_.count("pixels searched for fireflies", double(fireflies_.pixels));
+    report_.count("fireflies clamped", double(counts.clamped));
+    report_.count("fireflies clamped, as the other eye does not see them", double(counts.by_eye));
+    report_.count("pixels searched for fireflies", double(counts.pixels));
     report_.count("light of fireflies spread around them, share",
-                  fireflies_.light > 0 ? fireflies_.moved / fireflies_.light : 0);
+                  counts.light > 0 ? counts.moved / counts.light : 0);
 }
 
-void MethodRunner::finish(std::size_t view, Results& results, int partner, Settings const& settings,
-                          gi::Picture const& unfiltered, gi::SeenSurfaces* seen, gi::MirrorLayers const& mirrors)
+void MethodRunner::filter(std::size_t view, Results& results, int partner, Settings const& settings,
+                          gi::Picture const& unfiltered, gi::StopRequest const* stop)
 {
-    gi::RenderResult& result = results[view];
-    Seen& own = seen_[view];
-    if (is_filtered(result, settings)) {
-        gi::StageTimer const timer(report_, "denoise");
-        gi::DenoiseReport const done =
-            gi::denoise(result.picture, denoise_settings(settings, threads_), taken(view, partner, results));
-        if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
-        if (!unfiltered.layers.empty()) mix_light(result.picture, unfiltered, filtered_share(still_paths_));
-    }
-    own.light.reset();
-    if (seen != nullptr && !own.rays.orthographic) own.light.emplace(result.picture, own.rays, origin_);
-    gi::describe_mirrors(mirrors, result.picture);
+    gi::StageTimer const timer(report_, "denoise");
+    gi::DenoiseSettings by = denoise_settings(settings, threads_);
+    by.stop = stop;
+    gi::Picture& picture = results[view].picture;
+    gi::DenoiseReport const done = gi::denoise(picture, by, taken(view, partner, results));
+    if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
+    if (!unfiltered.layers.empty()) mix_light(picture, unfiltered, filtered_share(state_.still_paths));
 }
 
 } // namespace viewer

@@ -20,7 +20,7 @@ gi::SceneChange scene_change(gi::Changes const& changes, bool camera_moved);
 enum class OnStop : bool {
     shorten, ///< it has fewer paths, at least one
     give_up, ///< if nothing changed in the scene, and if the method can (gi::FramesGivenUp), it throws Interrupted, and
-             ///< all is as if it had never begun; else as `shorten`
+             ///< all is as if it had never begun, also while it is filtered; else as `shorten`
 };
 
 class MethodRunner {
@@ -42,13 +42,10 @@ public:
     /// The last frame lacks the light of punctual lights.
     bool left_out_punctual() const { return left_out_punctual_; }
     /// Light of a view of the last frame; null without `seen`.
-    gi::KeptLight const* light(std::size_t view) const
-    {
-        return seen_[view].light ? &*seen_[view].light : nullptr;
-    }
+    gi::KeptLight const* light(std::size_t view) const { return state_.seen[view].light.get(); }
     /// Unfiltered light of the further view of the last frame; empty without.
     gi::LightPicture const& light_around() const { return around_; }
-    int still_frames() const { return still_; }
+    int still_frames() const { return state_.still; }
     /// For a method that chooses another: which and why, a sentence; else empty.
     std::string const& choice() const { return choice_; }
     gi::DynamicUpdate dynamic_update() const ///< of the last frame
@@ -62,13 +59,23 @@ private:
         std::string name;
         gi::Camera camera;
         int width = 0, height = 0;
-        std::unique_ptr<gi::TemporalReuse> reuse;
+        std::shared_ptr<gi::TemporalReuse> reuse;
         int most_frames = 0;
         HiddenPixels hidden;
-        std::optional<gi::KeptLight> light;  ///< of its last picture
+        std::shared_ptr<gi::KeptLight const> light; ///< of its last picture
         bool punctual = true, small = false; ///< small: of a picture of light that is smaller than the view;
                                              ///< punctual: the light of punctual lights is in its L1
         gi::CameraRays rays{}, earlier{};    ///< of this frame and the one before
+    };
+    struct State { ///< of the last frame
+        std::vector<Seen> seen;
+        int still = 0;               ///< frames since the scene, a setting or the camera last changed
+        double still_paths = 0;      ///< paths per pixel of these frames
+        gi::FireflyCounts fireflies; ///< of all frames
+    };
+    struct Next {         ///< view of a frame
+        bool same, moved; ///< as in the last frame: what reuse needs; camera or hidden pixels
+        gi::CameraRays rays, earlier;
     };
     using Results = std::vector<gi::RenderResult>;
     /// Light that a view has taken from another of the same frame.
@@ -79,12 +86,14 @@ private:
                            Settings const& settings, gi::SeenSurfaces* seen);
     /// The views of this frame are filtered.
     bool is_filtered(gi::RenderResult const& result, Settings const& settings) const;
-    /// Clamps the fireflies of all views.
-    void clamp(Results& results, std::span<ViewCommand const> views);
-    /// Filters a view, if it is young, and keeps its light. The partner must have been filtered already.
+    /// Clamps the fireflies of all views. Throws Interrupted if `stop`, which may be null, is requested.
+    void clamp(Results& results, std::span<gi::FrameView const> views, gi::StopRequest const* stop);
+    /// Filters a view. The partner must have been filtered already. Throws Interrupted as `clamp` does.
     /// @param unfiltered  shown in part; empty = not
-    void finish(std::size_t view, Results& results, int partner, Settings const& settings,
-                gi::Picture const& unfiltered, gi::SeenSurfaces* seen, gi::MirrorLayers const& mirrors);
+    void filter(std::size_t view, Results& results, int partner, Settings const& settings,
+                gi::Picture const& unfiltered, gi::StopRequest const* stop);
+    void follow(FrameCommand const& command, std::span<HiddenPixels const> hidden, std::span<Next const> next,
+                Settings const& settings);
 
     gi::Method const& method_;
     std::string choice_;
@@ -92,13 +101,10 @@ private:
     int threads_;
     gi::dvec3 origin_; ///< of the world
     std::unique_ptr<gi::FrameRenderer> renderer_;
-    std::vector<Seen> seen_;
+    State state_;
     gi::LightPicture around_;
     bool first_ = true, left_out_punctual_ = false;
     bool ahead_;
-    gi::FireflyCounts fireflies_; ///< of all frames
-    int still_ = 0;               ///< frames since the scene, a setting or the camera last changed
-    double still_paths_ = 0;      ///< paths per pixel of these frames
 };
 
 } // namespace viewer

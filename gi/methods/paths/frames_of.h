@@ -62,6 +62,16 @@ public:
     // With OnlyOnCpu as base, these override it, and so does `pair`.
     void leave_out_punctual(bool on) { leaves_out_punctual_ = on; }
     void may_give_up() { may_give_up_ = true; }
+    bool can_undo() const { return before_.has_value(); }
+    void undo()
+    {
+        if constexpr (!kByKernels) {
+            renderer_->go_back(std::move(before_->renderer));
+            refused_ = std::min(refused_, renderer_->refused_notes());
+        }
+        passes_ = before_->passes;
+        before_.reset();
+    }
 
     DynamicUpdate dynamic_update() const override
     {
@@ -116,6 +126,7 @@ public:
         double earlier = renderer_->rays();
         sums_.resize(views.size());
         for (std::size_t k = 0; k < views.size(); ++k) sums_[k].start(views[k].width, views[k].height);
+        before_.reset();
         if (!std::exchange(may_give_up_, false) || !views_whole(views, paths, sharing, stop)) {
             see_all(views);
             earlier = renderer_->rays(); // it may be a new renderer
@@ -156,29 +167,28 @@ private:
             if constexpr (kByKernels)
                 renderer_->pass(passes_++, sums_, sharing);
             else
-                renderer_->pass(passes_++, sums_, sharing, PassStop(stop, PassStop::Pass::untaught));
+                renderer_->pass(passes_++, sums_, sharing, PassStop(stop, PassStop::Pass::later));
         });
     }
 
     /// Renders all paths of the views, or throws Interrupted and is as before.
-    /// @return false, and nothing is done, if a frame that is given up would leave traces
+    /// @return false, and nothing is done, if the frame could not be undone
     bool views_whole(std::span<FrameView const> views, std::uint32_t paths, VertexSharing sharing,
                      StopRequest const& stop)
     {
         PathAlgorithm const& by = settings_.of<PathAlgorithm>();
         if (kByKernels || restart_ || by.surfaces != SurfacesBy::rays || by.shadows != ShadowsBy::rays) return false;
         if constexpr (!kByKernels) {
-            auto const before = renderer_->before();
-            std::uint32_t const passes = passes_;
-            bool const teaches = sharing == VertexSharing::cached;
+            auto before = renderer_->before(sharing == VertexSharing::cached);
+            if (!before) return false;
+            before_.emplace(Before{std::move(*before), passes_});
             try {
                 renderer_->see(views);
                 renderer_->leave_out_punctual(leaves_out_punctual_);
-                for (std::uint32_t i = 0; i < paths; ++i) pass_of_views(sharing, teaches && i > 0 ? nullptr : &stop);
-                if (stop.requested() && !teaches) throw Interrupted();
+                for (std::uint32_t i = 0; i < paths; ++i) pass_of_views(sharing, &stop);
+                if (stop.requested()) throw Interrupted();
             } catch (Interrupted const&) {
-                renderer_->go_back(before);
-                passes_ = passes;
+                undo();
                 throw;
             }
         }
@@ -342,6 +352,11 @@ private:
         lost_ = refused_ = 0;
     }
 
+    struct Before { ///< the last frame
+        PathsRenderer::Before renderer;
+        std::uint32_t passes;
+    };
+
     MovingWorld const& world_;
     RenderSettings asked_, settings_; ///< the second with all numbers chosen
     Report& report_;
@@ -352,6 +367,7 @@ private:
     PairSums pair_sums_;
     RadianceCaching cache_ = RadianceCaching::automatic; ///< as set by the user; automatic: as callers request it
     bool leaves_out_punctual_ = false, may_give_up_ = false;
+    std::optional<Before> before_; ///< if the last frame can be undone
     std::uint32_t passes_ = 0, updated_axes_ = 0;
     std::uint64_t lost_ = 0, refused_ = 0; ///< layers and cache notes already reported as lost
     bool restart_ = false;

@@ -165,14 +165,20 @@ void PathsRenderer::see(std::span<FrameView const> views)
     if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
 }
 
-PathsRenderer::Before PathsRenderer::before() const
+std::optional<PathsRenderer::Before> PathsRenderer::before(bool teaches) const
 {
-    return {{views_.begin(), views_.end()}, cache_ ? cache_->passes() : 0};
+    constexpr std::size_t kMostCopied = 256u << 20; // bytes
+    if (!cache_ || !teaches) return Before{{views_.begin(), views_.end()}, cache_ ? cache_->passes() : 0, {}};
+    if (cache_->bytes() > kMostCopied) return {};
+    return Before{{views_.begin(), views_.end()}, cache_->passes(), cache_};
 }
 
-void PathsRenderer::go_back(Before const& before)
+void PathsRenderer::go_back(Before&& before)
 {
-    if (cache_) cache_->go_back(before.cache_passes);
+    if (before.cache)
+        cache_ = std::move(before.cache);
+    else if (cache_)
+        cache_->go_back(before.cache_passes);
     std::vector<TracedView> const& seen = before.views;
     views_.resize(seen.size());
     std::size_t first = 0;

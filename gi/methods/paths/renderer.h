@@ -36,16 +36,18 @@ public:
     DynamicUpdate dynamic_update() const { return axes_.dynamic_update(); }
     /// Sets the views from the next pass on. Each continues the previous frame's view of the same index.
     void see(std::span<FrameView const> views);
-    /// What `see` and passes of PassStop::Pass::untaught change, for a frame that is given up.
+    /// What `see` and passes without look-ups change, for a frame that is undone.
     struct Before {
         std::vector<TracedView> views;
         std::uint32_t cache_passes = 0;
+        std::optional<RadianceCache> cache; ///< if the frame teaches it
     };
-    Before before() const;
-    void go_back(Before const& before);
+    /// @return nothing if the cache is too large to be copied
+    std::optional<Before> before(bool teaches) const;
+    void go_back(Before&& before);
     /// Traces one more path for every pixel. @param index  of the pass; selects the random numbers
-    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted. Then all is as before the pass
-    ///   if it was PassStop::Pass::untaught and there are no look-ups; else there can be no further pass
+    /// @param sums  one per view; unchanged if `stop` makes this throw Interrupted. Then there can be no further
+    ///   pass, unless go_back() is called
     void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing, PassStop stop);
 
     /// Traces a pass of one view with and without dynamic geometry, with the same random numbers; without it,

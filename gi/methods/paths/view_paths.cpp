@@ -179,7 +179,6 @@ void ViewPaths::trace_view(PathsTracer::Pass const& pass, SeenViews const& views
         if (pass.cache == nullptr) continue;
         pass.cache->learn(notes_);
         for (std::vector<CacheNote>& notes : notes_) notes.clear();
-        pass.stop.taught();
     }
 }
 

@@ -264,7 +264,7 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
     BenchTable table =
         start_table("shown", "What is shown while a head moves",
                     {"scene", "path", "size", "eyes", "interval_ms", "interval_95_ms", "interval_99_ms",
-                     "longest_interval_ms", "drawing_ms", "rendering_ms", "light_age_ms", "light_age_95_ms",
+                     "longest_interval_ms", "drawing_ms", "rendering_ms", "light_age_ms", "longest_light_age_ms",
                      "flip", "most_flip", "rivalry", "still_flicker", "surfaces_scale", "light_scale", "paths"});
     table.facts = {{"OpenGL", gl.description()},
                    {"settings", fmt::format("{}", fmt::join(o.settings, " "))},
@@ -279,7 +279,7 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
     table.add({std::filesystem::path(o.scene.scene).stem().string(), std::filesystem::path(o.head).stem().string(),
                o.size, double(o.eyes), quantile(n.gaps_ms, 0.5), quantile(n.gaps_ms, 0.95),
                quantile(n.gaps_ms, 0.99), quantile(n.gaps_ms, 1), quantile(n.drawing_ms, 0.5),
-               quantile(n.between_ms, 0.5), quantile(n.light_ages_ms, 0.5), quantile(n.light_ages_ms, 0.95),
+               quantile(n.between_ms, 0.5), quantile(n.light_ages_ms, 0.5), quantile(n.light_ages_ms, 1),
                if_any(scored, errors.flip), if_any(scored, errors.most_flip),
                if_any(scored && o.eyes == 2, errors.rivalry), if_any(!n.flicker.empty(), quantile(n.flicker, 1)),
                n.surfaces_scale / double(std::max<std::size_t>(1, n.shown)),
