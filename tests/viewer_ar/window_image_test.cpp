@@ -3,6 +3,8 @@
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
 
+#include <sstream>
+
 namespace viewer::test {
 namespace {
 
@@ -18,6 +20,16 @@ TEST_F(ArWindows, ShowTheSessionUntilEscape)
     std::string session = file_text(folder / "desk/session.yaml");
     session.replace(session.find("rate_hz: 30"), 11, "rate_hz: 2");
     std::ofstream(folder / "desk/session.yaml") << session;
+    std::istringstream fast(file_text(folder / "desk/poses.csv"));
+    std::ofstream slow(folder / "desk/poses.csv");
+    for (std::string line; std::getline(fast, line);) {
+        std::size_t const end = line.find(',');
+        if (line.starts_with("time_s"))
+            slow << line << '\n';
+        else
+            slow << 15 * std::stod(line.substr(0, end)) << line.substr(end) << '\n';
+    }
+    slow.close();
     Program program(words("ar run desk/session.yaml --window --poses desk/poses.csv --table t.csv"),
                     folder.path());
     XWindow window("Lightwell: augmented", std::chrono::seconds(60));
