@@ -35,7 +35,8 @@ struct UpsampleCounts {
 /// 0.5) in the low-resolution pictures.
 /// @param low         with, without, coverage at the low resolution; pixels covered by objects are left out,
 /// except for their uncovered part if `direct` is given and at least a quarter of the pixel is uncovered
-/// @param low_guides  at the low resolution; may be undefined further than 4 pixels from changes and objects.
+/// @param guides, low_guides  at both resolutions; may be undefined further than 4 pixels of the low one from
+/// changes and objects.
 /// @throws gi::InputError if one is empty that `guides` has
 /// @param seen        determines the size of the result
 /// @return with = seen + (1 - a)(without + change), without, coverage: a pair for Compositor. Its `without` is the

@@ -313,16 +313,16 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
           &direct_variance = *frame.find("variance_direct"), &indirect_variance = *frame.find("variance_indirect");
     bool const first = still_++ == 0;
     float const n = float(still_);
-    std::swap(mean_, last_mean_);
+    if (settings_.can_undo) std::swap(mean_, last_mean_);
     mean_.resize(frame.pixels());
+    std::vector<std::array<vec3, 4>> const& before = settings_.can_undo ? last_mean_ : mean_;
     tbb::combinable<double> frames;
     tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
         double& sum = frames.local();
         for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i) {
             std::array<vec3, 4> const now{rgb(l0, i), rgb(l1, i), rgb(l2, i), surfaces_[i].normal};
             std::array<vec3, 4>& mean = mean_[i];
-            for (std::size_t k = 0; k < 4; ++k)
-                mean[k] = first ? now[k] : glm::mix(last_mean_[i][k], now[k], 1 / n);
+            for (std::size_t k = 0; k < 4; ++k) mean[k] = first ? now[k] : glm::mix(before[i][k], now[k], 1 / n);
             Light const& light = lights_[i];
             // Frames since the last motion are in both means; earlier ones count while they are many in
             // comparison, those of long means for as many frames as those of others.

@@ -30,6 +30,7 @@ struct TemporalSettings {
     int window = 5;
     float spread = 1;
     bool keep_normals = false; ///< adds the layer light_normal
+    bool can_undo = false;     ///< keeps what undo() needs: 48 bytes a pixel more
 };
 
 /// What has changed since the previous frame.
@@ -74,7 +75,8 @@ public:
     ///   source pixels (ReusedLight::from): these pixels take the partner's motion-following means
     TemporalCounts add(Picture& frame, SceneChange change, TemporalReuse const* partner = nullptr,
                        std::span<std::uint32_t const> from = {});
-    /// Takes the last frame back. Only once after a frame that was not the first, and not after SceneChange::light.
+    /// Takes the last frame back. Only with TemporalSettings::can_undo, once after a frame that was not the first, and
+    /// not after SceneChange::light.
     void undo();
 
 private:

@@ -139,13 +139,15 @@ class FramesGivenUp {
 public:
     virtual ~FramesGivenUp() = default;
     /// In the next call of `views`, a stop ends the frame within milliseconds: it throws Interrupted, and all is as if
-    /// the call had not been made. Costs a copy of what that frame teaches later ones.
+    /// the call had not been made. Costs a copy of what that frame teaches later ones; if that is larger than
+    /// 256 MiB, or the frame looks up layers, it cannot be undone, and a stop shortens it.
     virtual void may_give_up() = 0;
-    /// Whether the last frame can still be undone: it was announced by may_give_up(), and leaves nothing that cannot
-    /// be taken back.
+    /// Whether the last frame, which may_give_up() announced, can be undone. Ask before anything else is called.
     virtual bool can_undo() const = 0;
-    /// Makes all as it was before the last frame. Only if can_undo().
+    /// Makes all as it was before the last frame, but for what was reported. Only if can_undo().
     virtual void undo() = 0;
+    /// The last frame stays: frees what undo() would need.
+    virtual void keep() = 0;
 };
 
 class PairFrames {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <tbb/parallel_for.h>
+#include <tuple>
 #include <utility>
 
 namespace viewer {
@@ -206,7 +207,7 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
         std::vector<gi::Picture> unfiltered(results.size());
         for (std::size_t k = 0; k < results.size() && filtered && filtered_share(state_.still_paths) < 1; ++k)
             unfiltered[k] = results[k].picture;
-        if (filtered) clamp(results, views, filters_stop);
+        if (filtered) clamp(results, command.views, filters_stop);
         for (std::size_t k = 0; k < results.size(); ++k) {
             if (filtered) filter(k, results, views[k].partner, settings, unfiltered[k], filters_stop);
             Seen const& own = state_.seen[k];
@@ -224,6 +225,7 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
         }
         throw;
     }
+    if (can_undo) given_up->keep();
     for (std::size_t k = 0; k < results.size(); ++k) state_.seen[k].light = std::move(lights[k]);
     return results;
 }
@@ -237,10 +239,12 @@ void MethodRunner::follow(FrameCommand const& command, std::span<HiddenPixels co
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const& now = command.views[k];
         Seen& s = state_.seen[k];
-        if (!next[k].same)
-            s.reuse = std::make_shared<gi::TemporalReuse>(
-                small ? gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse, 17, 2, true}
-                      : gi::TemporalSettings{settings.reuse, kUnchanged * settings.reuse});
+        if (!next[k].same) {
+            gi::TemporalSettings by{settings.reuse, kUnchanged * settings.reuse};
+            if (small) std::tie(by.window, by.spread, by.keep_normals) = std::tuple(17, 2.0f, true);
+            by.can_undo = true;
+            s.reuse = std::make_shared<gi::TemporalReuse>(by);
+        }
         s = {now.name,  now.camera,         now.width,  now.height, std::move(s.reuse), settings.reuse,
              hidden[k], std::move(s.light), s.punctual, small,      next[k].rays,       next[k].earlier};
     }
@@ -286,7 +290,7 @@ gi::MirrorLayers MethodRunner::reuse(std::size_t view, Results& results, int par
     return mirrors;
 }
 
-void MethodRunner::clamp(Results& results, std::span<gi::FrameView const> views, gi::StopRequest const* stop)
+void MethodRunner::clamp(Results& results, std::span<ViewCommand const> views, gi::StopRequest const* stop)
 {
     gi::StageTimer const timer(report_, "fireflies");
     gi::FireflyCounts& counts = state_.fireflies;

@@ -87,7 +87,7 @@ private:
     /// The views of this frame are filtered.
     bool is_filtered(gi::RenderResult const& result, Settings const& settings) const;
     /// Clamps the fireflies of all views. Throws Interrupted if `stop`, which may be null, is requested.
-    void clamp(Results& results, std::span<gi::FrameView const> views, gi::StopRequest const* stop);
+    void clamp(Results& results, std::span<ViewCommand const> views, gi::StopRequest const* stop);
     /// Filters a view. The partner must have been filtered already. Throws Interrupted as `clamp` does.
     /// @param unfiltered  shown in part; empty = not
     void filter(std::size_t view, Results& results, int partner, Settings const& settings,

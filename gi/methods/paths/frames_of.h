@@ -63,6 +63,7 @@ public:
     void leave_out_punctual(bool on) { leaves_out_punctual_ = on; }
     void may_give_up() { may_give_up_ = true; }
     bool can_undo() const { return before_.has_value(); }
+    void keep() { before_.reset(); }
     void undo()
     {
         if constexpr (!kByKernels) {

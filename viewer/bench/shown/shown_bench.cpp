@@ -1,6 +1,7 @@
 #include "viewer/bench/shown/shown_bench.h"
 
 #include "gi/core/error.h"
+#include "gi/core/quantile.h"
 #include "viewer/app/pose_at.h"
 #include "viewer/app/presenter.h"
 #include "viewer/app/surfaces_scale.h"
@@ -32,13 +33,6 @@ struct ShownCounts {
     std::size_t shown = 0, rendered = 0;
     std::map<std::string, double> stages_s;
 };
-
-double quantile(std::vector<double> values, double q)
-{
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    std::ranges::sort(values);
-    return values[std::min(values.size() - 1, std::size_t(q * double(values.size())))];
-}
 
 /// Root mean square of what changes between two pictures, 0..255.
 double change(std::vector<unsigned char> const& a, std::vector<unsigned char> const& b)
@@ -277,11 +271,12 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
     bool const scored = errors.moments > 0;
     auto const if_any = [](bool any, double value) { return any ? Cell(value) : Cell(); };
     table.add({std::filesystem::path(o.scene.scene).stem().string(), std::filesystem::path(o.head).stem().string(),
-               o.size, double(o.eyes), quantile(n.gaps_ms, 0.5), quantile(n.gaps_ms, 0.95),
-               quantile(n.gaps_ms, 0.99), quantile(n.gaps_ms, 1), quantile(n.drawing_ms, 0.5),
-               quantile(n.between_ms, 0.5), quantile(n.light_ages_ms, 0.5), quantile(n.light_ages_ms, 1),
-               if_any(scored, errors.flip), if_any(scored, errors.most_flip),
-               if_any(scored && o.eyes == 2, errors.rivalry), if_any(!n.flicker.empty(), quantile(n.flicker, 1)),
+               o.size, double(o.eyes), gi::quantile(n.gaps_ms, 0.5), gi::quantile(n.gaps_ms, 0.95),
+               gi::quantile(n.gaps_ms, 0.99), gi::quantile(n.gaps_ms, 1), gi::quantile(n.drawing_ms, 0.5),
+               gi::quantile(n.between_ms, 0.5), gi::quantile(n.light_ages_ms, 0.5),
+               gi::quantile(n.light_ages_ms, 1), if_any(scored, errors.flip), if_any(scored, errors.most_flip),
+               if_any(scored && o.eyes == 2, errors.rivalry),
+               if_any(!n.flicker.empty(), gi::quantile(n.flicker, 1)),
                n.surfaces_scale / double(std::max<std::size_t>(1, n.shown)),
                n.light_scale / double(std::max<std::size_t>(1, n.rendered)),
                n.paths / double(std::max<std::size_t>(1, n.rendered))});

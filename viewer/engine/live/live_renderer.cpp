@@ -403,7 +403,7 @@ LiveRenderer::Rendered LiveRenderer::render(FrameCommand command, FrameBudget co
         if (hooks_.at_step) hooks_.at_step(step);
     });
     try {
-        frame->result = session_.render(command, stop ? *stop : never, OnStop::give_up);
+        frame->result = session_.render(command, stop ? *stop : never, stop ? OnStop::give_up : OnStop::shorten);
     } catch (gi::Interrupted const&) {
         given_up = stop && stop->requested() && !quit_;
         frame->result = {};
