@@ -6,9 +6,7 @@
 #include <chrono>
 #include <cstring>
 #include <epoxy/gl.h>
-#include <numeric>
 #include <span>
-#include <tuple>
 
 namespace viewer {
 namespace {
@@ -110,16 +108,15 @@ void SceneMeshes::take(std::shared_ptr<gi::ShownScene const> scene)
             Mesh& mesh = meshes_.emplace_back();
             mesh.first_vertex = first_vertex;
             mesh.vertices = end_vertex - first_vertex;
-            mesh.first_triangle = first;
-            mesh.triangles = end - first;
             mesh.moves = first >= w.static_triangles;
         };
         add(0, w.static_vertices, 0, w.static_triangles);
         add(w.static_vertices, vertices, w.static_triangles, triangles);
+        order();
     }
     if (other_textures) textures_.begin(w.scene->textures.textures.size());
-    if (made_ == meshes_.size() && materials_ != scene_->materials) upload_materials();
-    if (made_ == meshes_.size()) upload_moved();
+    if (is_made() && materials_ != scene_->materials) upload_materials();
+    if (is_made()) upload_moved();
     if (map_ != scene_->environment) upload_environment();
 }
 
@@ -127,20 +124,51 @@ bool SceneMeshes::upload(double most_s)
 {
     using Clock = std::chrono::steady_clock;
     auto const begun = Clock::now();
-    while (made_ < meshes_.size() || !missing_.empty()) {
+    while (!is_made() || !missing_.empty()) {
         if (made_ < meshes_.size()) {
             make(meshes_[made_++]);
-            if (made_ == meshes_.size()) {
-                upload_materials();
-                upload_moved();
-            }
+        } else if (orders_.valid()) {
+            if (!upload_order(most_s)) return false;
+            upload_materials();
+            upload_moved();
         } else {
             textures_.upload(scene_->world->scene->textures, missing_.back());
             missing_.pop_back();
         }
         if (std::chrono::duration<double>(Clock::now() - begun).count() > most_s) break;
     }
-    return made_ == meshes_.size() && missing_.empty();
+    return is_made() && missing_.empty();
+}
+
+/// By a thread of its own, as it takes a second for some millions of triangles.
+void SceneMeshes::order()
+{
+    std::vector<bool> moves;
+    for (Mesh const& mesh : meshes_) moves.push_back(mesh.moves);
+    std::packaged_task<std::vector<SurfaceOrder>(std::stop_token)> task(
+        [scene = scene_, moves = std::move(moves)](std::stop_token const& stop) {
+            std::vector<SurfaceOrder> orders;
+            for (bool const m : moves) orders.push_back(order_surfaces(*scene, m, stop));
+            return orders;
+        });
+    orders_ = task.get_future();
+    ordering_ = std::jthread([task = std::move(task)](std::stop_token const& stop) mutable { task(stop); });
+}
+
+/// Returns false if it is still in the making after so long.
+bool SceneMeshes::upload_order(double most_s)
+{
+    if (orders_.wait_for(std::chrono::duration<double>(most_s)) != std::future_status::ready) return false;
+    std::vector<SurfaceOrder> orders = orders_.get();
+    for (std::size_t k = 0; k < meshes_.size(); ++k) {
+        Mesh& mesh = meshes_[k];
+        mesh.order = std::move(orders[k]);
+        for (gi::uvec3& t : mesh.order.triangles) t -= mesh.first_vertex;
+        mesh.indices = buffer_of(mesh.order.triangles.data(), mesh.order.triangles.size());
+        glVertexArrayElementBuffer(mesh.array.id(), mesh.indices.id());
+        mesh.order.triangles = {};
+    }
+    return true;
 }
 
 void SceneMeshes::make(Mesh& mesh)
@@ -176,63 +204,7 @@ void SceneMeshes::make(Mesh& mesh)
     set_attribute(mesh.array, 7, mesh.lit_normals, 3);
 }
 
-/// Triangles of one kind and material one after the other; opaque ones first, blended ones last.
-void SceneMeshes::sort(Mesh& mesh) const
-{
-    gi::World const& w = *scene_->world;
-    std::vector<gi::Material> const& materials = *scene_->materials;
-    std::vector<SurfaceKind> kinds;
-    for (gi::Material const& m : materials) {
-        kinds.push_back(kind_of(m));
-        kinds.back().moves = mesh.moves;
-    }
-    std::vector<std::uint32_t> sorted(materials.size()), count(materials.size()), start(materials.size());
-    std::iota(sorted.begin(), sorted.end(), 0u);
-    std::ranges::stable_sort(sorted, [&](std::uint32_t a, std::uint32_t b) {
-        return std::tuple(kinds[a].alpha, kinds[a]) < std::tuple(kinds[b].alpha, kinds[b]);
-    });
-    for (std::uint32_t t = 0; t < mesh.triangles; ++t) ++count[w.triangle_material[mesh.first_triangle + t]];
-    mesh.batches.clear();
-    std::uint32_t next = 0;
-    for (std::uint32_t const m : sorted) {
-        start[m] = next;
-        if (count[m] > 0) mesh.batches.push_back({kinds[m], m, next, count[m], {}});
-        next += count[m];
-    }
-    mesh.order.resize(mesh.triangles);
-    for (std::uint32_t t = 0; t < mesh.triangles; ++t) {
-        std::uint32_t const of_world = mesh.first_triangle + t;
-        mesh.order[start[w.triangle_material[of_world]]++] = of_world;
-    }
-}
-
-gi::uvec3 SceneMeshes::corners(Mesh const& mesh, std::uint32_t triangle) const
-{
-    gi::World const& w = *scene_->world;
-    return mesh.moves ? scene_->moving->triangles[triangle - w.static_triangles] : w.triangles[triangle];
-}
-
-/// Consecutive triangles of a batch are near each other, as meshes are.
-void SceneMeshes::cluster(Mesh& mesh) const
-{
-    constexpr std::uint32_t kLeast = 256, kMost = 1024; // triangles of a cluster; clusters of a mesh
-    gi::World const& w = *scene_->world;
-    std::uint32_t const size = std::max(kLeast, mesh.triangles / kMost);
-    bool const moves = mesh.moves;
-    for (SurfaceBatch& b : mesh.batches)
-        for (std::uint32_t first = 0; first < b.count; first += moves ? b.count : size) {
-            SurfaceCluster c{b.first + first, moves ? b.count : std::min(size, b.count - first), {}};
-            for (std::uint32_t t = c.first; t < c.first + c.count && !moves; ++t)
-                for (int k = 0; k < 3; ++k) {
-                    gi::vec3 const p = w.positions[corners(mesh, mesh.order[t])[k]];
-                    c.bounds = gi::joined(c.bounds, {p, p});
-                }
-            if (moves) c.bounds = {gi::vec3(-gi::kInf), gi::vec3(gi::kInf)};
-            b.clusters.push_back(c);
-        }
-}
-
-/// Also the order of triangles, which is that of their materials.
+/// Also the kinds of surfaces, which are those of their materials.
 void SceneMeshes::upload_materials()
 {
     materials_ = scene_->materials;
@@ -253,13 +225,13 @@ void SceneMeshes::upload_materials()
         if (wanted[k] != 0 && textures_.id(k) == 0) missing_.push_back(k);
     blocks_ = buffer_of(blocks.data(), blocks.size());
     for (Mesh& mesh : meshes_) {
-        sort(mesh);
-        cluster(mesh);
-        std::vector<gi::uvec3> indices;
-        indices.reserve(mesh.order.size());
-        for (std::uint32_t const t : mesh.order) indices.push_back(corners(mesh, t) - mesh.first_vertex);
-        mesh.indices = buffer_of(indices.data(), indices.size());
-        glVertexArrayElementBuffer(mesh.array.id(), mesh.indices.id());
+        mesh.batches.clear();
+        for (SurfacePart const& part : mesh.order.parts) {
+            SurfaceKind kind = kind_of((*materials_)[part.material]);
+            kind.moves = mesh.moves;
+            mesh.batches.push_back({kind, &part});
+        }
+        std::ranges::stable_sort(mesh.batches, {}, &SurfaceBatch::kind);
     }
 }
 
@@ -302,6 +274,12 @@ void SceneMeshes::upload_environment()
 }
 
 void SceneMeshes::bind_mesh(std::size_t mesh) const { glBindVertexArray(meshes_[mesh].array.id()); }
+
+void SceneMeshes::draw(SurfaceRange range)
+{
+    glDrawElements(GL_TRIANGLES, GLsizei(3 * range.count), GL_UNSIGNED_INT,
+                   reinterpret_cast<void const*>(std::uintptr_t(range.first) * sizeof(gi::uvec3)));
+}
 
 void SceneMeshes::bind_material(std::uint32_t material) const
 {

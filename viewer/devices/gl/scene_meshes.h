@@ -2,10 +2,12 @@
 // A scene on the GPU: its triangles, sorted by material, and its materials with their textures. What moves is uploaded
 // for every frame; all else once, a little at a time, so that nobody waits for a large scene.
 
-#include "gi/surfaces/shown_scene.h"
 #include "viewer/devices/gl/scene_textures.h"
+#include "viewer/devices/gl/surface_order.h"
 
 #include <array>
+#include <future>
+#include <thread>
 
 namespace viewer {
 
@@ -20,17 +22,10 @@ struct SurfaceKind {
     auto operator<=>(SurfaceKind const&) const = default;
 };
 
-/// Triangles near each other.
-struct SurfaceCluster {
-    std::uint32_t first = 0, count = 0; ///< in the mesh's order
-    gi::Bounds bounds;                  ///< m, from the world's origin; infinite: they move
-};
-
 /// Triangles of one material.
 struct SurfaceBatch {
     SurfaceKind kind;
-    std::uint32_t material = 0, first = 0, count = 0; ///< in the mesh's order
-    std::vector<SurfaceCluster> clusters;
+    SurfacePart const* part = nullptr;
 };
 
 class SceneMeshes {
@@ -47,6 +42,8 @@ public:
     std::size_t meshes() const { return meshes_.size(); }
     std::vector<SurfaceBatch> const& batches(std::size_t mesh) const { return meshes_[mesh].batches; }
     void bind_mesh(std::size_t mesh) const;
+    /// Draws triangles of the bound mesh.
+    static void draw(SurfaceRange range);
     void bind_material(std::uint32_t material) const; ///< to block 0, and its maps to units 5 to 11
     /// Of what can move, where its light was found.
     gi::Bounds const& moved_bounds() const { return moved_bounds_; }
@@ -59,18 +56,18 @@ public:
 
 private:
     struct Mesh {
-        std::uint32_t first_vertex = 0, vertices = 0, first_triangle = 0, triangles = 0; ///< in the world
+        std::uint32_t first_vertex = 0, vertices = 0; ///< in the world
         bool moves = false;
         GlObject array, indices, positions, normals, tangents, uv0, uv1, colors;
         GlObject lit_positions, lit_normals; ///< of what moves: where its light was found
-        std::vector<std::uint32_t> order;    ///< triangles of the world, sorted
+        SurfaceOrder order;                  ///< its triangles are on the GPU alone
         std::vector<SurfaceBatch> batches;
     };
+    bool is_made() const { return made_ == meshes_.size() && !orders_.valid(); }
+    void order();
     void make(Mesh& mesh);
-    void sort(Mesh& mesh) const;
-    void cluster(Mesh& mesh) const;
+    bool upload_order(double most_s);
     void upload_moved();
-    gi::uvec3 corners(Mesh const& mesh, std::uint32_t triangle) const;
     void upload_materials();
     void upload_environment();
 
@@ -85,6 +82,8 @@ private:
     std::size_t made_ = 0;                                       ///< meshes on the GPU
     SceneTextures textures_;
     std::vector<std::size_t> missing_; ///< textures
+    std::future<std::vector<SurfaceOrder>> orders_; ///< of the meshes, in the making
+    std::jthread ordering_;                         ///< makes them
     GlObject blocks_, environment_;
     std::ptrdiff_t block_step_ = 0; ///< bytes
 };

@@ -255,9 +255,8 @@ void ShadowMaps::draw(SceneMeshes const& meshes, std::size_t map, GlObject const
                 p.use();
                 p.set("clip_from_world", maps_[map].clip_from_world);
             }
-            if (b.kind.alpha != gi::AlphaMode::opaque) meshes.bind_material(b.material);
-            glDrawElements(GL_TRIANGLES, GLsizei(3 * b.count), GL_UNSIGNED_INT,
-                           reinterpret_cast<void const*>(std::uintptr_t(b.first) * 3 * sizeof(std::uint32_t)));
+            if (b.kind.alpha != gi::AlphaMode::opaque) meshes.bind_material(b.part->material);
+            meshes.draw(b.part->triangles);
         }
     }
     glDisable(GL_POLYGON_OFFSET_FILL);

@@ -24,10 +24,14 @@ glm::mat3 clip_from_world(gi::Camera const& camera, glm::ivec2 size_px)
     return glm::mat3(clip_from_pixel * pixel_from_world(camera, size_px));
 }
 
-/// Distance along the axis of the nearest place of a box that may be seen; infinite: none is.
-float nearest_seen(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
+struct DepthRange {
+    float nearest = 0, farthest = 0;
+};
+
+/// Distances along the axis of the places of a box; none: no place is seen. 0 where it is infinite.
+std::optional<DepthRange> seen_depths(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
 {
-    if (!(box.high.x < gi::kInf)) return 0;
+    if (!(box.high.x < gi::kInf)) return DepthRange{};
     // Most that a linear function reaches in the box, relative to the eye.
     auto const most = [&](glm::vec3 f) {
         return glm::dot(glm::max(f * (box.low - eye), f * (box.high - eye)), glm::vec3(1));
@@ -35,8 +39,8 @@ float nearest_seen(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
     auto const row = [&](int r) { return glm::vec3(clip[0][r], clip[1][r], clip[2][r]); };
     glm::vec3 const x = row(0), y = row(1), w = row(2);
     for (glm::vec3 const edge : {w, w - x, w + x, w - y, w + y})
-        if (!(most(edge) > 0)) return gi::kInf;
-    return std::max(0.0f, -most(-w));
+        if (!(most(edge) > 0)) return std::nullopt;
+    return DepthRange{std::max(0.0f, -most(-w)), most(w)};
 }
 
 /// Corners in clip space of the rectangle that a box covers; none: a part of it is behind the eye.
@@ -165,69 +169,57 @@ bool SurfaceRenderer::prepare(double most_s)
     return true;
 }
 
-void SurfaceRenderer::draw_batches(Pass pass, Eye const& eye)
+/// Clusters that may be seen. What is near is drawn first, for it hides much; what is blended, last.
+std::vector<SurfaceRenderer::Seen> SurfaceRenderer::seen_clusters(Pass pass, Eye const& eye) const
 {
-    struct Seen {
-        float depth;
-        SurfaceCluster const* cluster;
-    };
-    struct SeenBatch {
-        float depth; ///< of the nearest cluster
-        SurfaceBatch const* batch;
-        std::vector<Seen> clusters;
-    };
-    GlProgram const* last = nullptr;
-    for (std::size_t m = 0; m < meshes_.meshes(); ++m) {
-        std::vector<SeenBatch> batches;
+    std::vector<Seen> seen;
+    for (std::size_t m = 0; m < meshes_.meshes(); ++m)
         for (SurfaceBatch const& b : meshes_.batches(m)) {
             if (!takes_part(b.kind, pass)) continue;
-            SeenBatch seen{gi::kInf, &b, {}};
-            for (SurfaceCluster const& c : b.clusters)
-                if (float const depth = nearest_seen(c.bounds, eye.at, eye.clip_from_world); depth < gi::kInf) {
-                    seen.clusters.push_back({depth, &c});
-                    seen.depth = std::min(seen.depth, depth);
-                }
-            // What is near is drawn first, for it hides much; what is blended, last.
-            std::ranges::sort(seen.clusters, [&](Seen const& p, Seen const& q) {
-                return pass == Pass::blended ? p.depth > q.depth : p.depth < q.depth;
-            });
-            if (!seen.clusters.empty()) batches.push_back(std::move(seen));
-        }
-        std::ranges::stable_sort(batches, [&](SeenBatch const& p, SeenBatch const& q) {
-            return pass == Pass::blended ? p.depth > q.depth : p.depth < q.depth;
-        });
-        if (!batches.empty()) meshes_.bind_mesh(m);
-        for (SeenBatch const& seen : batches) {
-            GlProgram const& p = program(seen.batch->kind, pass);
-            if (&p != last) {
-                last = &p;
-                p.use();
-                p.set("clip_from_world", eye.clip_from_world);
-                p.set("eye", eye.at);
-                p.set("kept", eye.kept);
-                p.set("nearest_m", nearest_m());
-                if (pass == Pass::described) set_moved_box(p);
-                if (pass == Pass::blended) {
-                    ring_.bind(p, eye.view);
-                    shadows_.bind(p);
-                }
-                if (pass == Pass::mirrors) {
-                    p.set("a_from_b", maps_.a_from_b);
-                    p.set("b_in_a", maps_.b_in_a);
-                    p.set("nearest", nearest_);
-                }
-                if (pass == Pass::planar) {
-                    p.set("mirror_plane", plane_);
-                    p.set("mirror_tolerance", 4 * kApart * meshes_.scene().radius_m);
-                }
-            }
-            meshes_.bind_material(seen.batch->material);
-            for (Seen const& s : seen.clusters) {
-                glDrawElements(
-                    GL_TRIANGLES, GLsizei(3 * s.cluster->count), GL_UNSIGNED_INT,
-                    reinterpret_cast<void const*>(std::uintptr_t(s.cluster->first) * 3 * sizeof(std::uint32_t)));
+            for (SurfaceCluster const& c : b.part->clusters) {
+                auto const depths = seen_depths(c.bounds, eye.at, eye.clip_from_world);
+                if (!depths) continue;
+                // Layers a quarter as deep as they are far away, of which each has surfaces of one material together.
+                float const layer = std::floor(3 * std::log2(std::max(depths->farthest, 1e-30f)));
+                seen.push_back({pass == Pass::blended ? -depths->nearest : layer, m, &b, c.triangles});
             }
         }
+    std::ranges::stable_sort(seen, {}, &Seen::order);
+    return seen;
+}
+
+void SurfaceRenderer::draw_batches(Pass pass, Eye const& eye)
+{
+    GlProgram const* last = nullptr;
+    Seen const* before = nullptr;
+    for (Seen const& seen : seen_clusters(pass, eye)) {
+        GlProgram const& p = program(seen.batch->kind, pass);
+        if (&p != last) {
+            last = &p;
+            p.use();
+            p.set("clip_from_world", eye.clip_from_world);
+            p.set("eye", eye.at);
+            p.set("kept", eye.kept);
+            p.set("nearest_m", nearest_m());
+            if (pass == Pass::described) set_moved_box(p);
+            if (pass == Pass::blended) {
+                ring_.bind(p, eye.view);
+                shadows_.bind(p);
+            }
+            if (pass == Pass::mirrors) {
+                p.set("a_from_b", maps_.a_from_b);
+                p.set("b_in_a", maps_.b_in_a);
+                p.set("nearest", nearest_);
+            }
+            if (pass == Pass::planar) {
+                p.set("mirror_plane", plane_);
+                p.set("mirror_tolerance", 4 * kApart * meshes_.scene().radius_m);
+            }
+        }
+        if (before == nullptr || before->mesh != seen.mesh) meshes_.bind_mesh(seen.mesh);
+        if (before == nullptr || before->batch != seen.batch) meshes_.bind_material(seen.batch->part->material);
+        SceneMeshes::draw(seen.triangles);
+        before = &seen;
     }
 }
 
@@ -263,12 +255,12 @@ void SurfaceRenderer::draw_sky(Eye const& eye)
 
 SurfaceRenderer::Eye SurfaceRenderer::eye_of(int view, gi::Camera const& camera, glm::ivec2 size_px) const
 {
-    return {view,
-            clip_from_world(camera, size_px),
-            glm::vec3(gi::dvec3(camera.world_from_camera[3]) - meshes_.scene().world->origin),
-            glm::mat3(axes_of(camera) * frame_from_pixel(camera, size_px)),
-            glm::vec4(0),
-            false};
+    Eye eye;
+    eye.view = view;
+    eye.clip_from_world = clip_from_world(camera, size_px);
+    eye.at = glm::vec3(gi::dvec3(camera.world_from_camera[3]) - meshes_.scene().world->origin);
+    eye.world_from_pixel = glm::mat3(axes_of(camera) * frame_from_pixel(camera, size_px));
+    return eye;
 }
 
 /// Behind a mirror, of which it keeps what is more than `apart` before it.
@@ -277,12 +269,13 @@ SurfaceRenderer::Eye SurfaceRenderer::mirrored(Eye const& eye, PlanarMirror cons
     float const before = glm::dot(mirror.normal, eye.at) - mirror.distance_m, side = before < 0 ? -1.0f : 1.0f;
     glm::vec3 const n = mirror.normal;
     glm::mat3 const reflect = glm::mat3(1) - 2.0f * glm::outerProduct(n, n);
-    return {eye.view,
-            eye.clip_from_world * reflect,
-            eye.at - 2 * before * n,
-            reflect * eye.world_from_pixel,
-            glm::vec4(side * n, side * mirror.distance_m + apart),
-            true};
+    Eye behind = eye;
+    behind.clip_from_world = eye.clip_from_world * reflect;
+    behind.at = eye.at - 2 * before * n;
+    behind.world_from_pixel = reflect * eye.world_from_pixel;
+    behind.kept = glm::vec4(side * n, side * mirror.distance_m + apart);
+    behind.in_mirror = true;
+    return behind;
 }
 
 void SurfaceRenderer::fit(Target& to, glm::ivec2 size_px)
@@ -359,14 +352,14 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
 {
     constexpr std::size_t kMost = 2;
     float const apart = kApart * std::max(meshes_.scene().radius_m, 1e-30f);
-    struct Seen {
+    struct InPicture {
         PlanarMirror const* mirror;
         Part part;
     };
-    std::vector<Seen> seen;
+    std::vector<InPicture> seen;
     for (PlanarMirror const& m : planar_.all()) {
         bool const is_seen = std::abs(glm::dot(m.normal, eye.at) - m.distance_m) > apart &&
-                             nearest_seen(m.bounds, eye.at, eye.clip_from_world) < gi::kInf;
+                             seen_depths(m.bounds, eye.at, eye.clip_from_world).has_value();
         if (!is_seen && has_drawn_mirrors_) continue;
         glm::ivec2 low(0), high = is_seen ? size_px : glm::ivec2(1);
         if (auto const box = is_seen ? box_on(m.bounds, eye.at, eye.clip_from_world) : std::nullopt) {
@@ -376,11 +369,11 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
         }
         if (high.x > low.x && high.y > low.y) seen.push_back({&m, {low, high - low}});
     }
-    auto const pixels = [](Seen const& s) { return std::int64_t(s.part.size_px.x) * s.part.size_px.y; };
-    std::ranges::sort(seen, [&](Seen const& a, Seen const& b) { return pixels(a) > pixels(b); });
+    auto const pixels = [](InPicture const& s) { return std::int64_t(s.part.size_px.x) * s.part.size_px.y; };
+    std::ranges::sort(seen, [&](InPicture const& a, InPicture const& b) { return pixels(a) > pixels(b); });
     if (seen.size() > kMost) seen.resize(kMost);
     has_drawn_mirrors_ = true;
-    for (Seen const& s : seen) {
+    for (InPicture const& s : seen) {
         fit(mirror_image_, size_px);
         Eye const behind = mirrored(eye, *s.mirror, apart);
         plane_ = glm::vec4(s.mirror->normal, s.mirror->distance_m);

@@ -54,6 +54,12 @@ private:
         glm::vec4 kept{0};             ///< of surfaces.vert
         bool in_mirror = false;
     };
+    struct Seen {
+        float order = 0;
+        std::size_t mesh = 0;
+        SurfaceBatch const* batch = nullptr;
+        SurfaceRange triangles;
+    };
     Eye eye_of(int view, gi::Camera const& camera, glm::ivec2 size_px) const;
     static Eye mirrored(Eye const& eye, PlanarMirror const& mirror, float apart);
     static void fit(Target& to, glm::ivec2 size_px);
@@ -61,6 +67,7 @@ private:
     void set_moved_box(GlProgram const& program) const;
     static bool takes_part(SurfaceKind const& kind, Pass pass);
     GlProgram& program(SurfaceKind const& kind, Pass pass);
+    std::vector<Seen> seen_clusters(Pass pass, Eye const& eye) const;
     void draw_batches(Pass pass, Eye const& eye);
     struct Part { ///< of a picture
         glm::ivec2 low_px, size_px;
