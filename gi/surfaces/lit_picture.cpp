@@ -62,11 +62,11 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
     return picture;
 }
 
-Picture mirror_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
-                       Picture const& of_light)
+Picture mirror_picture(SeenSurfaces const& seen, PixelBox const& part, int width, int height,
+                       KeptLight const& light, Picture const& of_light)
 {
     Picture picture{width, height, {}, {}};
-    Layer const& from = *of_light.find("color");
+    Layer const &from = *of_light.find("color"), &light_depth = *of_light.find(seen_depth_of(of_light));
     picture.add("color", 3);
     picture.add("depth", 1);
     std::vector<float>&color = picture.find("color")->data,
@@ -74,18 +74,19 @@ Picture mirror_picture(SeenSurfaces const& seen, int width, int height, KeptLigh
     vec2 const smaller = vec2{light.width(), light.height()} / vec2{width, height};
     tbb::parallel_for(0, height, [&](int y) {
         thread_local std::vector<SeenSurface> row;
-        row.assign(std::size_t(width), {});
-        seen.row_of_mirrors(y, row);
+        row.assign(std::size_t(part.high.x - part.low.x), {});
+        bool const shows = y >= part.low.y && y < part.high.y;
+        if (shows) seen.row_of_mirrors(y - part.low.y, row);
         for (int x = 0; x < width; ++x) {
             std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            SeenSurface const& s = row[std::size_t(x)];
+            bool const in_part = shows && x >= part.low.x && x < part.high.x;
             vec2 const place = smaller * (vec2{float(x), float(y)} + seen.at());
             std::size_t const j = std::size_t(place.y * float(of_light.height) / float(light.height())) *
                                       std::size_t(of_light.width) +
                                   std::size_t(place.x * float(of_light.width) / float(light.width()));
             vec3 radiance = rgb(from, j);
-            depth[i] = seen.depth(x, y);
-            if (s.in_mirror) {
+            depth[i] = in_part ? seen.depth(x - part.low.x, y - part.low.y) : light_depth.data[j];
+            if (SeenSurface const& s = row[in_part ? std::size_t(x - part.low.x) : 0]; in_part && s.in_mirror) {
                 radiance = s.emitted + s.direct;
                 if (s.depth > 0) {
                     FoundLight const found =

@@ -3,6 +3,7 @@
 // and whose light is that of a smaller one.
 
 #include "gi/surfaces/kept_light.h"
+#include "gi/surfaces/mirror_boxes.h"
 #include "gi/surfaces/seen_surfaces.h"
 
 namespace gi {
@@ -20,10 +21,10 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
                     std::span<std::uint8_t const> hidden, LitCounts& counts, CameraRays const* before = nullptr,
                     vec2 margin = vec2{0});
 
-/// The last view of `seen`, lit in mirrors and panes alone: all else, and what is behind nothing, is as bright as in
-/// a picture of light of the same camera. Layers color and depth, as lit_picture.
-Picture mirror_picture(SeenSurfaces const& seen, int width, int height, KeptLight const& light,
-                       Picture const& of_light);
+/// A picture of light, enlarged, with what mirrors and panes show in a part of it. Layers color and depth, as lit_picture.
+/// @param seen  its last view is that part  @param width, height  of the result, px
+Picture mirror_picture(SeenSurfaces const& seen, PixelBox const& part, int width, int height,
+                       KeptLight const& light, Picture const& of_light);
 
 /// Layers of a method's picture for pixels that show a mirror or a pane.
 struct MirrorLayers {

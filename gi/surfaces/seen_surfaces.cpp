@@ -4,6 +4,7 @@
 #include "gi/render/ray_path.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/shading/seen_mirror.h"
+#include "gi/surfaces/mirror_boxes.h"
 
 #include <tbb/parallel_for.h>
 
@@ -63,8 +64,10 @@ bool SeenSurfaces::has_few_lights(World const& world)
 
 void SeenSurfaces::find_needs()
 {
-    mirrors_ = mirrors_in(world_);
-    bool const needed = mirrors_ || has_few_lights(world_);
+    std::vector<char> may;
+    for (Bsdf const& b : world_.bsdfs) may.push_back(may_mirror(b) ? 1 : 0);
+    mirrors_ = mirror_boxes(world_, may);
+    bool const needed = has_mirrors() || has_few_lights(world_);
     if (needed == (exact_ != nullptr)) return;
     exact_.reset();
     if (needed)
@@ -92,6 +95,12 @@ float SeenSurfaces::depth(int x, int y) const
 {
     NearestTexel const& t = map_.texels[std::size_t(y) * map_.width + std::size_t(x)];
     return t.primitive == kNoPrimitive ? 0 : 1 / t.key;
+}
+
+bool SeenSurfaces::may_show_mirrors(CameraRays const& camera, int width, int height) const
+{
+    return std::ranges::any_of(mirrors_,
+                               [&](Bounds const& box) { return !pixels_of(box, camera, width, height).empty(); });
 }
 
 void SeenSurfaces::look_at_mirrors(CameraRays const& camera, int width, int height, Lights lights)

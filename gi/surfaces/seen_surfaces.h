@@ -56,7 +56,9 @@ public:
     void row_of_mirrors(int y, std::span<SeenSurface> out) const { fill(y, out, Pixels::mirrors); }
     /// True if some triangle's material is a mirror or a pane all over.
     static bool mirrors_in(World const& world);
-    bool has_mirrors() const { return mirrors_; }
+    bool has_mirrors() const { return !mirrors_.empty(); }
+    /// False only if a picture shows no mirror and no pane. @param width, height  px
+    bool may_show_mirrors(CameraRays const& camera, int width, int height) const;
     static constexpr std::size_t kMostLights = 4;
     static bool has_few_lights(World const& world); ///< at least one
 
@@ -78,7 +80,7 @@ private:
     WorldView view_;
     TriangleSoup soup_;
     CutOuts cut_outs_;
-    bool mirrors_ = false;
+    std::vector<Bounds> mirrors_;            ///< boxes of mirrors and panes
     std::unique_ptr<ExactVisibility> exact_; ///< null without mirrors and without few punctual lights
     CameraRays camera_{};
     vec2 at_{0.5f};

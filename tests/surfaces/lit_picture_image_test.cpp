@@ -122,5 +122,36 @@ TEST(LitPicture, MirrorsAreDescribedByWhatTheyShowAndBack)
     EXPECT_EQ(p.find("seen_depth")->data, described.find("depth")->data);
 }
 
+/// In its part it is as if all were looked at, and elsewhere as the picture of light.
+TEST(LitPicture, APartOfItsMirrorsIsThatOfTheWhole)
+{
+    constexpr int kSize = 48, kOfLight = 24;
+    World const world = world_of(generate_mirror());
+    Camera const camera = world.cameras.at(0);
+    CameraRays const rays = camera_rays(camera, kSize, kSize, world.origin);
+    Picture const of_light = rendered(world, camera, kOfLight, 1);
+    KeptLight const light(of_light, camera_rays(camera, kOfLight, kOfLight, world.origin), world.origin);
+    auto const shown = [&](PixelBox const& part) {
+        CameraRays own = rays;
+        own.corner += float(part.low.x) * rays.step_x + float(part.low.y) * rays.step_y;
+        SeenSurfaces seen(world, 0);
+        seen.look_at_mirrors(own, part.high.x - part.low.x, part.high.y - part.low.y, SeenSurfaces::Lights::none);
+        return mirror_picture(seen, part, kSize, kSize, light, of_light);
+    };
+    PixelBox const part{{7, 12}, {40, 35}};
+    Picture const whole = shown({{0, 0}, {kSize, kSize}}), some = shown(part);
+    std::size_t differ = 0, mirrored = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            std::size_t const i = std::size_t(y * kSize + x), j = std::size_t(y / 2 * kOfLight + x / 2);
+            bool const inside = x >= part.low.x && y >= part.low.y && x < part.high.x && y < part.high.y;
+            vec3 const expected = inside ? rgb(*whole.find("color"), i) : rgb(*of_light.find("color"), j);
+            differ += glm::length(rgb(*some.find("color"), i) - expected) > 1e-3f;
+            mirrored += inside && rgb(*whole.find("color"), i) != rgb(*of_light.find("color"), j);
+        }
+    EXPECT_LE(differ, 3u); // rays of a pixel at an edge may meet either surface
+    EXPECT_GT(mirrored, 100u);
+}
+
 } // namespace
 } // namespace gi::test

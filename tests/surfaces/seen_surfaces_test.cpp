@@ -154,6 +154,22 @@ TEST(SeenSurfaces, AMirrorShowsTheImageBehindIt)
 }
 
 /// Two mirrors at a right angle show what is behind the eye turned by half a turn.
+TEST(SeenSurfaces, KnowWhereNoMirrorIsSeen)
+{
+    Scene scene = room(1);
+    add_quad(scene, {-0.5f, -0.5f, -0.9f}, {1, 0, 0}, {0, 1, 0}, add_material(scene, mirror(vec3{0.9f})));
+    World const world = world_of(scene);
+    SeenSurfaces const seen(world, 1);
+    for (double const degrees : {0.0, 60.0, 85.0, 120.0, 180.0, 240.0, 275.0, 300.0}) {
+        double const a = glm::radians(degrees);
+        Camera const camera = look_at({0, 0.3, 0}, {std::sin(a), 0.3, -std::cos(a)}, 70);
+        SeenPicture const picture = look(world, camera, 32, 32);
+        bool shows = false;
+        for (int i = 0; i < 32 * 32; ++i) shows |= picture.at(i % 32, i / 32).in_mirror;
+        EXPECT_EQ(seen.may_show_mirrors(camera_rays(camera, 32, 32, world.origin), 32, 32), shows) << degrees;
+    }
+}
+
 TEST(SeenSurfaces, TwoMirrorsTurnTheImage)
 {
     Scene scene;

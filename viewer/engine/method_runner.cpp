@@ -269,7 +269,7 @@ gi::MirrorLayers MethodRunner::reuse(std::size_t view, Results& results, int par
     Seen& own = state_.seen[view];
     if (own.rays.orthographic) seen = nullptr;
     gi::MirrorLayers mirrors;
-    if (seen != nullptr && seen->has_mirrors()) {
+    if (seen != nullptr && seen->may_show_mirrors(own.rays, own.width, own.height)) {
         gi::StageTimer const timer(report_, "surfaces in mirrors");
         seen->look(own.rays, own.width, own.height);
         mirrors = gi::describe_mirrored(*seen, own.rays, own.earlier, origin_, result.picture);

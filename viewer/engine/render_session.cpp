@@ -255,18 +255,23 @@ void RenderSession::learn_light(FrameCommand const& light, SessionFrame& frame)
     report_.count("cells of light for which there was no room", double(known_->left_out));
 }
 
-/// Replaces the pictures of light by larger ones, if they show mirrors or panes.
+/// Replaces the pictures of light by larger ones, if they show mirrors or panes that nobody else draws.
 void RenderSession::draw_mirrors(FrameCommand const& command, SessionFrame& frame)
 {
     if (!seen_->has_mirrors()) return;
     gi::StageTimer const timer(report_, kSurfacesStage);
     for (std::size_t k = 0; k < command.views.size(); ++k) {
         ViewCommand const v = scaled(command.views[k], command.surface_scale);
-        seen_->look_at_mirrors(
-            gi::camera_rays(v.camera, v.width, v.height, world_->world().origin), v.width, v.height,
-            main_->left_out_punctual() ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none);
+        gi::CameraRays rays = gi::camera_rays(v.camera, v.width, v.height, world_->world().origin);
+        gi::PixelBox const part = flat_mirrors_.left_out(rays, v.width, v.height);
+        if (part.empty()) continue;
+        rays.corner += float(part.low.x) * rays.step_x + float(part.low.y) * rays.step_y;
+        glm::ivec2 const size = part.high - part.low;
+        seen_->look_at_mirrors(rays, size.x, size.y,
+                               main_->left_out_punctual() ? gi::SeenSurfaces::Lights::few
+                                                          : gi::SeenSurfaces::Lights::none);
         gi::Picture& picture = frame.views[k].picture;
-        picture = gi::mirror_picture(*seen_, v.width, v.height, *main_->light(k), picture);
+        picture = gi::mirror_picture(*seen_, part, v.width, v.height, *main_->light(k), picture);
     }
 }
 
@@ -346,7 +351,11 @@ SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRe
         shown_world_.reset();
         forget_cells();
     } else {
-        shown_world_ = gi::shown_scene(world_, changes, shown_world_.get());
+        std::shared_ptr<gi::ShownScene const> const before = shown_world_;
+        shown_world_ = gi::shown_scene(world_, changes, before.get());
+        if (!before || before->world != shown_world_->world || before->materials != shown_world_->materials)
+            flat_mirrors_.take(*shown_world_);
+        flat_mirrors_.move(*shown_world_->moved);
     }
     SessionFrame frame;
     frame.scene = shown_world_;

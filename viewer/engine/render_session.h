@@ -5,7 +5,7 @@
 
 #include "gi/surfaces/antialiasing.h"
 #include "gi/surfaces/light_cells.h"
-#include "gi/surfaces/shown_scene.h"
+#include "gi/surfaces/planar_mirrors.h"
 #include "viewer/engine/hidden_views.h"
 #include "viewer/engine/method_runner.h"
 #include "viewer/engine/scene_edits.h"
@@ -133,6 +133,7 @@ private:
     };
     std::vector<SmoothedView> smoothed_, smoothed_compared_; ///< since surfaces are drawn and light is the same
     std::shared_ptr<gi::ShownScene const> shown_world_;      ///< of the last frame
+    gi::PlanarMirrors flat_mirrors_;                         ///< of the same
     std::shared_ptr<gi::LightCellTable const> known_;        ///< to cells_, in the last frame
     std::optional<gi::LightCells> cells_;                    ///< of the world, if surfaces are drawn by others
     DriveBodies drive_;

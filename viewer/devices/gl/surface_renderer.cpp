@@ -264,7 +264,7 @@ SurfaceRenderer::Eye SurfaceRenderer::eye_of(int view, gi::Camera const& camera,
 }
 
 /// Behind a mirror, of which it keeps what is more than `apart` before it.
-SurfaceRenderer::Eye SurfaceRenderer::mirrored(Eye const& eye, PlanarMirror const& mirror, float apart)
+SurfaceRenderer::Eye SurfaceRenderer::mirrored(Eye const& eye, gi::PlanarMirror const& mirror, float apart)
 {
     float const before = glm::dot(mirror.normal, eye.at) - mirror.distance_m, side = before < 0 ? -1.0f : 1.0f;
     glm::vec3 const n = mirror.normal;
@@ -350,14 +350,13 @@ void SurfaceRenderer::draw_blended(Eye const& eye)
 /// What flat mirrors show, from behind them; the largest ones of the picture.
 void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 size_px)
 {
-    constexpr std::size_t kMost = 2;
     float const apart = kApart * std::max(meshes_.scene().radius_m, 1e-30f);
     struct InPicture {
-        PlanarMirror const* mirror;
+        gi::PlanarMirror const* mirror;
         Part part;
     };
     std::vector<InPicture> seen;
-    for (PlanarMirror const& m : planar_.all()) {
+    for (gi::PlanarMirror const& m : planar_.all()) {
         bool const is_seen = std::abs(glm::dot(m.normal, eye.at) - m.distance_m) > apart &&
                              seen_depths(m.bounds, eye.at, eye.clip_from_world).has_value();
         if (!is_seen && has_drawn_mirrors_) continue;
@@ -371,7 +370,7 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
     }
     auto const pixels = [](InPicture const& s) { return std::int64_t(s.part.size_px.x) * s.part.size_px.y; };
     std::ranges::sort(seen, [&](InPicture const& a, InPicture const& b) { return pixels(a) > pixels(b); });
-    if (seen.size() > kMost) seen.resize(kMost);
+    if (seen.size() > gi::PlanarMirrors::kMostDrawn) seen.resize(gi::PlanarMirrors::kMostDrawn);
     has_drawn_mirrors_ = true;
     for (InPicture const& s : seen) {
         fit(mirror_image_, size_px);

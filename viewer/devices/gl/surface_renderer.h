@@ -5,8 +5,8 @@
 // picture, by reprojection), and blended surfaces. Textures, outlines, parallax, hard shadows and flat mirrors are
 // those of the new camera; other light is as old as its pictures.
 
+#include "gi/surfaces/planar_mirrors.h"
 #include "viewer/devices/gl/light_ring.h"
-#include "viewer/devices/gl/planar_mirrors.h"
 #include "viewer/devices/gl/reprojection.h"
 #include "viewer/devices/gl/scene_meshes.h"
 #include "viewer/devices/gl/shadow_maps.h"
@@ -61,7 +61,7 @@ private:
         SurfaceRange triangles;
     };
     Eye eye_of(int view, gi::Camera const& camera, glm::ivec2 size_px) const;
-    static Eye mirrored(Eye const& eye, PlanarMirror const& mirror, float apart);
+    static Eye mirrored(Eye const& eye, gi::PlanarMirror const& mirror, float apart);
     static void fit(Target& to, glm::ivec2 size_px);
     float nearest_m() const;
     void set_moved_box(GlProgram const& program) const;
@@ -82,7 +82,7 @@ private:
     SceneMeshes meshes_;
     LightRing ring_;
     ShadowMaps shadows_;
-    PlanarMirrors planar_;
+    gi::PlanarMirrors planar_;
     bool has_drawn_mirrors_ = false; ///< once: drivers compile then
     glm::vec4 plane_{0};             ///< of the flat mirror that is drawn
     glm::vec3 eye_{0};               ///< of the last picture, m, from the world's origin

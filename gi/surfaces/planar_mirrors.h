@@ -1,0 +1,43 @@
+#pragma once
+// Flat mirrors of a scene: what they show is drawn as geometry, for the newest pose, as all else. What other mirrors and
+// panes show is in rendered pictures alone.
+
+#include "gi/surfaces/mirror_boxes.h"
+#include "gi/surfaces/shown_scene.h"
+
+#include <vector>
+
+namespace gi {
+
+struct PlanarMirror {
+    vec3 normal{0};       ///< unit
+    float distance_m = 0; ///< dot(normal, place) of its places, which count from the world's origin
+    Bounds bounds;        ///< of its triangles
+    float area_m2 = 0;
+};
+
+class PlanarMirrors {
+public:
+    /// Of a scene as it is when it is new.
+    void take(ShownScene const& scene);
+    /// Of what has moved.
+    void move(ShownScene::Moved const& now);
+    std::vector<PlanarMirror> const& all() const { return mirrors_; }
+    static constexpr std::size_t kMostDrawn = 2; ///< of those in a picture, the largest
+    /// Pixels that may show mirrors or panes that are not drawn. @param width, height  px
+    PixelBox left_out(CameraRays const& camera, int width, int height) const;
+
+private:
+    /// Triangles of a mirror.
+    struct Group {
+        bool moves = false;
+        std::vector<uvec3> triangles; ///< into all vertices, or those that can move
+    };
+    static PlanarMirror mirror_of(Group const& group, std::vector<vec3> const& positions);
+
+    std::vector<PlanarMirror> mirrors_;
+    std::vector<Group> groups_;  ///< of the same
+    std::vector<Bounds> others_; ///< of all other mirrors and panes; infinite: they move
+};
+
+} // namespace gi
