@@ -55,8 +55,7 @@ inline bool in_range(vec3 v)
     return std::abs(v.x) < kLargest && std::abs(v.y) < kLargest && std::abs(v.z) < kLargest;
 }
 
-/// Smallest usable albedo. Light cannot be recovered from darker channels: they keep their values, and so do
-/// pixels in which all channels are darker.
+/// Smallest albedo that light is divided by. Darker channels are not filtered: they leave a filter as they came.
 inline constexpr float kDarkest = 0.01f;
 
 /// Returns value / albedo, 0 in channels that are too dark.

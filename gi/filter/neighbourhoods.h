@@ -1,5 +1,5 @@
 #pragma once
-// Ranges of direct light around pixels, for temporal reuse.
+// Mean and deviations of direct light in the neighbourhood of each pixel, to clamp the light of earlier frames.
 
 #include "gi/filter/temporal.h"
 

@@ -29,8 +29,8 @@ struct Group {
 std::vector<Group> groups_of(Script const& script, std::vector<ObserverTrials> const& observers, int block,
                              std::vector<int> const& items_of);
 
-/// Levels of the factors that vary between trials of a block, as text: "scene=arches display=hmd"; "all" if none
-/// varies. @param ignored factors
+/// A trial's levels of the factors of groups, as text: "scene=arches display=hmd"; "all" if they have none.
+/// @param groups  from groups_of
 std::string cell_name(Script const& script, std::vector<Group> const& groups, TrialRow const& row);
 
 /// The counted trials of a block by observer, including empty lists.

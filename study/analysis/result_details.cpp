@@ -213,7 +213,7 @@ ResultTable curves(Analysis const& a)
     return t;
 }
 
-/// Columns of an estimate with another name.
+/// Adds the columns of an estimate: name, name_low and name_high. @param what  meaning of the value
 void add_columns(std::vector<Column>& columns, std::string const& name, std::string const& what)
 {
     columns.push_back({name, what});

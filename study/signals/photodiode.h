@@ -9,7 +9,7 @@
 
 namespace study {
 
-/// Equally spaced samples, or samples with their times.
+/// A recorded signal: one time and one value a sample.
 struct DiodeSignal {
     std::vector<double> time_s;  ///< rising
     std::vector<double> light;   ///< of the photodiode, any unit

@@ -142,7 +142,8 @@ void ViewCore::look(Viewpoint viewpoint)
     if (std::uint64_t const scene = std::exchange(resumes_, 0)) renderer->resume(scene);
 }
 
-/// In the state, for windows, and on stderr.
+/// Puts the progress of loading, and of a frame that builds for long, into the state, which windows show; that of
+/// loading also on stderr.
 void ViewCore::show_progress()
 {
     constexpr double kLongFrame_s = 0.5;

@@ -109,7 +109,7 @@ PicturesPlan plan_pictures(PicturesOptions const& o)
     refuse_twins("--denoise", o.filters, o.filters);
     for (std::string const& name : o.filters) add_filter(o, name, plan);
     if (plan.filters.empty())
-        throw gi::InputError("no filter of --denoise is available", plan.skipped.front().why, "add none");
+        throw gi::InputError("no filter of --denoise is available", plan.skipped.front().why, "add the filter 'none'");
     for (ListedScene& scene : choose_scenes(scene_list(o), o.scenes, o.render)) {
         if (scene.missing.empty())
             plan.scenes.push_back(std::move(scene));

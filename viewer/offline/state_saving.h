@@ -10,8 +10,8 @@
 
 namespace viewer {
 
-/// Begins at once, on a thread of its own, or where none can be started before the constructor returns. Whoever
-/// leaves early, by an exception, waits for it: the state is saved whatever becomes of the picture.
+/// Saves from construction on, on a thread of its own; if none can be started, the constructor itself saves. The
+/// destructor waits: the state is saved whatever becomes of the picture.
 class StateSaving {
 public:
     /// Takes RenderResult::save_state, which may be empty.

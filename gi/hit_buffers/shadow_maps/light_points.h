@@ -57,7 +57,7 @@ public:
     void show_moving(bool shown);
     std::vector<LightPoint> const& light_points() const { return light_points_; }
     bool none() const { return light_points_.empty(); }
-    /// Probability of picking light point k for a path vertex; they sum to 1.
+    /// For picking a light point at a path vertex, if they are fixed(); else empty: all are equally likely.
     AliasTableView chances() const { return view(chances_); }
     bool fixed() const { return fixed_; }
     std::uint64_t maps_built() const { return built_; }

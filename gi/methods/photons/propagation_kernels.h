@@ -75,7 +75,7 @@ GI_FN inline Blocker operator*(float by, Blocker const& b) { return {by * b.area
 struct OpenFaces {
     GridFrame frame;             ///< grid of the corners: one more per side than cells
     View<Blocker const> blocked; ///< per corner
-    View<vec3> open;             ///< per cell, and one more a side
+    View<vec3> open; ///< per cell, and those behind the last ones, whose low faces are the last ones' high faces
 
     GI_FN void operator()(std::size_t i) const
     {

@@ -191,7 +191,7 @@ void add_bench_views(CLI::App& bench, int& exit_code)
         ->allow_extra_args(false);
     c->add_option("--set", o->settings, "KEY=VALUE as for view; repeatable")->take_all();
     c->add_option("--size", o->size, "of an eye, pixels; walls are square, of its height")->capture_default_str();
-    c->add_option("--frames", o->frames, "frames per variant; the camera moves")
+    c->add_option("--frames", o->frames, "frames per variant, the first 4 are not timed; the camera moves")
         ->check(CLI::Range(8, 10000))
         ->capture_default_str();
     c->add_option("--eye-distance", o->eye_distance_m, "distance of the eyes, m")->capture_default_str();

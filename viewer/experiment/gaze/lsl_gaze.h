@@ -8,7 +8,7 @@ namespace viewer {
 /// Which channels of a stream are what; -1 = none.
 struct GazeChannels {
     int x = -1, y = -1;             ///< of both eyes or one
-    int other_x = -1, other_y = -1; ///< of the other eye: the mean of both counts
+    int other_x = -1, other_y = -1; ///< of the other eye; gaze is the mean of both, or the valid one
     int pupil = -1, valid = -1;
     bool is_normalised = true; ///< 0..1 over the monitor; else its pixels
 };

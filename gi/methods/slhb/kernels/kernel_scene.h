@@ -113,7 +113,7 @@ public:
         chances_ = upload<S>(std::vector<AliasEntry>(chances.entries.begin(), chances.entries.end()));
     }
 
-    /// Returns samples, until the next call.
+    /// Traces a path a pixel. Returns a sample for each, valid until the next call.
     /// @param paths  with the host's parameters and those of the view; this function fills in the rest
     View<PathSample const> trace(PassOfPaths paths)
     {
