@@ -258,7 +258,8 @@ TEST(BenchCommand, ShownMeasuresWhatAHeadSees)
     TemporaryFolder const folder;
     std::ofstream(folder / "aside.csv")
         << "time_s,x_m,y_m,z_m,yaw_deg,pitch_deg\n0,0,0,0,0,0\n1,0,0,0,0,0\n1.5,0.2,0,0,10,0\n";
-    run_well("bench shown cornell --head aside.csv --size 96x64 --eyes 2 --moments 2 --truth-paths 4 --out d",
+    run_well("bench shown cornell --head aside.csv --size 96x64 --eyes 2 --moments 2 --truth-paths 4 "
+             "--at 1.2:material.light.emission_scale=2 --out d",
              folder.path());
     std::vector<BenchTable> const tables = read_bench_folder(folder / "d").tables;
     ASSERT_EQ(tables.size(), 1u);
@@ -268,6 +269,7 @@ TEST(BenchCommand, ShownMeasuresWhatAHeadSees)
     EXPECT_GT(value("interval_ms"), 0);
     EXPECT_GE(value("longest_interval_ms"), value("interval_99_ms"));
     EXPECT_GE(value("longest_light_age_ms"), value("light_age_ms"));
+    EXPECT_GT(value("response_ms"), 0);
     EXPECT_GT(value("flip"), 0);
     EXPECT_LT(value("flip"), 0.6);
     EXPECT_GE(value("most_flip"), value("flip"));
@@ -281,7 +283,13 @@ TEST(BenchCommand, ShownMeasuresWhatAHeadSees)
     Outcome const wrong = run("bench shown cornell --head nowhere --out e", folder.path());
     EXPECT_EQ(wrong.code, 2);
     EXPECT_NE(wrong.err.find("nowhere"), std::string::npos) << wrong.err;
-    EXPECT_FALSE(std::filesystem::exists(folder / "e"));
+    for (char const* change : {"soon:light.0.scale=0", "1:light.0.scale", "0.1:light.7.scale=0"}) {
+        std::string const call = "bench shown cornell --size 32x32 --moments 0 --head aside.csv --out e --at ";
+        Outcome const refused = run(call + change, folder.path());
+        EXPECT_EQ(refused.code, 2) << change;
+        EXPECT_NE(refused.err.find("light"), std::string::npos) << refused.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "e" / "shown.csv"));
 }
 
 TEST(BenchCommand, ControlCKeepsTheRowsSoFar)

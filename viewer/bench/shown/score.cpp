@@ -1,5 +1,6 @@
 #include "viewer/bench/shown/score.h"
 
+#include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
 #include "gi/metrics/flip.h"
 #include "gi/scene/model/projection.h"
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <numeric>
+#include <sstream>
 
 namespace viewer {
 namespace {
@@ -53,8 +55,25 @@ double rivalry(SeenMoment const& s, std::vector<gi::Picture> const& truth,
 
 } // namespace
 
-ShownErrors score(ShownOptions const& o, RecordedScenes const& scenes, std::vector<SeenMoment> const& seen,
-                  gi::dvec3 origin, gi::StopRequest const& stop)
+std::vector<PathChange> path_changes(std::vector<std::string> const& texts)
+{
+    std::vector<PathChange> changes;
+    for (std::string const& text : texts) {
+        std::istringstream in(text);
+        double seconds = 0;
+        std::string change;
+        if (char colon = 0;
+            !(in >> seconds >> colon) || colon != ':' || !std::isfinite(seconds) || !std::getline(in, change))
+            throw gi::InputError("'" + text + "' is no change on a path", "it begins with no time",
+                                 "write 3:light.all.scale=0");
+        changes.push_back({seconds, parse_change(change)});
+    }
+    std::ranges::stable_sort(changes, {}, &PathChange::path_s);
+    return changes;
+}
+
+ShownErrors score(ShownOptions const& o, std::span<PathChange const> changes, RecordedScenes const& scenes,
+                  std::vector<SeenMoment> const& seen, gi::dvec3 origin, gi::StopRequest const& stop)
 {
     gi::Report report;
     RenderSession exact(scenes.load, o.scene.settings.threads, report);
@@ -67,9 +86,12 @@ ShownErrors score(ShownOptions const& o, RecordedScenes const& scenes, std::vect
                                                {"first_surfaces", false},
                                                {"scene", o.scene.scene}})
         exact.apply(c);
+    std::size_t next = 0;
     gi::ProgressBar bar("converged pictures");
     ShownErrors sum;
     for (std::size_t k = 0; k < seen.size(); ++k) {
+        for (; next < changes.size() && changes[next].path_s <= seen[k].path_s; ++next)
+            exact.apply(changes[next].change);
         int const w = seen[k].at.views[0].width, h = seen[k].at.views[0].height;
         std::vector<gi::Picture> truth;
         std::vector<std::vector<unsigned char>> right;

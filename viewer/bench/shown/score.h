@@ -9,9 +9,17 @@ namespace viewer {
 /// What was seen at a moment.
 struct SeenMoment {
     Viewpoint at;
-    double scene_s = 0;
+    double path_s = 0, scene_s = 0;
     std::vector<std::vector<unsigned char>> shown; ///< per eye: R, G, B bytes, rows from the top
 };
+
+/// Something that changes while the head is on its path.
+struct PathChange {
+    double path_s = 0;
+    Change change;
+};
+/// In the order of their times. Throws InputError.
+std::vector<PathChange> path_changes(std::vector<std::string> const& texts);
 
 /// Means over eyes and moments.
 struct ShownErrors {
@@ -22,7 +30,7 @@ struct ShownErrors {
 
 /// Renders the truth by the method reference, and writes pictures and their FLIP maps.
 /// @param origin  of the world
-ShownErrors score(ShownOptions const& options, RecordedScenes const& scenes, std::vector<SeenMoment> const& seen,
-                  gi::dvec3 origin, gi::StopRequest const& stop);
+ShownErrors score(ShownOptions const& options, std::span<PathChange const> changes, RecordedScenes const& scenes,
+                  std::vector<SeenMoment> const& seen, gi::dvec3 origin, gi::StopRequest const& stop);
 
 } // namespace viewer

@@ -17,7 +17,9 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <limits>
 #include <mutex>
+#include <numeric>
 
 namespace viewer {
 namespace {
@@ -45,11 +47,12 @@ double change(std::vector<unsigned char> const& a, std::vector<unsigned char> co
 /// Shows a session to a head on its path, as a window does.
 class ShownRun {
 public:
-    ShownRun(ShownOptions const& o, RenderSession& session, RecordedScenes const& scenes, Walker& walker,
-             glm::ivec2 size_px, gi::StopRequest const& stop)
+    ShownRun(ShownOptions const& o, std::vector<PathChange> const& changes, RenderSession& session,
+             RecordedScenes const& scenes, Walker& walker, glm::ivec2 size_px, gi::StopRequest const& stop)
         : o_(o),
           scenes_(scenes),
           walker_(walker),
+          changes_(changes),
           size_px_(size_px),
           stop_(stop),
           draws_surfaces_(session.settings().draw_surfaces),
@@ -81,6 +84,7 @@ public:
         double const end_s = walker_.path().seconds() + kStill_s;
         for (double now = 0; now < end_s; now = clock_.now_s() - begun_s_) {
             if (stop_.requested()) throw gi::Interrupted();
+            make_changes(now);
             show(now);
             wait(now);
         }
@@ -90,7 +94,48 @@ public:
     std::vector<SeenMoment> const& seen() const { return seen_; }
     ShownCounts const& counts() const { return counts_; }
 
+    /// From the first change on until the mean of what is shown has made most of its way, ms; NaN: nothing changed.
+    double response_ms() const
+    {
+        constexpr double kMost = 0.9, kLeast = 0.5; // of the way; of 255
+        if (means_.size() < 2 || std::abs(means_.back().mean - means_.front().mean) < kLeast)
+            return std::numeric_limits<double>::quiet_NaN();
+        double const from = means_.front().mean, way = means_.back().mean - from;
+        auto const there =
+            std::ranges::find_if(means_, [&](ShownMean const& m) { return (m.mean - from) / way >= kMost; });
+        return 1e3 * (there->path_s - changes_.front().path_s);
+    }
+
 private:
+    static constexpr double kResponse_s = 2.5;
+    struct ShownMean {
+        double path_s, mean;
+    };
+
+    /// Makes the changes that are due.
+    void make_changes(double now)
+    {
+        for (; next_change_ < changes_.size() && changes_[next_change_].path_s <= now; ++next_change_)
+            renderer_.post(changes_[next_change_].change, [this](std::string const& error) {
+                std::lock_guard const lock(counting_);
+                if (!error.empty()) refused_ = error;
+            });
+        std::lock_guard const lock(counting_);
+        if (!refused_.empty())
+            throw gi::InputError("a change of --at cannot be made", refused_,
+                                 "lightwell info lists the lights, materials and objects of a scene");
+    }
+
+    /// Of what is shown since the first change, and last before it.
+    void note_mean(double now)
+    {
+        if (changes_.empty() || now > changes_.front().path_s + kResponse_s) return;
+        if (now <= changes_.front().path_s) means_.clear();
+        std::vector<unsigned char> const picture = on_screen(0);
+        means_.push_back({now, std::accumulate(picture.begin(), picture.end(), 0.0) /
+                                   double(std::max<std::size_t>(1, picture.size()))});
+    }
+
     LiveRenderer::Hooks hooks()
     {
         LiveRenderer::Hooks hooks;
@@ -171,6 +216,7 @@ private:
         }
         shown_s_ = moves ? done : 0;
         turn_ = drawn;
+        note_mean(done - begun_s_);
         if (now > walker_.path().seconds() + 0.5 * kStill_s) {
             std::vector<unsigned char> picture = on_screen(0);
             if (!still_.empty()) counts_.flicker.push_back(change(still_, picture));
@@ -187,7 +233,7 @@ private:
         double const scored_s = walker_.path().seconds() - kFirst_s;
         double const moment = kFirst_s + scored_s * (double(seen_.size()) + 0.5) / o_.moments;
         if (int(seen_.size()) >= o_.moments || until < moment) return;
-        SeenMoment s{walker_.at(moment, 0, begun_s_), scene_time_at(*shown_, begun_s_ + moment), {}};
+        SeenMoment s{walker_.at(moment, 0, begun_s_), moment, scene_time_at(*shown_, begun_s_ + moment), {}};
         for (int e = 0; e < o_.eyes; ++e) s.shown.push_back(on_screen(e));
         seen_.push_back(std::move(s));
     }
@@ -207,6 +253,10 @@ private:
     ShownOptions const& o_;
     RecordedScenes const& scenes_;
     Walker& walker_;
+    std::vector<PathChange> const& changes_;
+    std::size_t next_change_ = 0;
+    std::string refused_; ///< why one cannot be made
+    std::vector<ShownMean> means_;
     glm::ivec2 size_px_;
     gi::StopRequest const& stop_;
     bool draws_surfaces_;
@@ -234,6 +284,7 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
 {
     auto const [width, height] = parse_size(o.size);
     HeadPath path(o.head);
+    std::vector<PathChange> const changes = path_changes(o.changes);
     std::vector<AvatarChoice> const avatars = avatar_choices(o.avatar, kPathEyeHeight_m, {}, {});
     RecordedScenes const scenes = scenes_with(o.scene, avatars, report);
     check_folder(o.out);
@@ -250,16 +301,17 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
                   o.eyes == 2 ? kApart_m : 0,
                   scenes.avatars.empty() ? std::nullopt : std::optional(scenes.avatars[0].stance));
     gi::dvec3 const origin = session.world().origin;
-    ShownRun run(o, session, scenes, walker, {width, height}, stop);
+    ShownRun run(o, changes, session, scenes, walker, {width, height}, stop);
     run.run();
-    ShownErrors const errors = score(o, scenes, run.seen(), origin, stop);
+    ShownErrors const errors = score(o, changes, scenes, run.seen(), origin, stop);
 
     ShownCounts const& n = run.counts();
-    BenchTable table =
-        start_table("shown", "What is shown while a head moves",
-                    {"scene", "path", "size", "eyes", "interval_ms", "interval_95_ms", "interval_99_ms",
-                     "longest_interval_ms", "drawing_ms", "rendering_ms", "light_age_ms", "longest_light_age_ms",
-                     "flip", "most_flip", "rivalry", "still_flicker", "surfaces_scale", "light_scale", "paths"});
+    BenchTable table = start_table("shown", "What is shown while a head moves",
+                                   {"scene",         "path",           "size",           "eyes",
+                                    "interval_ms",   "interval_95_ms", "interval_99_ms", "longest_interval_ms",
+                                    "drawing_ms",    "rendering_ms",   "light_age_ms",   "longest_light_age_ms",
+                                    "response_ms",   "flip",           "most_flip",      "rivalry",
+                                    "still_flicker", "surfaces_scale", "light_scale",    "paths"});
     table.facts = {{"OpenGL", gl.description()},
                    {"settings", fmt::format("{}", fmt::join(o.settings, " "))},
                    {"moments", std::to_string(errors.moments)},
@@ -270,11 +322,21 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
                                  fmt::format("{:.1f}", 1e3 * s / double(std::max<std::size_t>(1, n.rendered))));
     bool const scored = errors.moments > 0;
     auto const if_any = [](bool any, double value) { return any ? Cell(value) : Cell(); };
-    table.add({std::filesystem::path(o.scene.scene).stem().string(), std::filesystem::path(o.head).stem().string(),
-               o.size, double(o.eyes), gi::quantile(n.gaps_ms, 0.5), gi::quantile(n.gaps_ms, 0.95),
-               gi::quantile(n.gaps_ms, 0.99), gi::quantile(n.gaps_ms, 1), gi::quantile(n.drawing_ms, 0.5),
-               gi::quantile(n.between_ms, 0.5), gi::quantile(n.light_ages_ms, 0.5),
-               gi::quantile(n.light_ages_ms, 1), if_any(scored, errors.flip), if_any(scored, errors.most_flip),
+    table.add({std::filesystem::path(o.scene.scene).stem().string(),
+               std::filesystem::path(o.head).stem().string(),
+               o.size,
+               double(o.eyes),
+               gi::quantile(n.gaps_ms, 0.5),
+               gi::quantile(n.gaps_ms, 0.95),
+               gi::quantile(n.gaps_ms, 0.99),
+               gi::quantile(n.gaps_ms, 1),
+               gi::quantile(n.drawing_ms, 0.5),
+               gi::quantile(n.between_ms, 0.5),
+               gi::quantile(n.light_ages_ms, 0.5),
+               gi::quantile(n.light_ages_ms, 1),
+               if_any(std::isfinite(run.response_ms()), run.response_ms()),
+               if_any(scored, errors.flip),
+               if_any(scored, errors.most_flip),
                if_any(scored && o.eyes == 2, errors.rivalry),
                if_any(!n.flicker.empty(), gi::quantile(n.flicker, 1)),
                n.surfaces_scale / double(std::max<std::size_t>(1, n.shown)),

@@ -11,6 +11,7 @@ struct ShownOptions {
     RenderOptions scene; ///< scene, camera, sky
     std::string head = "walk", avatar, size = "1280x800", out, truth_filter = "oidn-high";
     std::vector<std::string> settings; ///< KEY=VALUE
+    std::vector<std::string> changes;  ///< SECONDS:KEY=VALUE, on the path
     int eyes = 1, moments = 8, truth_paths = 64;
 };
 

@@ -34,6 +34,9 @@ void add_bench_shown(CLI::App& bench, int& exit_code)
     c->add_option("--avatar", o->avatar, "skinned model, or avatar (built in), that follows the head");
     c->add_option("--set", o->settings, "KEY=VALUE of the viewer, e.g. draw_surfaces=false; repeatable")
         ->take_all();
+    c->add_option("--at", o->changes,
+                  "SECONDS:KEY=VALUE: what changes on the path, e.g. 3:light.all.scale=0; repeatable")
+        ->take_all();
     c->add_option("--moments", o->moments, "moments whose pictures are compared; 0 = none")
         ->check(CLI::Range(0, 10000))
         ->capture_default_str();
@@ -50,7 +53,8 @@ scored. Compared is what is still on the screen at a moment with a converged pic
 poses and light counts. interval: time between two pictures while the head moves; rendering: between two pictures
 of light; light_age: since the pose for which the light was rendered; still_flicker: root mean square of what
 changes between two pictures of a head at rest, most of them, in steps of 1/255; rivalry: mean difference of the
-eyes' errors at points that both see, in the same steps.
+eyes' errors at points that both see, in the same steps; response: time after the first change of --at until the mean
+of what is shown has made 90 % of its way to where it is 2.5 s later.
 
 Example:
   lightwell bench shown cornell --size 320x240 --moments 2 --truth-paths 4 --out shown)");
