@@ -67,6 +67,7 @@ public:
 
     void run()
     {
+        if (o_.scene.time_s) renderer_.go_to(*o_.scene.time_s);
         renderer_.look(walker_.at(0, 0, 0));
         while (!renderer_.newest()) {
             if (stop_.requested()) throw gi::Interrupted();
