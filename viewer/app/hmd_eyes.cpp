@@ -42,7 +42,10 @@ void HmdEyes::draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 
     settings.tone = tone;
     for (std::size_t eye = 0; eye < 2; ++eye) {
         EyeView const view = views_.eye(int(eye), now ? &(*now)[eye] : nullptr);
-        pass_.draw(targets_[eye]->target(), view, view, settings);
+        if (views_.drew_surfaces())
+            surface_display_->draw(pass_, targets_[eye]->target(), view, settings);
+        else
+            pass_.draw(targets_[eye]->target(), view, view, settings);
     }
     if (times) glQueryCounter(ended_.id(), GL_TIMESTAMP);
     is_timed_ = true;

@@ -3,6 +3,7 @@
 
 #include "gi/light_paths/settings.h"
 #include "viewer/app/shown_views.h"
+#include "viewer/app/surface_display.h"
 #include "viewer/devices/gl/window.h"
 
 namespace viewer {
@@ -21,7 +22,11 @@ struct HmdContext {
 class HmdEyes {
 public:
     /// Uploads the pictures of both eyes.
-    void take(std::shared_ptr<LiveFrame const> frame) { views_.take(std::move(frame), {0, 1}); }
+    void take(std::shared_ptr<LiveFrame const> frame)
+    {
+        if (frame->result.scene && !surface_display_) surface_display_.emplace();
+        views_.take(std::move(frame), {0, 1});
+    }
     /// Draws the frame taken last into the targets, after views().begin() if surfaces are to be drawn. @param now  null: as rendered
     void draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 2> const& sizes_px,
               gi::ToneMapSettings const& tone);
@@ -41,6 +46,7 @@ private:
 
     DisplayPass pass_;
     ShownViews views_;
+    std::optional<SurfaceDisplay> surface_display_; ///< once surfaces may be drawn
     std::array<std::optional<TextureTarget>, 2> targets_;
     std::array<glm::ivec2, 2> sizes_{};
     GlObject begun_{GlObject::Kind::time}, ended_{GlObject::Kind::time};

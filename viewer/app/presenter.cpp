@@ -102,18 +102,6 @@ bool Presenter::bend(Pane const& pane, PresentSettings const& shown, DisplaySett
     return true;
 }
 
-void Presenter::draw_surfaces(DrawTarget const& to, EyeView const& view, DisplaySettings const& settings)
-{
-    glm::ivec2 const size = view.picture.size_px;
-    if (!encoded_ || encoded_->shown().size_px != size) {
-        encoded_.emplace(TextureTarget::Format::bytes, size);
-        smoothed_.emplace(TextureTarget::Format::bytes, size);
-    }
-    pass_.draw(encoded_->target(), view, view, settings);
-    outlines_->draw(smoothed_->target(), encoded_->shown());
-    stretch(smoothed_->target(), to);
-}
-
 /// @param wall_picture  of one eye, before it is bent, top row first
 void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, DrawTarget const& wall_picture)
 {
@@ -138,11 +126,7 @@ void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, 
 void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& all,
                      PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
-    if (!outlines_ && s.surfaces_scale > 0) {
-        outlines_.emplace();
-        TextureTarget const from(TextureTarget::Format::bytes, {3, 3}), to(TextureTarget::Format::bytes, {3, 3});
-        outlines_->draw(to.target(), from.shown()); // drivers compile then
-    }
+    if (!surface_display_ && s.surfaces_scale > 0) surface_display_.emplace();
     views_.begin(s.surfaces_scale, s.moment ? &*s.moment : nullptr, s.drive);
     std::vector<Pane> panes = all;
     for (Pane& pane : panes)
@@ -165,7 +149,7 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
             if (pane.right_alone) left = right;
             settings.light = s.light;
             if (views_.drew_surfaces() && settings.stereo == StereoMode::off)
-                draw_surfaces(part, left, settings);
+                surface_display_->draw(pass_, part, left, settings);
             else
                 pass_.draw(part, left, right, settings);
             continue;

@@ -4,7 +4,7 @@
 
 #include "gi/light_paths/settings.h"
 #include "viewer/app/shown_views.h"
-#include "viewer/devices/gl/outline_pass.h"
+#include "viewer/app/surface_display.h"
 #include "viewer/devices/gl/surface_pass.h"
 #include "viewer/devices/gl/wall_pass.h"
 #include "viewer/displays/wall_ray.h"
@@ -76,9 +76,6 @@ private:
     /// The picture of one eye on a wall that is not flat, in flat_.
     void draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings, std::size_t side,
                     std::vector<gi::Camera> const& now);
-    /// Drawn surfaces of a view: their outlines are smoothed. They are encoded before they are stretched: a software
-    /// driver takes a third of the time.
-    void draw_surfaces(DrawTarget const& to, EyeView const& view, DisplaySettings const& settings);
     void draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, DrawTarget const& wall_picture);
 
     std::shared_ptr<WallOverlay const> uploaded_;
@@ -90,8 +87,7 @@ private:
     std::deque<TextureTarget> face_targets_;
     std::vector<glm::ivec2> face_px_;
     std::array<std::optional<TextureTarget>, 2> flat_, bent_;
-    std::optional<TextureTarget> encoded_, smoothed_;
-    std::optional<OutlinePass> outlines_;
+    std::optional<SurfaceDisplay> surface_display_;
     glm::ivec2 bent_px_{};
 };
 
