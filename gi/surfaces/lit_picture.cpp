@@ -124,6 +124,7 @@ MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, 
             kept.pixels.push_back(std::uint32_t(i));
             kept.layers.push_back({rgb(*albedo, i), rgb(*normal, i), rgb(*position, i)});
             kept.depths.push_back(depth->data[i]);
+            if (s.is_image) kept.images.push_back(std::uint32_t(i));
             put(*albedo, i, s.albedo);
             put(*normal, i, s.normal);
             put(*position, i, vec3(dvec3(s.position) + origin));
@@ -138,6 +139,7 @@ MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, 
         was.pixels.insert(was.pixels.end(), r.pixels.begin(), r.pixels.end());
         was.layers.insert(was.layers.end(), r.layers.begin(), r.layers.end());
         was.depths.insert(was.depths.end(), r.depths.begin(), r.depths.end());
+        was.images.insert(was.images.end(), r.images.begin(), r.images.end());
     }
     return was;
 }

@@ -31,6 +31,7 @@ struct MirrorLayers {
     std::vector<std::uint32_t> pixels;
     std::vector<std::array<vec3, 3>> layers; ///< albedo, normal, position
     std::vector<float> depths;
+    std::vector<std::uint32_t> images; ///< pixels whose surface is elsewhere: SeenSurface::is_image
 };
 
 /// Replaces albedo, normal, position, depth and motion of pixels that show a mirror or a pane by those of what is

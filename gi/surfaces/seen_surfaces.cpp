@@ -4,6 +4,7 @@
 #include "gi/render/ray_path.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/shading/seen_mirror.h"
+#include "gi/surfaces/light_picture.h"
 #include "gi/surfaces/mirror_boxes.h"
 
 #include <tbb/parallel_for.h>
@@ -215,6 +216,7 @@ bool SeenSurfaces::arrive(std::uint32_t triangle, vec2 weights, int y, Way& way,
     out.position = way.mirrors == 0 ? at.position : camera_.origin + way.length_m * way.eye_direction;
     out.depth = glm::dot(out.position - camera_.origin, camera_.forward);
     out.in_mirror = way.mirrors > 0;
+    out.is_image = out.in_mirror && glm::length(out.position - at.position) > kOfDepth * way.length_m;
     if (triangle >= earlier_.first_moving && !earlier_.corners.empty())
         out.moved =
             way.image * (at.position - point_on(earlier_.corners[triangle - earlier_.first_moving], weights));

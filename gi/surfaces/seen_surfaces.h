@@ -27,7 +27,8 @@ struct SeenSurface {
     vec3 direct{0};                    ///< radiance of the light of punctual lights; times the same
     float depth = 0;                   ///< m along the camera's axis; 0 = no surface
     std::uint8_t lit = 0, blocked = 0; ///< bits of lights that reach it or would, by shadow rays of its own
-    bool in_mirror = false;
+    bool in_mirror = false;            ///< or behind a pane
+    bool is_image = false; ///< it is not where it seems to be: mirrored, or refracted by more than a thin pane
 };
 
 class SeenSurfaces {

@@ -140,7 +140,7 @@ TEST(SeenSurfaces, AMirrorShowsTheImageBehindIt)
     EXPECT_TRUE(SeenSurfaces::mirrors_in(world));
     for (auto const& [x, y] : {std::pair{20, 15}, {3, 4}, {37, 20}}) {
         SeenSurface const& s = seen.at(x, y);
-        EXPECT_TRUE(s.in_mirror);
+        EXPECT_TRUE(s.in_mirror && s.is_image);
         vec3 const d = rays.through({float(x) + 0.5f, float(y) + 0.5f}).direction;
         expect_near(s.position + vec3(world.origin), d * (5 / -d.z), 1e-3f, "image");
         expect_near(s.normal, {0, 0, 1}, 1e-5f, "normal"); // the wall's is (0, 0, -1)
@@ -208,8 +208,9 @@ TEST(SeenSurfaces, GlassShowsWhatIsBehind)
     EXPECT_TRUE(middle.in_mirror);
     EXPECT_NEAR(middle.depth, 4, 0.01f);
     EXPECT_NEAR(middle.albedo.z, 0.8f * 0.96f * 0.96f, 0.01f);
+    EXPECT_TRUE(seen.at(86, 47).in_mirror && seen.at(86, 47).is_image);
     SeenSurface const& pane = seen.at(140, 40);
-    EXPECT_TRUE(pane.in_mirror);
+    EXPECT_TRUE(pane.in_mirror && !pane.is_image);
     EXPECT_NEAR(pane.depth, 4, 1e-3f);
     expect_near(pane.normal, {0, 0, 1}, 1e-4f, "normal");
     EXPECT_GT(pane.albedo.z, 0.8f * 0.85f);

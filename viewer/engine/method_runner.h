@@ -43,6 +43,8 @@ public:
     bool left_out_punctual() const { return left_out_punctual_; }
     /// Light of a view of the last frame; null without `seen`.
     gi::KeptLight const* light(std::size_t view) const { return state_.seen[view].light.get(); }
+    /// The same for surfaces where they are: without images in mirrors and glass.
+    gi::LightPicture light_of_places(std::size_t view) const;
     /// Unfiltered light of the further view of the last frame; empty without.
     gi::LightPicture const& light_around() const { return around_; }
     int still_frames() const { return state_.still; }
@@ -63,6 +65,7 @@ private:
         int most_frames = 0;
         HiddenPixels hidden;
         std::shared_ptr<gi::KeptLight const> light; ///< of its last picture
+        std::vector<std::uint32_t> images;          ///< its pixels that show images in mirrors and glass
         bool punctual = true, small = false; ///< small: of a picture of light that is smaller than the view;
                                              ///< punctual: the light of punctual lights is in its L1
         gi::CameraRays rays{}, earlier{};    ///< of this frame and the one before
