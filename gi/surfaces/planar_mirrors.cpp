@@ -55,31 +55,40 @@ void PlanarMirrors::take(ShownScene const& scene)
         left_out = joined(left_out, g.moves ? Bounds{vec3(-kInf), vec3(kInf)} : mirror_of(g, w.positions).bounds);
     };
     float const least = kLeastArea * square(scene.radius_m), apart = kSamePlane * scene.radius_m;
+    flat_m_ = kFlat * scene.radius_m;
+    is_bent_ = false;
+    std::size_t placed = 0;
     for (std::size_t t = 0; t < w.triangle_material.size(); ++t) {
+        while (placed + 1 < w.placed.size() && w.placed[placed + 1].first_triangle <= t) ++placed;
         if (is_mirror[w.triangle_material[t]] == 0) continue;
         bool const moves = t >= w.static_triangles;
         std::vector<vec3> const& positions = moves ? scene.moved->positions : w.positions;
         uvec3 const corners =
             moves ? scene.moving->triangles[t - w.static_triangles] - w.static_vertices : w.triangles[t];
-        PlanarMirror const own = mirror_of({moves, {corners}}, positions);
-        if (!(own.area_m2 > 0)) continue;
+        std::size_t const instance = moves ? placed : 0;
+        Group const alone{moves, instance, {corners}};
+        PlanarMirror const own = mirror_of(alone, positions);
+        if (!(own.area_m2 > 0)) { // it may grow
+            if (moves) leave_out(alone);
+            continue;
+        }
         std::size_t k = 0;
-        while (k < mirrors_.size() &&
-               !(groups_[k].moves == moves && glm::dot(mirrors_[k].normal, own.normal) > kSameNormal &&
-                 std::abs(mirrors_[k].distance_m - own.distance_m) < apart))
+        while (k < mirrors_.size() && !(groups_[k].moves == moves && groups_[k].instance == instance &&
+                                        glm::dot(mirrors_[k].normal, own.normal) > kSameNormal &&
+                                        std::abs(mirrors_[k].distance_m - own.distance_m) < apart))
             ++k;
         if (k == kMostPlanes) {
             k = std::size_t(std::ranges::min_element(mirrors_, {}, &PlanarMirror::area_m2) - mirrors_.begin());
             bool const is_larger = own.area_m2 > mirrors_[k].area_m2;
-            leave_out(is_larger ? groups_[k] : Group{moves, {corners}});
+            leave_out(is_larger ? groups_[k] : alone);
             if (!is_larger) continue;
             mirrors_[k] = own;
-            groups_[k] = {moves, {corners}};
+            groups_[k] = alone;
             continue;
         }
         if (k == mirrors_.size()) {
             mirrors_.push_back(own);
-            groups_.push_back({moves, {}});
+            groups_.push_back({moves, instance, {}});
         } else {
             mirrors_[k].area_m2 += own.area_m2;
         }
@@ -97,6 +106,7 @@ void PlanarMirrors::take(ShownScene const& scene)
 
 PixelBox PlanarMirrors::left_out(CameraRays const& camera, int width, int height) const
 {
+    if (is_bent_) return {{0, 0}, {width, height}};
     PixelBox all;
     auto const add = [&](Bounds const& box) {
         PixelBox const b = pixels_of(box, camera, width, height);
@@ -112,8 +122,14 @@ PixelBox PlanarMirrors::left_out(CameraRays const& camera, int width, int height
 
 void PlanarMirrors::move(ShownScene::Moved const& now)
 {
-    for (std::size_t k = 0; k < mirrors_.size(); ++k)
-        if (groups_[k].moves) mirrors_[k] = mirror_of(groups_[k], now.positions);
+    is_bent_ = false;
+    for (std::size_t k = 0; k < mirrors_.size(); ++k) {
+        if (!groups_[k].moves) continue;
+        PlanarMirror& m = mirrors_[k] = mirror_of(groups_[k], now.positions);
+        for (uvec3 const& t : groups_[k].triangles)
+            for (int corner = 0; corner < 3; ++corner)
+                is_bent_ |= std::abs(glm::dot(m.normal, now.positions[t[corner]]) - m.distance_m) > flat_m_;
+    }
 }
 
 } // namespace gi

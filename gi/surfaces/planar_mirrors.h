@@ -24,6 +24,8 @@ public:
     void move(ShownScene::Moved const& now);
     std::vector<PlanarMirror> const& all() const { return mirrors_; }
     static constexpr std::size_t kMostDrawn = 2; ///< of those in a picture, the largest
+    /// Of the scene's radius: what is so far from a mirror's plane is no part of it.
+    static constexpr float kFlat = 4e-4f;
     /// Pixels that may show mirrors or panes that are not drawn. @param width, height  px
     PixelBox left_out(CameraRays const& camera, int width, int height) const;
 
@@ -31,6 +33,7 @@ private:
     /// Triangles of a mirror.
     struct Group {
         bool moves = false;
+        std::size_t instance = 0;     ///< of what moves
         std::vector<uvec3> triangles; ///< into all vertices, or those that can move
     };
     static PlanarMirror mirror_of(Group const& group, std::vector<vec3> const& positions);
@@ -38,6 +41,8 @@ private:
     std::vector<PlanarMirror> mirrors_;
     std::vector<Group> groups_;  ///< of the same
     std::vector<Bounds> others_; ///< of all other mirrors and panes; infinite: they move
+    float flat_m_ = 0;           ///< kFlat
+    bool is_bent_ = false;       ///< a mirror has become so
 };
 
 } // namespace gi

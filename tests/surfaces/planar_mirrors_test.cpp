@@ -62,5 +62,38 @@ TEST(PlanarMirrors, LeaveOutBallsPanesAndTheThirdOne)
     EXPECT_TRUE(found.left_out(rays({0, 1, 1e-3}), 40, 40).empty());
 }
 
+/// Two doors in one plane are two mirrors; a bent one is none, and one that is still a point may become one.
+TEST(PlanarMirrors, MayMoveApartBendAndGrow)
+{
+    Scene scene;
+    int const silver = add_material(scene, mirror(vec3{0.9f}));
+    add_quad(scene, {-2, -1, -4}, {1.9f, 0, 0}, {0, 2, 0}, silver);
+    add_quad(scene, {0.1f, -1, -4}, {1.9f, 0, 0}, {0, 2, 0}, silver);
+    for (Node& n : scene.nodes) n.driven = true;
+    Scene with_point = scene;
+    auto const doors = shown(std::move(scene));
+    PlanarMirrors found;
+    found.take(*doors);
+    EXPECT_EQ(found.all().size(), 2u);
+    CameraRays const camera = rays({0, 0, -1});
+    EXPECT_TRUE(found.left_out(camera, 40, 40).empty());
+    ShownScene::Moved now = *doors->moved;
+    std::size_t const half = now.positions.size() / 2;
+    for (std::size_t k = 0; k < half; ++k) now.positions[k].z -= 1; // one slides back
+    found.move(now);
+    EXPECT_TRUE(found.left_out(camera, 40, 40).empty());
+    now.positions[0].z -= 0.5f;
+    found.move(now);
+    EXPECT_FALSE(found.left_out(camera, 40, 40).empty());
+    found.move(*doors->moved);
+    EXPECT_TRUE(found.left_out(camera, 40, 40).empty());
+
+    add_quad(with_point, {0, 0, 4}, {1, 0, 0}, {0, 1, 0}, silver);
+    with_point.nodes.back().driven = true;
+    with_point.nodes.back().scale = dvec3(0);
+    found.take(*shown(std::move(with_point)));
+    EXPECT_FALSE(found.left_out(camera, 40, 40).empty());
+}
+
 } // namespace
 } // namespace gi::test

@@ -153,7 +153,6 @@ TEST(SeenSurfaces, AMirrorShowsTheImageBehindIt)
     }
 }
 
-/// Two mirrors at a right angle show what is behind the eye turned by half a turn.
 TEST(SeenSurfaces, KnowWhereNoMirrorIsSeen)
 {
     Scene scene = room(1);
@@ -170,6 +169,7 @@ TEST(SeenSurfaces, KnowWhereNoMirrorIsSeen)
     }
 }
 
+/// Two mirrors at a right angle show what is behind the eye turned by half a turn.
 TEST(SeenSurfaces, TwoMirrorsTurnTheImage)
 {
     Scene scene;

@@ -42,7 +42,7 @@ void HmdEyes::draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 
     settings.tone = tone;
     for (std::size_t eye = 0; eye < 2; ++eye) {
         EyeView const view = views_.eye(int(eye), now ? &(*now)[eye] : nullptr);
-        if (views_.drew_surfaces())
+        if (view.is_drawn)
             surface_display_->draw(pass_, targets_[eye]->target(), view, settings);
         else
             pass_.draw(targets_[eye]->target(), view, view, settings);

@@ -148,7 +148,7 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
             if (s.swap_eyes) std::swap(left, right);
             if (pane.right_alone) left = right;
             settings.light = s.light;
-            if (views_.drew_surfaces() && settings.stereo == StereoMode::off)
+            if (left.is_drawn && settings.stereo == StereoMode::off)
                 surface_display_->draw(pass_, part, left, settings);
             else
                 pass_.draw(part, left, right, settings);

@@ -87,7 +87,7 @@ void ShownViews::prepare(double most_s)
     if (!has_surfaces()) return;
     try {
         prepares_ = !renderer_->prepare(most_s);
-    } catch (std::runtime_error const& e) { // a driver that compiles them not: pictures are reprojected
+    } catch (std::exception const& e) { // a driver that compiles them not, no memory: pictures are reprojected
         why_no_surfaces_ = e.what();
         renderer_.reset();
     }
@@ -171,6 +171,7 @@ EyeView ShownViews::draw(int view, gi::Camera const* now)
         if (auto const drawn = surfaces(view, from, to, size)) {
             drew_surfaces_ = true;
             e.picture = e.other = *drawn;
+            e.is_drawn = true;
             return e;
         }
     e.picture = e.other = own->reprojection.draw(own->picture, from, to, size);

@@ -226,18 +226,19 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
         throw;
     }
     if (can_undo) given_up->keep();
+    images_.clear();
     for (std::size_t k = 0; k < results.size(); ++k) {
         state_.seen[k].light = std::move(lights[k]);
-        state_.seen[k].images = std::move(mirrors[k].images);
+        images_.push_back(std::move(mirrors[k].images));
     }
     return results;
 }
 
 gi::LightPicture MethodRunner::light_of_places(std::size_t view) const
 {
-    Seen const& s = state_.seen[view];
-    gi::LightPicture light = s.light->picture();
-    for (std::uint32_t const pixel : s.images) light.texels[pixel] = {};
+    gi::LightPicture light = state_.seen[view].light->picture();
+    for (std::uint32_t const pixel : images_[view]) light.texels[pixel] = {};
+    gi::find_mean(light);
     return light;
 }
 
@@ -256,9 +257,8 @@ void MethodRunner::follow(FrameCommand const& command, std::span<HiddenPixels co
             by.can_undo = true;
             s.reuse = std::make_shared<gi::TemporalReuse>(by);
         }
-        s = {now.name,       now.camera,   now.width,          now.height,          std::move(s.reuse),
-             settings.reuse, hidden[k],    std::move(s.light), std::move(s.images), s.punctual,
-             small,          next[k].rays, next[k].earlier};
+        s = {now.name,  now.camera,         now.width,  now.height, std::move(s.reuse), settings.reuse,
+             hidden[k], std::move(s.light), s.punctual, small,      next[k].rays,       next[k].earlier};
     }
 }
 

@@ -65,7 +65,6 @@ private:
         int most_frames = 0;
         HiddenPixels hidden;
         std::shared_ptr<gi::KeptLight const> light; ///< of its last picture
-        std::vector<std::uint32_t> images;          ///< its pixels that show images in mirrors and glass
         bool punctual = true, small = false; ///< small: of a picture of light that is smaller than the view;
                                              ///< punctual: the light of punctual lights is in its L1
         gi::CameraRays rays{}, earlier{};    ///< of this frame and the one before
@@ -105,6 +104,8 @@ private:
     gi::dvec3 origin_; ///< of the world
     std::unique_ptr<gi::FrameRenderer> renderer_;
     State state_;
+    std::vector<std::vector<std::uint32_t>>
+        images_; ///< per view: pixels of its light that show images in mirrors and glass
     gi::LightPicture around_;
     bool first_ = true, left_out_punctual_ = false;
     bool ahead_;

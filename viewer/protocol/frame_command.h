@@ -68,8 +68,9 @@ struct FrameCommand {
     double light_scale = 1;   ///< side of the pictures of light over that of the views, in (0, 1]
     double surface_scale = 1; ///< side of the pictures of surfaces over that of the views, in [light_scale, 1];
                               ///< only where light_scale is below 1
-    bool only_light = false; ///< others draw the surfaces: pictures have the size of light; with mirrors or panes that
-                             ///< of surfaces, sharp in these alone; only where light_scale is below 1
+    bool only_light =
+        false; ///< others draw the surfaces: pictures have the size of light, or that of surfaces, sharp in
+               ///< those mirrors and panes alone that others do not draw; only where light_scale is below 1
 
     bool operator==(FrameCommand const&) const = default;
 };

@@ -4,6 +4,7 @@
 #include "gi/image_io/picture_file.h"
 #include "gi/metrics/flip.h"
 #include "gi/scene/model/projection.h"
+#include "viewer/engine/scene_edits.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -67,6 +68,9 @@ std::vector<PathChange> path_changes(std::vector<std::string> const& texts)
             throw gi::InputError("'" + text + "' is no change on a path", "it begins with no time",
                                  "write 3:light.all.scale=0");
         changes.push_back({seconds, parse_change(change)});
+        if (!is_scene_edit(changes.back().change.key))
+            throw gi::InputError("'" + text + "' is no change on a path", "it is no edit of the scene",
+                                 "give settings of the viewer by --set");
     }
     std::ranges::stable_sort(changes, {}, &PathChange::path_s);
     return changes;

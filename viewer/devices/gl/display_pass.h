@@ -23,6 +23,7 @@ enum class Comparison {
 struct EyeView {
     ShownPicture picture;
     ShownPicture other; ///< to compare with; not read if comparison is off
+    bool is_drawn = false; ///< surfaces, not a rendered picture
 };
 
 /// Content of the textures.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <epoxy/gl.h>
 #include <span>
+#include <system_error>
 
 namespace viewer {
 namespace {
@@ -128,7 +129,8 @@ bool SceneMeshes::upload(double most_s)
         if (made_ < meshes_.size()) {
             make(meshes_[made_++]);
         } else if (orders_.valid()) {
-            if (!upload_order(most_s)) return false;
+            double const left_s = most_s - std::chrono::duration<double>(Clock::now() - begun).count();
+            if (!upload_order(std::max(0.0, left_s))) return false;
             upload_materials();
             upload_moved();
         } else {
@@ -152,7 +154,12 @@ void SceneMeshes::order()
             return orders;
         });
     orders_ = task.get_future();
-    ordering_ = std::jthread([task = std::move(task)](std::stop_token const& stop) mutable { task(stop); });
+    auto const shared = std::make_shared<decltype(task)>(std::move(task));
+    try {
+        ordering_ = std::jthread([shared](std::stop_token const& stop) { (*shared)(stop); });
+    } catch (std::system_error const&) { // no more threads
+        (*shared)({});
+    }
 }
 
 /// Returns false if it is still in the making after so long.

@@ -9,8 +9,10 @@ namespace {
 constexpr std::uint32_t kClusterTriangles = 512, kMostClusters = 4096; // of a mesh
 
 /// Sorts triangles so that `size` consecutive ones are near each other.
-void sort_by_place(gi::World const& w, std::span<std::uint32_t> triangles, std::uint32_t size)
+void sort_by_place(gi::World const& w, std::span<std::uint32_t> triangles, std::uint32_t size,
+                   std::stop_token const& stop)
 {
+    if (stop.stop_requested()) return;
     if (triangles.size() <= size) {
         std::ranges::sort(triangles); // near ones share vertices
         return;
@@ -28,8 +30,8 @@ void sort_by_place(gi::World const& w, std::span<std::uint32_t> triangles, std::
                              [&](std::uint32_t a, std::uint32_t b) {
                                  return std::pair(middle_of(a)[axis], a) < std::pair(middle_of(b)[axis], b);
                              });
-    sort_by_place(w, triangles.first(half), size);
-    sort_by_place(w, triangles.subspan(half), size);
+    sort_by_place(w, triangles.first(half), size, stop);
+    sort_by_place(w, triangles.subspan(half), size, stop);
 }
 
 } // namespace
@@ -47,7 +49,7 @@ SurfaceOrder order_surfaces(gi::ShownScene const& scene, bool moves, std::stop_t
     for (std::uint32_t material = 0; material < of_material.size() && !stop.stop_requested(); ++material) {
         std::vector<std::uint32_t>& triangles = of_material[material];
         if (triangles.empty()) continue;
-        if (!moves) sort_by_place(w, triangles, size);
+        if (!moves) sort_by_place(w, triangles, size, stop);
         auto const first = std::uint32_t(order.triangles.size()), count = std::uint32_t(triangles.size());
         for (std::uint32_t const t : triangles)
             order.triangles.push_back(moves ? scene.moving->triangles[t - begin] : w.triangles[t]);

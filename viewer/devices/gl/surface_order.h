@@ -30,7 +30,7 @@ struct SurfaceOrder {
 };
 
 /// Of what never moves; or of what can, which has one cluster a material.
-/// @param stop  asked for each material; what is returned then is of no use
+/// @param stop  what is returned after a request is of no use
 SurfaceOrder order_surfaces(gi::ShownScene const& scene, bool moves, std::stop_token const& stop);
 
 } // namespace viewer

@@ -213,7 +213,7 @@ void SurfaceRenderer::draw_batches(Pass pass, Eye const& eye)
             }
             if (pass == Pass::planar) {
                 p.set("mirror_plane", plane_);
-                p.set("mirror_tolerance", 4 * kApart * meshes_.scene().radius_m);
+                p.set("mirror_tolerance", gi::PlanarMirrors::kFlat * meshes_.scene().radius_m);
             }
         }
         if (before == nullptr || before->mesh != seen.mesh) meshes_.bind_mesh(seen.mesh);
