@@ -283,13 +283,18 @@ TEST(BenchCommand, ShownMeasuresWhatAHeadSees)
     Outcome const wrong = run("bench shown cornell --head nowhere --out e", folder.path());
     EXPECT_EQ(wrong.code, 2);
     EXPECT_NE(wrong.err.find("nowhere"), std::string::npos) << wrong.err;
-    for (char const* change : {"soon:light.0.scale=0", "1:light.0.scale", "0.1:light.7.scale=0"}) {
+    for (auto const& [change, mentioned] : {std::pair{"soon:light.0.scale=0", "no time"},
+                                            {"1:light.0.scale", "light.0.scale"},
+                                            {"1:rate=5", "--set"},
+                                            {"0.1:light.7.scale=0", "light.7"}}) {
+        EXPECT_FALSE(std::filesystem::exists(folder / "e")) << "before " << change;
         std::string const call = "bench shown cornell --size 32x32 --moments 0 --head aside.csv --out e --at ";
         Outcome const refused = run(call + change, folder.path());
         EXPECT_EQ(refused.code, 2) << change;
-        EXPECT_NE(refused.err.find("light"), std::string::npos) << refused.err;
+        EXPECT_NE(refused.err.find(mentioned), std::string::npos) << refused.err;
     }
-    EXPECT_FALSE(std::filesystem::exists(folder / "e" / "shown.csv"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "e" / "shown.csv"))
+        << "the last is known to be wrong by the scene";
 }
 
 TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
