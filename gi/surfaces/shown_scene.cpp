@@ -36,6 +36,9 @@ std::shared_ptr<ShownScene const> shown_scene(std::shared_ptr<MovingWorld const>
         next->materials = std::make_shared<std::vector<Material> const>(w.materials);
     WorldView const of = view(w);
     next->lights = SeenSurfaces::has_few_lights(w) ? w.lights : std::vector<Light>();
+    next->authored_intensities.clear();
+    for (std::size_t k = 0; k < next->lights.size(); ++k)
+        next->authored_intensities.push_back(world->authored_intensity(k));
     next->environment = w.environment;
     next->environment_cos = of.environment_cos;
     next->environment_sin = of.environment_sin;

@@ -30,6 +30,7 @@ struct ShownScene {
     float environment_cos = 1, environment_sin = 0;    ///< of its rotation about +Y
     vec3 environment_scale{1};
     std::vector<Light> lights; ///< punctual ones; empty: there are more than SeenSurfaces::kMostLights
+    std::vector<vec3> authored_intensities; ///< that the scene gives the lights, whatever was set
     Background background;
     float radius_m = 0; ///< of the scene's bounds
 };

@@ -258,8 +258,10 @@ TEST(BenchCommand, ShownMeasuresWhatAHeadSees)
     TemporaryFolder const folder;
     std::ofstream(folder / "aside.csv")
         << "time_s,x_m,y_m,z_m,yaw_deg,pitch_deg\n0,0,0,0,0,0\n1,0,0,0,0,0\n3,0.2,0,0,10,0\n";
+    std::ofstream(folder / "moves.txt") << "# A block is lifted.\n\n0:object.short block.scale=1\n"
+                                           "2:object.short block.position=[0.1, 0.3, 0.1]\n";
     run_well("bench shown cornell --head aside.csv --size 96x64 --eyes 2 --moments 2 --truth-paths 4 "
-             "--at 1.2:material.light.emission_scale=2 --out d",
+             "--at 1.2:material.light.emission_scale=2 --changes moves.txt --out d",
              folder.path());
     std::vector<BenchTable> const tables = read_bench_folder(folder / "d").tables;
     ASSERT_EQ(tables.size(), 1u);
@@ -293,6 +295,10 @@ TEST(BenchCommand, ShownMeasuresWhatAHeadSees)
         EXPECT_EQ(refused.code, 2) << change;
         EXPECT_NE(refused.err.find(mentioned), std::string::npos) << refused.err;
     }
+    std::ofstream(folder / "moves.txt") << "1:light.0.scale=0\n# now\nlight.0.scale=1\n";
+    Outcome const in_file = run("bench shown cornell --head aside.csv --out f --changes moves.txt", folder.path());
+    EXPECT_EQ(in_file.code, 2);
+    EXPECT_NE(in_file.err.find("moves.txt:3"), std::string::npos) << in_file.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "e" / "shown.csv"))
         << "the last is known to be wrong by the scene";
 }

@@ -289,6 +289,33 @@ TEST_F(SurfaceRendererTest, PunctualLightsAndTheirShadowsAreThoseOfTheCpuForm)
     }
 }
 
+TEST_F(SurfaceRendererTest, LightsAreDimmedAndMovedAtOnce)
+{
+    auto lights = lights_of_each_type();
+    load(dvec3{0}, {lights[0].second, lights[1].second});
+    gi::Camera const camera = camera_at({0.4, 0.8, 3.2});
+    gi::LightPicture found;
+    gi::Picture const before = exact(camera, &found);
+    SurfaceRenderer renderer;
+    start(renderer, found);
+    drawn(renderer, camera, before, camera);
+    gi::Light sun = w().lights[0], lamp = w().lights[1];
+    sun.intensity *= 0.5f;
+    lamp.intensity = vec3{0};
+    gi::Light const dark = lamp;
+    lamp.position += vec3{-0.6f, 0.2f, 0.3f};
+    lamp.intensity = w().lights[1].intensity;
+    for (gi::Light const& changed : {dark, lamp}) {
+        renderer.light({sun, changed});
+        gi::MovingWorld after(w().scene, 0.0, report);
+        after.set_light(0, sun);
+        after.set_light(1, changed);
+        gi::Picture const truth = exact(camera, nullptr, &after.world());
+        EXPECT_LT(differing(drawn(renderer, camera, before, camera), truth.find("color")->data), 0.01);
+        EXPECT_GT(differing(before.find("color")->data, truth.find("color")->data), 0.2);
+    }
+}
+
 TEST_F(SurfaceRendererTest, ShadowsFollowWhatMoves)
 {
     for (auto const& [name, light] : lights_of_each_type()) {

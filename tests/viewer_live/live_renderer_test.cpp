@@ -236,6 +236,71 @@ TEST(LiveRenderer, ALookGivesUpAPictureThatRefines)
         EXPECT_EQ(live.commands[i].frame, live.commands[i - 1].frame + 1);
 }
 
+/// A lamp that goes out while someone walks does not wait for the picture of the old light.
+TEST(LiveRenderer, AnEditGivesUpThePictureThatIsRendered)
+{
+    Live live;
+    live.renderer.reset();
+    live.session.apply({"method", "paths"});
+    std::atomic<int> begun{0}, finished{0};
+    LiveRenderer::Hooks hooks;
+    hooks.own_views = [&](FrameCommand const& command) {
+        ++begun;
+        return command.views;
+    };
+    hooks.finished = [&](LiveFrame const& f) {
+        live.commands.push_back(f.command);
+        ++finished;
+    };
+    live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, nullptr, hooks);
+    auto const look = [&](double aside) {
+        Viewpoint at;
+        gi::Camera camera = live.eye;
+        camera.world_from_camera =
+            live.eye.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{aside, 0, 0});
+        at.views = {{"window", camera, 1280, 1280, -1}};
+        live.renderer->look(at);
+    };
+    int given_up = 0;
+    for (int k = 0; k < 40 && given_up < 2; ++k) {
+        look(0.01 * k);
+        ASSERT_NE(live.renderer->next_frame(60), nullptr);
+        int const before = begun;
+        look(0.01 * k + 0.005);
+        while (begun == before) std::this_thread::sleep_for(std::chrono::milliseconds(1)); // of a head that moves
+        int const already = finished;
+        live.renderer->post({"material.0.base_color", {0.1, 0.1, 0.5 + 0.01 * k}});
+        ASSERT_NE(live.renderer->next_frame(60), nullptr);
+        given_up += finished == already + 1 && begun == before + 2;
+    }
+    live.renderer->stop();
+    EXPECT_EQ(given_up, 2);
+    for (std::size_t i = 1; i < live.commands.size(); ++i)
+        EXPECT_EQ(live.commands[i].frame, live.commands[i - 1].frame + 1);
+}
+
+/// What is drawn between two pictures of light has the edits that came after the first one.
+TEST(LiveRenderer, SaysWhichEditsAFrameDoesNotHave)
+{
+    Live live;
+    live.look();
+    auto const first = live.renderer->next_frame(60);
+    ASSERT_NE(first, nullptr);
+    std::promise<void> go;
+    live.renderer->ask([&](RenderSession&) { go.get_future().wait(); });
+    std::vector<Change> const moves{{"object.short block.position", {0.1, 0, 0}},
+                                    {"object.short block.scale", 0.9}};
+    live.renderer->post({"exposure", 1});
+    live.renderer->post(moves[0]);
+    live.renderer->post({"material.0.base_color", {0.1, 0.1, 0.9}}); // is seen with the next light
+    live.renderer->post(moves[1]);
+    EXPECT_EQ(live.renderer->edits_since(*first), moves);
+    go.set_value();
+    auto const next = live.renderer->next_frame(60);
+    ASSERT_NE(next, nullptr);
+    EXPECT_TRUE(live.renderer->edits_since(*next).empty());
+}
+
 TEST(LiveRenderer, RendersWhatIsLookedAtAndConverges)
 {
     Live live;

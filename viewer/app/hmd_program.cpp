@@ -200,7 +200,7 @@ private:
         picture.values = TextureValues::srgb;
         picture.first_row = FirstRow::top;
         double const scale = state_.settings().draw_surfaces ? surfaces_scale_.next() : 0;
-        FrameCommand moment = moment_at(*newest, at, at.display_s);
+        FrameCommand moment = moment_at(*newest, at, at.display_s, core_.renderer->edits_since(*newest));
         eyes_.views().begin(scale, &moment, core_.options.drive);
         double located_s = at.pose_s;
         if (auto const latest = session.latest_views(frame)) { // as late as possible

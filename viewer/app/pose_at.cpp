@@ -1,6 +1,21 @@
 #include "viewer/app/pose_at.h"
 
+#include "gi/core/error.h"
+
 namespace viewer {
+namespace {
+
+/// The rendering thread reports an edit that cannot be made.
+template <class Edit>
+void if_possible(Edit const& edit)
+{
+    try {
+        edit();
+    } catch (gi::InputError const&) {
+    }
+}
+
+} // namespace
 
 double scene_time_at(LiveFrame const& f, double now_s)
 {
@@ -8,10 +23,10 @@ double scene_time_at(LiveFrame const& f, double now_s)
     return f.settings.play ? s + f.settings.speed * (now_s - f.begun_s) : s;
 }
 
-FrameCommand moment_at(LiveFrame const& frame, Viewpoint const& at, double now_s)
+FrameCommand moment_at(LiveFrame const& frame, Viewpoint const& at, double now_s, std::vector<Change> edits)
 {
     FrameCommand moment = frame.command;
-    moment.changes.clear();
+    moment.changes = std::move(edits);
     moment.scene_s = scene_time_at(frame, now_s);
     moment.pose_s = at.pose_s;
     moment.world_from_room = at.world_from_room;
@@ -26,9 +41,28 @@ gi::Pose pose_at(SessionFrame const& frame, FrameCommand const& moment, DriveBod
 {
     gi::Scene const& scene = *frame.scene->world->scene;
     gi::Pose pose = gi::evaluate_pose(scene, moment.scene_s);
-    place(scene, frame.placed, pose);
+    std::vector<PlacedObject> placed = frame.placed;
+    place(scene, placed, pose);
+    for (Change const& c : moment.changes)
+        if (is_object_edit(c.key))
+            if_possible([&] {
+                PlacedObject const object = placed_object(scene, pose, placed, c);
+                std::erase_if(placed, [&](PlacedObject const& p) { return p.node == object.node; });
+                placed.push_back(object);
+                place(scene, {object}, pose);
+            });
     if (drive) drive(scene, moment, pose);
     return pose;
+}
+
+std::vector<gi::Light> lights_at(SessionFrame const& frame, FrameCommand const& moment)
+{
+    gi::ShownScene const& scene = *frame.scene;
+    std::vector<gi::Light> lights = scene.lights;
+    for (Change const& c : moment.changes)
+        if (is_light_edit(c.key) && !lights.empty())
+            if_possible([&] { edit_lights(lights, c, scene.authored_intensities, scene.world->origin); });
+    return lights;
 }
 
 } // namespace viewer

@@ -78,7 +78,9 @@ void ShownViews::begin(double surfaces_scale, FrameCommand const* moment, DriveB
     hashes_.assign(views_.size(), 0);
     prepare(kPrepare_s);
     is_ready_ = has_surfaces() && !prepares_;
-    if (is_ready_ && moment && renderer_->can_move()) renderer_->move(pose_at(frame_->result, *moment, drive));
+    if (!is_ready_) return;
+    if (moment && renderer_->can_move()) renderer_->move(pose_at(frame_->result, *moment, drive));
+    renderer_->light(moment ? lights_at(frame_->result, *moment) : frame_->result.scene->lights);
 }
 
 void ShownViews::prepare(double most_s)

@@ -404,7 +404,8 @@ private:
         if (newest && link_ == nullptr) {
             double const ahead_s =
                 state_.settings().predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0;
-            p->settings.moment = moment_at(*newest, at, p->begun_s + ahead_s);
+            p->settings.moment =
+                moment_at(*newest, at, p->begun_s + ahead_s, core_.renderer->edits_since(*newest));
             for (std::size_t k = 0; k < std::min(p->cameras.size(), p->settings.moment->views.size()); ++k)
                 p->settings.moment->views[k].camera = p->cameras[k];
         }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <numeric>
 
 namespace viewer {
 namespace {
@@ -92,27 +93,35 @@ std::size_t find(Change const& c, std::string const& name, std::size_t count, Na
            "give a name, or a number from 0");
 }
 
-gi::Changes edit_light(gi::MovingWorld& world, Change const& c, Key const& key, std::size_t k)
+std::vector<std::size_t> edited_lights(Change const& c, Key const& key, std::size_t count)
+{
+    if (key.name != "all") return {find(c, key.name, count, [](std::size_t) { return std::string(); })};
+    if (count == 0) refuse(c, "the scene has no light", "change the emission of a material, or the environment");
+    std::vector<std::size_t> all(count);
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    return all;
+}
+
+/// @param authored  its intensity in the scene  @param origin  of the world
+gi::Light edited(gi::Light light, Change const& c, Key const& key, gi::vec3 authored, gi::dvec3 origin)
 {
     SceneEditKey const& facts = find_scene_edit(c.key);
-    gi::Light light = world.world().lights[k];
     if (key.what == "intensity")
         light.intensity = gi::vec3(vector(c, facts));
     else if (key.what == "scale")
-        light.intensity = float(number(c, facts)) * world.authored_intensity(k);
+        light.intensity = float(number(c, facts)) * authored;
     else
-        light.position = gi::vec3(vector(c, facts) - world.world().origin);
-    return world.set_light(k, light);
+        light.position = gi::vec3(vector(c, facts) - origin);
+    return light;
 }
 
 gi::Changes edit_lights(gi::MovingWorld& world, Change const& c, Key const& key)
 {
-    std::size_t const count = world.world().lights.size();
-    if (key.name != "all")
-        return edit_light(world, c, key, find(c, key.name, count, [](std::size_t) { return std::string(); }));
-    if (count == 0) refuse(c, "the scene has no light", "change the emission of a material, or the environment");
+    std::vector<gi::Light> const& lights = world.world().lights;
     gi::Changes changes;
-    for (std::size_t k = 0; k < count; ++k) changes.add(edit_light(world, c, key, k));
+    for (std::size_t const k : edited_lights(c, key, lights.size()))
+        changes.add(
+            world.set_light(k, edited(lights[k], c, key, world.authored_intensity(k), world.world().origin)));
     return changes;
 }
 
@@ -178,10 +187,11 @@ SceneEditKey const& find_scene_edit(std::string const& text)
 void check_scene_edit(Change const& c) { numbers(c, find_scene_edit(c.key)); }
 
 bool is_object_edit(std::string const& key) { return key.starts_with("object."); }
+bool is_light_edit(std::string const& key) { return key.starts_with("light."); }
 
 bool is_scene_edit(std::string const& key)
 {
-    return is_object_edit(key) || key.starts_with("light.") || key.starts_with("material.") ||
+    return is_object_edit(key) || is_light_edit(key) || key.starts_with("material.") ||
            key.starts_with("environment.");
 }
 
@@ -191,6 +201,14 @@ gi::Changes edit(gi::MovingWorld& world, Change const& c)
     if (key.kind == "light") return edit_lights(world, c, key);
     if (key.kind == "material") return edit_material(world, c, key);
     return edit_environment(world, c, key);
+}
+
+void edit_lights(std::vector<gi::Light>& lights, Change const& c, std::span<gi::vec3 const> authored,
+                 gi::dvec3 origin)
+{
+    Key const key = parse(c.key);
+    for (std::size_t const k : edited_lights(c, key, lights.size()))
+        lights[k] = edited(lights[k], c, key, authored[k], origin);
 }
 
 PlacedObject placed_object(gi::Scene const& scene, gi::Pose const& now, std::vector<PlacedObject> const& placed,

@@ -50,7 +50,12 @@ PlacedObject placed_object(gi::Scene const& scene, gi::Pose const& now, std::vec
 void place(gi::Scene const& scene, std::vector<PlacedObject> const& placed, gi::Pose& pose);
 
 bool is_object_edit(std::string const& key);
+bool is_light_edit(std::string const& key);
 /// Applies an edit of a light, a material or the environment. Throws InputError.
 gi::Changes edit(gi::MovingWorld& world, Change const& change);
+/// Applies an edit of lights to those of a world. Throws InputError.
+/// @param authored  their intensities in the scene  @param origin  of the world
+void edit_lights(std::vector<gi::Light>& lights, Change const& change, std::span<gi::vec3 const> authored,
+                 gi::dvec3 origin);
 
 } // namespace viewer

@@ -1,6 +1,7 @@
 #include "viewer/bench/shown/score.h"
 
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "gi/image_io/picture_file.h"
 #include "gi/metrics/flip.h"
 #include "gi/scene/model/projection.h"
@@ -54,23 +55,35 @@ double rivalry(SeenMoment const& s, std::vector<gi::Picture> const& truth,
     return n > 0 ? sum / double(n) : 0;
 }
 
+/// @param what  it is called in errors
+PathChange path_change(std::string const& text, std::string const& what)
+{
+    std::istringstream in(text);
+    double seconds = 0;
+    std::string change;
+    if (char colon = 0;
+        !(in >> seconds >> colon) || colon != ':' || !std::isfinite(seconds) || !std::getline(in, change))
+        throw gi::InputError(what + " is no change on a path", "it begins with no time",
+                             "write 3:light.all.scale=0");
+    PathChange made{seconds, parse_change(change)};
+    if (!is_scene_edit(made.change.key))
+        throw gi::InputError(what + " is no change on a path", "it is no edit of the scene",
+                             "give settings of the viewer by --set");
+    return made;
+}
+
 } // namespace
 
-std::vector<PathChange> path_changes(std::vector<std::string> const& texts)
+std::vector<PathChange> path_changes(std::vector<std::string> const& texts, std::string const& file)
 {
     std::vector<PathChange> changes;
-    for (std::string const& text : texts) {
-        std::istringstream in(text);
-        double seconds = 0;
-        std::string change;
-        if (char colon = 0;
-            !(in >> seconds >> colon) || colon != ':' || !std::isfinite(seconds) || !std::getline(in, change))
-            throw gi::InputError("'" + text + "' is no change on a path", "it begins with no time",
-                                 "write 3:light.all.scale=0");
-        changes.push_back({seconds, parse_change(change)});
-        if (!is_scene_edit(changes.back().change.key))
-            throw gi::InputError("'" + text + "' is no change on a path", "it is no edit of the scene",
-                                 "give settings of the viewer by --set");
+    for (std::string const& text : texts) changes.push_back(path_change(text, "'" + text + "'"));
+    std::istringstream in(file.empty() ? std::string() : gi::read_text(file));
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        std::size_t const first = line.find_first_not_of(" \t\r");
+        if (first != std::string::npos && line[first] != '#')
+            changes.push_back(path_change(line, fmt::format("{}:{}: '{}'", file, number, line)));
     }
     std::ranges::stable_sort(changes, {}, &PathChange::path_s);
     return changes;

@@ -19,7 +19,8 @@ struct PathChange {
     Change change;
 };
 /// In the order of their times. Throws InputError.
-std::vector<PathChange> path_changes(std::vector<std::string> const& texts);
+/// @param file  with further ones, one a line, comments begin with #; empty = none
+std::vector<PathChange> path_changes(std::vector<std::string> const& texts, std::string const& file);
 
 /// Means over eyes and moments.
 struct ShownErrors {

@@ -123,7 +123,7 @@ private:
             });
         std::lock_guard const lock(counting_);
         if (!refused_.empty())
-            throw gi::InputError("a change of --at cannot be made", refused_,
+            throw gi::InputError("a change on the path cannot be made", refused_,
                                  "lightwell info lists the lights, materials and objects of a scene");
     }
 
@@ -199,7 +199,7 @@ private:
         if (newest != shown_) presenter_.take(newest, panes_);
         shown_ = newest;
         double const drawing = clock_.now_s();
-        settings_.moment = moment_at(*newest, at, seen_s);
+        settings_.moment = moment_at(*newest, at, seen_s, renderer_.edits_since(*newest));
         settings_.drive = scenes_.drive;
         settings_.surfaces_scale = draws_surfaces_ ? scale_.next() : 0;
         std::size_t const drawn = 1 - turn_;
@@ -285,7 +285,7 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
 {
     auto const [width, height] = parse_size(o.size);
     HeadPath path(o.head);
-    std::vector<PathChange> const changes = path_changes(o.changes);
+    std::vector<PathChange> const changes = path_changes(o.changes, o.changes_file);
     std::vector<AvatarChoice> const avatars = avatar_choices(o.avatar, kPathEyeHeight_m, {}, {});
     RecordedScenes const scenes = scenes_with(o.scene, avatars, report);
     check_folder(o.out);

@@ -12,6 +12,7 @@ struct ShownOptions {
     std::string head = "walk", avatar, size = "1280x800", out, truth_filter = "oidn-high";
     std::vector<std::string> settings; ///< KEY=VALUE
     std::vector<std::string> changes;  ///< SECONDS:KEY=VALUE, on the path
+    std::string changes_file;          ///< with further ones, one a line
     int eyes = 1, moments = 8, truth_paths = 64;
 };
 

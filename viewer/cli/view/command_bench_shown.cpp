@@ -37,6 +37,7 @@ void add_bench_shown(CLI::App& bench, int& exit_code)
     c->add_option("--at", o->changes,
                   "SECONDS:KEY=VALUE: what changes on the path, e.g. 3:light.all.scale=0; repeatable")
         ->take_all();
+    c->add_option("--changes", o->changes_file, "text file with such changes, one a line; comments begin with #");
     c->add_option("--moments", o->moments, "moments whose pictures are compared; 0 = none")
         ->check(CLI::Range(0, 10000))
         ->capture_default_str();

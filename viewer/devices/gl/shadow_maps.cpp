@@ -78,11 +78,29 @@ int maps_of(gi::Light const& l, bool windowed)
 
 void ShadowMaps::take(gi::ShownScene const& scene)
 {
-    if (world_ == scene.world && lights_ == scene.lights && materials_ == scene.materials) return;
+    bool const has_others = world_ != scene.world || lights_.size() != scene.lights.size();
+    if (!has_others && materials_ == scene.materials) return;
+    if (has_others) lights_ = scene.lights;
     world_ = scene.world;
-    lights_ = scene.lights;
     materials_ = scene.materials;
     is_placed_ = false;
+}
+
+void ShadowMaps::light(std::vector<gi::Light> const& lights)
+{
+    if (lights_ == lights) return;
+    bool const same_places = std::ranges::equal(lights_, lights, [](gi::Light a, gi::Light const& b) {
+        a.intensity = b.intensity;
+        return a == b;
+    });
+    lights_ = lights;
+    if (!same_places || !is_placed_) {
+        is_placed_ = false;
+        return;
+    }
+    for (std::size_t k = 0; k < lights_.size(); ++k)
+        glNamedBufferSubData(block_.id(), GLintptr(k * sizeof(LightBlock) + offsetof(LightBlock, intensity)),
+                             sizeof(glm::vec3), &lights_[k].intensity);
 }
 
 void ShadowMaps::place(SceneMeshes const& meshes, glm::vec3 eye)
@@ -156,7 +174,7 @@ void ShadowMaps::place(SceneMeshes const& meshes, glm::vec3 eye)
         next += std::size_t(faces);
     }
     block_ = GlObject(GlObject::Kind::buffer);
-    glNamedBufferStorage(block_.id(), GLsizeiptr(sizeof block), &block, 0);
+    glNamedBufferStorage(block_.id(), GLsizeiptr(sizeof block), &block, GL_DYNAMIC_STORAGE_BIT);
 }
 
 bool ShadowMaps::prepare(SceneMeshes const& meshes, glm::vec3 eye)

@@ -12,8 +12,10 @@ namespace viewer {
 
 class ShadowMaps {
 public:
-    /// Of the lights of this scene from now on.
+    /// Of this scene from now on; its lights count if it is another world, or has more or fewer.
     void take(gi::ShownScene const& scene);
+    /// The scene's lights as they are now. Where one has moved, its shadows are drawn anew.
+    void light(std::vector<gi::Light> const& lights);
     /// Draws what is missing, one map a call; true when nothing is. @param eye  around it maps are finest; m, from
     /// the world's origin
     bool prepare(SceneMeshes const& meshes, glm::vec3 eye);

@@ -29,6 +29,8 @@ public:
     bool has_light() const { return !ring_.empty(); }
     /// Moves what can move, until the next take().
     void move(gi::Pose const& pose);
+    /// Punctual lights of the scene as they are now, until the next call.
+    void light(std::vector<gi::Light> const& lights) { shadows_.light(lights); }
     bool can_move() const { return has_scene_ && !meshes_.scene().moving->instances.empty(); }
     /// Uploads and compiles for about so long; true when surfaces can be drawn.
     bool prepare(double most_s);

@@ -46,7 +46,7 @@ void LiveRenderer::stop()
     quit_ = true;
     {
         std::lock_guard const lock(mutex_);
-        if (refining_) refining_->request();
+        if (stop_) stop_->request();
     }
     wake_.notify_all();
     if (thread_.joinable()) thread_.join();
@@ -65,7 +65,10 @@ void LiveRenderer::post(Change change, std::function<void(std::string const&)> d
 {
     {
         std::lock_guard const lock(mutex_);
-        jobs_.push_back([this, change = std::move(change), done = std::move(done)] {
+        bool const is_edit = is_scene_edit(change.key);
+        if (is_edit) edits_.push_back({++count_edits_, change});
+        if (stop_ && (refines_ || is_edit)) stop_->request();
+        jobs_.push_back([this, number = count_edits_, change = std::move(change), done = std::move(done)] {
             std::string error;
             try {
                 session_.apply(change);
@@ -73,10 +76,10 @@ void LiveRenderer::post(Change change, std::function<void(std::string const&)> d
             } catch (gi::InputError const& e) {
                 error = e.what();
             }
+            made_edits_ = number;
             if (done) done(error);
         });
         asked_ = true;
-        if (refining_) refining_->request();
     }
     wake_.notify_all();
 }
@@ -119,7 +122,7 @@ void LiveRenderer::look(Viewpoint viewpoint)
         anticipation_.see(viewpoint);
         viewpoint_ = std::move(viewpoint);
         if (moved) looked_ = asked_ = true;
-        if (moved && refining_) refining_->request();
+        if (moved && stop_ && refines_) stop_->request();
     }
     if (moved) wake_.notify_all();
 }
@@ -137,6 +140,16 @@ std::shared_ptr<LiveFrame const> LiveRenderer::newest() const
 {
     std::lock_guard const lock(mutex_);
     return newest_;
+}
+
+std::vector<Change> LiveRenderer::edits_since(LiveFrame const& frame) const
+{
+    std::vector<Change> since;
+    std::lock_guard const lock(mutex_);
+    for (Edit const& e : edits_)
+        if (e.number > frame.edits && (is_object_edit(e.change.key) || is_light_edit(e.change.key)))
+            since.push_back(e.change);
+    return since;
 }
 
 bool LiveRenderer::rests() const
@@ -341,10 +354,12 @@ void LiveRenderer::run_leading()
             resting_ = false;
             // Ranks must trace the same number of paths, and so must both methods of a comparison.
             bool const may_end_early =
-                still && link_ == nullptr && gi::find_method(s.method).ends_frames_early && s.compare.empty();
+                link_ == nullptr && gi::find_method(s.method).ends_frames_early && s.compare.empty();
             // After a frame that was given up, the next is rendered whatever comes.
-            refining_ = may_end_early && !gave_up ? std::make_shared<gi::StopRequest>() : nullptr;
-            if (refining_ && asked_) refining_->request();
+            stop_ = may_end_early && !gave_up ? std::make_shared<gi::StopRequest>() : nullptr;
+            refines_ = still;
+            if (stop_ && (refines_ ? asked_ : !edits_.empty() && edits_.back().number > made_edits_))
+                stop_->request();
         }
         ahead_s_ = command.scene_s != scene_s_ ? seen_after_s() : 0;
         Rendered const rendered = render(std::move(command), budget, ahead_s_);
@@ -391,7 +406,8 @@ LiveRenderer::Rendered LiveRenderer::render(FrameCommand command, FrameBudget co
     frame->ahead_s = ahead_s;
     gi::StopRequest never;
     bool given_up = false;
-    std::shared_ptr<gi::StopRequest> const stop = refining_;
+    frame->edits = made_edits_;
+    std::shared_ptr<gi::StopRequest> const stop = stop_;
     if (hooks_.own_views) {
         frame->ordered = command.views;
         command.views = hooks_.own_views(command);
@@ -413,7 +429,7 @@ LiveRenderer::Rendered LiveRenderer::render(FrameCommand command, FrameBudget co
     }
     {
         std::lock_guard const lock(mutex_);
-        refining_ = nullptr;
+        stop_ = nullptr;
     }
     if (given_up) { // as if it had never begun
         changes_.insert(changes_.begin(), command.changes.begin(), command.changes.end());
@@ -453,6 +469,7 @@ LiveRenderer::Rendered LiveRenderer::render(FrameCommand command, FrameBudget co
     FrameCommand const shown = frame->command;
     {
         std::lock_guard const lock(mutex_);
+        while (newest_ && !edits_.empty() && edits_.front().number <= newest_->edits) edits_.pop_front();
         newest_ = std::move(frame);
     }
     published_.notify_all();

@@ -48,6 +48,7 @@ struct LiveFrame {
     double ahead_s = 0;             ///< the command's scene_s is that of so much after begun_s
     std::uint32_t still_paths = 0;  ///< per pixel since anything last moved
     Settings settings;              ///< used for this frame
+    std::uint64_t edits = 0;        ///< of the scene that were posted before it, see LiveRenderer::edits_since
     std::string schedule;           ///< what the plan chose and why, a sentence; empty = nothing
 };
 
@@ -120,6 +121,9 @@ public:
 
     /// Newest frame; null before the first.
     std::shared_ptr<LiveFrame const> newest() const;
+    /// Edits of objects and lights that were posted and are not in the frame, which is one of the last two, oldest
+    /// first.
+    std::vector<Change> edits_since(LiveFrame const& frame) const;
     /// True if no frame is being rendered or due: `newest` stays until something changes.
     /// Always false on a follower.
     bool rests() const;
@@ -157,7 +161,14 @@ private:
     Anticipation anticipation_;
     std::atomic<bool> looked_{false}; ///< a frame is wanted, as of a viewpoint that changed since the current one began
     bool asked_ = false;              ///< the viewpoint changed since then, or a change was posted
-    std::shared_ptr<gi::StopRequest> refining_;
+    std::shared_ptr<gi::StopRequest> stop_; ///< of the frame that is rendered, if it may be given up
+    bool refines_ = false;                  ///< it is of a viewpoint at rest
+    struct Edit {
+        std::uint64_t number; ///< counted from 1
+        Change change;
+    };
+    std::deque<Edit> edits_;        ///< posted since the last frame but one
+    std::uint64_t count_edits_ = 0; ///< so far
     std::shared_ptr<LiveFrame const> newest_;
     bool resting_ = false;
     std::atomic<bool> quit_{false}, stopped_{false};
@@ -165,7 +176,8 @@ private:
     // Used only by the rendering thread
     Governor governor_;
     UpdateGovernor update_governor_;
-    int stored_ = 0; ///< stored axes in the last measured frame
+    int stored_ = 0;               ///< stored axes in the last measured frame
+    std::uint64_t made_edits_ = 0; ///< number of the last one that was applied or refused
     std::vector<Change> changes_;
     FrameCommand last_;
     Viewpoint last_look_;                         ///< of the last frame, before extrapolation

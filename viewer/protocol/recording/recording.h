@@ -41,7 +41,8 @@ struct RecordedFrame {
 
 /// A picture that people saw: of the newest frame then, perhaps drawn for newer poses.
 struct ShownFrame {
-    /// As the frame's, but with the poses, cameras and scene time that were shown, and display_s of the swap.
+    /// As the frame's, but with the poses, cameras and scene time that were shown, display_s of the swap, and for
+    /// changes the edits of objects and lights that the frame does not have yet.
     FrameCommand moment;
     double surfaces_scale = 0;               ///< side of drawn surfaces over that of the views; 0 = none
     std::optional<std::uint64_t> pixel_hash; ///< ShownViews::hash
