@@ -175,6 +175,10 @@ TEST(Settings, HaveLabelsInPlainWords)
     EXPECT_EQ(labels.at("exposure"), "Exposure, stops");
     EXPECT_EQ(labels.at("ao_radius"), "Ao radius, m");
     EXPECT_EQ(labels.at("play"), "Animation clips run");
+    EXPECT_EQ(labels.at("schedule"), "Schedule");
+    EXPECT_EQ(labels.at("radiance_cache"), "Radiance cache");
+    EXPECT_EQ(labels.at("reflections"), "Reflections");
+    EXPECT_EQ(labels.at("reuse"), "Frames that light is averaged over, 1 = none");
 }
 
 } // namespace

@@ -1,9 +1,11 @@
 #include "viewer/app/panel_contents.h"
 
 #include "gi/core/error.h"
+#include "viewer/engine/quality.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 namespace viewer {
@@ -19,21 +21,47 @@ void try_change(ViewState& s, Change const& c)
     }
 }
 
+/// Wrapped text beside the pointer, if the last item is under it.
+void explain(std::string const& text)
+{
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(std::min(28 * ImGui::GetFontSize(), 0.8f * ImGui::GetIO().DisplaySize.x));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+/// A button, beside the last one if there is room.
+bool next_button(char const* text)
+{
+    float const right = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(text).x +
+                        2 * ImGui::GetStyle().FramePadding.x;
+    if (right <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+    return ImGui::Button(text);
+}
+
+/// The label of the next control, which gets the width of the panel.
+void label(std::string const& text, std::string const& meaning)
+{
+    ImGui::TextWrapped("%s", text.c_str());
+    explain(meaning);
+    ImGui::SetNextItemWidth(-1);
+}
+
 void edit_setting(ViewState& s, SettingKey const& k)
 {
     nlohmann::json const value = get(s.settings(), k.key);
-    std::string const label = label_of(k), id = "##" + k.key;
-    bool const is_box = k.type == gi::OptionType::yes_or_no;
-    bool hovered = false;
-    if (!is_box) {
-        ImGui::TextUnformatted(label.c_str());
-        hovered = ImGui::IsItemHovered();
-        ImGui::SetNextItemWidth(-1);
-    }
-    if (is_box) {
+    std::string const id = "##" + k.key, meaning = fmt::format("{}\n\n{}: {}", k.meaning, k.key, k.values_text());
+    if (k.type == gi::OptionType::yes_or_no) {
         bool on = value.get<bool>();
-        if (ImGui::Checkbox((label + id).c_str(), &on)) try_change(s, {k.key, on});
-    } else if (k.type == gi::OptionType::word) {
+        if (ImGui::Checkbox(id.c_str(), &on)) try_change(s, {k.key, on});
+        explain(meaning);
+        ImGui::SameLine();
+        return label(label_of(k), meaning);
+    }
+    label(label_of(k), meaning);
+    if (k.type == gi::OptionType::word) {
         std::string const now = value.get<std::string>();
         if (ImGui::BeginCombo(id.c_str(), now.empty() ? "(none)" : now.c_str())) {
             for (std::string const& w : k.words)
@@ -52,63 +80,110 @@ void edit_setting(ViewState& s, SettingKey const& k)
                    : ImGui::InputFloat(id.c_str(), &v, 0, 0, "%.3f", ImGuiInputTextFlags_EnterReturnsTrue);
         if (moved) try_change(s, {k.key, double(v)});
     }
-    if (hovered || ImGui::IsItemHovered())
-        ImGui::SetTooltip("%s\n%s, %s", k.meaning.c_str(), k.key.c_str(), k.values_text().c_str());
+    explain(meaning);
 }
 
-/// Settings that the methods in use read, under the headings of their groups, the viewer's own first.
+void edit_quality(ViewState& s)
+{
+    std::string const meaning = fmt::format(
+        "fast: a picture for every movement; exact: what the method computes, without cache, reuse or "
+        "filter, finer and finer while nothing moves.\n\nIt sets what is under \"Time against error\", "
+        "and the radiance cache. {}: {}",
+        kQuality, fmt::join(quality_names(), ", "));
+    label("Quality, from fast to exact", meaning);
+    auto const found = quality_of(s.settings());
+    int step = found ? int(*found) : -1;
+    char const* const name = found ? quality_names()[*found].c_str() : "(set one by one)";
+    if (ImGui::SliderInt("##quality", &step, 0, int(quality_names().size()) - 1, name, ImGuiSliderFlags_NoInput))
+        try_change(s, {kQuality, quality_names()[std::size_t(step)]});
+    explain(meaning);
+}
+
+/// False for settings of the viewer that change nothing as things are.
+bool has_effect(ViewState const& s, std::string const& key)
+{
+    Settings const& now = s.settings();
+    bool const compares = !now.compare.empty(), two_views = s.frame && s.frame->command.views.size() > 1;
+    if (key == "view") return compares;
+    if (key == "split") return compares && now.view == "split";
+    if (key == "play" || key == "speed") return s.facts.moves;
+    if (key == "eye_distance" || key == "swap_eyes" || key == "share_eyes") return two_views;
+    if (key == "first_surfaces") return now.scale == 0;
+    if (key == "draw_surfaces") return now.reproject && !compares && !s.is_one_of_ranks;
+    if (key == "reproject") return !s.is_one_of_ranks;
+    return key != "updated_axes"; // which the viewer sets itself
+}
+
+bool is_shown(ViewState const& s, SettingKey const& k)
+{
+    Settings const& now = s.settings();
+    if (!k.is_offered()) return false;
+    if (k.option == nullptr) return has_effect(s, k.key);
+    if (k.option->unused && k.option->unused(now.render)) return false;
+    return k.option->read_by(now.method) || (!now.compare.empty() && k.option->read_by(now.compare));
+}
+
+/// Settings that the methods in use read and that have an effect: the method, then each group under its heading.
 void edit_settings(ViewState& s)
 {
-    auto const is_read = [&](SettingKey const& k) {
-        return k.is_offered() && (k.option == nullptr || k.option->read_by(s.settings().method) ||
-                                  k.option->read_by(s.settings().compare));
-    };
-    std::vector<std::string> groups{""};
-    for (SettingKey const& k : setting_keys())
-        if (is_read(k) && std::ranges::find(groups, k.group) == groups.end()) groups.push_back(k.group);
-    for (std::string const& group : groups)
-        if (ImGui::CollapsingHeader(group.empty() ? "Settings" : group.c_str()))
+    constexpr char const* kOfAll = "All methods";
+    auto const heading = [](SettingKey const& k) { return k.group.empty() ? kOfAll : k.group.c_str(); };
+    std::vector<std::string> headings;
+    for (SettingKey const& k : setting_keys()) {
+        if (k.key == "method")
+            edit_setting(s, k);
+        else if (is_shown(s, k) && std::ranges::find(headings, heading(k)) == headings.end())
+            headings.emplace_back(heading(k));
+    }
+    for (std::string const& h : headings)
+        if (ImGui::CollapsingHeader(h.c_str()))
             for (SettingKey const& k : setting_keys())
-                if (k.group == group && is_read(k)) edit_setting(s, k);
+                if (k.key != "method" && heading(k) == h && is_shown(s, k)) edit_setting(s, k);
 }
 
 void show_numbers(ViewState& s, double frames_per_s)
 {
-    ImGui::TextWrapped("%s: %u triangles", s.facts.scene.c_str(), s.facts.triangles);
     if (!s.frame) return;
     LiveFrame const& f = *s.frame;
     ViewCommand const& v = f.command.views[0];
-    ImGui::Text("%.1f Hz, frame %.1f ms", frames_per_s, 1e3 * (f.done_s - f.begun_s));
-    std::size_t const views = f.command.views.size();
-    ImGui::TextWrapped("%s%d x %d, %d path%s per pixel", views > 1 ? fmt::format("{} views of ", views).c_str() : "",
-                       v.width, v.height, f.command.paths, f.command.paths == 1 ? "" : "s");
     ImGui::ProgressBar(float(f.still_paths) / float(kConvergedPaths), ImVec2(-1, 0),
-                       fmt::format("{} paths while still", f.still_paths).c_str());
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("rests at %u", kConvergedPaths);
+                       fmt::format("{} paths", f.still_paths).c_str());
+    explain(fmt::format("paths per pixel since anything moved; at {} the picture is finished", kConvergedPaths));
     for (std::string const& line : frame_notes(s, f)) ImGui::TextWrapped("%s", line.c_str());
     if (s.live_error)
-        ImGui::Text("%s - %s: relMSE %.2e, FLIP %.4f", s.settings().method.c_str(), s.settings().compare.c_str(),
-                    s.live_error->relmse, s.live_error->flip);
-    if (!f.result.options.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", f.result.options.c_str());
+        ImGui::TextWrapped("%s - %s: relMSE %.2e, FLIP %.4f", s.settings().method.c_str(),
+                           s.settings().compare.c_str(), s.live_error->relmse, s.live_error->flip);
+    if (!ImGui::CollapsingHeader("This picture")) return;
+    ImGui::TextWrapped("%s: %u triangles", s.facts.scene.c_str(), s.facts.triangles);
+    ImGui::TextWrapped("%.1f pictures a second, this one took %.1f ms", frames_per_s,
+                       1e3 * (f.done_s - f.begun_s));
+    std::size_t const views = f.command.views.size();
+    ImGui::TextWrapped("%s%d x %d, %d path%s per pixel",
+                       views > 1 ? fmt::format("{} views of ", views).c_str() : "", v.width, v.height,
+                       f.command.paths, f.command.paths == 1 ? "" : "s");
     if (!f.schedule.empty()) ImGui::TextWrapped("%s", f.schedule.c_str());
-    if (ImGui::TreeNode("stages")) {
-        for (auto const& [stage, seconds] : f.result.stages_s)
-            ImGui::Text("%7.2f ms  %s", 1e3 * seconds, stage.c_str());
-        ImGui::TreePop();
-    }
+    if (!f.result.options.empty()) ImGui::TextWrapped("%s", f.result.options.c_str());
+    for (auto const& [stage, seconds] : f.result.stages_s)
+        ImGui::TextWrapped("%.2f ms  %s", 1e3 * seconds, stage.c_str());
 }
 
 void edit_material(ViewState& s, SceneFacts::Named& m, std::size_t index)
 {
     std::string const key = fmt::format("material.{}.", index);
     auto const numbers = [](gi::vec3 v) { return nlohmann::json{double(v.x), double(v.y), double(v.z)}; };
-    if (ImGui::ColorEdit3("base colour", &m.material.base_color.x, ImGuiColorEditFlags_Float))
+    ImGui::TextUnformatted("base colour");
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::ColorEdit3("##base colour", &m.material.base_color.x, ImGuiColorEditFlags_Float))
         try_change(s, {key + "base_color", numbers(m.material.base_color)});
-    if (ImGui::SliderFloat("roughness", &m.material.roughness, 0, 1))
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::SliderFloat("##roughness", &m.material.roughness, 0, 1, "roughness %.3f"))
         try_change(s, {key + "roughness", double(m.material.roughness)});
-    if (ImGui::SliderFloat("metallic", &m.material.metallic, 0, 1))
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::SliderFloat("##metallic", &m.material.metallic, 0, 1, "metallic %.3f"))
         try_change(s, {key + "metallic", double(m.material.metallic)});
-    if (ImGui::DragFloat3("emission", &m.material.emission.x, 0.1f, 0, 1e6f))
+    ImGui::TextUnformatted("emission");
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::DragFloat3("##emission", &m.material.emission.x, 0.1f, 0, 1e6f, "%.3g"))
         try_change(s, {key + "emission", numbers(m.material.emission)});
 }
 
@@ -116,8 +191,8 @@ void edit_scene(ViewState& s)
 {
     if (s.selection && ImGui::CollapsingHeader("Selected", ImGuiTreeNodeFlags_DefaultOpen)) {
         Selection const& chosen = *s.selection;
-        ImGui::Text("%s, material %s, %.3f m away", chosen.object.c_str(), chosen.material.c_str(),
-                    chosen.picked.distance_m);
+        ImGui::TextWrapped("%s, material %s, %.3f m away", chosen.object.c_str(), chosen.material.c_str(),
+                           chosen.picked.distance_m);
         if (chosen.picked.material < s.facts.materials.size())
             edit_material(s, s.facts.materials[chosen.picked.material], chosen.picked.material);
     }
@@ -125,23 +200,29 @@ void edit_scene(ViewState& s)
         for (std::size_t i = 0; i < s.facts.lights.size(); ++i) {
             ImGui::PushID(int(i));
             gi::vec3& v = s.facts.lights[i].intensity;
-            if (ImGui::DragFloat3(fmt::format("{}", i).c_str(), &v.x, 0.1f, 0, 1e9f))
+            ImGui::Text("intensity of light %zu", i);
+            ImGui::SetNextItemWidth(-1);
+            if (ImGui::DragFloat3("##intensity", &v.x, 0.1f, 0, 1e9f, "%.3g"))
                 try_change(s, {fmt::format("light.{}.intensity", i), {double(v.x), double(v.y), double(v.z)}});
             ImGui::PopID();
         }
     if (!s.facts.materials.empty() && ImGui::CollapsingHeader("Materials"))
         for (std::size_t i = 0; i < s.facts.materials.size(); ++i) {
             ImGui::PushID(int(i));
-            if (ImGui::TreeNode(s.facts.materials[i].name.c_str())) {
+            bool const open = ImGui::TreeNode(s.facts.materials[i].name.c_str());
+            explain(s.facts.materials[i].name);
+            if (open) {
                 edit_material(s, s.facts.materials[i], i);
                 ImGui::TreePop();
             }
             ImGui::PopID();
         }
     if (s.facts.has_environment && ImGui::CollapsingHeader("Environment")) {
-        if (ImGui::SliderAngle("rotation", &s.facts.environment_rotation_rad))
+        ImGui::SetNextItemWidth(-1);
+        if (ImGui::SliderAngle("##rotation", &s.facts.environment_rotation_rad, -360, 360, "rotation %.0f deg"))
             try_change(s, {"environment.rotation", double(s.facts.environment_rotation_rad)});
-        if (ImGui::DragFloat("scale", &s.facts.environment_scale, 0.01f, 0, 1e6f))
+        ImGui::SetNextItemWidth(-1);
+        if (ImGui::DragFloat("##scale", &s.facts.environment_scale, 0.01f, 0, 1e6f, "scale %.3f"))
             try_change(s, {"environment.scale", double(s.facts.environment_scale)});
     }
 }
@@ -169,29 +250,28 @@ std::vector<std::string> frame_notes(ViewState const& s, LiveFrame const& f)
     return notes;
 }
 
-void fill_panel(ViewState& s, double frames_per_s)
+void fill_panel(ViewState& s, double frames_per_s, PanelPlace place)
 {
-    ImGui::SetNextWindowPos(ImVec2(8, 8), ImGuiCond_FirstUseEver);
-    float const em = ImGui::GetFontSize();
-    ImVec2 const screen = ImGui::GetIO().DisplaySize;
-    constexpr float kShare = 0.35f; // of a small window's width, so that the picture is seen beside it
-    ImGui::SetNextWindowSize(ImVec2(std::min(24 * em, kShare * screen.x), std::min(34 * em, screen.y - 16)),
-                             ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("Lightwell  (F1 hides this)")) {
-        show_numbers(s, frames_per_s);
+    bool const over_picture = place == PanelPlace::over_picture;
+    if (over_picture) {
+        constexpr float kShare = 0.33f, kMargin = 8, kUsual_em = 22;
+        ImVec2 const screen = ImGui::GetIO().DisplaySize;
+        float const width = std::min(kUsual_em * ImGui::GetFontSize(), kShare * screen.x);
+        ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), ImGuiCond_FirstUseEver);
+        ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, screen.y - 2 * kMargin));
+    }
+    if (ImGui::Begin("Lightwell", nullptr, over_picture ? ImGuiWindowFlags_AlwaysAutoResize : 0)) {
         if (!s.message.empty()) ImGui::TextWrapped("%s", s.message.c_str());
+        edit_quality(s);
+        show_numbers(s, frames_per_s);
         if (ImGui::Button("open scene")) s.open_dialog.toggle(s.facts.scene);
-        ImGui::SameLine();
-        if (ImGui::Button("help")) s.shows_help = !s.shows_help;
-        if (ImGui::Button("screenshot")) s.wants_screenshot = s.own_screenshot = true;
-        ImGui::SameLine();
-        if (ImGui::Button("first camera")) s.navigation.go_to(s.first_camera.world_from_camera);
-        if (ImGui::Button(name_of(s.navigation.mode())))
+        if (next_button("help")) s.shows_help = !s.shows_help;
+        if (next_button("screenshot")) s.wants_screenshot = s.own_screenshot = true;
+        if (next_button("first camera")) s.navigation.go_to(s.first_camera.world_from_camera);
+        if (next_button(fmt::format("move: {}", name_of(s.navigation.mode())).c_str()))
             s.navigation.set_mode(NavigationMode((int(s.navigation.mode()) + 1) % 3));
         edit_settings(s);
-        ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
         edit_scene(s);
-        ImGui::PopItemWidth();
     }
     ImGui::End();
 }

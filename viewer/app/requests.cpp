@@ -4,6 +4,7 @@
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
 #include "viewer/engine/picture_margin.h"
+#include "viewer/engine/quality.h"
 
 #include <algorithm>
 #include <array>
@@ -32,13 +33,27 @@ void check_within(char const* what, double value, double limit, char const* unit
                              fmt::format("the range is {:g} to {:g} {}", -limit, limit, unit), "give less");
 }
 
+/// True for a request to set what is no setting of the viewer.
+bool edits_scene(RemoteRequest const& r)
+{
+    std::string const key = r.arguments.at("key").get<std::string>();
+    return key != kQuality && !is_setting(key);
+}
+
+Json value_of(std::string const& key, Settings const& settings)
+{
+    if (key != kQuality) return get(settings, key);
+    auto const step = quality_of(settings);
+    return step ? Json(quality_names()[*step]) : Json();
+}
+
 } // namespace
 
 bool Requests::waits(RemoteRequest const& r) const
 {
     static std::array const free{"ping", "stats", "get", "quit", "load", "session"};
     static std::array const of_scene{"set", "pick", "screenshot", "seek"};
-    if (r.what == "set" && is_setting(r.arguments.at("key").get<std::string>())) return false;
+    if (r.what == "set" && !edits_scene(r)) return false;
     if (state_.facts.scene.empty()) return std::ranges::find(free, r.what) == free.end();
     return loading_ > 0 && std::ranges::find(of_scene, r.what) != of_scene.end();
 }
@@ -73,7 +88,8 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         return Json::object();
     }
     if (r.what == "camera") return camera(r);
-    if (r.what == "get") return Json{{"value", get(state_.settings(), r.arguments.at("key").get<std::string>())}};
+    if (r.what == "get")
+        return Json{{"value", value_of(r.arguments.at("key").get<std::string>(), state_.settings())}};
     if (r.what == "play" || r.what == "pause") {
         if (r.has("speed")) state_.change({"speed", r.arguments.at("speed")});
         state_.change({"play", r.what == "play"});
@@ -91,7 +107,7 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         load(r);
     } else if (r.what == "set") {
         state_.change({r.arguments.at("key").get<std::string>(), r.arguments.at("value")}, done);
-        if (is_setting(r.arguments.at("key").get<std::string>())) return std::nullopt; // answered already
+        if (!edits_scene(r)) return std::nullopt; // answered already
     } else if (r.what == "screenshot") {
         std::string const file = r.arguments.at("file").get<std::string>();
         if (!file.ends_with(".png") && !file.ends_with(".exr"))

@@ -153,14 +153,14 @@ private:
             std::vector<InputEvent> events = shown_.windows[w]->window.take_events();
             if (w == 0) gamepads_.poll(events);
             if (panel_ && w == 0 && uses_panel()) panel_->claim(events);
-            if (!events.empty()) dirty_ = true;
+            if (!events.empty()) dirty_ = 2; // what ImGui folds, it shows one picture later
             for (InputEvent const& e : events) {
                 core_.controls.take(e, height_px());
                 if (e.kind == InputKind::drop && !follows()) state_.open_scene(e.text);
             }
         }
         for (CommandEvent const& c : core_.controls.commands()) {
-            dirty_ = true;
+            dirty_ = std::max(dirty_, 1);
             core_.obey(c.command);
             if (c.command == Command::select) select({c.x, c.y});
             if (c.command == Command::drag) drag({c.x, c.y});
@@ -194,7 +194,7 @@ private:
         state_.pick(glm::mod(at_px, px) / px, aspect(), [this](std::optional<Selection> const& found) {
             state_.selection = found;
             if (found) state_.navigation.set_pivot(found->picked.position);
-            dirty_ = true;
+            dirty_ = std::max(dirty_, 1);
         });
     }
 
@@ -298,7 +298,7 @@ private:
         in.up += by_wands.up;
         in.forward += by_wands.forward;
         in.turn_right_rad += by_wands.turn_right_rad;
-        if (wands_->wants_picture(state_.clock.now_s())) dirty_ = true;
+        if (wands_->wants_picture(state_.clock.now_s())) dirty_ = std::max(dirty_, 1);
     }
 
     /// Now, as trackers count.
@@ -348,7 +348,7 @@ private:
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
         bool const messages = has_messages();
         bool const tells = messages != had_messages_ || (messages && since_s > 1 / kMessages_Hz);
-        if (fresh || moved || draws || flickers || dirty_ || resized || tells || state_.wants_screenshot)
+        if (fresh || moved || draws || flickers || dirty_ > 0 || resized || tells || state_.wants_screenshot)
             present(newest, fresh);
     }
 
@@ -372,7 +372,7 @@ private:
 
     void present(std::shared_ptr<LiveFrame const> const& newest, bool fresh)
     {
-        dirty_ = false;
+        dirty_ = std::max(0, dirty_ - 1);
         state_.drawing = true;
         auto const p = std::make_shared<Presentation>();
         p->frame = newest;
@@ -432,7 +432,7 @@ private:
         if (!w.panel) return;
         w.panel->begin();
         ImGui::GetIO().FontGlobalScale = float(state_.settings().font_scale);
-        if (p.panel && w.panel.get() == panel_) fill_panel(state_, frames_per_s_);
+        if (p.panel && w.panel.get() == panel_) fill_panel(state_, frames_per_s_, PanelPlace::over_picture);
         if (state_.loading)
             fill_loading(*state_.loading, p.frame ? LoadingPlace::over_picture : LoadingPlace::alone);
         else if (state_.building)
@@ -597,7 +597,8 @@ private:
     ErrorMeter meter_;
     Anticipation anticipation_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
-    bool dirty_ = true, fallback_told_ = false, no_surfaces_told_ = false, had_messages_ = false;
+    int dirty_ = 1; ///< pictures that are to be shown although nothing else changed
+    bool fallback_told_ = false, no_surfaces_told_ = false, had_messages_ = false;
     std::string message_; ///< the last message, shown until message_until_s_
     double message_until_s_ = 0;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;

@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "gi/kernel/device.h"
 #include "viewer/displays/stereo_mode.h"
+#include "viewer/engine/quality.h"
 
 namespace viewer {
 
@@ -31,6 +32,11 @@ SceneFacts facts_of(RenderSession const& s)
 
 void ViewState::change(Change const& c, std::function<void(std::string const&)> done)
 {
+    if (c.key == kQuality) {
+        for (Change const& part : changes_of(c)) change(part);
+        if (done) done({});
+        return;
+    }
     if (is_setting(c.key)) {
         check_offered(settings_, c.key);
         Settings changed = settings_;

@@ -87,7 +87,7 @@ struct ViewState {
     /// The settings of the viewer, which only change(), expose() and follow() change. The rendering thread gets every
     /// change in order; a frame says which settings it was rendered with.
     Settings const& settings() const { return settings_; }
-    /// Applies a setting to the display at once and to the rendering with the next frame. Throws InputError if a
+    /// Applies a setting, or those of kQuality, to the display at once and to the rendering with the next frame. Throws InputError if a
     /// setting is invalid. Errors in edits of the scene are passed to `done` later, through the inbox.
     void change(Change const& change, std::function<void(std::string const&)> done = {});
     /// Automatic exposure: changes the exposure and goes on.

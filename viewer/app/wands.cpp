@@ -166,7 +166,7 @@ void Wands::prepare(ViewState& state, double frames_per_s, double now_s)
     filled_ = false;
     if (!menu_ || !panel_ || panel_->size_px() != menu_->size_px) return; // draw makes the panel first
     panel_->begin(pointer_px_, pressed_, std::exchange(scroll_, 0), now_s - prepared_s_);
-    fill_panel(state, frames_per_s);
+    fill_panel(state, frames_per_s, PanelPlace::alone);
     panel_->finish();
     filled_ = true;
     prepared_pointer_px_ = pointer_px_;

@@ -51,11 +51,12 @@ SettingKey of_renders(gi::RenderOption const& o)
 std::vector<SettingKey> make_keys()
 {
     using S = Settings;
-    std::vector<SettingKey> keys{own("method", gi::method_names(), "light transport", &S::method),
+    std::vector<SettingKey> keys{own("method", gi::method_names(), "method of light transport", &S::method),
                                  own("compare", method_names_or_none(),
-                                     "second method, shown beside the first for comparison; empty = none",
+                                     "second method to compare with; shown beside the first, empty = none",
                                      &S::compare)};
     keys[0].restarts = true;
+    keys[1].group = "Comparison";
     for (SettingKey& k : keys) { // also the methods of earlier versions
         k.set = [member = &k == &keys[0] ? &S::method : &S::compare](S& s, std::string const& text,
                                                                      std::string const&) {
@@ -65,47 +66,53 @@ std::vector<SettingKey> make_keys()
     }
     for (gi::RenderOption const& o : gi::render_options())
         if (o.live) keys.push_back(of_renders(o));
-    keys.insert(
-        keys.end(),
+    auto const add = [&](char const* group, std::initializer_list<SettingKey> more) {
+        for (SettingKey const& k : more) keys.emplace_back(k).group = group;
+    };
+    add("Time against error",
         {own("updated-axes,followed", {0, 64},
              "stored axes per bounce updated each frame for dynamic geometry, 0 = all; set by the schedule auto",
              &S::updated_axes),
          own("reuse", {1, 256},
-             "frames that temporal reuse averages over, 1 = none; up to 8 times as many where light does not "
-             "change",
+             "frames that light is averaged over, 1 = none; temporal reuse, up to 8 times as many where light "
+             "does "
+             "not change",
              &S::reuse),
          own("denoise", gi::filter_names(), "filter that removes noise", &S::denoise),
          own("first-surfaces", {},
-             "while things move, show surfaces, textures and what mirrors show at full size, and only light at a "
+             "surfaces at full size while things move; textures and what mirrors show too, and only light at a "
              "smaller one",
              &S::first_surfaces),
-         own("share-eyes", {}, "each eye may reuse light computed for the other eye", &S::share_eyes),
-         own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),
-         own("auto-exposure", {"off", "on", "hold"},
-             "exposure follows what is shown: off, on, or held as it is now", &S::auto_exposure),
-         own("tone", {"srgb", "filmic"}, "tone curve", &S::tone),
-         own("rate", {0.1, 1000}, "target frame rate, Hz", &S::rate_hz),
-         own("paths", {0, 65536}, "paths per pixel and frame, 0 = as the frame rate allows", &S::paths),
-         own("scale", {0, 1},
-             "side of the picture relative to the window's, 0 = as large as the frame rate allows", &S::scale),
-         own("play", {}, "animation clips run", &S::play),
-         own("speed", {-100, 100}, "playback speed of animation clips, 1 = real time", &S::speed),
-         own("eye-distance", {0, 1}, "distance between the pupils, m", &S::eye_distance_m),
-         own("stereo", stereo_names(), "how the two eyes' pictures are shown in a window", &S::stereo),
-         own("swap-eyes", {}, "exchange the left and right eye", &S::swap_eyes),
-         own("view", {"picture", "split", "flicker", "difference"}, "how two methods are shown", &S::view),
-         own("split", {0, 1}, "position of the split, as a share of the picture's width", &S::split),
-         own("predict", {}, "render pictures for the moment in which they will be seen, by the motion so far",
-             &S::predict),
-         own("reproject", {}, "reproject the last picture to the current head pose", &S::reproject),
+         own("share-eyes", {}, "each eye may reuse light of the other", &S::share_eyes)});
+    add("Exposure", {own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),
+                     own("auto-exposure", {"off", "on", "hold"},
+                         "exposure follows what is shown: off, on, or held as it is now", &S::auto_exposure),
+                     own("tone", {"srgb", "filmic"}, "tone curve", &S::tone)});
+    add("Time against error",
+        {own("rate", {0.1, 1000}, "target frame rate, Hz", &S::rate_hz),
+         own("paths", {0, 65536}, "paths per pixel and frame, 0 = as the rate allows", &S::paths),
+         own("scale", {0, 1}, "size of the picture, 0 = as the rate allows; its side relative to the window's",
+             &S::scale)});
+    add("Motion", {own("play", {}, "animation clips run", &S::play),
+                   own("speed", {-100, 100}, "playback speed of animation clips, 1 = real time", &S::speed)});
+    add("Stereo", {own("eye-distance", {0, 1}, "distance between the pupils, m", &S::eye_distance_m),
+                   own("stereo", stereo_names(), "how a window shows two eyes' pictures", &S::stereo),
+                   own("swap-eyes", {}, "exchange the left and right eye", &S::swap_eyes)});
+    add("Comparison",
+        {own("view", {"picture", "split", "flicker", "difference"}, "how two methods are shown", &S::view),
+         own("split", {0, 1}, "position of the split, as a share of the picture's width", &S::split)});
+    add("Time against error",
+        {own("predict", {}, "render for the moment of being seen; by the motion so far", &S::predict),
+         own("reproject", {}, "move the last picture along with the head; reproject it to the current head pose",
+             &S::reproject),
          own("draw_surfaces", {},
-             "draw surfaces for the current head pose, with the light of the last picture (windows of this "
-             "program do unless told otherwise)",
+             "draw surfaces for the newest pose; with the light of the last picture (windows of this program do "
+             "unless told otherwise)",
              &S::draw_surfaces),
-         own("refine", {}, "keep adding paths while nothing moves", &S::refine),
-         own("panel", {}, "show the panel", &S::panel),
-         own("font-scale", {0.5, 4}, "size of letters in the panel and of messages, 1 = usual on this monitor",
-             &S::font_scale)});
+         own("refine", {}, "keep adding paths while nothing moves", &S::refine)});
+    add("Panel", {own("panel", {}, "show the panel", &S::panel),
+                  own("font-scale", {0.5, 4},
+                      "size of letters in the panel and of messages, 1 = usual on this monitor", &S::font_scale)});
     return keys;
 }
 
@@ -157,19 +164,19 @@ std::span<SettingKey const> setting_keys()
 
 std::string label_of(SettingKey const& key)
 {
-    constexpr std::size_t kMost = 46, kMethodName = 16, kUnit = 4;
+    constexpr std::size_t kMost = 48, kUnit = 4;
     std::string text = key.meaning;
-    if (std::size_t const colon = text.find(": "); colon != std::string::npos && colon < kMethodName)
-        text = text.substr(colon + 2); // "slhb: ..."
-    text = text.substr(0, text.find_first_of(";:("));
-    if (text.size() < kUnit) { // "m; where ..."
+    std::string const first = text.substr(0, text.find_first_of(",:"));
+    if (std::ranges::any_of(gi::methods(), [&](gi::Method const& m) { return m.name == first; }))
+        text = text.substr(text.find(": ") + 2); // "vpl_ao, vpl_dao: m"
+    for (char const* const end : {"; ", ": ", "("}) text = text.substr(0, text.find(end));
+    bool const is_unit = text.size() < kUnit; // "m; where ..."
+    auto const goes_on = [&](char const* word) { return text.starts_with(word); };
+    bool const is_value = std::ranges::find(key.words, text) != key.words.end(); // "stored: one set of axes; ..."
+    if (is_unit || is_value || text.size() > kMost || goes_on("of ") || goes_on("from ") || goes_on("along ")) {
         std::string name = key.key;
         std::ranges::replace(name, '_', ' ');
-        text = name + ", " + text;
-    }
-    if (text.size() > kMost) {
-        std::size_t const comma = text.rfind(", ", kMost), blank = text.rfind(' ', kMost);
-        text = text.substr(0, comma != std::string::npos ? comma : blank) + " ...";
+        text = is_unit ? name + ", " + text : name;
     }
     while (!text.empty() && text.back() == ' ') text.pop_back();
     if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));

@@ -58,7 +58,7 @@ Settings first_settings(MadeFor made_for);
 Change current(Change change, MadeFor made_for);
 
 struct SettingKey : gi::Option<Settings> {
-    std::string group;     ///< heading in the panel; empty for those of the viewer itself and of all methods
+    std::string group;     ///< heading in the panel; empty for the method and what all methods have
     bool restarts = false; ///< a change restarts the methods
     gi::RenderOption const* option = nullptr; ///< of which it is the setting
 
@@ -66,7 +66,8 @@ struct SettingKey : gi::Option<Settings> {
     bool is_offered() const { return option == nullptr || option->replaced_by.empty(); }
 };
 std::span<SettingKey const> setting_keys();
-/// The beginning of its meaning, with the unit, as the label of a control: "Target frame rate, Hz".
+/// The beginning of its meaning, with the unit, as the label of a control: "Target frame rate, Hz"; its name if that
+/// is too long, or goes on from the name.
 std::string label_of(SettingKey const& key);
 bool is_setting(std::string const& key);
 /// The current name of a key: older recordings and scripts may use a former one.

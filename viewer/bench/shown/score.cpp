@@ -5,6 +5,7 @@
 #include "gi/image_io/picture_file.h"
 #include "gi/metrics/flip.h"
 #include "gi/scene/model/projection.h"
+#include "viewer/engine/quality.h"
 #include "viewer/engine/scene_edits.h"
 
 #include <algorithm>
@@ -95,7 +96,7 @@ ShownErrors score(ShownOptions const& o, std::span<PathChange const> changes, Re
     gi::Report report;
     RenderSession exact(scenes.load, o.scene.settings.threads, report);
     if (scenes.drive) exact.drive_bodies(scenes.drive);
-    for (std::string const& s : o.settings) exact.apply(parse_change(s));
+    for (Change const& c : parse_changes(o.settings)) exact.apply(c);
     for (Change const& c : std::vector<Change>{{"method", "reference"},
                                                {"denoise", o.truth_filter},
                                                {"reuse", 1},

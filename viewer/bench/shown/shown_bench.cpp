@@ -10,6 +10,7 @@
 #include "viewer/bench/shown/head_path.h"
 #include "viewer/bench/shown/score.h"
 #include "viewer/devices/gl/context.h"
+#include "viewer/engine/quality.h"
 #include "viewer/offline/load_world.h"
 #include "viewer/report/table_file.h"
 
@@ -294,7 +295,7 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
     RenderSession session(scenes.load, o.scene.settings.threads, report);
     session.apply({"draw_surfaces", true});
     if (scenes.drive) session.drive_bodies(scenes.drive);
-    for (std::string const& s : o.settings) session.apply(parse_change(s));
+    for (Change const& c : parse_changes(o.settings)) session.apply(c);
     session.apply({"scene", o.scene.scene});
     CameraChoice const choice = camera_choice(o.scene);
     ChosenCamera const chosen = choose_camera(session.world(), choice);

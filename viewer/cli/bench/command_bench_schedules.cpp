@@ -7,6 +7,7 @@
 #include "viewer/bench/bench_record.h"
 #include "viewer/bench/bench_session.h"
 #include "viewer/cli/commands.h"
+#include "viewer/engine/quality.h"
 #include "viewer/offline/choose_camera.h"
 #include "viewer/report/table_file.h"
 
@@ -56,8 +57,7 @@ class Measurement {
 public:
     Measurement(SchedulesOptions const& o, std::string const& scene) : o_(o), scene_(scene)
     {
-        std::vector<Change> settings;
-        for (std::string const& text : o.settings) settings.push_back(parse_change(text));
+        std::vector<Change> const settings = parse_changes(o.settings);
         for (std::string const& schedule : o.schedules)
             for (int const paths : o.paths) {
                 Variant& v = variants_.emplace_back(Variant{schedule, paths});

@@ -8,6 +8,7 @@
 #include "viewer/bench/bench_record.h"
 #include "viewer/bench/bench_session.h"
 #include "viewer/cli/commands.h"
+#include "viewer/engine/quality.h"
 #include "viewer/offline/choose_camera.h"
 #include "viewer/report/table_file.h"
 
@@ -122,8 +123,7 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     variants.push_back(
         {"one wall", [=](gi::Camera const& c) { return std::vector<ViewCommand>{walls(c, h).back()}; }, true});
     variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, true});
-    std::vector<Change> settings;
-    for (std::string const& text : o.settings) settings.push_back(parse_change(text));
+    std::vector<Change> const settings = parse_changes(o.settings);
     for (ViewVariant& v : variants) {
         v.report = std::make_unique<gi::Report>();
         v.session = bench_session(scene, settings, *v.report);

@@ -20,6 +20,7 @@
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
 #include "viewer/displays/display_file.h"
+#include "viewer/engine/quality.h"
 #include "viewer/offline/load_world.h"
 #include "viewer/offline/rank_options.h"
 #include "viewer/offline/render_options.h"
@@ -100,7 +101,7 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
         if (!chosen.note.empty()) say(chosen.note);
         return chosen.camera;
     };
-    for (std::string const& s : a.settings) o.settings.push_back(parse_change(s));
+    o.settings = parse_changes(a.settings);
     auto const size = parse_size(a.size.empty() ? "1280x720" : a.size);
     o.size_px = {size.first, size.second};
     o.monitors = a.fullscreen;
@@ -275,7 +276,7 @@ int run_replay(ViewArguments const& a)
     InterruptGuard const guard(stop);
     ReplayOptions o;
     o.file = a.replay;
-    for (std::string const& s : a.settings) o.settings.push_back(parse_change(s));
+    o.settings = parse_changes(a.settings);
     o.paths = a.paths;
     if (!a.size.empty()) o.size = parse_size(a.size);
     o.out = a.out;
