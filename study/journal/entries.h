@@ -52,6 +52,11 @@ struct StimulusShown {
     /// Of its first frame: brighter than the display or darker than its black.
     std::optional<int> clipped_pixels{};
     std::optional<double> width_deg{}, height_deg{};
+    // With `frames: shown` only:
+    std::string frames_kind{};         ///< "shown"; empty: exact
+    std::optional<int> frames_drawn{}; ///< of frames_shown: its surfaces were drawn for a newer pose
+    /// At the onset: since the pose for which the light of its first frame was rendered.
+    std::optional<double> light_age_ms{};
 };
 
 /// A sound that a cue of the trial played, or should have played.

@@ -236,6 +236,18 @@ std::vector<Column> physical_columns()
             {"clipped_pixels", "Pixels with a channel beyond the display's peak, or below its black but not 0"}};
 }
 
+std::vector<std::pair<std::string, std::string>> const kFrames{
+    {"exact", "finished pictures alone"},
+    {"shown", "between finished pictures, surfaces drawn for the newest pose with the light of earlier ones"}};
+
+std::vector<Column> light_columns()
+{
+    return {{"frames_kind", "Frames that could be shown", "", kFrames},
+            {"frames_drawn", "Frames whose surfaces were drawn for a newer pose than that of their light"},
+            {"light_age_ms", "At the onset, since the pose for which the light of the first frame was rendered",
+             "ms"}};
+}
+
 } // namespace
 
 std::vector<std::string> factor_columns(Script const& script)
@@ -314,7 +326,10 @@ std::vector<std::string> factor_columns(Script const& script)
                                              "height_deg",
                                              "mean_cd_m2",
                                              "peak_cd_m2",
-                                             "clipped_pixels"};
+                                             "clipped_pixels",
+                                             "frames_kind",
+                                             "frames_drawn",
+                                             "light_age_ms"};
     std::vector<std::string> names;
     for (Factor const& f : script.factors) names.push_back(taken.count(f.name) ? "factor_" + f.name : f.name);
     return names;
@@ -357,11 +372,13 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
     for (std::size_t f = 0; f < names.size(); ++f)
         table.columns.push_back(
             {names[f], "Level of the factor", "", {}, "", hed_of_levels(script.factors[f], names[f])});
-    bool const is_physical = std::any_of(rows.begin(), rows.end(), [&](TrialRow const& row) {
-        return row.step->block == block &&
-               std::any_of(row.done->shown.begin(), row.done->shown.end(),
-                           [](StimulusShown const& s) { return s.clipped_pixels || s.width_deg; });
-    });
+    auto const any_shown = [&](auto const& has) {
+        return std::any_of(rows.begin(), rows.end(), [&](TrialRow const& row) {
+            return row.step->block == block && std::ranges::any_of(row.done->shown, has);
+        });
+    };
+    bool const is_physical = any_shown([](StimulusShown const&s) { return s.clipped_pixels || s.width_deg; }),
+               has_light = any_shown([](StimulusShown const&s) { return !s.frames_kind.empty(); });
     std::vector<Column> const more{{"level", "Level of the varied setting, for the varied stimulus"},
                                    {"onset_method", "How the onset was timed", "", kOnsetMethods},
                                    {"onset_uncertainty_ms", "Uncertainty (plus or minus) of the onset", "ms"},
@@ -374,6 +391,8 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
     table.columns.insert(table.columns.end(), more.begin(), more.end());
     if (is_physical)
         for (Column const& column : physical_columns()) table.columns.push_back(column);
+    if (has_light)
+        for (Column const& column : light_columns()) table.columns.push_back(column);
     for (TrialRow const& row : rows) {
         if (row.step->block != block) continue;
         int place = 0;
@@ -404,6 +423,11 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
                 for (auto const& v : {s.width_deg, s.height_deg, s.mean_cd_m2, s.peak_cd_m2})
                     cells.push_back(cell(v));
                 cells.push_back(s.clipped_pixels ? cell(*s.clipped_pixels) : cell(""));
+            }
+            if (has_light) {
+                cells.push_back(s.frames_kind.empty() ? "exact" : cell(s.frames_kind));
+                cells.push_back(s.frames_drawn ? cell(*s.frames_drawn) : cell(""));
+                cells.push_back(cell(s.light_age_ms));
             }
             table.rows.push_back(std::move(cells));
         }

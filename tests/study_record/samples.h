@@ -21,6 +21,9 @@ inline std::vector<JournalEntry> entries_of_every_kind()
     trial.attempt = 2;
     trial.shown = {shown, shown};
     trial.shown[1].letter = 'r';
+    trial.shown[1].frames_kind = "shown";
+    trial.shown[1].frames_drawn = 350;
+    trial.shown[1].light_age_ms = 81.25;
     trial.level = 362.03867196751236;
     trial.response = "first";
     trial.value = -0.0;

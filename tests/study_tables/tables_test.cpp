@@ -94,6 +94,28 @@ TEST(Events, HaveARowPerStimulusBesideThem)
                                         "swap_finish", "8.4", "120", "120", "0", "4", "8", "abc"}));
 }
 
+/// Only where frames were shown that are not finished pictures: other tables are as they were.
+TEST(Events, SayWhichFramesWereShownAndHowOldTheirLightWas)
+{
+    Script const s = script();
+    RecordedSession r = session(s);
+    Table const exact = stimuli_table(s, trial_rows(s, r), 0);
+    TrialDone& last = std::get<TrialDone>(r.record.entries.at(r.record.entries.size() - 2));
+    last.shown[1].frames_kind = "shown";
+    last.shown[1].frames_drawn = 117;
+    last.shown[1].light_age_ms = 81.25;
+    Table const t = stimuli_table(s, trial_rows(s, r), 0);
+    ASSERT_EQ(t.columns.size(), exact.columns.size() + 3);
+    std::vector<std::string> names;
+    for (std::size_t k = exact.columns.size(); k < t.columns.size(); ++k) names.push_back(t.columns[k].name);
+    EXPECT_EQ(names, (std::vector<std::string>{"frames_kind", "frames_drawn", "light_age_ms"}));
+    auto const end_of = [](std::vector<std::string> const& row) {
+        return std::vector<std::string>(row.end() - 3, row.end());
+    };
+    EXPECT_EQ(end_of(t.rows.at(4)), (std::vector<std::string>{"exact", "n/a", "n/a"}));
+    EXPECT_EQ(end_of(t.rows.at(5)), (std::vector<std::string>{"shown", "117", "81.25"}));
+}
+
 TEST(Questionnaires, HaveAnswersAndScores)
 {
     Script const s = script();

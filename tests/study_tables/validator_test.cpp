@@ -51,6 +51,9 @@ void write_dataset(fs::path const& folder, StudyExample const& example, int part
                 shown.peak_cd_m2 = 80;
                 shown.clipped_pixels = 3;
                 shown.width_deg = shown.height_deg = 4;
+                shown.frames_kind = "shown";
+                shown.frames_drawn = 110;
+                shown.light_age_ms = 80;
             }
             if (!b.is_sequential) // they appear together
                 for (StimulusShown& shown : done.shown) shown.onset_s = done.shown[0].onset_s;

@@ -69,6 +69,41 @@ TEST_F(Monado, SessionInAHeadset)
         }
 }
 
+/// A camera that moves by itself, so that pictures are old whatever the head does.
+TEST_F(Monado, ShownFramesInAHeadset)
+{
+    gi::test::Xvfb const server(700, 500);
+    if (!server.problem().empty()) GTEST_SKIP() << "SKIPPED: " << server.problem();
+    start_service();
+    std::string text = kScriptText;
+    for (auto const& [from, to] :
+         {std::pair<std::string, std::string>{"{bounces: [0, 2]}", "{frames: [exact, shown]}"},
+          {"factor: bounces", "factor: frames"},
+          {"scale: 0.5", "camera: \"path:orbit\""},
+          {"stimulus_ms: 500", "stimulus_ms: 1000, timeout_ms: 1100"},
+          {"repeats: 2", "repeats: 1"}})
+        text.replace(text.find(from), from.size(), to);
+    std::ofstream(folder / "x.yaml") << text;
+    std::vector<std::string> call{kScript, "client", "--dir", runtime_folder(), "--", LIGHTWELL_PROGRAM};
+    for (std::string const& a :
+         words(fmt::format("study run {} --participant 1 --dir {} --size 320x240 --font 12 --hmd",
+                           (folder / "x.yaml").string(), (folder / "data").string())))
+        call.push_back(a);
+    Child session(call, folder.path(), "session");
+    EXPECT_EQ(session.wait(Seconds(120)), 0) << session.out() << session.err();
+    int shown = 0;
+    for (study::JournalEntry const& e :
+         study::read_journal(folder / "data/sub-P001/ses-01/beh/journal.jsonl").record.entries)
+        if (auto const* const t = std::get_if<study::TrialDone>(&e))
+            for (study::StimulusShown const& s : t->shown) {
+                if (s.frames_kind.empty()) continue;
+                ++shown;
+                EXPECT_GT(s.frames_drawn.value_or(0), s.frames_shown / 2);
+                EXPECT_GT(s.light_age_ms.value_or(0), 0);
+            }
+    EXPECT_EQ(shown, 1) << session.err();
+}
+
 /// The session of kScriptText, without answers. @return its process
 Child gaze_session(std::filesystem::path const& folder, std::filesystem::path const& runtime,
                    std::vector<std::string> const& environment, std::string const& more = "--hmd")

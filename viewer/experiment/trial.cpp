@@ -77,6 +77,18 @@ TrialPresenter::Trial::Trial(TrialPresenter& presenter, study::TrialRequest cons
     }
 }
 
+void TrialPresenter::Trial::fill(ScreenPane& pane, LoadedStimulus const& k) const
+{
+    pane.frame = k.source->newest();
+    pane.stereo = k.stereo;
+    pane.light = k.light;
+    if (pane.frame) pane.moment = k.source->moment(*pane.frame);
+    pane.stimulus = std::size_t(&k - known_.data());
+    PlacedPixels const placed = placed_within(k.settings.physical, p_.model(), pane.corner_px, pane.size_px);
+    pane.corner_px = placed.corner_px;
+    pane.size_px = placed.size_px;
+}
+
 ScreenContent TrialPresenter::Trial::content(std::string const& letters)
 {
     ScreenContent c;
@@ -84,16 +96,7 @@ ScreenContent TrialPresenter::Trial::content(std::string const& letters)
     c.panes = panes_for(letters.size(), px, kTextLines * p_.options_.screen.font_px);
     for (std::size_t i = 0; i < letters.size(); ++i)
         for (LoadedStimulus const& k : known_)
-            if (k.letter == letters[i]) {
-                ScreenPane& pane = c.panes[i];
-                pane.frame = k.source->newest();
-                pane.stereo = k.stereo;
-                pane.light = k.light;
-                PlacedPixels const placed =
-                    placed_within(k.settings.physical, p_.model(), pane.corner_px, pane.size_px);
-                pane.corner_px = placed.corner_px;
-                pane.size_px = placed.size_px;
-            }
+            if (k.letter == letters[i]) fill(c.panes[i], k);
     p_.add_patch(c, !letters.empty());
     if (!letters.empty() && block_.gaze.moving) c.gaze = p_.gaze_circle(*block_.gaze.moving);
     return c;
@@ -128,11 +131,21 @@ bool TrialPresenter::Trial::get_ready(LoadedStimulus& k)
     return true;
 }
 
+/// If its surfaces will be drawn: now, unseen, so that they can be from its onset on.
+void TrialPresenter::Trial::draw_ahead(LoadedStimulus const& k)
+{
+    std::size_t const together = block_.is_sequential ? 1 : order_.size();
+    ScreenPane pane = panes_for(together, p_.screen_->size_px(), kTextLines * p_.options_.screen.font_px).front();
+    fill(pane, k);
+    if (pane.moment) p_.screen_->make_ready(pane);
+}
+
 /// Prepares one stimulus after the other, so that each can use the whole machine.
 bool TrialPresenter::Trial::get_all_ready()
 {
     for (LoadedStimulus& k : known_)
         if (!get_ready(k)) return false;
+    for (std::size_t k = known_.size(); k > 0; --k) draw_ahead(known_[k - 1]); // the first one last
     double const lead_s = cues_.lead_s(study::CueMoment::each_stimulus, true);
     return wait(p_.trial_end_s_ + 1e-3 * block_.timing.iti_ms - lead_s, block_.is_sequential);
 }
@@ -144,6 +157,8 @@ bool TrialPresenter::Trial::wait_between(std::size_t next)
     for (LoadedStimulus& k : known_)
         if (k.letter == order_[next] && order_.find(k.letter) < next && k.source->moves() && !get_ready(k))
             return false;
+    for (LoadedStimulus const& k : known_)
+        if (k.letter == order_[next]) draw_ahead(k);
     return wait(until_s - cues_.lead_s(study::CueMoment::each_stimulus), true);
 }
 
@@ -206,7 +221,7 @@ void TrialPresenter::Trial::add_rows(std::string const& letters, ScreenSwap cons
     for (ScreenPane const& pane : c.panes)
         if (pane.frame) row.render_ms = std::max(row.render_ms, render_ms(*pane.frame));
     if (block_.stimuli == study::Stimuli::live && !c.panes.empty() && c.panes[0].frame)
-        p_.keep_pose(row.swap_s, c.panes[0].frame->command.views);
+        p_.keep_pose(row.swap_s, views_of(c.panes[0]));
     p_.table_.add(std::move(row));
 }
 
@@ -241,6 +256,12 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
     if (stays) c.text = [this](glm::vec2 px) { response_.draw(px); };
     ScreenSwap swap = p_.present(c);
     ScreenSwap const onset = swap;
+    std::vector<int> drawn(letters.size());
+    auto const note_drawn = [&] {
+        for (std::size_t k = 0; k < std::min(drawn.size(), swap.drawn.size()); ++k) drawn[k] += swap.drawn[k];
+        for (LoadedStimulus* const k : seen) k->source->drawn_at(swap.drawn_scale);
+    };
+    note_drawn();
     onset_s_ = p_.seconds(onset.time);
     cues_.came(onset_s_);
     onset_uncertainty_ms_ = onset.uncertainty_ms;
@@ -279,6 +300,7 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
         last_s = at_s;
         add_rows(letters, swap, lost, c);
         note_frames(c);
+        note_drawn();
     }
     c = content("");
     swap = p_.present(c);
@@ -320,6 +342,11 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
                 }
             }
             std::size_t const at = letters.find(letter);
+            if (ScreenPane const& first = c_shown[at]; first.moment) {
+                s.frames_kind = "shown";
+                s.frames_drawn = drawn[at];
+                s.light_age_ms = 1e3 * (p_.clock_.of_steady(onset_s_) - first.frame->command.pose_s);
+            }
             if (p_.has_degrees() && at < c_shown.size()) {
                 study::ScreenGeometry const& screen = *p_.model()->screen;
                 s.width_deg = 2 * study::deg_of_place(screen, 0.5 * c_shown[at].size_px.x, false);

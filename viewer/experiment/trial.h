@@ -35,6 +35,7 @@ private:
     void start_cues(study::CueMoment moment, std::string const& at);
     void show_fixation();
     bool get_ready(LoadedStimulus& k);
+    void draw_ahead(LoadedStimulus const& k);
     bool get_all_ready();
     void calibrate_light(LoadedStimulus& k, bool counts);
     bool await_fixation();
@@ -52,6 +53,8 @@ private:
     bool has_ended();
     void give_feedback();
     ScreenContent content(std::string const& letters);
+    /// The pane of a stimulus in a place on the screen.
+    void fill(ScreenPane& pane, LoadedStimulus const& k) const;
     void add_rows(std::string const& letters, ScreenSwap const& swap, int dropped, ScreenContent const& content);
     study::Patch patch_of(std::size_t part, std::optional<double> level) const;
 

@@ -20,6 +20,12 @@ study::StepDone TrialPresenter::walk(study::TrialRequest const& where, std::stri
     }
     DisplayLight const light =
         table_light_ ? display_light(*model()->luminance, table_light_, {}) : DisplayLight{};
+    auto const pane = [&] {
+        ScreenPane p{{0, 0}, screen_->size_px(), from.newest(), stereo, light};
+        if (p.frame) p.moment = from.moment(*p.frame);
+        return p;
+    };
+    if (ScreenPane const p = pane(); p.moment) screen_->make_ready(p);
     Controls controls;
     double last_s = now();
     double const end_s = last_s + length_s;
@@ -30,9 +36,10 @@ study::StepDone TrialPresenter::walk(study::TrialRequest const& where, std::stri
         from.walk(controls.motion(t - last_s), t - last_s);
         last_s = t;
         ScreenContent c;
-        c.panes = {{{0, 0}, screen_->size_px(), from.newest(), stereo, light}};
+        c.panes = {pane()};
         ScreenSwap const swap = present(c);
-        if (c.panes[0].frame) keep_pose(seconds(swap.time), c.panes[0].frame->command.views);
+        from.drawn_at(swap.drawn_scale);
+        if (c.panes[0].frame) keep_pose(seconds(swap.time), views_of(c.panes[0]));
     }
     from.rest();
     done.end_s = now();

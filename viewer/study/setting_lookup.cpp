@@ -81,6 +81,8 @@ void check_own(std::string const& key, std::string const& value, std::filesystem
     if (key == "scene") check_scene(value, folder);
     if (key == "camera" && value.starts_with("path:")) path_of(value.substr(5));
     if (key == "visibility") visibility_method(value);
+    if (key == "frames" && value != "exact" && value != "shown")
+        throw gi::InputError("frames: " + value, "there is no such choice", "write exact or shown");
     if (key == "view" && value != "window" && value != "openxr")
         throw gi::InputError("view: " + value, "there is no such display", "choose window or openxr");
     if (is_physical_setting(key)) {

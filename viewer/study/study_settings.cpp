@@ -24,11 +24,15 @@ constexpr StimulusSetting kOwn[]{
     {"luminance", "number", "above 0", "", "with which a rendered 1 is shown, cd/m2", 0, kBrightest_cd_m2},
     {"mean_luminance", "number", "above 0", "", "mean of the first picture, cd/m2", 0, kBrightest_cd_m2},
     {"peak_luminance", "number", "above 0", "", "of the first picture, cd/m2", 0, kBrightest_cd_m2},
+    {"frames", "word", "exact, shown", "exact",
+     "finished pictures alone, or, between them, their surfaces drawn for the newest pose with the light of the "
+     "last"},
     {"view", "word", "window, openxr", "window", "display that shows the stimulus"},
     {"ar", "word", "a session file", "", "AR session instead of a scene; ar.KEY are its settings"},
 };
-/// Settings of viewers that make no sense for stimuli: those of the device, and those of people at a panel.
-constexpr std::string_view kNotOfStimuli[]{"device", "panel", "font_scale", "refine"};
+/// Settings of viewers that make no sense for stimuli: those of the device, those of people at a panel, and what
+/// `frames` says.
+constexpr std::string_view kNotOfStimuli[]{"device", "panel", "font_scale", "refine", "draw_surfaces"};
 
 /// What a setting of the viewer allows, for people.
 StudySetting of_viewer(SettingKey const& k)

@@ -176,6 +176,17 @@ void HmdScreen::place_text(HmdFrame const& frame)
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
+void HmdScreen::make_ready(ScreenPane const& pane)
+{
+    if (pane.frame->result.views.size() != 2) return;
+    context_.gl().make_current();
+    eyes_.take(pane.frame);
+    taken_ = pane.frame;
+    eyes_.views().make_ready();
+    eyes_.views().begin(surfaces_scale_.next(), nullptr, {});
+    eyes_.draw(nullptr, {size_of(frame_.views[0]), size_of(frame_.views[1])}, tone_settings(pane.frame->settings));
+}
+
 ScreenSwap HmdScreen::present(ScreenContent const& content)
 {
     HmdSession* session = nullptr;
@@ -191,11 +202,18 @@ ScreenSwap HmdScreen::present(ScreenContent const& content)
     HmdFrame const& frame = *next;
     std::array const sizes{size_of(frame.views[0]), size_of(frame.views[1])};
     auto const shown = content.panes.empty() ? nullptr : content.panes[0].frame;
+    auto const begun = Clock::now();
+    double scale = 0;
     if (shown && shown->result.views.size() == 2) {
         if (taken_ != shown) eyes_.take(shown);
         taken_ = shown;
         std::vector<ViewCommand> const views = own_views(world_from_camera_, 0);
         std::array const now{views[0].camera, views[1].camera};
+        std::optional<FrameCommand> moment = content.panes[0].moment;
+        if (moment) scale = surfaces_scale_.next();
+        if (moment && moment->views.size() == 2)
+            for (std::size_t eye = 0; eye < 2; ++eye) moment->views[eye].camera = now[eye];
+        eyes_.views().begin(scale, moment ? &*moment : nullptr, {});
         eyes_.draw(shown->settings.reproject ? &now : nullptr, sizes, tone_settings(shown->settings));
     } else {
         eyes_.clear(sizes, ScreenContent::kGrey);
@@ -210,7 +228,18 @@ ScreenSwap HmdScreen::present(ScreenContent const& content)
     session->end_frame(picture);
     Clock::time_point const seen{
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame.display_s))};
-    return {seen, seen, 0.5e3 * frame.period_s, "openxr_predicted"};
+    ScreenSwap swap{seen, seen, 0.5e3 * frame.period_s, "openxr_predicted"};
+    if (!(scale > 0)) return swap;
+    ShownViews const& drawn = eyes_.views();
+    swap.drawn = {char(drawn.drew_surfaces())};
+    if (drawn.drew_surfaces()) {
+        double const took_s = std::chrono::duration<double>(Clock::now() - begun).count();
+        surfaces_scale_.measured(scale, std::max(took_s, eyes_.drawing_s()), frame.period_s);
+    }
+    if (drawn.draws_surfaces()) swap.drawn_scale = surfaces_scale_.next();
+    if (!drawn.why_no_surfaces().empty() && !std::exchange(no_surfaces_told_, true))
+        report_.lose("surfaces not drawn, pictures are reprojected", 1, drawn.why_no_surfaces());
+    return swap;
 }
 
 void HmdScreen::wait_until(Clock::time_point time)

@@ -3,6 +3,7 @@
 // Text floats in front of the head, and is also shown in a window of the computer, which receives the keyboard.
 
 #include "viewer/app/hmd_eyes.h"
+#include "viewer/app/surfaces_scale.h"
 #include "viewer/devices/gl/gamepads.h"
 #include "viewer/devices/gl/panel.h"
 #include "viewer/devices/xr/keeper.h"
@@ -19,6 +20,7 @@ public:
     glm::ivec2 size_px() const override;
     double refresh_hz() const override;
     std::vector<std::pair<std::string, std::string>> about() const override;
+    void make_ready(ScreenPane const& pane) override;
     ScreenSwap present(ScreenContent const& content) override;
     void wait_until(InputEvent::Clock::time_point time) override;
     std::vector<InputEvent> take_input() override;
@@ -53,7 +55,8 @@ private:
     InputEvent::Clock::time_point last_look_;
     double longest_look_ms_ = 0;
     gi::Report& report_;
-    bool patch_told_ = false;
+    SurfacesScale surfaces_scale_;
+    bool patch_told_ = false, no_surfaces_told_ = false;
     HmdKeeper keeper_; ///< declared last, so that its sessions end before the context
 };
 

@@ -17,7 +17,16 @@ struct ScreenPane {
     std::shared_ptr<LiveFrame const> frame;
     StereoMode stereo = StereoMode::off;
     DisplayLight light{}; ///< of a calibrated display
+    /// Poses for which its surfaces are drawn with the light of the frame; none = it is shown as it was rendered.
+    std::optional<FrameCommand> moment{};
+    std::size_t stimulus = 0; ///< with a moment: its number, by which the screen keeps what it draws
 };
+
+/// The views as they are shown. The pane must have a frame.
+inline std::vector<ViewCommand> const& views_of(ScreenPane const& pane)
+{
+    return pane.moment ? pane.moment->views : pane.frame->command.views;
+}
 
 /// A circle that follows the participant's gaze: pictures are visible only within it, or everywhere else;
 /// the rest is the background.
@@ -43,6 +52,8 @@ struct ScreenSwap {
     InputEvent::Clock::time_point seen; ///< for counting dropped frames, as in SwapTime
     double uncertainty_ms = 0;
     char const* method = "swap_finish"; ///< oml, swap_finish, openxr_predicted
+    std::vector<char> drawn{};          ///< per pane: its surfaces were drawn for its moment
+    double drawn_scale = 0;             ///< of surfaces, as Viewpoint::drawn_scale; 0 = they cannot be drawn
 };
 
 class Screen {
@@ -54,6 +65,9 @@ public:
     /// Provenance entries: display, opengl, ...
     virtual std::vector<std::pair<std::string, std::string>> about() const = 0;
 
+    /// Brings the scene of a pane with a moment to the GPU, so that its surfaces can be drawn from its onset on. Shows
+    /// nothing.
+    virtual void make_ready(ScreenPane const& pane) = 0;
     /// Shows the content, reading input meanwhile. Throws InputError if the display is lost.
     virtual ScreenSwap present(ScreenContent const& content) = 0;
     /// Reads input until this time.

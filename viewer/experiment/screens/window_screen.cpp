@@ -35,7 +35,7 @@ PresentSettings settings_of(LiveFrame const& frame)
 } // namespace
 
 WindowScreen::WindowScreen(ScreenSettings const& settings, gi::Report& report)
-    : display_(settings.display), last_look_(Clock::now())
+    : display_(settings.display), report_(report), last_look_(Clock::now())
 {
     if (display_) {
         tracking_.emplace(*display_);
@@ -62,6 +62,7 @@ WindowScreen::~WindowScreen()
     first().window.gl().make_current();
     panel_.reset();
     presenters_.clear();
+    following_.clear();
     gaze_.reset();
 }
 
@@ -136,42 +137,95 @@ double WindowScreen::take_longest_look_ms()
     return std::exchange(longest_look_ms_, 0);
 }
 
-ScreenSwap WindowScreen::present(ScreenContent const& content)
+void WindowScreen::note_windows()
 {
     for (auto const& w : shown_.windows) {
         w->shown_px = w->window.framebuffer_px();
         w->on_screen_px = w->window.position_px();
     }
+}
+
+/// Reads input meanwhile.
+void WindowScreen::on_drawing_thread(std::function<void()> const& work)
+{
+    std::atomic<bool> done = false;
+    thread_->start(work, [&] {
+        done = true;
+        glfwPostEmptyEvent();
+    });
+    while (!done || thread_->busy()) look();
+}
+
+void WindowScreen::make_ready(ScreenPane const& pane)
+{
+    ScreenContent content;
+    content.panes = {pane};
+    content.panes[0].moment = pane.frame->command; // nothing moves while drivers compile
+    note_windows();
+    on_drawing_thread([&] {
+        Surfaces surfaces;
+        do {
+            surfaces = {std::vector<char>(1)};
+            for (auto const& w : shown_.windows) {
+                w->window.gl().make_current();
+                draw_pictures(target_of(w->window), *w, content, surfaces);
+            }
+        } while (surfaces.prepare);
+        for (auto const& w : shown_.windows) w->window.gl().release();
+    });
+}
+
+ScreenSwap WindowScreen::present(ScreenContent const& content)
+{
+    note_windows();
     if (content.text) {
         panel_->begin();
         content.text(first().shown_px);
         panel_->finish();
     }
     ScreenSwap swap;
-    std::atomic<bool> done = false;
-    thread_->start([&] { swap = draw(content); },
-                   [&] {
-                       done = true;
-                       glfwPostEmptyEvent();
-                   });
-    while (!done || thread_->busy()) look();
+    on_drawing_thread([&] { swap = draw(content); });
     return swap;
 }
 
-void WindowScreen::draw_panes(DrawTarget const& whole, ScreenContent const& content)
+bool WindowScreen::draw_pane(Presenter& presenter, DrawTarget const& whole, glm::ivec2 on_screen_px,
+                             std::vector<Pane> const& panes, ScreenPane const& pane, PresentSettings settings,
+                             Surfaces& surfaces)
 {
-    while (presenters_.size() < content.panes.size()) presenters_.emplace_back(std::vector<WallSettings>{});
-    taken_.resize(std::max(taken_.size(), content.panes.size()));
+    std::vector<gi::Camera> now;
+    if (pane.moment) {
+        settings.moment = pane.moment;
+        settings.surfaces_scale = surfaces_scale_.next();
+        for (ViewCommand const& v : pane.moment->views) now.push_back(v.camera);
+    }
+    presenter.draw(whole, on_screen_px, panes, settings, now);
+    if (!pane.moment) return false;
+    ShownViews const& views = presenter.views();
+    surfaces.wanted = true;
+    surfaces.prepare |= views.prepares();
+    surfaces.can_be_drawn &= views.draws_surfaces();
+    if (!views.why_no_surfaces().empty() && !std::exchange(no_surfaces_told_, true))
+        report_.lose("surfaces not drawn, pictures are reprojected", 1, views.why_no_surfaces());
+    return views.drew_surfaces();
+}
+
+void WindowScreen::draw_panes(DrawTarget const& whole, ScreenContent const& content, Surfaces& surfaces)
+{
     for (std::size_t k = 0; k < content.panes.size(); ++k) {
         ScreenPane const& p = content.panes[k];
         if (!p.frame) continue;
+        std::deque<Presenter>& presenters = p.moment ? following_ : presenters_;
+        auto& all_taken = p.moment ? following_taken_ : taken_;
+        std::size_t const n = p.moment ? p.stimulus : k;
+        while (presenters.size() <= n) presenters.emplace_back(std::vector<WallSettings>{});
+        all_taken.resize(presenters.size());
         int const right = p.frame->command.views.size() > 1 ? 1 : -1;
         std::vector<Pane> const panes{{p.corner_px, p.size_px, p.stereo, 0, right}};
-        if (taken_[k] != p.frame) presenters_[k].take(p.frame, panes);
-        taken_[k] = p.frame;
+        if (all_taken[n] != p.frame) presenters[n].take(p.frame, panes);
+        all_taken[n] = p.frame;
         PresentSettings settings = settings_of(*p.frame);
         settings.light = p.light;
-        presenters_[k].draw(whole, first().on_screen_px, panes, settings, {});
+        surfaces.drawn[k] = draw_pane(presenters[n], whole, first().on_screen_px, panes, p, settings, surfaces);
     }
     if (!content.gaze) return;
     if (!gaze_) gaze_.emplace();
@@ -179,7 +233,8 @@ void WindowScreen::draw_panes(DrawTarget const& whole, ScreenContent const& cont
                 content.gaze->centre_px, content.gaze->radius_px, content.gaze->edge_px, ScreenContent::kGrey);
 }
 
-void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, ScreenContent const& content)
+void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, ScreenContent const& content,
+                              Surfaces& surfaces)
 {
     if (content.panes.empty() || !content.panes[0].frame) return;
     auto const& frame = content.panes[0].frame;
@@ -197,20 +252,30 @@ void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, Scre
     auto& taken = taken_[std::size_t(at - shown_.windows.begin())];
     if (taken != frame) window.pictures().take(frame, panes);
     taken = frame;
-    window.pictures().draw(whole, window.on_screen_px, panes, settings_of(*frame), {});
+    surfaces.drawn[0] |= char(draw_pane(window.pictures(), whole, window.on_screen_px, panes, content.panes[0],
+                                        settings_of(*frame), surfaces));
+}
+
+void WindowScreen::draw_pictures(DrawTarget const& whole, ShownWindow& window, ScreenContent const& content,
+                                 Surfaces& surfaces)
+{
+    if (display_)
+        draw_walls(whole, window, content, surfaces);
+    else
+        draw_panes(whole, content, surfaces);
 }
 
 /// Runs on the drawing thread. Draws all windows first and then swaps them, so that they change together.
 ScreenSwap WindowScreen::draw(ScreenContent const& content)
 {
+    auto const begun = Clock::now();
+    double const scale = surfaces_scale_.next();
+    Surfaces surfaces{std::vector<char>(content.panes.size())};
     for (auto const& w : shown_.windows) {
         w->window.gl().make_current();
         DrawTarget const whole = target_of(w->window);
         clear(whole, ScreenContent::kGrey);
-        if (display_)
-            draw_walls(whole, *w, content);
-        else
-            draw_panes(whole, content);
+        draw_pictures(whole, *w, content, surfaces);
         if (w.get() != &first()) continue;
         if (content.text) panel_->draw();
         if (content.patch_size_px.x > 0)
@@ -222,8 +287,14 @@ ScreenSwap WindowScreen::draw(ScreenContent const& content)
         swap = w->timer.swap();
     }
     for (auto const& w : shown_.windows) w->window.gl().release();
-    return {swap.time, swap.seen, swap.uncertainty_ms,
-            swap.method == GlSwapMethod::sync_control ? "oml" : "swap_finish"};
+    if (std::ranges::find(surfaces.drawn, 1) != surfaces.drawn.end())
+        surfaces_scale_.measured(scale, 1e-3 * ms_between(begun, swap.time));
+    return {swap.time,
+            swap.seen,
+            swap.uncertainty_ms,
+            swap.method == GlSwapMethod::sync_control ? "oml" : "swap_finish",
+            std::move(surfaces.drawn),
+            surfaces.wanted && surfaces.can_be_drawn ? surfaces_scale_.next() : 0};
 }
 
 } // namespace viewer

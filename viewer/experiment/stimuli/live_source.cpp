@@ -1,6 +1,7 @@
 #include "viewer/experiment/stimuli/live_source.h"
 
 #include "gi/core/error.h"
+#include "viewer/app/pose_at.h"
 
 #include <algorithm>
 
@@ -53,6 +54,7 @@ void LiveSource::prepare(StimulusSettings const& stimulus, StimulusView const& v
     wanted.play = false; // until it is shown
     post_settings(wanted);
     navigation_.reset();
+    drawn_scale_ = 0; // the screen has not seen it yet
     // Edits can only be undone by reloading the scene.
     if (stimulus.scene != scene_ || edited_) post({"scene", stimulus.scene});
     scene_ = stimulus.scene;
@@ -89,6 +91,8 @@ void LiveSource::look(double seconds)
         if (at.views.empty()) return; // unknown place, or the headset is not worn yet
         at.world_from_room = at.views[0].camera.world_from_camera;
     }
+    at.drawn_scale = drawn_scale_;
+    look_ = at;
     renderer_->look(std::move(at));
     last_s_ = seconds;
 }
@@ -147,6 +151,7 @@ void LiveSource::walk(NavigationInput const& input, double seconds)
 
 void LiveSource::rest()
 {
+    look_ = {};
     renderer_->look({});
     if (posted_.play) post({"play", false}); // clips pause while they are not shown
     posted_.play = false;
@@ -158,6 +163,12 @@ std::shared_ptr<LiveFrame const> LiveSource::newest()
     auto frame = renderer_->newest();
     std::lock_guard const lock(mutex_);
     return frame && place_ && frame->begun_s >= settled_s_ ? frame : nullptr;
+}
+
+std::optional<FrameCommand> LiveSource::moment(LiveFrame const& frame)
+{
+    if (!stimulus_.settings.draw_surfaces) return {};
+    return moment_at(frame, look_, clock_.now_s());
 }
 
 } // namespace viewer

@@ -19,6 +19,8 @@ public:
     void rest() override;
     bool moves() const override { return plays_ || stimulus_.path != StimulusPath::none; }
     std::shared_ptr<LiveFrame const> newest() override;
+    std::optional<FrameCommand> moment(LiveFrame const& frame) override;
+    void drawn_at(double scale) override { drawn_scale_ = scale; }
 
 private:
     void post(Change const& change);
@@ -33,6 +35,8 @@ private:
     bool edited_ = false;
     StimulusSettings stimulus_;
     StimulusView view_;
+    Viewpoint look_;         ///< the newest; no views while it rests
+    double drawn_scale_ = 0; ///< of the surfaces that the screen draws
 
     std::mutex mutex_; ///< guards the members below, which the rendering thread writes
     std::string error_;

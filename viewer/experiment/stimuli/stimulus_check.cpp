@@ -190,6 +190,9 @@ void StimulusCollection::add(int index, study::Stimulus const& stimulus, study::
     if (block.stimuli == study::Stimuli::prepared && planned.settings.view == StimulusViewer::headset)
         refuse("stimuli: prepared with view: openxr", "pictures in a headset follow the head",
                "write stimuli: live");
+    if (block.stimuli == study::Stimuli::prepared && planned.settings.settings.draw_surfaces)
+        refuse("stimuli: prepared with frames: shown", "surfaces are drawn for poses that nobody knows ahead",
+               "write stimuli: live, or frames: exact");
     std::set<std::string> luminances;
     for (auto const& [key, unused] : patch)
         if (study::plain_key(key).ends_with("luminance")) luminances.insert(study::plain_key(key));

@@ -108,6 +108,8 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
             s.fov_deg = gi::parse_finite(text);
         else if (key == "visibility")
             set(s.settings, {"method", visibility_method(text)});
+        else if (key == "frames")
+            s.settings.draw_surfaces = text == "shown";
         else if (key == "view")
             s.view = text == "openxr" ? StimulusViewer::headset : StimulusViewer::window;
         else if (is_physical_setting(key))

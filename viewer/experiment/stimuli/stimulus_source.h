@@ -42,6 +42,10 @@ public:
     /// True if the stimulus moves: shown again, it would continue, so it must be prepared again to restart.
     virtual bool moves() const = 0;
     virtual std::shared_ptr<LiveFrame const> newest() = 0;
+    /// The newest poses, for which the surfaces of a frame are drawn; none = the frame is shown as it was rendered.
+    virtual std::optional<FrameCommand> moment(LiveFrame const&) { return {}; }
+    /// How large the screen draws surfaces, as Viewpoint::drawn_scale.
+    virtual void drawn_at(double /*scale*/) {}
 };
 
 } // namespace viewer
