@@ -147,7 +147,7 @@ void show_numbers(ViewState& s, double frames_per_s)
     LiveFrame const& f = *s.frame;
     ViewCommand const& v = f.command.views[0];
     ImGui::ProgressBar(float(f.still_paths) / float(kConvergedPaths), ImVec2(-1, 0),
-                       fmt::format("{} paths", f.still_paths).c_str());
+                       fmt::format("{} path{}", f.still_paths, f.still_paths == 1 ? "" : "s").c_str());
     explain(fmt::format("paths per pixel since anything moved; at {} the picture is finished", kConvergedPaths));
     for (std::string const& line : frame_notes(s, f)) ImGui::TextWrapped("%s", line.c_str());
     if (s.live_error)
