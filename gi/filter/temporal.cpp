@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -67,56 +68,99 @@ void TemporalReuse::Light::take(Light const& there)
     variance = there.variance;
 }
 
+/// How much light has changed: from 0, if the mean difference in a window is within its errors or small beside the
+/// light, to 1.
+struct LightChanged {
+    int window;     ///< px
+    vec2 errors;    ///< standard errors of the mean difference, from 0 to 1
+    vec2 relative;  ///< mean difference over the mean light, from 0 to 1
+
+    /// @param difference  of direct and indirect light of a pixel, and their means; none where there is no surface
+    /// @param changed  is given each pixel with a surface and how much its light has changed
+    template <class Difference, class Changed>
+    void find(int width, int height, Difference const& difference, Changed const& changed) const
+    {
+        // A quarter of a window's pixels are independent, since means are interpolated.
+        constexpr float kIndependent = 0.25f;
+        // Channels: differences of direct and indirect light, the means, number of pixels with a surface.
+        using Values = cv::Vec<float, 5>;
+        cv::Mat values(height, width, CV_32FC(5)), squares(height, width, CV_32FC2);
+        tbb::parallel_for(0, height, [&](int y) {
+            for (int x = 0; x < width; ++x) {
+                std::optional<vec4> const d = difference(std::size_t(y) * std::size_t(width) + std::size_t(x));
+                vec4 const v = d.value_or(vec4{0});
+                values.at<Values>(y, x) = {v.x, v.y, v.z, v.w, float(d.has_value())};
+                squares.at<cv::Vec2f>(y, x) = {v.x * v.x, v.y * v.y};
+            }
+        });
+        cv::Size const size(window, window);
+        cv::boxFilter(values, values, CV_32F, size, {-1, -1}, false, cv::BORDER_CONSTANT);
+        cv::boxFilter(squares, squares, CV_32F, size, {-1, -1}, false, cv::BORDER_CONSTANT);
+        tbb::parallel_for(0, height, [&](int y) {
+            for (int x = 0; x < width; ++x) {
+                Values const& v = values.at<Values>(y, x);
+                float const n = v[4], whole = std::max(v[2] + v[3], 1e-20f);
+                if (!(n > 0)) continue;
+                float most = 0;
+                for (int k = 0; k < 2; ++k) {
+                    float const mean = v[k] / n,
+                                variance = std::max(0.0f, squares.at<cv::Vec2f>(y, x)[k] / n - mean * mean),
+                                error = std::sqrt(variance / std::max(1.0f, kIndependent * n));
+                    most = std::max(most,
+                                    glm::smoothstep(errors.x * error, errors.y * error + 1e-20f, std::abs(mean)) *
+                                        glm::smoothstep(relative.x, relative.y, std::abs(v[k]) / whole));
+                }
+                changed(std::size_t(y) * std::size_t(width) + std::size_t(x), most);
+            }
+        });
+    }
+};
+
 void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
 {
-    // Standard errors of the mean difference in a window (a quarter of whose pixels are independent,
-    // since means are interpolated), and relative difference: below the first, light is unchanged;
-    // from the second on, it is new.
-    constexpr int kWindow = 7;
-    constexpr float kIndependent = 0.25f;
-    constexpr vec2 kErrors{1.5f, 3}, kRelative{0.01f, 0.03f};
-    // Channels: differences of direct and indirect light, the means, number of pixels with a surface.
-    using Values = cv::Vec<float, 5>;
-    cv::Mat values(height, width, CV_32FC(5)), squares(height, width, CV_32FC2);
-    tbb::parallel_for(0, height, [&](int y) {
-        for (int x = 0; x < width; ++x) {
-            std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            Light const& l = lights_[i];
-            bool const is_surface = surfaces_[i].depth > 0;
-            float const d1 = is_surface ? luminance(l.recent.direct - l.all.direct) : 0,
-                        d2 = is_surface ? luminance(l.recent.indirect - l.all.indirect) : 0;
-            values.at<Values>(y, x) = {d1, d2, is_surface ? luminance(l.all.direct) : 0,
-                                       is_surface ? luminance(l.all.indirect) : 0, float(is_surface)};
-            squares.at<cv::Vec2f>(y, x) = {d1 * d1, d2 * d2};
-        }
-    });
-    cv::Size const size(kWindow, kWindow);
-    cv::boxFilter(values, values, CV_32F, size, {-1, -1}, false, cv::BORDER_CONSTANT);
-    cv::boxFilter(squares, squares, CV_32F, size, {-1, -1}, false, cv::BORDER_CONSTANT);
+    constexpr LightChanged kChanged{7, {1.5f, 3}, {0.01f, 0.03f}};
     tbb::combinable<double> renewed;
-    tbb::parallel_for(0, height, [&](int y) {
-        double& sum = renewed.local();
-        for (int x = 0; x < width; ++x) {
-            std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+    kChanged.find(
+        width, height,
+        [&](std::size_t i) -> std::optional<vec4> {
+            if (!(surfaces_[i].depth > 0)) return {};
+            Light const& l = lights_[i];
+            return vec4{luminance(l.recent.direct - l.all.direct), luminance(l.recent.indirect - l.all.indirect),
+                        luminance(l.all.direct), luminance(l.all.indirect)};
+        },
+        [&](std::size_t i, float changed) {
             Light& l = lights_[i];
-            if (!(surfaces_[i].depth > 0) || !(l.frames > float(settings_.most_frames))) continue;
-            Values const& v = values.at<Values>(y, x);
-            float const n = v[4], whole = std::max(v[2] + v[3], 1e-20f);
-            float most = 0;
-            for (int k = 0; k < 2; ++k) {
-                float const mean = v[k] / n,
-                            variance = std::max(0.0f, squares.at<cv::Vec2f>(y, x)[k] / n - mean * mean),
-                            error = std::sqrt(variance / std::max(1.0f, kIndependent * n));
-                most =
-                    std::max(most, glm::smoothstep(kErrors.x * error, kErrors.y * error + 1e-20f, std::abs(mean)) *
-                                       glm::smoothstep(kRelative.x, kRelative.y, std::abs(v[k]) / whole));
-            }
-            l.all.approach(l.recent, most);
-            l.frames = glm::mix(l.frames, 0.5f * float(settings_.most_frames), most); // the shorter one lags, too
-            sum += most;
-        }
-    });
+            if (!(surfaces_[i].depth > 0) || !(l.frames > float(settings_.most_frames))) return;
+            l.all.approach(l.recent, changed);
+            l.frames = glm::mix(l.frames, 0.5f * float(settings_.most_frames), changed); // the shorter one lags, too
+            renewed.local() += changed;
+        });
     total.renewed += renewed.combine(std::plus<>());
+}
+
+void TemporalReuse::follow_sudden(int width, int height, TemporalCounts& total)
+{
+    constexpr LightChanged kSudden{15, {2.5f, 5}, {0.2f, 0.5f}};
+    tbb::combinable<double> sudden;
+    kSudden.find(
+        width, height,
+        [&](std::size_t i) -> std::optional<vec4> {
+            Light const& l = lights_[i];
+            if (!(surfaces_[i].depth > 0) || !(l.frames > 1)) return {};
+            float const of_earlier = l.frames / (l.frames - 1); // this frame is part of the mean
+            return vec4{of_earlier * luminance(now_[i].direct - l.all.direct),
+                        of_earlier * luminance(now_[i].indirect - l.all.indirect), luminance(l.all.direct),
+                        luminance(l.all.indirect)};
+        },
+        [&](std::size_t i, float changed) {
+            Light& l = lights_[i];
+            if (!(surfaces_[i].depth > 0) || !(l.frames > 1)) return;
+            l.all.approach(now_[i], changed);
+            l.recent.approach(now_[i], changed);
+            l.frames = glm::mix(l.frames, 1.0f, changed);
+            sudden.local() += changed;
+        });
+    total.sudden += sudden.combine(std::plus<>());
 }
 
 /// Interpolates the last frame's light by Catmull and Rom's cubics if all of 4 x 4 pixels showed the surface:
@@ -223,6 +267,10 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             std::size_t(std::ranges::count_if(surfaces_, [](Surface const& s) { return s.depth > 0; }));
         return;
     }
+    if (settings_.follow_sudden) {
+        now_.resize(pixels);
+        for (std::size_t i = 0; i < pixels; ++i) now_[i] = lights_[i].all;
+    }
     bool const few = std::size_t(std::ranges::count(takes, 1)) > 3 * pixels / 4;
     Neighbourhoods const neighbourhoods(l1, albedo, width, height, few, settings_);
     // True if a surface still shows now, in a pixel next to this one.
@@ -298,6 +346,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
         total.started += c.started;
         total.held += c.held;
     });
+    if (settings_.follow_sudden) follow_sudden(width, height, total);
     if (settings_.most_unchanged > settings_.most_frames) renew_changed(width, height, total);
 }
 

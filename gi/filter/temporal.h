@@ -10,7 +10,8 @@
 // frames, and L1 is clamped to the range of its current neighbourhood, because shadows move faster than the mean
 // adapts (Yang, Liu and Salvi 2020, sec. 4.2). Where the light has not changed, it covers up to `most_unchanged`
 // frames: it is compared with a second mean of the latest `most_frames`, and where the two differ by more than
-// their noise in the pixels around, the shorter one replaces it. Where the image is static, albedo and L0 are
+// their noise in the pixels around, the shorter one replaces it. Where the light of a frame alone differs from both
+// by far more than its noise in the pixels around, as after a door has opened, it replaces them (`follow_sudden`). Where the image is static, albedo and L0 are
 // averaged too, so that edges and textures are antialiased. While nothing moves at all, the pictures themselves
 // are averaged over all frames since the last motion, so that a static picture converges to the method's result.
 // After a change of lights, materials or environment, all earlier frames are discarded: the lag is zero frames.
@@ -29,7 +30,8 @@ struct TemporalSettings {
     /// follow shadows, but where light is found by few paths, windows without any make pictures dark.
     int window = 5;
     float spread = 1;
-    bool keep_normals = false; ///< adds the layer light_normal
+    bool follow_sudden = false; ///< light that has suddenly become another forgets what it was
+    bool keep_normals = false;  ///< adds the layer light_normal
     bool can_undo = false;     ///< keeps what undo() needs: 48 bytes a pixel more
 };
 
@@ -45,6 +47,7 @@ struct TemporalCounts {
     std::size_t started = 0;  ///< of these, pixels with no history to reuse
     std::size_t held = 0;     ///< of these, pixels whose earlier L1 was clamped to the neighbourhood
     double renewed = 0;       ///< of these, pixels whose light had changed: the weight of its shorter mean, summed
+    double sudden = 0;        ///< of these, pixels whose light had suddenly changed: the weight of this frame, summed
     double frames = 0;        ///< number of frames in a pixel's mean, averaged over pixels
     int still_frames = 0;     ///< frames since the last motion, including this one; 1 = something moved
 };
@@ -116,6 +119,8 @@ private:
     bool take_nearest(vec2 at, int width, int height, Shows const& shows, Light& light) const;
     /// Where the light has changed, replaces means by means over the latest frames.
     void renew_changed(int width, int height, TemporalCounts& counts);
+    /// Where it has changed by far more than its noise, replaces them by this frame's light.
+    void follow_sudden(int width, int height, TemporalCounts& counts);
     void rest(Picture& frame, TemporalCounts& counts);
 
     TemporalSettings settings_;
@@ -123,6 +128,7 @@ private:
     std::vector<KnownLight> known_;
     std::vector<Surface> surfaces_, last_surfaces_;
     std::vector<Light> lights_, last_lights_;
+    std::vector<Means> now_; ///< this frame's light alone; with follow_sudden
     std::vector<std::array<vec3, 4>> mean_, last_mean_; ///< of L0, L1, L2 and normals since the last motion
 };
 

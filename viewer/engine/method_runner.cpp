@@ -254,6 +254,7 @@ void MethodRunner::follow(FrameCommand const& command, std::span<HiddenPixels co
         if (!next[k].same) {
             gi::TemporalSettings by{settings.reuse, kUnchanged * settings.reuse};
             if (small) std::tie(by.window, by.spread, by.keep_normals) = std::tuple(17, 2.0f, true);
+            by.follow_sudden = small;
             by.can_undo = true;
             s.reuse = std::make_shared<gi::TemporalReuse>(by);
         }

@@ -29,7 +29,7 @@ constexpr double kApart_m = 0.063, kFov_deg = 60;
 constexpr double kStill_s = 2; ///< that the head holds still after its path
 constexpr double kFirst_s = 1; ///< of the path, which is not scored
 
-/// What is counted while the head moves.
+/// What is counted while the head moves, and between the first change and the last.
 struct ShownCounts {
     std::vector<double> gaps_ms, light_ages_ms, drawing_ms, between_ms, flicker;
     double light_scale = 0, surfaces_scale = 0, paths = 0;
@@ -208,7 +208,8 @@ private:
         double const done = clock_.now_s();
         drew_s_ = done - drawing;
         score_moments(done - begun_s_); // of what is on the screen until now
-        bool const moves = walker_.path().moves(now);
+        bool const changes = next_change_ > 0 && next_change_ < changes_.size(),
+                   moves = changes || walker_.path().moves(now);
         if (moves) {
             if (shown_s_ > 0) counts_.gaps_ms.push_back(1e3 * (done - shown_s_));
             counts_.light_ages_ms.push_back(1e3 * (done - newest->command.pose_s));

@@ -168,7 +168,7 @@ std::shared_ptr<LiveFrame const> LiveSource::newest()
 std::optional<FrameCommand> LiveSource::moment(LiveFrame const& frame)
 {
     if (!stimulus_.settings.draw_surfaces) return {};
-    return moment_at(frame, look_, clock_.now_s());
+    return moment_at(frame, look_, clock_.now_s(), renderer_->edits_since(frame));
 }
 
 } // namespace viewer
