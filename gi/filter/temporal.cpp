@@ -140,7 +140,7 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
 
 void TemporalReuse::follow_sudden(int width, int height, TemporalCounts& total)
 {
-    constexpr LightChanged kSudden{15, {2.5f, 5}, {0.2f, 0.5f}};
+    constexpr LightChanged kSudden{15, {2, 4}, {0.2f, 0.5f}};
     tbb::combinable<double> sudden;
     kSudden.find(
         width, height,
