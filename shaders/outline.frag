@@ -20,7 +20,9 @@ void main()
     float low = min(m, min(min(around.x, around.y), min(around.z, around.w)));
     float high = max(m, max(max(around.x, around.y), max(around.z, around.w)));
     color = vec4(own, 1.0);
-    for (int once = 0; once < 1 && high - low > max(kLeast, kOfBrightest * high); ++once) {
+    // Another wall may go on at the picture's edges, and show the same there.
+    bool inside = all(greaterThan(p, ivec2(0))) && all(lessThan(p, textureSize(picture, 0) - 1));
+    for (int once = 0; once < 1 && inside && high - low > max(kLeast, kOfBrightest * high); ++once) {
         vec2 size = vec2(textureSize(picture, 0)), at = (vec2(p) + 0.5) / size;
         vec2 along = vec2(around.z + around.w - around.x - around.y, around.x + around.z - around.y - around.w);
         float blur = max(dot(around, vec4(1.0 / 32.0)), 1.0 / 128.0); // of edges that are nearly along an axis

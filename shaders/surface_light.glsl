@@ -1,18 +1,19 @@
-// The light of a surface, found in the newest pictures of light: the rule of gi/surfaces/kept_light.h. Where the newest shows
-// nothing similar, older ones are asked, then the pixels around in the newest, then cells of space; what none of them know has the mean light of the last pictures.
+// The light of a surface, found in the newest pictures of light: the rule of gi/surfaces/kept_light.h. Where the newest of
+// all views show nothing similar, older ones are asked, then the pixels around in the newest, then cells of space; what none of them know has the mean light of the last pictures.
 
 layout(binding = 2) uniform usampler2DArray lights; // LightTexel of gi/surfaces/light_picture.h
 layout(binding = 3) uniform usampler2DArray slopes; // LightSlope
 
-const int kPictures = 3;
-uniform int pictures;
+const int kPictures = 24;
+uniform int pictures, newest_pictures;       // the newest come first
 uniform int light_layers[kPictures];
 uniform vec3 light_eye[kPictures];           // positions of their cameras
 uniform mat3 texel_from_world[kPictures];    // to places in them, times the depth
 uniform ivec2 light_size[kPictures];         // of each picture, texels
 uniform vec2 texel_at[kPictures];            // where rays pass texels
 uniform float lacks_punctual[kPictures];     // 1 = their light is without that of punctual lights
-uniform vec3 mean_light;
+uniform vec3 mean_light, head;               // head: where the light of its views was found
+uniform float mean_lacks_punctual;
 
 const float kEdge = 0.05; // trust in outermost texels, which are noisier, as they were seen for the shortest time
 const float kAlike = 0.3, kUnlike = 0.01, kLeast = 1e-4, kOfDepth = 0.005; // as KeptLight
@@ -79,14 +80,15 @@ FoundLight find_light(vec3 at, vec3 n)
     vec3 sum = vec3(0.0), weights = vec3(0.0);
     float best = 0.0, lacks = 0.0, counted = 0.0;
     ivec3 nearest = ivec3(0);
-    bool shown = true; // by the newest picture
-    for (int k = 0; k <= pictures && best <= kAlike && shown; ++k) {
+    int shown_in = -1; // the first of the newest pictures in which the place lies
+    for (int k = 0; k < pictures + 1 && best <= kAlike; ++k) {
         bool around = k == pictures;
-        int picture = around ? 0 : k;
+        int picture = around ? max(shown_in, 0) : k;
         ivec2 size = light_size[picture];
         vec3 from = at - light_eye[picture], h = texel_from_world[picture] * from;
         vec2 u = h.xy / max(h.z, 1e-9) - texel_at[picture];
-        bool inside = h.z > 0.0 && all(greaterThan(u, vec2(-1.0))) && all(lessThan(u, vec2(size)));
+        bool inside = h.z > 0.0 && all(greaterThan(u, vec2(-1.0))) && all(lessThan(u, vec2(size))) && (!around || shown_in >= 0);
+        shown_in = inside && shown_in < 0 && k < newest_pictures ? k : shown_in;
         float trust = all(greaterThan(u, vec2(0.5))) && all(lessThan(u, vec2(size) - 1.5)) ? 1.0 : kEdge;
         vec2 whole = floor(u), f = u - whole;
         int taps = inside ? 4 : 0;
@@ -114,15 +116,14 @@ FoundLight find_light(vec3 at, vec3 n)
             nearest = w > 0.0 && like > best ? texel : nearest;
             best = max(best, w > 0.0 ? like : 0.0);
         }
-        shown = !around || inside;
     }
-    FoundLight found = FoundLight(mean_light, uvec2(pack_normal(n), kNoSlope), lacks_punctual[0]);
+    FoundLight found = FoundLight(mean_light, uvec2(pack_normal(n), kNoSlope), mean_lacks_punctual);
     vec4 known = vec4(0.0);
-    for (int once = 0; once < 1 && best < kUnlike; ++once) known = find_in_cells(at, n, distance(at, light_eye[0]));
+    for (int once = 0; once < 1 && best < kUnlike; ++once) known = find_in_cells(at, n, distance(at, head));
     if (known.a > 0.0) {
         found.light = known.rgb / known.a;
         found.lacks = cells_lack_punctual;
-    } else if (best >= kUnlike || (shown && counted > 0.0)) {
+    } else if (best >= kUnlike || (shown_in >= 0 && counted > 0.0)) {
         found.light = mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0)));
         found.lacks = lacks / counted;
         if (best >= kUnlike) found.bent = texelFetch(slopes, nearest, 0).xy;

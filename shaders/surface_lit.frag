@@ -1,5 +1,5 @@
 // The third pass of viewer/devices/gl/surface_renderer.h: lights what the first one has described, with what the second has
-// found at alike surfaces around; where none is alike, light is found for the pixel alone.
+// found at alike surfaces around; where none is alike, and at edges, where another wall may go on, light is found for the pixel alone.
 
 layout(binding = 4) uniform usampler2D surfaces;
 layout(binding = 12) uniform sampler2D depths; // nearest_m / depth
@@ -33,7 +33,8 @@ void main()
     }
     FoundLight f = FoundLight(sum / max(weights, 1e-20), nearest.yz, lacks / max(3.0 * weights, 1e-20));
     vec3 from_eye = nearest_m / near * ray;
-    for (int once = 0; once < 1 && best < kUnlike; ++once)
+    bool at_edge = newest_pictures > 1 && (any(equal(pixel, ivec2(0))) || any(equal(pixel, textureSize(surfaces, 0) - 1)));
+    for (int once = 0; once < 1 && (best < kUnlike || at_edge); ++once)
         f = find_light(has_moved(s) ? moved_low + moved_size * place_in_box(s) : eye + from_eye, n);
     color = vec4(emission_of(s) + albedo * turned_to(f, n), 1.0);
 #if PUNCTUAL

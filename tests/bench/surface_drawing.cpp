@@ -53,7 +53,7 @@ void run(std::string const& scene, std::string const& head, glm::ivec2 whole, st
         ViewPicture const& view = frame.views[0];
         renderer.take(frame.scene);
         renderer.take(frame.cells);
-        if (view.light) renderer.add_light(0, *view.light);
+        if (view.light) renderer.add_light({{0, 0, view.light.get()}});
         gi::Layer const* const depth = view.picture.find(gi::seen_depth_of(view.picture));
         picture.upload({view.picture.width, view.picture.height}, view.picture.find("color")->data,
                        depth ? std::span<float const>(depth->data) : std::span<float const>());
@@ -69,7 +69,7 @@ void run(std::string const& scene, std::string const& head, glm::ivec2 whole, st
             double const t = seconds * (0.25 + 0.5 * std::max(k, 0) / pictures);
             glFinish();
             double const from = now_s();
-            ShownPicture const shown = renderer.draw(0, walker.at(t, 0, 0).views[0].camera, size, picture, of);
+            ShownPicture const shown = renderer.draw(0, 0, walker.at(t, 0, 0).views[0].camera, size, picture, of);
             glFinish();
             if (k >= 0) ms.push_back(1e3 * (now_s() - from));
             std::vector<float> rgb(std::size_t(3 * size.x * size.y));

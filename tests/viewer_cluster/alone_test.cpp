@@ -4,6 +4,7 @@
 #include "viewer/protocol/cluster/cluster.h"
 #include "viewer/protocol/cluster/process_watch.h"
 #include "viewer/protocol/cluster/wire.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <csignal>
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ TEST(Cluster, AloneNothingWaits)
     for (std::uint64_t frame = 0; frame < 3; ++frame) {
         FrameCommand command;
         command.frame = frame;
-        cluster.send(command);
+        cluster.send(to_bytes(command));
         KeepAlive const alive(cluster);
         cluster.wait(frame);
         cluster.report_swap(frame, Cluster::now_s());

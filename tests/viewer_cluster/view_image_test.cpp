@@ -1,7 +1,10 @@
 // `mpirun -n N lightwell view`, as far as it comes without screens.
 
+#include "gi/core/error.h"
 #include "tests/support/xvfb.h"
 #include "tests/viewer_cluster/mpirun.h"
+#include "tests/viewer_show/two_walls.h"
+#include "viewer/protocol/remote/remote_client.h"
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -65,6 +68,70 @@ TEST_F(ViewOnTwoRanks, StatisticsHaveTheLossesOfEachRankAndAllFrames)
         EXPECT_FALSE(stats["ranks"][r].contains("lost"));
     }
     EXPECT_EQ(stats["ranks"][1]["losses"].begin().key(), stats["report"]["losses"].begin().key());
+}
+
+/// The remote control of the leader; waits until it listens.
+class Leader {
+public:
+    explicit Leader(std::filesystem::path const& socket)
+    {
+        auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (!client_) {
+            try {
+                client_.emplace(socket.string());
+            } catch (gi::InputError const&) {
+                if (std::chrono::steady_clock::now() > end) throw;
+                std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            }
+        }
+    }
+    nlohmann::json ask(nlohmann::json const& request)
+    {
+        nlohmann::json const a = client_->ask(request, std::chrono::seconds(60));
+        EXPECT_TRUE(a.contains("result")) << request << " -> " << a;
+        return a.value("result", nlohmann::json::object());
+    }
+    void settle()
+    {
+        int at_rest = 0;
+        auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (at_rest < 8 && std::chrono::steady_clock::now() < end) {
+            at_rest = ask({{"do", "stats"}}).value("at_rest", false) ? at_rest + 1 : 0;
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        EXPECT_EQ(at_rest, 8) << "the picture does not come to rest";
+    }
+
+private:
+    std::optional<RemoteClient> client_;
+};
+
+TEST_F(ViewOnTwoRanks, SurfacesOfAMovingHeadAreShownInTheSameLight)
+{
+    int const port = free_port();
+    write_two_walls(folder / "walls.yaml", port, 2);
+    SentHead head(port);
+    Mpirun mpirun(2, "",
+                  LIGHTWELL_PROGRAM " view cornell --display walls.yaml --set refine=false "
+                                    "--set play=false --remote remote --record walk.lwr --stats s.json",
+                  folder.path());
+    Leader leader(folder / "remote");
+    XWindow one("Lightwell: a"), two("Lightwell: b");
+    leader.settle();
+    for (double const x : {0.62, 0.6}) { // so that surfaces have been drawn
+        head.go_to(x);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        leader.settle();
+    }
+    leader.ask({{"do", "set"}, {"key", "rate"}, {"value", 0.2}}); // Hz: the next picture of light waits for 5 s
+    leader.settle();
+    expect_walls_agree(head, one, two);
+    leader.ask({{"do", "quit"}});
+    EXPECT_EQ(mpirun.wait(std::chrono::seconds(60)), 0) << mpirun.text();
+    auto const stats = nlohmann::json::parse(file_text(folder / "s.json"));
+    std::cout << stats["frames_rendered"] << " frames, " << stats["presented"] << " shown, "
+              << stats["swap_skew"].get<std::string>() << "\n";
+    EXPECT_GT(stats["presented"], stats["frames_rendered"].get<int>() + 5) << "at the display's rate";
 }
 
 } // namespace

@@ -70,8 +70,13 @@ public:
     {
         return {seconds_, dynamic_update_.value_or(own.dynamic_update), own.moved, own.surfaces_s};
     }
-    void drawn(std::uint64_t) override {}
+    FrameLight exchange(FrameCommand const&, FrameLight own) override { return own; }
+    std::uint64_t show(ShownMoment) override { return 1; }
+    std::optional<ShownMoment> next_shown() override { return {}; }
+    void wake_by(std::function<void()>) override {}
+    void drawn(std::uint64_t, bool) override {}
     void swapped(std::uint64_t, double) override {}
+    bool all_draw_surfaces() const override { return false; }
 
 private:
     double seconds_;

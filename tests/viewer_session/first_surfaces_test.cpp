@@ -268,7 +268,9 @@ TEST(FirstSurfaces, BringWhatOthersNeedToDrawThem)
     EXPECT_EQ(color(first), color(before)); // pictures are the same
     plain.render(command(9, 0.5, false, 0.5), {});
     EXPECT_EQ(color(s.render(command(9, 1), {})), color(plain.render(command(9, 1), {})));
-    EXPECT_EQ(s.render(command(9, 1), {}).views[0].light, nullptr); // its layers are its light
+    SessionFrame const whole = s.render(command(9, 1), {});
+    EXPECT_EQ(whole.views[0].light->width, 80); // of its layers
+    EXPECT_TRUE(whole.views[0].light->slopes.empty());
     s.apply({"object.block.position", nlohmann::json::array({0.1, 0, 0})});
     EXPECT_NE(s.render(command(9, 1), {}).scene->world, moved.scene->world);
 }

@@ -36,12 +36,6 @@ bool same(HiddenMask const& a, HiddenMask const& b)
            std::ranges::equal(std::as_bytes(std::span(a.points)), std::as_bytes(std::span(b.points)));
 }
 
-ViewOptions with_surfaces(ViewOptions options)
-{
-    options.settings.insert(options.settings.begin(), {"draw_surfaces", true});
-    return options;
-}
-
 class HmdLoop {
 public:
     HmdLoop(ViewOptions const& options, HmdOptions const& headset, gi::Report& report)

@@ -26,6 +26,7 @@ double scene_time_at(LiveFrame const& f, double now_s)
 FrameCommand moment_at(LiveFrame const& frame, Viewpoint const& at, double now_s, std::vector<Change> edits)
 {
     FrameCommand moment = frame.command;
+    if (!frame.ordered.empty()) moment.views = frame.ordered;
     moment.changes = std::move(edits);
     moment.scene_s = scene_time_at(frame, now_s);
     moment.pose_s = at.pose_s;

@@ -8,8 +8,8 @@ namespace viewer {
 
 /// Time of the scene's clips at a moment of the session's clock, s.
 double scene_time_at(LiveFrame const& frame, double now_s);
-/// The frame's command with the users and cameras of a viewpoint (those of the command, if it has other views), the
-/// scene time of a moment, and the edits that are newer than the frame.
+/// The frame's command with all views, the users and cameras of a viewpoint (those of the command, if it has other
+/// views), the scene time of a moment, and the edits that are newer than the frame.
 FrameCommand moment_at(LiveFrame const& frame, Viewpoint const& at, double now_s, std::vector<Change> edits);
 /// Where the objects of a frame's scene are at a moment. Edits that cannot be made change nothing.
 gi::Pose pose_at(SessionFrame const& frame, FrameCommand const& moment, DriveBodies const& drive);

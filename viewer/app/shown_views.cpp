@@ -27,6 +27,23 @@ int no_power_of_two(int n)
     return n;
 }
 
+/// For each view the first one of the eyes of the same user.
+std::vector<int> heads_of(std::vector<ViewCommand> const& views)
+{
+    constexpr double kApart_m = 0.1; // eyes of a head, if nobody says that they are partners
+    auto const at = [&](std::size_t k) { return gi::dvec3(views[k].camera.world_from_camera[3]); };
+    std::vector<int> heads(views.size());
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        heads[k] = int(k);
+        for (std::size_t j = 0; j < k; ++j) {
+            if (views[k].partner != int(j) && !(glm::length(at(k) - at(j)) < kApart_m)) continue;
+            int const from = std::max(heads[k], heads[j]), to = std::min(heads[k], heads[j]);
+            std::replace(heads.begin(), heads.begin() + std::ptrdiff_t(k) + 1, from, to);
+        }
+    }
+    return heads;
+}
+
 } // namespace
 
 void ShownViews::upload(std::optional<Shown>& to, gi::Picture const& picture, HiddenPixels const& hidden)
@@ -52,6 +69,8 @@ void ShownViews::take(std::shared_ptr<LiveFrame const> frame, std::vector<int> c
         if (renderer_) renderer_->take(frame_->result.scene);
         if (renderer_) renderer_->take(frame_->result.cells);
     }
+    is_light_added_ = false;
+    number_views();
     views_.resize(frame_->result.views.size());
     std::vector<char> is_uploaded(views_.size());
     for (int const view : views) {
@@ -59,7 +78,6 @@ void ShownViews::take(std::shared_ptr<LiveFrame const> frame, std::vector<int> c
         View& to = views_[std::size_t(view)];
         ViewPicture const& v = frame_->result.views[std::size_t(view)];
         upload(to.own, v.picture, v.hidden);
-        to.is_light = false;
         if (v.compared)
             upload(to.other, *v.compared, v.hidden);
         else
@@ -68,6 +86,18 @@ void ShownViews::take(std::shared_ptr<LiveFrame const> frame, std::vector<int> c
     }
     for (std::size_t view = 0; view < views_.size(); ++view)
         if (!is_uploaded[view]) views_[view] = {};
+}
+
+void ShownViews::number_views()
+{
+    bool const alone = frame_->ordered.empty();
+    std::vector<ViewCommand> const &own = frame_->command.views, &all = alone ? own : frame_->ordered;
+    heads_ = heads_of(all);
+    names_.clear();
+    for (ViewCommand const& v : all) names_.push_back(v.name);
+    numbers_.resize(own.size());
+    for (std::size_t k = 0; k < own.size(); ++k)
+        numbers_[k] = alone ? k : std::size_t(std::ranges::find(names_, own[k].name) - names_.begin());
 }
 
 void ShownViews::begin(double surfaces_scale, FrameCommand const* moment, DriveBodies const& drive)
@@ -111,27 +141,28 @@ bool ShownViews::draws_surfaces() const
            std::ranges::none_of(frame_->result.views, [](ViewPicture const& v) { return v.compared.has_value(); });
 }
 
+void ShownViews::add_light()
+{
+    if (std::exchange(is_light_added_, true)) return;
+    if (std::exchange(lit_names_, names_) != names_) renderer_->forget_light();
+    std::vector<LightOfView> light;
+    bool const alone = frame_->light.empty();
+    for (std::size_t k = 0; k < heads_.size(); ++k)
+        if (auto const& l = alone ? frame_->result.views[k].light : frame_->light[k])
+            light.push_back({int(k), heads_[k], l.get()});
+    renderer_->add_light(light);
+}
+
 std::optional<ShownPicture> ShownViews::surfaces(int view, gi::Camera const& from, gi::Camera const& to,
                                                  glm::ivec2 size_px)
 {
-    constexpr std::size_t kMostTexels = 1u << 18;
-    if (!is_ready_) return std::nullopt;
-    View& shown = views_[std::size_t(view)];
-    ViewPicture const& rendered = frame_->result.views[std::size_t(view)];
-    if (shown.other) return std::nullopt;
-    if (!std::exchange(shown.is_light, true)) {
-        if (rendered.light) {
-            renderer_->add_light(view, *rendered.light);
-        } else {
-            gi::LightPicture light = gi::light_picture(rendered.picture, from, kMostTexels);
-            light.lamps = frame_->result.lamps;
-            renderer_->add_light(view, light);
-        }
-    }
+    if (!is_ready_ || views_[std::size_t(view)].other) return std::nullopt;
+    add_light();
     if (!renderer_->has_light()) return std::nullopt;
     glm::ivec2 size = glm::max(glm::ivec2(glm::round(surfaces_scale_ * glm::dvec2(size_px))), glm::ivec2(1));
     size = {no_power_of_two(size.x), no_power_of_two(size.y)};
-    return renderer_->draw(view, to, size, shown.own->picture, from);
+    std::size_t const number = numbers_[std::size_t(view)];
+    return renderer_->draw(int(number), heads_[number], to, size, views_[std::size_t(view)].own->picture, from);
 }
 
 EyeView ShownViews::eye(int view, gi::Camera const* now)

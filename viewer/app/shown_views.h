@@ -49,11 +49,13 @@ private:
     /// none = not shown.
     struct View {
         std::optional<Shown> own, other;
-        bool is_light = false; ///< its light is in the ring
     };
     void upload(std::optional<Shown>& to, gi::Picture const& picture, HiddenPixels const& hidden);
     bool has_surfaces() const { return surfaces_scale_ > 0 && renderer_ && frame_ && frame_->result.scene; }
     void prepare(double most_s);
+    void number_views();
+    /// Gives the light of all views to the renderer, once for each frame that needs it.
+    void add_light();
     EyeView draw(int view, gi::Camera const* now);
     /// The surfaces of a view for another camera than that of its picture; none if they cannot be drawn.
     std::optional<ShownPicture> surfaces(int view, gi::Camera const& from, gi::Camera const& to,
@@ -69,6 +71,11 @@ private:
     std::string why_no_surfaces_;
     gi::World const* tried_ = nullptr; ///< scene whose surfaces were drawn once
     std::shared_ptr<LiveFrame const> frame_;
+    bool is_light_added_ = false; ///< of frame_
+    std::vector<std::string> names_,
+        lit_names_;                    ///< of all views, also those of other processes; when light was added
+    std::vector<int> heads_;           ///< of the same, LightOfView::head
+    std::vector<std::size_t> numbers_; ///< of the frame's views among them
     std::vector<float> color_, depth_; ///< copies with filled hidden pixels
 };
 

@@ -27,6 +27,12 @@ std::string next(std::string const& key, std::string const& now)
 
 } // namespace
 
+ViewOptions with_surfaces(ViewOptions options)
+{
+    options.settings.insert(options.settings.begin(), {"draw_surfaces", true});
+    return options;
+}
+
 ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
     : options(o), display(o.display), report(r), session(o.load, o.threads, r), requests(state, controls, r)
 {

@@ -14,6 +14,9 @@
 
 namespace viewer {
 
+/// Surfaces are drawn for newer poses unless told otherwise.
+ViewOptions with_surfaces(ViewOptions options);
+
 class ViewCore {
 public:
     /// Applies the settings and opens sockets. Throws InputError. All arguments must outlive it.

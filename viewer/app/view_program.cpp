@@ -33,17 +33,10 @@ constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture,
 constexpr double kDrawings = 5;         // at most 1/5 of the time, as software drivers slow the renderer
 constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
 
-/// Windows draw surfaces unless told otherwise; ranks show what all of them have rendered.
-ViewOptions with_surfaces(ViewOptions options, FrameLink const* link)
-{
-    if (link == nullptr) options.settings.insert(options.settings.begin(), {"draw_surfaces", true});
-    return options;
-}
-
 class WindowLoop {
 public:
     WindowLoop(ViewOptions const& options, FrameLink* link, gi::Report& report)
-        : options_(with_surfaces(options, link)),
+        : options_(with_surfaces(options)),
           core_(options_, report),
           state_(core_.state),
           link_(link),
@@ -65,10 +58,8 @@ public:
         if (shown_.windows.empty())
             core_.requests.no_picture("this process has no window, those of the display belong to other ranks");
         std::function<std::vector<ViewCommand>(FrameCommand const&)> own;
-        if (link != nullptr && options.display)
-            own = [this](FrameCommand const& command) {
-                return views_of_rank(*core_.display, command.views, core_.options.rank);
-            };
+        if (link != nullptr) own = [this](FrameCommand const& command) { return own_views(command.views); };
+        if (link != nullptr) link->wake_by([] { glfwPostEmptyEvent(); });
         core_.start(
             link, [this] { return pixels_of_a_frame(); }, [] { glfwPostEmptyEvent(); }, own);
     }
@@ -104,6 +95,19 @@ public:
 
 private:
     bool follows() const { return state_.follows; }
+
+    /// Those that this process shows.
+    std::vector<ViewCommand> own_views(std::vector<ViewCommand> const& all) const
+    {
+        return link_ != nullptr && core_.display ? views_of_rank(*core_.display, all, core_.options.rank) : all;
+    }
+
+    static std::vector<gi::Camera> cameras_of(std::vector<ViewCommand> const& views)
+    {
+        std::vector<gi::Camera> cameras;
+        for (ViewCommand const& v : views) cameras.push_back(v.camera);
+        return cameras;
+    }
 
     void open_desktop()
     {
@@ -275,15 +279,13 @@ private:
         }
         at.views = std::move(layout.views);
         at.jump = state_.navigation.jump();
-        if (draws_surfaces_ && !state_.wants_screenshot && !core_.requests.wants_bytes() && link_ == nullptr &&
-            state_.settings().reproject && !shown_.windows.empty())
+        bool const can_draw = link_ != nullptr ? link_->all_draw_surfaces() : draws_surfaces_;
+        if (can_draw && !state_.wants_screenshot && !core_.requests.wants_bytes() && state_.settings().reproject &&
+            (link_ != nullptr || !shown_.windows.empty()))
             at.drawn_scale = surfaces_scale_.next();
-        if (link_ == nullptr) anticipation_.see(at);
-        if (link_ == nullptr) {
-            cameras_.clear();
-            for (ViewCommand const& v : at.views) cameras_.push_back(v.camera);
-            set_panes(layout.panes);
-        }
+        anticipation_.see(at);
+        cameras_ = cameras_of(at.views);
+        if (link_ == nullptr) set_panes(layout.panes);
         core_.look(std::move(at));
     }
 
@@ -335,11 +337,16 @@ private:
 
     void show()
     {
-        auto const newest = core_.renderer->newest();
         if (presenting_->busy()) return;
+        auto const next = link_ != nullptr && follows() ? link_->next_shown() : std::nullopt;
+        auto newest = follows() ? state_.frame : core_.renderer->newest();
+        if (next) {
+            last_shown_ = next;
+            if (auto const frame = core_.renderer->frame(next->moment.frame)) newest = frame;
+        }
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
-        bool const moved = state_.settings().reproject && link_ == nullptr &&
+        bool const moved = !follows() && state_.settings().reproject &&
                            (has_moved() || (newest && newest->command.only_light)) &&
                            since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_);
         bool const draws = prepares_ && since_s > 1 / kMessages_Hz;
@@ -348,14 +355,17 @@ private:
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
         bool const messages = has_messages();
         bool const tells = messages != had_messages_ || (messages && since_s > 1 / kMessages_Hz);
-        if (fresh || moved || draws || flickers || dirty_ > 0 || resized || tells || state_.wants_screenshot)
-            present(newest, fresh);
+        if (next || fresh || moved || draws || flickers || dirty_ > 0 || resized || tells || state_.wants_screenshot)
+            present(newest, fresh, next ? next->number : 0);
     }
 
     /// Data passed to the presenting thread and back.
     struct Presentation {
         std::shared_ptr<LiveFrame const> frame;
-        std::optional<ShownFrame> shown; ///< for a recording
+        std::optional<ShownMoment> moment; ///< with the views of all ranks
+        std::uint64_t number = 0;          ///< with which other ranks show the same moment; 0 = they do not
+        std::string not_shown;             ///< why others do not show it although they should
+        std::optional<ShownFrame> shown;   ///< for a recording
         bool fresh = false, panel = false, messages = false, wants_bytes = false, reprojected = false;
         bool surfaces = false, prepares = false; ///< drawn; or about to be
         bool can_draw = true;                    ///< surfaces of all views
@@ -370,44 +380,54 @@ private:
         std::vector<Snapshot> shots; ///< per window or eye of a window
     };
 
-    void present(std::shared_ptr<LiveFrame const> const& newest, bool fresh)
+    /// The moment in which a frame is shown by a picture that is begun now.
+    ShownMoment moment_of(LiveFrame const& frame, double begun_s, double surfaces_scale)
+    {
+        std::vector<ViewCommand> const& views = frame.ordered.empty() ? frame.command.views : frame.ordered;
+        Viewpoint const at = expected(begun_s);
+        std::vector<gi::Camera> const rendered = cameras_of(views);
+        bool const reprojects = state_.settings().reproject && cameras_.size() == rendered.size();
+        if (reprojects && state_.settings().draw_surfaces) cameras_ = cameras_of(at.views);
+        shown_cameras_ = reprojects ? cameras_ : rendered;
+        double const ahead_s =
+            state_.settings().predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0;
+        ShownMoment shown{moment_at(frame, at, begun_s + ahead_s, core_.renderer->edits_since(frame)), surfaces_scale, 0};
+        for (std::size_t k = 0; k < shown_cameras_.size(); ++k) shown.moment.views[k].camera = shown_cameras_[k];
+        return shown;
+    }
+
+    /// @param number  of the leader's moment that is shown; 0 = none
+    void present(std::shared_ptr<LiveFrame const> const& newest, bool fresh, std::uint64_t number)
     {
         dirty_ = std::max(0, dirty_ - 1);
         state_.drawing = true;
         auto const p = std::make_shared<Presentation>();
         p->frame = newest;
         p->fresh = fresh;
+        p->number = number;
         p->begun_s = state_.clock.now_s();
         if (newest && state_.wants_screenshot && !newest->command.only_light) // its picture is saved, too
             p->wants_bytes = std::exchange(state_.wants_screenshot, false);
-        std::vector<gi::Camera> rendered;
-        if (newest)
-            for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
-        bool const reprojects =
-            state_.settings().reproject && link_ == nullptr && cameras_.size() == rendered.size();
-        Viewpoint const at = expected(p->begun_s);
-        if (reprojects && state_.settings().draw_surfaces) {
-            cameras_.clear();
-            for (ViewCommand const& v : at.views) cameras_.push_back(v.camera);
-        }
-        shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
-        p->reprojected = !(shown_cameras_ == rendered) || (newest && newest->command.only_light);
         if (fresh) {
             state_.frame = newest;
             state_.follow(newest->settings);
-            if (link_ != nullptr && core_.display)
-                set_panes(display_panes(*core_.display, newest->command.views, newest->command.world_from_room));
             meter_.see(newest);
             if (!follows()) core_.expose(*newest);
         }
         p->settings = present_settings();
-        if (newest && link_ == nullptr) {
-            double const ahead_s =
-                state_.settings().predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0;
-            p->settings.moment =
-                moment_at(*newest, at, p->begun_s + ahead_s, core_.renderer->edits_since(*newest));
-            for (std::size_t k = 0; k < std::min(p->cameras.size(), p->settings.moment->views.size()); ++k)
-                p->settings.moment->views[k].camera = p->cameras[k];
+        if (newest && follows())
+            p->moment = last_shown_;
+        else if (newest)
+            p->moment = moment_of(*newest, p->begun_s, p->settings.surfaces_scale);
+        if (p->moment) {
+            p->settings.surfaces_scale = p->moment->surfaces_scale;
+            p->settings.moment = p->moment->moment;
+            p->settings.moment->views = own_views(p->moment->moment.views);
+            p->cameras = cameras_of(p->settings.moment->views);
+            p->reprojected = !(p->cameras == cameras_of(newest->command.views)) || newest->command.only_light;
+            if (link_ != nullptr && core_.display)
+                set_panes(
+                    display_panes(*core_.display, p->settings.moment->views, p->settings.moment->world_from_room));
         }
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
@@ -454,6 +474,13 @@ private:
     /// Called on the presenting thread.
     void draw(Presentation& p)
     {
+        if (link_ != nullptr && !follows() && p.moment) {
+            try {
+                p.number = link_->show(*p.moment);
+            } catch (gi::InputError const& e) {
+                p.not_shown = e.what();
+            }
+        }
         for (std::size_t w = 0; w < shown_.windows.size(); ++w) {
             ShownWindow& shown = *shown_.windows[w];
             shown.window.gl().make_current();
@@ -474,18 +501,20 @@ private:
             p.times.upload_ms += 1e3 * (uploaded - from);
             p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
         }
-        if (p.settings.moment) {
-            bool const in_one = shown_.windows.size() == 1; // else no window has all views
-            p.shown = shown_frame(*p.settings.moment, shown_.windows[0]->pictures().views());
-            if (!in_one) p.shown->pixel_hash.reset();
+        if (p.moment) {
+            bool const has_all = link_ == nullptr && shown_.windows.size() == 1;
+            p.shown = ShownFrame{p.moment->moment, p.moment->surfaces_scale, {}};
+            if (!shown_.windows.empty())
+                p.shown = shown_frame(p.moment->moment, shown_.windows[0]->pictures().views());
+            if (!has_all) p.shown->pixel_hash.reset();
         }
         p.swap.time = SwapTime::Clock::now();
-        if (link_ != nullptr && p.fresh) {
+        if (p.number > 0) {
             for (auto const& w : shown_.windows) { // wait until drawing has finished
                 w->window.gl().make_current();
                 glFinish();
             }
-            link_->drawn(p.frame->command.frame);
+            link_->drawn(p.number, p.can_draw);
         }
         for (auto const& w : shown_.windows) {
             w->window.gl().make_current();
@@ -516,6 +545,8 @@ private:
         core_.requests.presented(p.shown_s, shot);
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
         ++core_.summary.presented;
+        if (!p.not_shown.empty()) core_.report.lose("pictures that other ranks did not show", 1, p.not_shown);
+        if (p.number > 0) link_->swapped(p.number, state_.clock.to_steady(p.shown_s));
         if (p.shown) {
             ShownFrame shown = *p.shown;
             shown.moment.display_s = p.shown_s;
@@ -528,7 +559,6 @@ private:
     void log(LiveFrame const& f, FrameTimes times, SwapTime const& swap, double begun, double shown_s,
              bool reprojected)
     {
-        if (link_ != nullptr) link_->swapped(f.command.frame, state_.clock.to_steady(shown_s));
         expected_s_ = (f.done_s - f.begun_s) + (shown_s - begun);
         times.frame = f.command.frame;
         times.pose_s = f.command.pose_s;
@@ -563,7 +593,8 @@ private:
 
     PresentSettings present_settings() const
     {
-        Settings const& s = state_.settings();
+        // Other ranks know those of the frame alone.
+        Settings const& s = link_ != nullptr && state_.frame ? state_.frame->settings : state_.settings();
         PresentSettings p;
         p.tone = tone_settings(s);
         p.light = light_;
@@ -596,7 +627,8 @@ private:
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
     Anticipation anticipation_;
-    std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
+    std::vector<gi::Camera> cameras_, shown_cameras_; ///< of all views: current, and as shown
+    std::optional<ShownMoment> last_shown_;           ///< that the leader showed, on a rank that follows
     int dirty_ = 1; ///< pictures that are to be shown although nothing else changed
     bool fallback_told_ = false, no_surfaces_told_ = false, had_messages_ = false;
     std::string message_; ///< the last message, shown until message_until_s_

@@ -232,10 +232,15 @@ void RenderSession::forget_smoothed()
     smoothed_compared_.clear();
 }
 
+void RenderSession::learn(gi::LightPicture const& light)
+{
+    constexpr std::size_t kTexels = 1u << 13; // of a view
+    if (cells_) cells_->learn(light, kTexels, world_->world().origin);
+}
+
 /// Brings the light of all views for those who draw surfaces. @param light  its views are those of light
 void RenderSession::learn_light(FrameCommand const& light, SessionFrame& frame)
 {
-    constexpr std::size_t kTexels = 1u << 13; // of a view
     if (!cells_) cells_.emplace(world_->world().bounds.radius());
     for (std::size_t k = 0; k < light.views.size(); ++k) {
         ViewCommand const& v = light.views[k];
@@ -245,7 +250,7 @@ void RenderSession::learn_light(FrameCommand const& light, SessionFrame& frame)
         found->camera = v.camera;
         found->camera_width = v.width;
         found->camera_height = v.height;
-        cells_->learn(*found, kTexels, world_->world().origin);
+        learn(*found);
         frame.views[k].light = std::move(found);
     }
     gi::LightPicture around = main_->light_around();
@@ -253,6 +258,20 @@ void RenderSession::learn_light(FrameCommand const& light, SessionFrame& frame)
     if (!around.texels.empty()) cells_->learn(around, around.texels.size(), world_->world().origin);
     known_ = cells_->table();
     report_.count("cells of light for which there was no room", double(known_->left_out));
+}
+
+/// Brings the light of pictures of the views' size, in fewer texels, for those who draw surfaces next.
+void RenderSession::take_light(FrameCommand const& command, SessionFrame& frame) const
+{
+    constexpr std::size_t kOfAView = 1u << 18, kOfAll = 1u << 20;
+    std::size_t const most = std::min(kOfAView, kOfAll / frame.views.size());
+    for (std::size_t k = 0; k < frame.views.size(); ++k) {
+        if (command.views[k].camera.orthographic) continue;
+        auto found = std::make_shared<gi::LightPicture>(
+            gi::light_picture(frame.views[k].picture, command.views[k].camera, most));
+        found->lamps = lamps_;
+        frame.views[k].light = std::move(found);
+    }
 }
 
 /// Replaces the pictures of light by larger ones, if they show mirrors or panes that nobody else draws.
@@ -412,7 +431,12 @@ SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRe
     }
     bool const only_light = smaller && command.only_light;
     if (!smaller || only_light || other_light) forget_smoothed();
-    if (smaller && settings_.draw_surfaces) learn_light(light, frame);
+    if (settings_.draw_surfaces) {
+        if (smaller)
+            learn_light(light, frame);
+        else
+            take_light(command, frame);
+    }
     frame.cells = known_;
     if (only_light && !draws_all_)
         draw_mirrors(command, frame);

@@ -38,7 +38,7 @@ struct ViewPicture {
     std::optional<gi::Picture> compared; ///< of the second method, if any
     HiddenPixels hidden{};               ///< pixels that were not rendered
     glm::ivec2 margin_px{0}; ///< of the pictures: on each side beyond the view, see viewer/engine/picture_margin.h
-    /// Of a picture whose surfaces were drawn apart; null: its layers are its light, or nobody draws surfaces.
+    /// For those who draw surfaces; null: nobody does.
     std::shared_ptr<gi::LightPicture const> light{};
 };
 
@@ -83,6 +83,9 @@ public:
     SessionFrame render(FrameCommand const& command, gi::StopRequest const& stop,
                         OnStop on_stop = OnStop::shorten);
 
+    /// Light of another rank's view: what the next frames' cells know besides.
+    void learn(gi::LightPicture const& light);
+
     /// Sets a callback for every following frame.
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
 
@@ -107,6 +110,7 @@ private:
     void forget_smoothed();
     void forget_cells();
     void learn_light(FrameCommand const& light, SessionFrame& frame);
+    void take_light(FrameCommand const& command, SessionFrame& frame) const;
     SessionFrame render_whole(FrameCommand const& command, gi::StopRequest const& stop, OnStop on_stop);
     void draw_surfaces(FrameCommand const& command, SessionFrame& frame);
     void draw_mirrors(FrameCommand const& command, SessionFrame& frame);

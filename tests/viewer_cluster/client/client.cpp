@@ -6,6 +6,7 @@
 #include "gi/core/error.h"
 #include "gi/core/rng.h"
 #include "viewer/protocol/cluster/cluster.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -73,11 +74,11 @@ void show(Cluster& cluster, Call const& call, std::ofstream& log)
         FrameCommand command = order_of(frame);
         if (cluster.leads()) {
             if (frame == call.frames) break;
-            cluster.send(command);
+            cluster.send(to_bytes(command));
         } else {
             auto const received = cluster.receive();
             if (!received) break;
-            command = *received;
+            command = command_from_bytes(*received);
         }
         log << fmt::format("{} {} {:016x}", command.frame, command.scene_s, hash_of(command)) << std::endl;
         std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(call.frame_ms));

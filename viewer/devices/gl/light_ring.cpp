@@ -3,8 +3,11 @@
 #include "viewer/devices/gl/view_matrices.h"
 
 #include <algorithm>
+#include <cmath>
 #include <epoxy/gl.h>
+#include <iterator>
 #include <string>
+#include <tuple>
 
 namespace viewer {
 
@@ -15,36 +18,59 @@ constexpr glm::ivec2 kCells_px{256, int(gi::LightCellTable::kBuckets) / 256};
 
 } // namespace
 
-void LightRing::add(int view, gi::LightPicture const& light, gi::dvec3 origin)
+/// Makes room for a frame's pictures, and for an older one of each view.
+void LightRing::fit(std::vector<LightOfView> const& frame)
 {
-    constexpr int kOfAView = 2;
-    static_assert(sizeof(gi::LightTexel) == 4 * sizeof(std::uint32_t));
-    if (light.texels.empty()) return;
-    make_cells();
-    if (std::exchange(lamps_, light.lamps) != light.lamps) entries_.clear();
-    int const layers = kOfAView * (view + 1);
-    if (light.width > width_ || light.height > height_ || layers > layers_) {
-        entries_.clear();
-        width_ = std::max(width_, light.width);
-        height_ = std::max(height_, light.height);
-        layers_ = std::max({layers, layers_, kPictures});
-        for (GlObject* const to : {&texels_, &slopes_}) {
-            *to = GlObject(GlObject::Kind::texture, GL_TEXTURE_2D_ARRAY);
-            glTextureStorage3D(to->id(), 1, to == &texels_ ? GL_RGBA32UI : GL_RG32UI, width_, height_, layers_);
-            glTextureParameteri(to->id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-            glTextureParameteri(to->id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-        }
+    constexpr int kOfAView = 2, kLeast = 3;
+    int layers = std::max(layers_, kLeast);
+    glm::ivec2 size(width_, height_);
+    for (LightOfView const& of : frame) {
+        layers = std::max(layers, kOfAView * (of.view + 1));
+        size = glm::max(size, glm::ivec2(of.light->width, of.light->height));
     }
+    if (size == glm::ivec2(width_, height_) && layers == layers_) return;
+    entries_.clear();
+    width_ = size.x;
+    height_ = size.y;
+    layers_ = layers;
+    for (GlObject* const to : {&texels_, &slopes_}) {
+        *to = GlObject(GlObject::Kind::texture, GL_TEXTURE_2D_ARRAY);
+        glTextureStorage3D(to->id(), 1, to == &texels_ ? GL_RGBA32UI : GL_RG32UI, width_, height_, layers_);
+        glTextureParameteri(to->id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTextureParameteri(to->id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+}
+
+void LightRing::add(std::vector<LightOfView> const& frame, gi::dvec3 origin)
+{
+    static_assert(sizeof(gi::LightTexel) == 4 * sizeof(std::uint32_t));
+    std::vector<LightOfView> known;
+    std::ranges::copy_if(frame, std::back_inserter(known),
+                         [](LightOfView const& of) { return !of.light->texels.empty(); });
+    if (known.empty()) return;
+    make_cells();
+    gi::LightPicture const& first = *known.front().light;
+    if (std::exchange(lamps_, first.lamps) != first.lamps) entries_.clear();
+    fit(known);
+    glm::vec3 mean(0);
+    for (LightOfView const& of : known) mean += of.light->mean / float(known.size());
+    constexpr float kOlder = 0.85f;
+    bool const begins = entries_.empty() || entries_.back().without_punctual != first.without_punctual;
+    mean_ = begins ? mean : glm::mix(mean, mean_, std::pow(kOlder, float(known.size())));
+    for (LightOfView const& of : known) add(of, origin);
+}
+
+void LightRing::add(LightOfView const& of, gi::dvec3 origin)
+{
+    gi::LightPicture const& light = *of.light;
+    for (Entry& e : entries_) e.age += e.view == of.view;
     Entry next;
-    next.view = view;
-    next.number = ++count_;
+    next.view = of.view;
+    next.head = of.head;
     if (int(entries_.size()) < layers_) {
         next.layer = int(entries_.size());
-    } else { // the oldest of the view with the most pictures
-        auto const of = [&](int v) { return std::ranges::count(entries_, v, &Entry::view); };
-        auto const oldest = std::ranges::min_element(entries_, [&](Entry const& a, Entry const& b) {
-            return of(a.view) != of(b.view) ? of(a.view) > of(b.view) : a.number < b.number;
-        });
+    } else {
+        auto const oldest = std::ranges::max_element(entries_, {}, &Entry::age);
         next.layer = oldest->layer;
         entries_.erase(oldest);
     }
@@ -56,10 +82,6 @@ void LightRing::add(int view, gi::LightPicture const& light, gi::dvec3 origin)
     next.at = light.at;
     next.size = {light.width, light.height};
     next.without_punctual = light.without_punctual;
-    constexpr float kNewest = 0.15f;
-    mean_ = entries_.empty() || entries_.back().without_punctual != light.without_punctual
-                ? light.mean
-                : glm::mix(mean_, light.mean, kNewest);
     entries_.push_back(next);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTextureSubImage3D(texels_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RGBA_INTEGER,
@@ -96,28 +118,59 @@ void LightRing::clear()
     known_ = nullptr;
 }
 
-std::vector<LightRing::Entry> LightRing::sorted_for(int view) const
+/// False if nothing that is seen can lie in the picture: all of it is beyond one of the picture's edges.
+bool LightRing::may_show(Entry const& picture, SeenPart const& seen)
 {
-    std::vector<Entry> sorted = entries_;
-    std::ranges::sort(sorted, std::greater<>(), &Entry::number);
-    std::ranges::stable_partition(sorted, [&](Entry const& e) { return e.view == view; });
-    // The other eye's newest before an older one of this view.
-    auto const other = std::ranges::find_if(sorted, [&](Entry const& e) { return e.view != view; });
-    if (other != sorted.end() && other > sorted.begin() + 1) std::rotate(sorted.begin() + 1, other, other + 1);
-    if (sorted.size() > std::size_t(kPictures)) sorted.resize(std::size_t(kPictures));
-    return sorted;
+    glm::mat3 const rows = glm::transpose(picture.texel_from_world);
+    glm::vec2 const low = picture.at - 1.0f, high = picture.at + glm::vec2(picture.size);
+    glm::vec3 const apart = seen.eye - picture.eye;
+    for (glm::vec3 const inwards : {rows[2], rows[0] - low.x * rows[2], high.x * rows[2] - rows[0],
+                                    rows[1] - low.y * rows[2], high.y * rows[2] - rows[1]}) {
+        auto const is_beyond = [&](glm::vec3 to) { return glm::dot(inwards, to) <= 0; };
+        auto const is_beyond_from_eye = [&](glm::vec3 place) { return is_beyond(place - picture.eye); };
+        if (is_beyond(apart) && std::ranges::all_of(seen.edges, is_beyond) &&
+            (seen.moved.empty() || std::ranges::all_of(corners_of(seen.moved), is_beyond_from_eye)))
+            return false;
+    }
+    return true;
 }
 
-void LightRing::bind(GlProgram const& program, int view) const
+glm::vec3 LightRing::axis(Entry const& picture)
 {
-    std::vector<Entry> const asked = sorted_for(view);
+    glm::vec3 const middle(picture.at + 0.5f * glm::vec2(picture.size), 1);
+    return glm::normalize(glm::inverse(picture.texel_from_world) * middle);
+}
+
+/// The newest of all views, those of the same head first, then older ones.
+std::vector<LightRing::Entry> LightRing::asked_by(int head, SeenPart const& seen) const
+{
+    std::vector<Entry> asked;
+    std::ranges::copy_if(entries_, std::back_inserter(asked), [&](Entry const& e) { return may_show(e, seen); });
+    if (asked.size() > std::size_t(kPictures)) { // those that look the same way
+        glm::vec3 middle(0);
+        for (glm::vec3 const edge : seen.edges) middle += glm::normalize(edge);
+        std::ranges::sort(asked, {}, [&](Entry const& e) { return std::pair(e.age, -glm::dot(axis(e), middle)); });
+        asked.resize(std::size_t(kPictures));
+    }
+    std::ranges::sort(asked, {}, [&](Entry const& e) { return std::tuple(e.age, e.head != head, e.view); });
+    return asked;
+}
+
+void LightRing::bind(GlProgram const& program, int head, SeenPart const& seen) const
+{
+    std::vector<Entry> const asked = asked_by(head, seen);
+    auto const first = std::ranges::min_element(
+        entries_, {}, [&](Entry const& e) { return std::tuple(e.age, e.head != head, e.view); });
     glBindTextureUnit(2, texels_.id());
     glBindTextureUnit(3, slopes_.id());
     program.set("pictures", int(asked.size()));
+    program.set("newest_pictures", int(std::ranges::count(asked, 0, &Entry::age)));
     program.set("narrowest_cell", known_ ? known_->narrowest_m : 0.0f);
     program.set("cells_lack_punctual", known_ && known_->without_punctual ? 1.0f : 0.0f);
     glBindTextureUnit(14, cells_.id());
     program.set("mean_light", mean_);
+    program.set("mean_lacks_punctual", first->without_punctual ? 1.0f : 0.0f);
+    program.set("head", first->eye);
     for (std::size_t k = 0; k < asked.size(); ++k) {
         std::string const of = "[" + std::to_string(k) + "]";
         program.set(("light_layers" + of).c_str(), asked[k].layer);

@@ -1,43 +1,66 @@
 #pragma once
-// The newest pictures of light on the GPU (gi/surfaces/light_picture.h), of all views: what one does not show, an older one may.
+// The newest pictures of light on the GPU (gi/surfaces/light_picture.h), of all views: what one does not show, another or
+// an older one may. All views of a head ask them in the same order, so that both eyes see a place in the same light, and
+// so do two walls that meet there.
 
+#include "gi/scene/model/world.h"
 #include "gi/surfaces/light_cells.h"
 #include "viewer/devices/gl/gl_program.h"
 
+#include <array>
 #include <vector>
 
 namespace viewer {
 
+/// The light of one view of a frame.
+struct LightOfView {
+    int view = 0;
+    int head = 0; ///< the same for all views of the eyes of one user
+    gi::LightPicture const* light = nullptr;
+};
+
+/// What a picture may show.
+struct SeenPart {
+    glm::vec3 eye{0};                 ///< from the world's origin, m
+    std::array<glm::vec3, 4> edges{}; ///< directions of the picture's corners from there
+    gi::Bounds moved;                 ///< and places in this box
+};
+
 class LightRing {
 public:
-    static constexpr int kPictures = 3; ///< that a look-up asks
+    static constexpr int kPictures = 24; ///< most that a look-up asks; as in surface_light.glsl
 
-    /// Adds the light of a view's next picture; takes the place of the view's oldest one. Those of other lamps go.
+    /// Adds the light of a frame; takes the place of the oldest pictures. Those of other lamps go.
     /// @param origin  of the world
-    void add(int view, gi::LightPicture const& light, gi::dvec3 origin);
+    void add(std::vector<LightOfView> const& frame, gi::dvec3 origin);
     void take(std::shared_ptr<gi::LightCellTable const> cells);
+    void forget_pictures() { entries_.clear(); }
     void clear();
     bool empty() const { return entries_.empty(); }
-    /// Binds them to unit 2 and sets the uniforms of shaders/surface_light.glsl, the view's own newest first.
-    void bind(GlProgram const& program, int view) const;
+    /// Binds those that may show what a view of this head sees to unit 2, and sets the uniforms of
+    /// shaders/surface_light.glsl.
+    void bind(GlProgram const& program, int head, SeenPart const& seen) const;
 
 private:
     struct Entry {
-        int view = 0, layer = 0;
-        std::uint64_t number = 0; ///< counts pictures
+        int view = 0, head = 0, layer = 0;
+        int age = 0; ///< newer pictures of the view
         glm::vec3 eye{0};
         glm::mat3 texel_from_world{1};
         glm::vec2 at{0.5f};
         glm::ivec2 size{};
         bool without_punctual = false;
     };
-    std::vector<Entry> sorted_for(int view) const;
+    static bool may_show(Entry const& picture, SeenPart const& seen);
+    static glm::vec3 axis(Entry const& picture);
+    std::vector<Entry> asked_by(int head, SeenPart const& seen) const;
+    void fit(std::vector<LightOfView> const& frame);
+    void add(LightOfView const& of, gi::dvec3 origin);
     void make_cells();
 
     GlObject texels_, slopes_;                ///< a layer for each
     std::uint64_t lamps_ = 0;                 ///< LightPicture::lamps of all entries
     int width_ = 0, height_ = 0, layers_ = 0; ///< of the textures; pictures may be smaller
-    std::uint64_t count_ = 0;
     std::shared_ptr<gi::LightCellTable const> known_; ///< what no picture shows; null = nothing
     GlObject cells_;
     glm::vec3 mean_{0}; ///< of the light of the last dozen pictures, smoothed

@@ -1,6 +1,7 @@
 #pragma once
 // Smooths stairs at outlines of an encoded picture, by what it shows alone: where brightness jumps around a pixel, the
-// pixel becomes a mean along that edge (FXAA, Lottes 2009). For drawn surfaces, which have one sample a pixel.
+// pixel becomes a mean along that edge (FXAA, Lottes 2009). For drawn surfaces, which have one sample a pixel. The
+// outermost pixels stay as they are.
 
 #include "viewer/devices/gl/draw_target.h"
 #include "viewer/devices/gl/gl_program.h"

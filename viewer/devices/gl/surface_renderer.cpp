@@ -203,7 +203,7 @@ void SurfaceRenderer::draw_batches(Pass pass, Eye const& eye)
             p.set("nearest_m", nearest_m());
             if (pass == Pass::described) set_moved_box(p);
             if (pass == Pass::blended) {
-                ring_.bind(p, eye.view);
+                bind_light(p, eye);
                 shadows_.bind(p);
             }
             if (pass == Pass::mirrors) {
@@ -230,6 +230,15 @@ float SurfaceRenderer::nearest_m() const
     return kNear * std::max(meshes_.scene().radius_m, 1e-30f);
 }
 
+void SurfaceRenderer::bind_light(GlProgram const& program, Eye const& eye) const
+{
+    glm::mat3 const world_from_clip = glm::inverse(eye.clip_from_world);
+    SeenPart seen{eye.at, {}, meshes_.moved_bounds()};
+    for (std::size_t k = 0; k < seen.edges.size(); ++k)
+        seen.edges[k] = world_from_clip * glm::vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, 1);
+    ring_.bind(program, eye.head, seen);
+}
+
 void SurfaceRenderer::set_moved_box(GlProgram const& program) const
 {
     gi::Bounds const& box = meshes_.moved_bounds();
@@ -253,10 +262,10 @@ void SurfaceRenderer::draw_sky(Eye const& eye)
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-SurfaceRenderer::Eye SurfaceRenderer::eye_of(int view, gi::Camera const& camera, glm::ivec2 size_px) const
+SurfaceRenderer::Eye SurfaceRenderer::eye_of(int head, gi::Camera const& camera, glm::ivec2 size_px) const
 {
     Eye eye;
-    eye.view = view;
+    eye.head = head;
     eye.clip_from_world = clip_from_world(camera, size_px);
     eye.at = glm::vec3(gi::dvec3(camera.world_from_camera[3]) - meshes_.scene().world->origin);
     eye.world_from_pixel = glm::mat3(axes_of(camera) * frame_from_pixel(camera, size_px));
@@ -293,7 +302,7 @@ void SurfaceRenderer::fit(Target& to, glm::ivec2 size_px)
 void SurfaceRenderer::light_up(GlProgram const& program, Eye const& eye, Target const& to) const
 {
     program.use();
-    ring_.bind(program, eye.view);
+    bind_light(program, eye);
     program.set("eye", eye.at);
     program.set("world_from_pixel", eye.world_from_pixel);
     set_moved_box(program);
@@ -390,12 +399,12 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
     }
 }
 
-ShownPicture SurfaceRenderer::draw(int view, gi::Camera const& camera, glm::ivec2 size_px,
+ShownPicture SurfaceRenderer::draw(int view, int head, gi::Camera const& camera, glm::ivec2 size_px,
                                    PictureTexture const& picture, gi::Camera const& of)
 {
     Target& to = targets_[view];
     fit(to, size_px);
-    Eye const eye = eye_of(view, camera, size_px);
+    Eye const eye = eye_of(head, camera, size_px);
     eye_ = eye.at;
     shadows_.update(meshes_, eye_);
     maps_ = reprojection_maps(of, picture.shown().size_px, camera, size_px);

@@ -20,10 +20,10 @@ class SurfaceRenderer {
 public:
     /// Surfaces from now on. What is large is uploaded by prepare().
     void take(std::shared_ptr<gi::ShownScene const> scene);
-    void add_light(int view, gi::LightPicture const& light)
-    {
-        ring_.add(view, light, meshes_.scene().world->origin);
-    }
+    /// Of the newest frame, of all views that may help: those that others draw, too.
+    void add_light(std::vector<LightOfView> const& frame) { ring_.add(frame, meshes_.scene().world->origin); }
+    /// Before that of other views.
+    void forget_light() { ring_.forget_pictures(); }
     /// What is known of places that no picture shows; null = nothing.
     void take(std::shared_ptr<gi::LightCellTable const> cells) { ring_.take(std::move(cells)); }
     bool has_light() const { return !ring_.empty(); }
@@ -36,9 +36,10 @@ public:
     bool prepare(double most_s);
 
     /// Linear radiance at size_px. The result is valid until the view's next one.
+    /// @param head  LightOfView::head of the view
     /// @param picture  the last one of the view, with depth, of camera `of`
-    ShownPicture draw(int view, gi::Camera const& camera, glm::ivec2 size_px, PictureTexture const& picture,
-                      gi::Camera const& of);
+    ShownPicture draw(int view, int head, gi::Camera const& camera, glm::ivec2 size_px,
+                      PictureTexture const& picture, gi::Camera const& of);
 
 private:
     struct Target {
@@ -48,7 +49,7 @@ private:
     enum class Pass : std::uint8_t { described, mirrors, planar, blended };
     /// What a picture is drawn with.
     struct Eye {
-        int view = 0; ///< whose light is asked first
+        int head = 0; ///< whose light is asked first
         glm::mat3 clip_from_world{
             1};          ///< of points relative to `at`, to x, y and w; the target's top row is its first
         glm::vec3 at{0}; ///< from the world's origin
@@ -62,10 +63,11 @@ private:
         SurfaceBatch const* batch = nullptr;
         SurfaceRange triangles;
     };
-    Eye eye_of(int view, gi::Camera const& camera, glm::ivec2 size_px) const;
+    Eye eye_of(int head, gi::Camera const& camera, glm::ivec2 size_px) const;
     static Eye mirrored(Eye const& eye, gi::PlanarMirror const& mirror, float apart);
     static void fit(Target& to, glm::ivec2 size_px);
     float nearest_m() const;
+    void bind_light(GlProgram const& program, Eye const& eye) const;
     void set_moved_box(GlProgram const& program) const;
     static bool takes_part(SurfaceKind const& kind, Pass pass);
     GlProgram& program(SurfaceKind const& kind, Pass pass);

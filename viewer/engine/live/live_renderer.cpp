@@ -152,6 +152,13 @@ std::vector<Change> LiveRenderer::edits_since(LiveFrame const& frame) const
     return since;
 }
 
+std::shared_ptr<LiveFrame const> LiveRenderer::frame(std::uint64_t number)
+{
+    std::lock_guard const lock(mutex_);
+    while (!frames_.empty() && frames_.front()->command.frame < number) frames_.pop_front();
+    return !frames_.empty() && frames_.front()->command.frame == number ? frames_.front() : nullptr;
+}
+
 bool LiveRenderer::rests() const
 {
     std::lock_guard const lock(mutex_);
@@ -464,21 +471,59 @@ LiveRenderer::Rendered LiveRenderer::render(FrameCommand command, FrameBudget co
     if (!done) { // what it was to change belongs to the next frame, else no recording would have it
         std::vector<Change> const& lost = frame->command.changes;
         if (link_ == nullptr) changes_.insert(changes_.begin(), lost.begin(), lost.end());
+        if (link_ != nullptr) { // the others need not wait for it
+            FrameCommand const without = frame->command;
+            exchange_light(*frame);
+            link_->wait_for_all(without, own);
+        }
         return Rendered::failed;
     }
+    if (link_ == nullptr) {
+        publish(std::move(frame));
+        return Rendered::whole;
+    }
     FrameCommand const shown = frame->command;
+    exchange_light(*frame);
+    if (!link_->leads()) publish(frame); // before the leader shows it
+    FrameWork const slowest = link_->wait_for_all(shown, own);
+    if (shown.views.empty()) stored_ = slowest.dynamic_update.stored; // this rank has no hit buffers of its own
+    if (!link_->leads()) return Rendered::whole;
+    publish(std::move(frame));
+    measure(slowest, budget);
+    return Rendered::whole;
+}
+
+void LiveRenderer::publish(std::shared_ptr<LiveFrame const> frame)
+{
     {
         std::lock_guard const lock(mutex_);
         while (newest_ && !edits_.empty() && edits_.front().number <= newest_->edits) edits_.pop_front();
+        constexpr std::size_t kMost = 8; // the leader shows the last or the one before
+        if (link_ != nullptr && !link_->leads()) frames_.push_back(frame);
+        if (frames_.size() > kMost) frames_.pop_front();
         newest_ = std::move(frame);
     }
     published_.notify_all();
     if (hooks_.published) hooks_.published();
-    if (link_ == nullptr) return Rendered::whole;
-    FrameWork const slowest = link_->wait_for_all(shown, own);
-    if (shown.views.empty()) stored_ = slowest.dynamic_update.stored; // this rank has no hit buffers of its own
-    if (link_->leads()) measure(slowest, budget);
-    return Rendered::whole;
+}
+
+/// Surfaces of all ranks are lit by the light of all views, and by the same cells.
+void LiveRenderer::exchange_light(LiveFrame& frame)
+{
+    std::vector<ViewCommand> const& all = frame.ordered.empty() ? frame.command.views : frame.ordered;
+    FrameLight own{std::vector<std::shared_ptr<gi::LightPicture const>>(all.size()), frame.result.cells};
+    for (std::size_t k = 0, n = 0; k < all.size() && n < frame.result.views.size(); ++k)
+        if (frame.command.views[n].name == all[k].name) own.views[k] = frame.result.views[n++].light;
+    FrameCommand command = frame.command;
+    command.views = all;
+    FrameLight const light = link_->exchange(command, std::move(own));
+    frame.light = light.views;
+    frame.result.cells = light.cells;
+    if (!link_->leads()) return;
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (light.views[k] &&
+            std::ranges::find(frame.command.views, all[k].name, &ViewCommand::name) == frame.command.views.end())
+            session_.learn(*light.views[k]);
 }
 
 } // namespace viewer

@@ -43,6 +43,8 @@ struct LiveFrame {
     FrameCommand command;             ///< with the views rendered by this process
     std::vector<ViewCommand> ordered; ///< all views, if other processes render some of them; else empty
     SessionFrame result;
+    /// Of `ordered`, null where nobody knows it; empty: that of the views of `result` is all there is.
+    std::vector<std::shared_ptr<gi::LightPicture const>> light;
     FrameBudget budget;
     double begun_s = 0, done_s = 0; ///< session clock
     double ahead_s = 0;             ///< the command's scene_s is that of so much after begun_s
@@ -62,26 +64,53 @@ struct FrameWork {
     double surfaces_s = 0; ///< the part of `seconds` spent on surfaces of another size than light
 };
 
-/// Link to other processes that render the same frame commands: the ranks of a cluster. Called on the rendering
-/// thread, except `drawn` and `swapped`.
+/// What windows show next: the pictures of a frame, for newer poses.
+struct ShownMoment {
+    FrameCommand moment; ///< the frame's, with all views, and the poses, cameras and scene time that are shown
+    double surfaces_scale = 0; ///< side of drawn surfaces over that of the views; 0 = none
+    std::uint64_t number = 0;  ///< counts them, from 1; set by the link
+};
+
+/// Light of a frame that its ranks give to each other.
+struct FrameLight {
+    /// Of the views of the command that all ranks got, each once known.
+    std::vector<std::shared_ptr<gi::LightPicture const>> views;
+    std::shared_ptr<gi::LightCellTable const> cells; ///< the leader's; null = none
+};
+
+/// Link to other processes that render the same frame commands and show the same moments: the ranks of a cluster.
 class FrameLink {
 public:
     virtual ~FrameLink() = default;
-    /// The first and the last call.
+    /// The first and the last call, on the rendering thread.
     virtual void begin() = 0;
     virtual void end() = 0;
     virtual bool leads() const = 0;
+
+    // Rendering thread. Calls throw if a rank that is needed was lost.
     virtual void send(FrameCommand const& command) = 0;
     /// Empty when the session ends.
     virtual std::optional<FrameCommand> receive() = 0;
-    /// Called now and then while there is nothing to render. Throws if a rank that is needed was lost.
+    /// Called now and then while there is nothing to render.
     virtual void check() = 0;
-    /// Returns when all ranks have drawn the frame and may swap. @param own  of this rank
+    /// Gives the light of this rank's views to the others; returns when that of all is there.
+    virtual FrameLight exchange(FrameCommand const& command, FrameLight own) = 0;
+    /// This rank can show the frame. On the leader: returns when all ranks can. @param own  of this rank
     /// @return on the leader: of the ranks with the longest frame and the longest dynamic update; else `own`
     virtual FrameWork wait_for_all(FrameCommand const& command, FrameWork const& own) = 0;
-    /// Called by the presenting thread when the frame is drawn; returns when all ranks may swap.
-    virtual void drawn(std::uint64_t frame) = 0;
-    virtual void swapped(std::uint64_t frame, double steady_s) = 0;
+
+    // Main and presenting thread. After the end they do nothing.
+    /// Leader: all ranks show this next. @return its number
+    virtual std::uint64_t show(ShownMoment moment) = 0;
+    /// Follower: what the leader shows, if it is new.
+    virtual std::optional<ShownMoment> next_shown() = 0;
+    /// Called when something new is there for next_shown(), or the session has ended, on any thread.
+    virtual void wake_by(std::function<void()> wake) = 0;
+    /// It is drawn here; returns when it is on all ranks. @param draws_surfaces  this rank can draw those of its views
+    virtual void drawn(std::uint64_t number, bool draws_surfaces) = 0;
+    virtual void swapped(std::uint64_t number, double steady_s) = 0;
+    /// Leader: all ranks could draw surfaces when they showed something last.
+    virtual bool all_draw_surfaces() const = 0;
 };
 
 class LiveRenderer {
@@ -119,11 +148,13 @@ public:
     /// Sets the time of the scene's animation clips, s.
     void go_to(double scene_s);
 
-    /// Newest frame; null before the first.
+    /// Newest frame that all ranks have; null before the first.
     std::shared_ptr<LiveFrame const> newest() const;
     /// Edits of objects and lights that were posted and are not in the frame, which is one of the last two, oldest
     /// first.
     std::vector<Change> edits_since(LiveFrame const& frame) const;
+    /// On a rank that follows: a frame that all ranks have, and none before it from then on; null: it was not rendered.
+    std::shared_ptr<LiveFrame const> frame(std::uint64_t number);
     /// True if no frame is being rendered or due: `newest` stays until something changes.
     /// Always false on a follower.
     bool rests() const;
@@ -147,6 +178,8 @@ private:
     void add_margins(FrameCommand& command, Viewpoint const& last) const;
     enum class Rendered : std::uint8_t { whole, failed, given_up };
     Rendered render(FrameCommand command, FrameBudget const& budget, double ahead_s = 0);
+    void publish(std::shared_ptr<LiveFrame const> frame);
+    void exchange_light(LiveFrame& frame);
     void wait_until(double time_s);
 
     RenderSession& session_;
@@ -170,6 +203,7 @@ private:
     std::deque<Edit> edits_;        ///< posted since the last frame but one
     std::uint64_t count_edits_ = 0; ///< so far
     std::shared_ptr<LiveFrame const> newest_;
+    std::deque<std::shared_ptr<LiveFrame const>> frames_; ///< not shown yet, on a rank that follows
     bool resting_ = false;
     std::atomic<bool> quit_{false}, stopped_{false};
 

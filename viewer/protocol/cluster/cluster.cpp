@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fmt/format.h>
+#include <utility>
 
 namespace viewer {
 
@@ -58,61 +59,99 @@ void Cluster::check()
     if (!alone()) state_->pump();
 }
 
-void Cluster::send(FrameCommand const& command)
+void Cluster::watch(std::function<std::string(int)> const& why)
 {
     if (alone()) return;
-    std::vector<std::uint8_t> const bytes = to_bytes(command);
-    state_->note_order(bytes);
-    state_->pump();
-    state_->send_to_others(Writer(MessageKind::command).append(bytes));
+    State& s = *state_;
+    s.pump();
+    for (int r : s.other_ranks()) {
+        State::Peer& p = s.peers[std::size_t(r)];
+        std::string const what_for = s.living(r) ? why(r) : std::string();
+        if (what_for.empty())
+            p.awaited_s.reset();
+        else if (!p.awaited_s)
+            p.awaited_s = s.listened_s;
+        else
+            s.lose_if_silent(r, *p.awaited_s, s.settings.silence_s, what_for);
+    }
 }
 
-std::optional<FrameCommand> Cluster::receive()
+bool Cluster::lost(int r) const { return state_->peers[std::size_t(r)].lost; }
+
+void Cluster::send(std::span<std::uint8_t const> order)
+{
+    if (alone()) return;
+    state_->note_order(order);
+    state_->pump();
+    state_->send_to_others(Writer(MessageKind::command).append(order));
+}
+
+std::optional<std::vector<std::uint8_t>> Cluster::receive()
 {
     if (alone()) return {};
     State& s = *state_;
     s.await([&s] { return !s.commands.empty() || s.is_ended; }, [](int who) { return who == 0; },
             s.settings.silence_s, "while waiting for a frame command");
-    if (s.commands.empty()) {
-        finish();
-        return {};
-    }
-    std::vector<std::uint8_t> const bytes = std::move(s.commands.front());
-    s.commands.pop_front();
-    s.note_order(bytes);
-    return command_from_bytes(bytes);
+    auto order = take_order();
+    if (!order) finish();
+    return order;
 }
+
+std::optional<std::vector<std::uint8_t>> Cluster::take_order()
+{
+    State& s = *state_;
+    if (s.commands.empty()) return {};
+    std::vector<std::uint8_t> order = std::move(s.commands.front());
+    s.commands.pop_front();
+    s.note_order(order);
+    return order;
+}
+
+bool Cluster::ended() const { return state_->is_ended && state_->commands.empty(); }
+std::uint64_t Cluster::orders_check() const { return state_->orders_check; }
 
 std::vector<std::string> Cluster::wait(std::uint64_t frame, std::uint64_t check, std::string const& note)
 {
     if (alone()) return {};
     State& s = *state_;
     std::uint64_t const mine = gi::mix_bits(s.orders_check ^ gi::mix_bits(check));
-    std::string const what_for = fmt::format("before the swap of frame {}", frame);
-    if (!leads()) {
-        Writer out(MessageKind::arrived);
-        s.last_go.answered_s = now_s();
-        out.put(State::Arrival{frame, mine}).put(s.last_go).put(note);
-        s.tell_swap(out);
-        s.send(0, std::move(out));
-        s.await([&] { return s.gone && *s.gone == frame; }, [](int who) { return who == 0; }, s.settings.silence_s,
-                what_for);
-        return {};
-    }
-    std::vector<std::string> notes;
-    auto const is_missing = [&s](int r) { return s.living(r) && !s.peers[std::size_t(r)].arrival; };
+    if (!leads()) arrive(frame, mine, note);
+    s.await([&] { return may_swap(frame); }, [&](int who) { return leads() ? s.is_missing(who) : who == 0; },
+            s.settings.silence_s, fmt::format("before the swap of frame {}", frame));
+    return leads() ? release(frame, mine) : std::vector<std::string>();
+}
+
+void Cluster::arrive(std::uint64_t frame, std::uint64_t state, std::string const& note)
+{
+    State& s = *state_;
+    Writer out(MessageKind::arrived);
+    s.last_go.answered_s = now_s();
+    out.put(State::Arrival{frame, state}).put(s.last_go).put(note);
+    s.tell_swap(out);
+    s.send(0, std::move(out));
+}
+
+bool Cluster::may_swap(std::uint64_t frame) const
+{
+    State const& s = *state_;
+    if (!leads()) return s.gone == frame;
     auto const others = s.other_ranks();
-    s.await([&] { return std::none_of(others.begin(), others.end(), is_missing); }, is_missing,
-            s.settings.silence_s, what_for);
-    for (int r : others) {
+    return std::none_of(others.begin(), others.end(), [&s](int r) { return s.is_missing(r); });
+}
+
+std::vector<std::string> Cluster::release(std::uint64_t frame, std::uint64_t state)
+{
+    State& s = *state_;
+    std::vector<std::string> notes;
+    for (int r : s.other_ranks()) {
         auto const arrival = std::exchange(s.peers[std::size_t(r)].arrival, {});
         if (!s.living(r) || !arrival) continue;
         if (arrival->frame != frame)
             s.lose(r, fmt::format("is at frame {}, not {}", arrival->frame, frame));
-        else if (arrival->check != mine)
+        else if (arrival->check != state)
             s.lose(r, fmt::format("has another scene or other commands than {} at frame {} (check {:016x}, not "
                                   "{:016x})",
-                                  name(0), frame, arrival->check, mine));
+                                  name(0), frame, arrival->check, state));
         else
             notes.push_back(std::move(s.peers[std::size_t(r)].note));
     }
@@ -136,6 +175,13 @@ std::pair<double, double> Cluster::clock_ahead_s(int r) const
     auto const clock = state_->peers[std::size_t(r)].clock.estimate();
     return clock ? std::pair(clock->ahead_s, clock->error_s) : std::pair(0.0, 0.0);
 }
+
+void Cluster::tell(int to, std::span<std::uint8_t const> message)
+{
+    if (state_->living(to)) state_->send(to, std::move(Writer(MessageKind::message).append(message)));
+}
+
+std::vector<Cluster::Heard> Cluster::heard() { return std::exchange(state_->heard, {}); }
 
 void Cluster::give(std::vector<std::uint8_t> bytes)
 {

@@ -12,13 +12,19 @@
 //
 //   leader     send(order)  render  wait(frame)  swap  report_swap(frame, now_s())  ...  finish()
 //   follower   receive()    render  wait(frame)  swap  report_swap(frame, now_s())  ...  until receive() is empty
+//
+// Whoever has other things to do meanwhile calls watch() often, and takes each step when it is possible: take_order()
+// instead of receive(); arrive(), then may_swap() and, on the leader, release() instead of wait().
 
 #include "viewer/protocol/cluster/swap_log.h"
-#include "viewer/protocol/frame_command.h"
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace viewer {
 
@@ -83,15 +89,31 @@ public:
     /// Processes pending messages, and throws RankLoss if this rank must stop. Optional.
     void check();
 
+    /// check() for a rank that waits for others: why it waits for this one, e.g. "at the end"; empty = it does not.
+    /// One that shows no sign of life for so long is lost.
+    void watch(std::function<std::string(int rank)> const& why);
+    bool lost(int rank) const;
+
     // Frames.
-    /// Leader: sends to all others.
-    void send(FrameCommand const& command);
-    /// Follower: waits for the next frame command. None: the leader has finished.
-    std::optional<FrameCommand> receive();
-    /// Waits before the swap until all ranks are ready. Compares a hash of all frame commands so far; a rank with
+    /// Leader: sends an order to all others.
+    void send(std::span<std::uint8_t const> order);
+    /// Follower: waits for the next order. None: the leader has finished.
+    std::optional<std::vector<std::uint8_t>> receive();
+    /// Follower: the next order, if one has come.
+    std::optional<std::vector<std::uint8_t>> take_order();
+    bool ended() const; ///< follower: the leader has finished
+    /// Hash of all orders that were sent or taken.
+    std::uint64_t orders_check() const;
+    /// Waits before the swap until all ranks are ready. Compares a hash of all orders so far; a rank with
     /// a different hash is lost. @param check  optional hash of the results, compared likewise
     /// @param note  short message to the leader  @return on the leader: the notes of the others
     std::vector<std::string> wait(std::uint64_t frame, std::uint64_t check = 0, std::string const& note = {});
+    /// Follower: is ready to swap. @param state  to be compared, e.g. orders_check()  @param note  as in wait()
+    void arrive(std::uint64_t frame, std::uint64_t state, std::string const& note);
+    /// Leader: the others are ready. Follower: all are, the leader says.
+    bool may_swap(std::uint64_t frame) const;
+    /// Leader: all may swap. Those with another state are lost. @return notes of the others
+    std::vector<std::string> release(std::uint64_t frame, std::uint64_t state);
     /// @param time_s  on this process's steady clock
     void report_swap(std::uint64_t frame, double time_s);
     /// Leader: statistics of all reported frames.
@@ -100,6 +122,15 @@ public:
     static double now_s();
     /// Leader: how far a rank's clock is ahead of the leader's, and the maximum error of this, s.
     std::pair<double, double> clock_ahead_s(int rank) const;
+
+    // Messages of any rank to any other, at most 1 GiB each.
+    void tell(int to, std::span<std::uint8_t const> message);
+    struct Heard {
+        int from = 0;
+        std::vector<std::uint8_t> message;
+    };
+    /// Those that have come, in the order of each sender.
+    std::vector<Heard> heard();
 
     // Other work, in pieces of at most 1 GiB.
     /// Follower: sends data to the leader; waits until the leader calls take().

@@ -168,17 +168,20 @@ void Cluster::State::await(std::function<bool()> const& condition, std::function
     while (true) {
         pump();
         if (condition()) return;
-        double const now = now_s();
-        for (int r : other_ranks()) {
-            // A rank that was not listening cannot judge that others were silent.
-            double const silent = listened_s - std::max(from, peers[std::size_t(r)].heard_s);
-            if (!living(r) || !waits_for(r) || silent < silence_s) continue;
-            bool const stopped = state_of(peers[std::size_t(r)].process, here) == ProcessState::stopped;
-            lose(r, fmt::format("has not answered for {:.1f} s ({}{})", silent, what_for,
-                                stopped ? "; its process is stopped" : ""));
-        }
-        pause(now - start);
+        for (int r : other_ranks())
+            if (living(r) && waits_for(r)) lose_if_silent(r, from, silence_s, what_for);
+        pause(now_s() - start);
     }
+}
+
+void Cluster::State::lose_if_silent(int r, double from_s, double silence_s, std::string const& what_for)
+{
+    // A rank that was not listening cannot judge that others were silent.
+    double const silent = listened_s - std::max(from_s, peers[std::size_t(r)].heard_s);
+    if (silent < silence_s) return;
+    bool const stopped = state_of(peers[std::size_t(r)].process, here) == ProcessState::stopped;
+    lose(r, fmt::format("has not answered for {:.1f} s ({}{})", silent, what_for,
+                        stopped ? "; its process is stopped" : ""));
 }
 
 void Cluster::State::handle(Message const& message)
@@ -229,6 +232,11 @@ void Cluster::State::handle(Message const& message)
     case MessageKind::data: {
         auto const bytes = in.rest();
         from.data.emplace_back(bytes.begin(), bytes.end());
+        return;
+    }
+    case MessageKind::message: {
+        auto const bytes = in.rest();
+        heard.push_back({message.from, {bytes.begin(), bytes.end()}});
         return;
     }
     case MessageKind::lost: {

@@ -34,6 +34,7 @@ struct Cluster::State {
         std::string how_lost; ///< if it is
         std::string farewell; ///< sent with the goodbye
         std::deque<std::vector<std::uint8_t>> data;
+        std::optional<double> awaited_s; ///< since when, on the clock listened_s; by watch()
     };
 
     State(ClusterIdentity identity, ClusterSettings settings);
@@ -45,6 +46,9 @@ struct Cluster::State {
     /// others continue without it.
     void await(std::function<bool()> const& condition, std::function<bool(int)> const& waits_for, double silence_s,
                std::string const& what_for);
+
+    /// @param from_s  when it was first waited for, on the clock listened_s
+    void lose_if_silent(int rank, double from_s, double silence_s, std::string const& what_for);
 
     void send(int to, Writer message);
     void send_to_others(Writer const& message);
@@ -58,6 +62,7 @@ struct Cluster::State {
     bool leads() const { return rank == 0; }
     /// True for another rank that is not lost.
     bool living(int r) const { return r != rank && !peers[std::size_t(r)].lost; }
+    bool is_missing(int r) const { return living(r) && !peers[std::size_t(r)].arrival; } ///< before a swap
     bool others_living() const;
     std::vector<int> other_ranks() const;
 
@@ -81,6 +86,7 @@ struct Cluster::State {
     std::vector<ClusterIdentity> identities;
     std::uint64_t orders_check = 0;
     std::deque<std::vector<std::uint8_t>> commands; ///< received but not yet fetched
+    std::vector<Heard> heard;                       ///< received but not yet fetched
     std::optional<std::uint64_t> gone;              ///< frame of the last `go`
     Echo last_go;                                   ///< to be answered by a follower
     int pongs = 0, wants = 0;

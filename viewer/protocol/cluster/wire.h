@@ -18,12 +18,13 @@ enum class MessageKind : std::uint8_t {
     started, ///< leader: all ranks have started; their names
     ping,    ///< leader: its time, s
     pong,    ///< follower: Echo
-    command, ///< leader: to_bytes of a FrameCommand
+    command, ///< leader: an order
     arrived, ///< follower: ready to swap; with a note
     go,      ///< leader: all ranks are ready to swap
     alive,   ///< any rank: sign of life while it waits or works
     want,    ///< leader: requests the next data
     data,    ///< follower: the requested data
+    message, ///< any rank: Cluster::tell
     lost,    ///< leader: a rank is lost, the others continue
     stop,    ///< leader: a rank is lost, all stop
     leaves,  ///< any rank: it ends early; the reason
@@ -40,6 +41,7 @@ struct Echo {
 
 class Writer {
 public:
+    Writer() = default;
     explicit Writer(MessageKind kind) { put(kind); }
     template <class T>
     Writer& put(T const& value)
@@ -85,6 +87,7 @@ public:
         return {part.begin(), part.end()};
     }
     std::span<std::uint8_t const> rest() { return next(bytes_.size()); }
+    std::span<std::uint8_t const> part(std::size_t bytes) { return next(bytes); }
 
 private:
     std::span<std::uint8_t const> next(std::size_t n)
