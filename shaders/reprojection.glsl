@@ -113,15 +113,14 @@ vec2 search(vec2 r, vec2 c, out bool found)
     return x;
 }
 
-/// What B shows at its pixel p; alpha 1 where A saw it, else 0.
-vec4 reprojected(vec2 p)
+/// The place that B shows at its pixel p.
+/// @param found  as color_at()    @param depth_in_a  over the depth in B, of what is far away
+vec2 place_of(vec2 p, out bool found, out float depth_in_a)
 {
     vec3 far = a_from_b * vec3(p, 1.0);
+    depth_in_a = far.z;
     // Behind A: the edge on that side.
-    vec2 r = far.xy / max(far.z, 1e-6), x = r;
-    bool found = true;
-    if (SEARCHES == 1) x = search(r, b_in_a.xy - r * b_in_a.z, found);
-    vec2 size = vec2(textureSize(picture, 0));
-    bool seen = far.z > 0.0 && found && all(greaterThanEqual(x, vec2(0.0))) && all(lessThanEqual(x, size));
-    return vec4(color_at(x, found), seen ? 1.0 : 0.0);
+    vec2 r = far.xy / max(far.z, 1e-6);
+    found = true;
+    return SEARCHES == 1 ? search(r, b_in_a.xy - r * b_in_a.z, found) : r;
 }

@@ -19,6 +19,9 @@ void main()
     if (abs(dot(mirror_plane.xyz, eye + from_eye) - mirror_plane.w) > mirror_tolerance) discard;
     color = vec4(s.emitted + s.reflected * texelFetch(image, ivec2(gl_FragCoord.xy), 0).rgb, 1.0);
 #else
-    color = vec4(reprojected(gl_FragCoord.xy).rgb, 1.0);
+    bool found;
+    float depth_in_a;
+    vec2 x = place_of(gl_FragCoord.xy, found, depth_in_a);
+    color = vec4(color_at(x, found), 1.0);
 #endif
 }

@@ -177,6 +177,32 @@ TEST_F(SurfaceRendererTest, DrawsWhatTheCpuFormDraws)
     }
 }
 
+TEST_F(SurfaceRendererTest, DepthsAreThoseOfTheScene)
+{
+    load();
+    gi::Camera const camera = camera_at({0.4, 0.8, 3.2});
+    gi::LightPicture found;
+    gi::Picture const truth = exact(camera, &found);
+    SurfaceRenderer renderer;
+    start(renderer, found);
+    drawn(renderer, camera, truth, camera);
+    ShownDepth const depth = renderer.depth(0);
+    ASSERT_NE(depth.texture, 0u);
+    EXPECT_FALSE(depth.in_alpha);
+    std::vector<float> values(std::size_t(kSize.x * kSize.y));
+    glGetTextureImage(depth.texture, 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(values.size() * sizeof(float)),
+                      values.data());
+    std::vector<float> const& wanted = truth.find("depth")->data;
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        float const per_m = depth.per_m * values[i];
+        other += wanted[i] > 0 ? std::abs(per_m * wanted[i] - 1) > 1e-3f : per_m != 0;
+    }
+    RecordProperty("other", std::to_string(double(other) / double(values.size())));
+    EXPECT_LT(double(other) / double(values.size()), 0.001);
+    EXPECT_EQ(renderer.depth(0, ViewPart::middle).texture, 0u);
+}
+
 TEST_F(SurfaceRendererTest, FindsLightFromAnotherPose)
 {
     load();

@@ -30,7 +30,7 @@ protected:
     }
     EyePass::Target target(GLenum format, int width, int height)
     {
-        return {texture(format, width, height, {}), width, height, format == GL_SRGB8_ALPHA8};
+        return {texture(format, width, height, {}), 0, width, height, format == GL_SRGB8_ALPHA8};
     }
     static std::vector<Pixel> all_values()
     {
@@ -80,6 +80,32 @@ TEST_F(EyePassTest, LightIsEncodedAndCodeDecoded)
         }
 }
 
+TEST_F(EyePassTest, DepthsAreReversedAndTurned)
+{
+    EyePass const pass;
+    unsigned const colors = texture(GL_RGBA8, 1, 3, std::vector<Pixel>(3, Pixel{1, 2, 3, 255}));
+    auto const floats = [&](GLenum format, GLenum layout, std::vector<float> const& values) {
+        unsigned const made = texture(format, 1, 3, {});
+        glTextureSubImage2D(made, 0, 0, 0, 1, 3, layout, GL_FLOAT, values.data());
+        return made;
+    };
+    // Infinitely far, 2 m and 1 cm away: once as 1 / depth in alpha, once as 1 mm / depth.
+    ShownDepth const in_alpha{floats(GL_RGBA32F, GL_RGBA, {9, 9, 9, 0, 9, 9, 9, 0.5f, 9, 9, 9, 100}), true, 1};
+    ShownDepth const in_red{floats(GL_R32F, GL_RED, {0, 0.0005f, 0.1f}), false, 1000};
+    for (GLenum const format : {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24, GL_DEPTH24_STENCIL8})
+        for (ShownDepth const& depth : {in_alpha, in_red}) {
+            auto to = target(GL_SRGB8_ALPHA8, 1, 3);
+            to.depth_texture = texture(format, 1, 3, {});
+            pass.draw(colors, TextureValues::srgb, FirstRow::top, to, depth);
+            EXPECT_EQ(bytes(to)[2], (Pixel{1, 2, 3, 255}));
+            float drawn[3] = {};
+            glGetTextureImage(to.depth_texture, 0, GL_DEPTH_COMPONENT, GL_FLOAT, sizeof drawn, drawn);
+            EXPECT_NEAR(drawn[0], 1, 1e-6) << "nearer than what has a depth of 1";
+            EXPECT_NEAR(drawn[1], EyePass::kNear_m / 2, 1e-6);
+            EXPECT_EQ(drawn[2], 0);
+        }
+}
+
 TEST_F(EyePassTest, SizesMayDiffer)
 {
     EyePass const pass;
@@ -92,32 +118,32 @@ TEST_F(EyePassTest, SizesMayDiffer)
     EXPECT_LT(pixels[3][0], pixels[4][0]);
 }
 
-TEST_F(EyePassTest, LeavesGlAsItWas)
+TEST_F(EyePassTest, LeavesNothingSwitchedOn)
 {
     EyePass const pass;
     unsigned const mine = texture(GL_RGBA8, 1, 1, {Pixel{1, 2, 3, 4}});
-    glBindTextureUnit(0, mine);
-    glActiveTexture(GL_TEXTURE3);
-    glViewport(1, 2, 3, 4);
     glEnable(GL_BLEND);
-    glEnable(GL_FRAMEBUFFER_SRGB);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, 0, 0, 0);
     glColorMask(GL_TRUE, GL_FALSE, GL_TRUE, GL_TRUE);
-    auto const to = target(GL_SRGB8_ALPHA8, 1, 1);
-    pass.draw(mine, TextureValues::srgb, FirstRow::bottom, to);
+    auto to = target(GL_SRGB8_ALPHA8, 1, 1);
+    to.depth_texture = texture(GL_DEPTH_COMPONENT32F, 1, 1, {});
+    for (TextureValues const values : {TextureValues::srgb, TextureValues::linear}) {
+        pass.draw(mine, values, FirstRow::top, to, {mine, false, 1});
+        for (GLenum const what : {GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_FRAMEBUFFER_SRGB})
+            EXPECT_FALSE(glIsEnabled(what)) << what;
+    }
+    pass.draw(mine, TextureValues::srgb, FirstRow::top, to);
     EXPECT_EQ(bytes(to)[0], (Pixel{1, 2, 3, 255})) << "opaque, and not blended";
-    GLint unit = 0, bound = 0, viewport[4] = {};
-    GLboolean mask[4] = {};
-    glGetIntegerv(GL_ACTIVE_TEXTURE, &unit);
-    glGetIntegerv(GL_VIEWPORT, viewport);
-    glGetBooleanv(GL_COLOR_WRITEMASK, mask);
-    EXPECT_EQ(unit, GL_TEXTURE3);
-    glActiveTexture(GL_TEXTURE0);
-    glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
-    EXPECT_EQ(unsigned(bound), mine);
-    EXPECT_EQ(viewport[3], 4);
-    EXPECT_FALSE(mask[1]);
-    EXPECT_TRUE(glIsEnabled(GL_BLEND));
-    EXPECT_TRUE(glIsEnabled(GL_FRAMEBUFFER_SRGB));
+    for (GLuint const unit : {0u, 1u}) {
+        GLint sampler = 0;
+        glActiveTexture(GL_TEXTURE0 + unit);
+        glGetIntegerv(GL_SAMPLER_BINDING, &sampler);
+        EXPECT_EQ(sampler, 0);
+    }
+    GLint depth_test = 0;
+    glGetIntegerv(GL_DEPTH_FUNC, &depth_test);
+    EXPECT_EQ(depth_test, GL_LESS);
 }
 
 } // namespace

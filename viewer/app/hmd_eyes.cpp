@@ -14,19 +14,24 @@ HmdContext::HmdContext(gi::Report& report, WindowSettings const& settings)
         own = GlContext::surfaceless(report);
 }
 
-void HmdEyes::make_targets(std::array<glm::ivec2, 2> const& sizes_px)
+void HmdEyes::fit(std::size_t eye, glm::ivec2 size_px)
 {
-    for (std::size_t eye = 0; eye < 2; ++eye) {
-        if (targets_[eye] && sizes_[eye] == sizes_px[eye]) continue;
-        targets_[eye].emplace(TextureTarget::Format::bytes, sizes_px[eye]);
-        sizes_[eye] = sizes_px[eye];
-    }
+    if (eye < eyes_.size() && eyes_[eye].target.shown().size_px == size_px) return;
+    Eye made{TextureTarget(TextureTarget::Format::bytes, size_px), nullptr, {}};
+    if (eye < eyes_.size())
+        eyes_[eye] = std::move(made);
+    else
+        eyes_.push_back(std::move(made));
 }
 
-void HmdEyes::draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 2> const& sizes_px,
-                   gi::ToneMapSettings const& tone)
+void HmdEyes::begin(double surfaces_scale, FrameCommand const& moment, DriveBodies const& drive)
 {
-    make_targets(sizes_px);
+    views_.begin(surfaces_scale, &moment, drive);
+    glFlush();
+}
+
+double HmdEyes::drawing_s()
+{
     GLint is_known = 0;
     if (is_timed_) glGetQueryObjectiv(ended_.id(), GL_QUERY_RESULT_AVAILABLE, &is_known);
     if (is_known != 0) {
@@ -36,25 +41,63 @@ void HmdEyes::draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 
         drawing_s_ = to > from ? 1e-9 * double(to - from) : 0;
         is_timed_ = false;
     }
+    return drawing_s_;
+}
+
+void HmdEyes::draw(std::vector<EyeToDraw> const& eyes, gi::ToneMapSettings const& tone)
+{
     bool const times = !is_timed_;
     if (times) glQueryCounter(begun_.id(), GL_TIMESTAMP);
     DisplaySettings settings;
     settings.tone = tone;
-    for (std::size_t eye = 0; eye < 2; ++eye) {
-        EyeView const view = views_.eye(int(eye), now ? &(*now)[eye] : nullptr);
-        if (view.is_drawn)
-            surface_display_->draw(pass_, targets_[eye]->target(), view, settings);
+    for (std::size_t k = 0; k < eyes.size(); ++k) {
+        EyeToDraw const& wanted = eyes[k];
+        fit(k, wanted.size_px);
+        int const view = int(k % 2);
+        bool const is_middle = k >= 2;
+        EyeView const drawn = is_middle ? views_.middle(view, *wanted.now, wanted.size_px)
+                                        : views_.eye(view, wanted.now ? &*wanted.now : nullptr);
+        Eye& eye = eyes_[k];
+        eye.surfaces = nullptr;
+        eye.depth = views_.depth(view, is_middle ? ViewPart::middle : ViewPart::whole);
+        if (drawn.is_drawn)
+            eye.surfaces = &surface_display_->smoothed(int(k), pass_, drawn, settings);
         else
-            pass_.draw(targets_[eye]->target(), view, view, settings);
+            pass_.draw(eye.target.target(), drawn, drawn, settings);
     }
     if (times) glQueryCounter(ended_.id(), GL_TIMESTAMP);
     is_timed_ = true;
 }
 
-void HmdEyes::clear(std::array<glm::ivec2, 2> const& sizes_px, float grey)
+void HmdEyes::clear(std::vector<glm::ivec2> const& sizes_px, float grey)
 {
-    make_targets(sizes_px);
-    for (auto const& target : targets_) viewer::clear(target->target(), grey);
+    for (std::size_t k = 0; k < sizes_px.size(); ++k) {
+        fit(k, sizes_px[k]);
+        eyes_[k].surfaces = nullptr;
+        eyes_[k].depth = {};
+        viewer::clear(eyes_[k].target.target(), grey);
+    }
+}
+
+DrawTarget HmdEyes::target(std::size_t eye)
+{
+    Eye& e = eyes_[eye];
+    if (e.surfaces != nullptr) stretch(std::exchange(e.surfaces, nullptr)->target(), e.target.target());
+    return e.target.target();
+}
+
+std::vector<unsigned> HmdEyes::textures() const
+{
+    std::vector<unsigned> all;
+    for (Eye const& e : eyes_) all.push_back((e.surfaces ? *e.surfaces : e.target).shown().texture);
+    return all;
+}
+
+std::vector<ShownDepth> HmdEyes::depths() const
+{
+    std::vector<ShownDepth> all;
+    for (Eye const& e : eyes_) all.push_back(e.depth);
+    return all;
 }
 
 } // namespace viewer

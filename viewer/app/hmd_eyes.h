@@ -18,6 +18,12 @@ struct HmdContext {
     GlContext const& gl() const { return window ? window->gl() : *own; }
 };
 
+/// What an eye sees, or (the third and fourth one) the middle of it.
+struct EyeToDraw {
+    std::optional<gi::Camera> now; ///< none = as rendered; the middle needs one
+    glm::ivec2 size_px{};
+};
+
 /// The context must be current in all calls.
 class HmdEyes {
 public:
@@ -27,28 +33,33 @@ public:
         if (frame->result.scene && !surface_display_) surface_display_.emplace();
         views_.take(std::move(frame), {0, 1});
     }
-    /// Draws the frame taken last into the targets, after views().begin() if surfaces are to be drawn. @param now  null: as rendered
-    void draw(std::array<gi::Camera, 2> const* now, std::array<glm::ivec2, 2> const& sizes_px,
-              gi::ToneMapSettings const& tone);
+    /// Before draw(), if surfaces are to be drawn: as ShownViews::begin, and the GPU starts with what depends on no pose.
+    void begin(double surfaces_scale, FrameCommand const& moment, DriveBodies const& drive);
+    /// Draws the frame taken last.
+    void draw(std::vector<EyeToDraw> const& eyes, gi::ToneMapSettings const& tone);
     ShownViews& views() { return views_; }
     /// That the GPU took for the last draw() that it has finished; 0: not known yet.
-    double drawing_s() const { return drawing_s_; }
-    /// Fills both targets with one grey (0..1).
-    void clear(std::array<glm::ivec2, 2> const& sizes_px, float grey);
-    DrawTarget target(std::size_t eye) const { return targets_[eye]->target(); }
-    std::array<unsigned, 2> textures() const
-    {
-        return {targets_[0]->shown().texture, targets_[1]->shown().texture};
-    }
+    double drawing_s();
+    /// Fills the pictures with one grey (0..1).
+    void clear(std::vector<glm::ivec2> const& sizes_px, float grey);
+    /// The picture of an eye, at the size of its view.
+    DrawTarget target(std::size_t eye);
+    /// As they were drawn last; their sizes are those of the views, or smaller where surfaces were drawn.
+    std::vector<unsigned> textures() const;
+    std::vector<ShownDepth> depths() const;
 
 private:
-    void make_targets(std::array<glm::ivec2, 2> const& sizes_px);
+    struct Eye {
+        TextureTarget target;                    ///< at the size of the view
+        TextureTarget const* surfaces = nullptr; ///< shown instead, where surfaces were drawn
+        ShownDepth depth;
+    };
+    void fit(std::size_t eye, glm::ivec2 size_px);
 
     DisplayPass pass_;
     ShownViews views_;
     std::optional<SurfaceDisplay> surface_display_; ///< once surfaces may be drawn
-    std::array<std::optional<TextureTarget>, 2> targets_;
-    std::array<glm::ivec2, 2> sizes_{};
+    std::vector<Eye> eyes_;
     GlObject begun_{GlObject::Kind::time}, ended_{GlObject::Kind::time};
     bool is_timed_ = false; ///< a draw() whose times are not known yet
     double drawing_s_ = 0;

@@ -1,5 +1,6 @@
 #include "viewer/app/hmd_program.h"
 
+#include "gi/core/quantile.h"
 #include "viewer/app/hmd_eyes.h"
 #include "viewer/app/pose_at.h"
 #include "viewer/app/surfaces_scale.h"
@@ -16,7 +17,8 @@
 namespace viewer {
 namespace {
 
-constexpr char const* kEyes[] = {"left eye", "right eye"}; ///< names of their views
+constexpr char const* kEyes[] = {"left eye",
+                                 "right eye"}; ///< names of their views; their middles are not rendered
 
 WindowSettings hidden()
 {
@@ -34,6 +36,11 @@ bool same(HiddenMask const& a, HiddenMask const& b)
 {
     return a.triangles == b.triangles &&
            std::ranges::equal(std::as_bytes(std::span(a.points)), std::as_bytes(std::span(b.points)));
+}
+
+double quantile_or_0(std::vector<double> const& values, double p)
+{
+    return values.empty() ? 0 : gi::quantile(values, p);
 }
 
 class HmdLoop {
@@ -82,8 +89,13 @@ public:
                                  {"shown", shown_},
                                  {"reprojected", reprojected_},
                                  {"surfaces", surfaces_},
-                                 {"pose_age_ms", shown_ > 0 ? pose_age_ms_ / double(shown_) : 0.0},
-                                 {"longest_pose_age_ms", longest_pose_age_ms_},
+                                 {"pose_age_ms", quantile_or_0(pose_ages_ms_, 0.5)},
+                                 {"p99_pose_age_ms", quantile_or_0(pose_ages_ms_, 0.99)},
+                                 {"longest_pose_age_ms", quantile_or_0(pose_ages_ms_, 1)},
+                                 {"pose_cpu_ms", quantile_or_0(pose_cpu_ms_, 0.5)},
+                                 {"drawing_ms", 1e3 * eyes_.drawing_s()},
+                                 {"depths", with_depth_},
+                                 {"views", views_},
                                  {"left_out", left_out_}};
         return core_.summary;
     }
@@ -139,14 +151,25 @@ private:
         }
     }
 
-    static std::array<gi::Camera, 2> cameras(Viewpoint const& at, std::array<HmdView, 2> const& views)
+    static std::vector<gi::Camera> cameras(Viewpoint const& at, std::vector<HmdView> const& views)
     {
-        std::array<gi::Camera, 2> now;
-        for (std::size_t eye = 0; eye < 2; ++eye) {
-            now[eye] = views[eye].camera;
-            now[eye].world_from_camera = at.world_from_room * now[eye].world_from_camera;
+        std::vector<gi::Camera> now;
+        for (HmdView const& view : views) {
+            now.push_back(view.camera);
+            now.back().world_from_camera = at.world_from_room * view.camera.world_from_camera;
         }
         return now;
+    }
+
+    std::vector<EyeToDraw> to_draw(std::vector<HmdView> const& views, std::vector<gi::Camera> const& now) const
+    {
+        std::vector<EyeToDraw> eyes;
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            bool const as_rendered = k < 2 && !state_.settings().reproject;
+            eyes.push_back(
+                {as_rendered ? std::nullopt : std::optional(now[k]), {views[k].width, views[k].height}});
+        }
+        return eyes;
     }
 
     /// @param seconds  since the previous frame
@@ -168,8 +191,8 @@ private:
         if (eyes_.views().draws_surfaces() && !state_.wants_screenshot && !core_.requests.wants_bytes() &&
             state_.settings().reproject)
             at.drawn_scale = surfaces_scale_.next();
-        std::array<gi::Camera, 2> now = cameras(at, frame.views);
-        for (std::size_t eye = 0; eye < 2; ++eye)
+        std::vector<gi::Camera> now = cameras(at, frame.views);
+        for (std::size_t eye = 0; eye < std::min<std::size_t>(2, now.size()); ++eye)
             at.views.push_back(
                 {kEyes[eye], now[eye], frame.views[eye].width, frame.views[eye].height, eye == 0 ? -1 : 0});
         at_last_ = at;
@@ -195,32 +218,29 @@ private:
         picture.first_row = FirstRow::top;
         double const scale = state_.settings().draw_surfaces ? surfaces_scale_.next() : 0;
         FrameCommand moment = moment_at(*newest, at, at.display_s, core_.renderer->edits_since(*newest));
-        eyes_.views().begin(scale, &moment, core_.options.drive);
-        double located_s = at.pose_s;
-        if (auto const latest = session.latest_views(frame)) { // as late as possible
-            picture.views = *latest;
-            located_s = state_.clock.now_s();
-            now = cameras(at, *latest);
+        eyes_.begin(scale, moment, core_.options.drive);
+        if (auto latest = session.latest_views(frame)) { // as late as possible
+            picture.views = std::move(*latest);
+            now = cameras(at, picture.views);
             for (std::size_t eye = 0; eye < 2; ++eye) moment.views[eye].camera = now[eye];
         }
         bool const moved =
             !(newest->command.views[0].camera == now[0] && newest->command.views[1].camera == now[1]);
-        eyes_.draw(state_.settings().reproject ? &now : nullptr,
-                   {glm::ivec2{frame.views[0].width, frame.views[0].height},
-                    glm::ivec2{frame.views[1].width, frame.views[1].height}},
-                   tone_settings(state_.settings()));
+        eyes_.draw(to_draw(picture.views, now), tone_settings(state_.settings()));
         picture.textures = eyes_.textures();
-        double const age_ms = 1e3 * (state_.clock.now_s() - located_s);
-        pose_age_ms_ += age_ms;
-        longest_pose_age_ms_ = std::max(longest_pose_age_ms_, age_ms);
+        picture.depths = eyes_.depths();
+        views_ = picture.views.size();
+        HmdCounts const before = session.counts();
         session.end_frame(picture);
+        if (session.counts().pictures > before.pictures)
+            note_handed_over(session, session.counts().with_depth > before.with_depth);
         moment.display_s = at.display_s;
         core_.note_shown(shown_frame(std::move(moment), eyes_.views()));
         ++shown_;
+        double const drawing_s = eyes_.drawing_s();
         if (eyes_.views().drew_surfaces()) {
             ++surfaces_;
-            surfaces_scale_.measured(scale, std::max(state_.clock.now_s() - begun, eyes_.drawing_s()),
-                                     frame.period_s);
+            surfaces_scale_.measured(scale, std::max(state_.clock.now_s() - begun, drawing_s), frame.period_s);
         } else if (moved) {
             ++reprojected_;
         }
@@ -244,6 +264,15 @@ private:
         times.late_ms = 1e3 * (times.swap_s - newest->command.display_s);
         times.reprojected = moved || newest->command.only_light;
         core_.log(times);
+    }
+
+    void note_handed_over(HmdSession const& session, bool with_depth)
+    {
+        pose_ages_ms_.push_back(1e3 * session.pose_age_s());
+        pose_cpu_ms_.push_back(1e3 * session.pose_cpu_s());
+        with_depth_ += with_depth;
+        if (session.takes_depths() && !with_depth)
+            core_.report.lose("pictures that the headset got without depths", 1, "their depths are not known");
     }
 
     /// Saves what the eyes see now, if asked to.
@@ -270,12 +299,11 @@ private:
         auto const newest = core_.renderer->newest();
         if (!state_.wants_screenshot || !newest || newest->result.views.size() != 2) return;
         if (newest->command.only_light) return;
-        std::array<glm::ivec2, 2> sizes;
-        for (std::size_t eye = 0; eye < 2; ++eye)
-            sizes[eye] = {newest->command.views[eye].width, newest->command.views[eye].height};
+        std::vector<EyeToDraw> eyes;
+        for (ViewCommand const& view : newest->command.views) eyes.push_back({{}, {view.width, view.height}});
         state_.frame = newest;
         eyes_.take(newest);
-        eyes_.draw(nullptr, sizes, tone_settings(state_.settings()));
+        eyes_.draw(eyes, tone_settings(state_.settings()));
         shoot();
     }
 
@@ -292,7 +320,9 @@ private:
     int losses_ = 0;
     std::vector<std::string> phases_;
     std::uint64_t shown_ = 0, reprojected_ = 0, surfaces_ = 0;
-    double pose_age_ms_ = 0, longest_pose_age_ms_ = 0; ///< of the views, when their pictures are handed over
+    std::vector<double> pose_ages_ms_, pose_cpu_ms_; ///< of pictures: HmdSession::pose_age_s, pose_cpu_s
+    std::uint64_t with_depth_ = 0;
+    std::size_t views_ = 0; ///< of the last picture
     SurfacesScale surfaces_scale_;
     bool no_surfaces_told_ = false;
     std::array<HiddenMask, 2> told_;

@@ -48,7 +48,7 @@ std::vector<int> heads_of(std::vector<ViewCommand> const& views)
 
 void ShownViews::upload(std::optional<Shown>& to, gi::Picture const& picture, HiddenPixels const& hidden)
 {
-    if (!to) to.emplace(Shown{{}, Reprojection(reprojection_)});
+    if (!to) to.emplace(Shown{{}, Reprojection(reprojection_), Reprojection(reprojection_)});
     std::span<float const> color = floats(picture, "color"), depth = floats(picture, gi::seen_depth_of(picture));
     if (hidden && 3 * hidden->size() == color.size()) {
         color_.assign(color.begin(), color.end());
@@ -111,6 +111,27 @@ void ShownViews::begin(double surfaces_scale, FrameCommand const* moment, DriveB
     if (!is_ready_) return;
     if (moment && renderer_->can_move()) renderer_->move(pose_at(frame_->result, *moment, drive));
     renderer_->light(moment ? lights_at(frame_->result, *moment) : frame_->result.scene->lights);
+    if (!moment) return;
+    // What depends on no pose, so that poses are no older than drawing takes.
+    FrameCommand const& rendered = frame_->command;
+    bool const moved =
+        !std::ranges::equal(moment->views, rendered.views, {}, &ViewCommand::camera, &ViewCommand::camera);
+    if (moved || rendered.only_light) add_light();
+    renderer_->update_shadows();
+}
+
+glm::ivec2 ShownViews::size_of(int view) const
+{
+    ViewCommand const& rendered = command(view);
+    View const& shown = views_[std::size_t(view)];
+    return frame_->command.only_light
+               ? glm::ivec2(rendered.width, rendered.height)
+               : shown.own->picture.shown().size_px - 2 * frame_->result.views[std::size_t(view)].margin_px;
+}
+
+gi::Camera ShownViews::camera_of(int view) const
+{
+    return with_margin(command(view).camera, size_of(view), frame_->result.views[std::size_t(view)].margin_px);
 }
 
 void ShownViews::prepare(double most_s)
@@ -153,21 +174,32 @@ void ShownViews::add_light()
     renderer_->add_light(light);
 }
 
-std::optional<ShownPicture> ShownViews::surfaces(int view, gi::Camera const& from, gi::Camera const& to,
-                                                 glm::ivec2 size_px)
+std::optional<ShownPicture> ShownViews::surfaces(int view, ViewPart part, gi::Camera const& from,
+                                                 gi::Camera const& to, glm::ivec2 size_px)
 {
-    if (!is_ready_ || views_[std::size_t(view)].other) return std::nullopt;
+    View& shown = views_[std::size_t(view)];
+    if (!is_ready_ || shown.other) return std::nullopt;
     add_light();
     if (!renderer_->has_light()) return std::nullopt;
     glm::ivec2 size = glm::max(glm::ivec2(glm::round(surfaces_scale_ * glm::dvec2(size_px))), glm::ivec2(1));
     size = {no_power_of_two(size.x), no_power_of_two(size.y)};
     std::size_t const number = numbers_[std::size_t(view)];
-    return renderer_->draw(int(number), heads_[number], to, size, views_[std::size_t(view)].own->picture, from);
+    ShownPicture const drawn =
+        renderer_->draw(int(number), heads_[number], to, size, shown.own->picture, from, part);
+    shown.depths[std::size_t(part)] = renderer_->depth(int(number), part);
+    return drawn;
+}
+
+bool ShownViews::shows(int view) const
+{
+    return frame_ && view >= 0 && std::size_t(view) < std::min(frame_->command.views.size(), views_.size()) &&
+           views_[std::size_t(view)].own;
 }
 
 EyeView ShownViews::eye(int view, gi::Camera const* now)
 {
-    EyeView const shown = draw(view, now);
+    if (!shows(view)) return {};
+    EyeView const shown = draw(view, ViewPart::whole, now, size_of(view));
     if (hashes_pictures_ && shown.picture.texture != 0) {
         glm::ivec2 const px = shown.picture.size_px;
         std::vector<float> rgb(std::size_t(3 * px.x * px.y));
@@ -179,36 +211,41 @@ EyeView ShownViews::eye(int view, gi::Camera const* now)
     return shown;
 }
 
-EyeView ShownViews::draw(int view, gi::Camera const* now)
+EyeView ShownViews::middle(int view, gi::Camera const& now, glm::ivec2 size_px)
 {
-    if (!frame_ || view < 0 || std::size_t(view) >= frame_->command.views.size()) return {};
-    if (std::size_t(view) >= views_.size() || !views_[std::size_t(view)].own) return {};
-    auto& own = views_[std::size_t(view)].own;
-    auto& other = views_[std::size_t(view)].other;
-    ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
+    return shows(view) ? draw(view, ViewPart::middle, &now, size_px) : EyeView{};
+}
+
+EyeView ShownViews::draw(int view, ViewPart part, gi::Camera const* now, glm::ivec2 size_px)
+{
+    View& shown = views_[std::size_t(view)];
+    auto &own = shown.own, &other = shown.other;
+    ViewCommand const& rendered = command(view);
     EyeView e{own->picture.shown(), other ? other->picture.shown() : own->picture.shown()};
-    glm::ivec2 const margin = frame_->result.views[std::size_t(view)].margin_px,
-                     size = frame_->command.only_light ? glm::ivec2(rendered.width, rendered.height)
-                                                       : e.picture.size_px - 2 * margin;
     bool const moved = now != nullptr && !rendered.camera.orthographic && !(*now == rendered.camera);
-    own->reprojection.keep_only(size);
-    if (other) other->reprojection.keep_only(size);
-    gi::Camera const from = with_margin(rendered.camera, size, margin), &to = moved ? *now : rendered.camera;
+    auto const reprojection = [&](Shown& of) -> Reprojection& {
+        return part == ViewPart::whole ? of.reprojection : of.middle;
+    };
+    reprojection(*own).keep_only(size_px);
+    if (other) reprojection(*other).keep_only(size_px);
+    gi::Camera const from = camera_of(view), &to = moved ? *now : rendered.camera;
     // The first time takes long, as drivers compile then: it is done while nothing moves.
     if (!moved && !rendered.camera.orthographic && has_surfaces() && tried_ != frame_->result.scene->world.get() &&
-        surfaces(view, from, to, glm::ivec2(16)))
+        surfaces(view, part, from, to, glm::ivec2(16)))
         tried_ = frame_->result.scene->world.get();
     bool const only_light = frame_->command.only_light; // else it shows surfaces itself
-    if (!moved && !only_light && margin == glm::ivec2(0)) return e;
     if (moved || only_light)
-        if (auto const drawn = surfaces(view, from, to, size)) {
+        if (auto const drawn = surfaces(view, part, from, to, size_px)) {
             drew_surfaces_ = true;
             e.picture = e.other = *drawn;
             e.is_drawn = true;
             return e;
         }
-    e.picture = e.other = own->reprojection.draw(own->picture, from, to, size);
-    if (other) e.other = other->reprojection.draw(other->picture, from, to, size);
+    if (moved || only_light || e.picture.size_px != size_px) {
+        e.picture = e.other = reprojection(*own).draw(own->picture, from, to, size_px);
+        if (other) e.other = reprojection(*other).draw(other->picture, from, to, size_px);
+    }
+    shown.depths[std::size_t(part)] = {own->picture.around() != 0 ? e.picture.texture : 0, true, 1};
     return e;
 }
 

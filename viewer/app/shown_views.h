@@ -8,6 +8,8 @@
 #include "viewer/engine/live/live_renderer.h"
 #include "viewer/protocol/recording/recording.h"
 
+#include <array>
+
 namespace viewer {
 
 /// The context that was current at its creation must be current in all calls.
@@ -24,6 +26,13 @@ public:
     void begin(double surfaces_scale, FrameCommand const* moment, DriveBodies const& drive);
     /// Valid until the view's next one. @param now  null = as rendered
     EyeView eye(int view, gi::Camera const* now);
+    /// The middle of a view, at this size. Valid until its next one. Not part of hash().
+    EyeView middle(int view, gi::Camera const& now, glm::ivec2 size_px);
+    /// Of what eye() or middle() returned last. Where surfaces are drawn, without blended ones.
+    ShownDepth depth(int view, ViewPart part = ViewPart::whole) const
+    {
+        return views_[std::size_t(view)].depths[std::size_t(part)];
+    }
 
     /// True if surfaces are about to be drawn, once more of the scene is on the GPU: draw again soon.
     bool prepares() const { return prepares_; }
@@ -44,11 +53,12 @@ public:
 private:
     struct Shown {
         PictureTexture picture;
-        Reprojection reprojection;
+        Reprojection reprojection, middle;
     };
     /// none = not shown.
     struct View {
         std::optional<Shown> own, other;
+        std::array<ShownDepth, 2> depths;
     };
     void upload(std::optional<Shown>& to, gi::Picture const& picture, HiddenPixels const& hidden);
     bool has_surfaces() const { return surfaces_scale_ > 0 && renderer_ && frame_ && frame_->result.scene; }
@@ -56,9 +66,13 @@ private:
     void number_views();
     /// Gives the light of all views to the renderer, once for each frame that needs it.
     void add_light();
-    EyeView draw(int view, gi::Camera const* now);
+    bool shows(int view) const;
+    glm::ivec2 size_of(int view) const;
+    /// Of the view's picture, with its margin.
+    gi::Camera camera_of(int view) const;
+    EyeView draw(int view, ViewPart part, gi::Camera const* now, glm::ivec2 size_px);
     /// The surfaces of a view for another camera than that of its picture; none if they cannot be drawn.
-    std::optional<ShownPicture> surfaces(int view, gi::Camera const& from, gi::Camera const& to,
+    std::optional<ShownPicture> surfaces(int view, ViewPart part, gi::Camera const& from, gi::Camera const& to,
                                          glm::ivec2 size_px);
 
     std::shared_ptr<ReprojectionPrograms const> reprojection_ = std::make_shared<ReprojectionPrograms>();

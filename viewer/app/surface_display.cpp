@@ -8,17 +8,25 @@ SurfaceDisplay::SurfaceDisplay()
     outlines_.draw(to.target(), from.shown());
 }
 
+TextureTarget const& SurfaceDisplay::smoothed(int number, DisplayPass& pass, EyeView const& view,
+                                              DisplaySettings const& settings)
+{
+    glm::ivec2 const size = view.picture.size_px;
+    auto at = textures_.find(number);
+    if (at == textures_.end() || at->second.encoded.shown().size_px != size) {
+        constexpr auto kBytes = TextureTarget::Format::bytes;
+        at = textures_.insert_or_assign(number, Textures{{kBytes, size}, {kBytes, size}}).first;
+    }
+    auto const& [encoded, smoothed] = at->second;
+    pass.draw(encoded.target(), view, view, settings);
+    outlines_.draw(smoothed.target(), encoded.shown());
+    return smoothed;
+}
+
 void SurfaceDisplay::draw(DisplayPass& pass, DrawTarget const& to, EyeView const& view,
                           DisplaySettings const& settings)
 {
-    glm::ivec2 const size = view.picture.size_px;
-    if (!encoded_ || encoded_->shown().size_px != size) {
-        encoded_.emplace(TextureTarget::Format::bytes, size);
-        smoothed_.emplace(TextureTarget::Format::bytes, size);
-    }
-    pass.draw(encoded_->target(), view, view, settings);
-    outlines_.draw(smoothed_->target(), encoded_->shown());
-    stretch(smoothed_->target(), to);
+    stretch(smoothed(0, pass, view, settings).target(), to);
 }
 
 } // namespace viewer

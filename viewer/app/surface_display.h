@@ -5,6 +5,8 @@
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/outline_pass.h"
 
+#include <map>
+
 namespace viewer {
 
 /// Belongs to the context that was current at its creation.
@@ -13,9 +15,15 @@ public:
     /// Drivers compile then, which takes long the first time.
     SurfaceDisplay();
     void draw(DisplayPass& pass, DrawTarget const& to, EyeView const& view, DisplaySettings const& settings);
+    /// The smoothed picture before it is stretched. Valid until the next one of this number.
+    TextureTarget const& smoothed(int number, DisplayPass& pass, EyeView const& view,
+                                  DisplaySettings const& settings);
 
 private:
-    std::optional<TextureTarget> encoded_, smoothed_;
+    struct Textures {
+        TextureTarget encoded, smoothed;
+    };
+    std::map<int, Textures> textures_;
     OutlinePass outlines_;
 };
 

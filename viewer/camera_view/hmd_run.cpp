@@ -145,12 +145,12 @@ private:
                 frame.has_pose && room_from_head_ ? *room_from_head_ : middle_of(picture.views);
             passes_[std::min(eye, passes_.size() - 1)].draw(targets_[eye]->target(), view.camera,
                                                             room_from_camera(eye, head), hmd_.plane_m);
-            picture.textures[eye] = targets_[eye]->shown().texture;
+            picture.textures.push_back(targets_[eye]->shown().texture);
         }
         session.end_frame(picture);
     }
 
-    static gi::RigidPose middle_of(std::array<HmdView, 2> const& views)
+    static gi::RigidPose middle_of(std::vector<HmdView> const& views)
     {
         gi::dmat4 const &a = views[0].camera.world_from_camera, &b = views[1].camera.world_from_camera;
         return {0.5 * glm::dvec3(a[3] + b[3]), glm::normalize(glm::quat_cast(glm::dmat3(a)))};

@@ -1,7 +1,8 @@
 // A small user of a headset for tests: shows each eye a picture of its own and logs what the runtime says of every
 // frame. The room has a white ball of radius 0.25 m at (0, 1.6, -2), the sky is blue 17 degrees above the horizon,
-// the rest is red for the left eye and green for the right.
-//   hmd_client --graphics egl|glx|none --frames N [--log FILE] [--every N] [--keep] [--recentre] [--seated]
+// the rest is red for the left eye and green for the right. Depths, where the runtime takes them, are those of the ball;
+// all else is infinitely far.
+//   hmd_client --graphics egl|glx|none --frames N [--log FILE] [--every N] [--keep] [--recentre] [--seated] [--depths] [--insets]
 // Prints a line per change of phase and, last, counts and facts as JSON.
 
 #include "gi/core/error.h"
@@ -12,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <GLFW/glfw3.h>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -25,7 +27,7 @@ struct Options {
     std::string graphics = "egl", log;
     int frames = 250, every = 1;
     double patience_s = 60;
-    bool keep = false, recentre = false, seated = false;
+    bool keep = false, recentre = false, seated = false, depths = false, insets = false;
 };
 
 double now_s()
@@ -33,45 +35,64 @@ double now_s()
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::vector<std::uint8_t> draw(HmdView const& view, HmdEye eye)
+struct Drawn {
+    std::vector<std::uint8_t> pixels;
+    std::vector<float> per_m; ///< 1 / depth
+};
+
+Drawn draw(HmdView const& view, HmdEye eye)
 {
     gi::CameraRays const rays = gi::camera_rays(view.camera, view.width, view.height, gi::dvec3(0));
-    std::vector<std::uint8_t> pixels;
-    pixels.reserve(std::size_t(view.width) * std::size_t(view.height) * 4);
+    gi::vec3 const ahead(-gi::dvec3(view.camera.world_from_camera[2]));
+    Drawn drawn;
+    drawn.pixels.reserve(std::size_t(view.width) * std::size_t(view.height) * 4);
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x) {
             gi::Ray const ray = rays.through({float(x) + 0.5f, float(y) + 0.5f});
             gi::vec3 const to_ball = gi::vec3(0, 1.6f, -2) - ray.origin;
             float const along = glm::dot(to_ball, ray.direction);
-            bool const is_ball = along > 0 && glm::dot(to_ball, to_ball) - along * along < 0.25f * 0.25f;
+            float const inside = 0.25f * 0.25f - (glm::dot(to_ball, to_ball) - along * along);
+            bool const is_ball = along > 0 && inside > 0;
             gi::vec3 colour = eye == HmdEye::left ? gi::vec3(255, 0, 0) : gi::vec3(0, 255, 0);
             if (ray.direction.y > 0.3f) colour = {0, 0, 255};
             if (is_ball) colour = {255, 255, 255};
-            for (int c = 0; c < 3; ++c) pixels.push_back(std::uint8_t(colour[c]));
-            pixels.push_back(255);
+            for (int c = 0; c < 3; ++c) drawn.pixels.push_back(std::uint8_t(colour[c]));
+            drawn.pixels.push_back(255);
+            float const depth = (along - std::sqrt(std::max(inside, 0.0f))) * glm::dot(ray.direction, ahead);
+            drawn.per_m.push_back(is_ball ? 1 / depth : 0);
         }
-    return pixels;
+    return drawn;
 }
 
-/// Two textures that take a picture from the CPU.
+/// Textures that take a picture from the CPU.
 class Uploads {
 public:
-    HmdPicture upload(std::array<HmdView, 2> const& views)
+    HmdPicture upload(std::vector<HmdView> const& views)
     {
-        for (std::size_t e = 0; e < 2; ++e) {
-            int const w = views[e].width, h = views[e].height;
-            if (textures_[e] == 0) {
-                glCreateTextures(GL_TEXTURE_2D, 1, &textures_[e]);
-                glTextureStorage2D(textures_[e], 1, GL_RGBA8, w, h);
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            int const w = views[v].width, h = views[v].height;
+            if (v == textures_.size()) {
+                textures_.push_back(made(GL_RGBA8, w, h));
+                depths_.push_back({made(GL_R32F, w, h), false, 1});
             }
-            glTextureSubImage2D(textures_[e], 0, 0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE,
-                                draw(views[e], HmdEye(e)).data());
+            Drawn const drawn = draw(views[v], HmdEye(v % 2));
+            glTextureSubImage2D(textures_[v], 0, 0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, drawn.pixels.data());
+            glTextureSubImage2D(depths_[v].texture, 0, 0, 0, w, h, GL_RED, GL_FLOAT, drawn.per_m.data());
         }
-        return {views, textures_, TextureValues::srgb, FirstRow::top};
+        return {views, textures_, depths_, TextureValues::srgb, FirstRow::top};
     }
 
 private:
-    std::array<unsigned, 2> textures_{};
+    static unsigned made(GLenum format, int w, int h)
+    {
+        unsigned texture = 0;
+        glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+        glTextureStorage2D(texture, 1, format, w, h);
+        return texture;
+    }
+
+    std::vector<unsigned> textures_;
+    std::vector<ShownDepth> depths_;
 };
 
 std::string cells(std::optional<RoomPose> const& pose)
@@ -101,7 +122,8 @@ void log_frame(std::FILE* file, HmdFrame const& f)
 {
     std::string row = fmt::format("{},{},{:.9f},{:.9f},{:d},{:d}", f.frame, f.xr_time, f.display_s, f.pose_s,
                                   f.has_pose, f.should_render);
-    row += cells(f.tracked.head) + cells(f.views[0].raw) + cells(f.views[1].raw);
+    row += cells(f.tracked.head);
+    for (std::size_t eye = 0; eye < 2; ++eye) row += cells(eye < f.views.size() ? f.views[eye].raw : HmdRawView{});
     row += cells(f.tracked.left_hand) + cells(f.tracked.right_hand);
     row += fmt::format(",{},{:d},{:.9g},{:.9g}", f.hands[0].profile, f.hands[0].select, f.hands[0].move.x,
                        f.hands[0].move.y);
@@ -147,6 +169,9 @@ nlohmann::json facts(HmdSession const& s)
             {"space", s.info().space},
             {"width", s.info().width},
             {"height", s.info().height},
+            {"inset_width", s.info().inset_width},
+            {"takes_depths", s.takes_depths()},
+            {"with_depth", c.with_depth},
             {"frames", c.frames},
             {"pictures", c.pictures},
             {"repeated", c.repeated},
@@ -167,6 +192,8 @@ int run(Options const& o)
     std::optional<GlContext> const context = open_context(o, window, report);
     HmdOptions options;
     if (o.seated) options = {HmdSpace::local, 1.2};
+    if (o.depths) options.depths = HmdDepths::on;
+    if (o.insets) options.insets = HmdInsets::on;
     HmdKeeper keeper(context ? &*context : nullptr, options);
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> const log(
         o.log.empty() ? nullptr : std::fopen(o.log.c_str(), "w"), &std::fclose);
@@ -241,6 +268,8 @@ int main(int argc, char** argv)
     app.add_flag("--keep", o.keep);
     app.add_flag("--recentre", o.recentre);
     app.add_flag("--seated", o.seated);
+    app.add_flag("--depths", o.depths);
+    app.add_flag("--insets", o.insets);
     CLI11_PARSE(app, argc, argv);
     try {
         return viewer::test::run(o);

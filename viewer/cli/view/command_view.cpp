@@ -45,7 +45,7 @@ struct ViewArguments {
     RankOptions ranks;
     double fps = 30, eye_height_m = 1.6;
     int paths = 0;
-    bool hmd = false, seated = false, shown = false, hash_shown = false;
+    bool hmd = false, seated = false, no_depths = false, no_insets = false, shown = false, hash_shown = false;
     std::optional<int> remote_port;
     std::string remote_token;
     bool remote_open = false;
@@ -225,6 +225,16 @@ void check_results(ViewArguments const& a)
                   {a.scene.scene, a.scene.environment, a.display, a.avatar, a.avatar_joints});
 }
 
+HmdOptions headset_of(ViewArguments const& a)
+{
+    HmdOptions headset;
+    headset.space = a.seated ? HmdSpace::local : HmdSpace::stage;
+    headset.eye_height_m = a.eye_height_m;
+    headset.depths = a.no_depths ? HmdDepths::off : HmdDepths::on;
+    headset.insets = a.no_insets ? HmdInsets::off : HmdInsets::on;
+    return headset;
+}
+
 int run(ViewArguments const& a, std::string const& command_line)
 {
     gi::Report report;
@@ -242,9 +252,7 @@ int run(ViewArguments const& a, std::string const& command_line)
         }
     }
     if (o.rank < 0) check_results(a);
-    if (a.hmd)
-        return finish(a, run_hmd(o, {a.seated ? HmdSpace::local : HmdSpace::stage, a.eye_height_m}, stop, report),
-                      nullptr, report);
+    if (a.hmd) return finish(a, run_hmd(o, headset_of(a), stop, report), nullptr, report);
     if (o.rank < 0) return finish(a, run_view(o, nullptr, stop, report), nullptr, report);
     if (!o.display)
         throw gi::InputError("view by several ranks without --display", "no walls are assigned to the ranks",
@@ -335,7 +343,7 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
     else
         refuse({"--out", "--video", "--paths", "--fps", "--shown"}, "without --replay");
     if (a.record.empty()) refuse({"--hash-shown"}, "without --record");
-    if (!a.hmd) refuse({"--seated"}, "without --hmd");
+    if (!a.hmd) refuse({"--seated", "--no-depths", "--no-insets"}, "without --hmd");
     if (a.hmd) refuse({"--size", "--fullscreen", "--no-vsync"}, "with --hmd");
     if (!a.fullscreen.empty()) refuse({"--size"}, "with --fullscreen");
     if (!a.display.empty()) {
@@ -382,6 +390,9 @@ void add_view(CLI::App& app, int& exit_code)
                   "joint map of --avatar, YAML (lightwell avatar map proposes one); default: by usual names")
         ->needs("--avatar");
     c->add_flag("--seated", a->seated, "with --hmd: space without a floor; the eyes start at --eye-height");
+    c->add_flag("--no-depths", a->no_depths,
+                "with --hmd: the runtime gets pictures without depths; some distort transparent things by them");
+    c->add_flag("--no-insets", a->no_insets, "with --hmd: no finer pictures of the middle of each eye");
     c->add_option("--eye-height", a->eye_height_m,
                   "m above the floor, when walking, with --avatar or --seated; display files set their users' own")
         ->check(in_range(0.2, 3))

@@ -23,11 +23,13 @@ int run_info(bool as_json)
     if (as_json) {
         nlohmann::ordered_json const j{{"runtime", info.runtime},
                                        {"system", info.system},
-                                       {"views", "primary stereo"},
+                                       {"views", info.inset_width > 0 ? "primary quad" : "primary stereo"},
                                        {"width", info.width},
                                        {"height", info.height},
                                        {"widest", info.widest},
                                        {"highest", info.highest},
+                                       {"inset_width", info.inset_width},
+                                       {"inset_height", info.inset_height},
                                        {"tracks_position", info.tracks_position},
                                        {"tracks_rotation", info.tracks_rotation},
                                        {"tracks_gaze", info.tracks_gaze},
@@ -40,6 +42,8 @@ int run_info(bool as_json)
     fmt::print("{}\n  {:<22} {}\n  {:<22} {}\n", info.runtime, "headset", info.system, "tracks", tracked(info));
     fmt::print("  {:<22} {} x {} pixels each, at most {} x {}\n", "two views", info.width, info.height,
                info.widest, info.highest);
+    if (info.inset_width > 0)
+        fmt::print("  {:<22} {} x {} pixels each\n", "two insets", info.inset_width, info.inset_height);
     fmt::print("  {:<22} {}\n", "blend modes", fmt::join(info.blend_modes, ", "));
     for (std::string const& e : info.extensions_used) fmt::print("  {:<22} {}\n", "uses", e);
     for (std::string const& e : info.extensions_missing) fmt::print("  {:<22} {}\n", "is missing", e);

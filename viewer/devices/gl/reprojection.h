@@ -45,8 +45,8 @@ public:
         : programs_(std::move(programs))
     {
     }
-    /// Reprojects `picture`, taken by camera a, to camera b at size_px: linear radiance; alpha is 1 where A saw
-    /// the surface, 0 where pixels are stretched. With the same camera and size the pixels are bit-identical.
+    /// Reprojects `picture`, taken by camera a, to camera b at size_px: linear radiance, and in alpha 1 / depth, 1/m. With
+    /// the same camera and size the pixels are bit-identical.
     /// Without depth, the picture is treated as infinitely far, so only rotation has an effect. The result is
     /// valid until the next call.
     ShownPicture draw(PictureTexture const& picture, gi::Camera const& a, gi::Camera const& b, glm::ivec2 size_px);

@@ -400,9 +400,9 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
 }
 
 ShownPicture SurfaceRenderer::draw(int view, int head, gi::Camera const& camera, glm::ivec2 size_px,
-                                   PictureTexture const& picture, gi::Camera const& of)
+                                   PictureTexture const& picture, gi::Camera const& of, ViewPart part)
 {
-    Target& to = targets_[view];
+    Target& to = targets_[{view, part}];
     fit(to, size_px);
     Eye const eye = eye_of(head, camera, size_px);
     eye_ = eye.at;
@@ -420,6 +420,13 @@ ShownPicture SurfaceRenderer::draw(int view, int head, gi::Camera const& camera,
     draw_mirrors(eye, to, size_px);
     draw_blended(eye);
     return to.color->shown();
+}
+
+ShownDepth SurfaceRenderer::depth(int view, ViewPart part) const
+{
+    auto const at = targets_.find({view, part});
+    if (at == targets_.end()) return {};
+    return {at->second.depth.id(), false, 1 / nearest_m()};
 }
 
 } // namespace viewer

@@ -10,10 +10,14 @@
 #include "viewer/devices/gl/reprojection.h"
 #include "viewer/devices/gl/scene_meshes.h"
 #include "viewer/devices/gl/shadow_maps.h"
+#include "viewer/devices/gl/shown_depth.h"
 
 #include <map>
 
 namespace viewer {
+
+/// Of what an eye sees.
+enum class ViewPart : std::uint8_t { whole, middle };
 
 /// Belongs to the context that was current at its creation.
 class SurfaceRenderer {
@@ -35,11 +39,15 @@ public:
     /// Uploads and compiles for about so long; true when surfaces can be drawn.
     bool prepare(double most_s);
 
-    /// Linear radiance at size_px. The result is valid until the view's next one.
+    /// Draws the shadows of what has moved, as draw() would.
+    void update_shadows() { shadows_.update(meshes_, eye_); }
+    /// Linear radiance at size_px. The result is valid until the next one of this part of the view.
     /// @param head  LightOfView::head of the view
     /// @param picture  the last one of the view, with depth, of camera `of`
     ShownPicture draw(int view, int head, gi::Camera const& camera, glm::ivec2 size_px,
-                      PictureTexture const& picture, gi::Camera const& of);
+                      PictureTexture const& picture, gi::Camera const& of, ViewPart part = ViewPart::whole);
+    /// Of what was drawn last of this part of the view, without blended surfaces. Valid as long.
+    ShownDepth depth(int view, ViewPart part = ViewPart::whole) const;
 
 private:
     struct Target {
@@ -94,7 +102,7 @@ private:
     std::optional<GlProgram> found_, lit_, sky_;
     ReprojectionMaps maps_; ///< from the last picture, and its greatest 1 / depth
     float nearest_ = 0;
-    std::map<int, Target> targets_;
+    std::map<std::pair<int, ViewPart>, Target> targets_;
     Target mirror_image_;
     GlObject no_vertices_{GlObject::Kind::vertex_array};
 };

@@ -3,12 +3,14 @@
 // heads, eyes and hands look along -Z. Times are seconds of std::chrono::steady_clock.
 
 #include "gi/scene/model/camera.h"
+#include "viewer/devices/gl/shown_depth.h"
 #include "viewer/protocol/frame_command.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace viewer {
 
@@ -24,12 +26,13 @@ struct HmdRawView {
     bool operator==(HmdRawView const&) const = default;
 };
 
-/// One eye of a frame.
+/// What an eye sees in a frame, or the middle of it.
 struct HmdView {
     gi::Camera camera;         ///< in the room, off-axis: the tangents of the runtime's four angles
     int width = 0, height = 0; ///< pixels that the runtime recommends
     HmdRawView raw;
     std::uint64_t space = 0; ///< number of times the runtime had moved its space; used by the session
+    double pose_s = 0;       ///< when its pose was requested
 
     bool operator==(HmdView const&) const = default;
 };
@@ -62,7 +65,8 @@ struct HmdFrame {
     std::int64_t xr_time = 0;   ///< display_s on the clock of the runtime, ns
     bool should_render = false; ///< false: it will not be visible; end the frame nevertheless
     bool has_pose = false;      ///< false: the head is not tracked, and views are from the last known pose
-    std::array<HmdView, 2> views;
+    /// Of the left and the right eye; with insets, then the middle of each with finer pixels.
+    std::vector<HmdView> views;
     Tracked tracked; ///< head, and the grips of the controllers
     std::array<HmdHand, 2> hands;
     std::optional<HmdGaze> gaze; ///< none without eye tracking, or while the session has no focus
@@ -76,8 +80,9 @@ enum class FirstRow { bottom, top };
 /// A finished picture of both eyes and the views that it was drawn for, which may be older
 /// than the frame that it is submitted to.
 struct HmdPicture {
-    std::array<HmdView, 2> views;
-    std::array<unsigned, 2> textures{}; ///< GL names of 2D textures of any size, values 0 to 1, alpha ignored
+    std::vector<HmdView> views;     ///< as many as a frame has
+    std::vector<unsigned> textures; ///< GL names of 2D textures of any size, values 0 to 1, alpha ignored
+    std::vector<ShownDepth> depths; ///< of the views, any size; empty, or one without a texture: not submitted
     TextureValues values = TextureValues::linear;
     FirstRow first_row = FirstRow::bottom;
 };

@@ -13,6 +13,7 @@ struct HmdInfo {
     std::string space;           ///< "stage", "local, eyes 1.6 m above the floor"
     int width = 0, height = 0;   ///< recommended pixels per eye
     int widest = 0, highest = 0; ///< at most
+    int inset_width = 0, inset_height = 0; ///< recommended pixels of the middle of each eye; 0 = no insets
     bool tracks_position = false, tracks_rotation = false;
     bool tracks_gaze = false;                    ///< if the extension is used
     std::vector<std::string> blend_modes;        ///< e.g. "opaque", "additive", "alpha blend"; the first is used

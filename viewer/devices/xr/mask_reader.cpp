@@ -2,7 +2,7 @@
 
 namespace viewer {
 
-MaskReader::MaskReader(Runtime const& runtime, XrSession session) : session_(session)
+MaskReader::MaskReader(Runtime const& runtime, XrSession session) : session_(session), views_(runtime.views())
 {
     if (runtime.uses(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME))
         ask_ = runtime.function<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR");
@@ -15,8 +15,7 @@ void MaskReader::read()
         XrVisibilityMaskKHR mask{};
         mask.type = XR_TYPE_VISIBILITY_MASK_KHR;
         auto const ask = [&] {
-            check(ask_(session_, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, eye,
-                       XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask),
+            check(ask_(session_, views_, eye, XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask),
                   "xrGetVisibilityMaskKHR");
         };
         ask();

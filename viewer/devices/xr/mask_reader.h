@@ -16,6 +16,7 @@ public:
 
 private:
     XrSession session_;
+    XrViewConfigurationType views_;
     PFN_xrGetVisibilityMaskKHR ask_ = nullptr; ///< null if the runtime does not support it
     std::array<HiddenMask, 2> masks_;
 };

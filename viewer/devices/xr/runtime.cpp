@@ -26,6 +26,9 @@ constexpr KnownExtension kKnown[] = {
     {XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME, "its clock is taken to be the system's monotonic one", false,
      false, false},
     {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, "pixels that no eye sees are rendered too", false, false, false},
+    {XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, "it moves pictures to newer poses without their depths", false,
+     false, false},
+    {XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, "the middle of the view has no finer pixels", false, false, false},
     {XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, "gaze cannot be recorded", false, false, false},
 };
 
@@ -39,11 +42,16 @@ bool needed(KnownExtension const& e, PicturePath path)
            (path == PicturePath::none && e.none);
 }
 
-/// Extensions that a path does not need stay disabled: headless sessions and pictures exclude each other.
-bool wanted(KnownExtension const& e, PicturePath path)
+/// Extensions that a path does not need stay disabled: headless sessions and pictures exclude each other. So does gaze
+/// without a wish, for which runtimes may ask the user.
+bool wanted(KnownExtension const& e, PicturePath path, HmdOptions const& options)
 {
-    bool const for_no_special_path = !e.glx && !e.egl && !e.none;
-    return path == PicturePath::ask || needed(e, path) || for_no_special_path;
+    if (path == PicturePath::ask || needed(e, path)) return true;
+    std::string const name = e.name;
+    if (name == kEyeGaze) return options.eye_tracking == HmdEyeTracking::on;
+    if (name == XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME) return options.depths == HmdDepths::on;
+    if (name == XR_VARJO_QUAD_VIEWS_EXTENSION_NAME) return options.insets == HmdInsets::on;
+    return !e.glx && !e.egl && !e.none;
 }
 
 [[noreturn]] void throw_no_runtime(CallError const& e)
@@ -81,11 +89,11 @@ char const* name(XrEnvironmentBlendMode mode)
 
 } // namespace
 
-Runtime::Runtime(PicturePath path, HmdEyeTracking eye_tracking)
+Runtime::Runtime(PicturePath path, HmdOptions const& options)
 {
     // Silence the loader's own messages on stderr; the exception contains the error.
     setenv("XR_LOADER_DEBUG", "none", 0);
-    connect(path, eye_tracking);
+    connect(path, options);
     try {
         find_headset();
     } catch (...) {
@@ -96,7 +104,7 @@ Runtime::Runtime(PicturePath path, HmdEyeTracking eye_tracking)
 
 Runtime::~Runtime() { xrDestroyInstance(instance_); }
 
-void Runtime::connect(PicturePath path, HmdEyeTracking eye_tracking)
+void Runtime::connect(PicturePath path, HmdOptions const& options)
 {
     try {
         XrExtensionProperties empty{};
@@ -115,13 +123,11 @@ void Runtime::connect(PicturePath path, HmdEyeTracking eye_tracking)
             if (!is_offered && needed(e, path))
                 throw gi::InputError(fmt::format("the OpenXR runtime does not offer {}", e.name), e.without,
                                      "use a runtime that has it (Monado does)");
-            bool const is_gaze = std::strcmp(e.name, kEyeGaze) == 0, tracks = eye_tracking == HmdEyeTracking::on;
-            if (!is_offered && is_gaze && tracks)
+            if (!is_offered && options.eye_tracking == HmdEyeTracking::on && std::strcmp(e.name, kEyeGaze) == 0)
                 throw gi::InputError(fmt::format("the OpenXR runtime does not offer {}", e.name), e.without,
                                      kWithoutGaze);
             if (!is_offered) info.extensions_missing.push_back(fmt::format("{} ({})", e.name, e.without));
-            if (!is_offered || !wanted(e, path)) continue;
-            if (is_gaze && !tracks && path != PicturePath::ask) continue; // it may ask for permission
+            if (!is_offered || !wanted(e, path, options)) continue;
             names.push_back(e.name);
             info.extensions_used.push_back(e.name);
         }
@@ -166,25 +172,40 @@ try {
     info.tracks_gaze = gaze.supportsEyeGazeInteraction;
     info.tracks_rotation = properties.trackingProperties.orientationTracking;
 
-    constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+    if (uses(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME)) {
+        auto const offered =
+            list_of(views_, "xrEnumerateViewConfigurations", [&](auto capacity, auto* count, auto* items) {
+                return xrEnumerateViewConfigurations(instance_, system_, capacity, count, items);
+            });
+        constexpr auto kQuad = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO;
+        if (std::find(offered.begin(), offered.end(), kQuad) != offered.end()) views_ = kQuad;
+    }
     XrViewConfigurationView empty{};
     empty.type = XR_TYPE_VIEW_CONFIGURATION_VIEW;
     auto const views =
         list_of(empty, "xrEnumerateViewConfigurationViews", [&](auto capacity, auto* count, auto* items) {
-            return xrEnumerateViewConfigurationViews(instance_, system_, kStereo, capacity, count, items);
+            return xrEnumerateViewConfigurationViews(instance_, system_, views_, capacity, count, items);
         });
-    if (views.size() != 2) throw CallError("two views", XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
+    bool const has_insets = views_ != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+    if (views.size() != (has_insets ? 4 : 2))
+        throw CallError("two views of each eye", XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
     info.width =
         static_cast<int>(std::max(views[0].recommendedImageRectWidth, views[1].recommendedImageRectWidth));
     info.height =
         static_cast<int>(std::max(views[0].recommendedImageRectHeight, views[1].recommendedImageRectHeight));
     info.widest = static_cast<int>(std::min(views[0].maxImageRectWidth, views[1].maxImageRectWidth));
     info.highest = static_cast<int>(std::min(views[0].maxImageRectHeight, views[1].maxImageRectHeight));
+    if (has_insets) {
+        info.inset_width =
+            static_cast<int>(std::max(views[2].recommendedImageRectWidth, views[3].recommendedImageRectWidth));
+        info.inset_height =
+            static_cast<int>(std::max(views[2].recommendedImageRectHeight, views[3].recommendedImageRectHeight));
+    }
 
     auto const modes =
         list_of(XR_ENVIRONMENT_BLEND_MODE_OPAQUE, "xrEnumerateEnvironmentBlendModes",
                 [&](auto capacity, auto* count, auto* items) {
-                    return xrEnumerateEnvironmentBlendModes(instance_, system_, kStereo, capacity, count, items);
+                    return xrEnumerateEnvironmentBlendModes(instance_, system_, views_, capacity, count, items);
                 });
     for (XrEnvironmentBlendMode const mode : modes) info.blend_modes.push_back(name(mode));
     if (!modes.empty()) blend_mode_ = modes.front();

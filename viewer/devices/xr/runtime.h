@@ -16,8 +16,8 @@ enum class PicturePath { glx, egl, none, ask };
 class Runtime {
 public:
     /// Throws InputError if there is no runtime, no headset, or a required extension is missing.
-    /// @param eye_tracking  on: required
-    explicit Runtime(PicturePath path, HmdEyeTracking eye_tracking = HmdEyeTracking::off);
+    /// Eye tracking, if it is on, is required.
+    explicit Runtime(PicturePath path, HmdOptions const& options = {});
     ~Runtime();
     Runtime(Runtime const&) = delete;
     Runtime& operator=(Runtime const&) = delete;
@@ -26,6 +26,8 @@ public:
     XrSystemId system() const { return system_; }
     bool uses(char const* extension) const;
     XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
+    /// Two views, or with insets four.
+    XrViewConfigurationType views() const { return views_; }
 
     /// Conversion between the runtime's clock and seconds of steady_clock.
     double steady_s(XrTime time) const;
@@ -42,11 +44,12 @@ public:
 
 private:
     PFN_xrVoidFunction pointer(char const* name) const;
-    void connect(PicturePath path, HmdEyeTracking eye_tracking);
+    void connect(PicturePath path, HmdOptions const& options);
     void find_headset();
 
     XrInstance instance_ = XR_NULL_HANDLE;
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
+    XrViewConfigurationType views_ = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
     PFN_xrConvertTimespecTimeToTimeKHR to_time_ = nullptr;
     PFN_xrConvertTimeToTimespecTimeKHR from_time_ = nullptr;

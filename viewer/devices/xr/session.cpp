@@ -8,19 +8,28 @@
 #include "viewer/devices/xr/pose_math.h"
 #include "viewer/devices/xr/spaces.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <limits>
 #include <thread>
 
 namespace viewer {
 namespace {
 
-constexpr XrViewConfigurationType kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 constexpr XrViewStateFlags kWholePose = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
 
 double steady_now_s()
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// That this thread has worked.
+double thread_cpu_s()
+{
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
 }
 
 HmdPhase phase_of(XrSessionState state)
@@ -97,7 +106,8 @@ struct HmdSession::Parts {
     std::optional<HmdFrame> begin();
     void end(HmdPicture const* fresh, bool with_picture);
     bool draw(HmdPicture const& picture);
-    std::optional<std::array<HmdView, 2>> views_at(XrTime time);
+    bool acquire_images();
+    std::optional<std::vector<HmdView>> views_at(XrTime time);
     void add_bodies(HmdFrame& frame, XrTime time);
     void lose(std::string const& reason);
     /// Runs calls to the runtime; a failed call means the loss of the session.
@@ -110,22 +120,23 @@ struct HmdSession::Parts {
     std::optional<Actions> actions;
     std::optional<MaskReader> masks;
     std::optional<EyePass> pass;
-    std::array<std::unique_ptr<EyeImages>, 2> images;
+    std::vector<std::unique_ptr<EyeImages>> images; ///< of each view
 
     HmdPhase phase = HmdPhase::idle;
     std::string why;
     bool is_running = false;                        ///< between xrBeginSession and xrEndSession
     std::optional<XrTime> frame_time;               ///< of the begun frame
     XrTime last_time = 0;                           ///< of the previous frame
-    std::array<HmdView, 2> last_views;              ///< last known views
-    bool has_views = false;                         ///< last_views are valid
-    std::optional<std::array<HmdRawView, 2>> shown; ///< views that the images' contents were drawn for
-    std::uint64_t shown_space = 0;
+    std::vector<HmdView> last_views;                ///< last known views
+    std::vector<HmdView> shown;                     ///< that the images' contents were drawn for
+    bool shows_depths = false;                      ///< they have depths
+    double located_cpu_s = 0;                       ///< thread_cpu_s() when views were requested last
+    double pose_age_s = 0, pose_cpu_s = 0;
     HmdCounts counts;
 };
 
 HmdSession::Parts::Parts(GlContext const* context, HmdOptions const& options)
-    : runtime(context ? path_of(*context) : PicturePath::none, options.eye_tracking)
+    : runtime(context ? path_of(*context) : PicturePath::none, options)
 {
     if (options.eye_tracking == HmdEyeTracking::on && !runtime.info.tracks_gaze)
         throw gi::InputError("the headset does not track eyes",
@@ -150,8 +161,14 @@ HmdSession::Parts::Parts(GlContext const* context, HmdOptions const& options)
     if (format == 0)
         throw gi::InputError("the OpenXR runtime supports no picture format of lightwell",
                              "it offers neither sRGB nor linear colours of OpenGL", "use another runtime");
-    for (auto& eye : images)
-        eye = std::make_unique<EyeImages>(session.handle, format, runtime.info.width, runtime.info.height);
+    std::int64_t const depths =
+        runtime.uses(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME) ? choose_depth_format(formats) : 0;
+    HmdInfo const& info = runtime.info;
+    for (int eye = 0; eye < 2; ++eye)
+        images.push_back(std::make_unique<EyeImages>(session.handle, format, depths, info.width, info.height));
+    for (int eye = 0; eye < 2 && info.inset_width > 0; ++eye)
+        images.push_back(
+            std::make_unique<EyeImages>(session.handle, format, depths, info.inset_width, info.inset_height));
     pass.emplace();
 }
 
@@ -182,7 +199,7 @@ void HmdSession::Parts::take_state(XrSessionState state)
     if (state == XR_SESSION_STATE_READY) {
         XrSessionBeginInfo begin_info{};
         begin_info.type = XR_TYPE_SESSION_BEGIN_INFO;
-        begin_info.primaryViewConfigurationType = kStereo;
+        begin_info.primaryViewConfigurationType = runtime.views();
         check(xrBeginSession(session.handle, &begin_info), "xrBeginSession");
         is_running = true;
         masks->read();
@@ -228,27 +245,34 @@ void HmdSession::Parts::read_events()
     }
 }
 
-std::optional<std::array<HmdView, 2>> HmdSession::Parts::views_at(XrTime time)
+std::optional<std::vector<HmdView>> HmdSession::Parts::views_at(XrTime time)
 {
     XrViewLocateInfo where{};
     where.type = XR_TYPE_VIEW_LOCATE_INFO;
-    where.viewConfigurationType = kStereo;
+    where.viewConfigurationType = runtime.views();
     where.displayTime = time;
     where.space = spaces->base();
     XrViewState state{};
     state.type = XR_TYPE_VIEW_STATE;
-    std::array<XrView, 2> found{};
-    for (XrView& view : found) view.type = XR_TYPE_VIEW;
+    XrView empty{};
+    empty.type = XR_TYPE_VIEW;
+    std::vector<XrView> found(images.size(), empty);
     std::uint32_t count = 0;
-    check(xrLocateViews(session.handle, &where, &state, 2, &count, found.data()), "xrLocateViews");
-    if (count != 2 || (state.viewStateFlags & kWholePose) != kWholePose) return std::nullopt;
-    std::array<HmdView, 2> views;
-    for (std::size_t e = 0; e < 2; ++e) {
-        HmdRawView const raw = raw_of(found[e]);
+    double const asked_s = steady_now_s();
+    located_cpu_s = thread_cpu_s();
+    check(xrLocateViews(session.handle, &where, &state, std::uint32_t(found.size()), &count, found.data()),
+          "xrLocateViews");
+    if (count != found.size() || (state.viewStateFlags & kWholePose) != kWholePose) return std::nullopt;
+    std::vector<HmdView> views;
+    for (std::size_t v = 0; v < found.size(); ++v) {
+        HmdRawView const raw = raw_of(found[v]);
         if (!spans_view(raw)) return std::nullopt;
         RoomPose const room_from_eye = spaces->room_from_space() * pose_of(raw);
-        views[e] = {eye_camera(HmdEye(e), room_from_eye, tangents(raw)), runtime.info.width, runtime.info.height,
-                    raw, spaces->moves()};
+        bool const is_inset = v >= 2;
+        views.push_back({eye_camera(HmdEye(v % 2), room_from_eye, tangents(raw)),
+                         is_inset ? runtime.info.inset_width : runtime.info.width,
+                         is_inset ? runtime.info.inset_height : runtime.info.height, raw, spaces->moves(),
+                         asked_s});
     }
     return views;
 }
@@ -288,23 +312,33 @@ std::optional<HmdFrame> HmdSession::Parts::begin()
     if (auto const views = views_at(state.predictedDisplayTime)) {
         frame.has_pose = true;
         last_views = *views;
-        has_views = true;
     } else {
         ++counts.without_pose;
     }
     frame.views = last_views;
-    frame.should_render = state.shouldRender && has_views;
+    frame.should_render = state.shouldRender && !last_views.empty();
     return frame;
 }
 
-/// Acquires both images, then draws both, then shows both, so that the eyes never see different pictures.
+bool HmdSession::Parts::acquire_images()
+{
+    return std::ranges::all_of(images, [](auto const& view) { return view->acquire(); });
+}
+
+/// Acquires all images, then draws all, then shows all, so that the eyes never see different pictures.
 bool HmdSession::Parts::draw(HmdPicture const& picture)
 {
-    for (auto const& eye : images)
-        if (!eye->acquire()) return false;
-    for (std::size_t e = 0; e < 2; ++e)
-        pass->draw(picture.textures[e], picture.values, picture.first_row, images[e]->target());
-    for (auto const& eye : images) eye->release();
+    if (picture.views.size() != images.size() || picture.textures.size() != images.size())
+        throw std::logic_error("HmdSession: a picture of another number of views");
+    if (!acquire_images()) return false;
+    shows_depths = picture.depths.size() == images.size() &&
+                   std::ranges::all_of(picture.depths, [](ShownDepth const& d) { return d.texture != 0; }) &&
+                   images[0]->has_depths();
+    for (std::size_t v = 0; v < images.size(); ++v)
+        pass->draw(picture.textures[v], picture.values, picture.first_row, images[v]->target(),
+                   shows_depths ? picture.depths[v] : ShownDepth{});
+    for (auto const& view : images) view->release();
+    shown = picture.views;
     return true;
 }
 
@@ -312,22 +346,27 @@ void HmdSession::Parts::end(HmdPicture const* fresh, bool with_picture)
 {
     bool const is_fresh = fresh && draw(*fresh);
     if (fresh && !is_fresh) ++counts.late_images;
-    if (is_fresh) {
-        shown = {fresh->views[0].raw, fresh->views[1].raw};
-        shown_space = fresh->views[0].space;
-    }
-    bool const has_layer = with_picture && shown.has_value();
-    std::array<XrCompositionLayerProjectionView, 2> views{};
-    for (std::size_t e = 0; has_layer && e < 2; ++e) {
-        views[e].type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
-        views[e].pose = spaces->moved_on((*shown)[e], shown_space);
-        views[e].fov = fov_of((*shown)[e]);
-        views[e].subImage = images[e]->shown();
+    bool const has_layer = with_picture && !shown.empty();
+    std::vector<XrCompositionLayerProjectionView> views(shown.size());
+    std::vector<XrCompositionLayerDepthInfoKHR> depths(shown.size());
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        views[v].type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
+        views[v].pose = spaces->moved_on(shown[v].raw, shown[v].space);
+        views[v].fov = fov_of(shown[v].raw);
+        views[v].subImage = images[v]->shown();
+        if (!shows_depths) continue;
+        depths[v].type = XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR;
+        depths[v].subImage = images[v]->shown_depths();
+        depths[v].minDepth = 0;
+        depths[v].maxDepth = 1;
+        depths[v].nearZ = std::numeric_limits<float>::infinity(); // of minDepth: depths are reversed
+        depths[v].farZ = EyePass::kNear_m;
+        views[v].next = &depths[v];
     }
     XrCompositionLayerProjection layer{};
     layer.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION;
     layer.space = spaces->base();
-    layer.viewCount = 2;
+    layer.viewCount = std::uint32_t(views.size());
     layer.views = views.data();
     auto const* const layers = reinterpret_cast<XrCompositionLayerBaseHeader const*>(&layer);
     XrFrameEndInfo info{};
@@ -337,8 +376,13 @@ void HmdSession::Parts::end(HmdPicture const* fresh, bool with_picture)
     info.layerCount = has_layer ? 1 : 0;
     info.layers = has_layer ? &layers : nullptr;
     frame_time.reset();
+    if (is_fresh) {
+        pose_age_s = steady_now_s() - shown[0].pose_s;
+        pose_cpu_s = thread_cpu_s() - located_cpu_s;
+    }
     check(xrEndFrame(session.handle, &info), "xrEndFrame");
     ++(is_fresh ? counts.pictures : has_layer ? counts.repeated : counts.empty);
+    if (is_fresh && shows_depths) ++counts.with_depth;
 }
 
 HmdSession::HmdSession(GlContext const& context, HmdOptions const& options) { start(&context, options); }
@@ -394,9 +438,12 @@ std::optional<HmdFrame> HmdSession::begin_frame()
     return frame;
 }
 
-std::optional<std::array<HmdView, 2>> HmdSession::latest_views(HmdFrame const& frame)
+std::optional<std::vector<HmdView>> HmdSession::latest_views(HmdFrame const& frame)
 {
-    return parts_->guarded([&] { return parts_->views_at(frame.xr_time); });
+    return parts_->guarded([&] {
+        if (parts_->frame_time) parts_->acquire_images(); // if they are late, end_frame waits on
+        return parts_->views_at(frame.xr_time);
+    });
 }
 
 void HmdSession::end_frame(HmdPicture const& picture)
@@ -445,6 +492,16 @@ bool HmdSession::recentre()
 RoomPose HmdSession::room_from_space() const { return parts_->spaces->room_from_space(); }
 
 HiddenMask const& HmdSession::hidden(HmdEye eye) const { return parts_->masks->mask(eye); }
+
+bool HmdSession::takes_depths() const
+{
+    auto const& images = parts_->images;
+    return !images.empty() && images[0]->has_depths();
+}
+
+double HmdSession::pose_age_s() const { return parts_->pose_age_s; }
+
+double HmdSession::pose_cpu_s() const { return parts_->pose_cpu_s; }
 
 HmdInfo const& HmdSession::info() const { return parts_->runtime.info; }
 

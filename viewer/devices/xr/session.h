@@ -37,10 +37,22 @@ enum class HmdEyeTracking {
     on, ///< XR_EXT_eye_gaze_interaction, which may ask the user for permission
 };
 
+enum class HmdDepths {
+    off,
+    on, ///< depths are submitted with pictures that have them (XR_KHR_composition_layer_depth), if the runtime takes them
+};
+
+enum class HmdInsets {
+    off,
+    on, ///< finer pictures of the middle of each eye (XR_VARJO_quad_views), if the runtime shows them
+};
+
 struct HmdOptions {
     HmdSpace space = HmdSpace::stage;
     double eye_height_m = 1.6; ///< 0.2 to 3
     HmdEyeTracking eye_tracking = HmdEyeTracking::off;
+    HmdDepths depths = HmdDepths::off;
+    HmdInsets insets = HmdInsets::off;
 };
 
 /// Session states of OpenXR, and two final ones.
@@ -51,6 +63,7 @@ char const* name(HmdPhase phase);
 struct HmdCounts {
     std::uint64_t frames = 0;      ///< begun
     std::uint64_t pictures = 0;    ///< new ones shown
+    std::uint64_t with_depth = 0;  ///< of these, with depths
     std::uint64_t repeated = 0;    ///< the last picture shown again
     std::uint64_t empty = 0;       ///< ended without a picture, on request or because there was none
     std::uint64_t late_images = 0; ///< new pictures not shown, because the runtime was still reading the images
@@ -85,8 +98,9 @@ public:
     /// Waits for the runtime's next frame and gets the predicted poses of head, eyes and hands at its display
     /// time. If the runtime wants no frames, waits 10 ms and returns none. Trackers use poses() instead.
     std::optional<HmdFrame> begin_frame();
-    /// The views of the begun frame, predicted again: later and more accurate, for a final reprojection.
-    std::optional<std::array<HmdView, 2>> latest_views(HmdFrame const& frame);
+    /// The views of the begun frame, predicted again: later and more accurate. First waits until the runtime has
+    /// finished reading the images that the next picture is drawn into.
+    std::optional<std::vector<HmdView>> latest_views(HmdFrame const& frame);
     /// Ends the frame with a new picture, which is copied, so the textures can be reused.
     void end_frame(HmdPicture const& picture);
     /// Ends the frame with the last picture and the pose that it was drawn for;
@@ -105,6 +119,12 @@ public:
     /// Room from the runtime's space; until recentred the identity, except for the eye height.
     RoomPose room_from_space() const;
 
+    /// True if pictures are submitted with their depths.
+    bool takes_depths() const;
+    /// From when the views of the last new picture were requested until it was handed over (xrEndFrame), s.
+    double pose_age_s() const;
+    /// Of this time, what the calling thread worked, drivers included; the rest it waited, or others had its core.
+    double pose_cpu_s() const;
     /// Hidden area of an eye; empty if the runtime provides none. May change when the runtime reports it.
     HiddenMask const& hidden(HmdEye eye) const;
     HmdInfo const& info() const;

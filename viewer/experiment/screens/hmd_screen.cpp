@@ -54,7 +54,7 @@ double HmdScreen::refresh_hz() const { return frame_.period_s > 0 ? 1 / frame_.p
 
 std::vector<std::pair<std::string, std::string>> HmdScreen::about() const
 {
-    glm::ivec2 const px = size_of(frame_.views[0]);
+    glm::ivec2 const px = frame_.views.empty() ? glm::ivec2(0) : size_of(frame_.views[0]);
     return {{"display", fmt::format("headset, {} x {} px an eye", px.x, px.y)},
             {"opengl", context_.gl().description()}};
 }
@@ -137,7 +137,7 @@ std::vector<ViewCommand> HmdScreen::own_views(gi::dmat4 const& world_from_camera
 {
     world_from_camera_ = world_from_camera;
     std::vector<ViewCommand> views;
-    if (frame_.views[0].width <= 0) return views; // no frame yet
+    if (frame_.views.empty()) return views; // no frame yet
     for (std::size_t eye = 0; eye < 2; ++eye) {
         gi::Camera camera = frame_.views[eye].camera;
         camera.world_from_camera = world_from_room() * camera.world_from_camera;
@@ -184,7 +184,8 @@ void HmdScreen::make_ready(ScreenPane const& pane)
     taken_ = pane.frame;
     eyes_.views().make_ready();
     eyes_.views().begin(surfaces_scale_.next(), nullptr, {});
-    eyes_.draw(nullptr, {size_of(frame_.views[0]), size_of(frame_.views[1])}, tone_settings(pane.frame->settings));
+    eyes_.draw({{std::nullopt, size_of(frame_.views[0])}, {std::nullopt, size_of(frame_.views[1])}},
+               tone_settings(pane.frame->settings));
 }
 
 ScreenSwap HmdScreen::present(ScreenContent const& content)
@@ -200,7 +201,7 @@ ScreenSwap HmdScreen::present(ScreenContent const& content)
         return {Clock::now(), Clock::now(), 1e3, "openxr_predicted"};
     }
     HmdFrame const& frame = *next;
-    std::array const sizes{size_of(frame.views[0]), size_of(frame.views[1])};
+    std::vector const sizes{size_of(frame.views[0]), size_of(frame.views[1])};
     auto const shown = content.panes.empty() ? nullptr : content.panes[0].frame;
     auto const begun = Clock::now();
     double scale = 0;
@@ -208,13 +209,17 @@ ScreenSwap HmdScreen::present(ScreenContent const& content)
         if (taken_ != shown) eyes_.take(shown);
         taken_ = shown;
         std::vector<ViewCommand> const views = own_views(world_from_camera_, 0);
-        std::array const now{views[0].camera, views[1].camera};
         std::optional<FrameCommand> moment = content.panes[0].moment;
         if (moment) scale = surfaces_scale_.next();
-        if (moment && moment->views.size() == 2)
-            for (std::size_t eye = 0; eye < 2; ++eye) moment->views[eye].camera = now[eye];
+        std::vector<EyeToDraw> eyes;
+        for (std::size_t eye = 0; eye < views.size(); ++eye) {
+            ViewCommand const& view = views[eye];
+            eyes.push_back({shown->settings.reproject ? std::optional(view.camera) : std::nullopt,
+                            {view.width, view.height}});
+            if (moment && moment->views.size() == views.size()) moment->views[eye].camera = view.camera;
+        }
         eyes_.views().begin(scale, moment ? &*moment : nullptr, {});
-        eyes_.draw(shown->settings.reproject ? &now : nullptr, sizes, tone_settings(shown->settings));
+        eyes_.draw(eyes, tone_settings(shown->settings));
     } else {
         eyes_.clear(sizes, ScreenContent::kGrey);
     }

@@ -1,69 +1,18 @@
 // An OpenXR API layer that adds eye tracking to a runtime without it (XR_EXT_eye_gaze_interaction): whoever wears
 // the headset looks 10 degrees to the right and 5 degrees up, and blinks for 0.2 s of each second. For tests.
 
-#include <atomic>
-#include <cmath>
-#include <cstring>
-#include <ctime>
-#include <map>
-#include <mutex>
-#include <numbers>
-#include <openxr/openxr.h>
-#include <string>
-#include <vector>
+#include "tests/viewer_xr/layers/api_layer.h"
 
-// Of openxr_loader_negotiation.h (OpenXR loader interface, version 1), which Debian's package does not have.
-struct LayerNextInfo {
-    int type; ///< 5
-    std::uint32_t version;
-    std::size_t size;
-    char name[XR_MAX_API_LAYER_NAME_SIZE];
-    PFN_xrGetInstanceProcAddr next_get;
-    XrResult(XRAPI_PTR* next_create)(XrInstanceCreateInfo const*, struct LayerCreateInfo const*, XrInstance*);
-    LayerNextInfo* next;
-};
-struct LayerCreateInfo {
-    int type; ///< 4
-    std::uint32_t version;
-    std::size_t size;
-    void* loader_instance;
-    char settings_file[512];
-    LayerNextInfo* next_info;
-};
-struct NegotiateLoaderInfo {
-    int type;
-    std::uint32_t version;
-    std::size_t size;
-    std::uint32_t least_interface, most_interface;
-    XrVersion least_api, most_api;
-};
-struct NegotiateLayerRequest {
-    int type;
-    std::uint32_t version;
-    std::size_t size;
-    std::uint32_t interface_version;
-    XrVersion api_version;
-    PFN_xrGetInstanceProcAddr get;
-    XrResult(XRAPI_PTR* create)(XrInstanceCreateInfo const*, LayerCreateInfo const*, XrInstance*);
-};
+#include <cmath>
+#include <numbers>
 
 namespace {
 
 constexpr float kRight_rad = 10 * std::numbers::pi_v<float> / 180, kUp_rad = 5 * std::numbers::pi_v<float> / 180;
 
-PFN_xrGetInstanceProcAddr next_get;
-XrInstance instance;
 XrPath gaze_path = XR_NULL_PATH, gaze_profile = XR_NULL_PATH;
 XrAction gaze_action = XR_NULL_HANDLE;
 XrSpace gaze_space = XR_NULL_HANDLE;
-
-template <class Function>
-Function next(char const* name)
-{
-    PFN_xrVoidFunction f = nullptr;
-    next_get(instance, name, &f);
-    return reinterpret_cast<Function>(f);
-}
 
 bool blinks(XrTime time) { return time % 1'000'000'000 < 200'000'000; }
 
@@ -134,36 +83,19 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_space(XrSpace space, XrSpace base, XrTime 
 
 XRAPI_ATTR XrResult XRAPI_CALL get(XrInstance i, char const* name, PFN_xrVoidFunction* function)
 {
-    static std::map<std::string, PFN_xrVoidFunction> const own{
+    static OwnFunctions const own{
         {"xrGetSystemProperties", reinterpret_cast<PFN_xrVoidFunction>(&get_system_properties)},
         {"xrSuggestInteractionProfileBindings", reinterpret_cast<PFN_xrVoidFunction>(&suggest)},
         {"xrCreateActionSpace", reinterpret_cast<PFN_xrVoidFunction>(&create_action_space)},
         {"xrGetActionStatePose", reinterpret_cast<PFN_xrVoidFunction>(&get_pose_state)},
         {"xrLocateSpace", reinterpret_cast<PFN_xrVoidFunction>(&locate_space)}};
-    if (auto const found = own.find(name); found != own.end()) {
-        *function = found->second;
-        return XR_SUCCESS;
-    }
-    return next_get(i, name, function);
+    return get_own_or_next(own, i, name, function);
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL create(XrInstanceCreateInfo const* info, LayerCreateInfo const* layer,
                                       XrInstance* made)
 {
-    LayerNextInfo const& after = *layer->next_info;
-    next_get = after.next_get;
-    std::vector<char const*> extensions;
-    for (std::uint32_t k = 0; k < info->enabledExtensionCount; ++k)
-        if (std::strcmp(info->enabledExtensionNames[k], XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME) != 0)
-            extensions.push_back(info->enabledExtensionNames[k]);
-    XrInstanceCreateInfo less = *info;
-    less.enabledExtensionCount = std::uint32_t(extensions.size());
-    less.enabledExtensionNames = extensions.data();
-    LayerCreateInfo further = *layer;
-    further.next_info = after.next;
-    XrResult const result = after.next_create(&less, &further, made);
-    instance = *made;
-    return result;
+    return create_next(info, layer, made, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
 }
 
 } // namespace
