@@ -27,22 +27,27 @@ uniform float cells_lack_punctual;
 uint cell_key(ivec3 cell, int level, int side)
 {
     uvec3 c = uvec3(cell);
-    uint h = c.x * 73856093u ^ c.y * 19349663u ^ c.z * 83492791u ^ uint(6 * level + side) * 2654435761u;
+    uint h = c.x * 73856093u;
+    h = (h ^ h >> 15) * 0x2c1b3c6du + c.y * 19349663u;
+    h = (h ^ h >> 13) * 0x297a2d39u + c.z * 83492791u;
+    h = (h ^ h >> 15) * 0x2c1b3c6du + uint(6 * level + side) * 2654435761u;
     h = (h ^ h >> 16) * 0x85ebca6bu;
     h = (h ^ h >> 13) * 0xc2b2ae35u;
     return (h ^ h >> 16) | 1u;
 }
 
-// Between the cells around a place, of the narrowest level that has any; a: 0 = none has.
+// Between the cells around a place, of the narrowest level that has any; a: 0 = none has. Hidden ones may be behind a wall:
+// they count where the place's own narrow cell is known and none is around that is not hidden.
 vec4 find_in_cells(vec3 at, vec3 n, float distance)
 {
     vec3 size = abs(n);
     int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2, side = 2 * axis + (n[axis] < 0.0 ? 1 : 0);
-    vec4 sum = vec4(0.0);
+    vec4 sum = vec4(0.0), behind = vec4(0.0);
+    bool is_behind = false;
     int narrowest = narrowest_cell > 0.0 ? clamp(int(floor(log2(0.04 * distance / narrowest_cell))), 0, kLevels - 1) : kLevels;
-    for (int level = narrowest; level < kLevels && sum.a < 0.05; ++level) {
+    for (int level = narrowest; level < kLevels && sum.a < 0.05 && !is_behind; ++level) {
         vec3 u = at / (narrowest_cell * exp2(float(level))) - 0.5, low = floor(u), f = u - low;
-        sum = vec4(0.0);
+        sum = behind = vec4(0.0);
         for (int j = 0; j < 8; ++j) {
             ivec3 step = ivec3(j & 1, j >> 1 & 1, j >> 2);
             vec3 w = mix(1.0 - f, f, vec3(step));
@@ -51,13 +56,17 @@ vec4 find_in_cells(vec3 at, vec3 n, float distance)
             for (int b = 0; b < 3; ++b) { // those that do not fit are in the next ones
                 int k = int((key >> 1) + uint(b)) & kBuckets - 1;
                 bucket = texelFetch(cells, ivec2(k % kBucketsWidth, k / kBucketsWidth), 0);
-                if (bucket.x == key || bucket.z == key || bucket.z == 0u) break;
+                if ((bucket.x | 1u) == key || (bucket.z | 1u) == key || bucket.z == 0u) break;
             }
-            bool first = bucket.x == key;
-            sum += first || bucket.z == key ? w.x * w.y * w.z * vec4(unpack_light(first ? bucket.y : bucket.w), 1.0) : vec4(0.0);
+            bool first = (bucket.x | 1u) == key, there = first || (bucket.z | 1u) == key;
+            vec4 found = there ? w.x * w.y * w.z * vec4(unpack_light(first ? bucket.y : bucket.w), 1.0) : vec4(0.0);
+            bool hidden = ((first ? bucket.x : bucket.z) & 1u) == 0u;
+            sum += hidden ? vec4(0.0) : found;
+            behind += hidden ? found : vec4(0.0);
+            is_behind = is_behind || (hidden && found.a >= 0.125 && level < narrowest + 2);
         }
     }
-    return sum;
+    return sum.a < 0.05 && is_behind ? behind : sum;
 }
 
 struct FoundLight {
@@ -68,21 +77,23 @@ struct FoundLight {
 
 const uint kNoSlope = 512u | 512u << 10 | 512u << 20;
 
-vec3 turned_to(FoundLight found, vec3 n)
+// By how much light for one normal differs from that for another.
+float turned(uint slope, vec3 from, vec3 to)
 {
     const float kLeastTurned = 0.2, kMostTurned = 4.0;
-    vec3 slope = (vec3(found.bent.yyy >> uvec3(0u, 10u, 20u) & 1023u) - 512.0) / 64.0;
-    return clamp(1.0 + dot(slope, n - unpack_normal(found.bent.x)), kLeastTurned, kMostTurned) * found.light;
+    return clamp(1.0 + dot((vec3(uvec3(slope) >> uvec3(0u, 10u, 20u) & 1023u) - 512.0) / 64.0, to - from), kLeastTurned, kMostTurned);
 }
+
+vec3 turned_to(FoundLight found, vec3 n) { return turned(found.bent.y, unpack_normal(found.bent.x), n) * found.light; }
 
 FoundLight find_light(vec3 at, vec3 n)
 {
-    vec3 sum = vec3(0.0), weights = vec3(0.0);
+    vec3 sum = vec3(0.0), weights = vec3(0.0), facings = vec3(0.0), best_facing = n;
     float best = 0.0, lacks = 0.0, counted = 0.0;
     ivec3 nearest = ivec3(0);
     int shown_in = -1; // the first of the newest pictures in which the place lies
-    for (int k = 0; k < pictures + 1 && best <= kAlike; ++k) {
-        bool around = k == pictures;
+    for (int k = 0; k < pictures + 3 && (best <= kAlike || k > pictures); ++k) {
+        bool around = k >= pictures; // the ring around the four: its corners, its sides
         int picture = around ? max(shown_in, 0) : k;
         ivec2 size = light_size[picture];
         vec3 from = at - light_eye[picture], h = texel_from_world[picture] * from;
@@ -96,7 +107,8 @@ FoundLight find_light(vec3 at, vec3 n)
             ivec2 step = ivec2(j & 1, j >> 1);
             float w = (step.x == 0 ? 1.0 - f.x : f.x) * (step.y == 0 ? 1.0 - f.y : f.y) + 0.02;
             if (around) {
-                step = 3 * step - 1; // the corners of the ring
+                ivec2 far = 3 * step - 1;
+                step = ivec2(k == pictures + 1 ? step.x : far.x, k == pictures + 2 ? step.y : far.y);
                 w = 0.25;
             }
             ivec2 p = ivec2(whole) + step;
@@ -113,7 +125,9 @@ FoundLight find_light(vec3 at, vec3 n)
             weights += by_channel;
             lacks += w * lacks_punctual[picture];
             counted += w;
+            facings += w * facing;
             nearest = w > 0.0 && like > best ? texel : nearest;
+            best_facing = w > 0.0 && like > best ? facing : best_facing;
             best = max(best, w > 0.0 ? like : 0.0);
         }
     }
@@ -126,7 +140,10 @@ FoundLight find_light(vec3 at, vec3 n)
     } else if (best >= kUnlike || (shown_in >= 0 && counted > 0.0)) {
         found.light = mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0)));
         found.lacks = lacks / counted;
-        if (best >= kUnlike) found.bent = texelFetch(slopes, nearest, 0).xy;
+        if (best >= kUnlike) {
+            found.bent = texelFetch(slopes, nearest, 0).xy;
+            found.bent.x = pack_normal(unpack_normal(found.bent.x) + facings / counted - best_facing);
+        }
     }
     return found;
 }

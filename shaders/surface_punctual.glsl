@@ -46,13 +46,15 @@ float reached(PunctualLight light, vec3 at, vec3 n)
     return any(greaterThan(abs(q.xy), vec2(1.0))) || q.z >= 1.0 ? 1.0 : texture(shadows, vec4(0.5 * q.xy + 0.5, float(map + face), q.z));
 }
 
-// Radiance towards `to_viewer`. gloss: roughness, metallic, reflectance of the coat
-vec3 punctual_light(vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec3 gloss)
+// Radiance towards `to_viewer`. gloss: of surface_packing.glsl
+vec3 punctual_light(vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec4 gloss)
 {
     const float kPi = 3.14159265359;
-    vec3 sum = vec3(0.0), base = max(albedo - (1.0 - gloss.y) * gloss.z, vec3(0.0));
-    vec3 f0 = mix(vec3(gloss.z), base, gloss.y);
-    float coat = gloss.z > 0.0 ? 1.0 : 0.0, f90 = mix(coat, 1.0, gloss.y), alpha = gloss.x * gloss.x, a2 = alpha * alpha;
+    bool phong = gloss.w < 0.0;
+    float metallic = phong ? 0.0 : gloss.y, opaque = (1.0 - metallic) * (1.0 - max(gloss.w, 0.0)), coat = gloss.z > 0.0 ? 1.0 : 0.0;
+    vec3 sum = vec3(0.0), base = max(albedo - (phong ? gloss.y : opaque * gloss.z), vec3(0.0));
+    vec3 f0 = opaque * gloss.z + metallic * base;
+    float f90 = opaque * coat + metallic, alpha = gloss.x * gloss.x, a2 = alpha * alpha, exponent = 2.0 / max(a2, 1e-12) - 2.0;
     float cos_o = max(dot(n, to_viewer), 1e-3);
     for (int k = 0; k < punctual_lights; ++k) {
         PunctualLight light = punctual[k];
@@ -77,8 +79,10 @@ vec3 punctual_light(vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec3 gloss)
             float cos_h = dot(n, h), t = dot(across, across) / max(a2, 1e-12) + cos_h * cos_h, grazing = schlick(0.0, 1.0, dot(to_viewer, h));
             float visible = 0.5 / (cos_i * sqrt(a2 + (1.0 - a2) * cos_o * cos_o) + cos_o * sqrt(a2 + (1.0 - a2) * cos_i * cos_i));
             float lobe = alpha < SMOOTH_ALPHA ? 0.0 : visible / (kPi * a2 * t * t);
-            vec3 f = (1.0 - gloss.y) * passes / kPi * base + lobe * (f0 + (f90 - f0) * grazing);
-            sum += factor * light.intensity.rgb * f;
+            vec3 f = opaque * passes / kPi * base + lobe * (f0 + (f90 - f0) * grazing);
+            float along = max(dot(reflect(-to_viewer, n), wi), 0.0);
+            vec3 by_phong = base / kPi + gloss.y * (exponent + 1.0) * (0.5 / kPi) * pow(along, exponent);
+            sum += factor * light.intensity.rgb * (phong ? by_phong : f);
         }
     }
     return sum;

@@ -10,10 +10,11 @@ in vec3 vertex_color;
 
 struct Shaded {
     vec3 albedo, normal, emitted;
-    vec3 gloss;     // roughness, metallic, reflectance of the coat
+    vec4 gloss;     // of surface_packing.glsl
     bool is_mirror; // or a pane: what it shows is seen instead of it
 #if MIRROR
     vec3 reflected; // share of the light from there
+    bool is_pane;   // what is behind it is seen
 #endif
 };
 
@@ -98,16 +99,17 @@ Shaded shade()
     s.albedo = phong ? base + phong_specular.rgb : opaque * base + f0 + clear * base;
     s.albedo = min(s.albedo, vec3(1.0));
     s.normal = n;
-    s.gloss = phong ? vec3(more.z, 0.0, dot(phong_specular.rgb, vec3(1.0 / 3.0)))
-                    : vec3(roughness, metallic, dot(min(more.x * tint, vec3(1.0)), vec3(1.0 / 3.0)) * specular);
+    s.gloss = phong ? vec4(more.z, dot(phong_specular.rgb, vec3(1.0 / 3.0)), 0.0, -1.0)
+                    : vec4(roughness, metallic, dot(min(more.x * tint, vec3(1.0)), vec3(1.0 / 3.0)) * specular, transmission);
     s.emitted = front || emission.a > 0.0 ? emitted : vec3(0.0);
 #if MIRROR
     const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
     float alpha = roughness * roughness, grazing = pow(clamp(1.0 - dot(n, to_viewer), 0.0, 1.0), 5.0);
     vec3 reflected = f0 + (vec3(opaque * specular + metallic) - f0) * grazing;
-    float shown = max(alpha < SMOOTH_ALPHA && !phong ? dot(kLuminance, reflected) : 0.0, clear * dot(kLuminance, base));
+    float mirrors = alpha < SMOOTH_ALPHA && !phong ? dot(kLuminance, reflected) : 0.0, passes = clear * dot(kLuminance, base);
     s.reflected = reflected;
-    s.is_mirror = shown > 0.5 * dot(kLuminance, s.albedo);
+    s.is_mirror = max(mirrors, passes) > 0.5 * dot(kLuminance, s.albedo);
+    s.is_pane = s.is_mirror && passes > mirrors;
 #else
     s.is_mirror = false;
 #endif

@@ -328,7 +328,8 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             }
             Light& now = lights_[i];
             if (Light const& last = last_lights_[i]; still) {
-                now.still_frames = std::min(last.still_frames + 1, float(settings_.most_frames));
+                now.still_frames =
+                    std::min(last.still_frames + 1, float(std::max(settings_.most_frames, still_ + 1)));
                 now.l0 = glm::mix(last.l0, now.l0, 1 / now.still_frames);
                 now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);
             }

@@ -30,13 +30,14 @@ struct KeptLight::Sum {
         weights += w;
         likeness = std::max(likeness, like);
     }
-    FoundLight mean() const
+    /// @param unknown  light where the albedo of all is too dark to know it
+    FoundLight mean(FoundLight const& unknown) const
     {
         FoundLight f{direct, indirect, likeness};
         for (int c = 0; c < 3; ++c) {
             float const n = weights[c] > 0 ? 1 / weights[c] : 0;
-            f.direct[c] *= n;
-            f.indirect[c] *= n;
+            f.direct[c] = n > 0 ? f.direct[c] * n : unknown.direct[c];
+            f.indirect[c] = n > 0 ? f.indirect[c] * n : unknown.indirect[c];
         }
         return f;
     }
@@ -72,6 +73,16 @@ KeptLight::KeptLight(Picture const& picture, CameraRays const& camera, dvec3 ori
         }
     });
     if (mean_normal) find_slopes();
+    dvec3 direct{0}, indirect{0}, count{0};
+    for (Texel const& t : texels_)
+        for (int c = 0; c < 3 && t.reach > 0; ++c)
+            if ((t.dark >> c & 1) == 0) {
+                direct[c] += double(t.direct[c]);
+                indirect[c] += double(t.indirect[c]);
+                count[c] += 1;
+            }
+    mean_.direct = vec3(direct / glm::max(count, dvec3(1)));
+    mean_.indirect = vec3(indirect / glm::max(count, dvec3(1)));
 }
 
 /// Fits light = a + b * normal to the texels around each one, by ridge regression weighted by distance.
@@ -134,11 +145,11 @@ FoundLight KeptLight::find(vec3 position, vec3 normal, vec2 place) const
     for (int j = 0; j < 2; ++j)
         for (int i = 0; i < 2; ++i)
             take(left + i, top + j, (i == 0 ? 1 - fx : fx) * (j == 0 ? 1 - fy : fy) + kBeside);
-    if (sum.likeness > 0.3f) return sum.mean();
+    if (sum.likeness > 0.3f) return sum.mean(mean_);
     for (int j = -1; j < 3; ++j)
         for (int i = -1; i < 3; ++i)
             if (i < 0 || j < 0 || i > 1 || j > 1) take(left + i, top + j, 0.25f);
-    return sum.mean();
+    return sum.mean(mean_);
 }
 
 LightPicture KeptLight::picture() const
@@ -170,7 +181,9 @@ LightPicture KeptLight::picture() const
             for (int v = std::max(0, y - 1); v <= std::min(height_ - 1, y + 1); ++v)
                 for (int u = std::max(0, x - 1); u <= std::min(width_ - 1, x + 1); ++u) {
                     Texel const& o = texels_[std::size_t(v) * std::size_t(width_) + std::size_t(u)];
-                    if ((u == x && v == y) || !(o.reach > 0) || !(likeness(o, t.position, t.normal) > kAlike))
+                    // Other channels, another luminance.
+                    if ((u == x && v == y) || !(o.reach > 0) || o.dark != t.dark ||
+                        !(likeness(o, t.position, t.normal) > kAlike))
                         continue;
                     float const l = luminance(o.direct + o.indirect);
                     low = std::min(low, l);

@@ -63,6 +63,7 @@ private:
     Projection project_;
     int width_, height_;
     std::vector<Texel> texels_;
+    FoundLight mean_; ///< of the picture
 };
 
 } // namespace gi

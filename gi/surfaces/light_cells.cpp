@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
+#include <utility>
 
 namespace gi {
 namespace {
@@ -19,6 +20,8 @@ constexpr float kOfDistance = 0.02f;
 constexpr float kMostWeight = 64, kPrior = 4;
 /// A single path that found more light than so many times the mean counts as so much.
 constexpr float kBrightest = 8;
+/// What is farther behind a plane than this share of a cell's width is hidden by it.
+constexpr float kOfWidth = 0.1f;
 
 vec3 unpacked_normal(std::uint32_t bits)
 {
@@ -42,8 +45,11 @@ int side_of(vec3 n)
 std::uint32_t light_cell_key(glm::ivec3 cell, int level, int side)
 {
     uvec3 const c(cell);
-    std::uint32_t h =
-        c.x * 73856093u ^ c.y * 19349663u ^ c.z * 83492791u ^ std::uint32_t(6 * level + side) * 2654435761u;
+    // Mixed after each number: exclusive ors of their multiples are the same for many cells beside each other.
+    std::uint32_t h = c.x * 73856093u;
+    h = (h ^ h >> 15) * 0x2c1b3c6du + c.y * 19349663u;
+    h = (h ^ h >> 13) * 0x297a2d39u + c.z * 83492791u;
+    h = (h ^ h >> 15) * 0x2c1b3c6du + std::uint32_t(6 * level + side) * 2654435761u;
     h = (h ^ h >> 16) * 0x85ebca6bu;
     h = (h ^ h >> 13) * 0xc2b2ae35u;
     return (h ^ h >> 16) | 1u;
@@ -97,6 +103,24 @@ void LightCells::doubt(float share)
     }
 }
 
+/// Which cells lie behind what a picture shows.
+void LightCells::find_hidden(LightPicture const& light, CameraRays const& rays)
+{
+    Projection const project(rays);
+    for (Cell& c : cells_) {
+        if (c.key == 0 || !(c.places > 0)) continue;
+        vec3 const p = project(c.place);
+        vec2 const at = glm::floor(vec2(p) * light.texels_per_pixel);
+        if (!(p.z > 0) || !(at.x >= 0 && at.y >= 0 && at.x < float(light.width) && at.y < float(light.height)))
+            continue;
+        LightTexel const& t = light.texels[std::size_t(at.y) * std::size_t(light.width) + std::size_t(at.x)];
+        float const depth = std::bit_cast<float>(t.depth_dark & ~7u),
+                    before = glm::dot(unpacked_normal(t.normal), c.place - rays.origin) - t.plane_m;
+        // What is no longer hidden, learns.
+        c.hidden |= t.depth_dark > 7 && p.z > depth && before < -(kOfDepth * depth + kOfWidth * c.width);
+    }
+}
+
 void LightCells::learn(LightPicture const& light, std::size_t most, dvec3 origin)
 {
     if (light.without_punctual != without_punctual_) {
@@ -106,6 +130,7 @@ void LightCells::learn(LightPicture const& light, std::size_t most, dvec3 origin
     }
     ++pictures_;
     CameraRays const rays = camera_rays(light.camera, light.camera_width, light.camera_height, origin);
+    find_hidden(light, rays);
     std::size_t const step = std::max<std::size_t>(1, (light.texels.size() + most) /
                                                           std::max<std::size_t>(1, most + 1)),
                       first = pictures_ % step;
@@ -131,10 +156,14 @@ void LightCells::learn(LightPicture const& light, std::size_t most, dvec3 origin
             if (!(max_component(glm::abs(at)) < 0x1p30f)) break;
             std::uint32_t const key = light_cell_key(glm::ivec3(at), level, side);
             Cell& c = cell(key);
+            if (std::exchange(c.hidden, false)) c = {.key = key};
+            c.width = width;
             c.wider = std::exchange(wider, key);
             c.last = pictures_;
             c.sum += known * found;
             c.weight += known;
+            c.places = std::min(c.places + 1, kMostWeight);
+            c.place += (position - c.place) / c.places;
             if (float const over = max_component(c.weight) / kMostWeight; over > 1) {
                 c.sum /= over;
                 c.weight /= over;
@@ -154,14 +183,14 @@ std::shared_ptr<LightCellTable const> LightCells::table() const
         std::size_t n = 0;
         for (Cell const* at = &c; at != nullptr && n < around.size();
              at = at->wider != 0 ? find(at->wider) : nullptr)
-            around[n++] = at;
+            if (at == &c || c.hidden || !at->hidden) around[n++] = at;
         vec3 mean = around[n - 1]->sum / glm::max(around[n - 1]->weight, vec3{1e-20f});
         while (n-- > 1) mean = (around[n - 1]->sum + kPrior * mean) / (around[n - 1]->weight + kPrior);
         bool is_in = false;
         for (std::uint32_t b = 0; b < 3 && !is_in; ++b)
             for (LightCellTable::Cell& free : table->buckets[(c.key / 2 + b) % LightCellTable::kBuckets]) {
                 if (free.key != 0 || is_in) continue;
-                free = {c.key, glm::packF3x9_E1x5(mean)};
+                free = {c.hidden ? c.key & ~1u : c.key, glm::packF3x9_E1x5(mean)};
                 is_in = true;
             }
         table->left_out += !is_in;

@@ -4,6 +4,10 @@
 // a shader, which interpolates between cells. Cells are cubes of several widths, each twice that of the one before,
 // and one for each of the six directions that normals can have most in common with, so that a wall does not take
 // the light of its other side. Narrow cells know little at first and lean on wider ones.
+//
+// What lies behind a thin wall may be in the same cell as what lies before it, or in the next one. So cells know whether a
+// picture shows a nearer surface where they have learnt: such a cell is hidden. It does not count beside others, and what is
+// seen in it begins it anew.
 
 #include "gi/surfaces/light_picture.h"
 
@@ -13,7 +17,7 @@
 namespace gi {
 
 /// For a shader: buckets of two cells each. That of a key is in bucket key / 2 % kBuckets (keys are odd) or, where that
-/// is full, in one of the next two. Key 0 = none.
+/// is full, in one of the next two. Key 0 = none. The last bit of a hidden cell's key is 0.
 struct LightCellTable {
     static constexpr std::uint32_t kBuckets = 1u << 16;
     static constexpr int kLevels = 6;
@@ -48,10 +52,14 @@ private:
         std::uint32_t key = 0, wider = 0; ///< keys of the cell and of the next wider one around it; 0 = none
         vec3 sum{0};                      ///< of weight times light, and of weights
         vec3 weight{0};
+        vec3 place{0}; ///< mean of those where it has learnt, from the world's origin
+        float places = 0, width = 0;
         std::uint32_t last = 0; ///< picture that it learnt from
+        bool hidden = false;    ///< by a picture since it has last learnt
     };
     static constexpr std::size_t kMostCells = LightCellTable::kBuckets * 5 / 8; ///< few buckets are full
     Cell& cell(std::uint32_t key);
+    void find_hidden(LightPicture const& light, CameraRays const& rays);
     Cell const* find(std::uint32_t key) const;
     void forget_oldest();
 

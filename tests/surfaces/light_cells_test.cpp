@@ -5,6 +5,7 @@
 #include <bit>
 #include <glm/gtc/packing.hpp>
 #include <gtest/gtest.h>
+#include <unordered_set>
 
 namespace gi::test {
 namespace {
@@ -42,7 +43,7 @@ vec3 found(LightCellTable const& table, vec3 at, int level, int side)
     std::uint32_t const key = light_cell_key(cell, level, side);
     for (std::uint32_t b = 0; b < 3; ++b)
         for (LightCellTable::Cell const& c : table.buckets[(key / 2 + b) % LightCellTable::kBuckets])
-            if (c.key == key) return glm::unpackF3x9_E1x5(c.light);
+            if ((c.key | 1u) == key) return glm::unpackF3x9_E1x5(c.light);
     return vec3{-1};
 }
 
@@ -73,6 +74,19 @@ TEST(LightCells, EachSideOfAThinWallHasItsOwn)
         EXPECT_NEAR(found(*table, {0.03f, 0.03f, 0}, level, kBack).x, 0.5f, 0.005f) << level;
         EXPECT_NEAR(found(*table, {0.03f, 0.03f, 0.05f}, level, kFront).x, 100, 1) << level;
     }
+}
+
+TEST(LightCells, OfOtherPlacesHaveOtherKeys)
+{
+    std::unordered_set<std::uint32_t> keys;
+    double cells = 0;
+    for (int level = 0; level < LightCellTable::kLevels; ++level)
+        for (int side = 0; side < 6; ++side)
+            for (int x = -20; x < 20; ++x)
+                for (int y = -2; y < 20; ++y)
+                    for (int z = -20; z < 20; ++z, ++cells) keys.insert(light_cell_key({x, y, z}, level, side));
+    double const by_chance = cells * cells / 0x1p32; // of odd keys
+    EXPECT_LT(cells - double(keys.size()), 1.5 * by_chance);
 }
 
 TEST(LightCells, FollowALampThatGoesOut)

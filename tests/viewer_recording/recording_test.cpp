@@ -78,6 +78,7 @@ TEST(Recording, HasWhatWasShownBetweenItsFrames)
                 ShownFrame s{walk_frame(n).command, 0.25 * double(k), {}};
                 s.moment.display_s += double(k);
                 if (k == 1) s.pixel_hash = n;
+                if (n == 2) s.windows = {{0.5, {0}}, {0, {}}, {1, {0, 0}}};
                 recorder.append(s);
                 shown.push_back(s);
             }

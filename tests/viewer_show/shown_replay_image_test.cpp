@@ -4,6 +4,8 @@
 #include "gi/image_io/picture_file.h"
 #include "tests/viewer_show/live_view.h"
 
+#include <fstream>
+
 namespace viewer::test {
 namespace {
 
@@ -12,8 +14,9 @@ protected:
     /// Walks, turns and stands; what the replay said.
     static std::string walk_and_replay(std::string const& arguments, std::string const& replay)
     {
-        LiveView view(arguments +
-                      " --size 240x160 --record walk.lwr --hash-shown --set panel=false --set refine=false");
+        bool const has_display = arguments.find("--display") != std::string::npos;
+        LiveView view(arguments + (has_display ? "" : " --size 240x160") +
+                      " --record walk.lwr --hash-shown --set panel=false --set refine=false");
         view.settle();
         auto const hold = [&](std::string const& key, char const* action) {
             view.ask({{"do", "key"}, {"key", key}, {"action", action}});
@@ -43,6 +46,27 @@ TEST_F(ShownReplay, IsWhatWasShown)
     for (char const* arguments : {"cornell", "mirror --avatar avatar"}) {
         SCOPED_TRACE(arguments);
         EXPECT_GE(drawn_again(walk_and_replay(arguments, "--shown")), 5); // a slow machine shows few
+    }
+}
+
+/// Each window draws with a renderer of its own, to which the others' light is unknown.
+TEST_F(ShownReplay, IsWhatTwoEyesAndSeveralWindowsShowed)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "corner.yaml") << R"(name: corner
+walls:
+  - {name: left, lower_left_m: [-1, 0, 1], lower_right_m: [-1, 0, -1], upper_left_m: [-1, 2, 1], window: left}
+  - {name: front, lower_left_m: [-1, 0, -1], lower_right_m: [1, 0, -1], upper_left_m: [-1, 2, -1], window: front, stereo: side-by-side}
+windows:
+  - {name: left, size_px: [120, 120], position_px: [0, 0]}
+  - {name: front, size_px: [240, 120], position_px: [140, 0]}
+users:
+  - {name: guest, head_position_m: [0, 1, 0]}
+)";
+    for (std::string const& arguments : {std::string("cornell --set stereo=side-by-side"),
+                                         "cornell --display " + (folder / "corner.yaml").string()}) {
+        SCOPED_TRACE(arguments);
+        EXPECT_GE(drawn_again(walk_and_replay(arguments, "--shown")), 5);
     }
 }
 

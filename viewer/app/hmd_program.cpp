@@ -235,7 +235,8 @@ private:
         if (session.counts().pictures > before.pictures)
             note_handed_over(session, session.counts().with_depth > before.with_depth);
         moment.display_s = at.display_s;
-        core_.note_shown(shown_frame(std::move(moment), eyes_.views()));
+        ShownViews const* const views = &eyes_.views();
+        core_.note_shown(shown_frame(std::move(moment), {&views, 1}));
         ++shown_;
         double const drawing_s = eyes_.drawing_s();
         if (eyes_.views().drew_surfaces()) {

@@ -81,7 +81,6 @@ public:
     ShownReplay(DriveBodies drive, gi::Report& report)
         : gl_(GlContext::surfaceless(report)), drive_(std::move(drive))
     {
-        views_.hash_pictures();
     }
     void keep(FrameCommand const& command, SessionFrame result)
     {
@@ -98,38 +97,56 @@ public:
         FrameCommand const& moment = shown.moment;
         // The next frame may have been finished while this one was drawn for the first time.
         while (!waiting_.empty() && waiting_.front()->command.frame < moment.frame) waiting_.pop_front();
-        if (!waiting_.empty() && waiting_.front()->command.frame == moment.frame) {
+        bool const fresh = !waiting_.empty() && waiting_.front()->command.frame == moment.frame;
+        if (fresh) {
             taken_ = waiting_.front();
             waiting_.pop_front();
-            std::vector<int> all(taken_->result.views.size());
-            std::iota(all.begin(), all.end(), 0);
-            views_.take(taken_, all);
         }
         if (!taken_ || taken_->command.frame != moment.frame)
             throw gi::InputError("the recording shows a frame that it does not have",
                                  fmt::format("frame {}", moment.frame), "record the walk again");
-        if (shown.surfaces_scale > 0 && !views_.make_ready())
-            throw gi::InputError("surfaces cannot be drawn again", views_.why_no_surfaces(),
-                                 "replay without --shown");
-        views_.begin(shown.surfaces_scale, &moment, drive_);
+        std::vector<WindowShown> parts = shown.windows;
+        if (parts.empty()) {
+            parts.push_back({shown.surfaces_scale, std::vector<int>(moment.views.size())});
+            std::iota(parts[0].views.begin(), parts[0].views.end(), 0);
+        }
+        while (windows_.size() < parts.size()) windows_.emplace_back().hash_pictures();
         gi::Picture first;
-        for (std::size_t k = 0; k < moment.views.size(); ++k) {
-            EyeView const eye = views_.eye(int(k), &moment.views[k].camera);
-            if (k > 0 || eye.picture.texture == 0) continue;
-            first = {eye.picture.size_px.x, eye.picture.size_px.y, {}, {}};
-            std::vector<float>& rgb = first.add("color", 3).data;
-            glPixelStorei(GL_PACK_ALIGNMENT, 4);
-            glGetTextureImage(eye.picture.texture, 0, GL_RGB, GL_FLOAT, GLsizei(rgb.size() * sizeof(float)),
-                              rgb.data());
+        for (std::size_t w = 0; w < parts.size(); ++w) {
+            ShownViews& views = windows_[w];
+            if (fresh || !views.has_frame()) views.take(taken_, parts[w].views);
+            if (parts[w].surfaces_scale > 0 && !views.make_ready())
+                throw gi::InputError("surfaces cannot be drawn again", views.why_no_surfaces(),
+                                     "replay without --shown");
+            views.begin(parts[w].surfaces_scale, &moment, drive_);
+            for (int const k : parts[w].views) {
+                EyeView const eye = views.eye(k, &moment.views[std::size_t(k)].camera);
+                if (k == 0 && first.width == 0) first = read(eye.picture);
+            }
         }
         return first;
     }
-    std::uint64_t hash() const { return views_.hash(); }
+    std::uint64_t hash() const
+    {
+        std::vector<ShownViews const*> all;
+        for (ShownViews const& w : windows_) all.push_back(&w);
+        return shown_hash(all);
+    }
 
 private:
+    static gi::Picture read(ShownPicture const& shown)
+    {
+        gi::Picture p{shown.size_px.x, shown.size_px.y, {}, {}};
+        if (shown.texture == 0) return {};
+        std::vector<float>& rgb = p.add("color", 3).data;
+        glPixelStorei(GL_PACK_ALIGNMENT, 4);
+        glGetTextureImage(shown.texture, 0, GL_RGB, GL_FLOAT, GLsizei(rgb.size() * sizeof(float)), rgb.data());
+        return p;
+    }
+
     GlContext gl_;
     DriveBodies drive_;
-    ShownViews views_;
+    std::deque<ShownViews> windows_;                       ///< as many as there were
     std::deque<std::shared_ptr<LiveFrame const>> waiting_; ///< newer than the one that was taken
     std::shared_ptr<LiveFrame const> taken_;
 };

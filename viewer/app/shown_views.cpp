@@ -106,6 +106,7 @@ void ShownViews::begin(double surfaces_scale, FrameCommand const* moment, DriveB
     surfaces_scale_ = surfaces_scale;
     drew_surfaces_ = false;
     hashes_.assign(views_.size(), 0);
+    drawn_.clear();
     prepare(kPrepare_s);
     is_ready_ = has_surfaces() && !prepares_;
     if (!is_ready_) return;
@@ -200,6 +201,7 @@ EyeView ShownViews::eye(int view, gi::Camera const* now)
 {
     if (!shows(view)) return {};
     EyeView const shown = draw(view, ViewPart::whole, now, size_of(view));
+    if (shown.picture.texture != 0) drawn_.push_back(view);
     if (hashes_pictures_ && shown.picture.texture != 0) {
         glm::ivec2 const px = shown.picture.size_px;
         std::vector<float> rgb(std::size_t(3 * px.x * px.y));
@@ -249,10 +251,21 @@ EyeView ShownViews::draw(int view, ViewPart part, gi::Camera const* now, glm::iv
     return e;
 }
 
-ShownFrame shown_frame(FrameCommand moment, ShownViews const& views)
+std::uint64_t shown_hash(std::span<ShownViews const* const> windows)
 {
-    return {std::move(moment), views.drawn_scale(),
-            views.hashes_pictures() ? std::optional(views.hash()) : std::nullopt};
+    if (windows.size() == 1) return windows[0]->hash();
+    std::vector<std::uint64_t> of_windows;
+    for (ShownViews const* w : windows) of_windows.push_back(w->hash());
+    return gi::xxh64(std::as_bytes(std::span(of_windows)));
+}
+
+ShownFrame shown_frame(FrameCommand moment, std::span<ShownViews const* const> windows)
+{
+    ShownFrame shown{std::move(moment), windows[0]->drawn_scale(),
+                     windows[0]->hashes_pictures() ? std::optional(shown_hash(windows)) : std::nullopt};
+    if (windows.size() > 1)
+        for (ShownViews const* w : windows) shown.windows.push_back({w->drawn_scale(), w->drawn_views()});
+    return shown;
 }
 
 } // namespace viewer

@@ -41,6 +41,7 @@ public:
     double drawn_scale() const { return is_ready_ ? surfaces_scale_ : 0; }
     /// Puts the rest of the scene on the GPU, however long it takes. False: surfaces cannot be drawn.
     bool make_ready();
+    std::vector<int> const& drawn_views() const { return drawn_; } ///< in the order of eye() since begin()
     /// Hash of the linear pictures of all views since begin(), if hash_pictures() was called; reading them waits for the GPU.
     std::uint64_t hash() const;
     void hash_pictures() { hashes_pictures_ = true; }
@@ -82,6 +83,7 @@ private:
     bool is_ready_ = false; ///< at begin()
     bool prepares_ = false, drew_surfaces_ = false, hashes_pictures_ = false;
     std::vector<std::uint64_t> hashes_; ///< of views
+    std::vector<int> drawn_;            ///< views, since begin()
     std::string why_no_surfaces_;
     gi::World const* tried_ = nullptr; ///< scene whose surfaces were drawn once
     std::shared_ptr<LiveFrame const> frame_;
@@ -93,7 +95,9 @@ private:
     std::vector<float> color_, depth_; ///< copies with filled hidden pixels
 };
 
-/// What was drawn since begin(), for a recording.
-ShownFrame shown_frame(FrameCommand moment, ShownViews const& views);
+/// Of the pictures of all windows, at least one.
+std::uint64_t shown_hash(std::span<ShownViews const* const> windows);
+/// What these windows drew since begin(), for a recording.
+ShownFrame shown_frame(FrameCommand moment, std::span<ShownViews const* const> windows);
 
 } // namespace viewer

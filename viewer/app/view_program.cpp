@@ -52,6 +52,7 @@ public:
             open_desktop();
         }
         for (auto const& w : shown_.windows) {
+            w->window.gl().make_current();
             if (options_.hash_shown) w->pictures().views().hash_pictures();
             w->window.gl().release(); // to the presenting thread
         }
@@ -502,11 +503,11 @@ private:
             p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
         }
         if (p.moment) {
-            bool const has_all = link_ == nullptr && shown_.windows.size() == 1;
+            std::vector<ShownViews const*> views;
+            for (auto const& w : shown_.windows) views.push_back(&w->pictures().views());
             p.shown = ShownFrame{p.moment->moment, p.moment->surfaces_scale, {}};
-            if (!shown_.windows.empty())
-                p.shown = shown_frame(p.moment->moment, shown_.windows[0]->pictures().views());
-            if (!has_all) p.shown->pixel_hash.reset();
+            if (!views.empty()) p.shown = shown_frame(p.moment->moment, views);
+            if (link_ != nullptr) p.shown->pixel_hash.reset(); // no rank has all views
         }
         p.swap.time = SwapTime::Clock::now();
         if (p.number > 0) {

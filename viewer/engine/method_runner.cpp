@@ -204,6 +204,8 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
                                     scene_change(changes, next[averaged].moved), settings, seen));
         }
         bool const filtered = is_filtered(results[0], settings);
+        if (filtered && settings.reuse > 1)
+            for (std::size_t k = 0; k < results.size(); ++k) hold_guides(k, results[k].picture);
         std::vector<gi::Picture> unfiltered(results.size());
         for (std::size_t k = 0; k < results.size() && filtered && filtered_share(state_.still_paths) < 1; ++k)
             unfiltered[k] = results[k].picture;
@@ -258,8 +260,9 @@ void MethodRunner::follow(FrameCommand const& command, std::span<HiddenPixels co
             by.can_undo = true;
             s.reuse = std::make_shared<gi::TemporalReuse>(by);
         }
-        s = {now.name,  now.camera,         now.width,  now.height, std::move(s.reuse), settings.reuse,
-             hidden[k], std::move(s.light), s.punctual, small,      next[k].rays,       next[k].earlier};
+        s = {now.name,       now.camera,      now.width,          now.height, std::move(s.reuse),
+             settings.reuse, hidden[k],       std::move(s.light), s.punctual, small,
+             next[k].rays,   next[k].earlier, std::move(s.guides)};
     }
 }
 
@@ -301,6 +304,20 @@ gi::MirrorLayers MethodRunner::reuse(std::size_t view, Results& results, int par
     }
     own.punctual = !left_out_punctual_;
     return mirrors;
+}
+
+void MethodRunner::hold_guides(std::size_t view, gi::Picture& picture)
+{
+    constexpr std::array kGuides{"normal", "position"};
+    std::shared_ptr<gi::Picture const>& held = state_.seen[view].guides;
+    if (state_.still > 1 && held && held->width == picture.width && held->height == picture.height) {
+        for (char const* const name : kGuides) *picture.find(name) = *held->find(name);
+        return;
+    }
+    auto now = std::make_shared<gi::Picture>(gi::Picture{picture.width, picture.height, {}, {}});
+    for (char const* const name : kGuides)
+        if (gi::Layer const* const layer = picture.find(name)) now->layers.push_back(*layer);
+    held = now->layers.size() == kGuides.size() ? now : nullptr;
 }
 
 void MethodRunner::clamp(Results& results, std::span<ViewCommand const> views, gi::StopRequest const* stop)

@@ -68,6 +68,7 @@ private:
         bool punctual = true, small = false; ///< small: of a picture of light that is smaller than the view;
                                              ///< punctual: the light of punctual lights is in its L1
         gi::CameraRays rays{}, earlier{};    ///< of this frame and the one before
+        std::shared_ptr<gi::Picture const> guides{}; ///< surfaces of the first frame since anything moved
     };
     struct State { ///< of the last frame
         std::vector<Seen> seen;
@@ -86,6 +87,9 @@ private:
     /// @return surfaces and light of pixels that show mirrors
     gi::MirrorLayers reuse(std::size_t view, Results& results, int partner, gi::SceneChange change,
                            Settings const& settings, gi::SeenSurfaces* seen);
+    /// While all stands still, filters follow the same surfaces in each frame: else outlines, of which each frame's points see
+    /// one side or the other, would flicker.
+    void hold_guides(std::size_t view, gi::Picture& picture);
     /// The views of this frame are filtered.
     bool is_filtered(gi::RenderResult const& result, Settings const& settings) const;
     /// Clamps the fireflies of all views. Throws Interrupted if `stop`, which may be null, is requested.

@@ -116,8 +116,8 @@ GlProgram& SurfaceRenderer::program(SurfaceKind const& kind, Pass pass)
         "#define SMOOTH_ALPHA {:.9e}\n#define SEARCHES 1\n#define TILE {}\n#define PUNCTUAL {}\n#define PLANAR "
         "{}\n",
         int(kind.alpha == gi::AlphaMode::mask), kind.maps, int(meshes_.has_colors()),
-        int(pass == Pass::mirrors || pass == Pass::planar), int(kind.emits),
-        int(kind.moves && pass == Pass::described), gi::kSmoothAlpha, PictureTexture::kTile,
+        int(pass == Pass::mirrors || pass == Pass::planar || (pass == Pass::described && kind.mirror)),
+        int(kind.emits), int(kind.moves && pass == Pass::described), gi::kSmoothAlpha, PictureTexture::kTile,
         int(shadows_.any() && pass == Pass::blended), int(pass == Pass::planar));
     std::string const key = std::to_string(int(pass)) + defines;
     auto const at = programs_.find(key);
@@ -201,7 +201,10 @@ void SurfaceRenderer::draw_batches(Pass pass, Eye const& eye)
             p.set("eye", eye.at);
             p.set("kept", eye.kept);
             p.set("nearest_m", nearest_m());
-            if (pass == Pass::described) set_moved_box(p);
+            if (pass == Pass::described) {
+                set_moved_box(p);
+                p.set("in_mirror", eye.in_mirror ? 1.0f : 0.0f);
+            }
             if (pass == Pass::blended) {
                 bind_light(p, eye);
                 shadows_.bind(p);

@@ -75,9 +75,15 @@ void Recorder::append(ShownFrame const& shown)
     std::lock_guard const lock(mutex_);
     if (finished_) return;
     ByteWriter payload;
-    payload.put_byte(shown.pixel_hash ? 1 : 0);
+    payload.put_byte(std::uint8_t((shown.pixel_hash ? 1 : 0) + (shown.windows.empty() ? 0 : 2)));
     if (shown.pixel_hash) payload.put_u64(*shown.pixel_hash);
     payload.put_number(shown.surfaces_scale);
+    if (!shown.windows.empty()) payload.put_u32(std::uint32_t(shown.windows.size()));
+    for (WindowShown const& w : shown.windows) {
+        payload.put_number(w.surfaces_scale);
+        payload.put_u32(std::uint32_t(w.views.size()));
+        for (int const view : w.views) payload.put_u32(std::uint32_t(view));
+    }
     payload.put_raw(to_bytes(shown.moment));
     ByteWriter record;
     put_record(record, kShownRecord, payload.bytes());

@@ -39,13 +39,22 @@ struct RecordedFrame {
     bool operator==(RecordedFrame const&) const = default;
 };
 
+/// What one of several windows drew. They share no light.
+struct WindowShown {
+    double surfaces_scale = 0;
+    std::vector<int> views; ///< in the order in which it drew them
+
+    bool operator==(WindowShown const&) const = default;
+};
+
 /// A picture that people saw: of the newest frame then, perhaps drawn for newer poses.
 struct ShownFrame {
     /// As the frame's, but with the poses, cameras and scene time that were shown, display_s of the swap, and for
     /// changes the edits of objects and lights that the frame does not have yet.
     FrameCommand moment;
     double surfaces_scale = 0;               ///< side of drawn surfaces over that of the views; 0 = none
-    std::optional<std::uint64_t> pixel_hash; ///< ShownViews::hash
+    std::optional<std::uint64_t> pixel_hash; ///< shown_hash of viewer/app/shown_views.h
+    std::vector<WindowShown> windows{};      ///< empty: one window drew all views, in their order
 
     bool operator==(ShownFrame const&) const = default;
 };

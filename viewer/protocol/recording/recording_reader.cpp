@@ -49,17 +49,40 @@ RecordedFrame frame_of(Bytes const& payload)
     return f;
 }
 
+double surfaces_scale_of(ByteReader& from)
+{
+    double const scale = from.number();
+    if (!(scale >= 0 && scale <= 4)) throw BadBytes("surfaces of a shown frame have no size");
+    return scale;
+}
+
+/// A number of things of at least so many bytes each.
+std::uint32_t count_of(ByteReader& from, std::size_t least_bytes)
+{
+    std::uint32_t const n = from.u32();
+    if (n > from.left() / least_bytes) throw BadBytes("a shown frame ends too early");
+    return n;
+}
+
 ShownFrame shown_of(Bytes const& payload)
 {
     ByteReader from(payload);
     ShownFrame s;
     std::uint8_t const flags = from.byte();
-    if (flags > 1) throw BadBytes("a shown frame has unknown content");
-    if (flags == 1) s.pixel_hash = from.u64();
-    s.surfaces_scale = from.number();
-    if (!(s.surfaces_scale >= 0 && s.surfaces_scale <= 4))
-        throw BadBytes("surfaces of a shown frame have no size");
+    if (flags > 3) throw BadBytes("a shown frame has unknown content");
+    if ((flags & 1) != 0) s.pixel_hash = from.u64();
+    s.surfaces_scale = surfaces_scale_of(from);
+    if ((flags & 2) != 0) s.windows.resize(count_of(from, sizeof(double) + sizeof(std::uint32_t)));
+    for (WindowShown& w : s.windows) {
+        w.surfaces_scale = surfaces_scale_of(from);
+        w.views.resize(count_of(from, sizeof(std::uint32_t)));
+        for (int& view : w.views) view = int(from.u32());
+    }
     s.moment = command_from_bytes(from.take(from.left()));
+    for (WindowShown const& w : s.windows)
+        for (int const view : w.views)
+            if (view < 0 || std::size_t(view) >= s.moment.views.size())
+                throw BadBytes("a window shows a view that its frame does not have");
     return s;
 }
 

@@ -1,0 +1,62 @@
+// After everything has stood still, what is shown no longer flickers.
+
+#include "gi/filter/tone_map.h"
+#include "gi/image_io/picture_file.h"
+#include "tests/viewer_show/live_view.h"
+#include "viewer/protocol/recording/recording.h"
+
+#include <fmt/format.h>
+#include <numeric>
+
+namespace viewer::test {
+namespace {
+
+class StillPicture : public OnScreen {};
+
+/// Root mean square of the differences of each shown picture from the one before, in bytes, from so long after the last
+/// motion on.
+std::vector<double> flicker(LiveView& view, double wait_s)
+{
+    run_well("view --replay walk.lwr --shown --out s_%03d.png", view.folder().path());
+    RecordingReader reader(view.folder().path() / "walk.lwr");
+    std::vector<ShownFrame> shown;
+    while (auto const record = reader.next_record())
+        if (auto const* const s = std::get_if<ShownFrame>(&*record)) shown.push_back(*s);
+    std::size_t still = shown.size() - 1;
+    while (still > 0 && shown[still - 1].moment.views == shown.back().moment.views) --still;
+    std::vector<double> rms;
+    std::vector<float> last;
+    for (std::size_t k = still; k < shown.size(); ++k) {
+        if (shown[k].moment.display_s < shown[still].moment.display_s + wait_s) continue;
+        std::vector<float> const now =
+            gi::tone_map(gi::read_picture(view.folder() / fmt::format("s_{:03}.png", k)).layers[0], {});
+        double sum = 0;
+        for (std::size_t i = 0; i < last.size(); ++i) sum += std::pow(255 * (double(now[i]) - double(last[i])), 2);
+        if (!last.empty()) rms.push_back(std::sqrt(sum / double(last.size())));
+        last = now;
+    }
+    return rms;
+}
+
+TEST_F(StillPicture, DoesNotFlicker)
+{
+    constexpr double kWait_s = 2;
+    for (auto const& [scene, wanted] : {std::pair("cornell", 1.0), std::pair("ring", 1.0)}) {
+        LiveView view(std::string(scene) +
+                      " --size 240x160 --record walk.lwr --hash-shown --set panel=false --set play=false");
+        is_soon([&] { return view.ask({{"do", "stats"}}).value("frame", 0) > 3; });
+        view.ask({{"do", "key"}, {"key", "w"}, {"action", "press"}});
+        sleep_ms(400);
+        view.ask({{"do", "key"}, {"key", "w"}, {"action", "release"}});
+        sleep_ms(int(1000 * kWait_s) + 1500);
+        view.quit();
+        std::vector<double> const rms = flicker(view, kWait_s);
+        ASSERT_GT(rms.size(), 3u);
+        double const mean = std::accumulate(rms.begin(), rms.end(), 0.0) / double(rms.size());
+        std::cout << scene << ": " << mean << " of 255 in " << rms.size() << " pictures\n";
+        EXPECT_LE(mean, wanted) << scene;
+    }
+}
+
+} // namespace
+} // namespace viewer::test
