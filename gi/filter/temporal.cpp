@@ -71,9 +71,9 @@ void TemporalReuse::Light::take(Light const& there)
 /// How much light has changed: from 0, if the mean difference in a window is within its errors or small beside the
 /// light, to 1.
 struct LightChanged {
-    int window;     ///< px
-    vec2 errors;    ///< standard errors of the mean difference, from 0 to 1
-    vec2 relative;  ///< mean difference over the mean light, from 0 to 1
+    int window;    ///< px
+    vec2 errors;   ///< standard errors of the mean difference, from 0 to 1
+    vec2 relative; ///< mean difference over the mean light, from 0 to 1
 
     /// @param difference  of direct and indirect light of a pixel, and their means; none where there is no surface
     /// @param changed  is given each pixel with a surface and how much its light has changed
@@ -132,7 +132,8 @@ void TemporalReuse::renew_changed(int width, int height, TemporalCounts& total)
             Light& l = lights_[i];
             if (!(surfaces_[i].depth > 0) || !(l.frames > float(settings_.most_frames))) return;
             l.all.approach(l.recent, changed);
-            l.frames = glm::mix(l.frames, 0.5f * float(settings_.most_frames), changed); // the shorter one lags, too
+            l.frames =
+                glm::mix(l.frames, 0.5f * float(settings_.most_frames), changed); // the shorter one lags, too
             renewed.local() += changed;
         });
     total.renewed += renewed.combine(std::plus<>());

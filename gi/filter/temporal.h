@@ -47,7 +47,7 @@ struct TemporalCounts {
     std::size_t started = 0;  ///< of these, pixels with no history to reuse
     std::size_t held = 0;     ///< of these, pixels whose earlier L1 was clamped to the neighbourhood
     double renewed = 0;       ///< of these, pixels whose light had changed: the weight of its shorter mean, summed
-    double sudden = 0;        ///< of these, pixels whose light had suddenly changed: the weight of this frame, summed
+    double sudden = 0; ///< of these, pixels whose light had suddenly changed: the weight of this frame, summed
     double frames = 0;        ///< number of frames in a pixel's mean, averaged over pixels
     int still_frames = 0;     ///< frames since the last motion, including this one; 1 = something moved
 };
@@ -128,7 +128,7 @@ private:
     std::vector<KnownLight> known_;
     std::vector<Surface> surfaces_, last_surfaces_;
     std::vector<Light> lights_, last_lights_;
-    std::vector<Means> now_; ///< this frame's light alone; with follow_sudden
+    std::vector<Means> now_;                            ///< this frame's light alone; with follow_sudden
     std::vector<std::array<vec3, 4>> mean_, last_mean_; ///< of L0, L1, L2 and normals since the last motion
 };
 

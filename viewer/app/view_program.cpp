@@ -356,7 +356,8 @@ private:
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
         bool const messages = has_messages();
         bool const tells = messages != had_messages_ || (messages && since_s > 1 / kMessages_Hz);
-        if (next || fresh || moved || draws || flickers || dirty_ > 0 || resized || tells || state_.wants_screenshot)
+        if (next || fresh || moved || draws || flickers || dirty_ > 0 || resized || tells ||
+            state_.wants_screenshot)
             present(newest, fresh, next ? next->number : 0);
     }
 
@@ -392,7 +393,8 @@ private:
         shown_cameras_ = reprojects ? cameras_ : rendered;
         double const ahead_s =
             state_.settings().predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0;
-        ShownMoment shown{moment_at(frame, at, begun_s + ahead_s, core_.renderer->edits_since(frame)), surfaces_scale, 0};
+        ShownMoment shown{moment_at(frame, at, begun_s + ahead_s, core_.renderer->edits_since(frame)),
+                          surfaces_scale, 0};
         for (std::size_t k = 0; k < shown_cameras_.size(); ++k) shown.moment.views[k].camera = shown_cameras_[k];
         return shown;
     }

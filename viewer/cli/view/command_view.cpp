@@ -371,8 +371,9 @@ void add_view(CLI::App& app, int& exit_code)
     offer(c->add_option("scene", a->scene.scene, "scene file or name of a generated scene, as for render"),
           gi::built_in_scenes());
     declare_view_options(*c, a->scene);
-    c->add_option("--set", a->settings,
-                  "KEY=VALUE, set before the first frame, e.g. quality=exact or stereo=anaglyph-dubois; repeatable")
+    c->add_option(
+         "--set", a->settings,
+         "KEY=VALUE, set before the first frame, e.g. quality=exact or stereo=anaglyph-dubois; repeatable")
         ->take_all();
     c->add_option("--size", a->size, "window size, pixels (default: 1280x720); with --replay: size of each view");
     c->add_option("--fullscreen", a->fullscreen,
