@@ -30,10 +30,11 @@ TEST_F(Input, ThePanelOfASmallWindowLeavesMostOfIt)
     auto const now = [&] { return cover(window->picture(), {640, 480}); };
     EXPECT_TRUE(is_soon([&] { return now().pixels > 0.1; })) << "there is no panel";
     view->settle();
+    // A slow machine still says in the middle of the window what it builds.
+    EXPECT_TRUE(is_soon([&] { return now().width < 0.4; }));
     Cover const open = now();
     EXPECT_GT(open.pixels, 0.1);
     EXPECT_LT(open.pixels, 0.4);
-    EXPECT_LT(open.width, 0.4);
     NEED_KEYS();
     window->point_at({20, 20}); // the triangle in its title
     sleep_ms(100);

@@ -159,8 +159,10 @@ std::vector<LightRing::Entry> LightRing::asked_by(int head, SeenPart const& seen
 void LightRing::bind(GlProgram const& program, int head, SeenPart const& seen) const
 {
     std::vector<Entry> const asked = asked_by(head, seen);
-    auto const first = std::ranges::min_element(
-        entries_, {}, [&](Entry const& e) { return std::tuple(e.age, e.head != head, e.view); });
+    Entry first; // of all, also of those that show nothing of it
+    if (!entries_.empty())
+        first = *std::ranges::min_element(
+            entries_, {}, [&](Entry const& e) { return std::tuple(e.age, e.head != head, e.view); });
     glBindTextureUnit(2, texels_.id());
     glBindTextureUnit(3, slopes_.id());
     program.set("pictures", int(asked.size()));
@@ -169,8 +171,8 @@ void LightRing::bind(GlProgram const& program, int head, SeenPart const& seen) c
     program.set("cells_lack_punctual", known_ && known_->without_punctual ? 1.0f : 0.0f);
     glBindTextureUnit(14, cells_.id());
     program.set("mean_light", mean_);
-    program.set("mean_lacks_punctual", first->without_punctual ? 1.0f : 0.0f);
-    program.set("head", first->eye);
+    program.set("mean_lacks_punctual", first.without_punctual ? 1.0f : 0.0f);
+    program.set("head", first.eye);
     for (std::size_t k = 0; k < asked.size(); ++k) {
         std::string const of = "[" + std::to_string(k) + "]";
         program.set(("light_layers" + of).c_str(), asked[k].layer);
