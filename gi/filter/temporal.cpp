@@ -159,6 +159,7 @@ void TemporalReuse::follow_sudden(int width, int height, TemporalCounts& total)
             l.all.approach(now_[i], changed);
             l.recent.approach(now_[i], changed);
             l.frames = glm::mix(l.frames, 1.0f, changed);
+            l.variance *= 1 - changed; // divided by frames - 1 later
             sudden.local() += changed;
         });
     total.sudden += sudden.combine(std::plus<>());

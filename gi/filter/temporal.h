@@ -11,8 +11,8 @@
 // adapts (Yang, Liu and Salvi 2020, sec. 4.2). Where the light has not changed, it covers up to `most_unchanged`
 // frames: it is compared with a second mean of the latest `most_frames`, and where the two differ by more than
 // their noise in the pixels around, the shorter one replaces it. Where the light of a frame alone differs from both
-// by far more than its noise in the pixels around, as after a door has opened, it replaces them (`follow_sudden`). Where the image is static, albedo and L0 are
-// averaged too, so that edges and textures are antialiased. While nothing moves at all, the pictures themselves
+// by far more than its noise in the pixels around, as after a door has opened, it replaces them (`follow_sudden`).
+// Where the image is static, albedo and L0 are averaged too, so that edges and textures are antialiased. While nothing moves at all, the pictures themselves
 // are averaged over all frames since the last motion, so that a static picture converges to the method's result.
 // After a change of lights, materials or environment, all earlier frames are discarded: the lag is zero frames.
 //

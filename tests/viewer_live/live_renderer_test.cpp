@@ -200,40 +200,50 @@ TEST(LiveRenderer, ALeaderWithoutWallsSaysWhatOthersDo)
     EXPECT_EQ(frame->schedule, "stored: all 160 directions; nothing has moved so far");
 }
 
+/// Large pictures of a method that can give them up, counted.
+struct LargePictures : Live {
+    std::atomic<int> begun{0}, finished{0};
+
+    LargePictures()
+    {
+        renderer.reset();
+        session.apply({"method", "paths"});
+        LiveRenderer::Hooks hooks;
+        hooks.own_views = [this](FrameCommand const& command) {
+            ++begun;
+            return command.views;
+        };
+        hooks.finished = [this](LiveFrame const& f) {
+            commands.push_back(f.command);
+            ++finished;
+        };
+        renderer = std::make_unique<LiveRenderer>(session, clock, nullptr, hooks);
+    }
+    ~LargePictures() { renderer.reset(); } // it counts
+    void look_at(double aside)
+    {
+        Viewpoint at;
+        gi::Camera camera = eye;
+        camera.world_from_camera = eye.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{aside, 0, 0});
+        at.views = {{"window", camera, 1280, 1280, -1}};
+        renderer->look(at);
+    }
+};
+
 /// Who walks on does not wait for the large picture that was begun while they stood.
 TEST(LiveRenderer, ALookGivesUpAPictureThatRefines)
 {
-    Live live;
-    live.renderer.reset();
-    live.session.apply({"method", "paths"});
-    std::atomic<int> begun{0}, finished{0};
-    LiveRenderer::Hooks hooks;
-    hooks.own_views = [&](FrameCommand const& command) {
-        ++begun;
-        return command.views;
-    };
-    hooks.finished = [&](LiveFrame const& f) {
-        live.commands.push_back(f.command);
-        ++finished;
-    };
-    live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, nullptr, hooks);
-    auto const look = [&](double aside) {
-        Viewpoint at;
-        gi::Camera camera = live.eye;
-        camera.world_from_camera = live.eye.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{aside, 0, 0});
-        at.views = {{"window", camera, 1280, 1280, -1}};
-        live.renderer->look(at);
-    };
+    LargePictures live;
     int given_up = 0;
     for (int k = 0; k < 20 && given_up < 2; ++k) {
-        look(0.01 * k);
+        live.look_at(0.01 * k);
         ASSERT_NE(live.renderer->next_frame(60), nullptr);
-        int const before = begun;
-        while (begun == before) std::this_thread::sleep_for(std::chrono::milliseconds(1)); // it refines
-        int const already = finished;
-        look(0.01 * k + 0.005);
+        int const before = live.begun;
+        while (live.begun == before) std::this_thread::sleep_for(std::chrono::milliseconds(1)); // it refines
+        int const already = live.finished;
+        live.look_at(0.01 * k + 0.005);
         ASSERT_NE(live.renderer->next_frame(60), nullptr);
-        given_up += finished == already + 1;
+        given_up += live.finished == already + 1;
     }
     live.renderer->stop();
     EXPECT_EQ(given_up, 2);
@@ -244,39 +254,19 @@ TEST(LiveRenderer, ALookGivesUpAPictureThatRefines)
 /// A lamp that goes out while someone walks does not wait for the picture of the old light.
 TEST(LiveRenderer, AnEditGivesUpThePictureThatIsRendered)
 {
-    Live live;
-    live.renderer.reset();
-    live.session.apply({"method", "paths"});
-    std::atomic<int> begun{0}, finished{0};
-    LiveRenderer::Hooks hooks;
-    hooks.own_views = [&](FrameCommand const& command) {
-        ++begun;
-        return command.views;
-    };
-    hooks.finished = [&](LiveFrame const& f) {
-        live.commands.push_back(f.command);
-        ++finished;
-    };
-    live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, nullptr, hooks);
-    auto const look = [&](double aside) {
-        Viewpoint at;
-        gi::Camera camera = live.eye;
-        camera.world_from_camera =
-            live.eye.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{aside, 0, 0});
-        at.views = {{"window", camera, 1280, 1280, -1}};
-        live.renderer->look(at);
-    };
+    LargePictures live;
     int given_up = 0;
     for (int k = 0; k < 40 && given_up < 2; ++k) {
-        look(0.01 * k);
+        live.look_at(0.01 * k);
         ASSERT_NE(live.renderer->next_frame(60), nullptr);
-        int const before = begun;
-        look(0.01 * k + 0.005);
-        while (begun == before) std::this_thread::sleep_for(std::chrono::milliseconds(1)); // of a head that moves
-        int const already = finished;
+        int const before = live.begun;
+        live.look_at(0.01 * k + 0.005);
+        while (live.begun == before)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1)); // of a head that moves
+        int const already = live.finished;
         live.renderer->post({"material.0.base_color", {0.1, 0.1, 0.5 + 0.01 * k}});
         ASSERT_NE(live.renderer->next_frame(60), nullptr);
-        given_up += finished == already + 1 && begun == before + 2;
+        given_up += live.finished == already + 1 && live.begun == before + 2;
     }
     live.renderer->stop();
     EXPECT_EQ(given_up, 2);
