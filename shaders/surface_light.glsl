@@ -71,10 +71,11 @@ vec4 find_in_cells(vec3 at, vec3 n, float distance)
 
 struct FoundLight {
     vec3 light;
-    uvec2 bent;  // LightSlope: the normal for which it is, and how it changes with the normal
+    uvec2 bent;  // LightSlope: the normal for which it is, and how it changes with the normal; its last two bits are LightSource
     float lacks; // the share that lacks the light of punctual lights
 };
 
+const uint kOfCells = 1u << 30, kOfNothing = 2u << 30; // LightSource of viewer/devices/gl/surface_renderer.h
 const uint kNoSlope = 512u | 512u << 10 | 512u << 20;
 
 // By how much light for one normal differs from that for another.
@@ -137,6 +138,7 @@ FoundLight find_light(vec3 at, vec3 n)
     if (known.a > 0.0) {
         found.light = known.rgb / known.a;
         found.lacks = cells_lack_punctual;
+        found.bent.y |= kOfCells;
     } else if (best >= kUnlike || (shown_in >= 0 && counted > 0.0)) {
         found.light = mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0)));
         found.lacks = lacks / counted;
@@ -145,5 +147,6 @@ FoundLight find_light(vec3 at, vec3 n)
             found.bent.x = pack_normal(unpack_normal(found.bent.x) + facings / counted - best_facing);
         }
     }
+    found.bent.y |= known.a == 0.0 && best < kUnlike ? kOfNothing : 0u;
     return found;
 }

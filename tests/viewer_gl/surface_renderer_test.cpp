@@ -218,6 +218,30 @@ TEST_F(SurfaceRendererTest, FindsLightFromAnotherPose)
     EXPECT_GT(still, 0.25);
 }
 
+TEST_F(SurfaceRendererTest, WhoComesBackFindsTheLightOfBefore)
+{
+    load();
+    auto const at = [](double x, double z) { return gi::look_at(dvec3(x, 0.8, z), dvec3(x, 0.3, z - 3.5), 55); };
+    gi::Camera const begun = at(0.4, 3.2);
+    gi::LightPicture light;
+    gi::Picture const truth = exact(begun, &light);
+    SurfaceRenderer renderer;
+    start(renderer, light);
+    auto const lit_by_pictures = [&] {
+        drawn(renderer, begun, truth, begun);
+        LightSources const found = renderer.light_sources(0);
+        EXPECT_EQ(found.size_px, kSize / 2);
+        return std::ranges::count(found.sources, LightSource::pictures);
+    };
+    auto const before = lit_by_pictures();
+    EXPECT_GT(before, 2000);
+    for (int k = 1; k < 20; ++k) { // forwards, until little of it is seen
+        exact(at(0.4, 3.2 - 0.1 * k), &light);
+        renderer.add_light({{0, 0, &light}});
+    }
+    EXPECT_GE(lit_by_pictures(), before);
+}
+
 TEST_F(SurfaceRendererTest, WhatNoPictureShowsIsLitFromCells)
 {
     load();

@@ -34,6 +34,12 @@ public:
         return views_[std::size_t(view)].depths[std::size_t(part)];
     }
 
+    /// Of the surfaces that eye() drew last; none before. Waits for the GPU.
+    LightSources light_sources(int view) const
+    {
+        return renderer_ ? renderer_->light_sources(view) : LightSources{};
+    }
+
     /// True if surfaces are about to be drawn, once more of the scene is on the GPU: draw again soon.
     bool prepares() const { return prepares_; }
     bool drew_surfaces() const { return drew_surfaces_; } ///< since begin()

@@ -56,6 +56,39 @@ double rivalry(SeenMoment const& s, std::vector<gi::Picture> const& truth,
     return n > 0 ? sum / double(n) : 0;
 }
 
+/// Pixels whose surface no picture of light shows, and what they emit as display-linear sums.
+struct Unlit {
+    double surfaces = 0, unlit = 0, difference = 0, truth = 0;
+
+    /// @param shown, right  display-linear, of size w * h
+    void add(LightSources const& light, std::vector<float> const& shown, std::vector<float> const& right, int w,
+             int h)
+    {
+        for (int y = 0; y < h && !light.sources.empty(); ++y)
+            for (int x = 0; x < w; ++x) {
+                glm::ivec2 const at = glm::ivec2(x, y) * light.size_px / glm::ivec2(w, h);
+                LightSource const s = light.sources[std::size_t(at.y * light.size_px.x + at.x)];
+                surfaces += s != LightSource::no_surface;
+                if (s != LightSource::cells && s != LightSource::nowhere) continue;
+                ++unlit;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    std::size_t const i = 3 * (std::size_t(y) * std::size_t(w) + std::size_t(x)) + c;
+                    difference += std::abs(double(shown[i]) - double(right[i]));
+                    truth += double(right[i]);
+                }
+            }
+    }
+};
+
+/// R, G, B bytes, as ShownOptions says.
+std::vector<unsigned char> greys(LightSources const& light)
+{
+    constexpr std::array<unsigned char, 4> kGreys{255, 160, 80, 0};
+    std::vector<unsigned char> rgb;
+    for (LightSource const s : light.sources) rgb.insert(rgb.end(), 3, kGreys[std::size_t(s)]);
+    return rgb;
+}
+
 /// @param what  it is called in errors
 PathChange path_change(std::string const& text, std::string const& what)
 {
@@ -107,6 +140,7 @@ ShownErrors score(ShownOptions const& o, std::span<PathChange const> changes, Re
     std::size_t next = 0;
     gi::ProgressBar bar("converged pictures");
     ShownErrors sum;
+    Unlit unlit;
     for (std::size_t k = 0; k < seen.size(); ++k) {
         for (; next < changes.size() && changes[next].path_s <= seen[k].path_s; ++next)
             exact.apply(changes[next].change);
@@ -128,7 +162,9 @@ ShownErrors score(ShownOptions const& o, std::span<PathChange const> changes, Re
             right.push_back(gi::tone_map_bytes(*truth.back().find("color"), tone_settings(exact.settings())));
         }
         for (std::size_t e = 0; e < right.size(); ++e) {
-            std::vector<float> const error = gi::flip(decoded(seen[k].shown[e]), decoded(right[e]), w, h);
+            std::vector<float> const seen_light = decoded(seen[k].shown[e]), right_light = decoded(right[e]);
+            std::vector<float> const error = gi::flip(seen_light, right_light, w, h);
+            if (e < seen[k].light.size()) unlit.add(seen[k].light[e], seen_light, right_light, w, h);
             sum.flip += mean(error) / double(right.size());
             sum.most_flip = std::max(sum.most_flip, mean(error));
             std::vector<unsigned char> grey;
@@ -140,12 +176,17 @@ ShownErrors score(ShownOptions const& o, std::span<PathChange const> changes, Re
             save("shown", seen[k].shown[e]);
             save("truth", right[e]);
             save("error", grey);
+            if (e < seen[k].light.size() && !seen[k].light[e].sources.empty())
+                gi::write_png(std::filesystem::path(o.out) / fmt::format("light_{}_{}.png", k, e),
+                              seen[k].light[e].size_px.x, seen[k].light[e].size_px.y, greys(seen[k].light[e]));
         }
         if (right.size() == 2) sum.rivalry += rivalry(seen[k], truth, right, origin, w, h);
         ++sum.moments;
     }
     sum.flip /= std::max(1, sum.moments);
     sum.rivalry /= std::max(1, sum.moments);
+    sum.unlit_share = unlit.unlit / unlit.surfaces;
+    sum.unlit_error = unlit.difference / unlit.truth;
     return sum;
 }
 

@@ -109,7 +109,7 @@ public:
     }
 
 private:
-    static constexpr double kResponse_s = 2.5;
+    static constexpr double kResponse_s = 2.5, kSoon_s = 0.5;
     struct ShownMean {
         double path_s, mean;
     };
@@ -199,6 +199,7 @@ private:
         auto const newest = renderer_.newest();
         if (newest != shown_) presenter_.take(newest, panes_);
         shown_ = newest;
+        note_light(now);
         double const drawing = clock_.now_s();
         settings_.moment = moment_at(*newest, at, seen_s, renderer_.edits_since(*newest));
         settings_.drive = scenes_.drive;
@@ -230,13 +231,28 @@ private:
         surfaces_s_ = surfaces_s_ > 0 ? surfaces_s_ + 0.2 * (drew_s_ - surfaces_s_) : drew_s_;
     }
 
+    /// The next one that is scored, on the path.
+    double moment_s() const
+    {
+        double const scored_s = walker_.path().seconds() - kFirst_s;
+        return kFirst_s + scored_s * (double(seen_.size()) + 0.5) / o_.moments;
+    }
+
+    /// Where the light of what is on the screen was found, before a moment is scored.
+    void note_light(double now)
+    {
+        light_.clear();
+        if (int(seen_.size()) >= o_.moments || now + kSoon_s < moment_s()) return;
+        for (int e = 0; e < o_.eyes; ++e) light_.push_back(presenter_.views().light_sources(e));
+    }
+
     /// What is still shown at a moment is compared with what should be seen then.
     void score_moments(double until)
     {
-        double const scored_s = walker_.path().seconds() - kFirst_s;
-        double const moment = kFirst_s + scored_s * (double(seen_.size()) + 0.5) / o_.moments;
+        double const moment = moment_s();
         if (int(seen_.size()) >= o_.moments || until < moment) return;
-        SeenMoment s{walker_.at(moment, 0, begun_s_), moment, scene_time_at(*shown_, begun_s_ + moment), {}};
+        SeenMoment s{
+            walker_.at(moment, 0, begun_s_), moment, scene_time_at(*shown_, begun_s_ + moment), {}, light_};
         for (int e = 0; e < o_.eyes; ++e) s.shown.push_back(on_screen(e));
         seen_.push_back(std::move(s));
     }
@@ -274,6 +290,7 @@ private:
     double begun_s_ = 0, last_s_ = 0, shown_s_ = 0, surfaces_s_ = 0, drew_s_ = 0;
     std::shared_ptr<LiveFrame const> shown_;
     std::vector<SeenMoment> seen_;
+    std::vector<LightSources> light_; ///< of what is on the screen, shortly before a moment
     std::vector<unsigned char> still_;
     ShownCounts counts_;
     double done_s_ = 0;
@@ -310,11 +327,12 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
 
     ShownCounts const& n = run.counts();
     BenchTable table = start_table("shown", "What is shown while a head moves",
-                                   {"scene",         "path",           "size",           "eyes",
-                                    "interval_ms",   "interval_95_ms", "interval_99_ms", "longest_interval_ms",
-                                    "drawing_ms",    "rendering_ms",   "light_age_ms",   "longest_light_age_ms",
-                                    "response_ms",   "flip",           "most_flip",      "rivalry",
-                                    "still_flicker", "surfaces_scale", "light_scale",    "paths"});
+                                   {"scene",       "path",           "size",           "eyes",
+                                    "interval_ms", "interval_95_ms", "interval_99_ms", "longest_interval_ms",
+                                    "drawing_ms",  "rendering_ms",   "light_age_ms",   "longest_light_age_ms",
+                                    "response_ms", "flip",           "most_flip",      "rivalry",
+                                    "unlit_share", "unlit_error",    "still_flicker",  "surfaces_scale",
+                                    "light_scale", "paths"});
     table.facts = {{"OpenGL", gl.description()},
                    {"settings", fmt::format("{}", fmt::join(o.settings, " "))},
                    {"moments", std::to_string(errors.moments)},
@@ -341,6 +359,8 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
                if_any(scored, errors.flip),
                if_any(scored, errors.most_flip),
                if_any(scored && o.eyes == 2, errors.rivalry),
+               if_any(scored && std::isfinite(errors.unlit_share), errors.unlit_share),
+               if_any(scored && std::isfinite(errors.unlit_error), errors.unlit_error),
                if_any(!n.flicker.empty(), gi::quantile(n.flicker, 1)),
                n.surfaces_scale / double(std::max<std::size_t>(1, n.shown)),
                n.light_scale / double(std::max<std::size_t>(1, n.rendered)),

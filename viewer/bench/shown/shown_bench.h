@@ -16,7 +16,8 @@ struct ShownOptions {
     int eyes = 1, moments = 8, truth_paths = 64;
 };
 
-/// Writes shown_K_E.png, truth_K_E.png and error_K_E.png (K moment, E eye) into the folder. One row; cells that were
+/// Writes shown_K_E.png, truth_K_E.png and error_K_E.png (K moment, E eye) into the folder, and where surfaces are drawn
+/// light_K_E.png, at half of their size: white = lit by pictures, light grey = by cells, dark grey = by neither. One row; cells that were
 /// not measured are empty. Throws InputError, and Interrupted before there is a result.
 BenchTable run_shown(ShownOptions const& options, gi::StopRequest const& stop, gi::Report& report);
 

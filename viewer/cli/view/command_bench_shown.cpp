@@ -55,7 +55,9 @@ poses and light counts. interval: time between two pictures while the head moves
 between two pictures of light; light_age: since the pose for which the light was rendered; still_flicker: root mean square of what
 changes between two pictures of a head at rest, most of them, in steps of 1/255; rivalry: mean difference of the
 eyes' errors at points that both see, in the same steps; response: time after the first change of --at until the mean
-of what is shown has made 90 % of its way to where it is 2.5 s later.
+of what is shown has made 90 % of its way to where it is 2.5 s later; unlit_share: share of the pixels of surfaces
+that no picture of light shows, lit by cells of space or by the mean; unlit_error: mean difference there over the mean
+of the converged picture there, both as the display emits them.
 
 Example:
   lightwell bench shown cornell --size 320x240 --moments 2 --truth-paths 4 --out shown)");

@@ -18,14 +18,14 @@ constexpr glm::ivec2 kCells_px{256, int(gi::LightCellTable::kBuckets) / 256};
 
 } // namespace
 
-/// Makes room for a frame's pictures, and for an older one of each view.
+/// Makes room for a frame's pictures, for those before, and for some of other places.
 void LightRing::fit(std::vector<LightOfView> const& frame)
 {
-    constexpr int kOfAView = 2, kLeast = 3;
-    int layers = std::max(layers_, kLeast);
+    constexpr int kOfPlaces = 4;
+    int layers = layers_;
     glm::ivec2 size(width_, height_);
     for (LightOfView const& of : frame) {
-        layers = std::max(layers, kOfAView * (of.view + 1));
+        layers = std::max(layers, kNewest * (of.view + 1) + kOfPlaces);
         size = glm::max(size, glm::ivec2(of.light->width, of.light->height));
     }
     if (size == glm::ivec2(width_, height_) && layers == layers_) return;
@@ -70,9 +70,9 @@ void LightRing::add(LightOfView const& of, gi::dvec3 origin)
     if (int(entries_.size()) < layers_) {
         next.layer = int(entries_.size());
     } else {
-        auto const oldest = std::ranges::max_element(entries_, {}, &Entry::age);
-        next.layer = oldest->layer;
-        entries_.erase(oldest);
+        auto const least = std::ranges::min_element(entries_, {}, [&](Entry const& e) { return gap_without(e); });
+        next.layer = least->layer;
+        entries_.erase(least);
     }
     next.eye = glm::vec3(gi::dvec3(light.camera.world_from_camera[3]) - origin);
     glm::dmat3 m = pixel_from_world(light.camera, {light.camera_width, light.camera_height});
@@ -116,6 +116,24 @@ void LightRing::clear()
 {
     entries_.clear();
     known_ = nullptr;
+}
+
+/// How wide the gap of places and directions would be that its view's pictures leave without this one. The newest and the
+/// oldest are kept above all, but no light that is too old.
+float LightRing::gap_without(Entry const& picture) const
+{
+    constexpr int kTooOld = 24;
+    constexpr float kKept = 1e6f, kPer_m = 1, kPerTurn = 3; // of axes
+    if (picture.age < kNewest) return 2 * kKept / float(1 + picture.age);
+    if (picture.age > kTooOld) return -float(picture.age);
+    Entry const *newer = nullptr, *older = nullptr;
+    for (Entry const& e : entries_) {
+        if (e.view != picture.view) continue;
+        if (e.age < picture.age && (newer == nullptr || e.age > newer->age)) newer = &e;
+        if (e.age > picture.age && (older == nullptr || e.age < older->age)) older = &e;
+    }
+    if (newer == nullptr || older == nullptr) return kKept / 2;
+    return kPer_m * glm::distance(older->eye, newer->eye) + kPerTurn * glm::distance(axis(*older), axis(*newer));
 }
 
 /// False if nothing that is seen can lie in the picture: all of it is beyond one of the picture's edges.

@@ -30,7 +30,8 @@ class LightRing {
 public:
     static constexpr int kPictures = 24; ///< most that a look-up asks; as in surface_light.glsl
 
-    /// Adds the light of a frame; takes the place of the oldest pictures. Those of other lamps go.
+    /// Adds the light of a frame. The newest two of each view are kept, and some older ones of other places, for who comes back.
+    /// Those of other lamps go.
     /// @param origin  of the world
     void add(std::vector<LightOfView> const& frame, gi::dvec3 origin);
     void take(std::shared_ptr<gi::LightCellTable const> cells);
@@ -42,6 +43,7 @@ public:
     void bind(GlProgram const& program, int head, SeenPart const& seen) const;
 
 private:
+    static constexpr int kNewest = 2; ///< pictures of a view that are always kept
     struct Entry {
         int view = 0, head = 0, layer = 0;
         int age = 0; ///< newer pictures of the view
@@ -53,6 +55,7 @@ private:
     };
     static bool may_show(Entry const& picture, SeenPart const& seen);
     static glm::vec3 axis(Entry const& picture);
+    float gap_without(Entry const& picture) const;
     std::vector<Entry> asked_by(int head, SeenPart const& seen) const;
     void fit(std::vector<LightOfView> const& frame);
     void add(LightOfView const& of, gi::dvec3 origin);

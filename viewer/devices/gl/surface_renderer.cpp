@@ -432,4 +432,19 @@ ShownDepth SurfaceRenderer::depth(int view, ViewPart part) const
     return {at->second.depth.id(), false, 1 / nearest_m()};
 }
 
+LightSources SurfaceRenderer::light_sources(int view) const
+{
+    auto const at = targets_.find({view, ViewPart::whole});
+    if (at == targets_.end()) return {};
+    ShownPicture const found = at->second.found->shown();
+    LightSources s{found.size_px, std::vector<LightSource>(std::size_t(found.size_px.x * found.size_px.y))};
+    std::vector<glm::uvec4> words(s.sources.size());
+    glGetTextureImage(found.texture, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                      GLsizei(words.size() * sizeof(glm::uvec4)), words.data());
+    std::ranges::transform(words, s.sources.begin(), [](glm::uvec4 w) {
+        return (w.w & ~3u) == 0 ? LightSource::no_surface : LightSource(w.z >> 30); // as surface_found.frag
+    });
+    return s;
+}
+
 } // namespace viewer

@@ -19,6 +19,14 @@ namespace viewer {
 /// Of what an eye sees.
 enum class ViewPart : std::uint8_t { whole, middle };
 
+/// Where the light of a pixel was found: in pictures that show its surface, in cells of space, or nowhere (that of some
+/// surface around, or the mean). No surface: the sky, a curved mirror, nothing.
+enum class LightSource : std::uint8_t { pictures, cells, nowhere, no_surface };
+struct LightSources {
+    glm::ivec2 size_px{0};
+    std::vector<LightSource> sources; ///< of every second pixel of every second row
+};
+
 /// Belongs to the context that was current at its creation.
 class SurfaceRenderer {
 public:
@@ -48,6 +56,8 @@ public:
                       PictureTexture const& picture, gi::Camera const& of, ViewPart part = ViewPart::whole);
     /// Of what was drawn last of this part of the view, without blended surfaces. Valid as long.
     ShownDepth depth(int view, ViewPart part = ViewPart::whole) const;
+    /// Of what was drawn last of the view, none before. Waits for the GPU.
+    LightSources light_sources(int view) const;
 
 private:
     struct Target {
