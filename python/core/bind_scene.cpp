@@ -5,7 +5,10 @@
 #include "python/core/convert.h"
 #include "python/core/errors.h"
 #include "viewer/offline/load_world.h"
+#include "viewer/offline/scene_light.h"
 
+#include <algorithm>
+#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 
 namespace bindings {
@@ -69,7 +72,7 @@ py::list lights_of(gi::World const& w)
 }
 
 LoadedWorld load(std::string const& scene, std::optional<double> time_s, std::string const& environment,
-                 double rotate_deg, double scale, std::string const& background)
+                 double rotate_deg, double scale, std::string const& background, std::string const& light)
 {
     if (time_s) check_range("time_s", *time_s, -1e9, 1e9);
     check_range("environment_rotate_deg", rotate_deg, -1e6, 1e6);
@@ -81,6 +84,10 @@ LoadedWorld load(std::string const& scene, std::optional<double> time_s, std::st
     options.environment_rotate_deg = rotate_deg;
     options.environment_scale = scale;
     options.background = background;
+    if (std::ranges::find(viewer::kLightChoices, light) == viewer::kLightChoices.end())
+        throw gi::InputError(fmt::format("light = '{}'", light), "there is no such choice",
+                             fmt::format("give one of: {}", fmt::join(viewer::kLightChoices, ", ")));
+    options.light = light;
     gi::Report report;
     auto world = std::make_shared<gi::World const>(viewer::load_world(options, report));
     return {scene, std::move(world), report.losses()};
@@ -160,7 +167,7 @@ void bind_scene(py::module_& m)
             return counts;
         });
     m.def("load", &load, py::arg("scene"), py::arg("time_s"), py::arg("environment"),
-          py::arg("environment_rotate_deg"), py::arg("environment_scale"), py::arg("background"),
+          py::arg("environment_rotate_deg"), py::arg("environment_scale"), py::arg("background"), py::arg("light"),
           py::call_guard<py::gil_scoped_release>());
 }
 

@@ -154,6 +154,7 @@ def load(
     environment_rotate_deg: float,
     environment_scale: float,
     background: str,
+    light: str,
 ) -> World: ...
 def methods() -> dict[str, str]: ...
 def render(

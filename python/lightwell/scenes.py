@@ -252,8 +252,9 @@ def load(
     environment_rotate_deg: float = 0.0,
     environment_scale: float = 1.0,
     background: str = "",
+    light: str = "auto",
 ) -> World:
-    """Loads a scene. A scene without any light gets a white sky; a note on stderr reports such decisions.
+    """Loads a scene. A scene without any light gets lamps of a studio; a note on stderr reports such decisions.
 
     Args:
         scene: a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or the name of a built-in
@@ -264,12 +265,15 @@ def load(
         environment_scale: factor on the radiance of the environment map.
         background: what cameras see where there is no surface: "map", "transparent" or "R,G,B" (radiance);
             "" = as the scene specifies.
+        light: of a scene without light, or with nothing but what glows by textures: "auto" and "studio" add lamps
+            of a studio and a grey background, "white" a sky of radiance 1, "none" leaves it dark; "studio" and
+            "white" also replace the scene's environment map.
 
     Raises:
         InputError: the scene cannot be read, or a value is invalid.
     """
     core = _core.load(
-        os.fspath(scene), time_s, os.fspath(environment), environment_rotate_deg, environment_scale, background
+        os.fspath(scene), time_s, os.fspath(environment), environment_rotate_deg, environment_scale, background, light
     )
     return World(core)
 

@@ -37,7 +37,7 @@ TEST(OtherCommands, InfoTellsWhatIsBuiltAndWhy)
     EXPECT_TRUE(j["report"].contains("losses"));
 }
 
-/// render lights a scene without light by a white sky, and builds for it.
+/// render lights a scene without light by lamps of a studio, and builds for it.
 TEST(OtherCommands, InfoPlansWhatRenderBuilds)
 {
     TemporaryFolder const folder;
@@ -46,7 +46,8 @@ TEST(OtherCommands, InfoPlansWhatRenderBuilds)
     auto const built =
         Json::parse(run_well("render t.obj --size 8x8 --paths 1 --json --out t.exr", folder.path()).out);
     EXPECT_EQ(planned["plan"], built["plan"]);
-    EXPECT_EQ(planned["content"]["environment_map"]["width_px"], 4);
+    EXPECT_EQ(planned["content"]["environment_map"]["width_px"], 128);
+    EXPECT_TRUE(planned["added_light"].get<std::string>().starts_with("the scene has no light")) << planned;
     EXPECT_EQ(planned["content"]["triangles"], 1);
 }
 

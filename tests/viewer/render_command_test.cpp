@@ -240,7 +240,7 @@ TEST(RenderCommand, LightsThatNothingHoldsLightNothing)
     std::ofstream(folder / "a.obj") << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wall\nf 1 2 3\n";
     std::ofstream(folder / "a.mtl") << "newmtl lamp\nKe 9 9 9\nnewmtl wall\nKd 0.5 0.5 0.5\n";
     Outcome const o = run_well("render a.obj --size 8x8 --paths 1 --out a.exr", folder.path());
-    EXPECT_TRUE(contains(o.err, "white sky")) << o.err;
+    EXPECT_TRUE(contains(o.err, "the scene has no light: lit by studio lamps")) << o.err;
 }
 
 TEST(RenderCommand, StopsAtItsBudget)

@@ -4,6 +4,7 @@
 #include "gi/scene/load/load.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/standard_streams.h"
+#include "viewer/offline/scene_light.h"
 
 #include <algorithm>
 #include <memory>
@@ -11,21 +12,8 @@
 namespace viewer {
 namespace {
 
-/// True if the scene has an environment map, a light or an emissive mesh at some node.
-bool is_lit(gi::Scene const& scene)
-{
-    if (scene.environment) return true;
-    for (gi::Node const& node : scene.nodes) {
-        if (node.light >= 0 && gi::max_component(scene.lights[std::size_t(node.light)].intensity) > 0) return true;
-        for (std::int32_t const m : node.meshes) {
-            std::int32_t const material = scene.meshes[std::size_t(m)].material;
-            if (material >= 0 && gi::emits(scene.materials[std::size_t(material)])) return true;
-        }
-    }
-    return false;
-}
-
-void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& report)
+/// Returns what add_light() has added.
+std::string set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& report)
 {
     if (!o.environment.empty()) {
         bool const replaces = scene.environment.has_value();
@@ -33,19 +21,15 @@ void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& repor
         scene.files.push_back(o.environment);
         if (replaces) say("--envmap replaces the scene's environment map");
     }
-    if (!is_lit(scene)) {
-        say("the scene has no light: lit by a white sky of radiance 1");
-        gi::EnvironmentMap& white = scene.environment.emplace();
-        white.width = 4;
-        white.height = 2;
-        white.radiance.assign(8, gi::vec3{1});
-    }
+    std::string const added = add_light(scene, o.light);
+    if (!added.empty()) say(added);
     if (scene.environment) {
         scene.environment->rotation_rad += float(glm::radians(o.environment_rotate_deg));
         scene.environment->scale *= float(o.environment_scale);
     } else if (o.environment_rotate_deg != 0 || o.environment_scale != 1) {
         say("--envmap-rotate and --envmap-scale do nothing: the scene has no environment map");
     }
+    return added;
 }
 
 } // namespace
@@ -76,13 +60,18 @@ CameraChoice camera_choice(RenderOptions const& o)
     return choice;
 }
 
-std::shared_ptr<gi::Scene const> load_lit_scene(RenderOptions const& o, gi::Report& report)
+LitScene lit_scene(RenderOptions const& o, gi::Report& report)
 {
     gi::StageTimer const timer(report, "load");
     gi::Scene scene = gi::load_scene(o.scene, report);
-    set_environment(scene, o, report);
+    std::string const added = set_environment(scene, o, report);
     if (!o.background.empty()) scene.background = parse_background(o.background);
-    return std::make_shared<gi::Scene const>(std::move(scene));
+    return {std::make_shared<gi::Scene const>(std::move(scene)), added};
+}
+
+std::shared_ptr<gi::Scene const> load_lit_scene(RenderOptions const& o, gi::Report& report)
+{
+    return lit_scene(o, report).scene;
 }
 
 gi::World load_world(RenderOptions const& o, gi::Report& report)

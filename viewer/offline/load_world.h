@@ -13,7 +13,13 @@ CameraChoice camera_choice(RenderOptions const& options);
 /// Parses "map", "transparent" or a colour "R,G,B". Throws InputError on anything else.
 gi::Background parse_background(std::string const& text);
 
-/// Loads the scene, applies the environment map, and adds a white sky if it has no light. Prints notes on stderr.
+struct LitScene {
+    std::shared_ptr<gi::Scene const> scene;
+    std::string added; ///< light, as add_light() says; empty = none
+};
+
+/// Loads the scene, applies the environment map, and adds light as RenderOptions::light says. Prints notes on stderr.
+LitScene lit_scene(RenderOptions const& options, gi::Report& report);
 std::shared_ptr<gi::Scene const> load_lit_scene(RenderOptions const& options, gi::Report& report);
 /// Loads the scene and builds its world at the time of the options.
 gi::World load_world(RenderOptions const& options, gi::Report& report);

@@ -10,6 +10,7 @@
 #include "viewer/base/choices.h"
 #include "viewer/base/validators.h"
 #include "viewer/offline/frame_options.h"
+#include "viewer/offline/scene_light.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -112,6 +113,13 @@ void declare_view_options(CLI::App& c, RenderOptions& o)
                  "turns the map about +Y, degrees, counter-clockwise from above, besides the scene's own rotation")
         ->check(in_range(-1e6, 1e6));
     c.add_option("--envmap-scale", o.environment_scale, "scale factor of its radiance")->check(in_range(0, 1e9));
+    c.add_option(
+         "--light", o.light,
+         "of a scene without light, or with nothing but what glows by textures: auto and studio add lamps of a\n"
+         "studio and a grey background, white a sky of radiance 1, none leaves it dark; studio and white also\n"
+         "replace the scene's environment map")
+        ->check(CLI::IsMember(std::vector<std::string>(kLightChoices.begin(), kLightChoices.end())))
+        ->capture_default_str();
     c.add_option("--time", o.time_s, "animation time, s")->check(in_range(-1e9, 1e9));
 }
 

@@ -43,6 +43,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     add("--envmap", o.environment);
     if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
     if (o.environment_scale != 1) add("--envmap-scale", fmt::format("{}", o.environment_scale));
+    if (o.light != "auto") add("--light", o.light);
     add("--background", o.background);
     if (o.denoise != "none") add("--denoise", o.denoise);
     add("--camera-path", o.camera_path);
@@ -136,6 +137,7 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
                      {"envmap", name_or_null(o.environment)},
                      {"envmap_rotate_deg", o.environment_rotate_deg},
                      {"envmap_scale", o.environment_scale},
+                     {"light", o.light},
                      {"background", name_or_null(o.background)},
                      {"paths_limit", s.paths},
                      {"budget_s", s.budget_s > 0 ? Json(s.budget_s) : Json()},

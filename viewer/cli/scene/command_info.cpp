@@ -206,7 +206,8 @@ int run(InfoOptions const& o)
     gi::RenderSettings settings;
     std::tie(settings.width, settings.height) = parse_size(o.size);
     gi::check_picture_size(settings.width, settings.height);
-    gi::World const world = load_world(rendered, report);
+    LitScene const lit = lit_scene(rendered, report);
+    gi::World const world = gi::build_world(lit.scene, o.time_s, report);
     gi::SceneSummary const summary = gi::summarise(world);
     gi::ScenePlan const plan = gi::plan_scene(world);
     gi::Camera const camera = choose_camera(world, {}).camera;
@@ -217,6 +218,7 @@ int run(InfoOptions const& o)
         nlohmann::ordered_json j;
         j["scene"] = o.scene;
         j["content"] = content_json(summary);
+        if (!lit.added.empty()) j["added_light"] = lit.added;
         j["picture"] = {{"width_px", settings.width},
                         {"height_px", settings.height},
                         {"memory_bytes", memory.sums_bytes},
@@ -231,6 +233,7 @@ int run(InfoOptions const& o)
     std::string text = o.scene + "\n";
     for (gi::SummaryLine const& line : text_lines(summary))
         text += fmt::format("  {:<22} {}\n", line.what, line.value);
+    if (!lit.added.empty()) text += fmt::format("  {:<22} {}\n", "added light", lit.added);
     auto const add_plan = [&](std::string const& title, std::vector<gi::PlanItem> const& items) {
         text += title + "\n";
         for (gi::PlanItem const& item : items)
@@ -286,7 +289,8 @@ void add_info(CLI::App& app, int& exit_code)
   lightwell info --settings
   lightwell info --directions icosahedron:320 --png icosahedron.png
 
-A scene without light is described with the white sky of radiance 1 that render gives it. --json holds: scene, content
+A scene without light is described with the light that render gives it (--light of render), which "added light" names.
+--json holds: scene, content, added_light (if any)
 (numbers, with units in the names of keys), picture (width_px, height_px, memory_bytes, state_file_bytes), plan and
 plan_METHOD (name, what, build, reason, and the numbers in them), report.
 

@@ -117,6 +117,7 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     o.load_options = {{"environment", scene.environment},
                       {"environment_rotate_deg", scene.environment_rotate_deg},
                       {"environment_scale", scene.environment_scale},
+                      {"light", scene.light},
                       {"background", scene.background}};
     put_avatars(o.load_options, avatars);
     o.remote.socket = a.remote;
@@ -300,6 +301,7 @@ int run_replay(ViewArguments const& a)
                 options.environment = load.value("environment", "");
                 options.environment_rotate_deg = load.value("environment_rotate_deg", 0.0);
                 options.environment_scale = load.value("environment_scale", 1.0);
+                options.light = load.value("light", "white"); // of versions that had no other
                 options.background = load.value("background", "");
             } catch (nlohmann::json::exception const& e) {
                 throw gi::InputError("the recording's scene options cannot be read", e.what(),

@@ -10,6 +10,7 @@ SceneAccess study_scenes()
     scenes.load = [](std::string const& name, gi::Report& report) {
         RenderOptions options;
         options.scene = name;
+        options.light = "white"; // stimuli stay what they were
         return load_lit_scene(options, report);
     };
     scenes.camera = [](gi::World const& world, std::string const& name) {
