@@ -1,6 +1,8 @@
 #include "viewer/offline/finish_picture.h"
 
 #include "gi/filter/tone_map.h"
+#include "viewer/base/standard_streams.h"
+#include "viewer/offline/shown_range.h"
 
 #include <algorithm>
 
@@ -77,11 +79,17 @@ void write_files(RenderOptions const& o, gi::PictureRows const& picture, gi::Sto
                  gi::Report& report)
 {
     gi::StageTimer const timer(report, "save");
-    if (!o.png.empty())
+    if (!o.png.empty()) {
+        ShownRange range;
         gi::write_png(o.png, picture.width, picture.height, [&](int first, int count) {
             if (stop != nullptr && stop->requested()) throw gi::Interrupted();
-            return display_bytes(o, picture.read(first, count));
+            gi::Picture const rows = picture.read(first, count);
+            std::vector<unsigned char> bytes = display_bytes(o, rows);
+            range.add(*rows.find("color"), bytes);
+            return bytes;
         });
+        if (std::string const problem = range.problem(o.png, o.exposure_ev); !problem.empty()) say(problem);
+    }
     if (o.out.empty()) return;
     gi::PictureRows kept = picture;
     kept.read = [&](int first, int count) {

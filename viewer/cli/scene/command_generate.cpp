@@ -6,10 +6,12 @@
 #include "viewer/base/arguments.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
+#include "viewer/base/standard_streams.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <fmt/format.h>
 #include <fstream>
 #include <functional>
@@ -54,6 +56,20 @@ int save(gi::Scene const& scene, std::string const& out)
     return 0;
 }
 
+/// Luminance of a white diffuse surface that lies flat under the map, kcd/m2.
+double on_flat_white(gi::EnvironmentMap const& map)
+{
+    double sum = 0;
+    for (std::uint32_t y = 0; y < map.height / 2; ++y) {
+        double const polar = gi::kPiD * (y + 0.5) / map.height,
+                     texel_sr = 2 * gi::kPiD * gi::kPiD / (double(map.width) * map.height) * std::sin(polar);
+        for (std::uint32_t x = 0; x < map.width; ++x)
+            sum += texel_sr * std::cos(polar) *
+                   double(glm::dot(map.radiance[std::size_t(y) * map.width + x], {0.2126f, 0.7152f, 0.0722f}));
+    }
+    return sum / gi::kPiD;
+}
+
 int save_sky(GenerateOptions const& o)
 {
     gi::SkyOptions sky = o.sky;
@@ -72,6 +88,10 @@ int save_sky(GenerateOptions const& o)
     gi::write_exr(o.out, picture, gi::PixelType::single, report);
     fmt::print("{}\n", o.out);
     std::fflush(stdout);
+    double const white = on_flat_white(map);
+    say(fmt::format(
+        "a white floor under it sends {0:.3g} kcd/m2: with --envmap-scale {1:.2g} it is just white in a PNG",
+        white, 1 / white));
     print_losses(report);
     return 0;
 }
