@@ -252,7 +252,7 @@ def load(
     environment_rotate_deg: float = 0.0,
     environment_scale: float = 1.0,
     background: str = "",
-    light: str = "auto",
+    light: str = "studio",
 ) -> World:
     """Loads a scene. A scene without any light gets lamps of a studio; a note on stderr reports such decisions.
 
@@ -265,9 +265,8 @@ def load(
         environment_scale: factor on the radiance of the environment map.
         background: what cameras see where there is no surface: "map", "transparent" or "R,G,B" (radiance);
             "" = as the scene specifies.
-        light: of a scene without light, or with nothing but what glows by textures: "auto" and "studio" add lamps
-            of a studio and a grey background, "white" a sky of radiance 1, "none" leaves it dark; "studio" and
-            "white" also replace the scene's environment map.
+        light: what a scene without light gets: "studio" (lamps before a grey background, also where nothing but
+            textures glow), "white" (a sky of radiance 1) or "none".
 
     Raises:
         InputError: the scene cannot be read, or a value is invalid.

@@ -35,23 +35,23 @@ TEST(SceneLight, ScenesWithLightsAreNotTouched)
 {
     for (gi::Material const& m : {glowing(0.5f, false), glowing(17, false), glowing(4, true)}) {
         gi::Scene scene = scene_of(m);
-        EXPECT_EQ(add_light(scene, "auto"), "");
+        EXPECT_EQ(add_light(scene, "studio"), "");
         EXPECT_FALSE(scene.environment);
     }
     gi::Scene lamp = scene_of({});
     lamp.lights.emplace_back().intensity = gi::vec3{1};
     lamp.nodes[0].light = 0;
-    EXPECT_EQ(add_light(lamp, "auto"), "");
+    EXPECT_EQ(add_light(lamp, "studio"), "");
     gi::Scene sky = scene_of({});
     sky.environment.emplace();
-    EXPECT_EQ(add_light(sky, "auto"), "");
+    EXPECT_EQ(add_light(sky, "studio"), "");
 }
 
 TEST(SceneLight, WhatOnlyGlowsIsLit)
 {
     for (gi::Material const& m : {gi::Material{}, glowing(1, true)}) {
         gi::Scene scene = scene_of(m);
-        EXPECT_NE(add_light(scene, "auto").find("studio"), std::string::npos);
+        EXPECT_NE(add_light(scene, "studio").find("studio"), std::string::npos);
         ASSERT_TRUE(scene.environment);
         EXPECT_EQ(scene.background.kind, gi::BackgroundKind::color);
     }
@@ -62,6 +62,11 @@ TEST(SceneLight, WhatOnlyGlowsIsLit)
     EXPECT_NE(add_light(white, "white"), "");
     EXPECT_EQ(white.environment->radiance, std::vector<gi::vec3>(8, gi::vec3{1}));
     EXPECT_EQ(white.background.kind, gi::BackgroundKind::map);
+    for (gi::Material const& m : {glowing(1, true), glowing(17, false)}) { // as versions that had no other light
+        gi::Scene lit = scene_of(m);
+        EXPECT_EQ(add_light(lit, "white"), "");
+        EXPECT_FALSE(lit.environment);
+    }
 }
 
 /// A white diffuse surface must show its form: 1 at most (by scale), and much less where it faces the floor.

@@ -115,9 +115,8 @@ void declare_view_options(CLI::App& c, RenderOptions& o)
     c.add_option("--envmap-scale", o.environment_scale, "scale factor of its radiance")->check(in_range(0, 1e9));
     c.add_option(
          "--light", o.light,
-         "of a scene without light, or with nothing but what glows by textures: auto and studio add lamps of a\n"
-         "studio and a grey background, white a sky of radiance 1, none leaves it dark; studio and white also\n"
-         "replace the scene's environment map")
+         "what a scene without light gets: studio (lamps before a grey background, also where nothing but\n"
+         "textures glow), white (a sky of radiance 1) or none")
         ->check(CLI::IsMember(std::vector<std::string>(kLightChoices.begin(), kLightChoices.end())))
         ->capture_default_str();
     c.add_option("--time", o.time_s, "animation time, s")->check(in_range(-1e9, 1e9));

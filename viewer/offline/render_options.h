@@ -22,7 +22,7 @@ struct RenderOptions {
     std::string scene, method{gi::kDefaultMethod}, size = "512x512", camera, look_from, look_at, environment,
                                                    background, budget, until, denoise = "none", out, png, stats,
                                                    tone = "srgb", eye, checkpoint = "30s", state,
-                                                   light = "auto"; ///< light: one of kLightChoices
+                                                   light = "studio"; ///< light: one of kLightChoices
     std::vector<std::string> layers;
     std::optional<double> fov_deg, time_s, aperture_radius_m, focus_distance_m;
     double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0, eye_distance_m = 0.063;

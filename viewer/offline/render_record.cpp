@@ -43,7 +43,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     add("--envmap", o.environment);
     if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
     if (o.environment_scale != 1) add("--envmap-scale", fmt::format("{}", o.environment_scale));
-    if (o.light != "auto") add("--light", o.light);
+    if (o.light != "studio") add("--light", o.light);
     add("--background", o.background);
     if (o.denoise != "none") add("--denoise", o.denoise);
     add("--camera-path", o.camera_path);

@@ -101,18 +101,16 @@ gi::EnvironmentMap studio_light()
 
 std::string add_light(gi::Scene& scene, std::string_view choice)
 {
-    bool const asked = choice == "studio" || choice == "white";
     LightKind const own = scene.environment ? LightKind::lights : light_of(scene);
-    if (choice == "none" || (!asked && own == LightKind::lights)) return {};
-    std::string const why = asked ? fmt::format("--light {}", choice)
-                            : own == LightKind::glows
-                                ? "what glows in the scene, by textures of at most radiance 1, "
-                                  "is not taken for its light"
-                                : "the scene has no light";
+    if (choice == "none" || own == LightKind::lights || (choice == "white" && own == LightKind::glows)) return {};
     if (choice == "white") {
         scene.environment = white_sky();
-        return why + ": lit by a white sky of radiance 1";
+        return "the scene has no light: lit by a white sky of radiance 1";
     }
+    std::string const why = own == LightKind::none
+                                ? "the scene has no light"
+                                : "what glows in the scene, by textures of at most radiance 1, is "
+                                  "not taken for its light";
     scene.environment = studio_light();
     if (scene.background.kind == gi::BackgroundKind::map) scene.background = {gi::BackgroundKind::color, kBehind};
     return why + ": lit by studio lamps before a grey background (--light none leaves it dark)";
