@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <vector>
 
 namespace viewer {
 namespace {
@@ -50,19 +51,24 @@ gi::vec3 direction_of(double x, double y)
 float most_reflected(gi::EnvironmentMap const& map)
 {
     constexpr int kNormals = 24; // rows of normals; twice as many in each
+    std::vector<gi::vec3> towards;
+    std::vector<float> arriving; // radiance times solid angle, over pi
+    for (std::uint32_t y = 0; y < map.height; ++y) {
+        double const row = (y + 0.5) / map.height,
+                     share = 2 * gi::kPiD / map.width / map.height * std::sin(gi::kPiD * row);
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            towards.push_back(direction_of((x + 0.5) / map.width, row));
+            arriving.push_back(float(share) * map.radiance[std::size_t(y) * map.width + x].x);
+        }
+    }
     float most = 0;
     for (int j = 0; j < kNormals; ++j)
         for (int i = 0; i < 2 * kNormals; ++i) {
             gi::vec3 const normal = direction_of((i + 0.5) / (2 * kNormals), (j + 0.5) / kNormals);
-            double sum = 0;
-            for (std::uint32_t y = 0; y < map.height; ++y) {
-                double const row = (y + 0.5) / map.height, texel_sr = 2 * gi::kPiD * gi::kPiD / map.width /
-                                                                      map.height * std::sin(gi::kPiD * row);
-                for (std::uint32_t x = 0; x < map.width; ++x)
-                    sum += texel_sr * double(map.radiance[std::size_t(y) * map.width + x].x) *
-                           double(std::max(0.0f, glm::dot(normal, direction_of((x + 0.5) / map.width, row))));
-            }
-            most = std::max(most, float(sum / gi::kPiD));
+            float sum = 0;
+            for (std::size_t k = 0; k < towards.size(); ++k)
+                sum += arriving[k] * std::max(0.0f, glm::dot(normal, towards[k]));
+            most = std::max(most, sum);
         }
     return most;
 }
