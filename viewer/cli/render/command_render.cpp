@@ -12,6 +12,7 @@
 #include "viewer/offline/finish_picture.h"
 #include "viewer/offline/frame_options.h"
 #include "viewer/offline/frame_sequence.h"
+#include "viewer/offline/hidden_sky.h"
 #include "viewer/offline/load_world.h"
 #include "viewer/offline/picture_memory.h"
 #include "viewer/offline/rank_work.h"
@@ -19,6 +20,7 @@
 #include "viewer/offline/render_record.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <memory>
@@ -49,6 +51,16 @@ struct Shot {
     std::unique_ptr<InterruptGuard> guard;
 };
 
+/// Of nearly all pixels, where they are known.
+bool is_black(gi::Picture const& picture)
+{
+    constexpr double kNearlyAll = 0.98;
+    gi::Layer const* const color = picture.find("color");
+    if (color == nullptr || color->data.empty()) return false;
+    auto const black = std::ranges::count_if(color->data, [](float v) { return !(v > 0); });
+    return double(black) >= kNearlyAll * double(color->data.size());
+}
+
 Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi::World const& world,
                   FrameCamera const& eye, RankWork& work, gi::Report& report)
 {
@@ -59,6 +71,13 @@ Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi
         trace(o, work, guard, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
             return gi::find_method(o.method).render(world, camera, settings, stop, progress, report);
         });
+    if (world.environment && is_black(result.picture)) {
+        std::string const mesh = mesh_before_sky(world, gi::camera_rays(camera, 1, 1, world.origin).origin);
+        if (!mesh.empty())
+            say("the sky lights nothing: the mesh '" + mesh +
+                "' lies before all of it, seen from the camera. Give it an emission, put lamps inside, or take it "
+                "out of the model");
+    }
     return {gi::plan_scene(world), std::move(result), loaded, std::move(guard)};
 }
 
