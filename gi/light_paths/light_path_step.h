@@ -20,6 +20,7 @@ struct LightPath {
     bool from_light = true, from_surface = false;
     bool from_outside = false, straight = true; ///< see LightPaths::grid_side
     bool by_delta = false;                      ///< since the last vertex
+    bool by_panes_alone = true;                 ///< it has kept its direction from the start
     bool narrow = false;                        ///< it leaves its triangle by a narrow lobe (narrow_lobes.h)
     float paths = 1;                            ///< expected number of such paths that reach this vertex
     float area = 0, solid_angle = 0;            ///< over which one of them is spread where it left, m^2, sr
@@ -118,6 +119,7 @@ GI_FN bool advance(WorldView const& world, LightPathRules const& s, LightPath& p
                   .arrived = arrived,
                   .matt = bsdf_detail::is_matt(at.bsdf),
                   .by_delta = p.by_delta,
+                  .by_panes_alone = p.by_panes_alone,
                   .scatterings = p.scatterings,
                   .footprint = footprint,
                   .path = p.number};
@@ -139,6 +141,7 @@ GI_FN bool advance(WorldView const& world, LightPathRules const& s, LightPath& p
     if (!(survival > 0) || p.rng.uniform() >= survival) return false;
     p.light.power = power * weight / survival;
     p.by_delta = next.delta;
+    p.by_panes_alone = p.by_panes_alone && next.transmitted && at.bsdf.thin;
     p.paths *= survival;
     if (next.delta) {
         p.area /= survival;

@@ -19,6 +19,7 @@ struct LightVertex {
     vec3 arrived;    ///< unit, local: direction from which the light came
     bool matt;       ///< purely diffuse: the BSDF is `bsdf.diffuse` / pi
     bool by_delta;   ///< mirrors or glass lie between it and the surface, or light, that it was scattered by last
+    bool by_panes_alone; ///< only panes lie between it and the start of its path
     int scatterings; ///< non-delta, before it: 0 = light that comes from its source, or by mirrors and glass alone
     /// Area over which the path's light is spread there, m^2: the reciprocal of the path density, the number of
     /// such paths per m^2 (McGuire and Luebke 2009; Herzog et al. 2007). Mirrors and glass count as flat.

@@ -16,7 +16,8 @@ struct LitStart {
 };
 
 /// A point of a target and a sample of the lights; no power without light.
-LitStart start_on(WorldView const& world, StartTargets const& targets, LightPathSet const& set, std::uint32_t i)
+LitStart start_on(WorldView const& world, StartTargets const& targets, LightPathSet const& set, StartLights lights,
+                  std::uint32_t i)
 {
     Pcg32 rng = Pcg32::for_path(set.seed, i, set.pass);
     double which = (double(i) + rng.uniform_double()) / double(set.count);
@@ -26,7 +27,7 @@ LitStart start_on(WorldView const& world, StartTargets const& targets, LightPath
     LightChoice const choice = choose_light(world, rng.uniform_double());
     LightSample const light = sample_light(world, choice, position, rng.uniform2());
     LitStart out{{{triangle, place, light.distance}, -light.direction, vec3{0}, i, 0}, {}, k};
-    if (!(light.pdf > 0)) return out;
+    if (!(light.pdf > 0) || (lights == StartLights::lamps && !light.delta)) return out;
     ShadingPoint const at = shading_point(world, triangle, place, -light.direction);
     float const area = 0.5f * glm::length(light_detail::area_vector(world.surfaces[triangle])) /
                        (view(targets.choice).probability(k) * float(set.count));
@@ -41,7 +42,7 @@ LitStart start_on(WorldView const& world, StartTargets const& targets, LightPath
 } // namespace
 
 LitStarts start_on_surfaces(WorldView const& world, ExactVisibility const& visibility, StartTargets const& targets,
-                            LightPathSet const& set, BuildStop const& stop, PathCounts& counts)
+                            LightPathSet const& set, BuildStop const& stop, PathCounts& counts, StartLights lights)
 {
     constexpr std::uint32_t kTogether = 1024; // bounds the time to a stop
     LitStarts out;
@@ -54,7 +55,7 @@ LitStarts start_on_surfaces(WorldView const& world, ExactVisibility const& visib
         if (stop.given_up()) throw Interrupted();
         std::vector<LitStart>& starts = found[block];
         for (std::uint32_t i = block * kTogether; i < std::min(set.count, (block + 1) * kTogether); ++i) {
-            LitStart const s = start_on(world, targets, set, i);
+            LitStart const s = start_on(world, targets, set, lights, i);
             if (max_component(s.light.power) > 0) starts.push_back(s);
         }
         std::vector<RayQuery> shadows;

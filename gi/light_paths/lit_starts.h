@@ -18,8 +18,14 @@ struct LitStarts {
     std::vector<std::uint32_t> targets; ///< of each of them
 };
 
+enum class StartLights : std::uint8_t {
+    all,
+    lamps ///< without extent: point, spot and directional ones
+};
+
 LitStarts start_on_surfaces(WorldView const& world, ExactVisibility const& visibility, StartTargets const& targets,
-                            LightPathSet const& set, BuildStop const& stop, PathCounts& counts);
+                            LightPathSet const& set, BuildStop const& stop, PathCounts& counts,
+                            StartLights lights = StartLights::all);
 
 /// Sets the probabilities of the targets: half of the paths then begin in proportion to the light that earlier
 /// paths brought there. Later paths must use other random numbers than those, or the result is biased.

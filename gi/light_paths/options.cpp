@@ -22,7 +22,9 @@ RenderOptionTable const& photon_options()
 {
     Methods const maps{"ispm", "lpv", "isllpm", "multi_image"},
         all{"sh_grid", "ispm", "lpv", "isllpm", "multi_image"},
-        caustics{"sh_grid", "ispm", "isllpm", "multi_image"};
+        caustics{"sh_grid",         "ispm",  "isllpm", "multi_image",
+                 "reference",       "paths", "slhb",   "paths_shadow_maps",
+                 "slhb_shadow_rays"};
     RenderOption places = photons(
         "impostor-places", {"", "0,1.5,0", "0,1.5,0;4,1.5,0"},
         "centres of the distance impostors, x,y,z;x,y,z in m in the scene's coordinates (default: automatic)",
@@ -37,7 +39,8 @@ RenderOptionTable const& photon_options()
         photons("photons", {1, P::kMostPaths},
                 "light paths per set of photons; with a --budget as many as fit a part of it", &P::paths, all),
         photons("caustic-photons", {0, P::kMostPaths},
-                "light paths per pass that begin on mirrors and glass, fewer as --photons are; 0 = no caustics",
+                "light paths per pass that begin on mirrors and glass, fewer as --photons are; 0 = no caustics;\n"
+                "    paths, slhb and reference: in pictures, of lamps without extent, at most one for 4 pixels",
                 &P::caustic_paths, caustics),
         photons("caustic-radius", {0, 1e9}, "m; of the first kernels of caustics, 0 = by their density",
                 &P::caustic_radius_m, caustics),

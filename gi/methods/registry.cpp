@@ -3,6 +3,7 @@
 #include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/hit_buffers/options.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/light_paths/options.h"
 #include "gi/methods/automatic/automatic.h"
 #include "gi/methods/paths/paths.h"
@@ -25,6 +26,12 @@
 namespace gi {
 namespace {
 
+/// Of a method that builds nothing by the scene.
+std::vector<PlanItem> explain_light(World const& world, RenderSettings const&, Camera const&)
+{
+    return {explain_lamp_caustics(world)};
+}
+
 /// @param visibility, variant  see Method
 template <VisibilityKind kind>
 constexpr Method virtual_lights(std::string_view name, std::string_view visibility, std::string_view summary,
@@ -35,6 +42,7 @@ constexpr Method virtual_lights(std::string_view name, std::string_view visibili
             .render = render_visibility<kind>,
             .frames = start_visibility_frames<kind>,
             .options = virtual_light_options,
+            .explain = explain_light,
             .variant = variant,
             .visibility = visibility};
 }
@@ -101,11 +109,11 @@ constexpr std::array kMethods{
            .updates_axes = slhb_updates_axes,
            .check = check_hit_buffer_options},
     Method{"reference", "path tracing with exact rays, simple and unbiased: noisy, to compare others with",
-           render_reference, start_reference_frames},
+           render_reference, start_reference_frames, nullptr, explain_light},
     mixed<PathsShadowMaps>("as paths, with the shadow maps of slhb"),
     mixed<SlhbShadowRays>("as slhb, with exact rays for shadows"),
     Method{"whitted", "ray trees: direct light, mirrors and glass, no diffuse interreflection", render_whitted,
-           start_whitted_frames, whitted_options},
+           start_whitted_frames, whitted_options, explain_light},
     Method{"sh_grid", "ray trees, with indirect light from photons in a field of spherical harmonics",
            render_sh_grid, start_sh_grid_frames, sh_grid_options, explain_sh_grid},
     Method{"ispm", "ray trees, with indirect light from photons splatted in image space", render_ispm,

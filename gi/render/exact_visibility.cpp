@@ -1,7 +1,5 @@
 #include "gi/render/exact_visibility.h"
 
-#include "gi/render/coverage_test.h"
-
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -96,16 +94,67 @@ void ExactVisibility::occluded(std::span<RayQuery const> queries, std::span<std:
     }
 }
 
+void ExactVisibility::transmittance(std::span<RayQuery const> queries, std::span<vec3> left, RayWorld met) const
+{
+    RTCScene const scene = met == RayWorld::what_stays && still_ ? still_.get() : scene_.get();
+    for (std::size_t first = 0; first < queries.size(); first += kPacket) {
+        auto const some = queries.subspan(first, std::min(kPacket, queries.size() - first));
+        Context context(*this);
+        RTCRay16 packet;
+        PacketMask const mask = fill(packet, some);
+        if (panes_)
+            for (std::size_t k = 0; k < some.size(); ++k) packet.flags[k] = some[k].to_lamp;
+        rtcOccluded16(mask.valid, scene, &context.rtc, &packet);
+        for (std::size_t k = 0; k < some.size(); ++k) {
+            bool const blocked = packet.tfar[k] < 0;
+            left[first + k] = vec3{blocked ? 0.0f : 1.0f};
+            if (blocked || !context.met_pane || some[k].to_lamp == 0) continue;
+            Context alone(*this);
+            alone.crossing = &some[k];
+            RTCRay16 one;
+            PacketMask const only = fill(one, some.subspan(k, 1));
+            one.flags[0] = 1;
+            rtcOccluded16(only.valid, scene, &alone.rtc, &one);
+            left[first + k] = alone.crossings.left;
+        }
+    }
+}
+
+ExactVisibility::FilteredHit ExactVisibility::filtered(RTCFilterFunctionNArguments const* a, unsigned i) const
+{
+    return {part_of(RTCHitN_instID(a->hit, a->N, i, 0))
+                .world_triangle(RTCHitN_geomID(a->hit, a->N, i), RTCHitN_primID(a->hit, a->N, i)),
+            {RTCHitN_u(a->hit, a->N, i), RTCHitN_v(a->hit, a->N, i)}};
+}
+
 void ExactVisibility::coverage_filter(RTCFilterFunctionNArguments const* a)
 {
     ExactVisibility const& self = *reinterpret_cast<Context const*>(a->context)->owner;
     for (unsigned i = 0; i < a->N; ++i) {
         if (a->valid[i] == 0) continue;
-        std::uint32_t const triangle = self.part_of(RTCHitN_instID(a->hit, a->N, i, 0))
-                                           .world_triangle(kCutOut, RTCHitN_primID(a->hit, a->N, i));
-        vec2 const uv{RTCHitN_u(a->hit, a->N, i), RTCHitN_v(a->hit, a->N, i)};
-        if (!covers(self.world_, triangle, uv, RTCRayN_id(a->ray, a->N, i))) a->valid[i] = 0;
+        FilteredHit const hit = self.filtered(a, i);
+        if (!covers(self.world_, hit.triangle, hit.barycentric, RTCRayN_id(a->ray, a->N, i))) a->valid[i] = 0;
     }
+}
+
+void ExactVisibility::pane_filter(RTCFilterFunctionNArguments const* a)
+{
+    coverage_filter(a);
+    Context& context = *reinterpret_cast<Context*>(a->context);
+    for (unsigned i = 0; i < a->N; ++i) {
+        if (a->valid[i] == 0 || RTCRayN_flags(a->ray, a->N, i) == 0) continue;
+        a->valid[i] = 0;
+        context.met_pane = true;
+        if (context.crossing == nullptr) continue;
+        FilteredHit const hit = context.owner->filtered(a, i);
+        context.crossings.pass(context.owner->world_, *context.crossing, hit.triangle, hit.barycentric);
+    }
+}
+
+unsigned ExactVisibility::geometry_of(Material const& m) const
+{
+    if (panes_ && is_pane(m)) return kPane;
+    return alpha_tests_ && m.alpha_mode != AlphaMode::opaque ? kCutOut : kOpaque;
 }
 
 void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id, bool moves,
@@ -122,10 +171,9 @@ void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, uns
     if (triangles == nullptr) throw std::bad_alloc();
     for (std::size_t i = 0; i < count; ++i)
         triangles[i] = world.triangles[part.world_triangle(geometry_id, std::uint32_t(i))] - part.first_vertex;
-    if (geometry_id == kCutOut) {
-        rtcSetGeometryIntersectFilterFunction(geometry, coverage_filter);
-        rtcSetGeometryOccludedFilterFunction(geometry, coverage_filter);
-    }
+    if (geometry_id != kOpaque && alpha_tests_) rtcSetGeometryIntersectFilterFunction(geometry, coverage_filter);
+    if (geometry_id != kOpaque)
+        rtcSetGeometryOccludedFilterFunction(geometry, geometry_id == kPane ? pane_filter : coverage_filter);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(part.scene.get(), geometry, geometry_id);
     rtcReleaseGeometry(geometry);
@@ -146,13 +194,13 @@ void ExactVisibility::build(World const& world, bool moves, Part& part)
     for (std::uint32_t t = part.first; t < part.last; ++t) {
         part.first_vertex =
             std::min({part.first_vertex, world.triangles[t].x, world.triangles[t].y, world.triangles[t].z});
-        if (!alpha_tests_) continue;
-        bool const opaque = world.materials[world.triangle_material[t]].alpha_mode == AlphaMode::opaque;
-        part.triangles[opaque ? kOpaque : kCutOut].push_back(t);
+        if (alpha_tests_ || panes_)
+            part.triangles[geometry_of(world.materials[world.triangle_material[t]])].push_back(t);
     }
     std::span const positions_now = std::span(world.positions).subspan(part.first_vertex);
-    bool const both = !part.triangles[kOpaque].empty() && !part.triangles[kCutOut].empty();
-    bool const empty = part.first == part.last || (both && !has_extent(world, part.first, part.last));
+    auto const is_used = [](std::vector<std::uint32_t> const& t) { return !t.empty(); };
+    bool const several = std::ranges::count_if(part.triangles, is_used) > 1;
+    bool const empty = part.first == part.last || (several && !has_extent(world, part.first, part.last));
     part.usable = !empty && usable(positions_now);
     if (!empty) {
         // Embree reads 16 bytes from every vertex, so the last one needs padding.
@@ -160,9 +208,10 @@ void ExactVisibility::build(World const& world, bool moves, Part& part)
         if (positions == nullptr) throw std::bad_alloc();
         part.positions = static_cast<vec3*>(rtcGetBufferData(positions));
         std::ranges::copy(positions_now, part.positions);
-        bool const cut_outs = !part.triangles[kCutOut].empty();
-        if (!cut_outs || !part.triangles[kOpaque].empty()) add_triangles(world, positions, kOpaque, moves, part);
-        if (cut_outs) add_triangles(world, positions, kCutOut, moves, part);
+        bool const all_opaque = std::ranges::none_of(part.triangles, is_used);
+        for (unsigned g = kOpaque; g < kGeometries; ++g)
+            if (is_used(part.triangles[g]) || (g == kOpaque && all_opaque))
+                add_triangles(world, positions, g, moves, part);
         rtcReleaseBuffer(positions);
     }
     BuildStop building(stop_);
@@ -185,7 +234,8 @@ ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threa
     : device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)),
       stop_(stop),
       world_(view(world)),
-      alpha_tests_(alpha_tests)
+      alpha_tests_(alpha_tests),
+      panes_(std::ranges::any_of(world.materials, is_pane))
 {
     if (!device_) throw std::runtime_error("Embree could not be started");
     auto const triangles = std::uint32_t(world.triangles.size());
@@ -227,8 +277,8 @@ void ExactVisibility::moved(World const& world)
     Part& part = parts_[1];
     if (part.first == part.last) return;
     std::span const positions = std::span(world.positions).subspan(part.first_vertex);
-    bool const both = part.geometries[kOpaque] != nullptr && part.geometries[kCutOut] != nullptr;
-    if (part.usable && usable(positions) && (!both || has_extent(world, part.first, part.last))) {
+    bool const several = std::ranges::count_if(part.geometries, [](RTCGeometry g) { return g != nullptr; }) > 1;
+    if (part.usable && usable(positions) && (!several || has_extent(world, part.first, part.last))) {
         std::ranges::copy(positions, part.positions);
         for (RTCGeometry const geometry : part.geometries) {
             if (geometry == nullptr) continue;

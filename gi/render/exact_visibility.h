@@ -1,12 +1,13 @@
 #pragma once
 // Exact ray queries against a World through Embree 3 (robust, watertight mode), in packets.
 // Only triangles with a (partly) transparent material go through the filter that tests coverage; partial coverage
-// is a random decision per ray and triangle that does not depend on traversal order.
+// is a random decision per ray and triangle that does not depend on traversal order. Panes have a geometry of their
+// own, which only rays towards lamps go through.
 // If the scene has dynamic geometry, that gets a BVH of its own beside the static one, and only the dynamic BVH
 // is updated, by refitting its boxes. Measured against rebuilding it: docs/decisions/bvh.md.
 
 #include "gi/core/progress.h"
-#include "gi/render/ray_query.h"
+#include "gi/render/panes.h"
 #include "gi/scene/model/world.h"
 
 #include <cstdint>
@@ -32,18 +33,25 @@ public:
     /// queries.size(); 1 = yes
     void occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked,
                   RayWorld met = RayWorld::all) const;
+    /// The share of light that comes through between origin and origin + reach * direction: 0 or 1, or what panes
+    /// leave of a lamp's light (RayQuery::to_lamp). left.size() == queries.size()
+    void transmittance(std::span<RayQuery const> queries, std::span<vec3> left,
+                       RayWorld met = RayWorld::all) const;
 
-    /// Intersection context with the data that the coverage filter needs. `rtc` comes first, so that the filter
-    /// can reach the rest from Embree's pointer.
+    /// Intersection context with the data that filters need. `rtc` comes first, so that they can reach the rest from
+    /// Embree's pointer.
     struct Context {
         explicit Context(ExactVisibility const& visibility) : owner(&visibility) { rtcInitIntersectContext(&rtc); }
         RTCIntersectContext rtc;
         ExactVisibility const* owner;
+        bool met_pane = false;              ///< some ray to a lamp went through one
+        RayQuery const* crossing = nullptr; ///< the only ray, whose crossings are noted; null = they are not
+        PaneCrossings crossings;
     };
     RTCScene scene() const { return scene_.get(); }
 
 private:
-    static constexpr unsigned kOpaque = 0, kCutOut = 1; ///< Embree's geometry ids
+    static constexpr unsigned kOpaque = 0, kCutOut = 1, kPane = 2, kGeometries = 3; ///< Embree's geometry ids
 
     struct ReleaseDevice {
         void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
@@ -58,9 +66,9 @@ private:
         std::uint32_t first = 0, last = 0; ///< triangles of the world
         std::uint32_t first_vertex = 0;    ///< in the world; Embree's vertex indices start here
         /// Per geometry: indices of the world's triangles; empty = all, in order.
-        std::vector<std::uint32_t> triangles[2];
+        std::vector<std::uint32_t> triangles[kGeometries];
         ScenePointer scene;
-        RTCGeometry geometries[2] = {}; ///< owned by the scene; null = none
+        RTCGeometry geometries[kGeometries] = {}; ///< owned by the scene; null = none
         vec3* positions = nullptr;      ///< Embree's copy of the vertices
         bool usable = false;            ///< true if all triangles were usable when the BVH was built
 
@@ -70,7 +78,14 @@ private:
         }
     };
 
+    struct FilteredHit {
+        std::uint32_t triangle;
+        vec2 barycentric;
+    };
+    FilteredHit filtered(RTCFilterFunctionNArguments const* arguments, unsigned i) const;
     static void coverage_filter(RTCFilterFunctionNArguments const* arguments);
+    static void pane_filter(RTCFilterFunctionNArguments const* arguments);
+    unsigned geometry_of(Material const& material) const;
     void build(World const& world, bool moves, Part& part);
     void add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id, bool moves, Part& part);
     void build_moving(World const& world);
@@ -85,7 +100,7 @@ private:
     ScenePointer still_; ///< with an instance of the first part only; null without dynamic geometry
     StopRequest const* stop_;
     WorldView world_;
-    bool alpha_tests_;
+    bool alpha_tests_, panes_;
 };
 
 } // namespace gi

@@ -31,15 +31,18 @@ void add_unshadowed(std::span<Path* const> paths, Visibility const& visibility, 
         queries.push_back(p->shadow);
     }
     counts.shadow_rays += waiting.size();
-    std::vector<std::uint8_t> blocked(waiting.size());
-    visibility.occluded(queries, blocked);
-    for (std::size_t i = 0; i < waiting.size(); ++i)
-        if (blocked[i] == 0) add_noted_light(*waiting[i]);
+    std::vector<vec3> left(waiting.size());
+    visibility.transmittance(queries, left);
+    for (std::size_t i = 0; i < waiting.size(); ++i) {
+        if (left[i] == vec3{0}) continue;
+        waiting[i]->shadow_radiance *= left[i];
+        add_noted_light(*waiting[i]);
+    }
 }
 
 /// Traces all paths to their ends.
 /// @tparam Path        derived from RayPath
-/// @tparam Visibility  provides nearest(queries, hits) and occluded(queries, blocked) like ExactVisibility
+/// @tparam Visibility  provides nearest(queries, hits) and transmittance(queries, left) like ExactVisibility
 /// @param prepare  (active paths, their hits), before each step
 /// @param advance  (path, hit, number of surfaces before) -> whether the path continues with the ray that it set
 template <class Path, class Visibility, class Prepare, class Advance>

@@ -24,16 +24,16 @@ struct NearestHits {
     }
 };
 
-struct BlockedRays {
+struct ShadowRays {
     WorldView world;
     KernelRays rays;
     ColumnView<RayQuery> queries;
-    View<std::uint8_t> blocked; ///< 1 = it meets a surface
+    ColumnView<vec3> left; ///< of the light, see KernelRays::transmittance
 
     GI_FN void operator()(std::size_t i) const
     {
         RayQuery const q = queries.load(i);
-        if (q.reach > 0) blocked[i] = rays.occluded(world, q) ? 1 : 0;
+        if (q.reach > 0) left.store(i, rays.transmittance(world, q));
     }
 };
 

@@ -61,7 +61,9 @@ GI_FN inline void add_environment(WorldView const& world, RayPath& p, int vertex
 GI_FN inline RayQuery shadow_ray(vec3 position, vec3 normal, float clearance, LightSample const& light)
 {
     float const side = glm::dot(light.direction, normal) > 0 ? clearance : -clearance;
-    RayQuery q{.ray = {position + side * normal, light.direction}, .reach = light.distance};
+    RayQuery q{.ray = {position + side * normal, light.direction},
+               .reach = light.distance,
+               .to_lamp = light.delta ? 1u : 0u};
     if (light.distance == kInf) return q;
     // Aims from the ray's start, and ends before the light's own surface by more than the rounding of both ends.
     vec3 const way = position + light.distance * light.direction - q.ray.origin;

@@ -22,6 +22,8 @@ struct RayQuery {
     float reach = kFar;     ///< m; farther surfaces are ignored
     std::uint32_t seed = 0; ///< of the random decisions about partial coverage
     float start = 0;        ///< m; nearer surfaces are ignored
+    /// 1: towards a lamp without extent; transmittance() lets it through panes.
+    std::uint32_t to_lamp = 0;
 };
 
 /// Which geometry rays can hit.

@@ -6,7 +6,7 @@
 namespace gi {
 
 template void launch_device(char const*, std::size_t, AddSamples const&);
-template void launch_device(char const*, std::size_t, BlockedRays const&);
+template void launch_device(char const*, std::size_t, ShadowRays const&);
 template void launch_device(char const*, std::size_t, NearestHits const&);
 
 } // namespace gi

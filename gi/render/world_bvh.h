@@ -3,8 +3,7 @@
 // that may move, which is refitted; and exact rays through both in kernels, one at a time.
 
 #include "gi/bvh/traverse.h"
-#include "gi/render/coverage_test.h"
-#include "gi/render/ray_query.h"
+#include "gi/render/panes.h"
 
 #include <algorithm>
 
@@ -14,29 +13,48 @@ namespace gi {
 struct KernelRays {
     BvhView trees[2];         ///< static, dynamic; either may be empty
     bool alpha_tests = false; ///< some surfaces are partly transparent
+    bool panes = false;       ///< some are panes
 
     /// As ExactVisibility::nearest.
     GI_FN Hit nearest(WorldView const& world, RayQuery const& q) const
     {
-        BvhHit const hit = trace<false>(world, q);
+        BvhHit const hit = trace<false>(
+            q, [&](std::uint32_t triangle, vec2 weights) { return meets(world, q, triangle, weights); });
         return hit.triangle == kNoBvhTriangle ? Hit{} : Hit{hit.triangle, hit.weights, hit.distance};
     }
     /// As ExactVisibility::occluded.
     GI_FN bool occluded(WorldView const& world, RayQuery const& q) const
     {
-        return trace<true>(world, q).triangle != kNoBvhTriangle;
+        return trace<true>(q, [&](std::uint32_t triangle, vec2 weights) {
+                   return meets(world, q, triangle, weights);
+               }).triangle != kNoBvhTriangle;
+    }
+    /// As ExactVisibility::transmittance.
+    GI_FN vec3 transmittance(WorldView const& world, RayQuery const& q) const
+    {
+        if (!panes || q.to_lamp == 0) return vec3{occluded(world, q) ? 0.0f : 1.0f};
+        PaneCrossings crossings;
+        BvhHit const hit = trace<true>(q, [&](std::uint32_t triangle, vec2 weights) {
+            if (!meets(world, q, triangle, weights)) return false;
+            if (!is_pane(world.materials[world.surfaces[triangle].material])) return true;
+            crossings.pass(world, q, triangle, weights);
+            return false;
+        });
+        return hit.triangle == kNoBvhTriangle ? crossings.left : vec3{0};
     }
 
 private:
-    template <bool any>
-    GI_FN BvhHit trace(WorldView const& world, RayQuery const& q) const
+    GI_FN bool meets(WorldView const& world, RayQuery const& q, std::uint32_t triangle, vec2 weights) const
+    {
+        return !alpha_tests || covers(world, triangle, weights, q.seed);
+    }
+    /// @param accepts  see meet_leaf
+    template <bool any, class Accepts>
+    GI_FN BvhHit trace(RayQuery const& q, Accepts const& accepts) const
     {
         BvhRay const ray(q.ray, q.start);
         BvhHit hit;
         hit.distance = q.reach;
-        auto const accepts = [&](std::uint32_t triangle, vec2 weights) {
-            return !alpha_tests || covers(world, triangle, weights, q.seed);
-        };
         // One traversal in the code; trees are not indexed, as a device would copy them to local memory.
 #pragma unroll 1
         for (int k = 0; k < 2; ++k) {
@@ -61,10 +79,11 @@ public:
         for (int k = 0; k < 2; ++k) trees_[k] = build_bvh<S>(list(world, k), stop);
     }
     void test_alpha(bool alpha_tests) { alpha_tests_ = alpha_tests; }
+    void test_panes(bool panes) { panes_ = panes; }
     /// Refits the dynamic tree.
     void moved(WorldView const& world) { refit(trees_[1], list(world, 1)); }
 
-    KernelRays rays() const { return {{trees_[0].view(), trees_[1].view()}, alpha_tests_}; }
+    KernelRays rays() const { return {{trees_[0].view(), trees_[1].view()}, alpha_tests_, panes_}; }
     Bvh<S> const& still() const { return trees_[0]; }
     Bvh<S> const& moving() const { return trees_[1]; }
     bool alpha_tests() const { return alpha_tests_; }
@@ -77,7 +96,7 @@ private:
 
     std::uint32_t first_[3] = {}; ///< triangles of the trees: of the first, of the second, end
     Bvh<S> trees_[2];             ///< static, dynamic
-    bool alpha_tests_;
+    bool alpha_tests_, panes_ = false;
 };
 
 } // namespace gi

@@ -7,6 +7,7 @@
 #include "gi/surfaces/light_picture.h"
 #include "gi/surfaces/mirror_boxes.h"
 
+#include <algorithm>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -60,7 +61,9 @@ bool SeenSurfaces::mirrors_in(World const& world)
 
 bool SeenSurfaces::has_few_lights(World const& world)
 {
-    return !world.lights.empty() && world.lights.size() <= kMostLights;
+    // Panes colour the light of lamps, which the shadow bits of pixels and the shadow maps of OpenGL cannot say.
+    return !world.lights.empty() && world.lights.size() <= kMostLights &&
+           std::ranges::none_of(world.materials, is_pane);
 }
 
 void SeenSurfaces::find_needs()

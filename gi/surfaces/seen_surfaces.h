@@ -61,7 +61,7 @@ public:
     /// False only if a picture shows no mirror and no pane. @param width, height  px
     bool may_show_mirrors(CameraRays const& camera, int width, int height) const;
     static constexpr std::size_t kMostLights = 4;
-    static bool has_few_lights(World const& world); ///< at least one
+    static bool has_few_lights(World const& world); ///< at least one, and no panes
 
 private:
     struct Way;

@@ -34,10 +34,10 @@ struct RecordingVisibility {
         waves.push_back({{queries.begin(), queries.end()}, false});
         exact.nearest(queries, hits);
     }
-    void occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked) const
+    void transmittance(std::span<RayQuery const> queries, std::span<vec3> left) const
     {
         waves.push_back({{queries.begin(), queries.end()}, true});
-        exact.occluded(queries, blocked);
+        exact.transmittance(queries, left);
     }
 };
 

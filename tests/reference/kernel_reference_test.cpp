@@ -2,6 +2,7 @@
 // random numbers they trace the same paths, but for rounding.
 
 #include "gi/core/error.h"
+#include "gi/light_paths/settings.h"
 #include "gi/methods/reference/kernels.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/scene/generate/generate.h"
@@ -25,6 +26,7 @@ RenderSettings few_paths(int bounces = 4, std::uint32_t paths = 16)
     s.paths = paths;
     s.bounces = bounces;
     s.seed = 3;
+    s.of<PhotonSettings>().caustic_paths = 0; // kernels trace none
     return s;
 }
 

@@ -5,6 +5,7 @@
 #include "gi/hit_buffers/directions/directions.h"
 #include "gi/hit_buffers/hit_buffer.h"
 #include "gi/hit_buffers/options.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/paths/costs.h"
 #include "gi/methods/paths/lobes.h"
 
@@ -287,6 +288,7 @@ std::vector<PlanItem> explain_choices(World const& world, RenderSettings const& 
                      lit, !lit   ? "there are no lights"
                      : rays ? "each path has its own light samples, so that pixels share no error"
                             : "all paths of a pass share a few light samples"});
+    items.push_back(explain_lamp_caustics(world));
     bool const narrow = narrow_somewhere(world);
     items.push_back({"exact_rays", "exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
                      !walks                ? "in place of look-ups"

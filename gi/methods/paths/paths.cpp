@@ -19,6 +19,7 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     FrameView const eye{camera, settings.width, settings.height};
     PathsRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
                            rays ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);
+    renderer.find_lamp_caustics();
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, name, options) : 0;
     bool const cached = chosen.of<PathsSettings>().cache == RadianceCaching::on;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {

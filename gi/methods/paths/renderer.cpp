@@ -247,12 +247,14 @@ PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassS
             .look_ups = !slhb_.exact.queries && by_.surfaces == SurfacesBy::look_ups,
             .cache = cached && cache_ ? &*cache_ : nullptr,
             .spread = spread_ && by_.surfaces == SurfacesBy::rays,
-            .no_punctual = leaves_out_punctual_};
+            .no_punctual = leaves_out_punctual_,
+            .caustics = caustics_ ? caustics_->map() : nullptr};
 }
 
 void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing, PassStop stop)
 {
     prepare(index, Sides::one, stop);
+    if (caustics_) caustics_->prepare(*exact_, index, BuildStop(stop_), sums[0].counts);
     StageTimer const timer(report_, "paths");
     paths_.trace(tracing(index, sharing == VertexSharing::cached, stop), views_, sharing, sums);
     if (cache_) cache_->end_pass();

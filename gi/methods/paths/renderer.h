@@ -3,6 +3,7 @@
 // the world, and their per-pass updates.
 
 #include "gi/hit_buffers/directions/frame_axes.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/paths/view_paths.h"
 
 #include <memory>
@@ -71,6 +72,11 @@ public:
     }
     /// From the next pass on, see FrameRenderer::leave_out_punctual.
     void leave_out_punctual(bool on) { leaves_out_punctual_ = on; }
+    /// From the next pass on, if there are any. Photons are those of a pass's index.
+    void find_lamp_caustics()
+    {
+        if (exact_ && LampCaustics::exist(world_, settings_)) caustics_.emplace(world_, settings_, report_);
+    }
     /// Fraction of the last pass's path time that went into indirect light.
     double indirect_share() const { return paths_.indirect_share(); }
     /// Number of look-ups and exact rays so far.
@@ -120,6 +126,7 @@ private:
     std::optional<LightPoints> light_points_;
     std::vector<SkyAlong> sky_;          ///< in a pass
     std::optional<RadianceCache> cache_; ///< none if switched off
+    std::optional<LampCaustics> caustics_;
     ViewPaths paths_;
     bool spread_ = false; ///< see Pass::spread
     bool leaves_out_punctual_ = false;

@@ -71,7 +71,7 @@ vec3 off_surface(Surface const& s, vec3 position, vec3 direction)
 void PathsTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const
 {
     thread_local std::vector<RayQuery> rays;
-    thread_local std::vector<std::uint8_t> blocked;
+    thread_local std::vector<vec3> left;
     rays.clear();
     for (Unshadowed const& d : direct) {
         LightSample const light = sample_light(world_, d.light_point->choice, d.position, d.light_point->u);
@@ -80,10 +80,12 @@ void PathsTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> dire
         ray.seed = hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()));
         rays.push_back(ray);
     }
-    blocked.resize(rays.size());
-    pass.exact->occluded(rays, blocked);
-    for (std::size_t k = 0; k < direct.size(); ++k)
-        if (blocked[k] == 0 || !(rays[k].reach > 0)) *direct[k].to += direct[k].radiance;
+    left.resize(rays.size());
+    pass.exact->transmittance(rays, left);
+    for (std::size_t k = 0; k < direct.size(); ++k) {
+        if (!(rays[k].reach > 0)) left[k] = vec3{1}; // the light lies on the surface
+        if (left[k] != vec3{0}) *direct[k].to += left[k] * direct[k].radiance;
+    }
 }
 
 void PathsTracer::start_paths(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
@@ -134,14 +136,19 @@ void PathsTracer::add_lit(Pass const& pass, Direct& direct, PathsWork& counts) c
     if (!direct.rays.empty()) {
         direct.queries.clear();
         for (ShadowRay const& r : direct.rays) direct.queries.push_back(r.query);
-        direct.blocked.resize(direct.rays.size());
-        pass.exact->occluded(direct.queries, direct.blocked, pass.exact_world);
+        direct.left.resize(direct.rays.size());
+        pass.exact->transmittance(direct.queries, direct.left, pass.exact_world);
         for (std::size_t k = 0; k < direct.rays.size(); ++k)
-            if (direct.blocked[k] == 0) *direct.rays[k].to += direct.rays[k].radiance;
+            if (direct.left[k] != vec3{0}) *direct.rays[k].to += direct.left[k] * direct.rays[k].radiance;
     }
     if (parts_.shadows) {
         add_exactly(pass, direct.maps);
     } else {
+        if (panes_) { // which block all light in maps
+            auto const lamps = std::ranges::partition(direct.maps, [](Unshadowed const& d) { return !d.of_lamp; });
+            add_exactly(pass, lamps);
+            direct.maps.erase(lamps.begin(), lamps.end());
+        }
         for (Unshadowed const& d : direct.maps) {
             if (d.light_point->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
             std::uint32_t const caster = d.place.texel != nullptr ? d.place.texel->primitive : kNoPrimitive;

@@ -11,16 +11,18 @@
 
 #include "gi/core/rqmc.h"
 #include "gi/hit_buffers/axis_step.h"
+#include "gi/hit_buffers/settings.h"
 #include "gi/hit_buffers/shadow_maps/light_points.h"
+#include "gi/light_paths/photon_map.h"
+#include "gi/methods/paths/algorithm.h"
 #include "gi/methods/paths/light_pool.h"
 #include "gi/methods/paths/radiance_cache.h"
+#include "gi/methods/paths/settings.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/interleaving.h"
 #include "gi/render/path_sample.h"
-#include "gi/hit_buffers/settings.h"
-#include "gi/methods/paths/algorithm.h"
-#include "gi/methods/paths/settings.h"
 
+#include <algorithm>
 #include <span>
 
 namespace gi {
@@ -81,6 +83,7 @@ public:
         RadianceCache* cache = nullptr;     ///< paths may end in its cells; null = no cache
         bool spread = false;                ///< pixels without indirect light will get it from neighbours
         bool no_punctual = false;           ///< see FrameRenderer::leave_out_punctual
+        PhotonMap const* caustics = nullptr; ///< of lamps; null = none
     };
 
     /// @param width  of the picture, pixels
@@ -96,7 +99,8 @@ public:
           parts_{settings.of<SlhbSettings>().exact},
           roulette_(settings.of<PathsSettings>().roulette),
           free_(settings.of<PathAlgorithm>().surfaces == SurfacesBy::rays || parts_.directions),
-          meets_light_(!world_.environment_radiance.empty() || !world_.emitter_pdf.empty())
+          meets_light_(!world_.environment_radiance.empty() || !world_.emitter_pdf.empty()),
+          panes_(std::ranges::any_of(world.materials, is_pane))
     {
     }
 
@@ -158,6 +162,7 @@ private:
     float roulette_;
     bool free_;        ///< each path samples its own directions instead of axes
     bool meets_light_; ///< paths can hit light: a sky or emissive surfaces
+    bool panes_;
 };
 
 } // namespace gi

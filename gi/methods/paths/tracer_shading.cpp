@@ -98,7 +98,7 @@ void PathsTracer::add_direct(Pass const& pass, State const& s, Leaving const& fr
         l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(PathDimension::shadow)));
     __builtin_prefetch(place.texel);
     direct.push_back({&l, place, at.position, s.triangle, s.throughput * value,
-                      &layer_of(*s.sample, s.scatterings + 1), s.sample});
+                      &layer_of(*s.sample, s.scatterings + 1), s.sample, light.delta});
 }
 
 void PathsTracer::add_emission(State const& s, Vertex const& last, ShadingPoint const& at) const
@@ -229,6 +229,8 @@ bool PathsTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct
             aim_at_light(pass, s, from, direct.rays);
         else
             add_direct(pass, s, from, direct.maps);
+        if (pass.caustics != nullptr)
+            layer_of(*s.sample, s.scatterings + 1) += s.throughput * pass.caustics->radiance(at, wo, false);
     }
 
     float const u_lobe = narrow ? (*s.u)[PathDimension::lobe] : 1;

@@ -69,6 +69,7 @@ struct PathsTracer::Unshadowed {
     vec3 radiance;
     vec3* to;
     PathSample* sample;
+    bool of_lamp; ///< without extent
 };
 
 /// Direct light of a block of paths, waiting for visibility tests.
@@ -76,7 +77,7 @@ struct PathsTracer::Direct {
     std::vector<Unshadowed> maps;
     std::vector<ShadowRay> rays;
     std::vector<RayQuery> queries; ///< of the rays
-    std::vector<std::uint8_t> blocked;
+    std::vector<vec3> left;        ///< of their light
 };
 
 /// A surface that a path leaves.

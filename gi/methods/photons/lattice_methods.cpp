@@ -1,5 +1,6 @@
 // The methods lpv and isllpm: ray trees take indirect light from their lattices.
 
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/light_paths/memory_limit.h"
 #include "gi/methods/photons/limits.h"
 #include "gi/methods/photons/methods.h"
@@ -152,6 +153,7 @@ private:
 RenderResult render_lpv(World const& world, Camera const& camera, RenderSettings const& settings,
                         StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
+    lose_lamp_caustics(world, report);
     return render_passes("lpv", start_passes<PropagationRenderer>, world, camera, settings, stop, progress,
                          report);
 }

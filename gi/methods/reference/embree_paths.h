@@ -2,6 +2,7 @@
 // Where the reference traces its paths on the CPU: tile by tile, through Embree.
 
 #include "gi/core/step.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/reference/path_tracer.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/flush_denormals.h"
@@ -11,6 +12,7 @@
 #include "gi/scene/motion/moving_world.h"
 
 #include <memory>
+#include <optional>
 #include <tbb/combinable.h>
 
 namespace gi {
@@ -44,6 +46,18 @@ public:
         return view(world_);
     }
 
+    /// From the next pass on, paths find the caustics of lamps, if there are any: each pass is then of one path, and
+    /// prepare_caustics() precedes it.
+    void find_caustics(RenderSettings const& settings)
+    {
+        if (LampCaustics::exist(world_, settings)) caustics_.emplace(world_, settings, report_);
+    }
+    bool finds_caustics() const { return caustics_.has_value(); }
+    void prepare_caustics(std::uint32_t path, BuildStop const& stop, PathCounts& counts)
+    {
+        caustics_->prepare(*visibility_, path, stop, counts);
+    }
+
     /// Traces some paths of every pixel; those of a tile advance together.
     /// @param first_path  number of the first of them
     /// @param first_hits  per pixel, set by the last path; empty = not needed
@@ -53,7 +67,7 @@ public:
     PathCounts trace(PathSteps const& steps, TiledPass& pass, std::uint32_t first_path,
                      std::span<FirstHit> first_hits, Use const& use) const
     {
-        PathTracer<ExactVisibility> const tracer{steps, *visibility_};
+        PathTracer<ExactVisibility> const tracer{steps, *visibility_, caustics_ ? caustics_->map() : nullptr};
         tbb::combinable<PathCounts> counts;
         pass.run([&](TiledPass::Tile const& tile) {
             FlushDenormals const guard;
@@ -93,6 +107,7 @@ private:
     Report& report_;
     StopRequest const* stop_;
     std::unique_ptr<ExactVisibility> visibility_;
+    std::optional<LampCaustics> caustics_;
 };
 
 } // namespace gi

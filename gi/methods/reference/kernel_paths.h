@@ -32,7 +32,7 @@ public:
           queries_(n),
           shadows_(n),
           hits_(n),
-          blocked_(n),
+          left_(n),
           added_(pixels),
           taken_(1)
     {
@@ -48,7 +48,7 @@ public:
         to.queries = queries_.view();
         to.shadows = shadows_.view();
         to.hits = hits_.view();
-        to.blocked = blocked_.view();
+        to.left = left_.view();
         to.added = added_.view();
         to.taken = taken_.view();
     }
@@ -66,7 +66,7 @@ private:
     ColumnBuffer<FirstSurface, S> seen_;
     ColumnBuffer<RayQuery, S> queries_, shadows_;
     ColumnBuffer<Hit, S> hits_;
-    Buffer<std::uint8_t, S> blocked_;
+    ColumnBuffer<vec3, S> left_;
     Buffer<std::uint32_t, S> added_, taken_;
 };
 
@@ -84,7 +84,10 @@ public:
         StageTimer const timer(report_, "update of dynamic triangles");
         there_.update(world_, changes);
         if (!bvh_) return;
-        if (changes.materials || changes.coverage) bvh_->test_alpha(plan_scene(world_).alpha_tests);
+        if (changes.materials || changes.coverage) {
+            bvh_->test_alpha(plan_scene(world_).alpha_tests);
+            bvh_->test_panes(has_panes());
+        }
         if (changes.geometry) bvh_->moved(there_.view());
     }
 
@@ -93,6 +96,7 @@ public:
         if (!bvh_) {
             StageTimer const timer(report_, "build (BVH)");
             bvh_.emplace(there_.view(), plan_scene(world_).alpha_tests, first_moving_, stop_of_building(stop_));
+            bvh_->test_panes(has_panes());
         }
         return there_.view();
     }
@@ -127,6 +131,7 @@ public:
     }
 
 private:
+    bool has_panes() const { return std::ranges::any_of(world_.materials, is_pane); }
     /// @param most  paths of each pixel that are traced together
     /// @param to     (number of its first path) -> where samples go
     /// @param ended  called with that number when all samples are there
@@ -191,7 +196,7 @@ private:
             for (int k = 0; k < kSteps; ++k) {
                 launch(S, "rays of paths", n, NearestHits{world, rays, all.queries, all.hits});
                 launch(S, "scatter paths", n, ScatterPaths{all});
-                launch(S, "shadow rays of paths", n, BlockedRays{world, rays, all.shadows, all.blocked});
+                launch(S, "shadow rays of paths", n, ShadowRays{world, rays, all.shadows, all.left});
                 launch(S, "end paths", n, EndPaths<Samples>{all, to});
             }
         }

@@ -1,7 +1,7 @@
 #pragma once
 // The path tracer by kernels, with exact rays through the project's own BVH. Many paths are on their way together,
 // each in a slot, from one surface to the next: all their rays (NearestHits), all their scatterings, all their
-// shadow rays (BlockedRays). A slot whose path ends takes the next one, so that none waits for the longest (Novak
+// shadow rays (ShadowRays). A slot whose path ends takes the next one, so that none waits for the longest (Novak
 // et al. 2010); samples of a pixel are added in the order of its paths. Steps and random numbers are those of
 // PathTracer, so that both trace the same paths up to rounding.
 
@@ -55,16 +55,16 @@ struct FirstSurface {
 /// The light that a path found.
 struct PathLight {
     std::array<vec3, 3> radiance; ///< L0, L1, L2
-    vec3 unshadowed;              ///< arrives if the shadow ray is not blocked
+    vec3 unshadowed;              ///< arrives where nothing lies along the shadow ray
     int scatterings;              ///< of that
 };
 
-/// That light with `unshadowed` added, whose shadow ray is not blocked.
-GI_FN inline PathLight lit(PathLight light)
+/// That light with `unshadowed` added. @param left  of it
+GI_FN inline PathLight lit(PathLight light, vec3 left)
 {
     PathSample sample;
     sample.radiance = light.radiance;
-    add_light(sample, light.scatterings, light.unshadowed);
+    add_light(sample, light.scatterings, left * light.unshadowed);
     light.radiance = sample.radiance;
     return light;
 }
@@ -81,7 +81,7 @@ struct PathSlots {
     ColumnView<FirstSurface> seen;          ///< at the first surface
     ColumnView<RayQuery> queries, shadows; ///< no_query() where there is none
     ColumnView<Hit> hits;                  ///< of queries
-    View<std::uint8_t> blocked;            ///< of shadows
+    ColumnView<vec3> left;                 ///< of the light along shadows
     View<std::uint32_t> added;             ///< per pixel: number of paths
     View<std::uint32_t> taken;             ///< [0]: number of paths
     View<FirstHit> first_hits;             ///< of the last path, per pixel; empty = not needed
@@ -186,7 +186,9 @@ struct FinishPaths : ScatterPaths {
             hits.store(i, rays.nearest(steps.world, queries.load(i)));
             scatter(i, s);
             RayQuery const shadow = shadows.load(i);
-            if (shadow.reach > 0 && !rays.occluded(steps.world, shadow)) lights.store(i, lit(lights.load(i)));
+            if (!(shadow.reach > 0)) continue;
+            vec3 const comes = rays.transmittance(steps.world, shadow);
+            if (comes != vec3{0}) lights.store(i, lit(lights.load(i), comes));
         } while (s.stage == PathStage::goes_on);
         slots.store(i, s);
     }
@@ -201,10 +203,11 @@ struct EndPaths : PathSlots {
     {
         PathSlot s = slots.load(i);
         if (s.stage == PathStage::idle) return;
-        bool const is_lit = shadows.load(i).reach > 0 && blocked[i] == 0, may_add = s.stage == PathStage::may_add;
+        vec3 const comes = shadows.load(i).reach > 0 ? left.load(i) : vec3{0};
+        bool const is_lit = comes != vec3{0}, may_add = s.stage == PathStage::may_add;
         if (!is_lit && !may_add) return;
         PathLight light = lights.load(i);
-        if (is_lit) light = lit(light);
+        if (is_lit) light = lit(light, comes);
         if (!may_add) return lights.store(i, light);
         FirstSurface const at = seen.load(i);
         PathSample sample;

@@ -1,6 +1,7 @@
 #pragma once
 // The steps of the path tracer, on CPU and GPU: next-event estimation and BSDF sampling (gi/render/path_step.h),
-// Russian roulette on throughput. The estimator is unbiased except for the limit on bounces; nothing is clamped.
+// Russian roulette on throughput. The estimator is unbiased except for the limit on bounces and the disks of
+// photons (lamp_caustics.h); nothing is clamped.
 //
 // Light is sorted by the number of non-delta scatterings between the light and the eye: L0 emitted light seen
 // directly (also through mirrors and glass), L1 direct light, L2 all indirect light.
@@ -21,6 +22,11 @@ struct Path : RayPath {
     FirstHit first;          ///< what the camera sees
 };
 
+/// Adds nothing to the light at a surface.
+struct NoMoreLight {
+    GI_FN void operator()(Path&, ShadingPoint const&, vec3) const {}
+};
+
 /// What the paths of a picture have in common.
 struct PathSteps {
     WorldView world; ///< in the memory space of those who trace
@@ -35,7 +41,9 @@ struct PathSteps {
     GI_FN Path start(int x, int y, std::uint32_t index) const;
     GI_FN void choose_light(Path& p) const { p.light = gi::choose_light(world, p.rng.uniform_double()); }
     /// Advances from a hit to the next ray. Returns false if the path ends.
-    GI_FN bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
+    /// @param more  (path, surface, wo): adds light that no sample of the lights finds
+    template <class More = NoMoreLight>
+    GI_FN bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts, More const& more = {}) const;
 };
 
 GI_FN inline Path PathSteps::start(int x, int y, std::uint32_t index) const
@@ -47,7 +55,8 @@ GI_FN inline Path PathSteps::start(int x, int y, std::uint32_t index) const
     return p;
 }
 
-GI_FN inline bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const
+template <class More>
+GI_FN bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCounts& counts, More const& more) const
 {
     if (hit.triangle == kNoTriangle) {
         if (!p.emitted) add_environment(world, p, vertex);
@@ -75,6 +84,7 @@ GI_FN inline bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCo
         LightSample const light = sample_light(world, p.light, at.position, p.rng.uniform2());
         auto const pdf = [](BsdfValue const& bsdf, vec3) { return bsdf.pdf; };
         aim_at_light(p, at, light, unshadowed_light(at, wo, light, alone, pdf));
+        more(p, at, wo);
     }
 
     float const u_lobe = p.rng.uniform();

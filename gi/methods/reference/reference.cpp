@@ -184,7 +184,17 @@ RenderResult render_picture(char const* name, World const& world, Camera const& 
     Paths tracing(world, settings, world.triangles.size(), report, &stop);
     PathSteps const steps = start_steps(tracing, world, camera, settings);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name, {}) : 0;
+    constexpr bool kMayFindCaustics = std::is_same_v<Paths, EmbreePaths>;
+    if constexpr (kMayFindCaustics) tracing.find_caustics(settings);
     auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
+        if constexpr (kMayFindCaustics)
+            if (tracing.finds_caustics()) {
+                for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i) {
+                    tracing.prepare_caustics(loop.first_path() + sums.paths, BuildStop(&stop), sums.counts);
+                    trace_pass(tracing, steps, sums, loop.first_path(), 1, {}, nullptr, &stop);
+                }
+                return;
+            }
         trace_pass(tracing, steps, sums, loop.first_path(), paths, {}, nullptr, &stop);
     };
     return trace_all(loop, print, pass, world, settings, report);
@@ -198,6 +208,7 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
     if (settings.space == Space::host)
         return render_picture<EmbreePaths>("reference", world, camera, settings, stop, progress, report);
     check_device(Space::device);
+    lose_lamp_caustics(world, report);
     return render_reference_by_kernels(Space::device, world, camera, settings, stop, progress, report);
 }
 

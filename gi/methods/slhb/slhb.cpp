@@ -1,6 +1,7 @@
 #include "gi/methods/slhb/slhb.h"
 
 #include "gi/kernel/device.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/paths/frames_of.h"
 #include "gi/methods/slhb/kernels/kernel_render.h"
 #include "gi/methods/slhb/kernels/kernel_renderer.h"
@@ -13,6 +14,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     RenderSettings const s = with(kSlhb, settings);
     if (s.space == Space::host) return render_by("slhb", world, camera, s, stop, progress, report);
     check_device(Space::device);
+    lose_lamp_caustics(world, report);
     return render_by_kernels(Space::device, world, camera, s, stop, progress, report);
 }
 

@@ -2,6 +2,7 @@
 
 #include "gi/hit_buffers/directions/stored_axes.h"
 #include "gi/hit_buffers/options.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/vpl/renderer.h"
 #include "gi/methods/vpl/settings.h"
 
@@ -54,6 +55,7 @@ RenderResult render_with_virtual_lights(VisibilityKind kind, World const& world,
                                         RenderSettings const& settings, StopRequest const& stop,
                                         RenderProgress const& progress, Report& report)
 {
+    lose_lamp_caustics(world, report);
     return render_passes(kNames[std::size_t(kind)], passes(kind), world, camera, chosen(settings), stop, progress,
                          report);
 }

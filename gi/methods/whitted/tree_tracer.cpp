@@ -37,6 +37,7 @@ void TreeTracer::aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int 
         if (!(max_component(value) > 0)) continue;
         RayQuery query = shadow_ray(at.position, at.geometric_normal, at.clearance, sampled);
         query.seed = r.rng.next();
+        if (light != nullptr) query.to_lamp = 0; // photons have gone through panes
         if (query.reach > 0)
             shadows.push_back({query, r.state.throughput * value, r.state.scatterings + 1, r.sample});
         else // the light lies on the surface
@@ -138,7 +139,7 @@ void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, 
     std::vector<ShadowRay> shadows;
     std::vector<RayQuery> queries;
     std::vector<Hit> hits;
-    std::vector<std::uint8_t> blocked;
+    std::vector<vec3> left;
     std::vector<TreePoint> points;
     std::vector<vec3> indirect;
     for (std::size_t k = 0; k < pixels.size(); ++k) {
@@ -169,11 +170,12 @@ void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, 
         }
         queries.clear();
         for (ShadowRay const& s : shadows) queries.push_back(s.query);
-        blocked.resize(queries.size());
-        visibility.occluded(queries, blocked);
+        left.resize(queries.size());
+        visibility.transmittance(queries, left);
         counts.paths.shadow_rays += queries.size();
         for (std::size_t k = 0; k < shadows.size(); ++k)
-            if (blocked[k] == 0) layer_of(*shadows[k].sample, shadows[k].scatterings) += shadows[k].radiance;
+            if (left[k] != vec3{0})
+                layer_of(*shadows[k].sample, shadows[k].scatterings) += left[k] * shadows[k].radiance;
         if (!points.empty()) {
             indirect.resize(points.size());
             light->indirect(points, indirect, counts.paths);

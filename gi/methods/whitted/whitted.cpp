@@ -1,6 +1,7 @@
 #include "gi/methods/whitted/whitted.h"
 
 #include "gi/core/step.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
@@ -111,6 +112,7 @@ std::string TreeRenderer::options() const
 RenderResult render_whitted(World const& world, Camera const& camera, RenderSettings const& settings,
                             StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
+    lose_lamp_caustics(world, report);
     return render_passes("whitted", start_passes<TreeRenderer>, world, camera, settings, stop, progress, report);
 }
 

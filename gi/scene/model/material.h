@@ -53,6 +53,12 @@ GI_FN inline bool has_textures(Material const& m)
            m.transmission_map.texture >= 0;
 }
 
+/// Thin glass: light goes on in its direction.
+GI_FN inline bool is_pane(Material const& m)
+{
+    return m.model == MaterialModel::metal_rough && m.thin && m.transmission > 0;
+}
+
 GI_FN inline bool emits(Material const& m) { return max_component(m.emission) > 0; }
 
 } // namespace gi

@@ -32,6 +32,7 @@ bool emission_differs(Material const& a, Material const& b)
 
 bool coverage_differs(Material const& a, Material const& b)
 {
+    if (is_pane(a) != is_pane(b)) return true;
     if (a.alpha_mode == AlphaMode::opaque && b.alpha_mode == AlphaMode::opaque) return false;
     return a.alpha_mode != b.alpha_mode || a.alpha != b.alpha || a.alpha_cutoff != b.alpha_cutoff ||
            !(a.base_color_map == b.base_color_map);

@@ -15,7 +15,7 @@ struct Changes {
     bool geometry = false; ///< vertices, corners and Surfaces of triangles that can move
     bool bounds = false;
     bool materials = false;    ///< materials, bsdfs, flags of Surfaces
-    bool coverage = false;     ///< opacity of materials: masks, blending
+    bool coverage = false;     ///< what rays go through: masks, blending, panes
     bool lights = false;       ///< punctual lights
     bool emitters = false;     ///< which triangles emit, or how much
     bool environment = false;  ///< the map, its rotation or scale
