@@ -35,13 +35,15 @@ public:
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
 {
+    static gi::ImportedFiles notes;
     static Assimp::Importer importer;
     static TwoFiles* files = nullptr;
     if (files == nullptr) {
-        gi::ObjImporter::replace_in(importer);
+        gi::ObjImporter::replace_in(importer, notes);
         importer.SetIOHandler(files = new TwoFiles); // the importer takes ownership
     }
     std::string_view const all(reinterpret_cast<char const*>(data), size);
+    notes = {};
     files->obj = all.substr(0, all.find('\0'));
     files->mtl = all.substr(std::min(all.size(), files->obj.size() + 1));
     constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices;

@@ -88,6 +88,85 @@ TEST_F(AssimpFolder, MtlBecomesPhongThatKeepsEnergy)
     EXPECT_EQ(lost("materials that reflect more than they receive, scaled down"), 1u);
 }
 
+/// What u, v of the file becomes in the texture: v upwards.
+vec2 placed(TextureRef const& ref, vec2 uv)
+{
+    vec2 const ours{uv.x, 1 - uv.y};
+    return {glm::dot(ref.row_u, ours) + ref.offset.x, 1 - (glm::dot(ref.row_v, ours) + ref.offset.y)};
+}
+
+TEST_F(AssimpFolder, MapsOfMtlAreScaledMovedAndClamped)
+{
+    for (char const* const name : {"t.png", "two words.png"})
+        cv::imwrite((folder_ / name).string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar(10, 20, 30)));
+    struct Case {
+        char const* options;
+        vec2 scale, offset;
+        bool clamped;
+    };
+    for (auto const& [options, scale, offset, clamped] :
+         {Case{"t.png", {1, 1}, {0, 0}, false}, Case{"-s 2 2 1 t.png", {2, 2}, {0, 0}, false},
+          Case{"-s 2 3 t.png", {2, 3}, {0, 0}, false}, Case{"-s 2 t.png", {2, 1}, {0, 0}, false},
+          Case{"-o 0.25 .5 0 t.png", {1, 1}, {0.25f, 0.5f}, false},
+          Case{"-o 0.25 -s 4 0.5 1 -clamp on t.png", {4, 0.5f}, {0.25f, 0}, true},
+          Case{"-clamp off t.png", {1, 1}, {0, 0}, false},
+          Case{"t.png -s 2 2 -o -0.5 +1", {2, 2}, {-0.5f, 1}, false}, Case{"two words.png", {1, 1}, {0, 0}, false},
+          Case{"-s -1 1 1 two words.png -clamp on", {-1, 1}, {0, 0}, true},
+          Case{"\"two words.png\"", {1, 1}, {0, 0}, false}}) {
+        Material const m = load_material(std::string("Kd 1 1 1\nmap_Kd ") + options + "\n");
+        ASSERT_GE(m.base_color_map.texture, 0) << options;
+        Texture const& t = textures_.textures.at(std::size_t(m.base_color_map.texture));
+        EXPECT_EQ(t.wrap_u, clamped ? Wrap::clamp : Wrap::repeat) << options;
+        EXPECT_EQ(t.wrap_v, clamped ? Wrap::clamp : Wrap::repeat) << options;
+        for (vec2 const uv : {vec2{0, 0}, vec2{1, 0}, vec2{0, 1}, vec2{0.3f, 0.7f}})
+            EXPECT_LT(glm::length(placed(m.base_color_map, uv) - (scale * uv + offset)), 1e-6f) << options;
+    }
+    EXPECT_TRUE(report_.losses().empty()) << report_.losses().begin()->first;
+}
+
+TEST_F(AssimpFolder, APictureThatRepeatsInTwoWaysIsDecodedOnce)
+{
+    cv::imwrite((folder_ / "t.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar(10, 20, 30)));
+    Material const m = load_material("Kd 1 1 1\nKe 1 1 1\nmap_Kd -clamp on t.png\nmap_Ke t.png\n");
+    Texture const& kd = textures_.textures.at(std::size_t(m.base_color_map.texture));
+    Texture const& ke = textures_.textures.at(std::size_t(m.emissive_map.texture));
+    EXPECT_EQ(kd.first, ke.first);
+    EXPECT_EQ(kd.wrap_u, Wrap::clamp);
+    EXPECT_EQ(ke.wrap_u, Wrap::repeat);
+}
+
+TEST_F(AssimpFolder, OptionsOfMapsWithoutAnEquivalentAreNamed)
+{
+    cv::imwrite((folder_ / "t.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar(10, 20, 30)));
+    std::string const what = "options of texture maps without an equivalent, dropped";
+    std::uint64_t before = 0;
+    for (char const* const option :
+         {"-t 0.1 0.1", "-mm 0 2", "-mm 0.5", "-bm 2", "-boost 3", "-texres 512", "-blendu off", "-blendv off",
+          "-cc on", "-imfchan r", "-type sphere", "-turn 3", "-colorspace linear", "-clamp"}) {
+        EXPECT_GE(load_material(std::string("Kd 1 1 1\nmap_Kd ") + option + " t.png\n").base_color_map.texture, 0)
+            << option;
+        EXPECT_EQ(lost(what), ++before) << option;
+    }
+    EXPECT_EQ(report_.losses().at(what).first, (folder_ / "m.mtl").string() + ":3: map_Kd -t 0.1 0.1");
+    for (char const* const option : {"-t 0 0 0", "-mm 0 1", "-bm 1.0", "-boost 0", "-blendu on", "-cc off"})
+        EXPECT_GE(load_material(std::string("Kd 1 1 1\nmap_Kd ") + option + " t.png\n").base_color_map.texture, 0)
+            << option;
+    EXPECT_EQ(lost(what), before) << "options that change nothing";
+    EXPECT_EQ(load_material("Kd 1 1 1\nnorm -bm 0.5 t.png\n").normal_scale, 0.5f);
+    EXPECT_EQ(lost(what), before);
+}
+
+TEST_F(AssimpFolder, StatementsOfMtlWithoutAnEquivalentAreNamed)
+{
+    load_material("Ka 1 1 1\nKd 0.5 0.5 0.5\nPs 0.0\nPc 0\nsharpness 60\n# a comment\n");
+    EXPECT_TRUE(report_.losses().empty()) << report_.losses().begin()->first;
+    EXPECT_EQ(load_material("Kd spectral a.rfl\nPs 0.5\ndecal t.png\nmap_Tr t.png\n").base_color, vec3{0.6f});
+    EXPECT_EQ(lost("colours of MTL that are not three numbers, skipped"), 1u);
+    EXPECT_EQ(lost("statements of MTL without an equivalent, skipped"), 3u);
+    vec3 const white = load_material("Kd xyz 0.4752 0.5 0.5445\n").base_color; // D65
+    EXPECT_LT(glm::length(white - vec3{0.5f}), 0.002f);
+}
+
 TEST_F(AssimpFolder, MtlWithoutShineIsDiffuse)
 {
     Material const m = load_material("Kd 0.5 0.5 0.5\nKs 0 0 0\nNs 10\n");
@@ -129,6 +208,25 @@ TEST_F(AssimpFolder, MapsAreReadAndMasksBecomeAlpha)
     EXPECT_EQ(std::vector<int>({right.r, right.g, right.b, right.a}), std::vector<int>({30, 20, 10, 255}));
 }
 
+/// A picture of 2 x 2 texels whose channels are known.
+TEST_F(AssimpFolder, ChannelsOfOpacityMaps)
+{
+    cv::imwrite((folder_ / "rgba.png").string(), cv::Mat(2, 2, CV_8UC4, cv::Scalar(30, 20, 10, 40))); // BGRA
+    struct Case {
+        char const* map;
+        int alpha;
+    };
+    for (auto const& [map, alpha] : {Case{"map_d -imfchan r rgba.png", 10}, Case{"map_d -imfchan g rgba.png", 20},
+                                     Case{"map_d -imfchan b rgba.png", 30}, Case{"map_d -imfchan m rgba.png", 40},
+                                     Case{"map_d -imfchan l rgba.png", 19}, Case{"map_d rgba.png", 19},
+                                     Case{"map_Kd rgba.png\nmap_d rgba.png", 40}}) {
+        Material const m = load_material(std::string("Kd 1 1 1\n") + map + "\n");
+        EXPECT_EQ(textures_.texels[textures_.textures.at(std::size_t(m.base_color_map.texture)).first].a, alpha)
+            << map;
+        EXPECT_EQ(m.alpha_mode, AlphaMode::mask) << map;
+    }
+}
+
 TEST_F(AssimpFolder, MissingTexturesAreCounted)
 {
     EXPECT_EQ(load_material("Kd 1 1 1\nmap_Kd nowhere.png\n").base_color_map.texture, -1);
@@ -148,6 +246,54 @@ TEST_F(AssimpFolder, MissingMaterialLibrariesAreCounted)
     write("a.mtl", "newmtl m\nKd 1 1 1\n");
     load("a.obj", "mtllib a.mtl\n" + triangle);
     EXPECT_EQ(lost(what), 2u);
+}
+
+/// The colour of a triangle of the material m.
+vec3 color_of_m(Scene const& scene)
+{
+    return scene.materials.at(std::size_t(scene.meshes.at(0).material)).base_color;
+}
+
+TEST_F(AssimpFolder, WhichMaterialLibraryIsTaken)
+{
+    vec3 const one{1, 0, 0}, two{0, 1, 0}, own{0, 0, 1}, grey{0.6f};
+    write("one.mtl", "newmtl m\nKd 1 0 0\nnewmtl x\nKd 1 1 1\n");
+    write("two.mtl", "newmtl m\nKd 0 1 0\n");
+    write("none.mtl", "newmtl x\nKd 1 1 1\n");
+    write("two words.mtl", "newmtl m\nKd 0 1 0\n");
+    struct Case {
+        char const* statements;
+        vec3 color;
+        std::uint64_t other, unread, again, unknown; ///< see below
+    };
+    auto const check = [&](Case const& c, std::string const& obj) {
+        Report fresh;
+        Scene const scene = load_scene(
+            write(obj, std::string(c.statements) + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"), fresh);
+        EXPECT_EQ(color_of_m(scene), c.color) << c.statements;
+        auto const losses = fresh.losses();
+        auto const count = [&](char const* what) { return losses.contains(what) ? losses.at(what).count : 0; };
+        EXPECT_EQ(count("material libraries not found, another one taken"), c.other) << c.statements;
+        EXPECT_EQ(count("material libraries that could not be read"), c.unread) << c.statements;
+        EXPECT_EQ(count("materials of a library that an earlier one has: the first is taken"), c.again)
+            << c.statements;
+        EXPECT_EQ(count("materials that no library has, taken as grey"), c.unknown) << c.statements;
+    };
+    for (Case const& c :
+         {Case{"mtllib one.mtl", one, 0, 0, 0, 0}, Case{"mtllib one.mtl two.mtl", one, 0, 0, 1, 0},
+          Case{"mtllib two.mtl one.mtl", two, 0, 0, 1, 0}, Case{"mtllib none.mtl two.mtl", two, 0, 0, 0, 0},
+          Case{"mtllib none.mtl\nmtllib two.mtl", two, 0, 0, 0, 0},
+          Case{"mtllib two.mtl\nmtllib two.mtl two.mtl", two, 0, 0, 0, 0},
+          Case{"mtllib two words.mtl", two, 0, 0, 0, 0}, Case{"mtllib none.mtl two words.mtl", two, 0, 0, 0, 0},
+          Case{"mtllib \"two words.mtl\" one.mtl", two, 0, 0, 1, 0},
+          Case{"mtllib gone.mtl two.mtl", two, 0, 1, 0, 0}, Case{"mtllib C:\\my\\two.mtl", two, 1, 0, 0, 0},
+          Case{"mtllib gone.mtl", grey, 0, 1, 0, 1}, Case{"mtllib none.mtl", grey, 0, 0, 0, 1},
+          Case{"", grey, 0, 0, 0, 1}})
+        check(c, "thing.obj");
+    write("thing.mtl", "newmtl m\nKd 0 0 1\n");
+    for (Case const& c : {Case{"mtllib gone.mtl", own, 1, 0, 0, 0}, Case{"mtllib none.mtl", grey, 0, 0, 0, 1},
+                          Case{"", grey, 0, 0, 0, 1}})
+        check(c, "thing.obj");
 }
 
 /// A pipe that nobody writes to would be waited for without end.
@@ -173,12 +319,18 @@ TEST_F(AssimpFolder, HeadersWithoutAnEndAreRefusedAtOnce)
     EXPECT_LT(processor_s() - begun_s, 2);
 }
 
-/// The reader looks for each of the vertices, though the file has ended.
+/// For each of its bones, the reader of SMD looks through all of them.
 TEST_F(AssimpFolder, AReaderThatTakesTooLongIsEnded)
 {
-    std::string const why =
-        refusal(write("a.ply", "ply\nformat ascii 1.0\nelement vertex 60000000\nproperty float x\n"
-                               "property float y\nproperty float z\nend_header\n0 0 0\n"));
+    constexpr int kBones = 90000;
+    std::string text = "version 1\nnodes\n", poses;
+    for (int b = 0; b < kBones; ++b) {
+        text += std::to_string(b) + " \"b\" -1\n";
+        poses += std::to_string(b) + " 0 0 0 0 0 0\n";
+    }
+    text += "end\nskeleton\ntime 0\n" + poses +
+            "end\ntriangles\nm\n0 0 0 0 0 0 1 0 0\n0 1 0 0 0 0 1 0 0\n0 0 1 0 0 0 1 0 0\nend\n";
+    std::string const why = refusal(write("a.smd", text));
     EXPECT_NE(why.find("did not finish in"), std::string::npos) << why;
 }
 

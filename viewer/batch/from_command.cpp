@@ -18,8 +18,7 @@ namespace fs = std::filesystem;
 
 bool stands_alone(fs::path const& file)
 {
-    static std::set<std::string> const kAlone{".glb", ".ply", ".stl", ".hdr", ".exr",
-                                              ".png", ".jpg", ".csv", ".json"};
+    static std::set<std::string> const kAlone{".glb", ".stl", ".hdr", ".exr", ".png", ".jpg", ".csv", ".json"};
     return kAlone.contains(file.extension().string());
 }
 

@@ -8,8 +8,7 @@
 #include "gi/scene/load/assimp_reader.h"
 #include "gi/scene/load/assimp_trial.h"
 #include "gi/scene/load/load.h"
-
-#include <strings.h>
+#include "gi/scene/load/mesh_frames.h"
 
 namespace gi {
 
@@ -44,13 +43,17 @@ std::vector<std::string> assimp_extensions()
     return all;
 }
 
-void lose_material_libraries(std::filesystem::path const& file, ImportedFiles const& files, Report& report)
+void ImportedFiles::lose(std::string const& what, std::uint64_t count, std::string const& where)
 {
-    if (files.missing.empty() || strcasecmp(file.extension().c_str(), ".obj") != 0) return;
-    // For each missing library, Assimp also tries one with the OBJ file's own name.
-    std::set<std::string> named = files.missing;
-    if (named.size() > 1) named.erase(std::filesystem::path(file).replace_extension("mtl").string());
-    report.lose("material libraries that could not be read", named.size(), *named.begin());
+    if (count == 0) return;
+    Report::Loss& loss = losses[what];
+    if (loss.count == 0) loss.first = where;
+    loss.count += count;
+}
+
+void ImportedFiles::pass_on_losses(Report& report) const
+{
+    for (auto const& [what, loss] : losses) report.lose(what, loss.count, loss.first);
 }
 
 Scene load_assimp(std::filesystem::path const& file, Report& report)
@@ -59,7 +62,9 @@ Scene load_assimp(std::filesystem::path const& file, Report& report)
     ImportedFiles const files = import_assimp(
         file, AssimpFaces::merged, [&](aiScene const& source) { scene = convert_assimp(source, file, report); });
     scene.files.insert(scene.files.end(), files.opened.begin(), files.opened.end());
-    lose_material_libraries(file, files, report);
+    files.pass_on_losses(report);
+    for (Mesh& mesh : scene.meshes)
+        if (!mesh.colors.empty() || !mesh.uv1.empty()) join_equal_vertices(mesh); // Assimp did not
     return scene;
 }
 

@@ -17,6 +17,15 @@ dmat4 to_matrix(aiMatrix4x4 const& m)
     return out;
 }
 
+/// Vertex colours of these formats are as monitors show them (three.js and Blender read them so too).
+vec3 decoded_srgb(vec3 v)
+{
+    auto const decoded = [](float s) {
+        return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+    };
+    return {decoded(v.x), decoded(v.y), decoded(v.z)};
+}
+
 class Converter {
 public:
     Converter(aiScene const& source, std::filesystem::path const& file, Report& report)
@@ -117,9 +126,12 @@ private:
             for (unsigned i = 0; i < n; ++i) {
                 aiColor4D const c = source.mColors[0][i];
                 vec3 const rgb{c.r, c.g, c.b};
-                mesh.colors.push_back(all_finite(rgb) ? glm::clamp(rgb, vec3{0}, vec3{1}) : vec3{1});
-                if (mesh.colors.back() != rgb) report_.lose("vertex colours not within 0..1, clamped", 1, where_);
+                vec3 const clamped = all_finite(rgb) ? glm::clamp(rgb, vec3{0}, vec3{1}) : vec3{1};
+                if (clamped != rgb) report_.lose("vertex colours not within 0..1, clamped", 1, where_);
+                if (c.a < 1) report_.lose("vertices with an alpha of their own, taken as opaque", 1, where_);
+                mesh.colors.push_back(decoded_srgb(clamped));
             }
+        if (!mesh.colors.empty() && mesh.material < 0) mesh.material = white();
         for (unsigned f = 0; f < source.mNumFaces; ++f) {
             aiFace const& face = source.mFaces[f];
             if (face.mNumIndices != 3) {
@@ -135,6 +147,20 @@ private:
         auto const index = std::int32_t(scene_.meshes.size());
         if (source.HasBones()) add_bones(source, mesh, index);
         scene_.meshes.push_back(std::move(mesh));
+    }
+
+    /// The material of meshes that have colours and no material: their colours are the albedo.
+    std::int32_t white()
+    {
+        if (white_ < 0) {
+            Material m;
+            m.base_color = vec3{1};
+            m.specular = 0;
+            white_ = std::int32_t(scene_.materials.size());
+            scene_.materials.push_back(m);
+            scene_.material_names.push_back("vertex colours");
+        }
+        return white_;
     }
 
     void add_bones(aiMesh const& source, Mesh& mesh, std::int32_t index)
@@ -270,6 +296,7 @@ private:
     Scene scene_;
     std::string where_;
     NodeOfName node_of_;
+    std::int32_t white_ = -1;
 };
 
 } // namespace

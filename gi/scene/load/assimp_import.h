@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,14 +16,20 @@ namespace gi {
 
 /// Processing of the faces and vertices of a file.
 enum class AssimpFaces : unsigned char {
-    merged,    ///< triangles, equal vertices joined: for single models
+    merged,    ///< triangles, equal vertices joined unless the file has colours or second texture coordinates
     triangles, ///< triangles, vertices not joined: which of them are equal may differ between frames
     polygons,  ///< as `triangles` but not triangulated: the triangulation of a polygon depends on its shape
 };
 
-/// Files opened or missing during an import: the file itself and those it refers to, such as material libraries.
+/// Files opened during an import (the file itself and those it refers to, such as material libraries), and what our
+/// own readers could not take from them.
 struct ImportedFiles {
-    std::set<std::string> opened, missing;
+    std::set<std::string> opened;
+    std::map<std::string, Report::Loss> losses; ///< by what was lost
+
+    /// As Report::lose.
+    void lose(std::string const& what, std::uint64_t count, std::string const& where);
+    void pass_on_losses(Report& report) const;
 };
 
 /// Imports a file and passes it to `use`. Throws InputError if it cannot be read within limits of time and memory.
@@ -31,8 +38,5 @@ ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces
 
 /// Endings of the files that Assimp reads, lower case with the dot.
 std::vector<std::string> assimp_extensions();
-
-/// Counts the missing material libraries of an OBJ file.
-void lose_material_libraries(std::filesystem::path const& file, ImportedFiles const& files, Report& report);
 
 } // namespace gi

@@ -67,6 +67,7 @@ public:
         if (m.base_color_map.texture >= 0 && m.base_color == vec3{0}) m.base_color = vec3{1};
         m.emissive_map = texture(source, aiTextureType_EMISSIVE, true);
         m.normal_map = texture(source, aiTextureType_NORMALS, false);
+        source.Get(kTextureStrength, aiTextureType_NORMALS, 0, m.normal_scale);
         bool const mask = source.GetTextureCount(aiTextureType_OPACITY) > 0;
         if (mask) {
             m.alpha_mode = AlphaMode::mask;
@@ -147,26 +148,97 @@ private:
         scene_.files.push_back(name);
         return bytes;
     }
+    /// @return an index into the pool; -1 if the picture cannot be read
+    std::int32_t picture(std::string const& path, bool srgb, Wrap u, Wrap v)
+    {
+        std::vector<Texture>& all = scene_.textures.textures;
+        auto [it, fresh] = textures_.try_emplace({path, srgb}, -1);
+        if (fresh) at_step("textures decoded", textures_.size() - 1);
+        if (fresh) try {
+                std::string name;
+                std::vector<unsigned char> const bytes = texture_bytes(path, name);
+                it->second = add_texture(scene_.textures, bytes.data(), bytes.size(), srgb, name);
+                all.back().wrap_u = u;
+                all.back().wrap_v = v;
+            } catch (InputError const& e) {
+                report_.lose("textures that could not be read", 1, e.what());
+            }
+        if (it->second < 0) return -1;
+        Texture wanted = all[std::size_t(it->second)]; // one that repeats otherwise shares its texels
+        wanted.wrap_u = u;
+        wanted.wrap_v = v;
+        auto const found = std::ranges::find_if(all, [&](Texture const& t) {
+            return t.first == wanted.first && t.srgb == srgb && t.wrap_u == u && t.wrap_v == v;
+        });
+        if (found != all.end()) return std::int32_t(found - all.begin());
+        all.push_back(wanted);
+        return std::int32_t(all.size()) - 1;
+    }
+
+    Wrap wrap_of(aiTextureMapMode mode)
+    {
+        if (mode == aiTextureMapMode_Decal)
+            report_.lose("textures that are to end at their edge: it goes on", 1, where_);
+        return mode == aiTextureMapMode_Mirror ? Wrap::mirror
+               : mode == aiTextureMapMode_Wrap ? Wrap::repeat
+                                               : Wrap::clamp;
+    }
+
     TextureRef texture(aiMaterial const& source, aiTextureType type, bool srgb)
     {
         TextureRef ref;
         aiString path;
         unsigned uv_set = 0;
-        if (source.GetTexture(type, 0, &path, nullptr, &uv_set) != AI_SUCCESS) return ref;
-        auto const key = std::pair(std::string(path.C_Str()), srgb);
-        auto [it, fresh] = textures_.try_emplace(key, -1);
-        if (fresh) at_step("textures decoded", textures_.size() - 1);
-        if (fresh) try {
-                std::string name;
-                std::vector<unsigned char> const bytes = texture_bytes(path.C_Str(), name);
-                it->second = add_texture(scene_.textures, bytes.data(), bytes.size(), srgb, name);
-            } catch (InputError const& e) {
-                report_.lose("textures that could not be read", 1, e.what());
-            }
-        ref.texture = it->second;
+        aiTextureMapping mapping = aiTextureMapping_UV;
+        aiTextureMapMode modes[3]{aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+        if (source.GetTexture(type, 0, &path, &mapping, &uv_set, nullptr, nullptr, modes) != AI_SUCCESS)
+            return ref;
+        if (source.GetTextureCount(type) > 1)
+            report_.lose("texture maps after the first of their kind, ignored", source.GetTextureCount(type) - 1,
+                         where_);
+        if (mapping != aiTextureMapping_UV)
+            report_.lose("textures without texture coordinates (on spheres, boxes, ...): by those of the mesh", 1,
+                         where_);
+        ref.texture = picture(path.C_Str(), srgb, wrap_of(modes[0]), wrap_of(modes[1]));
         ref.uv_set = uv_set == 1 ? 1 : 0;
+        if (aiUVTransform t; source.Get(AI_MATKEY_UVTRANSFORM(type, 0), t) == AI_SUCCESS) place(ref, t);
         return ref;
     }
+
+    /// Assimp's transform (TextureTransform.h: turned, then scaled, then moved; v upwards) for our v downwards.
+    void place(TextureRef& ref, aiUVTransform const& t)
+    {
+        float const c = std::cos(t.mRotation), s = std::sin(t.mRotation);
+        vec2 const row_u = t.mScaling.x * vec2{c, -s}, row_v = t.mScaling.y * vec2{s, c};
+        vec2 const offset{t.mTranslation.x, t.mTranslation.y};
+        // v = 1 - w: u' = a u + b (1 - w) + ..., w' = 1 - v'
+        if (!all_finite(vec3{row_u, offset.x}) || !all_finite(vec3{row_v, offset.y})) {
+            report_.lose("textures placed by numbers that are not finite, placed as they are", 1, where_);
+            return;
+        }
+        // With w = 1 - v: u' = row_u . (u, 1 - w) + offset.x, w' = 1 - v'.
+        ref.row_u = {row_u.x, -row_u.y};
+        ref.row_v = {-row_v.x, row_v.y};
+        ref.offset = {offset.x + row_u.y, 1 - offset.y - row_v.y};
+    }
+
+    static unsigned char channel_of(Rgba8 c, int channel)
+    {
+        switch (channel) {
+        case 'r':
+            return c.r;
+        case 'g':
+            return c.g;
+        case 'b':
+            return c.b;
+        case 'm':
+            return c.a;
+        default: // luminance by Rec. 709
+            return static_cast<unsigned char>(0.2126f * float(c.r) + 0.7152f * float(c.g) + 0.0722f * float(c.b) +
+                                              0.5f);
+        }
+    }
+
     /// Stores the brightness of an opacity map in the alpha of the base colour.
     void add_mask(aiMaterial const& source, Material& m)
     {
@@ -175,25 +247,53 @@ private:
         TexturePool& pool = scene_.textures;
         Texture combined = pool.textures[std::size_t(mask.texture)];
         Texture const from = combined;
-        Texture const* color =
-            m.base_color_map.texture >= 0 ? &pool.textures[std::size_t(m.base_color_map.texture)] : nullptr;
-        if (color != nullptr && color->first == from.first) return; // same picture, which has its own alpha
+        bool const has_color = m.base_color_map.texture >= 0;
+        Texture const color = has_color ? pool.textures[std::size_t(m.base_color_map.texture)] : Texture{};
+        int channel = 0;
+        source.Get(kTextureChannel, aiTextureType_OPACITY, 0, channel);
+        if (has_color && is_same_picture(source) && (channel == 'm' || (channel == 0 && has_alpha(from)))) return;
+        TextureRef placed = mask;
+        placed.texture = m.base_color_map.texture;
+        if (has_color &&
+            (placed != m.base_color_map || color.wrap_u != from.wrap_u || color.wrap_v != from.wrap_v))
+            report_.lose("opacity maps placed otherwise than their colour maps: placed as these", 1, where_);
+        if (has_color) {
+            placed = m.base_color_map;
+            combined.wrap_u = color.wrap_u;
+            combined.wrap_v = color.wrap_v;
+        }
         combined.first = pool.texels.size();
         combined.srgb = true;
         for (std::uint32_t y = 0; y < from.height; ++y)
             for (std::uint32_t x = 0; x < from.width; ++x) {
-                Rgba8 texel{255, 255, 255, pool.texels[from.first + std::uint64_t(y) * from.width + x].r};
-                if (color != nullptr) {
-                    std::uint64_t const cx = std::uint64_t(x) * color->width / from.width,
-                                        cy = std::uint64_t(y) * color->height / from.height;
-                    Rgba8 const c = pool.texels[color->first + cy * color->width + cx];
+                Rgba8 const m_texel = pool.texels[from.first + std::uint64_t(y) * from.width + x];
+                Rgba8 texel{255, 255, 255, channel_of(m_texel, channel)};
+                if (has_color) {
+                    std::uint64_t const cx = std::uint64_t(x) * color.width / from.width,
+                                        cy = std::uint64_t(y) * color.height / from.height;
+                    Rgba8 const c = pool.texels[color.first + cy * color.width + cx];
                     texel = {c.r, c.g, c.b, texel.a};
                 }
                 pool.texels.push_back(texel);
             }
         pool.textures.push_back(combined);
-        m.base_color_map = mask;
+        m.base_color_map = placed;
         m.base_color_map.texture = std::int32_t(pool.textures.size()) - 1;
+    }
+
+    bool has_alpha(Texture const& t) const
+    {
+        Rgba8 const* const first = scene_.textures.texels.data() + t.first;
+        return std::any_of(first, first + std::uint64_t(t.width) * t.height, [](Rgba8 c) { return c.a != 255; });
+    }
+    /// True if the colour map is the opacity map too, so that it has its alpha.
+    static bool is_same_picture(aiMaterial const& source)
+    {
+        aiString mask, color;
+        source.GetTexture(aiTextureType_OPACITY, 0, &mask);
+        if (source.GetTexture(aiTextureType_DIFFUSE, 0, &color) != AI_SUCCESS)
+            source.GetTexture(aiTextureType_BASE_COLOR, 0, &color);
+        return mask == color;
     }
 
     aiScene const& source_;

@@ -12,6 +12,10 @@
 
 namespace gi {
 
+/// Keys of maps that Assimp's own importers have not, or not for all formats: how strong normals are (glTF's
+/// scale), and the channel of an opacity map ('r', 'g', 'b', 'm' = alpha, 'l' = luminance; 0 = not stated).
+inline constexpr char const *kTextureStrength = "$tex.scale", *kTextureChannel = "$tex.lightwell.channel";
+
 /// Our node indices by the names by which Assimp refers to them; of equal names, the first node.
 using NodeOfName = std::map<std::string, std::int32_t>;
 

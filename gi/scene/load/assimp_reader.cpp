@@ -1,7 +1,9 @@
 #include "gi/scene/load/assimp_reader.h"
 
 #include "gi/scene/load/obj/obj_importer.h"
+#include "gi/scene/load/ply/ply_importer.h"
 
+#include <algorithm>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -25,7 +27,7 @@ public:
     Assimp::IOStream* Open(char const* file, char const* mode) override
     {
         Assimp::IOStream* stream = Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
-        (stream != nullptr ? files_.opened : files_.missing).insert(file);
+        if (stream != nullptr) files_.opened.insert(file);
         return stream;
     }
 
@@ -36,15 +38,22 @@ private:
 unsigned steps(AssimpFaces faces)
 {
     if (faces == AssimpFaces::polygons) return 0;
-    unsigned const cut = aiProcess_Triangulate | aiProcess_SortByPType;
-    return faces == AssimpFaces::merged ? cut | aiProcess_JoinIdenticalVertices : cut;
+    return aiProcess_Triangulate | aiProcess_SortByPType;
+}
+
+/// Assimp 5.2 joins vertices of different colours, or second texture coordinates (JoinVerticesProcess compares neither).
+bool can_be_joined(aiScene const& scene)
+{
+    return std::none_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes,
+                        [](aiMesh const* mesh) { return mesh->HasVertexColors(0) || mesh->HasTextureCoords(1); });
 }
 
 } // namespace
 
 AssimpReader::AssimpReader()
 {
-    ObjImporter::replace_in(importer_);
+    ObjImporter::replace_in(importer_, files_);
+    PlyImporter::replace_in(importer_, files_);
     importer_.SetIOHandler(new NotingFiles(files_)); // the importer takes ownership
     importer_.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer_.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
@@ -55,7 +64,10 @@ std::string AssimpReader::read(fs::path const& file, AssimpFaces faces)
 {
     files_ = {};
     try {
-        if (importer_.ReadFile(file.string(), steps(faces)) != nullptr) return {};
+        aiScene const* scene = importer_.ReadFile(file.string(), steps(faces));
+        if (scene != nullptr && faces == AssimpFaces::merged && can_be_joined(*scene))
+            scene = importer_.ApplyPostProcessing(aiProcess_JoinIdenticalVertices);
+        if (scene != nullptr) return {};
         std::string const reason = importer_.GetErrorString();
         return reason.empty() ? "Assimp reports no reason" : reason;
     } catch (std::exception const& e) {

@@ -13,7 +13,7 @@ public:
     /// Imports a file; the scene of an earlier one is gone. @returns why it cannot be imported; empty = it can
     std::string read(std::filesystem::path const& file, AssimpFaces faces);
     aiScene const& scene() const { return *importer_.GetScene(); }
-    /// Files that the last import opened or missed.
+    /// Files that the last import opened, and what it lost.
     ImportedFiles const& files() const { return files_; }
 
 private:

@@ -95,4 +95,32 @@ std::vector<std::uint32_t> first_equal_vertices(std::size_t count, std::vector<V
     return first;
 }
 
+void join_equal_vertices(Mesh& mesh)
+{
+    std::vector<VertexBytes> attributes;
+    auto const for_attributes = [&](auto const& use) {
+        use(mesh.positions);
+        use(mesh.normals);
+        use(mesh.tangents);
+        use(mesh.uv0);
+        use(mesh.uv1);
+        use(mesh.colors);
+        use(mesh.joints);
+        use(mesh.weights);
+    };
+    for_attributes([&](auto const& a) {
+        if (!a.empty()) attributes.push_back({reinterpret_cast<unsigned char const*>(a.data()), sizeof a[0]});
+    });
+    std::vector<std::uint32_t> const first = first_equal_vertices(mesh.positions.size(), attributes);
+    std::vector<std::uint32_t> place(first.size());
+    std::uint32_t kept = 0;
+    for (std::uint32_t v = 0; v < first.size(); ++v) place[v] = first[v] == v ? kept++ : place[first[v]];
+    for_attributes([&](auto& a) {
+        if (a.empty()) return;
+        for (std::uint32_t v = 0; v < first.size(); ++v) a[place[v]] = a[v];
+        a.resize(kept);
+    });
+    for (uvec3& t : mesh.triangles) t = {place[t.x], place[t.y], place[t.z]};
+}
+
 } // namespace gi

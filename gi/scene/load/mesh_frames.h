@@ -1,7 +1,7 @@
 #pragma once
 // Frames of a mesh sequence as read from files, before they are converted to a scene.
 
-#include "gi/core/math.h"
+#include "gi/scene/model/scene.h"
 
 #include <filesystem>
 #include <string>
@@ -38,5 +38,8 @@ struct VertexBytes {
 
 /// Returns for every vertex the first vertex that is equal in all attributes.
 std::vector<std::uint32_t> first_equal_vertices(std::size_t count, std::vector<VertexBytes> const& attributes);
+
+/// Joins vertices of a mesh without morph targets whose attributes are equal, byte by byte.
+void join_equal_vertices(Mesh& mesh);
 
 } // namespace gi

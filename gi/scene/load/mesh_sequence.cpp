@@ -80,7 +80,7 @@ public:
         ImportedFiles const first_files =
             import_assimp(files_[0], AssimpFaces::triangles,
                           [&](aiScene const& source) { scene_ = convert_assimp(source, files_[0], report_); });
-        lose_material_libraries(files_[0], first_files, report_);
+        first_files.pass_on_losses(report_);
         scene_.name = folder_.string();
         SequenceFrame first = read_sequence_frame(files_[0]);
         bool same = first.meshes.size() == scene_.meshes.size();
@@ -106,7 +106,8 @@ public:
 private:
     void make_morphing(Mesh& mesh, std::vector<MeshFrame>& frames)
     {
-        bool const expanded = lower_extension(files_[0]) == ".obj"; // its reader creates a vertex for every corner
+        // The reader of OBJ creates a vertex for every corner, that of PLY if faces have texture coordinates.
+        bool const expanded = lower_extension(files_[0]) == ".obj" || !mesh.uv0.empty();
         std::vector<VertexBytes> attributes;
         if (expanded)
             for (MeshFrame const& f : frames) attributes.push_back(bytes_of(f.positions));

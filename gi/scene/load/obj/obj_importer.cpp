@@ -1,30 +1,22 @@
 #include "gi/scene/load/obj/obj_importer.h"
 
+#include "gi/scene/load/import_text.h"
+#include "gi/scene/load/obj/obj_libraries.h"
 #include "gi/scene/load/obj/obj_materials.h"
 #include "gi/scene/load/obj/obj_model.h"
 
+#include <algorithm>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 #include <filesystem>
-#include <optional>
 #include <stdexcept>
 
 namespace gi {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<std::string> text_of(std::string const& file, Assimp::IOSystem& files)
-{
-    auto const close = [&](Assimp::IOStream* stream) { files.Close(stream); };
-    std::unique_ptr<Assimp::IOStream, decltype(close)> const stream(files.Open(file.c_str()), close);
-    if (!stream) return std::nullopt;
-    std::string text(stream->FileSize(), '\0');
-    text.resize(stream->Read(text.data(), 1, text.size()));
-    return text;
-}
 
 aiVector3D vector_of(vec3 v) { return {v.x, v.y, v.z}; }
 aiColor4D color_of(vec3 v) { return {v.x, v.y, v.z, 1}; }
@@ -169,13 +161,13 @@ void convert(ObjModel const& model, std::string const& name, aiScene& scene)
 
 } // namespace
 
-void ObjImporter::replace_in(Assimp::Importer& importer)
+void ObjImporter::replace_in(Assimp::Importer& importer, ImportedFiles& notes)
 {
     if (Assimp::BaseImporter* const old = importer.GetImporter("obj")) {
         importer.UnregisterLoader(old);
         delete old;
     }
-    importer.RegisterLoader(new ObjImporter); // the importer takes ownership
+    importer.RegisterLoader(new ObjImporter(notes)); // the importer takes ownership
 }
 
 bool ObjImporter::CanRead(std::string const& file, Assimp::IOSystem* files, bool) const
@@ -193,19 +185,17 @@ aiImporterDesc const* ObjImporter::GetInfo() const
 
 void ObjImporter::InternReadFile(std::string const& file, aiScene* scene, Assimp::IOSystem* files)
 {
-    auto const text = text_of(file, *files);
+    auto const text = import_text(file, *files);
     if (!text) throw std::runtime_error("it cannot be opened");
-    ObjMaterials materials;
-    fs::path const folder = fs::path(file).parent_path();
-    ObjMaterialsOfFile const found{[&](std::string const& name) { return materials.index_of(name); },
-                                   [&](std::string const& library) {
-                                       auto mtl = text_of((folder / library).string(), *files);
-                                       if (!mtl)
-                                           mtl = text_of(fs::path(file).replace_extension("mtl").string(), *files);
-                                       if (mtl) materials.read(*mtl);
-                                   }};
-    ObjModel const model = read_obj(*text, found);
+    ObjMaterials materials(notes_);
+    ObjLibraries libraries(file, *files, materials, notes_);
+    ObjModel const model = read_obj(*text, {[&](std::string const& name) { return materials.index_of(name); },
+                                            [&](std::string const& names) { libraries.read(names); }});
     if (model.faces.empty()) throw std::runtime_error("it has no faces");
+    notes_.lose("points and lines skipped",
+                std::size_t(std::ranges::count_if(
+                    model.faces, [](ObjFace const& f) { return f.kind != ObjFace::Kind::polygon; })),
+                file);
     convert(model, fs::path(file).filename().string(), *scene);
     auto all = materials.take();
     scene->mMaterials = new aiMaterial*[all.size()];

@@ -1,7 +1,10 @@
 #include "gi/scene/load/obj/obj_materials.h"
 
 #include "gi/core/text.h"
+#include "gi/scene/load/assimp_parts.h"
+#include "gi/scene/load/obj/mtl_map.h"
 #include "gi/scene/load/obj/obj_text.h"
+#include "gi/scene/model/spectrum.h"
 
 #include <array>
 #include <assimp/ObjMaterial.h>
@@ -40,6 +43,16 @@ constexpr Map kMaps[]{{"map_kd", aiTextureType_DIFFUSE},        {"map_ka", aiTex
                       {"map_ns", aiTextureType_SHININESS},      {"map_pr", aiTextureType_DIFFUSE_ROUGHNESS},
                       {"map_pm", aiTextureType_METALNESS},      {"map_ps", aiTextureType_SHEEN}};
 
+constexpr Map kColorMaps[]{{"map_kd", aiTextureType_DIFFUSE},
+                           {"map_ke", aiTextureType_EMISSIVE},
+                           {"map_emissive", aiTextureType_EMISSIVE}};
+
+/// Statements that change no picture of traced light.
+struct Idle {
+    std::string_view word;
+};
+constexpr Idle kWithoutEffect[]{{"ka"}, {"sharpness"}, {"map_aat"}};
+
 template <class Entry, std::size_t n>
 Entry const* find(Entry const (&table)[n], std::string_view word)
 {
@@ -66,13 +79,19 @@ std::unique_ptr<aiMaterial> new_material(std::string const& name)
     return m;
 }
 
-/// Red, green and blue; one number alone is all three. Spectra are skipped.
-void read_color(aiMaterial& m, Key const& key, std::string_view values)
+/// Red, green and blue, or X, Y and Z behind "xyz"; one number alone is all three.
+/// @return false if there are none, as of spectra
+bool read_color(aiMaterial& m, Key const& key, std::string_view values)
 {
+    std::string_view behind = values;
+    bool const is_xyz = equals_caseless(take_word(behind), "xyz");
     std::array<float, 3> c{};
-    std::size_t const n = leading_numbers(values, c);
+    std::size_t const n = leading_numbers(is_xyz ? behind : values, c);
     if (n == 1) c[1] = c[2] = c[0];
-    if (n == 1 || n == 3) set(m, key, aiColor3D(c[0], c[1], c[2]));
+    if (n != 1 && n != 3) return false;
+    vec3 const read{c[0], c[1], c[2]}, rgb = is_xyz ? vec3(xyz_to_rec709(dvec3(read))) : read;
+    set(m, key, aiColor3D(rgb.x, rgb.y, rgb.z));
+    return true;
 }
 
 void read_number(aiMaterial& m, Key const& key, std::string_view values)
@@ -83,46 +102,44 @@ void read_number(aiMaterial& m, Key const& key, std::string_view values)
     if (leading_numbers(values, n) == 1) set(m, key, key.word == "tr" ? 1 - n[0] : n[0]);
 }
 
-/// What is left behind options such as `-o 1 1 1 -clamp on`.
-std::string_view without_options(std::string_view values)
+/// Places a map as its options say. A map that was set before is replaced.
+void read_map(aiMaterial& m, aiTextureType type, MtlMap const& map)
 {
-    constexpr std::string_view kWords[]{"-blendu", "-blendv",  "-boost",  "-bm",  "-cc",
-                                        "-clamp",  "-imfchan", "-texres", "-type"};
-    constexpr std::string_view kUpToThreeNumbers[]{"-o", "-s", "-t", "-mm"};
-    while (true) {
-        std::string_view rest = values;
-        std::string_view const word = take_word(rest);
-        if (std::ranges::any_of(kWords, [&](auto option) { return equals_caseless(word, option); }))
-            take_word(rest);
-        else if (std::ranges::any_of(kUpToThreeNumbers,
-                                     [&](auto option) { return equals_caseless(word, option); }))
-            for (int k = 0; k < 3; ++k) {
-                std::string_view after = rest;
-                if (!parse_number<float>(take_word(after))) break;
-                rest = after;
-            }
-        else
-            return trimmed(values);
-        values = rest;
+    aiString const file(map.file);
+    m.AddProperty(&file, AI_MATKEY_TEXTURE(type, 0));
+    for (char const* const key : {_AI_MATKEY_UVTRANSFORM_BASE, _AI_MATKEY_MAPPINGMODE_U_BASE,
+                                  _AI_MATKEY_MAPPINGMODE_V_BASE, kTextureStrength, kTextureChannel})
+        m.RemoveProperty(key, type, 0);
+    aiUVTransform placed;
+    placed.mScaling = {map.scale_u, map.scale_v};
+    placed.mTranslation = {map.offset_u, map.offset_v};
+    if (placed.mScaling != aiVector2D(1, 1) || placed.mTranslation != aiVector2D(0, 0))
+        m.AddProperty(&placed, 1, AI_MATKEY_UVTRANSFORM(type, 0));
+    if (int const mode = aiTextureMapMode_Clamp; map.clamped) {
+        m.AddProperty(&mode, 1, AI_MATKEY_MAPPINGMODE_U(type, 0));
+        m.AddProperty(&mode, 1, AI_MATKEY_MAPPINGMODE_V(type, 0));
     }
+    if (type == aiTextureType_NORMALS && map.bump != 1) m.AddProperty(&map.bump, 1, kTextureStrength, type, 0);
+    if (int const channel = map.channel; type == aiTextureType_OPACITY && channel != 0)
+        m.AddProperty(&channel, 1, kTextureChannel, type, 0);
 }
 
-void read_line(aiMaterial& m, std::string_view word, std::string_view values)
+bool is_zero(std::string_view values)
 {
-    if (Key const* const color = find(kColors, word)) return read_color(m, *color, values);
-    if (Key const* const number = find(kNumbers, word)) return read_number(m, *number, values);
-    if (equals_caseless(word, "illum")) {
-        if (auto const model = parse_number<int>(take_word(values)))
-            m.AddProperty(&*model, 1, AI_MATKEY_OBJ_ILLUM);
-    } else if (Map const* const map = find(kMaps, word)) {
-        aiString const file{std::string(without_options(values))};
-        if (file.length > 0) m.AddProperty(&file, AI_MATKEY_TEXTURE(map->type, 0));
+    while (true) {
+        std::string_view const word = take_word(values);
+        if (word.empty() || word.starts_with('#')) return true;
+        if (number_word(word).value_or(1) != 0) return false;
     }
 }
 
 } // namespace
 
-ObjMaterials::ObjMaterials() { index_of(AI_DEFAULT_MATERIAL_NAME); }
+ObjMaterials::ObjMaterials(ImportedFiles& notes) : notes_(notes)
+{
+    index_of(AI_DEFAULT_MATERIAL_NAME);
+    defined_.insert(AI_DEFAULT_MATERIAL_NAME);
+}
 ObjMaterials::~ObjMaterials() = default;
 
 unsigned ObjMaterials::index_of(std::string const& name)
@@ -132,19 +149,70 @@ unsigned ObjMaterials::index_of(std::string const& name)
     return at->second;
 }
 
-void ObjMaterials::read(std::string_view mtl)
+void ObjMaterials::read_line(aiMaterial& m, std::string_view word, std::string_view values,
+                             std::string const& where)
+{
+    if (Key const* const color = find(kColors, word)) {
+        if (!read_color(m, *color, values))
+            notes_.lose("colours of MTL that are not three numbers, skipped", 1, where);
+    } else if (Key const* const number = find(kNumbers, word)) {
+        read_number(m, *number, values);
+    } else if (equals_caseless(word, "illum")) {
+        if (auto const model = parse_number<int>(take_word(values)))
+            m.AddProperty(&*model, 1, AI_MATKEY_OBJ_ILLUM);
+    } else if (Map const* const map = find(kMaps, word)) {
+        MtlMap const read = read_mtl_map(values);
+        if (read.file.empty()) return;
+        read_map(m, map->type, read);
+        bool const is_scalar = map->type == aiTextureType_OPACITY;
+        std::vector<std::string> dropped = read.dropped;
+        if (read.bump != 1 && (find(kColorMaps, word) != nullptr || is_scalar)) dropped.push_back("-bm");
+        if (read.channel != 0 && !(is_scalar && read.channel != 'z'))
+            dropped.push_back(std::string("-imfchan ") + read.channel);
+        for (std::string const& option : dropped)
+            notes_.lose("options of texture maps without an equivalent, dropped", 1,
+                        where + " " + shortened(option, 60));
+    } else if (!find(kWithoutEffect, word) && !is_zero(values)) {
+        notes_.lose("statements of MTL without an equivalent, skipped", 1, where);
+    }
+}
+
+void ObjMaterials::read(std::string_view mtl, std::string const& file)
 {
     aiMaterial* current = nullptr;
+    bool is_before_first = true;
+    std::set<std::string> here;
     for (ObjLines lines(mtl); lines.next();) {
         std::string_view rest = lines.line();
         std::string_view const word = take_word(rest);
+        if (word.empty() || word.starts_with('#')) continue;
+        std::string const where =
+            file + ":" + std::to_string(lines.number()) + ": " + shortened(std::string(word), 60);
         if (equals_caseless(word, "newmtl")) {
-            std::string const name{trimmed(rest)};
-            current = all_[index_of(name.empty() ? AI_DEFAULT_MATERIAL_NAME : name)].get();
+            is_before_first = false;
+            std::string name{trimmed(rest)};
+            if (name.empty()) name = AI_DEFAULT_MATERIAL_NAME;
+            bool const is_known = defined_.contains(name) && name != AI_DEFAULT_MATERIAL_NAME;
+            current = is_known ? nullptr : all_[index_of(name)].get();
+            here.insert(name);
+            if (is_known)
+                notes_.lose("materials of a library that an earlier one has: the first is taken", 1,
+                            where + " " + shortened(name, 60));
         } else if (current != nullptr) {
-            read_line(*current, word, rest);
+            read_line(*current, word, rest, where);
+        } else if (is_before_first) {
+            notes_.lose("statements of MTL before the first material, skipped", 1, where);
         }
     }
+    defined_.merge(here);
+}
+
+std::vector<std::unique_ptr<aiMaterial>> ObjMaterials::take()
+{
+    for (auto const& [name, index] : by_name_)
+        if (!defined_.contains(name))
+            notes_.lose("materials that no library has, taken as grey", 1, shortened(name, 60));
+    return std::move(all_);
 }
 
 } // namespace gi

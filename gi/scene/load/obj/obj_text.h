@@ -16,6 +16,7 @@ public:
     /// @return false after the last one
     bool next();
     std::string_view line() const { return line_; }
+    std::size_t number() const { return number_; } ///< from 1
     /// "line 12: problem"
     std::string at(std::string const& problem) const;
 
