@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <assimp/material.h>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace gi {
 namespace {
@@ -51,22 +53,51 @@ public:
     }
 
 private:
-    /// FBX states its unit in centimetres and does not convert its numbers,
-    /// so all nodes are placed below a scaling node.
-    void add_unit_node()
+    /// FBX states its axes and its unit (in centimetres) and does not convert its numbers, so all nodes are placed
+    /// below one that does. Axes of the other hand mirror, which world.h follows by the winding of triangles.
+    void add_fbx_node()
+    {
+        if (!is_fbx()) return;
+        Node node;
+        node.name = "axes and unit";
+        node.matrix = axes_of_fbx() * glm::scale(dmat4(1), dvec3(unit_of_fbx_m()));
+        scene_.nodes.push_back(std::move(node));
+    }
+
+    bool is_fbx() const { return source_.mMetaData != nullptr && source_.mMetaData->HasKey("UnitScaleFactor"); }
+
+    double unit_of_fbx_m() const
     {
         float centimetres = 100;
-        if (source_.mMetaData == nullptr || !source_.mMetaData->Get("UnitScaleFactor", centimetres)) return;
-        if (!(centimetres > 1e-6f) || !(centimetres < 1e9f)) return;
-        Node node;
-        node.name = "unit";
-        node.scale = dvec3(0.01 * double(centimetres));
-        scene_.nodes.push_back(std::move(node));
+        if (double other = 0; source_.mMetaData->Get("UnitScaleFactor", other)) centimetres = float(other);
+        source_.mMetaData->Get("UnitScaleFactor", centimetres);
+        return centimetres > 1e-6f && centimetres < 1e9f ? 0.01 * double(centimetres) : 1;
+    }
+
+    /// CoordAxis is to the right, UpAxis up, FrontAxis towards the viewer: our x, y, z.
+    dmat4 axes_of_fbx()
+    {
+        auto const number = [&](char const* key, std::int32_t otherwise) {
+            source_.mMetaData->Get(key, otherwise);
+            return otherwise;
+        };
+        std::int32_t const axes[]{number("CoordAxis", 0), number("UpAxis", 1), number("FrontAxis", 2)};
+        std::int32_t const signs[]{number("CoordAxisSign", 1), number("UpAxisSign", 1),
+                                   number("FrontAxisSign", 1)};
+        dmat4 ours(0);
+        ours[3][3] = 1;
+        for (int row = 0; row < 3; ++row)
+            if (axes[row] >= 0 && axes[row] < 3) ours[axes[row]][row] = signs[row] < 0 ? -1 : 1;
+        if (std::abs(glm::determinant(ours)) == 1) return ours;
+        report_.lose(
+            "axes of FBX that are no three directions, taken as y up", 1,
+            fmt::format("{}: CoordAxis {}, UpAxis {}, FrontAxis {}", scene_.name, axes[0], axes[1], axes[2]));
+        return dmat4(1);
     }
 
     void add_nodes()
     {
-        add_unit_node();
+        add_fbx_node();
         struct Visit {
             aiNode const* node;
             std::int32_t parent;
@@ -79,7 +110,9 @@ private:
             Node node;
             node.name = v.node->mName.C_Str();
             node.parent = v.parent;
-            node.matrix = to_matrix(v.node->mTransformation);
+            // The root of FBX has no transform of its own, but Assimp 5.4 and later turn it by the axes.
+            bool const is_turned = v.node == source_.mRootNode && is_fbx();
+            node.matrix = is_turned ? dmat4(1) : to_matrix(v.node->mTransformation);
             for (unsigned i = 0; i < v.node->mNumMeshes; ++i)
                 node.meshes.push_back(std::int32_t(v.node->mMeshes[i]));
             node_of_.try_emplace(node.name, index);
