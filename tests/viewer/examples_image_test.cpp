@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Of, Examples,
 TEST(DocumentExamples, Run)
 {
     run_well("generate boxes --triangles 2000 --out YOUR_SCENE.glb", folder().path());
-    for (char const* const document : {"README.md", "docs/commands.md", "docs/batch.md", "docs/displays.md",
+    for (char const* const document : {"README.md", "docs/first-hour.md", "docs/commands.md", "docs/batch.md", "docs/displays.md",
                                        "docs/study/tutorial.md", "docs/study/analysis.md"}) {
         SCOPED_TRACE(document);
         std::vector<std::string> shell;
