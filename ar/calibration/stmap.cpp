@@ -49,7 +49,8 @@ CameraModel with_stmap(CameraModel const& camera, std::filesystem::path const& f
 {
     gi::Picture const picture = gi::read_exr(file);
     std::string const name = "'" + file.string() + "'";
-    gi::Layer const* const st = picture.find("color");
+    gi::Layer const* st = picture.find("RG");
+    if (!st) st = picture.find("color");
     if (!st || st->channels < 2)
         throw gi::InputError(name + " has no channels R and G without a layer", "they hold s and t of an STMap",
                              "write one by lightwell ar lens CALIBRATION --stmap FILE");

@@ -17,17 +17,17 @@ DecodedPicture decoded_exr(std::span<std::uint8_t const> bytes)
 {
     gi::Picture picture;
     try {
-        picture = gi::decode_exr(bytes, "it");
+        picture = gi::decode_picture(bytes, "it");
     } catch (gi::InputError const& e) {
         return refused(e.problem() + " (" + e.why() + ")");
     }
     gi::Layer const* const color = picture.find("color");
-    if (!color || color->channels == 2) {
+    if (!color) {
         std::string names;
         for (gi::Layer const& layer : picture.layers) names += (names.empty() ? "" : ", ") + layer.name;
         return refused(fmt::format("the EXR has no channels R, G, B without a layer (its layers: {})", names));
     }
-    DecodedPicture out{.format = PixelFormat::rgb_linear};
+    DecodedPicture out{.format = PixelFormat::rgb_linear, .notes = picture.notes};
     out.pixels.create(picture.height, picture.width, CV_32FC3);
     auto const n = std::size_t(color->channels);
     for (std::size_t i = 0; i < picture.pixels(); ++i)

@@ -10,12 +10,13 @@ namespace ar {
 struct DecodedPicture {
     cv::Mat pixels = {}; ///< as a frame of `format` has them
     PixelFormat format = PixelFormat::bgr8;
-    std::string problem = {}; ///< why it cannot be used; empty = none
+    std::string problem = {};            ///< why it cannot be used; empty = none
+    std::vector<std::string> notes = {}; ///< what was chosen, cut or converted (gi::Picture::notes)
 };
 
 /// PNG, JPEG, TIFF, BMP, PNM, WebP: bgr8, gray8; with 16 bits rgb16 (grey ones too), float TIFF rgb_linear.
-/// OpenEXR: rgb_linear, of its channels R, G, B without a layer, or Y alone; the data window is the picture. Never
-/// throws at bad bytes.
+/// OpenEXR: rgb_linear, of its channels R, G, B without a layer, or Y, in its display window. Never throws at bad
+/// bytes.
 DecodedPicture decoded_picture(std::span<std::uint8_t const> bytes);
 
 } // namespace ar

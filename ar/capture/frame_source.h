@@ -50,6 +50,8 @@ struct SourceCounts {
     std::uint64_t dropped = 0;     ///< gaps in the sequence: lost before arrival, or discarded for newer frames
     std::uint64_t refused = 0;     ///< arrived, but truncated, of a wrong size or undecodable
     std::string last_refusal = {}; ///< the frame and the reason
+    std::uint64_t changed = 0;     ///< delivered, but of its file something was cut, chosen or converted
+    std::string last_change = {};  ///< the frame, and what
 
     friend bool operator==(SourceCounts const&, SourceCounts const&) = default;
 };
@@ -93,7 +95,10 @@ std::string describe(SourceCounts const& counts);
 /// Returns the sentence "NAME cannot be set: WHY" for each value set in `controls`; for sources without controls.
 std::vector<std::string> cannot_set(Controls const& controls, std::string const& why);
 
-/// Counts refused frames. @throws gi::InputError if the source was lost
+/// Counts frames that differ from their files.
+void report_changes(SourceCounts const& counts, gi::Report& report);
+
+/// Counts refused and changed frames. @throws gi::InputError if the source was lost
 void report_losses(SourceCounts const& counts, SourceState const& state, gi::Report& report);
 
 } // namespace ar

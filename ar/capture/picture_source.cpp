@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 
 namespace ar {
@@ -71,6 +72,8 @@ cv::Mat PictureSource::decoded(NumberedPicture const& p)
     if (picture.format != format_)
         return refuse(fmt::format("its pixels are {}, those of the first one were {}", name_of(picture.format),
                                   name_of(format_)));
+    if (!picture.notes.empty())
+        tally_.change(fmt::format("{}: {}", p.file.filename().string(), fmt::join(picture.notes, "; ")));
     return pixels;
 }
 

@@ -18,6 +18,12 @@ public:
         ++counts_.refused;
         counts_.last_refusal = std::move(reason);
     }
+    /// The next frame to be delivered differs from its file.
+    void change(std::string what)
+    {
+        ++counts_.changed;
+        counts_.last_change = std::move(what);
+    }
     /// The frame arrived and is discarded.
     void drop(std::uint64_t sequence)
     {

@@ -41,27 +41,29 @@ void write_exr(std::filesystem::path const& file, cv::Mat const& map)
 
 } // namespace
 
-cv::Mat read_radiance(std::filesystem::path const& file)
+cv::Mat read_radiance(std::filesystem::path const& file, gi::Report* report)
 {
     gi::Picture const picture = gi::read_picture(file);
+    if (report != nullptr)
+        for (std::string const& note : picture.notes)
+            report->lose("maps not used as they are", 1, file.string() + ": " + note);
     if (picture.width > kWidest || picture.height > kWidest)
         refuse(file, fmt::format("{} x {} texels", picture.width, picture.height),
                fmt::format("1 to {} are read", kWidest));
-    gi::Layer const* const color = picture.find("color");
-    if (color == nullptr || color->channels == 2)
-        refuse(file, "no channels R, G, B, or Y", "radiance is red, green and blue");
+    gi::Layer const& color = gi::color_of(picture, file.string());
+    if (picture.is_cube) refuse(file, "it holds the six faces of a cube", "maps are lat-long panoramas");
     cv::Mat map(picture.height, picture.width, CV_32FC3);
     auto* const texels = map.ptr<cv::Vec3f>();
     for (std::size_t i = 0; i < picture.pixels(); ++i) {
-        gi::vec3 const v = gi::rgb(*color, i);
+        gi::vec3 const v = gi::rgb(color, i);
         texels[i] = {v.x, v.y, v.z};
     }
     return map;
 }
 
-cv::Mat read_map(std::filesystem::path const& file)
+cv::Mat read_map(std::filesystem::path const& file, gi::Report* report)
 {
-    cv::Mat const map = read_radiance(file);
+    cv::Mat const map = read_radiance(file, report);
     check_map(map, "'" + file.string() + "'");
     return map;
 }

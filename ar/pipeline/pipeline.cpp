@@ -52,7 +52,7 @@ Pipeline::Pipeline(Session const& session, CalibratedCamera const& camera, Marke
     : session_(session),
       camera_(camera),
       renderer_(local_scene(session, report), session.render.settings, report, session.render.method),
-      light_(session),
+      light_(session, report),
       compositor_(camera.photometry,
                   with_noise(session.composite, session.match_noise ? camera.noise : SensorNoise{})),
       poses_(session.pose, markers, camera.model),

@@ -11,10 +11,10 @@
 
 namespace ar {
 
-PlaceLight::PlaceLight(Session const& session) : every_(session.live_light)
+PlaceLight::PlaceLight(Session const& session, gi::Report& report) : every_(session.live_light)
 {
     if (!session.light.empty()) {
-        captured_ = read_map(session.light) * session.light_scale;
+        captured_ = read_map(session.light, &report) * session.light_scale;
         if (session.light_turn_deg != 0)
             captured_ = resampled(captured_, captured_.size(),
                                   glm::angleAxis(glm::radians(session.light_turn_deg), glm::dvec3(0, 1, 0)));

@@ -16,7 +16,7 @@ namespace ar {
 class PlaceLight {
 public:
     /// @throws gi::InputError the map cannot be read
-    explicit PlaceLight(Session const& session);
+    PlaceLight(Session const& session, gi::Report& report);
 
     /// The captured map; with `from: frame`, grey until a frame was seen; null: none.
     std::shared_ptr<gi::EnvironmentMap const> begin() const;

@@ -4,6 +4,7 @@
 #include "gi/core/file.h"
 #include "gi/image_io/picture_file.h"
 
+#include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -14,17 +15,19 @@ namespace {
 cv::Mat decoded_exr(std::filesystem::path const& file)
 {
     gi::Picture const picture = gi::read_exr(file);
-    // Channels without a layer, Z or Y, are read as "color"; several of them are colours, and no depths.
-    for (char const* name : {"depth", "Z", "Y", "color"})
-        if (gi::Layer const* const layer = picture.find(name); layer && layer->channels == 1) {
-            cv::Mat map(picture.height, picture.width, CV_32FC1);
-            for (std::size_t i = 0; i < picture.pixels(); ++i)
-                map.ptr<float>()[i] = layer->data[i * std::size_t(layer->channels)];
-            return map;
-        }
-    throw gi::InputError("'" + file.string() + "' has no layer 'depth', 'Z' or 'Y' of one channel",
-                         "the depth channel cannot be identified",
-                         "write a file whose only channel without a layer is Z or Y, or name it depth.V");
+    gi::Layer const* depth = nullptr;
+    for (char const* name : {"depth", "Z", "Y", "color"}) // a channel Y without a layer is read as "color"
+        if (gi::Layer const* const layer = picture.find(name); depth == nullptr && layer && layer->channels == 1)
+            depth = layer;
+    gi::Layer const& only = picture.layers.front();
+    if (depth == nullptr && picture.layers.size() == 1 && only.channels == 1 && only.name != "A") depth = &only;
+    if (depth == nullptr)
+        throw gi::InputError("'" + file.string() + "' has no layer 'depth', 'Z' or 'Y' of one channel",
+                             "the depth channel cannot be identified",
+                             "write a file whose only channel without a layer is Z or Y, or name it depth.V");
+    cv::Mat map(picture.height, picture.width, CV_32FC1);
+    std::copy_n(depth->data.data(), depth->data.size(), map.ptr<float>());
+    return map;
 }
 
 cv::Mat decoded_png(std::filesystem::path const& file)

@@ -88,8 +88,8 @@ struct Part {
     bool is_single = true;
     std::uint64_t clamped = 0;
 
-    /// Writes the next rows. @param first  number of the first
-    void write(Layer const& layer, int width, int first, int count)
+    /// Writes the next rows. @param corner  of the first
+    void write(Layer const& layer, int width, Imath::V2i corner, int count)
     {
         std::vector<half> const halves = is_single ? std::vector<half>() : to_half(layer, clamped);
         std::size_t const value = is_single ? sizeof(float) : sizeof(half);
@@ -100,7 +100,7 @@ struct Part {
         for (int c = 0; c < layer.channels; ++c)
             buffer.insert(channel_name(layer, c),
                           Imf::Slice::Make(is_single ? Imf::FLOAT : Imf::HALF, base + std::size_t(c) * value,
-                                           Imath::V2i(0, first), width, count, pixel, row));
+                                           corner, width, count, pixel, row));
         out.setFrameBuffer(buffer);
         out.writePixels(count);
     }
@@ -134,7 +134,9 @@ void write_exr(std::filesystem::path const& file, PictureRows const& picture, Pi
     auto const is_single = [&](Layer const& l) { return type == PixelType::single || needs_single(l.name); };
     for (std::size_t l = 0; l < rows.layers.size(); ++l) {
         Layer const& layer = rows.layers[l];
-        Imf::Header header(picture.width, picture.height);
+        Imath::V2i const corner(picture.left, picture.top);
+        Imath::Box2i const window(corner, corner + Imath::V2i(picture.width - 1, picture.height - 1));
+        Imf::Header header(window, window);
         header.setName(layer.name);
         header.setType(Imf::SCANLINEIMAGE);
         header.compression() =
@@ -160,7 +162,7 @@ void write_exr(std::filesystem::path const& file, PictureRows const& picture, Pi
             if (y > 0) rows = picture.read(y, count_from(y));
             for (std::size_t l = 0; l < parts.size(); ++l) {
                 if (attributes.stop != nullptr && attributes.stop->requested()) throw Interrupted();
-                parts[l].write(rows.layers[l], picture.width, y, count_from(y));
+                parts[l].write(rows.layers[l], picture.width, {picture.left, picture.top + y}, count_from(y));
             }
         }
         out.reset(); // writes where the blocks are

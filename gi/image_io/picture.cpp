@@ -1,5 +1,6 @@
 #include "gi/image_io/picture.h"
 
+#include "gi/core/error.h"
 #include "gi/image_io/picture_rows.h"
 
 #include <algorithm>
@@ -23,6 +24,15 @@ Layer& Picture::add(std::string const& name, int channels)
     return layers.back();
 }
 
+Layer const& color_of(Picture const& picture, std::string const& name)
+{
+    if (Layer const* const color = picture.find("color")) return *color;
+    std::string layers;
+    for (Layer const& l : picture.layers) layers += (layers.empty() ? "" : ", ") + l.name;
+    throw InputError("'" + name + "' has no channels R, G, B or Y without a layer",
+                     "they hold its colours; it has: " + layers, "save the colours under these names");
+}
+
 Picture PictureRows::whole(StopRequest const* stop) const
 {
     Picture all;
@@ -41,6 +51,8 @@ Picture PictureRows::whole(StopRequest const* stop) const
     all.width = width;
     all.height = height;
     all.metadata = metadata;
+    all.left = left;
+    all.top = top;
     return all;
 }
 
@@ -58,7 +70,7 @@ PictureRows rows_of(Picture const& picture)
         }
         return some;
     };
-    return {picture.width, picture.height, read, picture.metadata};
+    return {picture.width, picture.height, read, picture.metadata, picture.left, picture.top};
 }
 
 } // namespace gi

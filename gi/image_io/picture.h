@@ -1,7 +1,7 @@
 #pragma once
 // A picture: named layers of equal size, linear values, row-major from the top left, channels interleaved.
 
-#include "gi/core/math.h"
+#include "gi/image_io/primaries.h"
 
 #include <map>
 #include <string>
@@ -13,16 +13,22 @@ namespace gi {
 /// data[(y * width + x) * channels + c].
 struct Layer {
     std::string name; ///< "color", "L0", "albedo", "depth", ...
-    int channels = 3; ///< 1 (Y), 3 (RGB or XYZ) or 4 (RGBA)
+    int channels = 3; ///< 1 (Y), 3 (RGB or XYZ) or 4 (RGBA); others in files of other programs
     std::vector<float> data;
 };
 
-/// Layers are unique by name. "color" is the beauty layer: linear Rec. 709 radiance, W/(m2 sr).
+/// Layers are unique by name. "color" is the beauty layer, of 1, 3 or 4 channels: linear Rec. 709 radiance, W/(m2 sr).
 struct Picture {
     int width = 0;
     int height = 0;
     std::vector<Layer> layers;
     std::map<std::string, std::string> metadata; ///< version, git hash, command, seed, settings, ...
+
+    // Of files that were read:
+    int left = 0, top = 0;                   ///< corner of the display window, where pixel (0, 0) is
+    bool is_cube = false;                    ///< the six faces of an environment (OpenEXR's attribute envmap)
+    std::optional<Primaries> primaries = {}; ///< those of its colours, where they are not of Rec. 709
+    std::vector<std::string> notes = {};     ///< what was chosen, left out or converted: "its part 'A' ..."
 
     std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
     /// nullptr if there is no layer of that name.
@@ -31,6 +37,9 @@ struct Picture {
     /// Appends a zeroed layer and returns it. Invalidates earlier Layer pointers.
     Layer& add(std::string const& name, int channels);
 };
+
+/// The layer "color". @param name  of the file. @throws InputError there is none; its message names what is there
+Layer const& color_of(Picture const& picture, std::string const& name);
 
 inline vec3 rgb(Layer const& layer, std::size_t pixel)
 {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -29,13 +30,37 @@ bool is_known(std::span<unsigned char const> bytes)
     return starts_with(bytes, "RIFF") && bytes.size() > 12 && starts_with(bytes.subspan(8), "WEBP");
 }
 
+/// The layer "color", of 3 or 4 channels.
+void convert_to_rec709(Picture& picture)
+{
+    Layer* const color = picture.find("color");
+    if (!picture.primaries || color == nullptr || color->channels < 3) return;
+    Primaries const& p = *picture.primaries;
+    glm::dmat3 const m = *to_rec709(p);
+    auto const n = std::size_t(color->channels);
+    for (std::size_t i = 0; i < picture.pixels(); ++i) {
+        float* const c = &color->data[i * n];
+        dvec3 const converted = m * dvec3(c[0], c[1], c[2]);
+        for (int k = 0; k < 3; ++k) c[k] = float(converted[k]);
+    }
+    auto const text = [](glm::dvec2 xy) { return fmt::format("({:.4g}, {:.4g})", xy.x, xy.y); };
+    picture.notes.push_back(
+        fmt::format("its colours have the primaries {}, {}, {} and white {}: converted to Rec. 709", text(p.red),
+                    text(p.green), text(p.blue), text(p.white)));
+    picture.primaries.reset();
+}
+
 float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 } // namespace
 
 Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name)
 {
-    if (starts_with(bytes, "\x76\x2f\x31\x01")) return decode_exr(bytes, name);
+    if (starts_with(bytes, "\x76\x2f\x31\x01")) {
+        Picture picture = decode_exr(bytes, name);
+        convert_to_rec709(picture);
+        return picture;
+    }
     if (starts_with(bytes, "#?")) return decode_hdr(bytes, name);
     auto const bad = [&](std::string const& why) {
         return InputError("cannot read '" + name + "' as a picture", why,

@@ -48,9 +48,13 @@ void write_exr(std::filesystem::path const& file, Picture const& picture, PixelT
 void write_exr(std::filesystem::path const& file, PictureRows const& picture, PixelType type, Report& report,
                ExrAttributes const& attributes = {});
 
-/// Reads any OpenEXR image: scan-line or tiled (level 0), one or several parts, half/float/uint; sub-sampled
-/// channels are rejected. Channels are grouped into layers by their name up to the last '.'; the group without a
-/// prefix is "color". Throws InputError on unreadable, empty, oversized or non-image files.
+/// Reads any OpenEXR image: scan-line or tiled (level 0), one or several parts, half/float/uint. The picture is the
+/// display window (openexr.com, "Technical Introduction"): 0 outside of the data window, data beyond it are cut; of
+/// environments (attribute envmap) it is the data window. Channels are grouped into layers by their name up to the
+/// last '.' (exr_layers.h); R, G, B(, A), Y(, A), or Y with RY and BY without a layer are "color", of the first part
+/// that has them; layers of later parts with names that are taken get their part's: PART.LAYER. Values are as
+/// written, in the primaries of the file. Deep parts beside others are left out. What was chosen, cut or left out is in
+/// the notes. Throws InputError on unreadable, empty, oversized or non-image files.
 Picture read_exr(std::filesystem::path const& file);
 /// As above from memory; `name` is used in messages.
 Picture decode_exr(std::span<unsigned char const> bytes, std::string const& name);
@@ -58,7 +62,8 @@ Picture decode_exr(std::span<unsigned char const> bytes, std::string const& name
 Picture decode_hdr(std::span<unsigned char const> bytes, std::string const& name);
 
 /// OpenEXR, Radiance HDR, or PNG, JPEG, TIFF, ... through OpenCV, distinguished by their first bytes. 8-bit
-/// and 16-bit files are sRGB-decoded to linear and give one layer "color"; HDR values are kept as they are.
+/// and 16-bit files are sRGB-decoded to linear and give one layer "color"; HDR values are kept as they are, but for
+/// the layer "color" of OpenEXR files with other chromaticities, which is converted to Rec. 709.
 Picture read_picture(std::filesystem::path const& file);
 /// As above from memory; `name` is used in messages.
 Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name);

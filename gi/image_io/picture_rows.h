@@ -17,6 +17,7 @@ struct PictureRows {
     /// The same layers for all rows; empty = there is no picture.
     std::function<Picture(int first, int count)> read;
     std::map<std::string, std::string> metadata = {};
+    int left = 0, top = 0; ///< corner of the display window
 
     explicit operator bool() const { return bool(read); }
     /// @param stop  once it is requested, throws Interrupted; null = never

@@ -81,6 +81,18 @@ bool is_multiple(Picture const& large, int width, int height)
     return large.width % width == 0 && large.height == height * (large.width / width);
 }
 
+/// Throws unless the display windows are the same, but for their resolution.
+void check_windows(Picture const& image, Picture const& reference)
+{
+    auto const scaled = [](int at, int size) { return std::int64_t(at) * size; };
+    if (scaled(image.left, reference.width) == scaled(reference.left, image.width) &&
+        scaled(image.top, reference.height) == scaled(reference.top, image.height))
+        return;
+    throw InputError(fmt::format("the display windows start at ({}, {}) and ({}, {})", image.left, image.top,
+                                 reference.left, reference.top),
+                     "the pixels are not those of the same places", "save both with the same display window");
+}
+
 void drop_not_finite(PicturePair& p, std::string const& layer)
 {
     p.finite_image = {layer, 3, p.image};
@@ -110,6 +122,9 @@ PicturePair pair_up(Picture const& image, Picture const& reference, std::string 
         throw InputError(fmt::format("the pictures are {} x {} and {} x {}", image.width, image.height,
                                      reference.width, reference.height),
                          "only equal sizes or whole multiples can be compared", "render one of them again");
+    check_windows(image, reference);
+    for (auto const& [which, picture] : {std::pair{"image", &image}, std::pair{"reference", &reference}})
+        for (std::string const& note : picture->notes) p.notes.push_back(fmt::format("the {}: {}", which, note));
     for (Side const& side : {Side{"image", image, p.image, p.image_variance},
                              Side{"reference", reference, p.reference, p.reference_variance}}) {
         take(side, layer, p.notes);

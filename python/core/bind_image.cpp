@@ -72,6 +72,7 @@ py::dict read_picture(std::string const& file)
         py::gil_scoped_release const unlocked;
         picture = gi::read_picture(file);
     }
+    for (std::string const& note : picture.notes) py::module_::import("warnings").attr("warn")(file + ": " + note);
     return to_layers(std::move(picture));
 }
 

@@ -94,7 +94,10 @@ def tone_map(color: PictureLike, *, exposure_ev: float = 0.0, curve: str = "srgb
 
 
 def read_picture(file: str | os.PathLike[str]) -> dict[str, Floats]:
-    """Reads the layers of an OpenEXR, HDR, PNG or JPEG file by name, linear; 8 and 16 bits are sRGB-decoded."""
+    """Reads the layers of an OpenEXR, HDR, PNG or JPEG file by name, linear; 8 and 16 bits are sRGB-decoded.
+
+    Warns of what was cut, chosen or converted: of OpenEXR files the display window is the picture.
+    """
     return _core.read_picture(os.fspath(file))
 
 

@@ -71,6 +71,38 @@ TEST(DeepPictures, OfOpenExrAreRadiance)
     EXPECT_TRUE(equal(radiance_of(picture_of(*second), srgb_photometry(), {.time_s = 3}), single));
 }
 
+/// Changes a number of the header, x of the lower right corner of a window.
+void change_window(std::filesystem::path const& file, std::string const& window, char to)
+{
+    std::string bytes = file_text(file);
+    std::size_t const at = bytes.find(window + std::string("\0box2i\0", 7)) + window.size() + 7 + 4;
+    bytes[at + 8] = to;
+    write_file(file, bytes);
+}
+
+TEST(DeepPictures, OfOpenExrAreTheirDisplayWindow)
+{
+    TemporaryFolder folder;
+    cv::Mat const all = write_exr(folder / "1.exr", gi::PixelType::single);
+    write_exr(folder / "2.exr", gi::PixelType::single);
+    change_window(folder / "1.exr", "displayWindow", 35); // 36 columns, 32 of them with data
+    change_window(folder / "2.exr", "displayWindow", 35);
+    PictureSource source(folder.path(), {.pace = Pace::fastest});
+    auto const frame = source.next(0ms);
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->size_px, glm::ivec2(36, 24));
+    cv::Mat const picture = picture_of(*frame);
+    EXPECT_TRUE(equal(picture(cv::Rect(0, 0, 32, 24)).clone(), all));
+    EXPECT_EQ(cv::norm(picture(cv::Rect(32, 0, 4, 24))), 0);
+    source.next(0ms);
+    EXPECT_EQ(source.counts().changed, 2u);
+    EXPECT_NE(source.counts().last_change.find("2.exr: its data window covers 32 x 24"), std::string::npos)
+        << source.counts().last_change;
+    gi::Report report;
+    report_losses(source.counts(), source.state(), report);
+    EXPECT_EQ(report.losses().at("frames not used as they are").count, 2u);
+}
+
 TEST(DeepPictures, ThatAreCutOrHaveOtherChannelsSayWhy)
 {
     TemporaryFolder cut, named, mixed;

@@ -1,4 +1,4 @@
-// OpenEXR files as other programs write them: tiles, offset data windows, every compression, and what is refused.
+// OpenEXR files as other programs write them: tiles, every compression, and what is refused.
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
@@ -55,13 +55,20 @@ Imf::FrameBuffer frame(std::vector<float>& values)
 void expect_ramp(float tolerance)
 {
     Picture const p = read_exr(scratch());
-    ASSERT_EQ(p.width, kWidth);
-    ASSERT_EQ(p.height, kHeight);
+    ASSERT_EQ(p.width, 100);
+    ASSERT_EQ(p.height, 100);
     ASSERT_EQ(p.layers.size(), 1u);
-    std::vector<float> const expected = ramp();
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        for (std::size_t c = 0; c < 3; ++c)
-            ASSERT_NEAR(p.layers[0].data[3 * i + c], expected[i], tolerance * (1 + expected[i])) << i;
+    std::vector<float> const values = ramp();
+    for (int y = 0; y < 100; ++y)
+        for (int x = 0; x < 100; ++x) {
+            int const u = x - kWindow.min.x, v = y - kWindow.min.y; // in the data window
+            bool const is_there = u < kWidth && v >= 0 && v < kHeight;
+            float const expected = is_there ? values[std::size_t(v * kWidth + u)] : 0;
+            for (std::size_t c = 0; c < 3; ++c)
+                ASSERT_NEAR(p.layers[0].data[3 * std::size_t(100 * y + x) + c], expected,
+                            is_there ? tolerance * (1 + expected) : 0)
+                    << x << ", " << y;
+        }
 }
 
 TEST(ExrKinds, EveryCompressionWithAnOffsetWindow)
@@ -79,17 +86,25 @@ TEST(ExrKinds, EveryCompressionWithAnOffsetWindow)
     }
 }
 
-TEST(ExrKinds, Tiles)
+/// Of files with smaller levels, which hold something else, the first is read.
+TEST(ExrKinds, TilesOfOneLevelAndOfMany)
 {
-    Imf::Header h = header(Imf::PIZ_COMPRESSION);
-    h.setTileDescription({16, 8, Imf::ONE_LEVEL});
-    std::vector<float> values = ramp();
-    {
-        Imf::TiledOutputFile out(scratch().c_str(), h);
-        out.setFrameBuffer(frame(values));
-        out.writeTiles(0, out.numXTiles() - 1, 0, out.numYTiles() - 1);
+    for (Imf::LevelMode const mode : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS}) {
+        SCOPED_TRACE(int(mode));
+        Imf::Header h = header(Imf::PIZ_COMPRESSION);
+        h.setTileDescription({16, 8, mode});
+        std::vector<float> values = ramp(), other(values.size(), 7);
+        {
+            Imf::TiledOutputFile out(scratch().c_str(), h);
+            for (int ly = 0; ly < out.numYLevels(); ++ly)
+                for (int lx = 0; lx < out.numXLevels(); ++lx) {
+                    if (!out.isValidLevel(lx, ly)) continue;
+                    out.setFrameBuffer(frame(lx + ly == 0 ? values : other));
+                    out.writeTiles(0, out.numXTiles(lx) - 1, 0, out.numYTiles(ly) - 1, lx, ly);
+                }
+        }
+        expect_ramp(0);
     }
-    expect_ramp(0);
 }
 
 TEST(ExrKinds, FlatPicturesOfTheStrongestCompressionAreNoAttack)

@@ -37,6 +37,21 @@ Picture constant(int width, int height, vec3 c, float variance = 0)
     return p;
 }
 
+TEST(Metrics, PicturesOfOtherPlacesAreRefused)
+{
+    Picture const a = constant(8, 4, vec3{0.5f});
+    Picture moved = a, large = constant(16, 8, vec3{0.5f});
+    moved.left = large.left = 2;
+    EXPECT_THROW(compare(a, moved, {"rmse"}, "color"), InputError);
+    EXPECT_THROW(compare(a, large, {"rmse"}, "color"), InputError);
+    EXPECT_THROW(compare(large, a, {"rmse"}, "color"), InputError);
+    large.left = 4; // two of its pixels are one
+    EXPECT_EQ(find(compare(moved, large, {"rmse"}, "color"), "rmse"), 0);
+    moved.notes = {"its data"};
+    Comparison const c = compare(moved, moved, {"rmse"}, "color");
+    EXPECT_EQ(c.notes, (std::vector<std::string>{"the image: its data", "the reference: its data"}));
+}
+
 TEST(Metrics, ClosedForms)
 {
     Comparison const c =

@@ -1,6 +1,7 @@
 // Environment maps from files: orientation, damaged texels, wrong shapes.
 
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "gi/image_io/picture_file.h"
 #include "gi/scene/load/load.h"
 #include "tests/support/data.h"
@@ -66,6 +67,45 @@ TEST_F(Environment, OtherShapesAreNotedNotRefused)
     EXPECT_EQ(load_environment(save(3, 3), report_).radiance.size(), 9u);
     ASSERT_EQ(report_.losses().size(), 1u);
     EXPECT_NE(report_.losses().begin()->first.find("twice as wide"), std::string::npos);
+}
+
+/// What a reader says of a file is counted.
+TEST_F(Environment, MapsOfPartsOfAPictureAreCounted)
+{
+    Picture picture;
+    picture.width = 4;
+    picture.height = 2;
+    picture.add("color", 3).data[0] = 1;
+    write_exr(folder_ / "map.exr", picture, PixelType::half, report_);
+    std::vector<unsigned char> bytes = read_bytes(folder_ / "map.exr");
+    std::string const text(bytes.begin(), bytes.end());
+    std::size_t const at = text.find(std::string("displayWindow\0box2i\0", 20)) + 20 + 4; // after the size
+    bytes[at + 8] = 5;                                                                    // xMax
+    write_text(folder_ / "map.exr", std::string(bytes.begin(), bytes.end()));
+    EnvironmentMap const map = load_environment(folder_ / "map.exr", report_);
+    EXPECT_EQ(map.width, 6u);
+    EXPECT_EQ(map.radiance[0], (vec3{1, 0, 0}));
+    ASSERT_TRUE(report_.losses().contains("environment maps not used as they are"));
+    EXPECT_NE(report_.losses().at("environment maps not used as they are").first.find("covers 4 x 2 of 6 x 2"),
+              std::string::npos);
+}
+
+TEST_F(Environment, ChannelsThatAreNoColoursAreRefusedByName)
+{
+    for (int const channels : {1, 2}) {
+        Picture picture;
+        picture.width = 4;
+        picture.height = 2;
+        picture.add(channels == 1 ? "Z" : "color", channels);
+        write_exr(folder_ / "map.exr", picture, PixelType::single, report_);
+        try {
+            load_environment(folder_ / "map.exr", report_);
+            FAIL();
+        } catch (InputError const& e) {
+            EXPECT_NE(std::string(e.what()).find(channels == 1 ? "it has: Z" : "it has: RG"), std::string::npos)
+                << e.what();
+        }
+    }
 }
 
 TEST_F(Environment, OnePixelIsRefused) { EXPECT_THROW(load_environment(save(1, 1), report_), InputError); }

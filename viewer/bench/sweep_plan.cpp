@@ -17,11 +17,12 @@
 namespace viewer {
 namespace {
 
-gi::Picture read_reference(std::string const& file, gi::RenderSettings const& s)
+gi::Picture read_reference(std::string const& file, gi::RenderSettings const& s, gi::Report& report)
 {
     gi::Picture picture = gi::read_picture(file);
-    if (picture.find("color") == nullptr)
-        throw gi::InputError("'" + file + "' is no reference", "it has no layer 'color'", "choose another");
+    gi::color_of(picture, file); // throws without one
+    for (std::string const& note : picture.notes)
+        report.lose("references not used as they are", 1, file + ": " + note);
     if (picture.width != s.width || picture.height != s.height)
         throw gi::InputError(fmt::format("'{}' is {}x{}", file, picture.width, picture.height),
                              fmt::format("the pictures to compare are {}x{}", s.width, s.height),
@@ -126,7 +127,7 @@ SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
     std::vector<std::string> inputs = o.scenes;
     inputs.insert(inputs.end(), {o.reference, o.render.environment});
     check_pictures(o, names, inputs);
-    if (!o.reference.empty()) plan.reference = read_reference(o.reference, plan.settings);
+    if (!o.reference.empty()) plan.reference = read_reference(o.reference, plan.settings, report);
     for (std::size_t i = 0; i < names.size(); ++i) {
         RenderOptions options = o.render;
         options.scene = o.scenes[i];

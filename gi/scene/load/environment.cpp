@@ -15,8 +15,8 @@ EnvironmentMap load_environment(std::filesystem::path const& file, Report& repor
         return InputError(fmt::format("'{}' is not an environment map", file.string()), why,
                           "give a lat-long panorama as HDR or EXR, twice as wide as high");
     };
-    Layer const* const color = picture.find("color");
-    if (!color) throw bad("it has no channels R, G, B");
+    Layer const& color = color_of(picture, file.string());
+    if (picture.is_cube) throw bad("it holds the six faces of a cube");
     if (picture.width < 2 || picture.height < 1)
         throw bad(fmt::format("it has {} x {} pixels, at least 2 x 1 are needed", picture.width, picture.height));
     if (picture.width > kWidest || picture.height > kWidest)
@@ -29,7 +29,7 @@ EnvironmentMap load_environment(std::filesystem::path const& file, Report& repor
     resize_on_huge_pages(map.radiance, picture.pixels());
     std::uint64_t bad_texels = 0;
     for (std::size_t i = 0; i < map.radiance.size(); ++i) {
-        vec3 const v = rgb(*color, i);
+        vec3 const v = rgb(color, i);
         bool good = true;
         for (int c = 0; c < 3; ++c) {
             bool const usable = std::isfinite(v[c]) && v[c] >= 0;
@@ -38,6 +38,8 @@ EnvironmentMap load_environment(std::filesystem::path const& file, Report& repor
         }
         bad_texels += !good;
     }
+    for (std::string const& note : picture.notes)
+        report.lose("environment maps not used as they are", 1, file.string() + ": " + note);
     report.lose("environment texels that are negative or not finite, set to 0", bad_texels, file.string());
     if (picture.width != 2 * picture.height)
         report.lose("environment maps that are not twice as wide as high, stretched over the sphere", 1,

@@ -23,6 +23,8 @@ std::int32_t add_texture(TexturePool& pool, unsigned char const* bytes, std::siz
     };
     if (size == 0 || size > (std::size_t(1) << 31)) throw bad("it is empty or larger than 2 GiB");
     if (claimed_pixels({bytes, size}) > kMostTexels) throw bad("it is larger than 16384 x 16384");
+    if (size >= 4 && std::memcmp(bytes, "\x76\x2f\x31\x01", 4) == 0)
+        throw bad("it is OpenEXR: textures have 8 or 16 bits per channel");
     cv::Mat image;
     try {
         cv::Mat const raw(1, int(size), CV_8U, const_cast<unsigned char*>(bytes));

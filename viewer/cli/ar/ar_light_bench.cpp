@@ -20,7 +20,7 @@ BenchTable measure_light_estimates(LightBenchSettings const& s, gi::StopRequest 
     table.facts.emplace_back("frames", fmt::format("{}, 320 x 240, {} paths", s.views, s.paths));
     table.facts.emplace_back("albedos", s.unknown_albedo ? "of the paper alone" : "known");
     std::vector<cv::Mat> maps;
-    for (std::string const& file : s.maps) maps.push_back(ar::read_map(file));
+    for (std::string const& file : s.maps) maps.push_back(ar::read_map(file, &report));
     for (std::size_t k = 0; k < maps.size(); ++k) {
         ar::LightCheckSettings settings;
         settings.views = s.views;

@@ -99,8 +99,8 @@ int run_albedo(AlbedoArguments const& a)
     check_albedo_outputs(a, session, out, real);
     PosedFrames const seen = read_posed_frames(a.read, session, camera, stop, report);
     if (stop.requested()) return interrupted_code();
-    ar::AlbedoEstimate estimate = ar::estimate_albedos(std::move(real), ar::PlaceLight(session).begin(), camera,
-                                                       seen.kept, a.settings, stop, report);
+    ar::AlbedoEstimate estimate = ar::estimate_albedos(std::move(real), ar::PlaceLight(session, report).begin(),
+                                                       camera, seen.kept, a.settings, stop, report);
     if (stop.requested()) return interrupted_code(); // too few paths to keep
     for (std::size_t k = 0; k < estimate.entries.size(); ++k) {
         if (estimate.textures[k].empty()) continue;

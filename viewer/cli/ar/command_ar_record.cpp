@@ -111,6 +111,8 @@ int run_record(RecordOptions const& o)
         j["dropped"] = counts.dropped;
         j["refused"] = counts.refused;
         j["last_refusal"] = counts.last_refusal;
+        j["changed"] = counts.changed;
+        j["last_change"] = counts.last_change;
         j["lost_by_queue"] = writer.lost();
         j["failure"] = writer.failure();
         fmt::print("{}", to_text(j));

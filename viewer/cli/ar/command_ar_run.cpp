@@ -174,6 +174,7 @@ int run_session(RunArguments const& a, bool poses_only)
     };
     ar::RunSummary summary;
     auto const keep = [&](std::string const& recorded) {
+        ar::report_changes(summary.source, report);
         if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
         if (tracker) fmt::print("{}", tracker->describe());
         if (!a.frame_table.empty()) gi::write_text(a.frame_table, ar::frame_table(summary));
