@@ -65,6 +65,20 @@ Matrix read_matrix(gi::Yaml const& y, int rows, int cols)
     return m;
 }
 
+/// Names of sensor_msgs/distortion_models.hpp of ROS: the same coefficients as OpenCV's models.
+LensModel lens_of_ros(gi::Yaml const& y, std::size_t coefficients)
+{
+    std::string const name = y.text();
+    if (name == "plumb_bob" || name.empty())
+        return coefficients == 0 ? LensModel::pinhole : LensModel::radial_tangential;
+    if (name == "rational_polynomial") return LensModel::rational;
+    if (name == "equidistant") return LensModel::fisheye;
+    throw y.error("the distortion model '" + name.substr(0, 64) + "' is not read",
+                  "its coefficients would be taken for others",
+                  "calibrate as plumb_bob, rational_polynomial or equidistant, or give the lens as a table: "
+                  "stmap: FILE.exr");
+}
+
 LensModel lens_of(gi::Yaml const& top, std::size_t coefficients)
 {
     if (top.has("lens_model")) {
@@ -77,6 +91,7 @@ LensModel lens_of(gi::Yaml const& top, std::size_t coefficients)
             throw y.error("no 'stmap'", "the lens is a table in a file", "add stmap: FILE.exr");
         return *lens;
     }
+    if (top.has("distortion_model")) return lens_of_ros(top.at("distortion_model"), coefficients);
     if (top.has("fisheye_model") && top.at("fisheye_model").text() == "1") return LensModel::fisheye;
     return coefficients == 0   ? LensModel::pinhole
            : coefficients <= 5 ? LensModel::radial_tangential

@@ -33,6 +33,16 @@ CameraModel camera_of(LensModel lens, glm::ivec2 size_px, cv::Mat const& k, cv::
     return c;
 }
 
+bool has_rays(CameraModel const& camera)
+{
+    try {
+        check(camera, "");
+    } catch (gi::InputError const&) {
+        return false;
+    }
+    return true;
+}
+
 /// Least squares of all views by OpenCV.
 Fit fit(std::vector<BoardView const*> const& views, glm::ivec2 size_px, LensModel lens)
 {
@@ -63,11 +73,18 @@ Fit fit(std::vector<BoardView const*> const& views, glm::ivec2 size_px, LensMode
                                        cv::fisheye::CALIB_USE_INTRINSIC_GUESS,
                                    until);
         } else {
-            int flags = 0;
+            std::vector<int> tried{0};
             if (lens == LensModel::pinhole)
-                flags = cv::CALIB_FIX_K1 | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
-            if (lens == LensModel::rational) flags = cv::CALIB_RATIONAL_MODEL;
-            cv::calibrateCamera(board, pixels, size, k, distortion, turns, shifts, flags, until);
+                tried = {cv::CALIB_FIX_K1 | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST};
+            // Three terms above and three below often cancel each other but for a pole within the picture: then fewer.
+            if (lens == LensModel::rational)
+                tried = {cv::CALIB_RATIONAL_MODEL, cv::CALIB_RATIONAL_MODEL | cv::CALIB_FIX_K6,
+                         cv::CALIB_RATIONAL_MODEL | cv::CALIB_FIX_K6 | cv::CALIB_FIX_K5};
+            for (int const flags : tried) {
+                k = distortion = cv::Mat();
+                cv::calibrateCamera(board, pixels, size, k, distortion, turns, shifts, flags, until);
+                if (has_rays(camera_of(lens, size_px, k, distortion))) break;
+            }
         }
     } catch (cv::Exception const& e) {
         throw gi::InputError("no " + name_of(lens) + " lens fits the views", e.err,

@@ -16,7 +16,9 @@ LensTrial tried(LensModel lens, std::vector<BoardView> const& views, glm::ivec2 
     trial.lens = lens;
     LensOptions const keep_all{0, 0};
     try {
-        trial.fitted_rms_px = calibrate_lens(views, size_px, lens, keep_all).rms_px;
+        LensCalibration const whole = calibrate_lens(views, size_px, lens, keep_all);
+        check(whole.camera, name_of(lens));
+        trial.fitted_rms_px = whole.rms_px;
         double squares = 0, count = 0;
         for (std::size_t group = 0; group < std::min(kGroups, views.size()); ++group) {
             std::vector<BoardView> fitted, left_out;

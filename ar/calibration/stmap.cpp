@@ -35,6 +35,13 @@ cv::Mat stmap_of(CameraModel const& camera, StMap which)
     return st;
 }
 
+int placeless_px(cv::Mat const& st)
+{
+    cv::Mat is_placeless;
+    cv::inRange(st, cv::Scalar(-1, -1), cv::Scalar(-1, -1), is_placeless);
+    return cv::countNonZero(is_placeless);
+}
+
 void write_stmap(std::filesystem::path const& file, cv::Mat const& st)
 {
     gi::Picture picture{st.cols, st.rows, {}, {}};

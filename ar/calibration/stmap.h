@@ -18,6 +18,9 @@ enum class StMap {
 /// CV_32FC2 (s, t) of the camera's size. Pixels without a place in the source: (-1, -1), outside of it.
 cv::Mat stmap_of(CameraModel const& camera, StMap which);
 
+/// Number of pixels that are (-1, -1).
+int placeless_px(cv::Mat const& st);
+
 /// Writes CV_32FC2 in single precision. @throws gi::InputError
 void write_stmap(std::filesystem::path const& file, cv::Mat const& st);
 

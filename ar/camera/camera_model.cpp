@@ -1,26 +1,31 @@
 #include "ar/camera/camera_model.h"
 
+#include "ar/camera/lens_domain.h"
 #include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 
 namespace ar {
 namespace {
 
 constexpr std::array<char const*, 5> kNames{"pinhole", "radial_tangential", "rational", "fisheye", "stmap"};
 
+/// Factor of the radial distortion. @param r2  squared distance from the axis on the plane z = 1
+double radial(CameraModel const& c, double r2)
+{
+    auto const& d = c.distortion;
+    double const k1 = d[0], k2 = d[1], k3 = d[4], k4 = d[5], k5 = d[6], k6 = d[7];
+    return (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
+}
+
 /// Applies the lens distortion on the plane z = 1.
 glm::dvec2 distorted(CameraModel const& c, glm::dvec2 p)
 {
-    auto const& d = c.distortion;
-    double const k1 = d[0], k2 = d[1], p1 = d[2], p2 = d[3], k3 = d[4], k4 = d[5], k5 = d[6], k6 = d[7];
-    double const r2 = glm::dot(p, p);
-    double const radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
-    return radial * p + glm::dvec2(2 * p1 * p.x * p.y + p2 * (r2 + 2 * p.x * p.x),
-                                   p1 * (r2 + 2 * p.y * p.y) + 2 * p2 * p.x * p.y);
+    double const p1 = c.distortion[2], p2 = c.distortion[3], r2 = glm::dot(p, p);
+    return radial(c, r2) * p + glm::dvec2(2 * p1 * p.x * p.y + p2 * (r2 + 2 * p.x * p.x),
+                                          p1 * (r2 + 2 * p.y * p.y) + 2 * p2 * p.x * p.y);
 }
 
 double fisheye_radius(CameraModel const& c, double angle)
@@ -45,10 +50,11 @@ glm::dvec2 on_plane(CameraModel const& c, glm::dvec2 pixel)
     return {(pixel.x - c.cx) / c.fx, (pixel.y - c.cy) / c.fy};
 }
 
-/// Newton's method in two dimensions, with finite differences.
-std::optional<glm::dvec2> undistorted(CameraModel const& c, glm::dvec2 target)
+/// Newton's method in two dimensions, with finite differences. Nothing where it does not converge within the
+/// domain of the lens.
+std::optional<glm::dvec2> undistorted_from(CameraModel const& c, glm::dvec2 target, glm::dvec2 start)
 {
-    glm::dvec2 p = target;
+    glm::dvec2 p = start;
     for (int i = 0; i < 60; ++i) {
         glm::dvec2 const miss = distorted(c, p) - target;
         if (!std::isfinite(miss.x) || !std::isfinite(miss.y)) return std::nullopt;
@@ -69,8 +75,31 @@ std::optional<glm::dvec2> undistorted(CameraModel const& c, glm::dvec2 target)
     if (!(std::max(std::abs(miss.x), std::abs(miss.y)) < 1e-10)) return std::nullopt;
     // Where the distortion folds back, several rays share a pixel: require a monotonic radius.
     double const r = glm::length(p);
+    if (!(r <= domain_of(c).radius)) return std::nullopt;
     if (r > 0 && glm::dot(distorted(c, p * (1 + 1e-6)) - distorted(c, p), p) <= 0) return std::nullopt;
     return p;
+}
+
+/// Largest x from 0 to `most` with grown(x) <= wanted, by bisection of a growing function.
+template <class Function>
+double where_it_reaches(double wanted, double most, Function const& grown)
+{
+    double low = 0, high = most;
+    for (int i = 0; i < 80; ++i) {
+        double const middle = 0.5 * (low + high);
+        (grown(middle) < wanted ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+std::optional<glm::dvec2> undistorted(CameraModel const& c, glm::dvec2 target)
+{
+    if (auto const p = undistorted_from(c, target, target)) return p;
+    // Newton's steps may have jumped over a pole or a fold: start again where the radial terms alone would be.
+    double const radius = glm::length(target);
+    if (!(radius > 0)) return std::nullopt;
+    double const r = where_it_reaches(radius, domain_of(c).radius, [&](double x) { return radial(c, x * x) * x; });
+    return undistorted_from(c, target, r / radius * target);
 }
 
 } // namespace
@@ -105,7 +134,9 @@ std::optional<glm::dvec2> project(CameraModel const& c, glm::dvec3 point)
     if (c.lens == LensModel::fisheye) {
         double const across = std::hypot(point.x, point.y);
         if (!(across > 0 || point.z > 0)) return std::nullopt;
-        double const r = fisheye_radius(c, std::atan2(across, point.z));
+        double const angle = std::atan2(across, point.z);
+        if (!(angle <= domain_of(c).radius)) return std::nullopt;
+        double const r = fisheye_radius(c, angle);
         p = across > 0 ? r / across * glm::dvec2(point) : glm::dvec2(0);
     } else {
         if (!(point.z > 0)) return std::nullopt;
@@ -115,7 +146,11 @@ std::optional<glm::dvec2> project(CameraModel const& c, glm::dvec3 point)
                 straight, table_px(c, glm::dvec2(c.fx * straight.x + c.cx, c.fy * straight.y + c.cy)));
             return pixel ? std::optional(camera_px(c, *pixel)) : std::nullopt;
         }
-        p = distorted(c, glm::dvec2(point) / point.z);
+        p = glm::dvec2(point) / point.z;
+        if (c.lens != LensModel::pinhole) {
+            if (!(glm::length(p) <= domain_of(c).radius)) return std::nullopt;
+            p = distorted(c, p);
+        }
     }
     return glm::dvec2(c.fx * p.x + c.cx, c.fy * p.y + c.cy);
 }
@@ -134,20 +169,9 @@ std::optional<glm::dvec3> direction_of(CameraModel const& c, glm::dvec2 pixel)
     }
     double const r = glm::length(target);
     if (!(r > 0)) return glm::dvec3(0, 0, 1);
-    double low = 0, high = std::numbers::pi; // the radius grows with the angle where the model holds
-    if (!(fisheye_radius(c, high) >= r)) {   // k4 < 0 bends back before pi: look for the top
-        double best = 0;
-        for (int i = 1; i <= 256; ++i)
-            if (double const a = std::numbers::pi * i / 256; fisheye_radius(c, a) > fisheye_radius(c, best))
-                best = a;
-        high = best;
-        if (!(fisheye_radius(c, high) >= r)) return std::nullopt;
-    }
-    for (int i = 0; i < 80; ++i) {
-        double const middle = 0.5 * (low + high);
-        (fisheye_radius(c, middle) < r ? low : high) = middle;
-    }
-    double const angle = 0.5 * (low + high);
+    double const most = domain_of(c).radius;
+    if (!(fisheye_radius(c, most) >= r)) return std::nullopt;
+    double const angle = where_it_reaches(r, most, [&](double a) { return fisheye_radius(c, a); });
     return glm::dvec3(std::sin(angle) / r * target, std::cos(angle));
 }
 
@@ -177,10 +201,65 @@ cv::Mat remap_table(CameraModel const& to, CameraModel const& from)
     return table;
 }
 
+namespace {
+
+/// The steepest that the distorted radius grows with the undistorted one, from the axis to `radius`.
+double steepest(CameraModel const& c, double radius)
+{
+    constexpr int kSteps = 1024;
+    double most = 0, before = 0;
+    for (int i = 1; i <= kSteps; ++i) {
+        double const r = radius * i / kSteps, now = radial(c, r * r) * r;
+        most = std::max(most, (now - before) * kSteps / radius);
+        before = now;
+    }
+    return most;
+}
+
+/// Each pixel needs a ray; of fisheyes, whose corners may be dark, half of the picture.
+template <class Refuse>
+void check_rays(CameraModel const& c, Refuse const& refuse)
+{
+    constexpr double kSteepest = 20; // lenses stretch the border of a picture by 3 at most
+    static char const* const suggestion =
+        "calibrate again, up to the picture's corners or with fewer coefficients: lightwell ar calibrate --lens "
+        "radial_tangential";
+    if (c.lens == LensModel::fisheye) {
+        LensReach const reach = reach_of(c);
+        if (reach.share < 0.5)
+            refuse(fmt::format("the lens model {}", describe(reach)), "less than half of it has rays", suggestion);
+        return;
+    }
+    LensDomain const domain = domain_of(c);
+    std::string const why =
+        domain.end == DomainEnd::pole
+            ? fmt::format("its denominator is 0 within the picture, {:.4g} focal lengths off the axis",
+                          domain.radius)
+        : domain.end == DomainEnd::fold
+            ? fmt::format("its distortion folds back within the picture, {:.4g} focal lengths off the axis",
+                          domain.radius)
+            : "its distortion folds back within the picture";
+    glm::dvec2 const corner(c.size_px.x - 1, c.size_px.y - 1);
+    for (glm::dvec2 const p : {glm::dvec2(0, 0), glm::dvec2(corner.x, 0), glm::dvec2(0, corner.y), corner}) {
+        auto const d = direction_of(c, p);
+        if (!d)
+            refuse(fmt::format("the lens model has no ray for the corner ({:g}, {:g})", p.x, p.y), why,
+                   suggestion);
+        if (c.lens != LensModel::rational) continue;
+        if (double const most = steepest(c, glm::length(glm::dvec2(*d)) / d->z); most > kSteepest)
+            refuse(fmt::format("the lens model stretches the picture {:.3g} times before the corner ({:g}, {:g})",
+                               most, p.x, p.y),
+                   domain.end == DomainEnd::pole ? why : "a lens does so 3 times at most", suggestion);
+    }
+}
+
+} // namespace
+
 void check(CameraModel const& c, std::string const& where)
 {
-    auto const refuse = [&](std::string const& problem, std::string const& why) {
-        throw gi::InputError(where + ": " + problem, why, "calibrate the camera again");
+    auto const refuse = [&](std::string const& problem, std::string const& why,
+                            std::string const& suggestion = "calibrate the camera again") {
+        throw gi::InputError(where + ": " + problem, why, suggestion);
     };
     for (double v : {c.fx, c.fy, c.cx, c.cy})
         if (!std::isfinite(v)) refuse("a number of the camera's matrix is not finite", "rays cannot be projected");
@@ -194,11 +273,7 @@ void check(CameraModel const& c, std::string const& where)
     if (std::abs(c.cx - 0.5 * c.size_px.x) > c.size_px.x || std::abs(c.cy - 0.5 * c.size_px.y) > c.size_px.y)
         refuse(fmt::format("the principal point ({}, {}) is far outside the picture", c.cx, c.cy),
                "the numbers are of another picture size or of a failed calibration");
-    glm::dvec2 const corner(c.size_px.x - 1, c.size_px.y - 1);
-    for (glm::dvec2 const p : {glm::dvec2(0, 0), glm::dvec2(corner.x, 0), glm::dvec2(0, corner.y), corner})
-        if (!direction_of(c, p))
-            refuse(fmt::format("the lens model has no ray for the corner ({:g}, {:g})", p.x, p.y),
-                   "its distortion folds back within the picture");
+    check_rays(c, refuse);
 }
 
 } // namespace ar

@@ -44,7 +44,7 @@ cv::Matx33d camera_matrix(CameraModel const& camera);
 cv::Mat distortion_of(CameraModel const& camera);
 
 /// Projects a point of the camera's frame to pixels; nothing if it is not in front of the camera (for fisheye: if
-/// it is at the camera).
+/// it is at the camera), or beyond the first pole or fold of the lens (ar/camera/lens_domain.h).
 std::optional<glm::dvec2> project(CameraModel const& camera, glm::dvec3 point);
 /// Unit direction (camera's frame) of a pixel. Inverts `project` to 1e-9 where the lens is invertible; nothing
 /// where the iteration does not converge (outside the range of the model).
@@ -58,7 +58,8 @@ CameraModel scaled(CameraModel const& camera, glm::ivec2 size_px);
 cv::Mat remap_table(CameraModel const& to, CameraModel const& from);
 
 /// @throws gi::InputError values that are not finite, no focal length, no size, a principal point far outside the
-/// picture, a distortion that is not monotonic within the picture; `where` begins the message
+/// picture, a distortion that is not monotonic or has a pole within the picture (for fisheye: in more than half of
+/// it, since its corners may be dark); `where` begins the message
 void check(CameraModel const& camera, std::string const& where);
 
 } // namespace ar

@@ -1,5 +1,6 @@
 #include "ar/composite/warp.h"
 
+#include "ar/camera/lens_domain.h"
 #include "gi/core/error.h"
 
 #include <algorithm>
@@ -18,11 +19,15 @@ CameraModel covering_pinhole(CameraModel const& camera, double resolution)
     glm::dvec2 least(std::numeric_limits<double>::infinity()), most(-least);
     auto const include = [&](double x, double y) {
         auto const d = direction_of(camera, {x, y});
-        if (!d || d->z <= kLeastCosine)
+        if (!d)
+            throw gi::InputError(fmt::format("the lens model has no ray at ({:g}, {:g})", x, y),
+                                 "what is rendered there is not known: " + describe(reach_of(camera)),
+                                 "calibrate up to the picture's corners, or crop the frames");
+        if (d->z <= kLeastCosine)
             throw gi::InputError(
                 fmt::format("the camera sees 80 degrees or more off its axis at ({:g}, {:g})", x, y),
                 "a pinhole picture that covers it would be very large",
-                "crop the frames, or render with a narrower lens");
+                "crop the frames; `lightwell ar track` needs no rendering and uses the whole lens");
         least = glm::min(least, glm::dvec2(*d) / d->z);
         most = glm::max(most, glm::dvec2(*d) / d->z);
     };

@@ -48,7 +48,7 @@ void check_size(glm::ivec2 frames_px, CalibratedCamera const& camera)
 }
 
 Pipeline::Pipeline(Session const& session, CalibratedCamera const& camera, MarkerMap const& markers,
-                   gi::Report& report, std::string prefix)
+                   gi::Report& report, std::string prefix, bool poses_only)
     : session_(session),
       camera_(camera),
       renderer_(local_scene(session, report), session.render.settings, report, session.render.method),
@@ -59,13 +59,14 @@ Pipeline::Pipeline(Session const& session, CalibratedCamera const& camera, Marke
       report_(report),
       prefix_(std::move(prefix))
 {
-    if (session.occlusion) occluders_.emplace(*session.occlusion, camera.model);
+    if (session.occlusion && !poses_only) occluders_.emplace(*session.occlusion, camera.model);
     renderer_.set_environment(light_.begin());
     std::string const why = renderer_.choose(session.render.light);
     lit_by_ = renderer_.is_prefiltered() ? "prefiltered light" : fmt::format("paths ({})", why);
     session_.render.resolution = resolution_of(session.render, renderer_.is_prefiltered());
-    finish_.emplace(session_, camera.model, markers,
-                    renderer_.is_prefiltered() ? PixelPoints::one : PixelPoints::many);
+    if (!poses_only)
+        finish_.emplace(session_, camera.model, markers,
+                        renderer_.is_prefiltered() ? PixelPoints::one : PixelPoints::many);
     light_picture_ = picture_of_light(light_.map());
 }
 

@@ -56,7 +56,8 @@ public:
     /// Loads the scenes and the light. @throws gi::InputError
     /// @param prefix  for its counts in the report, if there are several pipelines
     Pipeline(Session const& session, CalibratedCamera const& camera, MarkerMap const& markers, gi::Report& report,
-             std::string prefix = {});
+             std::string prefix = {}, bool poses_only = false);
+    /// @param poses_only  `add` is never called: the lens may see more than a pinhole picture shows
 
     /// Finds the camera's pose.
     /// @param time_s   since the first frame: time for animation clips, the camera's motion and the light

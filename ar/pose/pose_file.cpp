@@ -109,7 +109,11 @@ PoseFile read_poses(std::filesystem::path const& file, FrameNumbering const& num
     std::ostringstream text;
     text << in.rdbuf();
     std::string const whole = text.str();
-    switch (pose_format(whole, file.string())) {
+    PoseFormat const format = pose_format(whole, file.string());
+    if (numbering.order && format != PoseFormat::nuke_chan)
+        throw gi::InputError(fmt::format("a rotation order with '{}'", file.string()),
+                             "only Nuke's files (.chan) have angles that need one", "leave the order out");
+    switch (format) {
     case PoseFormat::colmap:
         return parse_colmap_images(whole, file.string(), numbering);
     case PoseFormat::nuke_chan:
@@ -122,7 +126,22 @@ PoseFile read_poses(std::filesystem::path const& file, FrameNumbering const& num
     if (numbering.first)
         throw gi::InputError(fmt::format("a number of the first frame with '{}'", file.string()),
                              "its poses have times, not numbers", "leave the number out");
-    return {parse_poses(whole, file.string(), axes), {}};
+    return {parse_poses(whole, file.string(), axes), {}, {}};
+}
+
+std::vector<std::string> const& rotation_order_names()
+{
+    static std::vector<std::string> const names{"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"};
+    return names;
+}
+
+std::string name_of(RotationOrder order) { return rotation_order_names()[std::size_t(order)]; }
+
+std::optional<RotationOrder> rotation_order_named(std::string const& name)
+{
+    auto const& names = rotation_order_names();
+    auto const at = std::find(names.begin(), names.end(), name);
+    return at == names.end() ? std::nullopt : std::optional(RotationOrder(at - names.begin()));
 }
 
 std::string format_poses(std::vector<TimedPose> const& poses)

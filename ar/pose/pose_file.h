@@ -32,19 +32,29 @@ enum class CameraAxes {
 std::vector<TimedPose> parse_poses(std::string_view text, std::string const& file,
                                    CameraAxes axes = CameraAxes::vision);
 
-/// How the frames are timed that a file numbers instead of giving times.
+/// The order in which an object is turned about the axes of its parent, first to last: of ZXY about z, then x, then
+/// y, R = Ry Rx Rz. Nuke's files (.chan) do not say which.
+enum class RotationOrder { xyz, xzy, yxz, yzx, zxy, zyx };
+std::vector<std::string> const& rotation_order_names(); ///< "XYZ", ..., in the order above
+std::string name_of(RotationOrder order);
+std::optional<RotationOrder> rotation_order_named(std::string const& name);
+
+/// What files of poses do not say.
 struct FrameNumbering {
     double frames_per_s = 0;          ///< > 0; Blender's file has its own
     std::optional<double> first = {}; ///< number of the frame at time 0; nothing = that of the first pose
+    /// Of Nuke's angles; nothing = ZXY, the default of Nuke's cameras.
+    std::optional<RotationOrder> order = {};
 };
 struct PoseFile {
     std::vector<TimedPose> poses;
-    std::optional<double> first_frame; ///< number of the frame at time 0; nothing: the file has times
+    std::optional<double> first_frame;       ///< number of the frame at time 0; nothing: the file has times
+    std::optional<RotationOrder> order = {}; ///< that was taken; nothing: the file has no angles
 };
 /// Reads a file of a format above or in ar/pose/pose_import.h.
 /// @param axes  of CSV and TUM
-/// @throws gi::InputError as the parsers, for files above 1 GiB, those that cannot be read, and for
-/// `numbering.first` with a file of times
+/// @throws gi::InputError as the parsers, for files above 1 GiB, those that cannot be read, for `numbering.first`
+/// with a file of times, and for `numbering.order` with a file that is not Nuke's
 PoseFile read_poses(std::filesystem::path const& file, FrameNumbering const& numbering,
                     CameraAxes axes = CameraAxes::vision);
 /// Formats as CSV with full precision.

@@ -25,8 +25,9 @@ struct NumberedPose {
 PoseFile timed(std::vector<NumberedPose> poses, std::string const& file, FrameNumbering const& numbering)
 {
     if (poses.empty())
-        throw gi::InputError(gi::TextLocation{file, 0, 0}, "there are no poses", "the camera is nowhere",
-                             "export the camera again");
+        throw gi::InputError(gi::TextLocation{file, 0, 0}, "there are no poses",
+                             "every line is empty or a comment",
+                             "export the camera's animation, a line for each frame");
     std::stable_sort(poses.begin(), poses.end(),
                      [](NumberedPose const& a, NumberedPose const& b) { return a.frame < b.frame; });
     double const first = numbering.first.value_or(poses.front().frame);
@@ -34,7 +35,7 @@ PoseFile timed(std::vector<NumberedPose> poses, std::string const& file, FrameNu
         throw gi::InputError(gi::TextLocation{file, poses.back().line, 1},
                              fmt::format("the last pose is of frame {:.15g}", poses.back().frame),
                              fmt::format("the first frame is number {:.15g}", first), "name a smaller number");
-    PoseFile out{{}, first};
+    PoseFile out{{}, first, {}};
     for (std::size_t k = 0; k < poses.size(); ++k) {
         if (k > 0 && poses[k].frame == poses[k - 1].frame)
             throw gi::InputError(gi::TextLocation{file, poses[k].line, 1},
@@ -50,7 +51,8 @@ double number(gi::TextLine const& line, std::string_view word, char const* what,
     auto const value = gi::parse_finite(word, most);
     if (!value)
         throw line.error(word.empty() ? line.text : word, fmt::format("'{}' is not a number", word),
-                         fmt::format("{} is one", what), "export the camera again");
+                         fmt::format("{} is one", what),
+                         "write numbers with a point, such as -1.25, separated by blanks");
     return *value;
 }
 
@@ -90,6 +92,19 @@ double frame_of(gi::TextLine const& line, std::string_view name)
                          "frames are numbered one by one; this may be a time",
                          "name pictures like 000012.png, or write a TUM file with times in seconds");
     return *frame;
+}
+
+/// @param angles_deg  about x, y and z
+glm::dquat turned(glm::dvec3 angles_deg, RotationOrder order)
+{
+    glm::dquat turn(1, 0, 0, 0);
+    for (char const axis : name_of(order)) {
+        int const i = axis - 'X';
+        glm::dvec3 about(0);
+        about[i] = 1;
+        turn = glm::angleAxis(glm::radians(angles_deg[i]), about) * turn;
+    }
+    return turn;
 }
 
 /// The line behind an image's: nothing but X Y POINT3D_ID, each a number.
@@ -149,6 +164,7 @@ PoseFile parse_colmap_images(std::string_view text, std::string const& file, Fra
 PoseFile parse_chan(std::string_view text, std::string const& file, FrameNumbering const& numbering)
 {
     constexpr std::array<char const*, 7> names{"the frame", "TX", "TY", "TZ", "RX", "RY", "RZ"};
+    RotationOrder const order = numbering.order.value_or(RotationOrder::zxy);
     std::vector<NumberedPose> poses;
     for (int n = 1; !text.empty(); ++n) {
         gi::TextLine const line{gi::take_until(text, '\n'), file, n};
@@ -160,13 +176,12 @@ PoseFile parse_chan(std::string_view text, std::string const& file, FrameNumberi
                              "a pose has 7, or 8 with a fov", "write FRAME TX TY TZ RX RY RZ");
         std::array<double, 7> v{};
         for (std::size_t k = 0; k < v.size(); ++k) v[k] = number(line, words[k], names[k]);
-        glm::dvec3 const r = glm::radians(glm::dvec3(v[4], v[5], v[6]));
-        glm::dquat const turn = glm::angleAxis(r.z, glm::dvec3(0, 0, 1)) *
-                                glm::angleAxis(r.y, glm::dvec3(0, 1, 0)) *
-                                glm::angleAxis(r.x, glm::dvec3(1, 0, 0));
+        glm::dquat const turn = turned({v[4], v[5], v[6]}, order);
         poses.push_back({v[0], {{v[1], v[2], v[3]}, glm::normalize(turn * kVisionInGraphics)}, n});
     }
-    return timed(std::move(poses), file, numbering);
+    PoseFile out = timed(std::move(poses), file, numbering);
+    out.order = order;
+    return out;
 }
 
 PoseFile parse_blender_json(std::string const& text, std::string const& file, FrameNumbering numbering)

@@ -8,8 +8,8 @@
 // Camera from world; camera x right, y down, z ahead. Frames are numbered by the last number in NAME. World and
 // scale are kept as they are in the file.
 //
-// Nuke (.chan): FRAME TX TY TZ RX RY RZ [VFOV]; degrees, about x, then y, then z (rotation order XYZ); world y up;
-// camera looks along -z with y up.
+// Nuke (.chan): FRAME TX TY TZ RX RY RZ [VFOV]; degrees, in the camera's rotation order, which the file does not say:
+// FrameNumbering::order, by default ZXY as of Nuke's cameras; world y up; camera looks along -z with y up.
 //
 // Blender (.json): {"lightwell_camera": 1, "fps": 24, "frames": [{"frame": 1, "position": [x, y, z],
 // "rotation_wxyz": [w, x, y, z]}, ...]}, from world matrices of the camera; world z up; camera looks along -z with

@@ -73,7 +73,7 @@ void run_frames(Session const& session, FrameSource& source, RunOptions const& o
     MarkerMap const markers = read_marker_map(session.markers);
     SourceDescription const about = source.description();
     check_size(about.size_px, camera);
-    Pipeline pipeline(session, camera, markers, report);
+    Pipeline pipeline(session, camera, markers, report, {}, options.find_poses_only);
     if (!options.find_poses_only) summary.light = pipeline.lit_by();
     if (options.keeps_depth) pipeline.keep_depth();
     if (options.opened) options.opened(about, pipeline);

@@ -44,7 +44,15 @@ double frames_per_s_of(SessionFrames const& frames)
 
 PoseFile read_camera_poses(std::filesystem::path const& file, FrameNumbering const& numbering, gi::Report& report)
 {
-    if (!is_scene(file)) return read_poses(file, numbering);
+    if (!is_scene(file)) {
+        PoseFile poses = read_poses(file, numbering);
+        if (poses.order)
+            report.count("poses with angles in the order " + name_of(*poses.order), double(poses.poses.size()));
+        return poses;
+    }
+    if (numbering.order)
+        throw gi::InputError("a rotation order with '" + file.string() + "'",
+                             "only Nuke's files (.chan) have angles that need one", "leave the order out");
     if (numbering.first)
         throw gi::InputError("a number of the first frame with '" + file.string() + "'",
                              "the first key of its camera is the first frame", "leave the number out");
@@ -72,7 +80,7 @@ PoseFile read_camera_poses(std::filesystem::path const& file, FrameNumbering con
             throw gi::InputError(fmt::format("'{}': the camera at {} s is not finite", file.string(), time_s),
                                  "frames cannot be composited with it", "check the scale of its node");
     }
-    return {std::move(poses), {}};
+    return {std::move(poses), {}, {}};
 }
 
 } // namespace ar

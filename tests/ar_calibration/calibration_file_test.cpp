@@ -99,6 +99,38 @@ TEST(CalibrationFile, OfOpenCvIsRead)
     }
 }
 
+TEST(CalibrationFile, OfRosNamesItsModel)
+{
+    auto const text = [](std::string const& model, std::string const& coefficients, int n) {
+        return "image_width: 640\nimage_height: 480\ncamera_name: narrow\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+               "  data: [500, 0, 320, 0, 501, 240, 0, 0, 1]\n" +
+               model + "distortion_coefficients:\n  rows: 1\n  cols: " + std::to_string(n) + "\n  data: [" +
+               coefficients +
+               "]\nrectification_matrix:\n  rows: 3\n  cols: 3\n  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n";
+    };
+    struct Case {
+        char const *model, *coefficients;
+        int n;
+        LensModel lens;
+    };
+    for (Case const& c :
+         {Case{"distortion_model: plumb_bob\n", "-0.1, 0.01, 0, 0, 0", 5, LensModel::radial_tangential},
+          Case{"distortion_model: plumb_bob\n", "-0.1, 0.01, 0, 0", 4, LensModel::radial_tangential},
+          Case{"distortion_model: plumb_bob\n", "", 0, LensModel::pinhole},
+          Case{"distortion_model: rational_polynomial\n", "0.1, 0.01, 0, 0, 0, 0.1, 0, 0", 8, LensModel::rational},
+          Case{"distortion_model: equidistant\n", "-0.02, 0.01, 0, 0", 4, LensModel::fisheye},
+          Case{"", "-0.1, 0.01, 0, 0", 4, LensModel::radial_tangential}})
+        EXPECT_EQ(parse_calibration(text(c.model, c.coefficients, c.n), "ros.yaml").camera.lens, c.lens)
+            << c.model;
+    for (auto const& [model, coefficients, n] :
+         {std::tuple{"distortion_model: thin_prism_fisheye\n", "0, 0, 0, 0", 4},
+          {"distortion_model: fov\n", "0.9", 1},
+          {"distortion_model: equidistant\n", "-0.1, 0.01, 0, 0, 0", 5},
+          {"distortion_model: rational_polynomial\n", "-0.1, 0.01, 0, 0, 0", 5},
+          {"distortion_model: plumb_bob\n", "0.1, 0.01, 0, 0, 0, 0.1, 0, 0", 8}})
+        EXPECT_THROW(parse_calibration(text(model, coefficients, n), "ros.yaml"), gi::InputError) << model;
+}
+
 TEST(CalibrationFile, SaysWhatIsWrongAndWhere)
 {
     std::string const good = format_calibration(full(LensModel::radial_tangential));

@@ -53,6 +53,39 @@ TEST(PoseImport, OfNukeHasItsAxes)
     EXPECT_LT(glm::length(up.rotation * glm::dvec3(1, 0, 0) - glm::dvec3(0, 0, -1)), 1e-9) << "level";
 }
 
+TEST(PoseImport, OfNukeHasTheOrderOfItsCamera)
+{
+    // Turned by 90 degrees about each of two axes, (1, 0, 0) goes to where the order says; the camera's x is its own.
+    struct Case {
+        char const *order, *angles;
+        glm::dvec3 x, back;
+    };
+    for (Case const& c : {
+             Case{"ZXY", "90 0 90", {0, 0, 1}, {0, -1, 0}}, // about z: (0, 1, 0), then about x: (0, 0, 1)
+             Case{"XYZ", "90 0 90", {0, 1, 0}, {1, 0, 0}},  // about x: stays, then about z
+             Case{"XYZ", "0 90 90", {0, 0, -1}, {0, 1, 0}}, // about y: (0, 0, -1), then about z
+             Case{"ZYX", "0 90 90", {0, 1, 0}, {1, 0, 0}},  // about z: (0, 1, 0), then about y
+             Case{"YXZ", "90 90 0", {0, 1, 0}, {1, 0, 0}},  // about y: (0, 0, -1), then about x
+             Case{"XZY", "0 90 90", {0, 1, 0}, {1, 0, 0}},  // about z, then about y
+             Case{"YZX", "0 90 90", {0, 0, -1}, {0, 1, 0}}, // about y, then about z
+         }) {
+        auto const order = rotation_order_named(c.order);
+        ASSERT_TRUE(order);
+        PoseFile const file = parse_chan(fmt::format("1 0 0 0 {}\n", c.angles), "a.chan", {24, {}, order});
+        glm::dquat const turn = file.poses[0].world_from_camera.rotation;
+        EXPECT_LT(glm::length(turn * glm::dvec3(1, 0, 0) - c.x), 1e-9) << c.order << " " << c.angles;
+        EXPECT_LT(glm::length(turn * glm::dvec3(0, 0, -1) - c.back), 1e-9) << c.order << " " << c.angles;
+        EXPECT_EQ(name_of(*file.order), c.order);
+    }
+    EXPECT_EQ(parse_chan("1 0 0 0 1 2 3\n", "a.chan", {24}).order, RotationOrder::zxy) << "as Nuke's cameras";
+    EXPECT_FALSE(rotation_order_named("zxy"));
+    EXPECT_FALSE(rotation_order_named("XX"));
+    std::filesystem::path const tum = std::filesystem::path(testing::TempDir()) / "lightwell_no_angles.txt";
+    std::ofstream(tum) << "0 1 2 3 0 0 0 1\n";
+    EXPECT_THROW(read_poses(tum, {10, {}, RotationOrder::xyz}), gi::InputError);
+    EXPECT_FALSE(read_poses(tum, {10}).order);
+}
+
 TEST(PoseImport, OfColmapIsCameraFromWorld)
 {
     gi::RigidPose const camera_from_world = inverse(known());

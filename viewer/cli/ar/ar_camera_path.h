@@ -16,6 +16,7 @@ public:
                gi::Report& report)
         : finder_(session.pose, ar::read_marker_map(session.markers), camera.model)
     {
+        check_rotation_order(poses.order, {poses.file});
         if (!poses.file.empty())
             poses_ = poses_of(poses, session, report);
         else if (session.tracked)

@@ -1,6 +1,7 @@
 #include "ar/calibration/collector.h"
 #include "ar/calibration/lens_choice.h"
 #include "ar/calibration/report.h"
+#include "ar/camera/lens_domain.h"
 #include "ar/markers/detect.h"
 #include "ar/markers/marker_map_file.h"
 #include "gi/core/error.h"
@@ -236,3 +237,5 @@ pictures were refused (the calibration is written).)");
 }
 
 } // namespace viewer
+    if (ar::LensReach const reach = ar::reach_of(report.lens.camera); reach.share < 1)
+        fmt::print("warning: the lens {}; elsewhere pixels have no rays\n", describe(reach));

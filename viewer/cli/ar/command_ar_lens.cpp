@@ -1,11 +1,13 @@
 #include "ar/calibration/calibration_file.h"
 #include "ar/calibration/stmap.h"
+#include "ar/camera/lens_domain.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/outputs.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <fmt/format.h>
 #include <memory>
 
@@ -16,7 +18,8 @@ struct LensOptions {
     std::string calibration, stmap, undistort, opencv;
 };
 
-/// Largest distance that the lens moves a pixel, and how exactly its two directions are inverse.
+/// Largest distance that the lens moves a pixel, as far as a pinhole picture shows it, how exactly its two
+/// directions are inverse, and where the model holds.
 std::string describe(ar::CameraModel const& c)
 {
     ar::CameraModel straight = c;
@@ -28,13 +31,24 @@ std::string describe(ar::CameraModel const& c)
             glm::dvec2 const pixel(x, y);
             auto const d = ar::direction_of(c, pixel);
             if (!d) continue;
-            if (auto const p = ar::project(straight, *d)) moved_px = std::max(moved_px, glm::length(*p - pixel));
+            if (d->z > std::cos(glm::radians(ar::kWide_deg)))
+                if (auto const p = ar::project(straight, *d))
+                    moved_px = std::max(moved_px, glm::length(*p - pixel));
             if (auto const p = ar::project(c, *d)) error_px = std::max(error_px, glm::length(*p - pixel));
         }
-    return fmt::format(
-        "{}, {} x {} px, focal length {:.2f} x {:.2f} px: moves pixels by up to {:.2f} px, inverted to "
+    ar::LensReach const reach = ar::reach_of(c);
+    std::string const within =
+        reach.share_wide > 0 ? fmt::format(" within {:g} degrees of its axis", ar::kWide_deg) : "";
+    std::string text = fmt::format(
+        "{}, {} x {} px, focal length {:.2f} x {:.2f} px: moves pixels by up to {:.2f} px{}, inverted to "
         "{:.1g} px\n",
-        name_of(c.lens), c.size_px.x, c.size_px.y, c.fx, c.fy, moved_px, error_px);
+        name_of(c.lens), c.size_px.x, c.size_px.y, c.fx, c.fy, moved_px, within, error_px);
+    text += fmt::format("{}\n", describe(reach));
+    if (reach.share_wide > 0)
+        text += fmt::format("{:.3g} % of the picture is {:g} degrees or more off the axis: no pinhole picture "
+                            "shows it, `ar track` uses it, `ar run` does not render it\n",
+                            100 * reach.share_wide, ar::kWide_deg);
+    return text;
 }
 
 int run_lens(LensOptions const& o)
@@ -46,14 +60,22 @@ int run_lens(LensOptions const& o)
     if (!o.opencv.empty() && c.camera.lens == ar::LensModel::stmap)
         throw gi::InputError("--opencv of a lens that is an STMap", "OpenCV's files hold coefficients, not tables",
                              "give its programs the map, --stmap FILE");
-    if (!o.stmap.empty()) ar::write_stmap(o.stmap, ar::stmap_of(c.camera, ar::StMap::distort));
-    if (!o.undistort.empty()) ar::write_stmap(o.undistort, ar::stmap_of(c.camera, ar::StMap::undistort));
+    std::string placeless;
+    auto const write = [&](std::string const& file, ar::StMap which) {
+        if (file.empty()) return;
+        cv::Mat const st = ar::stmap_of(c.camera, which);
+        ar::write_stmap(file, st);
+        int const n = ar::placeless_px(st);
+        if (n > 0) placeless += fmt::format("{}: {} pixels have no place in the source: (-1, -1)\n", file, n);
+    };
+    write(o.stmap, ar::StMap::distort);
+    write(o.undistort, ar::StMap::undistort);
     if (!o.opencv.empty()) {
         ar::Calibration lens;
         lens.camera = c.camera;
         gi::write_text(o.opencv, ar::format_calibration(lens));
     }
-    fmt::print("{}", describe(c.camera));
+    fmt::print("{}{}", describe(c.camera), placeless);
     for (std::string const& file : {o.stmap, o.undistort, o.opencv})
         if (!file.empty()) fmt::print("{}\n", file);
     return 0;

@@ -128,6 +128,7 @@ int run_in_hmd(RunArguments const& a, ar::Session const& session, ar::RunOptions
 int run_session(RunArguments const& a, bool poses_only)
 {
     auto const required = parse_share("--require-found", a.require_found);
+    check_rotation_order(a.poses.order, {a.poses.file, a.true_poses});
     ar::Session const session = session_of(a);
     check_arguments(a, session);
     if (!a.video.empty()) {
@@ -151,7 +152,7 @@ int run_session(RunArguments const& a, bool poses_only)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
-    ar::FrameTruth truth(a.truth, true_poses_of(a.true_poses, session, report));
+    ar::FrameTruth truth(a.truth, true_poses_of(a.true_poses, a.poses.order, session, report));
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
                            a.fast ? ar::PictureThread::WhenFull::wait : ar::PictureThread::WhenFull::lose,
                            poses_only ? ar::PassSettings{} : session.passes});
@@ -295,7 +296,8 @@ void add_ar_track(CLI::App& ar, int& exit_code)
     CLI::App* const track_command =
         ar.add_subcommand("track", "Find the camera pose in each frame, with its confidence");
     add_session_options(*track_command, *track);
-    track_command->footer(R"(Examples:
+    declare_rotation_order(*track_command, track->poses.order);
+    track_command->footer(R"(Prepared by:
   lightwell ar synthesize tracked --frames 2 --size 640x480 --paths 2 --no-truth
   lightwell ar track tracked/session.yaml --fast --true-poses tracked/poses.csv --require-found 90%
 
