@@ -1,68 +1,98 @@
 #include "study/imported/delimited_text.h"
 
 #include "gi/core/text.h"
+#include "study/imported/decimal_number.h"
+#include "study/imported/table_encoding.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace study {
 namespace {
 
-char separator_of(std::string const& text)
-{
-    std::string const head = text.substr(0, text.find('\n'));
-    char best = ',';
-    for (char const c : {';', '\t'})
-        if (std::count(head.begin(), head.end(), c) > std::count(head.begin(), head.end(), best)) best = c;
-    return best;
-}
+constexpr std::string_view kMark = "\xef\xbb\xbf"; ///< byte-order mark, also where files were joined
 
-/// @throws ScriptError the text is not UTF-8, or has zero bytes
-void check_encoding(std::string const& text, std::string const& file)
+/// @param line  of column names
+char separator_of(std::string_view line)
 {
-    constexpr char const* kSave = "save it as UTF-8 (of a spreadsheet: CSV UTF-8)";
-    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
-        throw ScriptError(file, {1, 1}, "the text is UTF-16", "tables are read as UTF-8", kSave);
-    Place at{1, 1};
-    for (std::size_t i = 0; i < text.size();) {
-        std::size_t const n = gi::first_character(std::string_view(text).substr(i));
-        if (n == 0)
-            throw ScriptError(file, at, "the text is not UTF-8", "tables are read as UTF-8, this may be Latin-1",
-                              kSave);
-        if (text[i] == '\0') throw ScriptError(file, at, "a zero byte", "tables are text", kSave);
-        at = text[i] == '\n' ? Place{at.line + 1, 1} : Place{at.line, at.column + int(n)};
-        i += n;
+    std::size_t commas = 0, semicolons = 0, tabs = 0;
+    bool is_quoted = false;
+    for (char const c : line) {
+        if (c == '"') is_quoted = !is_quoted;
+        if (is_quoted) continue;
+        commas += c == ',';
+        semicolons += c == ';';
+        tabs += c == '\t';
     }
+    if (semicolons > commas && semicolons >= tabs) return ';';
+    return tabs > commas ? '\t' : ',';
 }
 
 class Reader {
 public:
-    Reader(std::string const& text, std::string const& file) : text_(text), file_(file)
+    Reader(std::string_view text, std::string const& file) : text_(text), file_(&file)
     {
-        if (text_.rfind("\xef\xbb\xbf", 0) == 0) at_ = 3;
-        while (!at_end() && (text_[at_] == '\n' || text_[at_] == '\r')) step();
-        separator_ = separator_of(text_.substr(at_));
+        skip_empty();
+        std::string_view const line = rest_of_line();
+        std::size_t const at = line.starts_with("sep=")     ? 4
+                               : line.starts_with("\"sep=") ? 5
+                                                            : std::string_view::npos;
+        if (at >= line.size() || std::string_view(",;\t").find(line[at]) == std::string_view::npos) return;
+        given_ = line[at];
+        skip_line();
+        skip_empty();
     }
     bool at_end() const { return at_ >= text_.size(); }
-
+    bool at_comment() const { return !at_end() && text_[at_] == '#'; }
+    std::string_view rest_of_line() const
+    {
+        std::size_t const end = std::min(text_.find_first_of("\n\r", at_), text_.size());
+        return text_.substr(at_, end - at_);
+    }
+    void separate_as(std::string_view line) { separator_ = given_ ? *given_ : separator_of(line); }
+    char separator() const { return separator_; }
+    void skip_line()
+    {
+        while (!at_end() && !at_line_end()) step();
+        end_line();
+    }
+    void skip_empty()
+    {
+        while (!at_end() && (at_line_end() || text_.substr(at_).starts_with(kMark)))
+            at_line_end() ? end_line() : skip_mark();
+    }
     std::vector<TextCell> row()
     {
+        skip_mark();
         std::vector<TextCell> cells;
         for (bool more = true; more;) {
             cells.push_back(cell());
             more = !at_end() && text_[at_] == separator_;
             if (more) step();
         }
-        if (!at_end()) step(); // the line's end
+        end_line();
         return cells;
     }
 
 private:
+    bool at_line_end() const { return text_[at_] == '\n' || text_[at_] == '\r'; }
+    void skip_mark()
+    {
+        if (text_.substr(std::min(at_, text_.size())).starts_with(kMark)) at_ += kMark.size();
+    }
+    void end_line()
+    {
+        if (at_end()) return;
+        if (text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n') ++at_;
+        step();
+    }
     void step()
     {
-        if (text_[at_++] == '\n') {
+        char const c = text_[at_++];
+        if (c == '\n' || (c == '\r' && (at_end() || text_[at_] != '\n'))) {
             ++line_;
             column_ = 1;
         } else
@@ -73,8 +103,9 @@ private:
         TextCell c;
         c.place = {line_, column_};
         while (!at_end() && text_[at_] == ' ') step();
+        auto const at_cell_end = [&] { return at_end() || text_[at_] == separator_ || at_line_end(); };
         if (at_end() || text_[at_] != '"') {
-            while (!at_end() && text_[at_] != separator_ && text_[at_] != '\n') {
+            while (!at_cell_end()) {
                 c.text += text_[at_];
                 step();
             }
@@ -82,7 +113,7 @@ private:
             step();
             for (;;) {
                 if (at_end())
-                    throw ScriptError(file_, c.place, "a quote is not closed", "the file ends within this cell",
+                    throw ScriptError(*file_, c.place, "a quote is not closed", "the file ends within this cell",
                                       "add the missing quote");
                 bool const is_quote = text_[at_] == '"';
                 bool const is_doubled = is_quote && at_ + 1 < text_.size() && text_[at_ + 1] == '"';
@@ -92,18 +123,79 @@ private:
                 step();
             }
             step();
-            while (!at_end() && text_[at_] != separator_ && text_[at_] != '\n') step();
+            while (!at_cell_end()) step();
         }
         c.text = std::string(gi::trimmed(c.text));
         return c;
     }
 
-    std::string const& text_;
-    std::string const& file_;
+    std::string_view text_;
+    std::string const* file_;
     std::size_t at_ = 0;
     int line_ = 1, column_ = 1;
     char separator_ = ',';
+    std::optional<char> given_;
 };
+
+/// Number of cells up to the last one that is not empty.
+std::size_t filled(std::vector<TextCell> const& cells)
+{
+    std::size_t n = cells.size();
+    while (n > 0 && cells[n - 1].text.empty()) --n;
+    return n;
+}
+
+bool has_number(std::vector<TextCell> const& cells)
+{
+    return std::any_of(cells.begin(), cells.end(),
+                       [](TextCell const& c) { return read_decimal(c.text).has_value(); });
+}
+
+/// The cells of column names. A last comment before the first row is that line if it has as many cells and the row has
+/// numbers: so does numpy.savetxt.
+std::vector<TextCell> read_head(Reader& reader, int& comments)
+{
+    std::optional<Reader> last_comment;
+    while (reader.at_comment()) {
+        last_comment = reader;
+        reader.skip_line();
+        reader.skip_empty();
+        ++comments;
+    }
+    if (last_comment) {
+        Reader head = *last_comment, first = reader;
+        head.separate_as(head.rest_of_line());
+        first.separate_as(last_comment->rest_of_line());
+        std::vector<TextCell> cells = head.row();
+        if (!first.at_end() && cells.size() > 1) {
+            auto const row = first.row();
+            if (filled(row) <= cells.size() && row.size() >= filled(cells) && has_number(row)) {
+                --comments;
+                reader.separate_as(last_comment->rest_of_line());
+                if (cells[0].text.starts_with("# "))
+                    cells[0].text = std::string(gi::trimmed(cells[0].text.substr(1)));
+                return cells;
+            }
+        }
+    }
+    reader.separate_as(reader.rest_of_line());
+    return reader.at_end() ? std::vector<TextCell>{} : reader.row();
+}
+
+std::vector<std::string> texts_of(std::vector<TextCell> const& cells, std::size_t count)
+{
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < std::min(count, cells.size()); ++i) out.push_back(cells[i].text);
+    return out;
+}
+
+/// "3 lines of comments skipped". @param first  line of the first one; 0 = it does not matter
+std::string skipped(int n, char const* one, char const* more, int first)
+{
+    std::string const where =
+        first == 0 ? "" : fmt::format(" ({} {})", n == 1 ? "line" : "the first is line", first);
+    return fmt::format("{} {} skipped{}", n, n == 1 ? one : more, where);
+}
 
 } // namespace
 
@@ -113,9 +205,21 @@ int DelimitedText::column(std::string const& name) const
     return it == columns.end() ? -1 : int(it - columns.begin());
 }
 
+void DelimitedText::check_one_column(std::string const& name) const
+{
+    auto const first = std::find(columns.begin(), columns.end(), name);
+    if (first == columns.end()) return;
+    auto const second = std::find(first + 1, columns.end(), name);
+    if (second == columns.end()) return;
+    TextCell const& head = heads[std::size_t(second - columns.begin())];
+    throw ScriptError(files[std::size_t(head.file)], head.place, fmt::format("two columns are named '{}'", name),
+                      "a name must say which column is meant", "rename one of them");
+}
+
 bool DelimitedText::is_missing(std::string const& text)
 {
-    for (char const* word : {"", "NA", "N/A", "n/a", "nan", "NaN", "None", "null"})
+    for (char const* word : {"", "NA", "N/A", "n/a", "#N/A", "<NA>", "nan", "NaN", "NAN", "None", "null", "NULL",
+                             "undefined", "--", "."})
         if (text == word) return true;
     return false;
 }
@@ -123,14 +227,25 @@ bool DelimitedText::is_missing(std::string const& text)
 DelimitedText joined(std::vector<DelimitedText> const& tables)
 {
     DelimitedText all;
+    using Name = std::pair<std::string, int>; // and its number among equal ones
+    std::map<Name, std::size_t> place;
     for (DelimitedText const& t : tables) {
         all.file += (all.file.empty() ? "" : ", ") + t.file;
         int const first_file = int(all.files.size());
         all.files.insert(all.files.end(), t.files.begin(), t.files.end());
+        all.separators += t.separators;
+        for (std::string const& note : t.notes)
+            all.notes.push_back(tables.size() > 1 && !note.starts_with(t.file) ? t.file + ": " + note : note);
         std::vector<std::size_t> at;
-        for (std::string const& name : t.columns) {
-            if (all.column(name) < 0) all.columns.push_back(name);
-            at.push_back(std::size_t(all.column(name)));
+        std::map<std::string, int> seen;
+        for (std::size_t c = 0; c < t.columns.size(); ++c) {
+            auto const [it, is_new] = place.emplace(Name(t.columns[c], seen[t.columns[c]]++), all.columns.size());
+            if (is_new) {
+                all.columns.push_back(t.columns[c]);
+                all.heads.push_back(t.heads[c]);
+                all.heads.back().file += first_file;
+            }
+            at.push_back(it->second);
         }
         for (auto const& row : t.rows) {
             std::vector<TextCell> cells(all.columns.size(), TextCell{"", {row.front().place.line, 0}, first_file});
@@ -154,14 +269,18 @@ DelimitedText to_wide(DelimitedText const& table, std::string const& names, std:
         if (at < 0)
             throw ScriptError(table.file, {1, 1}, fmt::format("there is no column '{}'", column),
                               "--long names it", "check the names in the first line");
+    for (std::string const& name : {names, values}) table.check_one_column(name);
     DelimitedText wide;
     wide.file = table.file;
     wide.files = table.files;
+    wide.separators = table.separators;
+    wide.notes = table.notes;
     std::vector<std::size_t> keys;
     for (std::size_t c = 0; c < table.columns.size(); ++c)
         if (int(c) != name_at && int(c) != value_at) {
             keys.push_back(c);
             wide.columns.push_back(table.columns[c]);
+            wide.heads.push_back(table.heads[c]);
         }
     std::map<std::vector<std::string>, std::size_t> trials;
     std::vector<std::vector<bool>> is_set;
@@ -175,7 +294,10 @@ DelimitedText to_wide(DelimitedText const& table, std::string const& names, std:
             for (std::size_t const k : keys) wide.rows.back().push_back(row[k]);
         }
         TextCell const& name = row[std::size_t(name_at)];
-        if (wide.column(name.text) < 0) wide.columns.push_back(name.text);
+        if (wide.column(name.text) < 0) {
+            wide.columns.push_back(name.text);
+            wide.heads.push_back(name);
+        }
         auto const at = std::size_t(wide.column(name.text));
         auto& cells = wide.rows[it->second];
         auto& set = is_set[it->second];
@@ -193,37 +315,80 @@ DelimitedText to_wide(DelimitedText const& table, std::string const& names, std:
     return wide;
 }
 
-DelimitedText read_delimited(std::string text, std::string const& file)
+DelimitedText read_delimited(std::string bytes, std::string const& file)
 {
-    check_encoding(text, file);
-    if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+    DecodedText const decoded = decoded_table(std::move(bytes), file);
     DelimitedText t;
     t.file = file;
     t.files = {file};
-    Reader reader(text, file);
-    std::vector<TextCell> const head = reader.at_end() ? std::vector<TextCell>{} : reader.row();
+    if (!decoded.note.empty()) t.notes.push_back(decoded.note);
+    Reader reader(decoded.text, file);
+    int comments = 0, repeated = 0, first_repeated = 0, shorter = 0, first_shorter = 0;
+    std::vector<TextCell> const head = read_head(reader, comments);
+    t.separators = reader.separator();
     for (TextCell const& c : head) {
         // Programs that write row numbers leave their column without a name, those that end lines in a comma too.
-        std::string const name = c.text.empty() ? fmt::format("column {}", t.columns.size() + 1) : c.text;
-        if (t.column(name) >= 0)
-            throw ScriptError(file, c.place, fmt::format("two columns are named '{}'", name),
-                              "a name must say which column is meant", "rename one of them");
-        t.columns.push_back(name);
+        t.columns.push_back(c.text.empty() ? fmt::format("column {}", t.columns.size() + 1) : c.text);
+        t.heads.push_back(c);
     }
     if (head.size() < 2)
         throw ScriptError(file, {1, 1}, fmt::format("{} columns", head.size()),
                           "the first line has the names of columns, separated by commas, semicolons or tabs",
                           "check that this is a table");
-    while (!reader.at_end()) {
+    std::size_t const named = filled(head);
+    std::vector<std::string> const names = texts_of(head, named);
+    std::vector<std::string> sorted = names;
+    std::sort(sorted.begin(), sorted.end());
+    for (reader.skip_empty(); !reader.at_end(); reader.skip_empty()) {
+        if (reader.at_comment()) {
+            // An item may be called "#1"; a comment has other cells than the rows, or a blank after the sign.
+            Reader as_row = reader;
+            as_row.skip_line();
+            std::string_view const line = reader.rest_of_line();
+            auto const cells = std::size_t(std::count(line.begin(), line.end(), reader.separator())) + 1;
+            if (cells != head.size() || line.starts_with("# ")) {
+                ++comments;
+                reader = as_row;
+                continue;
+            }
+        }
         std::vector<TextCell> cells = reader.row();
         if (cells.size() == 1 && cells[0].text.empty()) continue;
-        if (cells.size() != head.size())
+        std::size_t const own = filled(cells);
+        if (own == named && texts_of(cells, own) == names) {
+            first_repeated = repeated++ == 0 ? cells[0].place.line : first_repeated;
+            continue;
+        }
+        if (own == named) {
+            std::vector<std::string> texts = texts_of(cells, own);
+            std::sort(texts.begin(), texts.end());
+            if (texts == sorted)
+                throw ScriptError(file, cells.front().place,
+                                  "column names in another order than in the first line",
+                                  "tables with other columns seem to be joined here",
+                                  "give them as several files: --table FILE FILE");
+        }
+        if (own > head.size() || cells.size() == 1)
             throw ScriptError(file, cells.front().place,
                               fmt::format("{} cells in a table of {} columns", cells.size(), head.size()),
                               "each row has one cell for each column name",
-                              "check quotes and separators of this line");
+                              reader.separator() == ','
+                                  ? "check quotes and separators of this line: decimal commas need quotes"
+                                  : "check quotes and separators of this line");
+        if (cells.size() < named) first_shorter = shorter++ == 0 ? cells[0].place.line : first_shorter;
+        TextCell const missing{"", {cells.back().place.line, cells.back().place.column}, 0};
+        cells.resize(head.size(), missing);
         t.rows.push_back(std::move(cells));
     }
+    if (repeated > 0)
+        t.notes.push_back(
+            skipped(repeated, "further line of column names", "further lines of column names", first_repeated));
+    if (comments > 0) t.notes.push_back(skipped(comments, "line of comments", "lines of comments", 0));
+    if (shorter > 0)
+        t.notes.push_back(fmt::format("{} (the first is line {}): the rest is missing",
+                                      shorter == 1 ? "1 row ends before the last column"
+                                                   : fmt::format("{} rows end before the last column", shorter),
+                                      first_shorter));
     return t;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
-// Tables of other programs: comma-, semicolon- or tab-separated text with a line of column names (RFC 4180: cells
-// in quotes may contain separators, line ends and doubled quotes), in UTF-8. A byte-order mark is ignored, as are
-// empty lines; lines end in LF, CR LF, or CR if there is no LF.
+// Tables of other programs: text separated by commas, semicolons or tabs, with a line of column names (RFC 4180: cells
+// in quotes may contain separators, line ends and doubled quotes). Lines end in LF, CR LF or CR. Ignored are a
+// byte-order mark, empty lines, "sep=;" in the first line (spreadsheets), and, counted, lines of comments that begin
+// with '#' and further lines of column names, as in files that were joined. Columns may have equal names, which then
+// cannot be named.
 
 #include "study/script/script_error.h"
 
@@ -18,26 +20,33 @@ struct TextCell {
 struct DelimitedText {
     std::string file;               ///< name in messages
     std::vector<std::string> files; ///< where cells come from
+    std::string separators;         ///< of each file
     std::vector<std::string> columns;
+    std::vector<TextCell> heads;             ///< the cells that name them
+    std::vector<std::string> notes{};        ///< what was skipped, and what is uncertain
     std::vector<std::vector<TextCell>> rows; ///< each with one cell per column; empty lines are ignored
 
-    /// @return -1 = there is none
+    /// @return the first of that name; -1 = there is none
     int column(std::string const& name) const;
-    /// Cells that stand for a missing value: "", "NA", "n/a", "nan", "None".
+    /// @throws ScriptError there are two of that name
+    void check_one_column(std::string const& name) const;
+    /// Cells that stand for a missing value: "", "NA", "n/a", "nan", "None", "--", ".", "#N/A", ...
     static bool is_missing(std::string const& text);
 };
 
 /// Rows of several tables one after another, such as one file per participant;
-/// columns that a table does not have are empty there.
+/// columns that a table does not have are empty there. Of columns with equal names the first ones belong together, the
+/// second ones, and so on.
 DelimitedText joined(std::vector<DelimitedText> const& tables);
 /// One row per trial from a table with one row per value: all rows that agree in the other columns become one row,
 /// with a column for each name in `names` that has the text in `values`.
 /// @throws ScriptError unknown columns, a name that occurs twice in a trial
 DelimitedText to_wide(DelimitedText const& table, std::string const& names, std::string const& values);
 
-/// The separator is the one of comma, semicolon and tab that is most frequent in the line of column names.
-/// @throws ScriptError text that is not UTF-8 or has zero bytes, no columns, two with the same name, a row with
-/// another number of cells, an open quote
+/// The separator is the one of comma, semicolon and tab that is most frequent in the line of column names. That line may
+/// begin with "# ". Rows may end before the last columns, which are missing there.
+/// @throws ScriptError as decoded_table; no columns, a row with more cells or with only one, a further line of column
+/// names in another order, an open quote
 DelimitedText read_delimited(std::string text, std::string const& file);
 
 } // namespace study

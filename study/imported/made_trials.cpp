@@ -1,6 +1,6 @@
 #include "study/imported/made_trials.h"
 
-#include "gi/core/text.h"
+#include "study/imported/decimal_number.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,12 @@ namespace {
 /// Names of levels in numeric order if all are numbers.
 std::vector<std::string> ordered(std::vector<std::string> names)
 {
-    bool const are_numbers = std::all_of(names.begin(), names.end(),
-                                         [](std::string const& n) { return gi::parse_finite(n).has_value(); });
+    bool const are_numbers =
+        std::all_of(names.begin(), names.end(), [](std::string const& n) { return read_decimal(n).has_value(); });
     if (are_numbers)
-        std::stable_sort(names.begin(), names.end(),
-                         [](auto const& a, auto const& b) { return *gi::parse_finite(a) < *gi::parse_finite(b); });
+        std::stable_sort(names.begin(), names.end(), [](auto const& a, auto const& b) {
+            return read_decimal(a)->value < read_decimal(b)->value;
+        });
     return names;
 }
 
@@ -45,16 +46,44 @@ Factor factor_of(std::string const& name, std::vector<std::string> const& levels
     return f;
 }
 
-bool is_between(MadeExperiment const& made, std::size_t factor)
+/// Levels of a factor by participant, in the order of their names.
+std::map<std::string, std::set<std::string>> levels_of_people(MadeExperiment const& made, std::size_t factor)
 {
     std::map<std::string, std::set<std::string>> levels;
+    for (MadeTrial const& t : made.trials) levels[t.participant].insert(t.factors[factor]);
+    return levels;
+}
+
+bool is_between(MadeExperiment const& made, std::size_t factor)
+{
     std::set<std::string> all;
-    for (MadeTrial const& t : made.trials) {
-        levels[t.participant].insert(t.factors[factor]);
-        all.insert(t.factors[factor]);
-    }
+    auto const levels = levels_of_people(made, factor);
+    for (auto const& [unused, own] : levels) all.insert(own.begin(), own.end());
     return all.size() > 1 &&
            std::all_of(levels.begin(), levels.end(), [](auto const& of) { return of.second.size() == 1; });
+}
+
+/// A caution if a factor seems to differ between participants, but a few of them have several of its levels, as if the
+/// same id had been given in two groups. Empty if not.
+std::string shared_ids(MadeExperiment const& made, std::size_t factor)
+{
+    std::string who, example;
+    int several = 0, one = 0;
+    for (auto const& [id, own] : levels_of_people(made, factor)) {
+        if (own.size() == 1) {
+            ++one;
+            continue;
+        }
+        constexpr int kMostNamed = 5;
+        if (several++ < kMostNamed) who += (who.empty() ? "" : ", ") + id;
+        if (example.empty()) example = fmt::format("{}", fmt::join(own, " and "));
+    }
+    if (several == 0 || several >= one) return {};
+    return fmt::format(
+        "'{}': {} participant{} ({}{}) {} several levels ({}), the other {} have one each: it is taken as "
+        "within participants; if an id was used for two people, rename one",
+        made.factors[factor], several, several == 1 ? "" : "s", who, several > 5 ? ", ..." : "",
+        several == 1 ? "has" : "have", example, one);
 }
 
 bool is_of_pairs(Task task) { return task == Task::pair || task == Task::pair_with_reference; }
@@ -117,6 +146,7 @@ Script script_of(MadeExperiment const& made, std::vector<std::vector<std::string
         s.factors.push_back(factor_of(made.factors[f], levels[f]));
         if (!is_between(made, f)) {
             b.cross.push_back(int(f));
+            if (std::string caution = shared_ids(made, f); !caution.empty()) notes.push_back(std::move(caution));
             continue;
         }
         Counterbalance c;

@@ -28,7 +28,7 @@ struct MadeExperiment {
 };
 
 /// A factor whose level is the same in all trials of each participant, and differs between them, is one between
-/// participants. Levels are in numeric order, or in that of their appearance.
+/// participants; a note says so if a few participants have several of its levels. Levels are in numeric order, or in that of their appearance.
 ImportedTable sessions_of(MadeExperiment const& made);
 
 } // namespace study

@@ -1,6 +1,8 @@
 #include "study/imported/trial_table.h"
 
+#include "gi/core/quantile.h"
 #include "gi/core/text.h"
+#include "study/imported/decimal_number.h"
 #include "study/imported/made_trials.h"
 
 #include <algorithm>
@@ -52,12 +54,15 @@ public:
             check_roles();
             for (auto const& row : t_.rows) read(row);
             check_percent();
+            check_thousands();
             note_ambiguous_choices();
+            note_reaction_unit();
         }
         if (made_.trials.empty())
             throw ScriptError(t_.file, {}, "no trials are left", notes_of_rows(), "check --columns and --only");
         made_.id = roles_.id.empty() ? std::filesystem::path(t_.file).stem().string() : roles_.id;
         made_.file = t_.file;
+        made_.notes.insert(made_.notes.begin(), t_.notes.begin(), t_.notes.end());
         made_.scale = roles_.scale;
         made_.harder_up = roles_.harder_up;
         made_.level_name = has("level") ? roles_.column.at("level") : "level";
@@ -87,6 +92,7 @@ private:
     }
     int column_of(std::string const& name, std::string const& who) const
     {
+        t_.check_one_column(name);
         int const at = t_.column(name);
         if (at >= 0) return at;
         std::string known;
@@ -96,26 +102,50 @@ private:
     }
     bool has(std::string const& role) const { return at_.count(role) > 0; }
     TextCell const& cell(Row const& row, std::string const& role) const { return row[std::size_t(at_.at(role))]; }
-    double number(Row const& row, std::string const& role) const
+    double number(Row const& row, std::string const& role)
     {
         TextCell const& c = cell(row, role);
-        auto const v = gi::parse_finite(c.text);
+        std::string const& column = roles_.column.at(role);
+        auto const v = read_decimal(c.text);
         if (!v)
-            refuse_cell(c, roles_.column.at(role), fmt::format("'{}' is a number", role),
-                        "use digits with a decimal point");
-        return *v;
+            refuse_cell(c, column, fmt::format("'{}' is a number", role),
+                        c.text.find(',') == std::string::npos
+                            ? "use digits with a decimal point"
+                            : "use digits with a decimal point or comma, and nothing between thousands");
+        if (v->mark == '\0') return v->value;
+        Decimals& found = decimals_[{c.file, at_.at(role)}];
+        TextCell const*& same = v->mark == ',' ? found.comma : found.point;
+        TextCell const* const other = v->mark == ',' ? found.point : found.comma;
+        if (other != nullptr)
+            refuse_cell(c, column,
+                        fmt::format("the column has decimal {} too, '{}' in line {}",
+                                    v->mark == ',' ? "points" : "commas", other->text, other->place.line),
+                        "write all of its numbers with points or all with commas");
+        if (same == nullptr) same = &c;
+        found.may_be_1000 = found.may_be_1000 && v->may_be_1000;
+        return v->value;
+    }
+    /// In a comma-separated table "1,234" may be 1.234 or 1234 if no other comma of its column tells.
+    void check_thousands() const
+    {
+        for (auto const& [where, found] : decimals_)
+            if (found.comma != nullptr && found.may_be_1000 && t_.separators[std::size_t(where.first)] == ',')
+                refuse_cell(*found.comma, t_.columns[std::size_t(where.second)],
+                            "it may have a decimal comma, or one between thousands",
+                            "write numbers with a decimal point, and nothing between thousands");
     }
     bool flag(Row const& row, std::string const& role) const
     {
         std::string const text = lower_case(cell(row, role).text);
-        for (char const* yes : {"1", "1.0", "true", "yes"})
+        // Spreadsheets write them in their own language.
+        for (char const* yes : {"1", "1.0", "1,0", "true", "yes", "wahr", "vrai", "verdadero", "vero", "waar"})
             if (text == yes) return true;
-        for (char const* no : {"0", "0.0", "false", "no"})
+        for (char const* no : {"0", "0.0", "0,0", "false", "no", "falsch", "faux", "falso", "onwaar"})
             if (text == no) return false;
         refuse_cell(cell(row, role), roles_.column.at(role), fmt::format("'{}' is 1 or 0", role),
                     "use 1 and 0, true and false, or yes and no");
     }
-    int count(Row const& row, std::string const& role) const
+    int count(Row const& row, std::string const& role)
     {
         double const v = number(row, role);
         if (v < 0 || v != std::floor(v))
@@ -228,6 +258,7 @@ private:
         for (auto const& [role, unit_ms] : {std::pair("reaction_ms", 1.0), std::pair("reaction_s", 1000.0)}) {
             if (m.reaction_ms || !has(role) || DelimitedText::is_missing(cell(row, role).text)) continue;
             m.reaction_ms = unit_ms * number(row, role);
+            reactions_[role].push_back(*m.reaction_ms);
             if (*m.reaction_ms < 0)
                 refuse_cell(cell(row, role), roles_.column.at(role), "no reaction time is below 0",
                             "leave the cell empty if there was none");
@@ -271,7 +302,7 @@ private:
         }
         if (has("first_chosen")) {
             std::string const& text = cell(row, "first_chosen").text;
-            if (text == "0.5") return answered("neither", 1);
+            if (text == "0.5" || text == "0,5") return answered("neither", 1);
             return answered(flag(row, "first_chosen") ? "first" : "second", 1);
         }
         TextCell const& c = cell(row, "chosen");
@@ -292,6 +323,23 @@ private:
             c, roles_.column.at("chosen"),
             fmt::format("it is neither '{}' nor '{}', nor first, second or neither", m.items[0], m.items[1]),
             "name the chosen item, or use first_chosen for 1 and 0");
+    }
+
+    /// A caution if reaction times seem to be in another unit: their median is beyond half a minute, or below what people
+    /// can do (simple reactions take 200 ms).
+    void note_reaction_unit()
+    {
+        constexpr double kMost_ms = 30'000, kLeast_ms = 20;
+        for (auto const& [role, ms] : reactions_) {
+            double const median = gi::quantile(ms, 0.5);
+            bool const is_seconds = role == "reaction_s";
+            if (is_seconds ? !(median > kMost_ms) : !(median < kLeast_ms)) continue;
+            made_.notes.push_back(fmt::format("reaction times in column '{}' have a median of {:g} ms: they seem "
+                                              "to be in {}, which {}={} would say",
+                                              roles_.column.at(role), median,
+                                              is_seconds ? "milliseconds" : "seconds",
+                                              is_seconds ? "reaction_ms" : "reaction_s", roles_.column.at(role)));
+        }
     }
 
     /// A caution if answers may mean items or positions: items named 1, 2, 3 and `chosen` 1 or 2.
@@ -386,6 +434,7 @@ private:
         if (!roles_.factors.empty() || !roles_.column.empty() || !roles_.only.empty())
             throw ScriptError(t_.file, {}, "--matrix with --columns, --factors or --only",
                               "a matrix has no columns but its items", "leave them out");
+        for (std::string const& name : t_.columns) t_.check_one_column(name);
         made_.task = Task::pair;
         made_.detail = TrialDetail::wins;
         std::vector<std::string> const items(t_.columns.begin() + 1, t_.columns.end());
@@ -431,7 +480,14 @@ private:
     std::map<std::string, int> as_names_; ///< answers that name an item of the pair, and another position
     std::map<std::string, int> as_words_; ///< answers that are read as positions or ties
     bool is_chosen_by_name_ = false;      ///< an answer is certainly the name of an item
-    TextCell const* fraction_ = nullptr;  ///< the first percentage between 0 and 1
+    /// How decimals are marked in a column of a file.
+    struct Decimals {
+        TextCell const *point = nullptr, *comma = nullptr; ///< the first cell with it
+        bool may_be_1000 = true;                           ///< all commas may be between thousands
+    };
+    std::map<std::pair<int, int>, Decimals> decimals_;     ///< by file and column
+    std::map<std::string, std::vector<double>> reactions_; ///< in ms by role
+    TextCell const* fraction_ = nullptr;                   ///< the first percentage between 0 and 1
     double most_percent_ = 0;
     MadeExperiment made_;
 };

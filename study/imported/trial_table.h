@@ -31,12 +31,13 @@ std::map<std::string, std::string> parse_roles(std::string const& text);
 struct ImportedTable {
     Script script;
     std::vector<RecordedSession> sessions; ///< one per participant, in the order of the table
-    std::vector<std::string> notes;        ///< rows left out and why, what was concluded about factors
+    std::vector<std::string> notes;        ///< rows left out and why, what was concluded about factors and units
 };
 
 /// Participants without such a column are one person. Rows without a cell that the task needs are left out and
 /// counted (other programs write rows for instructions too). Counts become single trials.
-/// @throws ScriptError unknown columns, roles that do not fit together, cells that are no number or not 0 or 1,
+/// Numbers have decimal points or commas; which, is the same in all of a column of a file.
+/// @throws ScriptError unknown columns, two of one name, roles that do not fit together, cells that are no number or not 0 or 1,
 /// counts that are not integers, an item compared with itself, with file:line:column
 ImportedTable import_trials(DelimitedText const& table, ColumnRoles const& roles);
 
