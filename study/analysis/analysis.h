@@ -39,7 +39,8 @@ struct AnalysisSettings {
 struct Uncertain {
     double value = kUnknown;
     Interval interval{kUnknown, kUnknown};
-    int n = 0; ///< observers
+    int n = 0;                ///< observers
+    bool is_constant = false; ///< those of all observers are equal but for rounding: there is no interval
 };
 
 /// Data of a participant excluded from the analysis, or included although questionable.

@@ -1,5 +1,6 @@
 #include "gi/core/text.h"
 #include "study/analysis/result_tables.h"
+#include "study/analysis/shown.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,42 +12,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::optional<double> number(std::string const& cell)
-{
-    if (cell.find_first_not_of("0123456789+-.e") != std::string::npos) return {};
-    return gi::parse_finite(cell);
-}
-
 Json json_of(Column const& column, std::string const& text)
 {
     if (text == kNothing) return nullptr;
     if (column.is_name) return text;
     if (text == "true" || text == "false") return text == "true";
-    if (auto const v = number(text)) return *v;
+    if (auto const v = number_of_cell(text)) return *v;
     return text;
 }
 
-bool is_number_column(Table const& t, std::size_t c)
-{
-    return !t.columns[c].is_name && std::all_of(t.rows.begin(), t.rows.end(), [&](auto const& row) {
-        return row[c] == kNothing || number(row[c]);
-    });
-}
-
 } // namespace
-
-std::string shown_cell(Column const& column, std::string const& text)
-{
-    if (text == kNothing) return "–";
-    auto const v = number(text);
-    if (!v || column.is_name) return text;
-    bool const is_p = column.name == "p" || column.name.starts_with("p_");
-    if (is_p) return *v < 0.001 ? "<0.001" : fmt::format("{:.3f}", *v);
-    if (std::abs(*v) < 1e-12) return "0"; // rounding of estimates that are 0
-    if (*v == std::floor(*v) && std::abs(*v) < 1e7) return fmt::format("{:.0f}", *v);
-    if (std::abs(*v) >= 1000 && std::abs(*v) < 1e7) return fmt::format("{:.0f}", *v);
-    return std::abs(*v) >= 0.001 && std::abs(*v) < 100 ? fmt::format("{:.3f}", *v) : fmt::format("{:.4g}", *v);
-}
 
 std::string to_text(Analysis const& a)
 {
@@ -61,15 +36,16 @@ std::string to_text(Analysis const& a)
         }
         out += "\n" + r.title + "\n";
         if (!r.note.empty()) out += "  " + r.note + "\n";
+        ShownTable const shown = shown_table(r.table);
         // The indent is the first column.
-        std::vector<std::vector<std::string>> rows(1 + r.table.rows.size(), std::vector<std::string>{""});
+        std::vector<std::vector<std::string>> rows(1 + shown.rows.size(), std::vector<std::string>{""});
         std::vector<bool> right{false};
-        for (std::size_t c = 0; c < r.table.columns.size(); ++c) {
-            right.push_back(is_number_column(r.table, c));
-            rows[0].push_back(r.table.columns[c].name);
-            for (std::size_t k = 0; k < r.table.rows.size(); ++k)
-                rows[k + 1].push_back(shown_cell(r.table.columns[c], r.table.rows[k][c]));
+        for (ShownTable::Head const& head : shown.columns) {
+            right.push_back(head.is_number);
+            rows[0].push_back(head.name);
         }
+        for (std::size_t k = 0; k < shown.rows.size(); ++k)
+            rows[k + 1].insert(rows[k + 1].end(), shown.rows[k].begin(), shown.rows[k].end());
         out += gi::aligned(rows, right);
     }
     if (!left_out.empty()) out += "\nrows only in --json and --out: " + left_out + "\n";

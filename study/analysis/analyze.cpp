@@ -2,6 +2,7 @@
 
 #include "study/analysis/blocks.h"
 #include "study/analysis/whole.h"
+#include "study/plan/doubts.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -58,6 +59,7 @@ void add_cautions(Script const& script, std::vector<RecordedSession> const& sess
     if (a.complete < a.sessions)
         c.push_back(fmt::format("{} of {} sessions are not complete: their existing trials are analysed",
                                 a.sessions - a.complete, a.sessions));
+    for (std::string& idle : find_idle_procedures(script)) c.push_back(std::move(idle));
     int const used = int(std::count_if(a.observers.begin(), a.observers.end(),
                                        [](ObserverSummary const& o) { return !o.is_excluded; }));
     if (used == 0) c.push_back("nobody is left to analyse");

@@ -12,6 +12,8 @@
 namespace study {
 namespace {
 
+constexpr double kShareOfError = 2e-3;
+
 struct Tally {
     double correct = 0, trials = 0, hits = 0, signals = 0, false_alarms = 0, noises = 0;
 };
@@ -107,10 +109,14 @@ void add_dprime(DetectionResult& d, Block const& b, std::vector<DetectionCounts>
     d.dprime = detection_point(*task, all).dprime;
     try {
         GroupDPrime const g = group_dprime(*task, counts, settings.confidence);
-        d.observer_dprime = {g.mean, g.interval, int(g.observer.size())};
-        d.deviation = g.observer.size() > 1 ? g.deviation : kUnknown;
+        // What is far below its error is where the search for the best fit ended.
+        double const error = (g.interval.high - g.interval.low) / 2;
+        double const least = kShareOfError * (std::isfinite(error) ? error : 1);
+        auto const fitted = [&](double v) { return std::abs(v) < least ? 0 : v; };
+        d.observer_dprime = {fitted(g.mean), g.interval, int(g.observer.size())};
+        if (g.observer.size() > 1) d.deviation = g.deviation > 1.1 * kLeastDPrimeSd ? g.deviation : 0;
         d.p = g.p;
-        if (has_criterion(*task)) d.criterion = g.criterion;
+        if (has_criterion(*task)) d.criterion = fitted(g.criterion);
         d.note = g.note;
     } catch (std::invalid_argument const& e) {
         d.note = e.what();
@@ -139,7 +145,7 @@ HierarchicalResult hierarchical_of(DetectionResult const& d, Block const& b,
 
 /// The compared level or pair, or the shown level of the varied setting; and the cell.
 std::string condition_of(Script const& script, Block const& b, std::vector<Group> const& groups,
-                         TrialRow const& row)
+                         std::map<double, std::string> const& levels, TrialRow const& row)
 {
     std::string const cell = cell_name(script, groups, row);
     std::string what;
@@ -147,7 +153,7 @@ std::string condition_of(Script const& script, Block const& b, std::vector<Group
     if (f >= 0)
         what = compared_label(script, b, row.step->trial);
     else if (row.done->level)
-        what = fmt::format("{} {}", b.compare ? b.compare->vary : "level", level_text(*row.done->level));
+        what = fmt::format("{} {}", b.compare ? b.compare->vary : "level", levels.at(*row.done->level));
     if (what.empty()) return cell;
     return cell == "all" ? what : what + " " + cell;
 }
@@ -155,6 +161,7 @@ std::string condition_of(Script const& script, Block const& b, std::vector<Group
 void add_detections(Script const& script, Block const& b, std::vector<ObserverTrials> const& trials,
                     std::vector<Group> const& groups, AnalysisSettings const& settings, BlockResult& result)
 {
+    auto const levels = level_names(trials);
     // By cell, then by level, then by name.
     std::map<std::tuple<std::string, double, std::string>, std::vector<Tally>> conditions;
     for (std::size_t o = 0; o < trials.size(); ++o)
@@ -164,7 +171,7 @@ void add_detections(Script const& script, Block const& b, std::vector<ObserverTr
             if (procedure >= 0 && is_adaptive(b.procedures[std::size_t(procedure)])) continue;
             auto& tallies = conditions[{cell_name(script, groups, row),
                                         compared_factor(b) < 0 ? row.done->level.value_or(0) : 0,
-                                        condition_of(script, b, groups, row)}];
+                                        condition_of(script, b, groups, levels, row)}];
             tallies.resize(trials.size());
             count(tallies[o], b.task, row);
         }

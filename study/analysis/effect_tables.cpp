@@ -16,7 +16,7 @@ ResultTable hierarchy_table(Analysis const& a)
     t.table.columns = {name_column("block", "Block"),
                        name_column("group", "Trials that share this level"),
                        name_column("item", "Scored item; 'between observers': standard deviation of their scores"),
-                       {"score", "Posterior mean", "JOD"},
+                       estimate_column("score", "Posterior mean", "JOD"),
                        {"low", "Lower end of the credible interval"},
                        {"high", "Upper end"},
                        {"r_hat", "Convergence of chains: up to 1.01"},
@@ -62,7 +62,7 @@ ResultTable effects_table(Analysis const& a)
                        {"p_hf", "p with it"},
                        {"p_perm", "p by permutation"},
                        {"p_holm", "p_gg, corrected (Holm)"},
-                       {"eta2", "Partial eta squared"},
+                       estimate_column("eta2", "Partial eta squared"),
                        {"low", "Lower end of its interval"},
                        {"high", "Upper end"}};
     for (EffectResult const& e : a.effects)
@@ -92,22 +92,22 @@ ResultTable group_differences_table(Analysis const& a)
                        {"n_b", "Observers in b"},
                        {"mean_a", "Mean of a"},
                        {"mean_b", "Mean of b"},
-                       {"difference", "a minus b"},
+                       estimate_column("difference", "a minus b"),
                        {"low", "Lower end of the interval"},
                        {"high", "Upper end"},
                        {"t", "Welch's t"},
                        {"df", "Its degrees of freedom"},
                        {"p", "p-value"},
                        {"p_holm", "Corrected (Holm)"},
-                       {"g", "Hedges' g"},
+                       estimate_column("g", "Hedges' g"),
                        {"g_low", "Lower end of its interval"},
                        {"g_high", "Upper end"}};
     for (GroupDifference const& d : a.group_differences) {
         WelchTest const& w = d.test;
         t.table.rows.push_back({cell(d.block), cell(d.measure), cell(d.cell), cell(d.a), cell(d.b), cell(w.n_a),
-                                cell(w.n_b), cell(w.mean_a), cell(w.mean_b), cell(w.difference),
-                                cell(w.interval.low), cell(w.interval.high), cell(w.t), cell(w.df), cell(w.p),
-                                cell(d.p_holm), cell(w.hedges_g), cell(w.g.low), cell(w.g.high)});
+                                cell(w.n_b), full_cell(w.mean_a), full_cell(w.mean_b), full_cell(w.difference),
+                                full_cell(w.interval.low), full_cell(w.interval.high), cell(w.t), cell(w.df),
+                                cell(w.p), cell(d.p_holm), cell(w.hedges_g), cell(w.g.low), cell(w.g.high)});
     }
     t.is_long = t.table.rows.size() > 40;
     return t;

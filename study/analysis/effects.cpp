@@ -127,6 +127,15 @@ void test_variance(Measure const& m, CellTable const& t, std::vector<Participant
                 return (" " + e.name + " ").find(" " + t.axes[std::size_t(t.relative_to)].name + " ") ==
                        std::string::npos;
             });
+        for (AnovaEffect const& e : effects)
+            if (!e.is_tested)
+                a.effect_notes.push_back(
+                    {m.block, m.name,
+                     fmt::format(
+                         "no test of '{}': there is no variation within groups, every observer shows the same "
+                         "effect",
+                         e.name)});
+        std::erase_if(effects, [](AnovaEffect const& e) { return !e.is_tested; });
         std::vector<double> p;
         for (AnovaEffect const& e : effects) p.push_back(e.p_gg);
         std::vector<double> const corrected = holm(p);
@@ -155,9 +164,9 @@ void test_groups(Measure const& m, CellTable const& t, ParticipantFactor const& 
     if (t.relative_to < 0)
         add("mean", [&](std::map<Cell, double> const& means) {
             if (means.size() < t.cells.size()) return kUnknown;
-            double sum = 0;
-            for (auto const& [unused, v] : means) sum += v;
-            return sum / double(means.size());
+            std::vector<double> all;
+            for (auto const& [unused, v] : means) all.push_back(v);
+            return mean(all);
         });
     if (t.cells.size() > 1)
         for (Cell const& c : t.cells)

@@ -1,5 +1,6 @@
 #include "study/analysis/groups.h"
 
+#include "study/numeric/rounding.h"
 #include "study/numeric/special.h"
 #include "study/stats/summary.h"
 
@@ -56,6 +57,21 @@ std::vector<ObserverTrials> counted(std::vector<ObserverTrials> const& observers
     return out;
 }
 
+std::map<double, std::string> level_names(std::vector<ObserverTrials> const& trials)
+{
+    std::map<double, std::string> names;
+    for (ObserverTrials const& o : trials)
+        for (TrialRow const& row : o.rows)
+            if (row.done->level) names[*row.done->level];
+    constexpr int kLeastDigits = 6, kMostDigits = 17;
+    for (int digits = kLeastDigits; digits <= kMostDigits; ++digits) {
+        std::set<std::string> texts;
+        for (auto& [level, name] : names) texts.insert(name = fmt::format("{:.{}g}", level, digits));
+        if (texts.size() == names.size()) break;
+    }
+    return names;
+}
+
 std::vector<int> rated_factors(Script const& script, Block const& block)
 {
     std::vector<int> factors;
@@ -89,31 +105,42 @@ std::vector<Uncertain> render_times(std::vector<ObserverTrials> const& observers
     return out;
 }
 
-Uncertain mean_of(std::vector<double> const& values, double confidence)
+namespace {
+
+std::vector<double> known_of(std::vector<double> const& values)
 {
     std::vector<double> known;
     std::copy_if(values.begin(), values.end(), std::back_inserter(known),
                  [](double v) { return std::isfinite(v); });
+    return known;
+}
+
+} // namespace
+
+Uncertain mean_of(std::vector<double> const& values, double confidence, double size)
+{
+    std::vector<double> const known = known_of(values);
     Uncertain u;
     u.n = int(known.size());
     if (known.empty()) return u;
-    u.value = mean(known);
+    u.value = without_rounding(mean(known), std::max(size, largest_of(known)));
     if (known.size() < 2) return u;
-    double const half = student_quantile((1 + confidence) / 2, double(known.size() - 1)) *
-                        standard_deviation(known) / std::sqrt(double(known.size()));
+    double const sd = standard_deviation(known, size);
+    u.is_constant = sd == 0;
+    if (u.is_constant) return u;
+    double const half =
+        student_quantile((1 + confidence) / 2, double(known.size() - 1)) * sd / std::sqrt(double(known.size()));
     u.interval = {u.value - half, u.value + half};
     return u;
 }
 
-double mean_p(std::vector<double> const& values)
+double mean_p(std::vector<double> const& values, double size)
 {
-    std::vector<double> known;
-    std::copy_if(values.begin(), values.end(), std::back_inserter(known),
-                 [](double v) { return std::isfinite(v); });
+    std::vector<double> const known = known_of(values);
     if (known.size() < 2) return kUnknown;
-    double const m = mean(known), error = standard_deviation(known) / std::sqrt(double(known.size()));
-    if (!(error > 0)) return m == 0 ? 1 : 0;
-    return 2 * student_cdf(-std::abs(m / error), double(known.size() - 1));
+    double const error = standard_deviation(known, size) / std::sqrt(double(known.size()));
+    if (!(error > 0)) return kUnknown;
+    return 2 * student_cdf(-std::abs(mean(known) / error), double(known.size() - 1));
 }
 
 std::vector<double> holm(std::vector<double> const& p)
@@ -161,20 +188,46 @@ void judge_differences(ScaleResult& scale, int reference, double level)
                        turned = d.b == int(i) && d.a == best.against;
             // Only items that are significantly worse than the best are refused: better ones are fine.
             double const value = turned ? -d.value.value : d.value.value;
-            if ((!straight && !turned) || std::isnan(d.p_holm) || (d.p_holm < level && value < 0)) continue;
+            bool const is_worse =
+                d.value.is_constant ? value < 0 : std::isnan(d.p_holm) || (d.p_holm < level && value < 0);
+            if ((!straight && !turned) || is_worse) continue;
             best.item = int(i);
-            best.difference =
-                turned ? Uncertain{-d.value.value, {-d.value.interval.high, -d.value.interval.low}, d.value.n}
-                       : d.value;
+            best.difference = turned ? Uncertain{-d.value.value,
+                                                 {-d.value.interval.high, -d.value.interval.low},
+                                                 d.value.n,
+                                                 d.value.is_constant}
+                                     : d.value;
             best.p_holm = d.p_holm;
         }
     }
     if (best.item >= 0) scale.cheapest = best;
 }
 
+void note_no_variation(ScaleResult& scale)
+{
+    constexpr std::size_t kMostNamed = 6;
+    auto const say = [&](std::vector<std::string> names, char const* what) {
+        if (names.empty()) return;
+        std::size_t const more = names.size() > kMostNamed ? names.size() - kMostNamed : 0;
+        names.resize(names.size() - more);
+        add_note(scale, fmt::format("no variation between observers in {}{}: {}", fmt::join(names, ", "),
+                                    more > 0 ? fmt::format(" and {} others", more) : "", what));
+    };
+    std::vector<std::string> items, differences;
+    for (ScaledItem const& i : scale.items)
+        if (i.score.is_constant) items.push_back(i.name);
+    for (ItemDifference const& d : scale.differences)
+        if (d.value.is_constant)
+            differences.push_back(
+                fmt::format("{} - {}", scale.items[std::size_t(d.a)].name, scale.items[std::size_t(d.b)].name));
+    say(items, "no interval");
+    say(differences, "no interval and no test, all observers differ by the same");
+}
+
 void add_fact(ScaleResult& scale, std::string_view name, double value)
 {
-    scale.facts.push_back({std::string(name), value});
+    bool const is_fitted = name.find("JOD") != std::string_view::npos;
+    scale.facts.push_back({std::string(name), is_fitted ? without_noise(value) : value});
 }
 
 void add_note(ScaleResult& scale, std::string_view text) { scale.notes.emplace_back(text); }

@@ -180,6 +180,7 @@ std::vector<Measure> detections(Script const& script, Block const& b, std::vecto
     MeasureAxis shown{compared >= 0 ? script.factors[std::size_t(compared)].name : "level", {}};
     std::map<std::pair<std::string, std::vector<int>>, AnswerCounts> tallies;
     std::set<double> levels;
+    auto const level_name = level_names(trials);
     auto const is_used = [&](TrialRow const& row) {
         int const procedure = row.step->trial.procedure;
         return row.done->is_correct && (procedure < 0 || !is_adaptive(b.procedures[std::size_t(procedure)]));
@@ -188,7 +189,7 @@ std::vector<Measure> detections(Script const& script, Block const& b, std::vecto
         for (TrialRow const& row : o.rows)
             if (is_used(row) && row.done->level && !row.step->trial.is_noise) levels.insert(*row.done->level);
     for (double const level : levels)
-        if (compared < 0) shown.levels.push_back(fmt::format("{:g}", level));
+        if (compared < 0) shown.levels.push_back(level_name.at(level));
     // Answers without a signal, by condition: they belong to all levels of the signal.
     std::map<std::pair<std::string, std::vector<int>>, AnswerCounts> without_signal;
     auto const add = [](AnswerCounts& t, TrialRow const& row) {
@@ -211,8 +212,9 @@ std::vector<Measure> detections(Script const& script, Block const& b, std::vecto
                 add(without_signal[{o.participant, at}], row);
                 continue;
             } else
-                at.push_back(
-                    place_on(shown, levels.empty() ? "all" : fmt::format("{:g}", row.done->level.value_or(0))));
+                at.push_back(place_on(shown, levels.empty()    ? "all"
+                                             : row.done->level ? level_name.at(*row.done->level)
+                                                               : "none"));
             add(tallies[{o.participant, at}], row);
         }
     correct.axes.push_back(shown);

@@ -2,6 +2,7 @@
 
 #include "study/analysis/threshold_run.h"
 #include "study/numeric/root.h"
+#include "study/numeric/rounding.h"
 #include "study/script/procedure_settings.h"
 
 #include <algorithm>
@@ -55,6 +56,10 @@ ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& b, Pr
 {
     Compare const& c = *b.compare;
     ThresholdEstimate e{"QUEST+ posterior", proportion, {}, {}};
+    if (p.has_one_point()) {
+        e.note = "the prior has one point: nothing was learned";
+        return e;
+    }
     bool const takes_levels = assumed_function(p).takes_levels();
     auto const on_axis = [&](double level) { return takes_levels ? level : to_scale(c.scale, level); };
     try {
@@ -91,6 +96,10 @@ ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& b, Pr
         if (double const median = level(0.5); std::isfinite(median)) {
             e.level = {median, {level(tail), level(1 - tail)}, 1};
             e.note = note_of_open_ends(e.level.interval, tail);
+            if (is_rounding(e.level.interval.high - e.level.interval.low, std::abs(median))) {
+                e.level.interval = {kUnknown, kUnknown};
+                e.note = "the posterior is in one point of its grid, which tells no interval: a finer grid would";
+            }
         } else
             e.note = "most functions of the posterior never reach this proportion";
     } catch (std::invalid_argument const& error) {

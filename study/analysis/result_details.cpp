@@ -1,6 +1,7 @@
 #include "study/analysis/table_parts.h"
 
 #include "gi/core/quantile.h"
+#include "study/numeric/rounding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +12,12 @@ namespace {
 
 void add_estimate(std::vector<std::string>& row, Uncertain const& u)
 {
-    row.insert(row.end(), {cell(u.value), cell(u.interval.low), cell(u.interval.high)});
+    row.insert(row.end(), {full_cell(u.value), full_cell(u.interval.low), full_cell(u.interval.high)});
 }
 
 std::vector<Column> with_interval(std::vector<Column> columns, std::vector<Column> const& more = {})
 {
+    columns.back().has_interval = true;
     columns.push_back({"low", "Lower end of the interval"});
     columns.push_back({"high", "Upper end"});
     columns.insert(columns.end(), more.begin(), more.end());
@@ -216,7 +218,7 @@ ResultTable curves(Analysis const& a)
 /// Adds the columns of an estimate: name, name_low and name_high. @param what  meaning of the value
 void add_columns(std::vector<Column>& columns, std::string const& name, std::string const& what)
 {
-    columns.push_back({name, what});
+    columns.push_back(estimate_column(name, what));
     columns.push_back({name + "_low", "Lower end of its interval"});
     columns.push_back({name + "_high", "Upper end"});
 }
@@ -299,11 +301,11 @@ ResultTable detection(Analysis const& a)
                        {"observers", "Observers"},
                        {"right", "Correct answers"},
                        {"trials", "Trials"},
-                       {"share", "Proportion correct"},
+                       estimate_column("share", "Proportion correct"),
                        {"share_low", "Lower end"},
                        {"share_high", "Upper end"},
                        {"dprime_all", "d' of all trials pooled"},
-                       {"dprime", "d', mean of the population"},
+                       estimate_column("dprime", "d', mean of the population"),
                        {"low", "Lower end"},
                        {"high", "Upper end"},
                        {"p", "p-value of that mean being 0"},
@@ -312,11 +314,16 @@ ResultTable detection(Analysis const& a)
                        {"model", "Model of d'"}};
     for (BlockResult const& b : a.blocks)
         for (DetectionResult const& d : b.detections) {
-            std::vector<std::string> row{cell(b.name),         cell(d.condition),     cell(d.observers),
-                                         cell(d.correct),      cell(d.trials),        cell(d.correct / d.trials),
-                                         cell(d.interval.low), cell(d.interval.high), cell(d.dprime)};
-            add_estimate(row, d.observer_dprime);
-            row.insert(row.end(), {cell(d.p), cell(d.deviation), cell(d.criterion), cell(d.model)});
+            std::vector<std::string> row{
+                cell(b.name),         cell(d.condition),     cell(d.observers),
+                cell(d.correct),      cell(d.trials),        cell(d.correct / d.trials),
+                cell(d.interval.low), cell(d.interval.high), cell(without_noise(d.dprime))};
+            Uncertain const& u = d.observer_dprime;
+            add_estimate(
+                row,
+                {without_noise(u.value), {without_noise(u.interval.low), without_noise(u.interval.high)}, u.n});
+            row.insert(row.end(), {cell(d.p), cell(without_noise(d.deviation)), cell(without_noise(d.criterion)),
+                                   cell(d.model)});
             t.table.rows.push_back(std::move(row));
         }
     return t;

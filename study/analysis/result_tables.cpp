@@ -1,6 +1,7 @@
 #include "study/analysis/result_tables.h"
 
 #include "study/analysis/table_parts.h"
+#include "study/numeric/rounding.h"
 #include "study/stats/summary.h"
 
 #include <algorithm>
@@ -12,26 +13,27 @@ namespace {
 
 std::string percent(double confidence) { return fmt::format("{:.0f} %", 100 * confidence); }
 
-/// Low and high of an interval as columns.
+/// Low and high of an interval as columns, after that of the estimate.
 void add_interval(std::vector<Column>& columns, std::string const& prefix, double confidence)
 {
+    columns.back().has_interval = true;
     columns.push_back({prefix + "low", "Lower end of the " + percent(confidence) + " interval"});
     columns.push_back({prefix + "high", "Upper end"});
 }
 
-/// Sets values that are 0 within rounding to 0. @param scale of the neighbouring numbers
-void add(std::vector<std::string>& row, Uncertain const& u, double scale = 0)
+/// Sets values that are 0 but for the noise of a solver to 0. @param least  smallest number that is none
+void add(std::vector<std::string>& row, Uncertain const& u, double least = 0)
 {
-    for (double const v : {u.value, u.interval.low, u.interval.high}) scale = std::fmax(scale, std::abs(v));
     for (double const v : {u.value, u.interval.low, u.interval.high})
-        row.push_back(cell(std::abs(v) < 1e-12 * scale ? 0.0 : v));
+        row.push_back(full_cell(std::abs(v) < least ? 0.0 : v));
 }
 
-double largest_score(ScaleResult const& s)
+/// The smallest number beside these scores that is not rounding, or, where they are fitted in a natural unit, noise.
+double least_of(ScaleResult const& s)
 {
     double largest = 0;
     for (ScaledItem const& i : s.items) largest = std::fmax(largest, std::abs(i.score.value));
-    return largest;
+    return std::fmax(kRounding * largest, s.unit == "JOD" || s.unit == "utility" ? kSolverNoise : 0);
 }
 
 ResultTable exclusions(Analysis const& a)
@@ -112,7 +114,7 @@ ResultTable scores(Analysis const& a)
         for (ScaleResult const& s : b.scales)
             for (ScaledItem const& i : s.items) {
                 std::vector<std::string> row{cell(b.name), cell(s.group), cell(i.name), cell(s.unit)};
-                add(row, i.score, largest_score(s));
+                add(row, i.score, least_of(s));
                 row.push_back(cell(i.score.n));
                 add(row, i.render_ms);
                 t.table.rows.push_back(std::move(row));
@@ -155,7 +157,7 @@ ResultTable cheapest(Analysis const& a)
                                              c.is_reference ? "reference" : "best of those judged",
                                              cell(against.render_ms.value),
                                              cell(s.unit)};
-                add(row, c.difference);
+                add(row, c.difference, least_of(s));
                 row.push_back(cell(c.p_holm));
                 t.table.rows.push_back(std::move(row));
             }
@@ -184,7 +186,7 @@ ResultTable differences(Analysis const& a)
             for (ItemDifference const& d : s.differences) {
                 std::vector<std::string> row{cell(b.name), cell(s.group), cell(s.items[std::size_t(d.a)].name),
                                              cell(s.items[std::size_t(d.b)].name), cell(s.unit)};
-                add(row, d.value);
+                add(row, d.value, least_of(s));
                 row.push_back(cell(d.p));
                 row.push_back(cell(d.p_holm));
                 t.table.rows.push_back(std::move(row));
@@ -206,7 +208,7 @@ ResultTable fits(Analysis const& a)
     for (BlockResult const& b : a.blocks)
         for (ScaleResult const& s : b.scales)
             for (NamedValue const& f : s.facts)
-                t.table.rows.push_back({cell(b.name), cell(s.group), cell(f.name), cell(f.value)});
+                t.table.rows.push_back({cell(b.name), cell(s.group), cell(f.name), full_cell(f.value)});
     return t;
 }
 

@@ -16,8 +16,6 @@ struct ResultTable {
 /// The tables of an analysis, without those that are empty. What each number means is in Column::description.
 std::vector<ResultTable> result_tables(Analysis const& analysis);
 
-/// Readable form of a cell: four digits, "<0.001" for small probabilities (columns named p or p_...), "–" for n/a.
-std::string shown_cell(Column const& column, std::string const& cell);
 /// Tables with aligned columns, column names, a title and a note; long tables are only named.
 std::string to_text(Analysis const& analysis);
 /// The whole analysis as JSON, with numbers as numbers and null = missing; includes the tracks of staircases and

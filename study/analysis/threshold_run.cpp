@@ -198,6 +198,16 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
             s.high = b.compare->high;
             level = posterior_level(psychometric_posterior(counts, s), proportion, settings.confidence);
         }
+        StepRates rates;
+        rates.guess = guess;
+        rates.lapse = settings.lapse;
+        auto const gap = step_gap(counts, shape, rates);
+        if (gap && std::isfinite(level.centre)) {
+            Interval wide{level.low, level.high};
+            include_gap(*gap, shape, wide);
+            level.low = wide.low;
+            level.high = wide.high;
+        }
         bool const falls = shape.direction == Direction::falling;
         auto const back = [&](double u) {
             double const x = falls ? -u : u;
@@ -210,6 +220,7 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
         e.level = {
             back(level.centre), {back(falls ? level.high : level.low), back(falls ? level.low : level.high)}, 1};
         e.note = note_of_open_ends(e.level.interval, (1 - settings.confidence) / 2);
+        if (gap) e.note = text_of(*gap) + (e.note.empty() ? "" : "; " + e.note);
         if (!guess)
             e.note = "no trials without a signal: the false alarm rate is that of the fit" +
                      (e.note.empty() ? "" : "; " + e.note);

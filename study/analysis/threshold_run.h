@@ -4,6 +4,7 @@
 #include "study/analysis/groups.h"
 #include "study/stats/group_threshold.h"
 #include "study/stats/shrunken_rates.h"
+#include "study/stats/step_gap.h"
 
 namespace study {
 

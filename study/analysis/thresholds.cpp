@@ -4,6 +4,7 @@
 #include "study/analysis/threshold_run.h"
 #include "study/script/procedure_settings.h"
 #include "study/stats/summary.h"
+#include "study/stats/threshold_marginal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +31,14 @@ Uncertain level_of(PsychometricShape const& shape, double u, Interval const& int
     double const a = end(interval.low), b = end(interval.high);
     bool const falls = shape.direction == Direction::falling;
     return {level_of(shape, u), {falls ? b : a, falls ? a : b}, observers};
+}
+
+/// Of thresholds between observers, in units of the scale: 0 where it is fitted as the least possible.
+double deviation_of(GroupCurve const& g, Compare const& c)
+{
+    if (g.threshold.observers < 2) return kUnknown;
+    double const range = std::abs(transformed(g.settings.shape, c.high) - transformed(g.settings.shape, c.low));
+    return g.threshold.deviation > 1.1 * kLeastThresholdSd * range ? g.threshold.deviation * scale_units(c) : 0;
 }
 
 /// One observer's run with the rows it is made of.
@@ -162,6 +171,30 @@ GroupData data_of(std::vector<RunOf const*> const& runs, double proportion)
     return d;
 }
 
+/// Where the answers of each observer jump between two neighbouring levels, a threshold may be anywhere between them:
+/// says so, and, if they do for all observers between the same two, makes the interval as wide.
+void note_gaps(GroupData const& data, GroupCurve& g, std::string& note)
+{
+    std::vector<StepGap> gaps;
+    for (ObserverLevels const& o : data.observers) {
+        StepRates rates;
+        if (!data.fits_guess) rates.guess = o.guess;
+        rates.lapse = g.settings.lapse;
+        auto const gap = step_gap(o.counts, g.settings.shape, rates);
+        if (!gap) return;
+        gaps.push_back(*gap);
+    }
+    if (gaps.empty()) return;
+    if (!std::all_of(gaps.begin(), gaps.end(), [&](StepGap const& gap) { return gap == gaps[0]; })) {
+        append(note,
+               "the answers of each observer change from guessing to knowing between two neighbouring levels: any "
+               "thresholds between these fit equally well");
+        return;
+    }
+    append(note, text_of(gaps[0]));
+    include_gap(gaps[0], g.settings.shape, g.threshold.interval);
+}
+
 std::optional<GroupCurve> group_curve(Compare const& c, PsychometricChoice const& function, GroupData const& data,
                                       double proportion, AnalysisSettings const& settings, std::string& note)
 {
@@ -172,6 +205,7 @@ std::optional<GroupCurve> group_curve(Compare const& c, PsychometricChoice const
         Interval const interval = level_of(g.settings.shape, g.threshold.mean, g.threshold.interval, 0).interval;
         if (std::string const open = open_ends(interval); !open.empty())
             append(g.threshold.note, open + ": the answers do not exclude means far beyond all levels");
+        note_gaps(data, g, g.threshold.note);
         append(note, g.threshold.note);
         append(note, data.note);
         return g;
@@ -189,6 +223,7 @@ void average(ThresholdSummary& s, Compare const& c, std::map<std::string, std::v
     for (auto const& [who, values] : by_observer) means.push_back(mean(values));
     Uncertain u = mean_of(means, settings.confidence);
     s.deviation = standard_deviation(means);
+    if (u.is_constant) append(s.note, "no variation between observers: no interval");
     if (u.n > 0) u.value = from_scale(c.scale, u.value);
     u.interval = {from_scale(c.scale, u.interval.low), from_scale(c.scale, u.interval.high)};
     s.level = u;
@@ -229,7 +264,7 @@ std::optional<GroupCurve> add_proportion(Block const& b, Procedure const& p, std
     if (group) {
         GroupThreshold const& g = group->threshold;
         likelihood.level = level_of(group->settings.shape, g.mean, g.interval, g.observers);
-        if (g.observers > 1) likelihood.deviation = g.deviation * scale_units(c);
+        likelihood.deviation = deviation_of(*group, c);
     }
     ThresholdSummary reversals{p.name, runs.front().run.cell, "mean of reversals", proportion, {}, kUnknown, {}};
     std::map<std::string, std::vector<double>> by_observer;
@@ -335,7 +370,7 @@ void add_curve(Block const& b, std::string const& cell, std::vector<RunOf const*
         r.parameters.threshold = g.mean - offset;
         r.eta = g.eta;
         r.threshold = level_of(r.shape, g.mean, g.interval, g.observers);
-        if (g.observers > 1) r.deviation = g.deviation * scale_units(c);
+        r.deviation = deviation_of(*group, c);
         try {
             PsychometricSettings s{r.shape, {r.parameters.guess, data.fits_guess ? 0.5 : 0}, {0.01, 0.06}};
             if (settings.lapse) s.lapse = {*settings.lapse, 0};

@@ -79,14 +79,15 @@ std::vector<Rating> judgements_of(std::vector<ObserverTrials> const& trials, Rat
 /// Each observer's mean of each item; NaN = not judged.
 Matrix means_of(std::vector<Rating> const& judgements, std::size_t items, std::size_t observers)
 {
-    Matrix sum(items, observers, 0), n = sum;
+    Matrix means(items, observers, kUnknown), n(items, observers, 0);
     for (Rating const& r : judgements) {
-        sum(std::size_t(r.item), std::size_t(r.observer)) += r.value;
-        n(std::size_t(r.item), std::size_t(r.observer)) += 1;
+        auto const item = std::size_t(r.item), observer = std::size_t(r.observer);
+        double& m = means(item, observer);
+        // Step by step, so that the mean of equal values is exactly that value.
+        n(item, observer) += 1;
+        m = n(item, observer) == 1 ? r.value : m + (r.value - m) / n(item, observer);
     }
-    for (std::size_t k = 0; k < sum.values.size(); ++k)
-        sum.values[k] = n.values[k] > 0 ? sum.values[k] / n.values[k] : kUnknown;
-    return sum;
+    return means;
 }
 
 void add_paired_differences(ScaleResult& r, Matrix const& table, AnalysisSettings const& settings)
@@ -94,9 +95,13 @@ void add_paired_differences(ScaleResult& r, Matrix const& table, AnalysisSetting
     for (std::size_t a = 0; a < table.rows; ++a)
         for (std::size_t b = a + 1; b < table.rows; ++b) {
             std::vector<double> differences;
-            for (std::size_t o = 0; o < table.columns; ++o) differences.push_back(table(a, o) - table(b, o));
+            double size = 0;
+            for (std::size_t o = 0; o < table.columns; ++o) {
+                differences.push_back(table(a, o) - table(b, o));
+                size = std::fmax(size, std::fmax(std::abs(table(a, o)), std::abs(table(b, o))));
+            }
             r.differences.push_back(
-                {int(a), int(b), mean_of(differences, settings.confidence), mean_p(differences)});
+                {int(a), int(b), mean_of(differences, settings.confidence, size), mean_p(differences, size)});
         }
 }
 
@@ -104,6 +109,10 @@ void add_friedman(ScaleResult& r, Matrix const& table)
 {
     try {
         Friedman const f = friedman(transposed(table));
+        if (f.is_tied) {
+            add_note(r, "no Friedman test: no observer ranks any two items differently");
+            return;
+        }
         add_fact(r, "Friedman chi-square", f.chi_square);
         add_fact(r, "Friedman df", double(f.degrees_of_freedom));
         add_fact(r, "Friedman p", f.p);
@@ -170,10 +179,12 @@ ScaleResult values_of_group(Script const& script, Block const& b, std::vector<Ob
     for (int i = 0; i < count; ++i) {
         MeanOpinion const& m = opinions[std::size_t(i)];
         r.items.push_back({items.names()[std::size_t(i)],
-                           {m.mean, b.task == Task::rating ? m.skewed : m.interval, m.observers},
+                           {m.mean, b.task == Task::rating ? m.skewed : m.interval, m.observers,
+                            m.observers > 1 && m.deviation == 0},
                            render[std::size_t(i)]});
     }
     add_paired_differences(r, table, settings);
+    note_no_variation(r);
     if (count > 1) add_friedman(r, table);
     if (b.task == Task::rating) {
         if (count > 1 && r.observers > 1) add_model(r, judgements, int(trials.size()));
@@ -271,7 +282,11 @@ ScaleResult ranking_of_group(Script const& script, Block const& b, std::vector<O
                 }
         for (std::size_t k = 0; k < ranks.values.size(); ++k)
             ranks.values[k] = times.values[k] > 0 ? ranks.values[k] / times.values[k] : kUnknown;
+        if (boot)
+            for (ScaledItem& i : r.items)
+                i.score.is_constant = r.observers > 1 && std::isnan(i.score.interval.low);
         add_paired_differences(r, ranks, settings);
+        note_no_variation(r);
         add_friedman(r, ranks);
         for (std::size_t i = 0; i < n; ++i) {
             double sum = 0;

@@ -115,17 +115,30 @@ void analyze_questionnaires(Script const& script, std::vector<RecordedSession co
         Questionnaire const& q = script.questionnaires[which];
         a.questionnaires.push_back(
             {q.name, q.subscales[k].name, when, mean_of(list, settings.confidence), standard_deviation(list)});
+        if (a.questionnaires.back().mean.is_constant)
+            a.effect_notes.push_back({q.name, q.subscales[k].name,
+                                      fmt::format("no variation between participants, {}: no interval", when)});
     }
     for (auto const& [key, people] : by_time) {
         int last = 1;
         for (auto const& times : people) last = std::max(last, times.empty() ? 1 : times.rbegin()->first);
         for (int t = 2; t <= last; ++t) {
             std::vector<double> changes;
+            double size = 0;
             for (auto const& times : people)
-                if (times.count(1) && times.count(t)) changes.push_back(times.at(t) - times.at(1));
+                if (times.count(1) && times.count(t)) {
+                    changes.push_back(times.at(t) - times.at(1));
+                    size = std::max({size, std::abs(times.at(t)), std::abs(times.at(1))});
+                }
             Questionnaire const& q = script.questionnaires[key.first];
-            a.changes.push_back({q.name, q.subscales[key.second].name, 1, t, mean_of(changes, settings.confidence),
-                                 mean_p(changes)});
+            a.changes.push_back({q.name, q.subscales[key.second].name, 1, t,
+                                 mean_of(changes, settings.confidence, size), mean_p(changes, size)});
+            if (a.changes.back().change.is_constant)
+                a.effect_notes.push_back(
+                    {q.name, q.subscales[key.second].name,
+                     fmt::format("no variation between participants in the change from time 1 "
+                                 "to {}: no interval and no test",
+                                 t)});
         }
     }
 }

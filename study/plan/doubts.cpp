@@ -63,6 +63,34 @@ void find_equal_levels(Factor const& f, std::vector<std::string>& doubts)
 
 } // namespace
 
+std::vector<std::string> find_idle_procedures(Script const& s)
+{
+    std::vector<std::string> found;
+    for (Block const& b : s.blocks)
+        for (Procedure const& p : b.procedures) {
+            std::string const who = fmt::format("block '{}': procedure '{}'", b.name, p.name);
+            if (p.method == Method::questplus && p.has_one_point())
+                found.push_back(
+                    fmt::format("{} has a prior of one point: no answer can change it, it learns nothing "
+                                "and always presents the same level; give threshold several values, such "
+                                "as 20..100/17",
+                                who));
+            else if (p.method == Method::questplus && p.threshold.size() == 1 && !p.is_many())
+                found.push_back(fmt::format("{} has a prior with one threshold, {:g}: it learns nothing of the "
+                                            "threshold; give it several values, such as 20..100/17",
+                                            who, p.threshold[0]));
+            if (p.method != Method::staircase || !b.compare || p.steps.empty()) continue;
+            double const width =
+                to_scale(b.compare->scale, b.compare->high) - to_scale(b.compare->scale, b.compare->low);
+            if (p.steps.back() >= width)
+                found.push_back(
+                    fmt::format("{} ends with steps of {:g} in a range that is {:g} wide: it only moves "
+                                "between the ends and learns nothing else; make the last step smaller",
+                                who, p.steps.back(), width));
+        }
+    return found;
+}
+
 std::vector<std::string> find_doubts(Script const& s)
 {
     std::vector<std::string> doubts;
@@ -98,6 +126,7 @@ std::vector<std::string> find_doubts(Script const& s)
                                 "in {}: thresholds would be wrong; write guess: {:.3g}",
                                 b.name, p.name, range_text(p.guess), guess_rate(b.task), facts(b.task).name,
                                 guess_rate(b.task)));
+    for (std::string& idle : find_idle_procedures(s)) doubts.push_back(std::move(idle));
     for (Block const& b : s.blocks)
         if (b.gaze.any() && s.record.gaze.empty())
             doubts.push_back(

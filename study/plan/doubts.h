@@ -14,5 +14,8 @@ namespace study {
 std::vector<std::string> find_doubts(Script const& script);
 /// The same for one participant's plan.
 std::vector<std::string> find_doubts(Script const& script, Plan const& plan);
+/// Adaptive procedures that cannot learn a threshold: QUEST+ whose prior has one point, or one value of the threshold,
+/// staircases whose steps are wider than the range. Among the doubts above; analyses repeat them as cautions.
+std::vector<std::string> find_idle_procedures(Script const& script);
 
 } // namespace study

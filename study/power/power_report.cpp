@@ -3,6 +3,7 @@
 #include "gi/core/html/html.h"
 #include "gi/core/html/plot.h"
 #include "gi/core/text.h"
+#include "study/analysis/shown.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,7 @@ Table power_table(PowerStudy const& study, PowerSettings const& settings)
     Table t{{{"repeats", "Repeats of the block"},
              {"participants", "Participants"},
              {"effect", "Factor on the effects of the observers' model"},
-             {"power", fmt::format("Share of simulations with p < {:g}", settings.alpha)},
+             estimate_column("power", fmt::format("Share of simulations with p < {:g}", settings.alpha)),
              {"low", "Lower end of its 95 % interval (Wilson)"},
              {"high", "Upper end"},
              {"found", "Simulations with that p"},
@@ -80,17 +81,14 @@ std::string power_json(PowerStudy const& study, PowerSettings const& settings)
 std::string power_text(PowerStudy const& study, PowerSettings const& settings)
 {
     Table const t = power_table(study, settings);
+    ShownTable const shown = shown_table(t);
     std::vector<std::vector<std::string>> rows(1 + t.rows.size(), std::vector<std::string>{});
-    for (std::size_t c = 0; c < t.columns.size(); ++c) {
+    for (std::size_t c = 0; c < shown.columns.size(); ++c) {
         bool const is_empty =
-            std::all_of(t.rows.begin(), t.rows.end(), [&](auto const& r) { return r[c] == kNothing; });
+            std::all_of(shown.rows.begin(), shown.rows.end(), [&](auto const& r) { return r[c] == "–"; });
         if (is_empty) continue;
-        rows[0].push_back(t.columns[c].name);
-        for (std::size_t k = 0; k < t.rows.size(); ++k) {
-            auto const v = gi::parse_finite(t.rows[k][c]);
-            bool const is_fraction = v && *v != std::floor(*v);
-            rows[k + 1].push_back(is_fraction ? fmt::format("{:.3f}", *v) : t.rows[k][c]);
-        }
+        rows[0].push_back(shown.columns[c].name);
+        for (std::size_t k = 0; k < shown.rows.size(); ++k) rows[k + 1].push_back(shown.rows[k][c]);
     }
     return summary_of(study, settings) + "\n" + gi::aligned(rows, std::vector<bool>(rows[0].size(), true));
 }
@@ -121,8 +119,8 @@ std::string power_page(Script const& script, PowerStudy const& study, PowerSetti
                                                        r)));
     }
     std::vector<gi::HtmlColumn> columns;
-    Table const t = power_table(study, settings);
-    for (Column const& c : t.columns) columns.push_back({c.name, true, c.description});
+    ShownTable const t = shown_table(power_table(study, settings));
+    for (ShownTable::Head const& head : t.columns) columns.push_back({head.name, true, head.description});
     std::vector<std::vector<gi::HtmlCell>> rows;
     for (auto const& row : t.rows) rows.emplace_back(row.begin(), row.end());
     return gi::html_page(fmt::format("{}: power", script.title.empty() ? script.id : script.title),

@@ -8,8 +8,6 @@ namespace study {
 /// The main results, one sentence per block: a section of HTML, empty without results.
 std::string findings(Analysis const& analysis);
 
-/// "[1, 2]"; an end that the data leave open is "open"; empty if both are.
-std::string range_text(Interval const& interval);
 /// Indices of the items, best first.
 std::vector<int> by_score(ScaleResult const& scale);
 /// The comparison of two items; null = none.

@@ -1,5 +1,5 @@
-#include "gi/core/html/axis.h"
 #include "gi/core/html/html.h"
+#include "study/analysis/shown.h"
 #include "study/report/figures.h"
 
 #include <algorithm>
@@ -9,11 +9,7 @@
 namespace study {
 namespace {
 
-std::string interval_text(Uncertain const& u)
-{
-    std::string const range = range_text(u.interval);
-    return gi::short_number(u.value) + (range.empty() ? "" : " " + range);
-}
+std::string interval_text(Uncertain const& u) { return shown_estimate(u.value, u.interval.low, u.interval.high); }
 
 /// Items, best first; "~" joins an item to the next one if they do not differ significantly.
 std::string ranking_text(ScaleResult const& s)
@@ -53,17 +49,18 @@ std::string cheapest_text(ScaleResult const& s)
         return fmt::format(
             "Nothing cheaper than <b>{}</b> ({} ms) is as good as {}: every cheaper one is significantly "
             "worse.",
-            gi::escaped(item.name), gi::short_number(item.render_ms.value),
+            gi::escaped(item.name), shown_number(item.render_ms.value),
             c.is_reference ? "it, the reference" : "it, the best judged item (the reference was not judged)");
     std::string text = fmt::format(
         "The cheapest without significant difference from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): "
-        "difference {} {}, p = {:.3f} "
+        "difference {} {}, p {} "
         "corrected for all pairs.",
-        stand_in, gi::escaped(against.name), gi::short_number(against.render_ms.value), gi::escaped(item.name),
-        gi::short_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit), c.p_holm);
+        stand_in, gi::escaped(against.name), shown_number(against.render_ms.value), gi::escaped(item.name),
+        shown_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit),
+        std::isfinite(c.p_holm) ? (c.p_holm < 0.001 ? "" : "= ") + gi::escaped(shown_p(c.p_holm)) : "unknown,");
     if (std::isfinite(c.difference.interval.low) && c.difference.interval.low < 0)
         text += fmt::format(" No significant difference does not mean equal: it may be up to {} {} worse.",
-                            gi::short_number(-c.difference.interval.low), gi::escaped(s.unit));
+                            shown_number(-c.difference.interval.low), gi::escaped(s.unit));
     return text;
 }
 

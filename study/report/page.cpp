@@ -2,6 +2,7 @@
 
 #include "gi/core/html/html.h"
 #include "study/analysis/result_tables.h"
+#include "study/analysis/shown.h"
 #include "study/analysis/threshold_run.h"
 #include "study/report/figures.h"
 #include "study/stats/summary.h"
@@ -19,21 +20,17 @@ std::string html_of(ResultTable const& t)
 {
     std::vector<gi::HtmlColumn> columns;
     std::vector<std::vector<gi::HtmlCell>> rows;
-    for (std::size_t c = 0; c < t.table.columns.size(); ++c) {
-        Column const& column = t.table.columns[c];
-        std::string name = column.name;
+    ShownTable const shown = shown_table(t.table);
+    for (ShownTable::Head const& head : shown.columns) {
+        std::string name = head.name;
         std::replace(name.begin(), name.end(), '_', ' ');
-        bool const is_number =
-            !column.is_name && std::all_of(t.table.rows.begin(), t.table.rows.end(), [&](auto const& row) {
-                return row[c] == kNothing || row[c].find_first_not_of("0123456789+-.e") == std::string::npos;
-            });
-        columns.push_back({name, is_number, column.description});
+        columns.push_back({name, head.is_number, head.description});
     }
-    for (auto const& row : t.table.rows) {
+    for (auto const& row : shown.rows) {
         rows.emplace_back();
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            rows.back().push_back(shown_cell(t.table.columns[c], row[c]));
-            if (row[c].size() > 30)
+        for (std::string const& text : row) {
+            rows.back().push_back(text);
+            if (text.size() > 30)
                 rows.back().back().css = "min-width: 14rem"; // where the table is wider than the page
         }
     }

@@ -9,13 +9,6 @@
 
 namespace study {
 
-std::string range_text(Interval const& i)
-{
-    if (!std::isfinite(i.low) && !std::isfinite(i.high)) return {};
-    auto const end = [](double v) { return std::isfinite(v) ? gi::short_number(v) : std::string("open"); };
-    return fmt::format("[{}, {}]", end(i.low), end(i.high));
-}
-
 ItemDifference const* difference_of(ScaleResult const& s, int a, int b)
 {
     for (ItemDifference const& d : s.differences)

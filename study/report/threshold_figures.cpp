@@ -1,5 +1,6 @@
 #include "gi/core/html/html.h"
 #include "gi/core/html/plot.h"
+#include "study/analysis/shown.h"
 #include "study/report/figures.h"
 
 #include <algorithm>
@@ -45,11 +46,9 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
         p.line(p.x(l.level), p.y(i.low), p.x(l.level), p.y(i.high), "interval thin");
         p.dot(p.x(l.level), p.y(l.correct / l.trials), 2 + 4 * std::sqrt(l.trials / most), "point");
     }
-    std::string range = range_text(band);
-    if (!range.empty()) range = " " + range;
     return p.figure("psychometric function, " + c.cell,
-                    fmt::format("<b>{}</b> {:.0f} % correct at {}{}; {}; {} observers{}", gi::escaped(c.cell),
-                                100 * c.proportion, gi::short_number(c.threshold.value), range,
+                    fmt::format("<b>{}</b> {:.0f} % correct at {}; {}; {} observers{}", gi::escaped(c.cell),
+                                100 * c.proportion, shown_estimate(c.threshold.value, band.low, band.high),
                                 gi::escaped(c.function), c.observers,
                                 c.note.empty() ? "" : ". Doubtful: " + gi::escaped(c.note)));
 }

@@ -86,6 +86,13 @@ PsychometricChoice fitted_function(std::vector<Procedure> const& procedures, Sca
     return agree ? *procedures[0].psychometric : usual;
 }
 
+bool Procedure::has_one_point() const
+{
+    auto const is_one = [](QuestGrid const& g) { return g.values.size() == 1; };
+    return threshold.size() == 1 && slope.size() == 1 && guess.size() == 1 && lapse.size() == 1 &&
+           std::all_of(parameters.begin(), parameters.end(), is_one);
+}
+
 bool is_adaptive(Procedure const& procedure)
 {
     return procedure.method == Method::staircase || procedure.method == Method::questplus;

@@ -79,6 +79,7 @@ struct Procedure {
     std::vector<QuestGrid> also;       ///< levels of further settings that it may present, by name
     std::vector<QuestGrid> parameters; ///< of the formula, besides threshold, slope, guess and lapse
     bool is_many() const { return !also.empty() || !parameters.empty(); }
+    bool has_one_point() const; ///< of its prior, so that it cannot learn
 
     /// The function that QUEST+ assumes and that fits use; none = usual: assumed_function(), fitted_function().
     std::optional<PsychometricChoice> psychometric;

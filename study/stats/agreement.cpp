@@ -2,6 +2,7 @@
 
 #include "study/numeric/error.h"
 #include "study/numeric/special.h"
+#include "study/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,9 +88,10 @@ std::vector<double> midranks(std::span<double const> values)
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
     std::vector<double> rank(values.size());
+    double const size = largest_of(values);
     for (std::size_t i = 0; i < order.size();) {
         std::size_t end = i + 1;
-        while (end < order.size() && values[order[end]] == values[order[i]]) ++end;
+        while (end < order.size() && is_rounding(values[order[end]] - values[order[i]], size)) ++end;
         for (std::size_t k = i; k < end; ++k) rank[order[k]] = double(i + 1 + end) / 2;
         i = end;
     }
@@ -127,7 +129,8 @@ Friedman friedman(Matrix const& values)
     }
     double const spread = m * k * (k + 1) - ties / (k - 1);
     r.degrees_of_freedom = int(n) - 1;
-    if (spread > 1e-9 * m * k * (k + 1)) r.chi_square = 12 * squares / spread;
+    r.is_tied = !(spread > 1e-9 * m * k * (k + 1));
+    if (!r.is_tied) r.chi_square = 12 * squares / spread;
     r.p = chi_square_tail(r.chi_square, r.degrees_of_freedom);
     r.kendall_w = r.chi_square / (m * (k - 1));
     return r;

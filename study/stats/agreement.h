@@ -41,6 +41,7 @@ EqualityTest equality_test(Matrix const& wins, double level = 0.05);
 struct Friedman {
     int observers = 0, conditions = 0;
     int left_out = 0; ///< observers with a missing value (NaN)
+    bool is_tied = false; ///< every observer ties everything
     double chi_square = 0;
     int degrees_of_freedom = 0;
     double p = 1;
@@ -52,7 +53,7 @@ struct Friedman {
 /// observer, fewer than two conditions
 Friedman friedman(Matrix const& values);
 
-/// Ranks from 1 up; equal values share their mean rank.
+/// Ranks from 1 up; values that are equal but for rounding share their mean rank.
 std::vector<double> midranks(std::span<double const> values);
 
 } // namespace study

@@ -53,8 +53,11 @@ Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, Bootstrap
     for (std::size_t k = 0; k < result.replicates.front().size(); ++k) {
         std::vector<double> values;
         for (auto const& r : result.replicates) values.push_back(r[k]);
-        result.interval.push_back({gi::quantile(values, low), gi::quantile(values, 1 - low)});
         result.standard_error.push_back(standard_deviation(values));
+        // Replicates that are all the same say nothing of other observers.
+        bool const varies = result.standard_error.back() > kSolverNoise * largest_of(values);
+        result.interval.push_back(varies ? Interval{gi::quantile(values, low), gi::quantile(values, 1 - low)}
+                                         : Interval{std::nan(""), std::nan("")});
     }
     return result;
 }

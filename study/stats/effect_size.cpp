@@ -63,8 +63,9 @@ WelchTest welch_test(std::span<double const> a, std::span<double const> b, doubl
     w.n_b = int(b.size());
     w.mean_a = mean(a);
     w.mean_b = mean(b);
-    w.difference = w.mean_a - w.mean_b;
-    double const sd_a = standard_deviation(a), sd_b = standard_deviation(b), n_a = w.n_a, n_b = w.n_b;
+    w.difference = without_rounding(w.mean_a - w.mean_b, std::max(largest_of(a), largest_of(b)));
+    double const size = std::max(largest_of(a), largest_of(b));
+    double const sd_a = standard_deviation(a, size), sd_b = standard_deviation(b, size), n_a = w.n_a, n_b = w.n_b;
     double const part_a = sd_a * sd_a / n_a, part_b = sd_b * sd_b / n_b;
     w.standard_error = std::sqrt(part_a + part_b);
     if (!(w.standard_error > 0))

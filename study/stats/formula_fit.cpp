@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 
 namespace study {
@@ -64,10 +65,10 @@ FormulaModel formula_model(std::span<LevelCount const> counts, PsychometricSetti
     FormulaModel m{s.shape, s.guess, s.lapse, {}};
     for (LevelCount const& c : counts) {
         if (!(c.correct >= 0 && c.correct <= c.trials && std::isfinite(c.trials)))
-            refuse(std::to_string(c.correct) + " of " + std::to_string(c.trials) + " trials",
+            refuse(fmt::format("{:g} of {:g} trials", c.correct, c.trials),
                    "counts are numbers, with no more correct responses than trials", "check the table");
         if (!std::isfinite(transformed(s.shape, c.level)))
-            refuse("level " + std::to_string(c.level), "it has no place on the axis", "use other levels");
+            refuse(fmt::format("level {:.9g}", c.level), "it has no place on the axis", "use other levels");
         if (c.trials == 0) continue;
         LevelCount& sum = m.counts[c.level];
         sum = {c.level, sum.correct + c.correct, sum.trials + c.trials};

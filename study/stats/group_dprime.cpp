@@ -15,12 +15,11 @@ namespace study {
 namespace {
 
 constexpr double kLargestMean = 8;     ///< means beyond it are called infinite
-constexpr double kLeastSd = 0.01;      ///< of d' and criteria between observers
 constexpr double kVisibleLogSd = -2.3; ///< log 0.1: where the likelihood has a gradient
 
-/// Means and standard deviations of d' and criterion; a standard deviation is kLeastSd + exp(parameter).
+/// Means and standard deviations of d' and criterion; a standard deviation is kLeastDPrimeSd + exp(parameter).
 using Population = std::array<double, 4>; ///< mean d', log sd, mean criterion, log sd
-double deviation(double parameter) { return kLeastSd + std::exp(parameter); }
+double deviation(double parameter) { return kLeastDPrimeSd + std::exp(parameter); }
 
 struct Observer {
     DetectionCounts counts;
@@ -134,10 +133,10 @@ private:
         o.score = {d1 / sum / d.sd, two ? c1 / sum / c.sd : 0};
         // Fisher's identity: the score is the mean, given the answers, of that of the complete data.
         gradient[0] += o.score[0];
-        gradient[1] += d2 / sum * (1 - kLeastSd / d.sd);
+        gradient[1] += d2 / sum * (1 - kLeastDPrimeSd / d.sd);
         if (two) {
             gradient[2] += o.score[1];
-            gradient[3] += c2 / sum * (1 - kLeastSd / c.sd);
+            gradient[3] += c2 / sum * (1 - kLeastDPrimeSd / c.sd);
         }
         return most + std::log(sum) - std::log(r00) - (two ? std::log(r11) - 0.5 * std::log(2.0) : 0) +
                0.5 * std::log(2.0);

@@ -17,9 +17,11 @@
 
 namespace study {
 
+inline constexpr double kLeastDPrimeSd = 0.01; ///< fitted instead of 0, of d' and criteria between observers
+
 struct GroupDPrime {
     double mean = 0;      ///< of d' in the population; may be infinite
-    double deviation = 0; ///< standard deviation of d' between observers
+    double deviation = 0; ///< standard deviation of d' between observers; at least kLeastDPrimeSd
     double criterion = 0;
     Interval interval;            ///< of the mean; ends may be infinite
     double p = 1;                 ///< of "the mean is 0", by the same likelihood ratio

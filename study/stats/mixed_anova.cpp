@@ -2,8 +2,10 @@
 
 #include "study/numeric/error.h"
 #include "study/numeric/random.h"
+#include "study/numeric/rounding.h"
 #include "study/numeric/special.h"
 #include "study/stats/effect_size.h"
+#include "study/stats/summary.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -107,10 +109,10 @@ MatrixXd basis(MatrixXd const& own, MatrixXd const& others)
 struct Squares {
     double effect = 0, error = 0;
 };
+/// The error is that of the residuals: a difference of sums of squares would be lost in rounding where it is small.
 Squares squares_of(MatrixXd const& z, MatrixXd const& effect, MatrixXd const& all)
 {
-    return {(effect.transpose() * z).squaredNorm(),
-            std::max(0.0, z.squaredNorm() - (all.transpose() * z).squaredNorm())};
+    return {(effect.transpose() * z).squaredNorm(), (z - all * (all.transpose() * z)).squaredNorm()};
 }
 
 /// What the other effects leave is permuted, so that they do not matter (Freedman & Lane 1983).
@@ -139,6 +141,16 @@ double permuted_p(MatrixXd const& z, MatrixXd const& effect, MatrixXd const& oth
     return double(reached) / (settings.permutations + 1);
 }
 
+/// Of an effect whose observers do not differ.
+AnovaEffect without_test(AnovaEffect e)
+{
+    double const unknown = std::numeric_limits<double>::quiet_NaN();
+    e.f = e.p = e.greenhouse_geisser = e.p_gg = e.huynh_feldt = e.p_hf = e.partial_eta2 = e.p_permutation =
+        unknown;
+    e.eta2 = {unknown, unknown};
+    return e;
+}
+
 void check(Matrix const& cells, MixedDesign const& d)
 {
     std::size_t count = 1;
@@ -162,8 +174,11 @@ std::vector<AnovaEffect> mixed_anova(Matrix const& cells, MixedDesign const& des
 {
     check(cells, design);
     auto const observers = Index(cells.rows);
-    MatrixXd const y = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> const>(
+    MatrixXd y = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> const>(
         cells.values.data(), observers, Index(cells.columns));
+    // Sums of squares that rounding of numbers of this size makes of 0.
+    double const nothing = kRounding * kRounding * y.squaredNorm();
+    y.array() -= mean(cells.values); // which no effect depends on, and which would take digits from all of them
     std::vector<Term> const between = between_terms(design.between, observers);
     Index columns = 0;
     for (Term const& t : between) columns += t.columns.cols();
@@ -201,7 +216,8 @@ std::vector<AnovaEffect> mixed_anova(Matrix const& cells, MixedDesign const& des
                 at += other.columns.cols();
             }
             MatrixXd const own = basis(b.columns, others);
-            Squares const s = squares_of(z, own, all);
+            Squares s = squares_of(z, own, all);
+            if (!(s.effect > nothing)) s.effect = 0;
             AnovaEffect e;
             e.name = b.name;
             if (!w.name.empty()) append(e.name, w.name);
@@ -210,11 +226,12 @@ std::vector<AnovaEffect> mixed_anova(Matrix const& cells, MixedDesign const& des
             e.squares = s.effect;
             e.df1 = double(b.columns.cols()) * k;
             e.df2 = error_df * k;
-            double const nothing = 1e-20 * y.squaredNorm();
-            if (!(s.error > nothing) && !(s.effect > nothing)) continue; // such as the mean of relative scores
-            if (!(s.error > nothing))
-                refuse("no variation within groups", "there is nothing to compare effects with",
-                       "check the table");
+            if (!(s.error > nothing) && s.effect == 0) continue; // such as the mean of relative scores
+            e.is_tested = s.error > nothing;
+            if (!e.is_tested) {
+                effects.push_back(without_test(std::move(e)));
+                continue;
+            }
             e.f = (s.effect / e.df1) / (s.error / e.df2);
             e.p = f_tail(e.f, e.df1, e.df2);
             e.greenhouse_geisser = gg;

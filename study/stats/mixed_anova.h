@@ -34,6 +34,9 @@ struct MixedDesign {
 struct AnovaEffect {
     std::string name;                           ///< "group", "group x scene"
     bool is_between = false, is_within = false; ///< it involves such factors
+    /// False: there is no variation within groups beyond rounding, so that there is nothing to compare the effect with
+    /// (all observers differ by the same), and all numbers but squares and degrees of freedom are NaN.
+    bool is_tested = true;
     double f = 0, df1 = 0, df2 = 0, p = 1;
     double squares = 0; ///< sum of squares
     double greenhouse_geisser = 1,

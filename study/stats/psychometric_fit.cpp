@@ -4,10 +4,12 @@
 #include "study/numeric/error.h"
 #include "study/stats/formula_fit.h"
 #include "study/stats/likelihood.h"
+#include "study/stats/step_gap.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 
 namespace study {
@@ -75,10 +77,10 @@ std::vector<Point> checked_points(std::span<LevelCount const> counts, Psychometr
     std::map<double, Point> points;
     for (LevelCount const& c : counts) {
         if (!(c.correct >= 0 && c.correct <= c.trials && std::isfinite(c.trials)))
-            refuse(std::to_string(c.correct) + " of " + std::to_string(c.trials) + " trials",
+            refuse(fmt::format("{:g} of {:g} trials", c.correct, c.trials),
                    "counts are numbers, with no more correct responses than trials", "check the table");
         if (!std::isfinite(c.level) || (shape.axis == Axis::log10 && !(c.level > 0)))
-            refuse("level " + std::to_string(c.level), "it has no place on the axis",
+            refuse(fmt::format("level {:.9g}", c.level), "it has no place on the axis",
                    shape.axis == Axis::log10 ? "use levels above 0, or a linear axis" : "use numbers");
         if (c.trials == 0) continue;
         Point& p = points[transformed(shape, c.level)];
@@ -131,7 +133,7 @@ MaximumLikelihood best_fit(Model const& m)
     return best;
 }
 
-std::string note_of(Model const& m, MaximumLikelihood const& fit)
+std::string note_of(Model const& m, MaximumLikelihood const& fit, std::optional<StepGap> const& gap)
 {
     std::string note;
     auto const say = [&](bool when, char const* what) {
@@ -146,8 +148,9 @@ std::string note_of(Model const& m, MaximumLikelihood const& fit)
     for (Point const& p : m.points) trend.add(p.u, p.correct, p.trials);
     say(trend.is_falling(), kWrongDirection);
     say(fit.at_bound[0], "the threshold lies far outside the levels shown");
+    if (gap) say(true, text_of(*gap).c_str());
     // Below a hundredth of the range the curve is a step between two levels.
-    say(fit.estimate[1] < std::log(0.01) || std::isnan(fit.covariance(0, 0)),
+    say(!gap && (fit.estimate[1] < std::log(0.01) || std::isnan(fit.covariance(0, 0))),
         "responses change within one step of level: threshold and scale are known only to lie between levels");
     say(fit.estimate[1] > std::log(20.0), "responses hardly change with level: the scale cannot be estimated");
     say(m.fits_guess() && fit.estimate[2] >= m.guess.limit, "the guess rate is at its limit");
@@ -156,7 +159,8 @@ std::string note_of(Model const& m, MaximumLikelihood const& fit)
     return note;
 }
 
-PsychometricFit describe(Model const& m, PsychometricShape const& shape, MaximumLikelihood const& best)
+PsychometricFit describe(Model const& m, PsychometricShape const& shape, MaximumLikelihood const& best,
+                         std::optional<StepGap> const& gap)
 {
     PsychometricFit fit;
     fit.shape = shape;
@@ -172,7 +176,7 @@ PsychometricFit describe(Model const& m, PsychometricShape const& shape, Maximum
     auto const error = [&](std::size_t i) { return std::sqrt(fit.covariance(i, i)); };
     fit.standard_error = {error(0), error(1) * fit.parameters.scale, error(2), error(3)};
     fit.converged = best.converged;
-    fit.note = note_of(m, best);
+    fit.note = note_of(m, best, gap);
 
     double saturated = 0, constant = 0;
     for (Point const& p : m.points) {
@@ -193,7 +197,10 @@ PsychometricFit fit_psychometric(std::span<LevelCount const> counts, Psychometri
 {
     if (settings.shape.formula) return fit_formula(counts, settings);
     Model const m = make_model(counts, settings);
-    return describe(m, settings.shape, best_fit(m));
+    StepRates rates;
+    if (!m.fits_guess()) rates.guess = m.guess.value;
+    if (!m.fits_lapse()) rates.lapse = m.lapse.value;
+    return describe(m, settings.shape, best_fit(m), step_gap(counts, settings.shape, rates));
 }
 
 double standard_error_at(PsychometricFit const& fit, double proportion)

@@ -9,6 +9,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace study {
 namespace {
@@ -97,9 +98,11 @@ PosteriorModel make_posterior_model(std::span<LevelCount const> counts, Posterio
     double const a = transformed(s.shape, s.low), b = transformed(s.shape, s.high);
     m.range = std::abs(b - a);
     m.centre = (a + b) / 2;
+    if (s.low == s.high)
+        refuse(fmt::format("trials at one level, {:.9g}", s.low), "a threshold is searched between two levels",
+               "show more levels, or report the proportion");
     if (!(m.range > 0 && std::isfinite(m.range)))
-        refuse("a psychometric function for levels from " + std::to_string(s.low) + " to " +
-                   std::to_string(s.high),
+        refuse(fmt::format("a psychometric function for levels from {:.9g} to {:.9g}", s.low, s.high),
                "its threshold is expected between two levels", "give two different ones, above 0 on a log scale");
     if (!(s.guess >= 0 && s.guess < 1 && s.false_alarms >= 0 && s.false_alarms <= s.noises))
         refuse("a guess rate of " + std::to_string(s.guess) + ", or more false alarms than trials",

@@ -54,6 +54,8 @@ void check(std::span<Rating const> ratings, int items, int observers)
     }
 }
 
+constexpr double kLeastInconsistency = 1e-12; ///< of ratings that vary by about 1
+
 /// Empty where the likelihood of an observer runs to infinity.
 /// @param prior  number of ratings that the mean square of all observers counts as, in that of each
 std::optional<RatingModel> alternating_fit(std::span<Rating const> ratings, std::size_t items,
@@ -83,7 +85,7 @@ std::optional<RatingModel> alternating_fit(std::span<Rating const> ratings, std:
             squares[o] += rest * rest;
             all += rest * rest / double(ratings.size());
         }
-        constexpr double kLeastShare = 0.02, kLeastInconsistency = 1e-12;
+        constexpr double kLeastShare = 0.02;
         m.inconsistency.assign(observers, std::nan(""));
         for (std::size_t o = 0; o < observers; ++o) {
             if (by_observer[o] == 0) continue;
@@ -133,9 +135,14 @@ std::vector<MeanOpinion> mean_opinions(Matrix const& ratings, double confidence)
         std::vector<double> const values = given(ratings, j);
         MeanOpinion m;
         m.observers = int(values.size());
-        m.mean = mean(values);
+        m.mean = without_rounding(mean(values), largest_of(values));
         m.deviation = standard_deviation(values);
         m.standard_error = m.deviation / std::sqrt(double(values.size()));
+        if (m.deviation == 0) { // what others would answer is unknown
+            m.interval = m.skewed = {std::nan(""), std::nan("")};
+            result.push_back(m);
+            continue;
+        }
         double const half = student_quantile(0.5 + confidence / 2, double(values.size()) - 1) * m.standard_error;
         m.interval = {m.mean - half, m.mean + half};
         m.skewed = skewed_interval(m, values, student_quantile(0.5 + confidence / 2, double(values.size()) - 1));
@@ -171,13 +178,30 @@ RatingModel fit_ratings(std::span<Rating const> ratings, int items, int observer
         note = fmt::format("{} with one rating {} left out",
                            n == 1 ? "1 observer" : fmt::format("{} observers", n), n == 1 ? "is" : "are");
     auto const say = [&](char const* what) { note += (note.empty() ? "" : "; ") + std::string(what); };
+    // The fit's limits are for ratings that vary by about 1 around 0.
+    std::vector<double> values;
+    for (Rating const& r : used) values.push_back(r.value);
+    double const middle = mean(values), sd = standard_deviation(values), unit = sd > 0 ? sd : 1;
+    for (Rating& r : used) r.value = sd > 0 ? (r.value - middle) / unit : 0;
     auto fit = alternating_fit(used, j, o, 0);
     bool const is_shrunken = !fit;
     constexpr double kPrior = 5;
     if (is_shrunken) fit = alternating_fit(used, j, o, kPrior);
     RatingModel m = *fit;
+    if (*std::max_element(m.inconsistency.begin(), m.inconsistency.end(), [](double a, double b) {
+            return std::isnan(a) || a < b; // NaN: nothing is known of this observer
+        }) <= std::max(kLeastInconsistency, kRounding * largest_of(values) / unit)) {
+        // All ratings are the sum of a quality and a bias: errors are not those of ratings of others.
+        std::fill(m.quality_error.begin(), m.quality_error.end(), std::nan(""));
+        std::fill(m.bias_error.begin(), m.bias_error.end(), std::nan(""));
+        say("observers differ by constants alone: their inconsistency is 0, and nothing has an error");
+    }
+    for (double& q : m.quality) q = middle + unit * q;
+    for (std::vector<double>* const list : {&m.quality_error, &m.bias, &m.bias_error, &m.inconsistency})
+        for (double& v : *list) v *= unit;
     m.shrunken = is_shrunken;
-    if (is_shrunken)
+    bool const is_perfect = std::isnan(m.quality_error.front());
+    if (is_shrunken && !is_perfect)
         say("the likelihood is infinite where quality equals the ratings of an observer: inconsistencies of "
             "observers are drawn towards that of all");
     if (!m.converged) say("the fit did not converge");

@@ -15,7 +15,7 @@ struct MeanOpinion {
     double mean = 0;           ///< NaN without observers
     double deviation = 0;      ///< standard deviation with n - 1; NaN for fewer than two observers
     double standard_error = 0; ///< as deviation
-    Interval interval;         ///< as deviation
+    Interval interval;         ///< as deviation; NaN also where the observers do not vary
     /// The interval allowing for skewness, as near the ends of a scale: Hall's transformation of Student's t
     /// (1992, J. R. Stat. Soc. B 54:221) with half of the sample's skewness, which few ratings overstate.
     Interval skewed;

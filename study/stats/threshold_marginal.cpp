@@ -3,6 +3,8 @@
 #include "study/numeric/error.h"
 #include "study/stats/gauss_hermite.h"
 
+#include <fmt/format.h>
+
 namespace study {
 namespace {
 
@@ -24,8 +26,11 @@ ThresholdMarginal::ThresholdMarginal(std::span<ObserverLevels const> observers, 
     double const a = transformed(s.shape, s.low), b = transformed(s.shape, s.high);
     range_ = std::abs(b - a);
     centre_ = (a + b) / 2;
+    if (s.low == s.high)
+        refuse(fmt::format("trials at one level, {:.9g}", s.low), "a threshold is searched between two levels",
+               "show more levels, or report the proportion");
     if (!(range_ > 0 && std::isfinite(range_)))
-        refuse("thresholds between " + std::to_string(s.low) + " and " + std::to_string(s.high),
+        refuse(fmt::format("thresholds between {:.9g} and {:.9g}", s.low, s.high),
                "they are expected between two levels", "give two different ones, above 0 on a log scale");
     for (ObserverLevels const& o : observers) add(o);
     is_repeated_ = is_repeated_ && has_whole_counts(observers);

@@ -41,6 +41,18 @@ Column name_column(std::string name, std::string description)
     return c;
 }
 
+Column estimate_column(std::string name, std::string description, std::string units)
+{
+    Column c{std::move(name), std::move(description), std::move(units)};
+    c.has_interval = true;
+    return c;
+}
+
+std::string full_cell(double value)
+{
+    return std::isfinite(value) ? fmt::format("{:.15g}", value) : std::string(kNothing);
+}
+
 std::string cell(double value)
 {
     return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string(kNothing);

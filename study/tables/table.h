@@ -22,8 +22,11 @@ struct Column {
     std::string hed{}; ///< HED string for every value, which it has as '#'; empty = none
     std::vector<std::pair<std::string, std::string>> hed_of{}; ///< HED strings by value; others have none
     bool is_name = false; ///< cells are texts, even if they look like numbers ("1.10", "007", "true")
+    bool has_interval = false; ///< the next two columns are the ends of its interval
 };
 Column name_column(std::string name, std::string description);
+/// Of an estimate whose interval is in the next two columns.
+Column estimate_column(std::string name, std::string description, std::string units = {});
 
 struct Table {
     std::vector<Column> columns;
@@ -34,6 +37,8 @@ inline constexpr std::string_view kNothing = "n/a";
 
 /// The shortest text with at most nine digits; n/a if not finite.
 std::string cell(double value);
+/// The same with fifteen digits: of estimates, which may lie close to each other and far from 0.
+std::string full_cell(double value);
 std::string cell(std::optional<double> value);
 std::string cell(int value);
 std::string cell(bool value); ///< true, false

@@ -284,7 +284,7 @@ blocks:
             bool const is_hard =
                 stimulus_of(step.trial, 'a')->levels[0] == 0 && stimulus_of(step.trial, 'b')->levels[0] == 1;
             done.response = "first";
-            done.is_correct = !is_hard || ++trials % 3 == 0;
+            done.is_correct = !is_hard || ++trials <= p; // 1, 2 and 3 of 6
         }));
     }
     AnalysisSettings settings;
@@ -395,7 +395,24 @@ TEST(MeanOf, HasStudentsInterval)
     EXPECT_DOUBLE_EQ(u.value, 2);
     EXPECT_NEAR(u.interval.high - 2, 2.484138, 1e-5); // t(0.975, 2) / sqrt 3
     EXPECT_TRUE(std::isnan(mean_of({5}, 0.95).interval.low));
-    EXPECT_EQ(mean_p({2, 2}), 0);
+}
+
+TEST(MeanOf, ValuesThatDoNotVaryHasNoIntervalAndNoTest)
+{
+    // 20.1 - 10.1 and 30.3 - 20.3 are 10 but for rounding.
+    for (double const size : {1e-12, 1.0, 1e12}) {
+        std::vector<double> const values{size * 20.1 - size * 10.1, size * 10, size * 30.3 - size * 20.3};
+        Uncertain const u = mean_of(values, 0.95, size * 30.3);
+        EXPECT_TRUE(u.is_constant);
+        EXPECT_NEAR(u.value / size, 10, 1e-9);
+        EXPECT_TRUE(std::isnan(u.interval.low) && std::isnan(u.interval.high));
+        EXPECT_TRUE(std::isnan(mean_p(values, size * 30.3)));
+    }
+    Uncertain const nothing = mean_of({0.1 + 0.2 - 0.3, 0}, 0.95, 0.3);
+    EXPECT_TRUE(nothing.is_constant);
+    EXPECT_EQ(nothing.value, 0);
+    EXPECT_TRUE(std::isnan(mean_p({2, 2})));
+    EXPECT_LT(mean_p({1e9, 1e9 + 1, 1e9 + 2}), 1e-9);
 }
 
 } // namespace

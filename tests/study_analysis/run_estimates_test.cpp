@@ -50,6 +50,15 @@ TEST(QuestPlusEstimate, SaysWhereItsIntervalIsOpen)
     EXPECT_EQ(prior_estimate("threshold: 5..20/9, slope: 2, guess: [0.1, 0.15, 0.2], lapse: 0.02").note, "");
 }
 
+TEST(QuestPlusEstimate, OfAPriorOfOnePointIsNone)
+{
+    ThresholdEstimate const e = prior_estimate("threshold: 10, slope: 2, guess: 0.2, lapse: 0.02");
+    EXPECT_TRUE(std::isnan(e.level.value) && std::isnan(e.level.interval.low));
+    EXPECT_EQ(e.note, "the prior has one point: nothing was learned");
+    ThresholdEstimate const narrow = prior_estimate("threshold: 10, slope: 2, guess: 0.2, lapse: [0.02, 0.02001]");
+    EXPECT_TRUE(std::isfinite(narrow.level.value));
+}
+
 TEST(QuestPlusEstimate, IsInfiniteForThePartThatIs)
 {
     // A third of the functions starts above 55 %; quantiles of 0.3 and 0.35.
@@ -94,14 +103,16 @@ TEST(LikelihoodEstimate, SaysWhereItsIntervalIsOpen)
         return likelihood_estimate(run, b, fitted_function(b.procedures, b.compare->scale), {}, 0.5, {}, {});
     };
     std::string const why =
-        "no trials without a signal: the false alarm rate is that of the fit; the interval is open ";
+        "no trials without a signal: the false alarm rate is that of the fit; any threshold between ";
     ThresholdEstimate const rising = estimate("down"), falling = estimate("up");
     EXPECT_TRUE(std::isnan(rising.level.interval.low));
     EXPECT_GT(rising.level.interval.high, rising.level.value);
-    EXPECT_TRUE(rising.note.starts_with(why + "below:")) << rising.note;
+    EXPECT_TRUE(rising.note.starts_with(why + "3.16227766 and 10 fits")) << rising.note;
+    EXPECT_NE(rising.note.find("; the interval is open below:"), std::string::npos) << rising.note;
     EXPECT_LT(falling.level.interval.low, falling.level.value);
     EXPECT_TRUE(std::isnan(falling.level.interval.high));
-    EXPECT_TRUE(falling.note.starts_with(why + "above:")) << falling.note;
+    EXPECT_TRUE(falling.note.starts_with(why + "10 and 31.6227766 fits")) << falling.note;
+    EXPECT_NE(falling.note.find("; the interval is open above:"), std::string::npos) << falling.note;
 }
 
 TEST(GroupThresholds, SayWhereTheirIntervalIsOpen)

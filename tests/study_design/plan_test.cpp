@@ -355,6 +355,29 @@ TEST(Doubts, AreGuessRatesThatTheTaskCannotHave)
               std::string::npos);
 }
 
+TEST(Doubts, AreProceduresThatCannotLearn)
+{
+    auto const idle = [](std::string const& procedure) {
+        auto const found = find_idle_procedures(
+            parse("factors: {q: {best: {paths: 4096}}}\nreference: {q: best}\n"
+                  "defaults: {stimulus_ms: 1000}\nsequence: [b]\nblocks:\n  b:\n    task: 2ifc\n"
+                  "    compare: {vary: paths, scale: log2, range: [1, 1024], harder: down}\n"
+                  "    procedure: {" +
+                  procedure + "}\n"));
+        return found.empty() ? "" : found.at(0);
+    };
+    std::string const questplus = "method: questplus, levels: 1..1024/11, guess: 0.5, lapse: 0.02, stop: {trials: 9}, ";
+    EXPECT_NE(idle(questplus + "threshold: 64, slope: 2").find("a prior of one point"), std::string::npos);
+    EXPECT_NE(idle(questplus + "threshold: [64], slope: [2]").find("a prior of one point"), std::string::npos);
+    EXPECT_NE(idle(questplus + "threshold: 64, slope: [1, 2]").find("a prior with one threshold, 64"),
+              std::string::npos);
+    EXPECT_EQ(idle(questplus + "threshold: [32, 64], slope: 2"), "");
+    std::string const staircase = "method: staircase, down: 2, start: 512, stop: {trials: 9}, ";
+    EXPECT_EQ(idle(staircase + "steps: [12, 2, 1]"), "");
+    EXPECT_NE(idle(staircase + "steps: [2, 10]").find("ends with steps of 10 in a range that is 10 wide"),
+              std::string::npos);
+}
+
 TEST(Doubts, AreLevelsThatLookAlikeAndTooFewActiveTrials)
 {
     auto const doubts = [](std::string const& levels, std::string const& trials) {

@@ -139,12 +139,9 @@ TEST(SimulatedTruth, GivesTheLevelOfAShareOfRightAnswers)
     EXPECT_THROW(read_truth("{", "truth.json"), gi::InputError);
 }
 
-TEST(Intervals, ThatAreOpenSaySoAndGoToTheBorder)
+TEST(Intervals, ThatAreOpenGoToTheBorder)
 {
     double const none = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(range_text({1, 2}), "[1, 2]");
-    EXPECT_EQ(range_text({1, none}), "[1, open]");
-    EXPECT_EQ(range_text({none, none}), "");
     gi::RowPlot p({"a"}, {0, 10}, "x", 100);
     p.estimate(5, 4, none, p.row(0));
     std::string const svg = p.svg("t");
