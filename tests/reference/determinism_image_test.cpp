@@ -2,6 +2,7 @@
 // another seed gives another sample of the same mean.
 
 #include "gi/core/error.h"
+#include "gi/light_paths/settings.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/render/checkpoint.h"
 #include "tests/support/scenes.h"
@@ -22,6 +23,10 @@ World room()
     add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{6})));
     add_sphere(scene, {-0.4f, -0.5f, 0}, 0.4f, 3, add_material(scene, glass(1.5f, false)), true);
     add_sphere(scene, {0.5f, -0.6f, -0.2f}, 0.35f, 3, add_material(scene, mirror(vec3{0.9f})), true);
+    Light lamp; // whose caustics are photons
+    lamp.position = {0.1f, 0.7f, 0.2f};
+    lamp.intensity = vec3{0.5f};
+    add_light(scene, lamp);
     return world_of(scene);
 }
 
@@ -32,6 +37,7 @@ RenderSettings settings()
     s.height = 30;
     s.paths = 32;
     s.seed = 3;
+    s.of<PhotonSettings>().caustic_paths = 2000;
     return s;
 }
 

@@ -116,6 +116,21 @@ void check_materials()
 LIGHTWELL_TEST_BOTH(KernelReference, MaterialsAsOnEmbree, check_materials);
 
 template <Space S>
+void check_panes()
+{
+    Scene scene = lit_room();
+    Material tinted = glass(1.5f, true);
+    tinted.base_color = {0.9f, 0.4f, 0.2f};
+    Light light;
+    light.position = {0, 0.8f, 0};
+    light.intensity = vec3{2};
+    add_light(scene, light);
+    add_quad(scene, {-0.9f, 0.2f, -0.9f}, {0, 0, 1.8f}, {1.2f, 0, 0}, add_material(scene, tinted));
+    expect_like_embree<S>(world_of(scene), room_eye(), few_paths(), "a lamp over a pane");
+}
+LIGHTWELL_TEST_BOTH(KernelReference, PanesAsOnEmbree, check_panes);
+
+template <Space S>
 void check_alpha()
 {
     Scene scene = lit_room();
