@@ -32,7 +32,8 @@ TEST(ShownRange, SaysWhichExposureShowsIt)
     EXPECT_NE(problem_of(0.18f * 256, 0.9).find("--exposure -8.0 shows"), std::string::npos);
     EXPECT_EQ(problem_of(0.18f * 256, 0.9, -8), "");
     EXPECT_NE(problem_of(0.18f / 4096, 1, -4).find("--exposure 12.0 shows"), std::string::npos);
-    EXPECT_NE(problem_of(0, 1).find("no light reaches"), std::string::npos);
+    for (float const nothing : {0.0f, 1e-9f})
+        EXPECT_NE(problem_of(nothing, 1).find("no light reaches"), std::string::npos);
 }
 
 } // namespace

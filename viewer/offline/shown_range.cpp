@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace viewer {
 
@@ -23,19 +24,22 @@ void ShownRange::add(gi::Layer const& color, std::vector<unsigned char> const& b
 
 std::string ShownRange::problem(std::string const& file, double exposure_ev) const
 {
-    constexpr double kMostlyWhite = 0.6, kMostlyBlack = 0.98, kMiddle = 0.18;
+    constexpr double kMostlyWhite = 0.6, kMostlyBlack = 0.98, kMiddle = 0.18, kMost_ev = 16;
     double const n = double(std::max<std::size_t>(1, pixels_)), white = double(white_) / n,
                  black = double(black_) / n;
     if (white < kMostlyWhite && black < kMostlyBlack) return {};
-    if (logs_.empty())
-        return fmt::format(
-            "'{}' is black: no light reaches what the camera sees. Lights may be missing or without power, or "
-            "a mesh around the scene hides its sky; lightwell info lists its lights",
-            file);
-    std::vector<float> logs = logs_;
-    auto const middle = logs.begin() + std::ptrdiff_t(logs.size() / 2);
-    std::ranges::nth_element(logs, middle);
-    double const shows_ev = std::log2(kMiddle) - double(*middle);
+    double shows_ev = std::numeric_limits<double>::infinity();
+    if (!logs_.empty()) {
+        std::vector<float> logs = logs_;
+        auto const middle = logs.begin() + std::ptrdiff_t(logs.size() / 2);
+        std::ranges::nth_element(logs, middle);
+        shows_ev = std::log2(kMiddle) - double(*middle);
+    }
+    if (shows_ev > kMost_ev)
+        return fmt::format("'{}' is black: next to no light reaches what the camera sees. Lights may be missing "
+                           "or without power, or "
+                           "a mesh around the scene hides its sky; lightwell info lists its lights",
+                           file);
     return fmt::format(
         "{:.0f} % of '{}' is {}, which lies beyond what a PNG shows at --exposure {:g}: --exposure {:.1f} "
         "shows its middle",

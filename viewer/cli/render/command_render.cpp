@@ -55,9 +55,10 @@ struct Shot {
 bool is_black(gi::Picture const& picture)
 {
     constexpr double kNearlyAll = 0.98;
+    constexpr float kDark = 1e-6f; // beside a sky's radiance of about 1
     gi::Layer const* const color = picture.find("color");
     if (color == nullptr || color->data.empty()) return false;
-    auto const black = std::ranges::count_if(color->data, [](float v) { return !(v > 0); });
+    auto const black = std::ranges::count_if(color->data, [&](float v) { return !(v > kDark); });
     return double(black) >= kNearlyAll * double(color->data.size());
 }
 
