@@ -1,4 +1,4 @@
-// A material, as Material and make_bsdf of gi/scene. MAPS: bits of the maps that it has.
+// A material, as Material and make_bsdf of gi/scene. MAPS: bits of the maps that it has; ALPHAS: its vertices have alphas.
 
 layout(std140, binding = 0) uniform Material
 {
@@ -33,9 +33,16 @@ vec2 at_map(int map)
 }
 #endif
 
+#if ALPHAS
+in float vertex_alpha;
+#endif
+
 float coverage()
 {
     float alpha = base_color.a;
+#if ALPHAS
+    alpha *= vertex_alpha;
+#endif
 #if MAPS & 1
     alpha *= MAP(BASE_COLOR).a;
 #endif

@@ -8,6 +8,7 @@ layout(location = 4) in vec2 uv1_in;
 layout(location = 5) in vec3 color_in;
 layout(location = 6) in vec3 lit_position_in; // where its light was found
 layout(location = 7) in vec3 lit_normal_in;
+layout(location = 8) in float alpha_in;
 
 uniform mat3 clip_from_world; // to x, y and w
 uniform vec3 eye;
@@ -25,6 +26,9 @@ out vec4 tangent;
 #endif
 #if COLORS
 out vec3 vertex_color;
+#endif
+#if ALPHAS
+out float vertex_alpha;
 #endif
 #if MOVES
 out vec3 lit_position, lit_normal;
@@ -46,6 +50,9 @@ void main()
 #endif
 #if COLORS
     vertex_color = color_in;
+#endif
+#if ALPHAS
+    vertex_alpha = alpha_in;
 #endif
 #if MOVES
     lit_position = lit_position_in;

@@ -81,6 +81,7 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     h.add_array(world.uv0);
     h.add_array(world.uv1);
     h.add_array(world.colors);
+    if (!world.alphas.empty()) h.add_array(world.alphas);
     for (int i = 0; i < 3; ++i) h.add(world.origin[i]);
     h.add_array(world.triangles);
     h.add_array(world.triangle_material);

@@ -8,7 +8,7 @@ namespace gi {
 
 struct ShownScene {
     /// Only these parts may be read while the world moves: its scene, origin, and the arrays of vertices and triangles
-    /// (not Surfaces) below static_vertices and static_triangles; and triangle_material, placed, uv0, uv1 and colors of all.
+    /// (not Surfaces) below static_vertices and static_triangles; and triangle_material, placed, uv0, uv1, colors and alphas of all.
     std::shared_ptr<World const> world;
     struct Moved {
         std::vector<vec3> positions, normals;

@@ -1,6 +1,7 @@
 // Vertices and triangles out of glTF: every way in which the format can store them.
 
 #include "gi/core/error.h"
+#include "gi/scene/model/world.h"
 #include "tests/scene/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -134,13 +135,110 @@ TEST(GltfGeometry, ColorsAndTangentsAreRead)
     attributes["COLOR_0"] =
         b.add_accessor(b.add_view(std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 51, 0, 0, 255, 255}),
                        kUbyte, 3, "VEC4", true);
+    attributes["NORMAL"] = b.add_floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
     attributes["TANGENT"] = b.add_floats({2, 0, 0, 1, 1, 0, 0, -1, 0, 1, 0, 1}, "VEC4", 4);
     b.root["meshes"][0]["primitives"][0]["attributes"] = attributes;
     Report report;
     Scene const scene = b.parse(report);
     EXPECT_EQ(scene.meshes[0].colors, (std::vector<vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
     EXPECT_EQ(scene.meshes[0].tangents, (std::vector<vec4>{{1, 0, 0, 1}, {1, 0, 0, -1}, {0, 1, 0, 1}}));
-    EXPECT_EQ(lost(report, "vertices with an alpha of their own, taken as opaque"), 1u);
+    EXPECT_TRUE(scene.meshes[0].alphas.empty()); // its material is opaque
+    EXPECT_TRUE(report.losses().empty());
+}
+
+/// COLOR_0 as it may be stored: floats, or bytes and shorts that are normalized, of three or four components.
+TEST(GltfGeometry, AlphasOfVerticesAreThoseOfMasksAndBlending)
+{
+    struct Case {
+        char const* mode; ///< null = no material
+        int component;
+        char const* type;
+        std::vector<float> alphas;
+    };
+    std::vector<float> const read{0.2f, 1, 0.6f};
+    for (auto const& [mode, component, type, alphas] : std::vector<Case>{{nullptr, kFloat, "VEC4", {}},
+                                                                         {"", kFloat, "VEC4", {}},
+                                                                         {"OPAQUE", kUbyte, "VEC4", {}},
+                                                                         {"OTHER", kFloat, "VEC4", {}},
+                                                                         {"MASK", kFloat, "VEC4", read},
+                                                                         {"MASK", kUbyte, "VEC4", read},
+                                                                         {"BLEND", kUshort, "VEC4", read},
+                                                                         {"BLEND", kFloat, "VEC4", read},
+                                                                         {"BLEND", kFloat, "VEC3", {}},
+                                                                         {"MASK", kUbyte, "VEC3", {}}}) {
+        SCOPED_TRACE(std::string(mode ? mode : "none") + " " + type + " " + std::to_string(component));
+        GltfBuilder b;
+        std::vector<float> values;
+        for (float const a : read) {
+            values.insert(values.end(), {0, 0.4f, 1});
+            if (type == std::string("VEC4")) values.push_back(a);
+        }
+        auto const view = [&](auto most) {
+            std::vector<decltype(most)> stored;
+            for (float const v : values) stored.push_back(decltype(most)(v * float(most) + 0.5f));
+            return b.add_view(stored);
+        };
+        int const at = component == kFloat   ? b.add_view(values)
+                       : component == kUbyte ? view(std::uint8_t{255})
+                                             : view(std::uint16_t{65535});
+        int const colors = b.add_accessor(at, component, 3, type, component != kFloat);
+        nlohmann::json& p = b.add_triangle();
+        p["attributes"]["COLOR_0"] = colors;
+        p["attributes"]["COLOR_1"] = colors; // for programs that know it
+        if (mode) {
+            p["material"] = 0;
+            b.append("materials", *mode ? nlohmann::json{{"alphaMode", mode}} : nlohmann::json::object());
+        }
+        Report report;
+        Scene const scene = b.parse(report);
+        Mesh const& mesh = scene.meshes[0];
+        ASSERT_EQ(mesh.alphas.size(), alphas.size());
+        for (std::size_t i = 0; i < alphas.size(); ++i) EXPECT_NEAR(mesh.alphas[i], alphas[i], 1e-5);
+        for (vec3 const c : mesh.colors) EXPECT_LT(glm::distance(c, {0, 0.4f, 1}), 1e-5f);
+        EXPECT_TRUE(report.losses().empty());
+    }
+}
+
+TEST(GltfGeometry, ColoursThatChangeNothingAreLeftOut)
+{
+    GltfBuilder b;
+    nlohmann::json& p = b.add_triangle();
+    p["attributes"]["COLOR_0"] = b.add_floats({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, "VEC4", 4);
+    p["material"] = 0;
+    b.append("materials", {{"alphaMode", "BLEND"}});
+    Scene const scene = b.parse();
+    EXPECT_TRUE(scene.meshes[0].alphas.empty());
+    EXPECT_TRUE(scene.meshes[0].colors.empty());
+    Report report;
+    EXPECT_TRUE(build_world(std::make_shared<Scene const>(scene), 0.0, report).alphas.empty());
+}
+
+TEST(GltfGeometry, AlphasOutOfRangeAreClampedAndCounted)
+{
+    GltfBuilder b;
+    nlohmann::json& p = b.add_triangle();
+    p["attributes"]["COLOR_0"] = b.add_floats({1, 1, 1, -1, 1, 1, 1, 2, 1, 1, 1, 0.5f}, "VEC4", 4);
+    p["material"] = 0;
+    b.append("materials", {{"alphaMode", "BLEND"}});
+    Report report;
+    EXPECT_EQ(b.parse(report).meshes[0].alphas, (std::vector<float>{0, 1, 0.5f}));
+    EXPECT_EQ(lost(report, "vertex colours not within 0..1, clamped"), 2u);
+}
+
+/// Sec. 3.7.2.1: without normals, given tangents MUST be ignored. Coordinates that no texture uses are nobody's loss.
+TEST(GltfGeometry, WhatTheSpecificationIgnoresIsIgnoredWithoutAWord)
+{
+    GltfBuilder b;
+    int const tangents = b.add_floats({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4", 4),
+              uv = b.add_floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+    nlohmann::json& p = b.add_triangle();
+    p["attributes"]["TANGENT"] = tangents;
+    p["attributes"]["TEXCOORD_2"] = uv;
+    p["attributes"]["_MINE"] = uv;
+    p["extras"] = {{"mine", 1}};
+    Report report;
+    EXPECT_TRUE(b.parse(report).meshes[0].tangents.empty());
+    EXPECT_TRUE(report.losses().empty());
 }
 
 TEST(GltfGeometry, NormalsAreMadeUnitAndCounted)
@@ -173,6 +271,16 @@ TEST(GltfGeometry, PrimitivesThatShareVerticesKeepOnlyTheirOwn)
         for (int k = 0; k < 3; ++k)
             EXPECT_EQ(mesh.positions[mesh.triangles[0][k]].x, positions[3 * (3 * t + std::size_t(2 - k))]);
     }
+}
+
+TEST(GltfGeometry, MorphedColoursAreNamedAsIgnored)
+{
+    GltfBuilder b;
+    int const target = b.add_floats({0, 0, 1, 0, 0, 2, 0, 0, 3}, "VEC3", 3);
+    b.add_triangle()["targets"] = {{{"POSITION", target}, {"COLOR_0", target}, {"_MINE", target}}};
+    Report report;
+    EXPECT_EQ(b.parse(report).meshes[0].morph_targets.size(), 1u);
+    EXPECT_EQ(lost(report, "morph targets of colours and texture coordinates ignored"), 1u);
 }
 
 TEST(GltfGeometry, MorphTargetsAreDisplacements)

@@ -42,8 +42,27 @@ TEST(GltfMaterial, DefaultsAreThoseOfGltf)
     EXPECT_EQ(m.ior, 1.5f);
     EXPECT_EQ(m.emission, vec3{0});
     EXPECT_EQ(m.alpha_mode, AlphaMode::opaque);
+    EXPECT_EQ(m.alpha_cutoff, 0.5f);
     EXPECT_TRUE(m.thin);
     EXPECT_FALSE(m.double_sided);
+}
+
+/// Sec. 3.9.6: "a material with no properties specified".
+TEST(GltfMaterial, MeshesWithoutOneHaveTheDefault)
+{
+    GltfBuilder b;
+    b.add_triangle();
+    b.add_triangle()["material"] = 0;
+    b.add_triangle();
+    b.append("materials", {{"name", "red"}});
+    Scene const scene = b.parse();
+    ASSERT_EQ(scene.materials.size(), 2u);
+    EXPECT_EQ(scene.material_names[1], "default");
+    EXPECT_EQ(scene.materials[1], read_material(json::object()));
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(scene.meshes[k].material, k == 1 ? 0 : 1);
+    Report report;
+    read_material(json::object(), report);
+    EXPECT_TRUE(report.losses().empty());
 }
 
 TEST(GltfMaterial, EmissionIsFactorTimesStrength)
@@ -123,6 +142,51 @@ TEST(GltfMaterial, OldAndUnlitMaterialsAreConvertedAndCounted)
     EXPECT_EQ(lost(report, "specular-glossiness materials converted"), 1u);
     EXPECT_EQ(read_material({{"extensions", {{"KHR_materials_unlit", json::object()}}}}, report).specular, 0);
     EXPECT_EQ(lost(report, "unlit materials taken as diffuse"), 1u);
+}
+
+/// KHR_materials_unlit: the base colour alone, with its alpha; all other properties are ignored.
+TEST(GltfMaterial, UnlitMaterialsAreTheirBaseColour)
+{
+    json const unlit = json::object();
+    json material{{"pbrMetallicRoughness",
+                   {{"baseColorFactor", {0.8, 0.3, 0.1, 0.7}}, {"metallicFactor", 1}, {"roughnessFactor", 0}}},
+                  {"emissiveFactor", {0, 1, 0}},
+                  {"alphaMode", "BLEND"},
+                  {"doubleSided", true},
+                  {"extensions",
+                   {{"KHR_materials_unlit", unlit},
+                    {"KHR_materials_emissive_strength", {{"emissiveStrength", 5}}},
+                    {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                    {"KHR_materials_ior", {{"ior", 0.5}}},
+                    {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 1}}},
+                    {"KHR_materials_specular", {{"specularFactor", 1}}}}}};
+    for (char const* map : {"normalTexture", "emissiveTexture", "occlusionTexture"})
+        material[map] = {{"index", 9}};
+    Report report;
+    Material const m = read_material(material, report);
+    EXPECT_EQ(m.base_color, (vec3{0.8f, 0.3f, 0.1f}));
+    EXPECT_EQ(m.alpha, 0.7f);
+    EXPECT_EQ(m.alpha_mode, AlphaMode::blend);
+    EXPECT_TRUE(m.double_sided);
+    EXPECT_EQ(m.emission, vec3{0});
+    EXPECT_EQ(m.transmission, 0);
+    EXPECT_EQ(m.metallic, 0);
+    EXPECT_EQ(m.specular, 0);
+    EXPECT_TRUE(m.unlit);
+    EXPECT_TRUE(m.thin);
+    EXPECT_EQ(m.normal_map.texture, -1);
+    EXPECT_EQ(report.losses().size(), 1u);
+    EXPECT_EQ(lost(report, "unlit materials taken as diffuse"), 1u);
+}
+
+/// Sec. 3.9.4: the cut-off is ignored but for masks.
+TEST(GltfMaterial, CutOffsAreThoseOfMasks)
+{
+    Report report;
+    EXPECT_EQ(read_material({{"alphaMode", "MASK"}}, report).alpha_cutoff, 0.5f);
+    EXPECT_EQ(read_material({{"alphaMode", "MASK"}, {"alphaCutoff", 0.25}}, report).alpha_cutoff, 0.25f);
+    read_material({{"alphaMode", "BLEND"}, {"alphaCutoff", -3}}, report);
+    EXPECT_TRUE(report.losses().empty());
 }
 
 /// Two materials that use image 0 in several ways.

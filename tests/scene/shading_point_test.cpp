@@ -188,5 +188,26 @@ TEST(ShadingPoint, CoverageIsBinaryForMasks)
     EXPECT_NEAR(covered(AlphaMode::blend, 0.5f), 0.32, 1e-5);
 }
 
+/// glTF 2, sec. 3.7.2.1: COLOR_0 multiplies the base colour, its alpha the alpha.
+TEST(ShadingPoint, AlphasOfVerticesMultiplyThatOfTheMaterial)
+{
+    Mesh mesh = triangle();
+    mesh.uv0.assign(3, vec2{0.5f});
+    mesh.alphas = {1, 0.5f, 0.25f};
+    Material m = lambert(vec3{1});
+    m.base_color_map.texture = 0;
+    m.alpha = 0.8f;
+    auto const covered = [&](AlphaMode mode, vec2 at) {
+        m.alpha_mode = mode;
+        m.alpha_cutoff = 0.25f;
+        return coverage(view(world_with(mesh, m, {{255, 255, 255, 102}})), 0, at);
+    };
+    EXPECT_EQ(covered(AlphaMode::opaque, {1, 0}), 1);
+    EXPECT_NEAR(covered(AlphaMode::blend, {0, 0}), 0.8 * 0.4, 1e-5);
+    EXPECT_NEAR(covered(AlphaMode::blend, {0.2f, 0.4f}), 0.8 * 0.4 * (0.4 * 1 + 0.2 * 0.5 + 0.4 * 0.25), 1e-5);
+    EXPECT_EQ(covered(AlphaMode::mask, {0, 0}), 1);
+    EXPECT_EQ(covered(AlphaMode::mask, {1, 0}), 0);
+}
+
 } // namespace
 } // namespace gi::test

@@ -24,7 +24,7 @@ std::vector<Contents> const kFiles{
     {"scenes/staircase2/staircase2.glb", 31247, 21, 3, 1, 0, 0},
     {"scenes/classroom/classroom.glb", 103832, 44, 3, 1, 0, 0},
     {"scenes/crytek_sponza/crytek_sponza.glb", 262267, 25, 24, 0, 0, 0},
-    {"scenes/misc/standard_shader_ball.glb", 63856, 2, 2, 0, 0, 0},
+    {"scenes/misc/standard_shader_ball.glb", 63856, 3, 2, 0, 0, 0}, // one is the default
     {"scenes/misc/glass-table.glb", 592, 3, 0, 0, 0, 0},
     {"avatars/quaternius_horse.glb", 2182, 8, 0, 0, 1, 13},
     {"avatars/quaternius_human.glb", 1578, 1, 0, 0, 1, 8},

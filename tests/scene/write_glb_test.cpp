@@ -66,6 +66,7 @@ void expect_same(Scene const& sa, Material const& a, Scene const& sb, Material c
     EXPECT_EQ(a.model, b.model);
     EXPECT_EQ(a.alpha_mode, b.alpha_mode);
     EXPECT_EQ(a.double_sided, b.double_sided);
+    EXPECT_EQ(a.unlit, b.unlit);
     EXPECT_EQ(a.thin, b.thin);
     expect_close(a.base_color, b.base_color, "base_color");
     EXPECT_FLOAT_EQ(a.alpha, b.alpha);
@@ -153,6 +154,7 @@ void expect_same_world(Scene const& a, Scene const& b, SceneTime time_s)
     EXPECT_LE(largest(wa.tangents, wb.tangents), 1e-5f);
     ASSERT_EQ(wa.colors.size(), wb.colors.size());
     EXPECT_LE(largest(wa.colors, wb.colors), 1e-6f);
+    EXPECT_EQ(wa.alphas, wb.alphas);
     ASSERT_EQ(wa.cameras.size(), wb.cameras.size());
     for (std::size_t i = 0; i < wa.cameras.size(); ++i) expect_same(wa.cameras[i], wb.cameras[i]);
     ASSERT_EQ(wa.lights.size(), wb.lights.size());
@@ -246,6 +248,9 @@ Scene everything()
     faint.phong_specular = {0.1f, 0.2f, 0.3f};
     faint.phong_exponent = 37;
     int const second = add_material(s, faint);
+    Material unlit = lambert({0.3f, 0.2f, 0.1f});
+    unlit.unlit = true;
+    add_material(s, unlit);
 
     add_quad(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, first);
     Mesh& mesh = s.meshes.front();
@@ -256,6 +261,7 @@ Scene everything()
         mesh.uv0.push_back({0.1f * float(i), 0.5f});
         mesh.uv1.push_back({-3, float(i)});
         mesh.colors.push_back({0.2f * float(i), 1, 0.5f});
+        mesh.alphas.push_back(0.3f * float(i));
     }
     MorphTarget up;
     up.positions.assign(n, {0, 0.5f, 0});

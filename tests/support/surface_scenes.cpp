@@ -40,7 +40,7 @@ int textured(Scene& scene, Material m, TextureRef Material::*map, int texture)
 
 struct PanelKind {
     vec2 low{0, 0}, high{1, 1}; ///< texture coordinates of its corners
-    bool tangents = false, colors = false, turned = false;
+    bool tangents = false, colors = false, turned = false, alphas = false;
 };
 
 /// A square of 0.9 m in the plane z = 0 that looks to +z, or from behind if turned.
@@ -60,6 +60,7 @@ void add_panel(Scene& scene, vec2 corner, int material, PanelKind const& kind = 
         mesh.normals.assign(4, vec3{0, 0, 1});
         mesh.tangents.assign(4, vec4{0.8f, 0.6f, 0, -1});
     }
+    if (kind.alphas) mesh.alphas = {0.1f, 1, 0.9f, 0.2f};
     if (kind.colors) mesh.colors = {{1, 0.2f, 0.3f}, {0.1f, 0.9f, 0.4f}, {0.5f, 0.5f, 1}, vec3{0.05f}};
     Node node;
     node.meshes = {int(scene.meshes.size())};
@@ -156,6 +157,8 @@ Scene material_panels(bool lit)
     mask.alpha_mode = AlphaMode::mask;
     mask.alpha_cutoff = 0.4f;
     add(mask, &M::base_color_map, nearest);
+    add(mask, &M::base_color_map, nearest, {.alphas = true});
+    add(mask, &M::emissive_map, color, {.alphas = true});
     M rough_metal = coated;
     rough_metal.metallic = 0.9f;
     rough_metal.roughness = 1;
@@ -370,13 +373,14 @@ Scene blended_panels()
     int const color = add_texture(s, 6, 5, {.srgb = true});
     for (float const alpha : {0.3f, 0.6f, 0.8f}) {
         Material pane = lambert({1, alpha, 0.4f});
-        pane.alpha = alpha;
+        pane.alpha = alpha == 0.6f ? 0.8f : alpha; // 0.75 of it is in its vertices
         pane.alpha_mode = AlphaMode::blend;
         if (alpha > 0.7f) pane.emission = vec3{0.2f};
         add_material(s, pane);
     }
     add_quad(s, {-1, -0.8f, 0.8f}, {1.2f, 0, 0}, {0, 1.2f, 0}, 0);
     add_quad(s, {-0.4f, -0.4f, 0.2f}, {1.2f, 0, 0.2f}, {0, 1, 0}, 1);
+    s.meshes.back().alphas.assign(4, 0.75f);
     add_quad(s, {-0.1f, -0.6f, 1.2f}, {0, 1.1f, 0}, {1, 0, 0}, 2);
     int const matt = textured(s, lambert(vec3{0.9f}), &Material::base_color_map, color);
     add_panel(s, {-0.9f, -0.9f}, matt);

@@ -69,6 +69,22 @@ TEST(SceneLight, WhatOnlyGlowsIsLit)
     }
 }
 
+/// KHR_materials_unlit: colours as they are, if nothing else in the scene needs light.
+TEST(SceneLight, UnlitScenesShowTheirColours)
+{
+    gi::Material m;
+    m.unlit = true;
+    gi::Scene scene = scene_of(m);
+    EXPECT_NE(add_light(scene, "studio").find("unlit"), std::string::npos);
+    EXPECT_EQ(scene.environment->radiance, std::vector<gi::vec3>(8, gi::vec3{1}));
+    EXPECT_EQ(scene.background.kind, gi::BackgroundKind::color);
+    gi::Scene mixed = scene_of(m);
+    mixed.meshes.push_back(mixed.meshes[0]);
+    mixed.meshes[1].material = -1;
+    mixed.nodes[0].meshes.push_back(1);
+    EXPECT_NE(add_light(mixed, "studio").find("studio"), std::string::npos);
+}
+
 /// A white diffuse surface must show its form: 1 at most (by scale), and much less where it faces the floor.
 TEST(SceneLight, StudioShowsForm)
 {

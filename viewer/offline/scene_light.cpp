@@ -31,6 +31,19 @@ LightKind light_of(gi::Scene const& scene)
     return glows ? LightKind::glows : LightKind::none;
 }
 
+/// True if all that the nodes show is to be seen in its base colours.
+bool is_unlit(gi::Scene const& scene)
+{
+    bool is_any = false;
+    for (gi::Node const& node : scene.nodes)
+        for (std::int32_t const mesh : node.meshes) {
+            std::int32_t const index = scene.meshes[std::size_t(mesh)].material;
+            if (index < 0 || !scene.materials[std::size_t(index)].unlit) return false;
+            is_any = true;
+        }
+    return is_any;
+}
+
 /// 1 within a lamp, 0 beyond its soft border.
 float within(gi::vec3 direction, gi::vec3 to_lamp, float radius_deg)
 {
@@ -117,8 +130,13 @@ std::string add_light(gi::Scene& scene, std::string_view choice)
                                 ? "the scene has no light"
                                 : "what glows in the scene, by textures of at most radiance 1, is "
                                   "not taken for its light";
-    scene.environment = studio_light();
+    bool const unlit = is_unlit(scene);
+    scene.environment = unlit ? white_sky() : studio_light();
     if (scene.background.kind == gi::BackgroundKind::map) scene.background = {gi::BackgroundKind::color, kBehind};
+    if (unlit)
+        return why +
+               ", and all its materials are unlit: lit by a white sky of radiance 1, in which they show their "
+               "base colours, before a grey background";
     return why + ": lit by studio lamps before a grey background (--light none leaves it dark)";
 }
 

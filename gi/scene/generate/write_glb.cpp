@@ -147,33 +147,38 @@ private:
 
     void add_materials()
     {
-        for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
-            Material const& m = scene_.materials[i];
-            json j{{"name", scene_.material_names[i]}};
-            json& pbr = j["pbrMetallicRoughness"];
-            pbr["baseColorFactor"] = {m.base_color.x, m.base_color.y, m.base_color.z, m.alpha};
-            pbr["metallicFactor"] = m.metallic;
-            bool const phong = m.model == MaterialModel::phong;
-            // For other viewers, approximate the Phong lobe by the corresponding GGX width (Walter et al. 2007).
-            pbr["roughnessFactor"] = phong ? std::pow(2 / (m.phong_exponent + 2), 0.25f) : m.roughness;
-            if (m.base_color_map.texture >= 0) pbr["baseColorTexture"] = texture_info(m.base_color_map);
-            if (m.metallic_roughness_map.texture >= 0)
-                pbr["metallicRoughnessTexture"] = texture_info(m.metallic_roughness_map);
-            if (m.normal_map.texture >= 0) {
-                j["normalTexture"] = texture_info(m.normal_map);
-                j["normalTexture"]["scale"] = m.normal_scale;
-            }
-            if (m.emissive_map.texture >= 0) j["emissiveTexture"] = texture_info(m.emissive_map);
-            j["doubleSided"] = m.double_sided;
-            if (m.alpha_mode == AlphaMode::mask) {
-                j["alphaMode"] = "MASK";
-                j["alphaCutoff"] = m.alpha_cutoff;
-            } else if (m.alpha_mode == AlphaMode::blend) {
-                j["alphaMode"] = "BLEND";
-            }
-            add_material_extensions(m, j);
-            root_["materials"].push_back(std::move(j));
+        for (std::size_t i = 0; i < scene_.materials.size(); ++i)
+            add_material(scene_.materials[i], scene_.material_names[i]);
+        // The default of glTF is another one.
+        if (std::ranges::any_of(scene_.meshes, [](Mesh const& m) { return m.material < 0; }))
+            add_material({}, "default");
+    }
+    void add_material(Material const& m, std::string const& name)
+    {
+        json j{{"name", name}};
+        json& pbr = j["pbrMetallicRoughness"];
+        pbr["baseColorFactor"] = {m.base_color.x, m.base_color.y, m.base_color.z, m.alpha};
+        pbr["metallicFactor"] = m.metallic;
+        bool const phong = m.model == MaterialModel::phong;
+        // For other viewers, approximate the Phong lobe by the corresponding GGX width (Walter et al. 2007).
+        pbr["roughnessFactor"] = phong ? std::pow(2 / (m.phong_exponent + 2), 0.25f) : m.roughness;
+        if (m.base_color_map.texture >= 0) pbr["baseColorTexture"] = texture_info(m.base_color_map);
+        if (m.metallic_roughness_map.texture >= 0)
+            pbr["metallicRoughnessTexture"] = texture_info(m.metallic_roughness_map);
+        if (m.normal_map.texture >= 0) {
+            j["normalTexture"] = texture_info(m.normal_map);
+            j["normalTexture"]["scale"] = m.normal_scale;
         }
+        if (m.emissive_map.texture >= 0) j["emissiveTexture"] = texture_info(m.emissive_map);
+        j["doubleSided"] = m.double_sided;
+        if (m.alpha_mode == AlphaMode::mask) {
+            j["alphaMode"] = "MASK";
+            j["alphaCutoff"] = m.alpha_cutoff;
+        } else if (m.alpha_mode == AlphaMode::blend) {
+            j["alphaMode"] = "BLEND";
+        }
+        add_material_extensions(m, j);
+        root_["materials"].push_back(std::move(j));
     }
     void add_material_extensions(Material const& m, json& j)
     {
@@ -185,6 +190,7 @@ private:
             j["emissiveFactor"] = to_json(strength > 1 ? m.emission / strength : m.emission);
             if (strength > 1) extend("KHR_materials_emissive_strength", {{"emissiveStrength", strength}});
         }
+        if (m.unlit) extend("KHR_materials_unlit", json::object());
         if (m.specular != 1 || m.specular_color != vec3{1} || m.specular_map.texture >= 0 ||
             m.specular_color_map.texture >= 0) {
             json s{{"specularFactor", m.specular}, {"specularColorFactor", to_json(m.specular_color)}};
@@ -213,14 +219,21 @@ private:
         if (!m.tangents.empty()) a["TANGENT"] = add_floats(m.tangents, "VEC4");
         if (!m.uv0.empty()) a["TEXCOORD_0"] = add_floats(m.uv0, "VEC2");
         if (!m.uv1.empty()) a["TEXCOORD_1"] = add_floats(m.uv1, "VEC2");
-        if (!m.colors.empty()) a["COLOR_0"] = add_floats(m.colors, "VEC3");
+        if (!m.alphas.empty()) {
+            std::vector<vec4> colors;
+            for (std::size_t i = 0; i < m.alphas.size(); ++i)
+                colors.emplace_back(m.colors.empty() ? vec3{1} : m.colors[i], m.alphas[i]);
+            a["COLOR_0"] = add_floats(colors, "VEC4");
+        } else if (!m.colors.empty()) {
+            a["COLOR_0"] = add_floats(m.colors, "VEC3");
+        }
         if (!m.joints.empty()) {
             a["JOINTS_0"] = add_accessor(m.joints.data(), m.joints.size(), m.joints.size() * 8, kUint16, "VEC4");
             a["WEIGHTS_0"] = add_floats(m.weights, "VEC4");
         }
         p["indices"] = add_accessor(m.triangles.data(), 3 * m.triangles.size(), m.triangles.size() * sizeof(uvec3),
                                     kUint32, "SCALAR");
-        if (m.material >= 0) p["material"] = m.material;
+        p["material"] = m.material >= 0 ? std::size_t(m.material) : scene_.materials.size();
         for (MorphTarget const& t : m.morph_targets) {
             json target = json::object();
             if (!t.positions.empty()) target["POSITION"] = add_positions(t.positions);

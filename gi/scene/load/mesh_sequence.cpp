@@ -117,6 +117,7 @@ private:
             if (!mesh.uv0.empty()) attributes.push_back(bytes_of(mesh.uv0));
             if (!mesh.uv1.empty()) attributes.push_back(bytes_of(mesh.uv1));
             if (!mesh.colors.empty()) attributes.push_back(bytes_of(mesh.colors));
+            if (!mesh.alphas.empty()) attributes.push_back(bytes_of(mesh.alphas));
             join_equal(mesh, frames, attributes);
         }
         mesh.positions = frames[0].positions;
@@ -165,6 +166,7 @@ private:
         keep(mesh.uv0, kept);
         keep(mesh.uv1, kept);
         keep(mesh.colors, kept);
+        keep(mesh.alphas, kept);
         for (MeshFrame& f : frames) {
             keep(f.positions, kept);
             keep(f.normals, kept);

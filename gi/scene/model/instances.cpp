@@ -81,7 +81,7 @@ std::vector<Instance> find_instances(Scene const& scene)
 void prepare_vertices(World& world, std::vector<Instance> const& instances)
 {
     std::size_t vertices = 0, triangles = 0;
-    bool normals = false, tangents = false, uv0 = false, uv1 = false, colors = false;
+    bool normals = false, tangents = false, uv0 = false, uv1 = false, colors = false, alphas = false;
     for (Instance const& i : instances) {
         Mesh const& mesh = *i.mesh;
         vertices += mesh.positions.size();
@@ -91,6 +91,7 @@ void prepare_vertices(World& world, std::vector<Instance> const& instances)
         uv0 |= !mesh.uv0.empty();
         uv1 |= !mesh.uv1.empty();
         colors |= !mesh.colors.empty();
+        alphas |= !mesh.alphas.empty();
     }
     world.positions.resize(vertices);
     if (normals) resize_on_huge_pages(world.normals, vertices);
@@ -98,6 +99,7 @@ void prepare_vertices(World& world, std::vector<Instance> const& instances)
     if (uv0) resize_on_huge_pages(world.uv0, vertices);
     if (uv1) resize_on_huge_pages(world.uv1, vertices);
     if (colors) resize_on_huge_pages(world.colors, vertices);
+    if (alphas) resize_on_huge_pages(world.alphas, vertices);
     world.triangles.reserve(triangles);
     world.triangle_material.reserve(triangles);
     world.instances = std::uint32_t(instances.size());
@@ -109,6 +111,7 @@ void prepare_vertices(World& world, std::vector<Instance> const& instances)
         copy_or_fill(mesh.uv0, world.uv0, first, count, vec2{0});
         copy_or_fill(mesh.uv1, world.uv1, first, count, vec2{0});
         copy_or_fill(mesh.colors, world.colors, first, count, vec3{1});
+        copy_or_fill(mesh.alphas, world.alphas, first, count, 1.0f);
         if (i.moves()) continue;
         ++world.static_instances;
         world.static_vertices += std::uint32_t(count);

@@ -19,6 +19,8 @@ struct Material {
     /// Emission leaves both faces; otherwise only the front (counter-clockwise) face emits.
     /// Reflection always works on both faces: there is no back-face culling.
     bool double_sided = false;
+    /// Meant to show its base colour whatever the light (KHR_materials_unlit); rendered as matt.
+    bool unlit = false;
     bool thin = true; ///< transmission through an infinitely thin sheet (no KHR_materials_volume): no refraction
 
     vec3 base_color{0.8f}; ///< linear; phong: diffuse albedo k_d

@@ -29,6 +29,7 @@ struct Mesh {
     std::vector<vec4> tangents; ///< xyz unit, w = +-1 handedness
     std::vector<vec2> uv0, uv1;
     std::vector<vec3> colors;     ///< linear, multiply base_color
+    std::vector<float> alphas;    ///< 0..1, multiply alpha, for materials that are masks or blend; empty = all 1
     std::vector<uvec3> triangles; ///< indices < positions.size(), counter-clockwise seen from the front
     std::vector<std::array<std::uint16_t, 4>> joints; ///< indices into Skin::joints
     std::vector<vec4> weights;                        ///< sum 1

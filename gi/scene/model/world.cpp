@@ -19,6 +19,7 @@ WorldView view(World const& world)
     v.uv0 = world.uv0;
     v.uv1 = world.uv1;
     v.colors = world.colors;
+    v.alphas = world.alphas;
     v.triangles = world.triangles;
     v.triangle_material = world.triangle_material;
     v.surfaces = world.surfaces;

@@ -57,7 +57,8 @@ struct World {
     std::vector<vec3> normals;  ///< zero vector = this vertex is flat shaded
     std::vector<vec4> tangents; ///< zero = none
     std::vector<vec2> uv0, uv1;
-    std::vector<vec3> colors; ///< 1 where a mesh has none
+    std::vector<vec3> colors;  ///< 1 where a mesh has none
+    std::vector<float> alphas; ///< the same
     // Triangles
     std::vector<uvec3> triangles;
     std::vector<std::uint32_t> triangle_material; ///< index into materials
@@ -103,6 +104,7 @@ struct WorldView {
     View<vec4 const> tangents;
     View<vec2 const> uv0, uv1;
     View<vec3 const> colors;
+    View<float const> alphas;
     View<uvec3 const> triangles;
     View<std::uint32_t const> triangle_material;
     View<Surface const> surfaces;

@@ -83,6 +83,7 @@ private:
         f(Part::nothing, v.uv0);
         f(Part::nothing, v.uv1);
         f(Part::nothing, v.colors);
+        f(Part::nothing, v.alphas);
         f(Part::triangles, v.triangles);
         f(Part::nothing, v.triangle_material);
         f(Part::surfaces, v.surfaces);
@@ -99,7 +100,7 @@ private:
         f(Part::environment, v.environment_radiance);
     }
 
-    static constexpr std::size_t kArrays = 20;
+    static constexpr std::size_t kArrays = 21;
     WorldView view_;
     std::array<Buffer<unsigned char, S>, kArrays> arrays_;
 };

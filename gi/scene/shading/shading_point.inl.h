@@ -172,8 +172,9 @@ GI_FN inline float coverage(WorldView const& world, std::uint32_t triangle, vec2
     Material const& m = world.materials[surface.material];
     if (m.alpha_mode == AlphaMode::opaque) return 1;
     float alpha = m.alpha;
+    SurfacePoint s{surface, barycentric};
+    if (!world.alphas.empty()) alpha *= s.interpolate(world.alphas);
     if (m.base_color_map.texture >= 0) {
-        SurfacePoint s{surface, barycentric};
         interpolate_uv(world, s);
         alpha *= look_up(world.textures, m.base_color_map, s.uv0, s.uv1).w;
     }

@@ -191,12 +191,14 @@ void SceneMeshes::make(Mesh& mesh)
     gi::ShownScene::Moved const* const m = scene_->moved.get();
     std::vector<gi::vec2> const* const no_uv = nullptr;
     std::vector<gi::vec3> const* const no_colors = nullptr;
+    std::vector<float> const* const no_alphas = nullptr;
     mesh.positions = part(w.positions, m ? &m->positions : nullptr);
     mesh.normals = part(w.normals, m ? &m->normals : nullptr);
     mesh.tangents = part(w.tangents, m ? &m->tangents : nullptr);
     mesh.uv0 = part(w.uv0, no_uv);
     mesh.uv1 = part(w.uv1, no_uv);
     mesh.colors = part(w.colors, no_colors);
+    mesh.alphas = part(w.alphas, no_alphas);
     mesh.array = GlObject(GlObject::Kind::vertex_array);
     set_attribute(mesh.array, 0, mesh.positions, 3);
     set_attribute(mesh.array, 1, mesh.normals, 3);
@@ -204,6 +206,7 @@ void SceneMeshes::make(Mesh& mesh)
     set_attribute(mesh.array, 3, mesh.uv0, 2);
     set_attribute(mesh.array, 4, mesh.uv1, 2);
     set_attribute(mesh.array, 5, mesh.colors, 3);
+    set_attribute(mesh.array, 8, mesh.alphas, 1);
     if (!moves) return;
     mesh.lit_positions = part(w.positions, m ? &m->positions : nullptr);
     mesh.lit_normals = part(w.normals, m ? &m->normals : nullptr);

@@ -39,6 +39,7 @@ public:
 
     gi::ShownScene const& scene() const { return *scene_; }
     bool has_colors() const { return !scene_->world->colors.empty(); }
+    bool has_alphas() const { return !scene_->world->alphas.empty(); }
     std::size_t meshes() const { return meshes_.size(); }
     std::vector<SurfaceBatch> const& batches(std::size_t mesh) const { return meshes_[mesh].batches; }
     void bind_mesh(std::size_t mesh) const;
@@ -58,7 +59,7 @@ private:
     struct Mesh {
         std::uint32_t first_vertex = 0, vertices = 0; ///< in the world
         bool moves = false;
-        GlObject array, indices, positions, normals, tangents, uv0, uv1, colors;
+        GlObject array, indices, positions, normals, tangents, uv0, uv1, colors, alphas;
         GlObject lit_positions, lit_normals; ///< of what moves: where its light was found
         SurfaceOrder order;                  ///< its triangles are on the GPU alone
         std::vector<SurfaceBatch> batches;

@@ -239,11 +239,11 @@ void ShadowMaps::draw_moving(SceneMeshes const& meshes)
     }
 }
 
-GlProgram& ShadowMaps::program(SurfaceKind const& kind)
+GlProgram& ShadowMaps::program(SurfaceKind const& kind, bool has_alphas)
 {
     bool const tests = kind.alpha != gi::AlphaMode::opaque;
-    std::string const defines =
-        fmt::format("#define MASKED {}\n#define MAPS {}\n", int(tests), tests ? kind.maps & 1u : 0u);
+    std::string const defines = fmt::format("#define MASKED {}\n#define MAPS {}\n#define ALPHAS {}\n", int(tests),
+                                            tests ? kind.maps & 1u : 0u, int(tests && has_alphas));
     auto const at = programs_.find(defines);
     if (at != programs_.end()) return at->second;
     return programs_
@@ -267,7 +267,7 @@ void ShadowMaps::draw(SceneMeshes const& meshes, std::size_t map, GlObject const
         if (meshes.moves(m) != (part == Part::moving)) continue;
         meshes.bind_mesh(m);
         for (SurfaceBatch const& b : meshes.batches(m)) {
-            GlProgram const& p = program(b.kind);
+            GlProgram const& p = program(b.kind, meshes.has_alphas());
             if (&p != last) {
                 last = &p;
                 p.use();

@@ -36,7 +36,7 @@ private:
     void draw_moving(SceneMeshes const& meshes);
     enum class Part : std::uint8_t { still, moving };
     void draw(SceneMeshes const& meshes, std::size_t map, GlObject const& into, Part part);
-    GlProgram& program(SurfaceKind const& kind);
+    GlProgram& program(SurfaceKind const& kind, bool has_alphas);
 
     std::vector<gi::Light> lights_;
     std::shared_ptr<gi::World const> world_;

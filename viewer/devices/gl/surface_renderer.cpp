@@ -111,11 +111,13 @@ bool SurfaceRenderer::takes_part(SurfaceKind const& kind, Pass pass)
 GlProgram& SurfaceRenderer::program(SurfaceKind const& kind, Pass pass)
 {
     std::string const defines = fmt::format(
-        "#define MASKED {}\n#define MAPS {}\n#define COLORS {}\n#define MIRROR {}\n#define EMITS {}\n#define "
+        "#define MASKED {}\n#define MAPS {}\n#define COLORS {}\n#define ALPHAS {}\n#define MIRROR {}\n#define "
+        "EMITS {}\n#define "
         "MOVES {}\n"
         "#define SMOOTH_ALPHA {:.9e}\n#define SEARCHES 1\n#define TILE {}\n#define PUNCTUAL {}\n#define PLANAR "
         "{}\n",
         int(kind.alpha == gi::AlphaMode::mask), kind.maps, int(meshes_.has_colors()),
+        int(kind.alpha != gi::AlphaMode::opaque && meshes_.has_alphas()),
         int(pass == Pass::mirrors || pass == Pass::planar || (pass == Pass::described && kind.mirror)),
         int(kind.emits), int(kind.moves && pass == Pass::described), gi::kSmoothAlpha, PictureTexture::kTile,
         int(shadows_.any() && pass == Pass::blended), int(pass == Pass::planar));

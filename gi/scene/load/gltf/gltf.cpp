@@ -86,6 +86,20 @@ void read_animations(GltfDocument& d, std::vector<std::int32_t> const& place, Sc
     if (!scene.animations.empty()) scene.playbacks = {{0, 0, 1, true}};
 }
 
+/// The default material of the specification (sec. 3.9.6), a white rough metal, for meshes that name none.
+void add_default_material(Scene& scene)
+{
+    auto const has_none = [](Mesh const& m) { return m.material < 0; };
+    if (std::ranges::none_of(scene.meshes, has_none)) return;
+    for (Mesh& m : scene.meshes)
+        if (has_none(m)) m.material = std::int32_t(scene.materials.size());
+    Material m;
+    m.base_color = vec3{1};
+    m.metallic = 1;
+    scene.materials.push_back(m);
+    scene.material_names.emplace_back("default");
+}
+
 } // namespace
 
 Scene parse_gltf(unsigned char const* bytes, std::size_t size, std::filesystem::path const& folder,
@@ -97,6 +111,7 @@ Scene parse_gltf(unsigned char const* bytes, std::size_t size, std::filesystem::
     scene.files = document.files;
     read_materials(document, scene, report);
     std::vector<GltfMesh> const meshes = read_meshes(document, scene, report);
+    add_default_material(scene);
     std::vector<std::int32_t> const place = read_nodes(document, meshes, scene, report);
     read_animations(document, place, scene, report);
     return scene;

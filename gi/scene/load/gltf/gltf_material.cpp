@@ -74,14 +74,16 @@ public:
         auto const& pbr = source.pbrMetallicRoughness;
         m.base_color = color(pbr.baseColorFactor, "baseColorFactor");
         m.alpha = pbr.baseColorFactor.size() == 4 ? within(pbr.baseColorFactor[3], 0, 1, "alpha") : 1;
+        m.double_sided = source.doubleSided;
+        m.alpha_mode = alpha_mode(source);
+        if (m.alpha_mode == AlphaMode::mask) m.alpha_cutoff = within(source.alphaCutoff, 0, 1e6, "alphaCutoff");
+        m.base_color_map = texture(pbr.baseColorTexture, true);
+        if (find_extension(source.extensions, "KHR_materials_unlit") != nullptr) {
+            make_unlit(m);
+            return m;
+        }
         m.metallic = within(pbr.metallicFactor, 0, 1, "metallicFactor");
         m.roughness = within(pbr.roughnessFactor, 0, 1, "roughnessFactor");
-        m.double_sided = source.doubleSided;
-        m.alpha_mode = source.alphaMode == "MASK"    ? AlphaMode::mask
-                       : source.alphaMode == "BLEND" ? AlphaMode::blend
-                                                     : AlphaMode::opaque;
-        m.alpha_cutoff = within(source.alphaCutoff, 0, 1e6, "alphaCutoff");
-        m.base_color_map = texture(pbr.baseColorTexture, true);
         m.metallic_roughness_map = texture(pbr.metallicRoughnessTexture, false);
         m.normal_map = texture(source.normalTexture, false);
         m.normal_scale = within(source.normalTexture.scale, -1e3, 1e3, "normal scale");
@@ -112,11 +114,6 @@ public:
 
         read_specular_glossiness(
             m, Properties(find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness")));
-        if (find_extension(source.extensions, "KHR_materials_unlit") != nullptr) {
-            m.specular = 0;
-            m.metallic = 0;
-            report_.lose("unlit materials taken as diffuse", 1, where_);
-        }
         read_phong(m, source.extras);
         return m;
     }
@@ -132,6 +129,14 @@ private:
     {
         if (v.size() < 3) return vec3{1};
         return {within(v[0], 0, 1, what), within(v[1], 0, 1, what), within(v[2], 0, 1, what)};
+    }
+
+    /// Only the base colour counts (KHR_materials_unlit): all else, emission too, is to be ignored.
+    void make_unlit(Material& m)
+    {
+        m.unlit = true;
+        m.specular = 0;
+        report_.lose("unlit materials taken as diffuse", 1, where_);
     }
 
     /// KHR_materials_pbrSpecularGlossiness gives f0 directly, so it is converted to a specular colour.
@@ -270,6 +275,13 @@ private:
 };
 
 } // namespace
+
+AlphaMode alpha_mode(tinygltf::Material const& material)
+{
+    return material.alphaMode == "MASK"    ? AlphaMode::mask
+           : material.alphaMode == "BLEND" ? AlphaMode::blend
+                                           : AlphaMode::opaque;
+}
 
 void read_materials(GltfDocument& document, Scene& scene, Report& report)
 {

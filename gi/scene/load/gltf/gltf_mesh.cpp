@@ -37,6 +37,7 @@ void drop_unused_vertices(Mesh& mesh)
     keep(mesh.uv0);
     keep(mesh.uv1);
     keep(mesh.colors);
+    keep(mesh.alphas);
     keep(mesh.joints);
     keep(mesh.weights);
     for (MorphTarget& target : mesh.morph_targets) {
@@ -123,7 +124,8 @@ private:
             mesh.normals.push_back(good ? n / length : vec3{0});
         }
         report_.lose("normals that are not unit, normalised or left flat", repaired, where_);
-        GltfArray const tangents = attribute(p, "TANGENT", 4);
+        // Without normals given tangents must be ignored (sec. 3.7.2.1).
+        GltfArray const tangents = normals.count > 0 ? attribute(p, "TANGENT", 4) : GltfArray{};
         for (std::size_t i = 0; i < tangents.count; ++i) {
             vec4 const t = tangents.as_vec4(i);
             float const length = glm::length(vec3(t));
@@ -142,20 +144,32 @@ private:
             }
             report_.lose("texture coordinates that are not finite, 0", bad, where_);
         }
-        if (p.attributes.contains("TEXCOORD_2"))
-            report_.lose("third and further texture coordinates ignored", 1, where_);
+        read_colors(p, mesh);
+    }
+
+    /// Alphas are those of materials that are masks or blend; of opaque ones they are to be ignored (sec. 3.9.4).
+    void read_colors(tinygltf::Primitive const& p, Mesh& mesh)
+    {
+        bool const has_alpha =
+            p.material >= 0 && alpha_mode(d_.model.materials[std::size_t(p.material)]) != AlphaMode::opaque;
         GltfArray const colors = attribute(p, "COLOR_0", 0);
         if (colors.count > 0 && colors.components < 3)
             throw d_.error("COLOR_0 of " + where_ + " is damaged", "it has fewer than three components");
-        std::uint64_t transparent = 0, clamped = 0;
+        std::uint64_t clamped = 0;
         for (std::size_t i = 0; i < colors.count; ++i) {
-            transparent += colors.components == 4 && colors.as_vec4(i).w < 1;
             vec3 const c = colors.as_vec3(i);
             mesh.colors.push_back(all_finite(c) ? glm::clamp(c, vec3{0}, vec3{1}) : vec3{1});
-            clamped += mesh.colors.back() != c;
+            bool is_clamped = mesh.colors.back() != c;
+            if (has_alpha && colors.components == 4) {
+                float const a = colors.as_vec4(i).w;
+                mesh.alphas.push_back(std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 1.0f);
+                is_clamped |= mesh.alphas.back() != a;
+            }
+            clamped += is_clamped;
         }
+        if (std::ranges::all_of(mesh.alphas, [](float a) { return a == 1; })) mesh.alphas.clear();
+        if (std::ranges::all_of(mesh.colors, [](vec3 c) { return c == vec3{1}; })) mesh.colors.clear();
         report_.lose("vertex colours not within 0..1, clamped", clamped, where_);
-        report_.lose("vertices with an alpha of their own, taken as opaque", transparent, where_);
     }
 
     void read_skin(tinygltf::Primitive const& p, Mesh& mesh)
@@ -205,6 +219,9 @@ private:
                     to->push_back(all_finite(v) ? v : vec3{0});
                 }
             }
+            for (auto const& [name, accessor] : target)
+                if (name.starts_with("COLOR_") || name.starts_with("TEXCOORD_"))
+                    report_.lose("morph targets of colours and texture coordinates ignored", 1, where_);
             mesh.morph_targets.push_back(std::move(t));
         }
     }

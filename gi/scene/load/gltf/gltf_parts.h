@@ -6,6 +6,9 @@
 
 namespace gi {
 
+/// OPAQUE where it is none that is known.
+AlphaMode alpha_mode(tinygltf::Material const& material);
+
 /// Adds the materials and the textures that they use to the scene. Factors out of range are clamped and counted;
 /// unreadable textures are left out and counted.
 void read_materials(GltfDocument& document, Scene& scene, Report& report);
