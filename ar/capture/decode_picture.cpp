@@ -13,7 +13,7 @@ namespace {
 
 DecodedPicture refused(std::string problem) { return {.problem = std::move(problem)}; }
 
-DecodedPicture decoded_exr(std::span<std::uint8_t const> bytes)
+DecodedPicture decoded_exr(std::span<std::uint8_t const> bytes, bool is_matte)
 {
     gi::Picture picture;
     try {
@@ -21,7 +21,8 @@ DecodedPicture decoded_exr(std::span<std::uint8_t const> bytes)
     } catch (gi::InputError const& e) {
         return refused(e.problem() + " (" + e.why() + ")");
     }
-    gi::Layer const* const color = picture.find("color");
+    gi::Layer const* color = picture.find("color");
+    if (!color && is_matte) color = picture.find("A");
     if (!color) {
         std::string names;
         for (gi::Layer const& layer : picture.layers) names += (names.empty() ? "" : ", ") + layer.name;
@@ -38,9 +39,9 @@ DecodedPicture decoded_exr(std::span<std::uint8_t const> bytes)
 
 } // namespace
 
-DecodedPicture decoded_picture(std::span<std::uint8_t const> bytes)
+DecodedPicture decoded_picture(std::span<std::uint8_t const> bytes, bool is_matte)
 {
-    if (is_exr(bytes)) return decoded_exr(bytes);
+    if (is_exr(bytes)) return decoded_exr(bytes, is_matte);
     if (std::string missing = what_is_missing(bytes); !missing.empty()) return refused(std::move(missing));
     if (!is_picture(bytes)) return refused("it is no picture that is known here");
     DecodedPicture out;

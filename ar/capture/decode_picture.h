@@ -16,7 +16,7 @@ struct DecodedPicture {
 
 /// PNG, JPEG, TIFF, BMP, PNM, WebP: bgr8, gray8; with 16 bits rgb16 (grey ones too), float TIFF rgb_linear.
 /// OpenEXR: rgb_linear, of its channels R, G, B without a layer, or Y, in its display window. Never throws at bad
-/// bytes.
-DecodedPicture decoded_picture(std::span<std::uint8_t const> bytes);
+/// bytes. @param is_matte  the channel A of OpenEXR will do too
+DecodedPicture decoded_picture(std::span<std::uint8_t const> bytes, bool is_matte = false);
 
 } // namespace ar

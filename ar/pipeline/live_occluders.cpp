@@ -115,7 +115,7 @@ cv::Mat LiveOccluders::depth(fs::path const& file) const
 cv::Mat LiveOccluders::matte(fs::path const& file) const
 {
     std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 30);
-    DecodedPicture const picture = decoded_picture(bytes);
+    DecodedPicture const picture = decoded_picture(bytes, true);
     if (!picture.problem.empty())
         throw gi::InputError("'" + file.string() + "' is no matte", picture.problem,
                              "mattes are pictures of 8 or 16 bits or EXR, white where real objects are in front");
