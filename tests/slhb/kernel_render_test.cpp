@@ -1,6 +1,7 @@
 // The whole method by kernels, on the host and on the device, against render_slhb: with the same random numbers
 // they trace the same paths, but for rounding.
 
+#include "gi/light_paths/settings.h"
 #include "gi/core/error.h"
 #include "gi/hit_buffers/settings.h"
 #include "gi/methods/slhb/kernels/kernel_render.h"
@@ -40,6 +41,7 @@ RenderSettings settings_of(std::uint32_t paths, int bounces)
 {
     RenderSettings s = small_settings(24, paths, bounces);
     s.of<SlhbSettings>().resolution = 64;
+    s.of<PhotonSettings>().caustic_paths = 0; // kernels trace none
     return s;
 }
 
