@@ -142,6 +142,12 @@ void check_alpha()
     add_quad(scene, {-0.9f, 0.2f, -0.9f}, {0, 0, 1.8f}, {1.8f, 0, 0}, add_material(scene, veil));
     add_box(scene, {-0.5f, -0.9f, -0.5f}, {0.5f, -0.3f, 0.5f}, add_material(scene, grid), false);
     expect_like_embree<S>(world_of(scene), room_eye(), few_paths(), "veil and invisible box");
+    scene.meshes.front().alphas.assign(scene.meshes.front().positions.size(),
+                                       0); // of opaque materials they mean nothing
+    for (Mesh& mesh : scene.meshes)
+        for (std::size_t i = 0; i < mesh.positions.size() && &mesh != &scene.meshes.front(); ++i)
+            mesh.alphas.push_back(i % 2 == 0 ? 1 : 0.2f);
+    expect_like_embree<S>(world_of(scene), room_eye(), few_paths(), "alphas of vertices");
 }
 LIGHTWELL_TEST_BOTH(KernelReference, AlphaAsOnEmbree, check_alpha);
 

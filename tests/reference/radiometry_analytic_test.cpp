@@ -72,12 +72,23 @@ TEST(Radiometry, LampWithHoles)
         expect_estimate(floor_radiance(scene, {0, 0, 0}), double(alpha) * kAlbedo / glm::pi<double>() * irradiance,
                         fmt::format("alpha {}", alpha));
     }
-    Scene scene;
+    for (bool const of_vertices : {false, true}) {
+        Scene scene;
+        Material lamp = emitter(vec3{4});
+        lamp.alpha_mode = AlphaMode::mask;
+        lamp.alpha = of_vertices ? 1 : 0.25f;
+        add_quad(scene, corner, u, v, add_material(scene, lamp));
+        if (of_vertices) scene.meshes.back().alphas.assign(4, 0.25f);
+        EXPECT_EQ(floor_radiance(scene, {0, 0, 0}).mean, 0);
+    }
+    Scene scene; // half of what the material leaves
     Material lamp = emitter(vec3{4});
-    lamp.alpha_mode = AlphaMode::mask;
-    lamp.alpha = 0.25f;
+    lamp.alpha_mode = AlphaMode::blend;
+    lamp.alpha = 0.5f;
     add_quad(scene, corner, u, v, add_material(scene, lamp));
-    EXPECT_EQ(floor_radiance(scene, {0, 0, 0}).mean, 0);
+    scene.meshes.back().alphas.assign(4, 0.5f);
+    expect_estimate(floor_radiance(scene, {0, 0, 0}), 0.25 * kAlbedo / glm::pi<double>() * irradiance,
+                    "alphas of vertices");
 }
 
 TEST(Radiometry, OneSidedLampIsDarkFromBehind)

@@ -138,6 +138,12 @@ void check_cut_outs()
     light.intensity = vec3{2};
     add_light(scene, light);
     expect_like_cpu<S>(scene, settings_of(8, 3), "half transparent veil");
+    scene.meshes.back().alphas = {1, 0.1f, 0.9f, 0};
+    for (AlphaMode const mode : {AlphaMode::blend, AlphaMode::mask}) {
+        scene.materials.back().alpha_mode = mode;
+        scene.materials.back().alpha = 1;
+        expect_like_cpu<S>(scene, settings_of(8, 3), "veil with alphas of vertices");
+    }
 }
 LIGHTWELL_TEST_BOTH(KernelRender, CutOutsAsOnTheCpu, check_cut_outs);
 

@@ -126,6 +126,21 @@ TEST(SeenSurfaces, HolesAreSeenThrough)
     EXPECT_NEAR(seen.at(30, 15).albedo.x, 0.9f, 1e-6f);
 }
 
+TEST(SeenSurfaces, HolesOfVerticesAreSeenThrough)
+{
+    Scene scene;
+    Material red = lambert({0.9f, 0, 0});
+    red.alpha_mode = AlphaMode::mask;
+    add_quad(scene, {-2, -2, -3}, {4, 0, 0}, {0, 4, 0}, add_material(scene, lambert({0, 0.9f, 0})));
+    add_quad(scene, {-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, add_material(scene, red));
+    scene.meshes.back().alphas = {0, 1, 1, 0}; // half in the middle
+    SeenPicture const seen = look(world_of(scene), look_at({0, 0, 0}, {0, 0, -1}, 40), 40, 30);
+    EXPECT_NEAR(seen.at(10, 15).depth, 3, 1e-5f);
+    EXPECT_NEAR(seen.at(18, 5).depth, 3, 1e-5f);
+    EXPECT_NEAR(seen.at(22, 5).depth, 2, 1e-5f);
+    EXPECT_NEAR(seen.at(30, 15).depth, 2, 1e-5f);
+}
+
 /// The eye at the origin looks along -Z at a mirror at z = -2, and sees a wall at z = 1 behind itself. Its image
 /// is at z = -5, and faces the eye.
 TEST(SeenSurfaces, AMirrorShowsTheImageBehindIt)
