@@ -3,11 +3,15 @@
 // away. Its corners are at (1, 2, 3) and (2, 4, 6) m, so that no two axes can be exchanged.
 
 #include "gi/core/report.h"
+#include "gi/scene/load/assimp_convert.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/world.h"
 
 #include <algorithm>
 #include <array>
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
 #include <fmt/format.h>
 #include <fstream>
 #include <functional>
@@ -69,8 +73,11 @@ protected:
         SCOPED_TRACE(name + " " + where_);
         write(name, text);
         Report report;
-        World const world = build_world(
-            std::make_shared<Scene const>(load_scene((folder_ / name).string(), report)), std::nullopt, report);
+        expect_box(load_scene((folder_ / name).string(), report), report);
+    }
+    static void expect_box(Scene const& scene, Report& report)
+    {
+        World const world = build_world(std::make_shared<Scene const>(scene), std::nullopt, report);
         ASSERT_EQ(world.triangles.size(), 12u);
         for (std::size_t t = 0; t < world.triangles.size(); ++t) {
             std::array<vec3, 3> p;
@@ -175,6 +182,25 @@ TEST_F(ModelAxes, UnitsOfFbx)
     }
     where_ = "nothing stated";
     expect_box("a.fbx", fbx_box({}, 0.01f, ""));
+}
+
+/// Assimp 5.4 and later turn the root themselves (FBXConverter.cpp, correctRootTransform); nothing is turned twice.
+TEST_F(ModelAxes, RootsThatAssimpHasTurned)
+{
+    FileFrame const z_up{mat3{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
+    write("a.fbx",
+          fbx_box(z_up, 0.01f,
+                  fbx_setting("UpAxis", 2) + fbx_setting("FrontAxis", 1) + fbx_setting("FrontAxisSign", -1)));
+    for (bool const is_turned : {false, true}) {
+        Assimp::Importer importer;
+        aiScene const* const read = importer.ReadFile((folder_ / "a.fbx").string(), aiProcess_Triangulate);
+        ASSERT_NE(read, nullptr) << importer.GetErrorString();
+        if (is_turned)
+            read->mRootNode->mTransformation = aiMatrix4x4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+        SCOPED_TRACE(is_turned);
+        Report report;
+        expect_box(convert_assimp(*read, folder_ / "a.fbx", report), report);
+    }
 }
 
 TEST_F(ModelAxes, AxesThatAreNoneAreTold)

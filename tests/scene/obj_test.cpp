@@ -144,6 +144,25 @@ TEST_F(ObjFolder, VerticesWithoutAColorAreWhite)
     EXPECT_EQ(m.base_color, vec3{1}) << "the colours are the albedo";
     EXPECT_EQ(m.specular, 0);
 }
+TEST_F(ObjFolder, ColorsBehindAFourthCoordinate)
+{
+    Scene const scene = load("v 0 0 0 2 1 0 0\nv 2 0 0 2 0 1 0\nv 0 1 0 1 0 0 1\nf 1 2 3\n");
+    EXPECT_EQ(scene.meshes.at(0).positions.at(1), (vec3{1, 0, 0}));
+    EXPECT_EQ(scene.meshes[0].colors, (std::vector{vec3{1, 0, 0}, vec3{0, 1, 0}, vec3{0, 0, 1}}));
+}
+TEST_F(ObjFolder, WhatIsNotReadIsNamed)
+{
+    std::string const v = kThreeVertices;
+    load(v + "# vp 1\ng a\ns off\nf 1 2 3\ns 1\nf 1 2 3\nvn 0 0 1\nf 1//1 2//1 3//1\ns 0\nf 1 2 3\nvp 0 0\nvp 1 "
+             "0\ncstype bezier\nl 1 2\n"
+             "p 1\n");
+    std::map<std::string, std::uint64_t> counts;
+    for (auto const& [what, loss] : report_.losses()) counts[what] = loss.count;
+    EXPECT_EQ(counts, (std::map<std::string, std::uint64_t>{
+                          {"statements of OBJ that are not read (curves, surfaces, ...)", 3},
+                          {"faces of smoothing groups without normals, flat", 1},
+                          {"points and lines skipped", 2}}));
+}
 TEST_F(ObjFolder, MoreCornersThanAByteCounts)
 {
     std::string text, face = "f";

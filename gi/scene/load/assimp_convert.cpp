@@ -191,7 +191,7 @@ private:
             m.specular = 0;
             white_ = std::int32_t(scene_.materials.size());
             scene_.materials.push_back(m);
-            scene_.material_names.push_back("vertex colours");
+            scene_.material_names.push_back("default");
         }
         return white_;
     }

@@ -196,6 +196,9 @@ void ObjImporter::InternReadFile(std::string const& file, aiScene* scene, Assimp
                 std::size_t(std::ranges::count_if(
                     model.faces, [](ObjFace const& f) { return f.kind != ObjFace::Kind::polygon; })),
                 file);
+    for (auto const& [word, count] : model.skipped)
+        notes_.lose("statements of OBJ that are not read (curves, surfaces, ...)", count, file + ": " + word);
+    notes_.lose("faces of smoothing groups without normals, flat", model.flat_faces, file);
     convert(model, fs::path(file).filename().string(), *scene);
     auto all = materials.take();
     scene->mMaterials = new aiMaterial*[all.size()];

@@ -41,6 +41,10 @@ public:
                 use_material(std::string(trimmed(rest)));
             else if (word == "mtllib" && !trimmed(rest).empty())
                 materials_.read(std::string(trimmed(rest)));
+            else if (word == "s")
+                is_smooth_ = trimmed(rest) != "off" && trimmed(rest) != "0";
+            else if (!word.empty() && !word.starts_with('#') && word != "mtllib")
+                ++m_.skipped[std::string(word.substr(0, 40))];
         }
         return std::move(m_);
     }
@@ -55,22 +59,22 @@ private:
         return {n[0], n[1], n[2]};
     }
 
-    /// x y z, x y z w, or x y z and red, green, blue.
+    /// x y z, x y z w, or either and red, green, blue.
     void add_vertex(std::string_view rest)
     {
-        std::array<float, 6> n{};
+        std::array<float, 7> n{};
         std::size_t const count = leading_numbers(rest, n);
         if (count < 3) fail("a vertex has three numbers");
         vec3 position{n[0], n[1], n[2]};
-        if (count == 4) {
+        if (count == 4 || count == 7) {
             if (n[3] == 0) fail("the vertex lies at infinity");
             position /= n[3];
         }
-        bool const has_color = count == 6;
+        bool const has_color = count >= 6;
         if (has_color && m_.colors.empty()) m_.colors.resize(m_.positions.size(), vec3{1});
         m_.positions.push_back(position);
         if (has_color)
-            m_.colors.push_back({n[3], n[4], n[5]});
+            m_.colors.push_back({n[count - 3], n[count - 2], n[count - 1]});
         else if (!m_.colors.empty())
             m_.colors.push_back(vec3{1});
     }
@@ -125,6 +129,8 @@ private:
         if (kind == ObjFace::Kind::line && m_.corners.size() == before + 1) return m_.corners.pop_back();
         if (m_.meshes.empty()) begin_object(kObjDefaultName);
         m_.faces.push_back({m_.corners.size(), kind});
+        if (kind == ObjFace::Kind::polygon && is_smooth_ && m_.corners.back().normal == ObjCorner::kNone)
+            ++m_.flat_faces;
     }
 
     /// Faces of the same material and object follow.
@@ -176,6 +182,7 @@ private:
     std::unordered_map<std::string, std::size_t> object_of_;
     std::string group_;
     unsigned material_ = 0;
+    bool is_smooth_ = false;
 };
 
 } // namespace

@@ -1,6 +1,6 @@
 #pragma once
 // Content of an OBJ file (Wavefront, appendix B1 of its Advanced Visualizer) as it is written: vertices, faces,
-// and which of them belong together. Curves and surfaces are skipped.
+// and which of them belong together. Curves and surfaces are skipped, and counted.
 //
 // Faces of an object and a material that follow each other are a mesh. Indices count from 0 and are not checked,
 // as a file may name vertices that come later.
@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,8 @@ struct ObjModel {
     std::vector<ObjFace> faces;
     std::vector<std::string> objects; ///< names
     std::vector<ObjMesh> meshes;      ///< of rising first faces; may be empty
+    std::map<std::string, std::uint64_t> skipped; ///< statements that are not read, by their first word
+    std::uint64_t flat_faces = 0;                 ///< without normals in a smoothing group
 };
 
 struct ObjMaterialsOfFile {

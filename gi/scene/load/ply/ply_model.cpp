@@ -132,6 +132,8 @@ public:
             if (equals_caseless(take_word(rest), "texturefile") && !trimmed(rest).empty())
                 m_.textures.emplace_back(trimmed(rest));
         }
+        for (std::string const& line : header_.unknown)
+            notes_.lose("lines of headers of PLY that are not understood, skipped", 1, at(line));
         for (PlyElement const& element : header_.elements) read_element(element);
         finish();
         return std::move(m_);

@@ -173,7 +173,8 @@ PlyHeader read_ply_header(std::string_view file)
             if (header.elements.empty()) header_fails(n + 1, "a property before the first element");
             header.elements.back().properties.push_back(property_of(rest, n + 1));
         } else if (!word.empty()) {
-            header_fails(n + 1, "'" + shortened(std::string(word), 40) + "' is no part of a header");
+            header.unknown.push_back("line " + std::to_string(n + 1) + ": " +
+                                     shortened(std::string(lines[n]), 60));
         }
     }
     if (!has_format) throw std::runtime_error("its header has no line format");

@@ -32,6 +32,8 @@ struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
     std::vector<PlyElement> elements;  ///< in the order of the file
     std::vector<std::string> comments; ///< what follows `comment` and `obj_info`
+    std::vector<std::string>
+        unknown; ///< lines that are no part of a header: Blender 2.4 forgot the word `comment`
     std::size_t bytes = 0;             ///< up to the first value
     std::size_t lines = 0;
 };
