@@ -21,6 +21,10 @@ struct Sighting {
     int markers_unknown = 0;     ///< seen, but not in the map
     int markers_ambiguous = 0;   ///< left out: their identifier is in the picture more than once
     int candidates_rejected = 0; ///< squares without a code that is known
+    /// Of the unknown and of the ambiguous ones, each once: "marker 7 of DICT_4X4_50".
+    std::vector<std::string> unknown, ambiguous;
+    /// Boards and grids left out, since the picture contradicts the map: problem and remedy of each.
+    std::vector<std::string> contradictions;
 };
 
 } // namespace ar

@@ -53,10 +53,16 @@ std::map<int, std::vector<Match>> match(cv::Mat const& gray, cv::Rect part, Mark
         for (FoundMarker& m : found.markers) {
             for (auto& c : m.corners) c += cv::Point2f(part.tl());
             auto const at = placed.find(m.id);
+            auto const note = [&](std::vector<std::string>& names) {
+                std::string name = fmt::format("marker {} of {}", m.id, dictionary);
+                if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+            };
             if (at == placed.end()) {
                 ++s.markers_unknown;
+                note(s.unknown);
             } else if (times[m.id] > 1) {
                 ++s.markers_ambiguous;
+                note(s.ambiguous);
             } else {
                 ++s.markers_seen;
                 by_thing[at->second.thing].push_back({m, at->second});
@@ -83,7 +89,23 @@ bool add_inner_corners(Sighting& s, cv::Mat const& gray, CharucoBoard const& boa
     return true;
 }
 
-Found find(cv::Mat const& gray, cv::Rect part, MarkerMap const& map, DetectorSettings const& settings)
+/// Whether the picture contradicts the map's board or grid; what earlier pictures said counts where this one is
+/// silent, or in doubt about a board that they confirmed.
+bool is_contradicted(cv::Mat const& gray, MarkerMap const& map, int thing, std::vector<Match> const& matches,
+                     std::map<int, BoardFinding>& known)
+{
+    std::vector<FoundMarker> markers;
+    for (Match const& m : matches) markers.push_back(m.found);
+    BoardFinding const now = check_board(gray, map, thing, markers);
+    BoardFinding& last = known[thing];
+    bool const confirmed = last.verdict == BoardVerdict::agrees;
+    if (now.verdict != BoardVerdict::silent && !(confirmed && now.verdict == BoardVerdict::doubtful)) last = now;
+    return last.verdict == BoardVerdict::doubtful || last.verdict == BoardVerdict::contradicts;
+}
+
+/// @param known  what earlier pictures said about boards and grids, by thing
+Found find(cv::Mat const& gray, cv::Rect part, MarkerMap const& map, DetectorSettings const& settings,
+           std::map<int, BoardFinding>& known)
 {
     Found out;
     Sighting& s = out.sighting;
@@ -92,6 +114,11 @@ Found find(cv::Mat const& gray, cv::Rect part, MarkerMap const& map, DetectorSet
     for (auto const& [thing, matches] : match(gray, part, map, search_settings(settings, gray.size()), s)) {
         for (Match const& m : matches)
             out.around = out.around.empty() ? around(m.found) : out.around | around(m.found);
+        if (thing >= lone && is_contradicted(gray, map, thing, matches, known)) {
+            BoardFinding const& why = known.at(thing);
+            s.contradictions.push_back(fmt::format("{}; {}", why.problem, why.remedy));
+            continue;
+        }
         bool const is_board = thing >= lone && thing < lone + boards;
         if (is_board && add_inner_corners(s, gray, map.boards[std::size_t(thing - lone)], thing, matches))
             continue;
@@ -139,7 +166,8 @@ Sighting detect(cv::Mat const& gray, MarkerMap const& map, DetectorSettings cons
 {
     check_picture(gray);
     check(map, "the map of markers");
-    return find(gray, {{}, gray.size()}, map, settings).sighting;
+    std::map<int, BoardFinding> nothing;
+    return find(gray, {{}, gray.size()}, map, settings, nothing).sighting;
 }
 
 MarkerTracker::MarkerTracker(MarkerMap map, DetectorSettings settings) : map_(std::move(map)), settings_(settings)
@@ -167,12 +195,12 @@ Sighting MarkerTracker::next(cv::Mat const& gray)
     if (due || seen_ == 0 || near.area() > 0.8 * whole.area()) near = {};
 
     Found found;
-    if (!near.empty()) found = find(gray, near, map_, settings_);
+    if (!near.empty()) found = find(gray, near, map_, settings_, known_);
     if (near.empty() || found.sighting.markers_seen < seen_) {
         ++counts_.whole;
         counts_.in_vain += !near.empty();
         since_whole_ = 0;
-        found = find(gray, whole, map_, settings_);
+        found = find(gray, whole, map_, settings_, known_);
     }
     before_ = last_;
     last_ = found.around;

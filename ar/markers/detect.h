@@ -2,9 +2,10 @@
 // Detects which markers of a map a picture shows, and the pixel positions of their points.
 
 #include "ar/camera/sighting.h"
-#include "ar/markers/aruco.h"
+#include "ar/markers/board_check.h"
 
 #include <cstdint>
+#include <map>
 
 namespace ar {
 
@@ -26,7 +27,8 @@ struct DetectorSettings {
 SearchSettings search_settings(DetectorSettings const& settings, cv::Size picture);
 
 /// Searches the whole picture. Points are corners of markers and inner corners of boards (boards use the corners
-/// of their markers only if fewer than four inner corners are seen).
+/// of their markers only if fewer than four inner corners are seen). Boards and grids that the picture contradicts
+/// (check_board) have no points.
 /// @param gray CV_8UC1. @throws gi::InputError wrong type, an empty picture, a map that `check` refuses
 Sighting detect(cv::Mat const& gray, MarkerMap const& map, DetectorSettings const& settings = {});
 
@@ -58,6 +60,7 @@ private:
     cv::Size size_;
     cv::Rect2f last_{}, before_{}; ///< bounds of the markers in the last two pictures; empty: unknown
     int seen_ = 0;                 ///< markers in the last picture
+    std::map<int, BoardFinding> known_; ///< of boards and grids, by thing: the last picture that could tell
     int since_whole_ = 0;
 };
 

@@ -154,9 +154,11 @@ FrameResult Pipeline::find(Frame const& frame, double time_s,
     cv::Mat const gray = gray_of(frame);
     r.times.decode_ms = lap();
     FoundPose f = known ? poses_.next(time_s, *known) : poses_.next(time_s, gray, stop);
+    losses_.add(f, frame.sequence, report_, prefix_);
     r.sighting = std::move(f.sighting);
     r.pose = std::move(f.pose);
     r.used = f.used;
+    r.lost_by = std::move(f.lost_by);
     if (f.detected_s) r.times.detect_ms = lap.until(*f.detected_s);
     report_poses();
     r.times.pose_ms = lap();

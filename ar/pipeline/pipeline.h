@@ -9,6 +9,7 @@
 #include "ar/pipeline/pair_renderer.h"
 #include "ar/pipeline/place_light.h"
 #include "ar/pipeline/pose_finder.h"
+#include "ar/pipeline/pose_losses.h"
 
 namespace ar {
 
@@ -35,6 +36,7 @@ struct FrameResult {
     Sighting sighting;
     PoseEstimate pose; ///< the frame's own estimate, or the known pose
     UsedPose used;     ///< what the frame is composited with
+    std::string lost_by; ///< FoundPose::lost_by
     CompositeCounts counts;
     std::optional<RenderedPair> pair;     ///< in the camera's lens
     std::optional<SeenDepth> depth;       ///< of the pair; only after Pipeline::keep_depth
@@ -55,9 +57,9 @@ class Pipeline {
 public:
     /// Loads the scenes and the light. @throws gi::InputError
     /// @param prefix  for its counts in the report, if there are several pipelines
+    /// @param poses_only  `add` is never called: the lens may see more than a pinhole picture shows
     Pipeline(Session const& session, CalibratedCamera const& camera, MarkerMap const& markers, gi::Report& report,
              std::string prefix = {}, bool poses_only = false);
-    /// @param poses_only  `add` is never called: the lens may see more than a pinhole picture shows
 
     /// Finds the camera's pose.
     /// @param time_s   since the first frame: time for animation clips, the camera's motion and the light
@@ -98,6 +100,7 @@ private:
     std::optional<LiveOccluders> occluders_;
     Compositor compositor_;
     PoseFinder poses_;
+    PoseLosses losses_;
     bool keeps_depth_ = false;
     cv::Mat light_picture_;
     std::string lit_by_;

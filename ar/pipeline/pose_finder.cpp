@@ -12,6 +12,15 @@ PoseFinder::PoseFinder(PoseUse const& use, MarkerMap const& markers, CameraModel
     if (use.fused) fusion_.emplace();
 }
 
+std::string cause_of_loss(Sighting const& s, PoseEstimate const& pose)
+{
+    if (!s.contradictions.empty()) return "board contradicts the map";
+    if (s.markers_ambiguous > 0) return "marker identifiers seen twice";
+    if (s.markers_seen == 0)
+        return s.markers_unknown > 0 ? "only markers that the map does not have" : "no markers";
+    return name_of(pose.failure);
+}
+
 FoundPose PoseFinder::next(double time_s, cv::Mat const& gray, gi::StopRequest const* stop)
 {
     FoundPose f;
@@ -26,6 +35,11 @@ FoundPose PoseFinder::next(double time_s, cv::Mat const& gray, gi::StopRequest c
     if (fusion_) f.pose = fusion_->next(time_s, f.pose);
     Taken const taken = tracker_.add(time_s, f.pose);
     f.used = trust_.next(time_s, offered_pose(use_, tracker_, time_s, f.pose, taken));
+    if (f.used.state == PoseState::tracked) return f;
+    if (f.pose.found())
+        f.lost_by = taken == Taken::jump ? "a jump" : "low confidence";
+    else
+        f.lost_by = features_ ? "features: " + name_of(f.pose.failure) : cause_of_loss(f.sighting, f.pose);
     return f;
 }
 
@@ -38,6 +52,7 @@ FoundPose PoseFinder::next(double time_s, std::optional<gi::RigidPose> const& kn
         f.pose.confidence = 1;
     }
     f.used = trust_.next(time_s, {known, {}, f.pose.found()});
+    if (!known) f.lost_by = "none by the tracker or file";
     return f;
 }
 

@@ -16,7 +16,12 @@ struct FoundPose {
     PoseEstimate pose; ///< the frame's own estimate, or the known pose
     UsedPose used;
     std::optional<double> detected_s; ///< steady clock, end of detection; nothing with a known pose
+    std::string lost_by;              ///< why the frame has no trusted pose of its own; empty if it has one
 };
+
+/// Why no pose was estimated: "board contradicts the map", "marker identifiers seen twice", "only markers that the map
+/// does not have", "no markers", or of name_of(PoseFailure). @param pose  not found
+std::string cause_of_loss(Sighting const& sighting, PoseEstimate const& pose);
 
 class PoseFinder {
 public:

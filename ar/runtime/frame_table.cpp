@@ -10,7 +10,8 @@ std::string frame_table(RunSummary const& summary)
         "sequence,captured_s,overtaken,read_ms,age_ms,decode_ms,detect_ms,pose_ms,wait_ms,light_ms,render_ms,"
         "composite_ms,latency_ms,show_wait_ms,present_ms,swapped_ms,"
         "markers,points_used,points_rejected,rms_px,confidence,x_m,y_m,z_m,qx,qy,qz,qw,changed_px,clipped_px,"
-        "negative_values,not_finite_px,state,shown\n";
+        "negative_values,not_finite_px,state,shown,"
+        "markers_unknown,markers_ambiguous,boards_left_out,lost_by\n";
     for (RunFrame const& f : summary.frames) {
         text += fmt::format("{},{:.6f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},", f.sequence, f.captured_s,
                             f.overtaken, f.read_ms, f.age_ms, f.times.decode_ms, f.times.detect_ms,
@@ -26,8 +27,9 @@ std::string frame_table(RunSummary const& summary)
         } else {
             text += ",,,,,,,";
         }
-        text += fmt::format("{},{},{},{},{},{:.3f}\n", f.counts.pixels - f.counts.copied, f.counts.clipped,
-                            f.counts.negative, f.counts.not_finite, name_of(f.state), f.shown);
+        text += fmt::format("{},{},{},{},{},{:.3f},{},{},{},{}\n", f.counts.pixels - f.counts.copied,
+                            f.counts.clipped, f.counts.negative, f.counts.not_finite, name_of(f.state), f.shown,
+                            f.markers_unknown, f.markers_ambiguous, f.boards_left_out, f.lost_by);
     }
     return text;
 }

@@ -5,8 +5,41 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 
 namespace ar {
+
+namespace {
+
+std::map<std::string, std::size_t> causes_of(std::vector<RunFrame> const& frames)
+{
+    std::map<std::string, std::size_t> causes;
+    for (RunFrame const& f : frames)
+        if (!f.lost_by.empty()) ++causes[f.lost_by];
+    return causes;
+}
+
+/// Lines of text: causes of frames without a trusted pose, markers and boards that were left out.
+std::string describe_lost(std::vector<RunFrame> const& frames)
+{
+    std::string causes, left_out;
+    for (auto const& [cause, n] : causes_of(frames))
+        causes += fmt::format("{}{} ({})", causes.empty() ? "without a trusted pose: " : ", ", n, cause);
+    auto const add = [&](int RunFrame::*count, char const* what) {
+        int n = 0, in = 0;
+        for (RunFrame const& f : frames) {
+            n += f.*count;
+            in += f.*count > 0;
+        }
+        if (n > 0) left_out += fmt::format("{}: {}, in {} frames\n", what, n, in);
+    };
+    add(&RunFrame::markers_ambiguous, "markers whose identifier is in the picture more than once");
+    add(&RunFrame::markers_unknown, "markers that the map does not have");
+    add(&RunFrame::boards_left_out, "boards that contradict the map");
+    return (causes.empty() ? causes : causes + "\n") + left_out;
+}
+
+} // namespace
 
 Spread spread_of(std::vector<double> values)
 {
@@ -21,6 +54,14 @@ std::size_t count_found(std::vector<RunFrame> const& frames)
                                      [](RunFrame const& f) { return f.state == PoseState::tracked; }));
 }
 
+std::string most_lost_by(std::vector<RunFrame> const& frames)
+{
+    auto const causes = causes_of(frames);
+    auto const most = std::max_element(causes.begin(), causes.end(),
+                                       [](auto const& a, auto const& b) { return a.second < b.second; });
+    return most == causes.end() ? std::string() : most->first;
+}
+
 std::string describe(RunSummary const& s)
 {
     std::size_t const n = s.frames.size();
@@ -31,6 +72,7 @@ std::string describe(RunSummary const& s)
     PoseTally poses;
     for (RunFrame const& f : s.frames) poses.add(f.state, f.confidence, f.estimated.has_value());
     text += describe(poses);
+    text += describe_lost(s.frames);
     if (!s.light.empty()) text += fmt::format("virtual objects lit by {}\n", s.light);
     text += fmt::format("source: {}{}\n", describe(s.source),
                         s.end.kind == SourceState::Kind::lost ? "; lost: " + s.end.reason : "");

@@ -29,6 +29,10 @@ RunFrame record_of(FrameInFlight const& w, bool is_timed)
     }
     f.times = r.times;
     f.markers = r.sighting.markers_seen;
+    f.markers_unknown = r.sighting.markers_unknown;
+    f.markers_ambiguous = r.sighting.markers_ambiguous;
+    f.boards_left_out = int(r.sighting.contradictions.size());
+    f.lost_by = r.lost_by;
     f.points_used = r.pose.points_used;
     f.points_rejected = r.pose.points_rejected;
     f.rms_px = r.pose.rms_px;

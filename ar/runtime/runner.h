@@ -52,6 +52,8 @@ struct RunFrame {
     Exposure exposure;
     StageTimes times;
     int markers = 0, points_used = 0, points_rejected = 0;
+    int markers_unknown = 0, markers_ambiguous = 0, boards_left_out = 0; ///< of the Sighting
+    std::string lost_by; ///< why it has no trusted pose of its own; empty if it has one
     double rms_px = 0, confidence = 0;
     std::optional<gi::RigidPose> estimated; ///< the frame's own pose, trusted or not
     PoseState state = PoseState::lost;
@@ -93,6 +95,9 @@ Spread spread_of(std::vector<double> values);
 
 /// Number of frames with a trusted pose of their own.
 std::size_t count_found(std::vector<RunFrame> const& frames);
+
+/// The most frequent RunFrame::lost_by; empty = none.
+std::string most_lost_by(std::vector<RunFrame> const& frames);
 
 /// Lines of text: median, 95 % quantile and maximum of each stage, frames per second, latency, poses.
 std::string describe(RunSummary const& summary);

@@ -123,6 +123,55 @@ TEST(ArCalibrate, SaysWhichViewsAreMissing)
     EXPECT_FALSE(std::filesystem::exists(folder / "camera.yaml"));
 }
 
+TEST(ArCalibrate, RefusesABoardThatIsNotTheOneDescribed)
+{
+    TemporaryFolder const folder;
+    draw_views(folder / "odd", {{}, {{7, 5, 0.04, 0.03, "DICT_4X4_50", 0, false, {}}}, {}},
+               {ar::LensModel::pinhole, {480, 360}, 394, 394, 239.5, 179.5, {}}, 8);
+    draw_views(folder / "legacy", {{}, {{8, 6, 0.03, 0.022, "DICT_4X4_50", 0, true, {}}}, {}},
+               {ar::LensModel::pinhole, {480, 360}, 394, 394, 239.5, 179.5, {}}, 8);
+    for (std::string const command :
+         {"odd --squares 5x7 --square 0.04 --marker 0.03", "legacy --squares 8x6 --square 0.03 --marker 0.022",
+          "legacy --squares 6x8 --square 0.03 --marker 0.022", "odd --squares 7x5 --square 0.04 --marker 0.02"}) {
+        Outcome const o = run("ar calibrate " + command + " --out c.yaml --report r.html", folder.path());
+        EXPECT_EQ(o.code, 1) << command << o.out << o.err;
+        EXPECT_NE(o.err.find("exchange the numbers of --squares"), std::string::npos) << command << o.err;
+        EXPECT_NE(o.err.find("--legacy-pattern"), std::string::npos) << command << o.err;
+        EXPECT_FALSE(std::filesystem::exists(folder / "c.yaml")) << command;
+        EXPECT_FALSE(std::filesystem::exists(folder / "r.html")) << command;
+    }
+    run_well("ar calibrate legacy --squares 8x6 --square 0.03 --marker 0.022 --legacy-pattern --lens pinhole "
+             "--out c.yaml",
+             folder.path());
+    EXPECT_NEAR(ar::read_calibration(folder / "c.yaml").camera.fx / 394, 1, 0.02);
+}
+
+/// Two sizes of squares in one set of views: the picture of each is right in itself.
+TEST(ArCalibrate, RefusesWhatNoLensExplains)
+{
+    TemporaryFolder const folder;
+    std::filesystem::create_directory(folder / "views");
+    cv::RNG rng(3);
+    for (int i = 0; i < 8; ++i) {
+        cv::Mat picture(360, 480, CV_8UC1, cv::Scalar(230));
+        // Squares of a chessboard along a sine: no plane in perspective, nor the same one twice.
+        double const phase = rng.uniform(0., 6.), tilt = rng.uniform(-0.2, 0.2), x0 = rng.uniform(60., 100.);
+        for (int y = 0; y < 360; ++y)
+            for (int x = 0; x < 480; ++x) {
+                double const u = (x - x0 + 14 * std::sin(0.02 * y + phase)) / 36,
+                             v = (y - 60 + tilt * x + 14 * std::sin(0.025 * x + phase)) / 36;
+                if (u > 0 && v > 0 && u < 8 && v < 6 && (int(u) + int(v)) % 2 == 0)
+                    picture.at<std::uint8_t>(y, x) = 20;
+            }
+        cv::GaussianBlur(picture, picture, {}, 0.8);
+        cv::imwrite((folder / fmt::format("views/{}.png", i)).string(), picture);
+    }
+    Outcome const o = run(
+        "ar calibrate views --chessboard 7x5 --square 0.03 --lens radial_tangential --out c.yaml", folder.path());
+    EXPECT_EQ(o.code, 1) << o.out << o.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "c.yaml"));
+}
+
 TEST(ArResponse, IsThatOfTheBracket)
 {
     TemporaryFolder const folder;

@@ -80,6 +80,8 @@ void declare_board_arguments(CLI::App& c, BoardArguments& a)
         ->capture_default_str();
     c.add_option("--dictionary", a.dictionary, "of its markers, as named by OpenCV")->capture_default_str();
     c.add_option("--first-id", a.first_id, "id of its first marker")->check(CLI::Range(0, 100000));
+    c.add_flag("--legacy-pattern", a.legacy_pattern,
+               "upper left square white if the number of rows is even, as printed by OpenCV before 4.6");
 }
 
 glm::ivec2 parse_squares(std::string const& option, std::string const& text)
@@ -101,7 +103,7 @@ glm::ivec2 parse_squares(std::string const& option, std::string const& text)
 ar::CharucoBoard board_of(BoardArguments const& a)
 {
     glm::ivec2 const n = parse_squares("--squares", a.squares);
-    ar::CharucoBoard board{n.x, n.y, a.square_m, a.marker_m, a.dictionary, a.first_id, false, {}};
+    ar::CharucoBoard board{n.x, n.y, a.square_m, a.marker_m, a.dictionary, a.first_id, a.legacy_pattern, {}};
     ar::check({{}, {board}, {}}, "--squares " + a.squares);
     return board;
 }

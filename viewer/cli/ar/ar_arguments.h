@@ -32,6 +32,7 @@ struct BoardArguments {
     std::string squares, dictionary = "DICT_4X4_50";
     double square_m = 0.04, marker_m = 0.03;
     int first_id = 0;
+    bool legacy_pattern = false;
 };
 void declare_board_arguments(CLI::App& command, BoardArguments& a);
 /// The board, placed at the origin of the world. @throws InputError if its values are invalid

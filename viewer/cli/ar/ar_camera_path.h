@@ -2,7 +2,7 @@
 // The camera's poses in a session's frames, for commands that only need poses: frame by frame, in order.
 
 #include "ar/markers/marker_map_file.h"
-#include "ar/pipeline/pose_finder.h"
+#include "ar/pipeline/pose_losses.h"
 #include "ar/runtime/runner.h"
 #include "viewer/camera_view/camera_tracker.h"
 #include "viewer/cli/ar/pose_arguments.h"
@@ -14,7 +14,7 @@ class CameraPath {
 public:
     CameraPath(PoseArguments const& poses, ar::Session const& session, ar::CalibratedCamera const& camera,
                gi::Report& report)
-        : finder_(session.pose, ar::read_marker_map(session.markers), camera.model)
+        : finder_(session.pose, ar::read_marker_map(session.markers), camera.model), report_(report)
     {
         check_rotation_order(poses.order, {poses.file});
         if (!poses.file.empty())
@@ -32,6 +32,7 @@ public:
             return std::pair(*pose, 1.0);
         }
         ar::FoundPose const f = finder_.next(time_s, ar::gray_of(frame), &stop);
+        losses_.add(f, frame.sequence, report_);
         if (f.used.state != ar::PoseState::tracked || f.pose.ambiguous) return std::nullopt;
         return std::pair(*f.used.world_from_camera, f.pose.confidence);
     }
@@ -39,6 +40,8 @@ public:
 private:
     std::vector<ar::TimedPose> poses_;
     ar::PoseFinder finder_;
+    ar::PoseLosses losses_;
+    gi::Report& report_;
 };
 
 } // namespace viewer

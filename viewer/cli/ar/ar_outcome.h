@@ -15,6 +15,7 @@ struct FrameTally {
     std::uint64_t looked_at = 0; ///< frames in which the camera was searched for
     std::uint64_t found = 0;     ///< of these, with a trusted pose of their own
     std::uint64_t refused = 0;   ///< frames that could not be read or used, besides those
+    std::string lost_by = {};    ///< the most frequent cause of a missing pose; empty = unknown
 };
 
 /// Declares --require-found; the text is empty unless given.

@@ -2,7 +2,7 @@
 
 #include "ar/calibration/response.h"
 #include "ar/markers/detect.h"
-#include "ar/pose/estimate.h"
+#include "ar/pipeline/pose_finder.h"
 #include "gi/core/error.h"
 #include "viewer/cli/ar/ar_arguments.h"
 
@@ -22,14 +22,19 @@ gi::RigidPose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& ma
         cv::Mat gray;
         cv::cvtColor(picture, gray, cv::COLOR_RGB2GRAY);
         ar::Sighting s = ar::detect(gray, map);
-        if (s.points.size() > best.points.size()) best = std::move(s);
+        if (s.points.size() > best.points.size() || best.markers_seen == 0) best = std::move(s);
     }
     ar::PoseEstimate const pose = ar::estimate_pose(best, camera);
     if (!pose.found())
         throw gi::InputError(
             "the camera is not found in " + name,
-            fmt::format("{} marker points are seen: {}", best.points.size(), name_of(pose.failure)),
-            "take pictures with the markers lit and sharp");
+            fmt::format("{} marker points are used: {}", best.points.size(), ar::cause_of_loss(best, pose)),
+            !best.contradictions.empty() ? best.contradictions.front()
+            : best.markers_ambiguous > 0 ? "cover all but one " + best.ambiguous.front()
+                                         : "take pictures with the markers lit and sharp");
+    for (std::string const& why : best.contradictions) fmt::print(stderr, "lost: {}: {}\n", name, why);
+    if (best.markers_ambiguous > 0)
+        fmt::print(stderr, "lost: {}: {} is there more than once, and left out\n", name, best.ambiguous.front());
     fmt::print("{}: camera found from {} points, {:.2f} px RMS{}\n", name, pose.points_used, pose.rms_px,
                pose.ambiguous ? "; another pose would fit as well" : "");
     return pose.world_from_camera;

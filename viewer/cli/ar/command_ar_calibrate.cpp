@@ -35,7 +35,11 @@ struct CalibrateOptions {
 };
 
 /// Finds the board in a picture; few or no points if it is not visible.
-using Finder = std::function<ar::BoardView(cv::Mat const&, std::string const&)>;
+struct FoundBoard {
+    ar::BoardView view;
+    ar::Sighting sighting; ///< of the picture; empty for a chessboard
+};
+using Finder = std::function<FoundBoard(cv::Mat const&, std::string const&)>;
 
 Finder finder(CalibrateOptions const& o)
 {
@@ -49,7 +53,8 @@ Finder finder(CalibrateOptions const& o)
             throw gi::InputError("--chessboard " + o.chessboard, "at least 3 inner corners each way are needed",
                                  "count corners where four squares meet");
         return [n, square_m = o.board.square_m](cv::Mat const& gray, std::string const& name) {
-            return ar::find_chessboard(gray, n.x, n.y, square_m, name).value_or(ar::BoardView{name, {}, {}});
+            return FoundBoard{
+                ar::find_chessboard(gray, n.x, n.y, square_m, name).value_or(ar::BoardView{name, {}, {}}), {}};
         };
     }
     ar::MarkerMap const map =
@@ -59,10 +64,10 @@ Finder finder(CalibrateOptions const& o)
                              "add it under boards:, see lightwell ar board --help");
     return [map](cv::Mat const& gray, std::string const& name) {
         ar::Sighting const sighting = ar::detect(gray, map);
-        ar::BoardView best{name, {}, {}};
+        FoundBoard best{{name, {}, {}}, sighting};
         for (std::size_t i = 0; i < map.boards.size(); ++i)
-            if (auto v = ar::view_of(sighting, map, i, name); v.pixels.size() > best.pixels.size())
-                best = std::move(v);
+            if (auto v = ar::view_of(sighting, map, i, name); v.pixels.size() > best.view.pixels.size())
+                best.view = std::move(v);
         return best;
     };
 }
@@ -70,6 +75,10 @@ Finder finder(CalibrateOptions const& o)
 struct Search {
     std::uint64_t looked_at = 0, refused = 0;
     cv::Mat last; ///< picture of the last accepted view
+    std::uint64_t contradicted = 0;           ///< pictures that contradict the map of the board
+    std::string contradiction;                ///< of the first of them
+    std::uint64_t ambiguous = 0, unknown = 0; ///< markers, of the Sightings
+    std::string first_ambiguous, first_unknown;
 };
 
 Search search(ar::FrameSource& source, ar::Collector& collector, Finder const& find, CalibrateOptions const& o,
@@ -91,11 +100,40 @@ Search search(ar::FrameSource& source, ar::Collector& collector, Finder const& f
             ++s.refused;
             continue;
         }
-        if (collector.offer(find(gray, fmt::format("frame {}", frame->sequence))).taken) s.last = gray.clone();
+        FoundBoard found = find(gray, fmt::format("frame {}", frame->sequence));
+        ar::Sighting const& seen = found.sighting;
+        if (!seen.contradictions.empty() && s.contradicted++ == 0) s.contradiction = seen.contradictions.front();
+        if (!seen.ambiguous.empty() && s.ambiguous == 0) s.first_ambiguous = seen.ambiguous.front();
+        if (!seen.unknown.empty() && s.unknown == 0) s.first_unknown = seen.unknown.front();
+        s.ambiguous += std::uint64_t(seen.markers_ambiguous);
+        s.unknown += std::uint64_t(seen.markers_unknown);
+        if (collector.offer(std::move(found.view)).taken) s.last = gray.clone();
         bar.update(std::min(1.0, double(collector.views().size()) / o.views),
                    fmt::format("{} views; {}", collector.views().size(), collector.next()));
     }
     return s;
+}
+
+constexpr char const* kBoardRemedies =
+    "is the board as described? exchange the numbers of --squares (across, then upwards; in a map squares_x and "
+    "squares_y), or give --legacy-pattern (legacy_pattern: true) if it was printed by OpenCV before 4.6; check "
+    "also "
+    "--square, --marker and that all pictures are of one camera at one zoom";
+
+/// Why a fit is none; empty if it is one. Corners are found to a fraction of a pixel and blur adds a few at most, so
+/// larger residuals are those of another board.
+std::string unexplained(ar::LensCalibration const& c)
+{
+    constexpr double kMostOfDiagonal = 0.004, kMostAspect = 2.5;
+    double const most_px = kMostOfDiagonal * std::hypot(c.camera.size_px.x, c.camera.size_px.y);
+    if (!(c.rms_px <= most_px))
+        return fmt::format("the best {} misses the points by {:.3g} px RMS; {:.2g} are possible",
+                           name_of(c.camera.lens), c.rms_px, most_px);
+    double const aspect = std::max(c.camera.fx / c.camera.fy, c.camera.fy / c.camera.fx);
+    if (!(aspect <= kMostAspect))
+        return fmt::format("the best {} has focal lengths of {:.0f} and {:.0f} px", name_of(c.camera.lens),
+                           c.camera.fx, c.camera.fy);
+    return {};
 }
 
 void print(ar::LensCalibration const& c)
@@ -161,11 +199,19 @@ int run_calibrate(CalibrateOptions const& o)
                "show it moving, {} cannot be decoded\n",
                describe(source->counts()), s.looked_at, counts.taken, counts.alike, counts.too_few_points,
                counts.moving, s.refused);
+    if (s.ambiguous > 0)
+        fmt::print("{} markers are left out: their identifier is in a picture more than once (first: {})\n",
+                   s.ambiguous, s.first_ambiguous);
+    if (s.unknown > 0) fmt::print("{} markers are not the board's (first: {})\n", s.unknown, s.first_unknown);
     auto const too_few = [&](std::string const& why) {
         fmt::print(stderr, "lightwell: these views are not enough ({}) {}\n", why,
                    collector.enough() ? "take other views" : collector.next());
         return 1;
     };
+    if (s.contradicted > 0)
+        fmt::print(stderr, "lightwell: {} of {} frames contradict the board's map ({}) {}\n", s.contradicted,
+                   s.looked_at, s.contradiction, kBoardRemedies);
+    if (2 * s.contradicted > s.looked_at) return 1;
     if (counts.taken < kFewestViews) return too_few(fmt::format("{} of {}", counts.taken, kFewestViews));
     ar::CalibrationReport report;
     report.views = collector.views();
@@ -177,6 +223,10 @@ int run_calibrate(CalibrateOptions const& o)
         ar::check(report.lens.camera, o.out);
     } catch (gi::InputError const& e) {
         return too_few(e.what());
+    }
+    if (std::string const why = unexplained(report.lens); !why.empty()) {
+        fmt::print(stderr, "lightwell: no lens explains these views ({}) {}\n", why, kBoardRemedies);
+        return 1;
     }
     say_what_is_kept(calibration, report.lens.camera.size_px, o.out);
     calibration.camera = report.lens.camera;
@@ -198,6 +248,8 @@ int run_calibrate(CalibrateOptions const& o)
     fmt::print("coverage: {:.0f} % of the picture{}\n", 100 * report.lens.coverage,
                collector.enough() ? "" : "; to improve it: " + collector.next());
     for (std::string const& w : report.lens.warnings) fmt::print("warning: {}\n", w);
+    if (ar::LensReach const reach = ar::reach_of(report.lens.camera); reach.share < 1)
+        fmt::print("warning: the lens {}; elsewhere pixels have no rays\n", describe(reach));
     fmt::print("{}\n", o.out);
     std::uint64_t const unread = source->counts().refused;
     return exit_code_of(most_refused(s.looked_at - s.refused, s.refused + unread, "pictures"));
@@ -225,17 +277,16 @@ void add_ar_calibrate(CLI::App& ar, int& exit_code)
         ->check(CLI::Range(kFewestViews, int(kMostViews)))
         ->capture_default_str();
     c->add_flag("--stills", o->stills, "the frames are stills, as in a folder of pictures");
-    c->footer(R"(Examples:
+    c->footer(R"(Prepared by:
   lightwell ar board --squares 7x5 --out board.svg --markers markers.yaml --views board_views
+Examples:
   lightwell ar calibrate board_views --markers markers.yaml --lens radial_tangential --out camera.yaml --report report.html
   lightwell ar calibrate board_views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
 
 From cameras, videos and sessions only frames in which the board is held still are used. A calibration that is
-replaced keeps its response, vignetting, colour and noise. Exit code 1: too few usable views, or most
-pictures were refused (the calibration is written).)");
+replaced keeps its response, vignetting, colour and noise. Exit code 1: too few usable views, a board that is not
+the one described, or views that no lens explains (nothing is written); or most pictures were refused (it is written).)");
     c->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
 }
 
 } // namespace viewer
-    if (ar::LensReach const reach = ar::reach_of(report.lens.camera); reach.share < 1)
-        fmt::print("warning: the lens {}; elsewhere pixels have no rays\n", describe(reach));

@@ -217,9 +217,9 @@ int run_session(RunArguments const& a, bool poses_only)
         throw gi::InputError("no frame could be used", describe(summary.source), "check the session's frames");
     bool const was_closed = window && window->wants_close();
     if (stop.requested()) return was_closed ? 0 : interrupted_code();
-    return exit_code_of(shortfall(
-        {summary.frames.size(), ar::count_found(summary.frames), summary.refused + summary.source.refused},
-        required));
+    return exit_code_of(shortfall({summary.frames.size(), ar::count_found(summary.frames),
+                                   summary.refused + summary.source.refused, ar::most_lost_by(summary.frames)},
+                                  required));
 }
 
 void add_session_options(CLI::App& c, RunArguments& a)
@@ -279,8 +279,9 @@ void add_ar_run(CLI::App& ar, int& exit_code)
         ->excludes("--out")
         ->excludes("--video")
         ->excludes("--truth");
-    run_command->footer(R"(Examples:
+    run_command->footer(R"(Prepared by:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+Examples:
   lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json
   lightwell ar run desk/session.yaml --poses desk/poses.csv --video desk.mkv --record-input desk/recorded
   lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --passes desk/passes --pass-bits 32
@@ -299,6 +300,7 @@ void add_ar_track(CLI::App& ar, int& exit_code)
     declare_rotation_order(*track_command, track->poses.order);
     track_command->footer(R"(Prepared by:
   lightwell ar synthesize tracked --frames 2 --size 640x480 --paths 2 --no-truth
+Examples:
   lightwell ar track tracked/session.yaml --fast --true-poses tracked/poses.csv --require-found 90%
 
 Exit code 1: no frame has a trusted pose, most frames were refused, or fewer have one than --require-found.)");
