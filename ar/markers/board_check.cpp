@@ -242,11 +242,11 @@ BoardFinding check_board(cv::Mat const& gray, MarkerMap const& map, int thing,
     Evidence const own = weigh(gray, markers, steps, given);
     std::string const name = describe(map, thing);
 
-    bool others_differ = false;
+    bool all_differ = true; // the likely ones: else the picture cannot tell
     bool const is_in_doubt = own.against() >= kFewestAgainst;
     for (Arrangement const& other : board ? others(*board, is_in_doubt) : others(*grid, is_in_doubt)) {
         Evidence const e = weigh(gray, markers, steps, other);
-        others_differ |= e.against() >= kFewestAgainst;
+        all_differ = all_differ && (other.rows == 0 || e.against() >= kFewestAgainst);
         // Of a wide board few markers tell, but no light or hand makes markers lie otherwise.
         bool const counts = own.steps_against >= kFewestAgainst || 20 * own.squares_against >= own.squares;
         bool const is_right =
@@ -277,7 +277,7 @@ BoardFinding check_board(cv::Mat const& gray, MarkerMap const& map, int thing,
                 fmt::format("{}: its {} are {:.3g} sides of a marker wide, and {:.3g} in the map", name,
                             board ? "squares" : "steps", measured, mapped_sides),
                 board ? "measure square_m and marker_m again" : "measure marker_m and gap_m again"};
-    return {own.against() == 0 && others_differ ? BoardVerdict::agrees : BoardVerdict::silent, {}, {}};
+    return {own.against() == 0 && all_differ ? BoardVerdict::agrees : BoardVerdict::silent, {}, {}};
 }
 
 } // namespace ar
