@@ -112,7 +112,7 @@ SessionSource::SessionSource(fs::path const& folder, Pace pace)
                          counts.refused > 0
                              ? fmt::format("{} are damaged, the last: {}", counts.refused, counts.last_refusal)
                              : reader_.end().reason,
-                         "record it again");
+                         "copy the whole folder again; if it is so at its source, record once more");
 }
 
 std::optional<Frame> SessionSource::next(std::chrono::milliseconds wait)

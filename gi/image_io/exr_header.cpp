@@ -134,7 +134,9 @@ private:
 
 InputError bad_exr(std::string const& name, std::string const& why)
 {
-    return {"cannot read '" + name + "' as OpenEXR", why, "check the file with exrheader or save it again"};
+    return {"cannot read '" + name + "' as OpenEXR", why,
+            "exrheader shows what is in the file; copy it again if it was cut off, else save it as scanlines or "
+            "tiles of half or float"};
 }
 
 void check_exr_header(std::span<unsigned char const> bytes, std::string const& name)

@@ -41,7 +41,8 @@ public:
 private:
     [[noreturn]] void fail(std::string const& why) const
     {
-        throw InputError("cannot read '" + name_ + "' as Radiance HDR", why, "save it again");
+        throw InputError("cannot read '" + name_ + "' as Radiance HDR", why,
+                         "copy it again if it was cut off, else save it as Radiance RGBE or OpenEXR");
     }
     unsigned char next()
     {

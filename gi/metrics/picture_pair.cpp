@@ -121,7 +121,8 @@ PicturePair pair_up(Picture const& image, Picture const& reference, std::string 
     if (!is_multiple(image, p.width, p.height) || !is_multiple(reference, p.width, p.height))
         throw InputError(fmt::format("the pictures are {} x {} and {} x {}", image.width, image.height,
                                      reference.width, reference.height),
-                         "only equal sizes or whole multiples can be compared", "render one of them again");
+                         "only equal sizes or whole multiples can be compared",
+                         "render one of them with the --size of the other");
     check_windows(image, reference);
     for (auto const& [which, picture] : {std::pair{"image", &image}, std::pair{"reference", &reference}})
         for (std::string const& note : picture->notes) p.notes.push_back(fmt::format("the {}: {}", which, note));

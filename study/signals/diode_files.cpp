@@ -72,7 +72,7 @@ DiodeSignal read_wav(std::string const& b, std::string const& file)
         }
         at = data + size + (size & 1);
     }
-    throw wrong_wav(file, "no samples in it", "record again");
+    throw wrong_wav(file, "no samples in it", "record longer than a trial, with the input switched on");
 }
 
 DiodeSignal read_diode_csv(std::string const& text, std::string const& file)

@@ -57,6 +57,45 @@ int run_examples(std::vector<std::string> const& text, std::string const& prefix
 
 class Examples : public testing::TestWithParam<char const*> {};
 
+/// All commands with their subcommands, as the program's own help lists them, e.g. "study run".
+void list_commands(std::string const& command, std::vector<std::string>& all)
+{
+    std::vector<std::string> const text = lines(run_well(command + " --help", folder().path()).out);
+    auto at = std::ranges::find(text, "Subcommands:");
+    if (at == text.end()) return;
+    for (++at; at != text.end() && at->starts_with("  "); ++at) {
+        std::string const name = at->substr(2, at->find(' ', 2) - 2);
+        if (name.empty() || name == "help") continue; // a further line of the command above
+        std::string const whole = command.empty() ? name : command + " " + name;
+        if (whole == "batch render" || whole == "batch bench") continue; // --help is of what they run
+        all.push_back(whole);
+        list_commands(whole, all);
+    }
+}
+
+/// Under "Examples:" stand calls of the command itself.
+TEST(HelpExamples, AreOfTheirCommand)
+{
+    std::vector<std::string> all;
+    list_commands("", all);
+    EXPECT_GT(all.size(), 60u);
+    for (std::string const& command : all) {
+        bool in_examples = false;
+        int count = 0;
+        for (std::string const& line : lines(run_well(command + " --help", folder().path()).out)) {
+            if (!line.starts_with(" ")) in_examples = line.starts_with("Example");
+            std::size_t const call = line.find("lightwell ");
+            if (!in_examples || call == line.npos) continue;
+            std::string const words = line.substr(call + 10) + " ";
+            EXPECT_TRUE(words.starts_with(command + " ")) << command << " --help: " << line;
+            ++count;
+        }
+        if (command == "display check" || command == "display import" || command == "generate ring" ||
+            command == "study plan" || command == "batch resume")
+            EXPECT_GT(count, 0) << command;
+    }
+}
+
 TEST_P(Examples, OfHelpRun)
 {
     std::string const help = run_well(std::string(GetParam()) + " --help", folder().path()).out;

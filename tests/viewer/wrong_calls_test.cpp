@@ -134,6 +134,7 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"generate cornell --out a.obj", "cannot be a binary glTF scene"},
              {"render cornell --threads x", "--threads"},
              {"render cornell --aovs L9", "L9"},
+             {"render cornell --aovs L0 L1", "if it belongs to --aovs: its values are joined by commas"},
              {"render cornell --tone neon --png a.png", "--tone"},
              {"render cornell --exposure 1", "--png"},
              {"render cornell --png a.png --exposure nan", "--exposure"},

@@ -12,6 +12,7 @@
 #include "viewer/cli/command_tree.h"
 #include "viewer/cli/completion.h"
 #include "viewer/cli/config_file.h"
+#include "viewer/cli/examples.h"
 #include "viewer/cli/man_page.h"
 
 #include <CLI/CLI.hpp>
@@ -61,6 +62,12 @@ gi::InputError describe(CLI::ParseError const& e, CLI::App const& app)
             if (!word.starts_with('-') && given.empty() && a->get_require_subcommand_min() > 0)
                 return {"there is no subcommand '" + word + "'", misfit,
                         suggest(word, names_of(subcommands(*a)), help)};
+            for (CLI::Option const* const o : a->get_options())
+                if (!word.starts_with('-') && o->count() > 0 && o->get_delimiter() != '\0' &&
+                    !o->get_allow_extra_args())
+                    return {"'" + word + "' was not expected", misfit,
+                            fmt::format("if it belongs to {}: its values are joined by commas, without blanks",
+                                        longest_name(*o))};
             return {"'" + word + "' was not expected", misfit, suggest(word, option_names(*a), help)};
         }
         a = given.empty() ? nullptr : given.back();
@@ -95,6 +102,18 @@ void add_elsewhere(CLI::App& parent, CommandRow const& c)
 }
 
 namespace {
+
+/// Says of an option for a list whether its values are words of their own, or joined by commas.
+class HelpFormatter : public CLI::Formatter {
+public:
+    std::string make_option_opts(CLI::Option const* o) const override
+    {
+        std::string text = CLI::Formatter::make_option_opts(o);
+        std::size_t const dots = text.find(" ...");
+        if (dots == text.npos || o->get_positional() || o->get_allow_extra_args()) return text;
+        return text.replace(dots, 4, o->get_delimiter() != '\0' ? "[,...]" : " (repeatable)");
+    }
+};
 
 /// Adds all commands of the table, so that every program lists them; those of other programs are stubs.
 void add_commands(CLI::App& app, std::span<AddedCommand const> own, int& exit_code)
@@ -153,6 +172,7 @@ int run_program(int argc, char const* const* argv, std::span<AddedCommand const>
     CLI::App app{"Lightwell: renders global illumination and measures its error."};
     app.set_version_flag("-V,--version", version_text());
     app.require_subcommand(1);
+    app.formatter(std::make_shared<HelpFormatter>());
     app.get_formatter()->column_width(34);
     app.footer(R"(Examples:
   lightwell render atrium --size 160x100 --paths 16 --out atrium.exr --png atrium.png
@@ -164,6 +184,7 @@ Exit codes: 0 done, 1 a comparison failed or not all outputs could be written, 2
     setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); // silent: this program reports errors itself
     int exit_code = 0;
     add_commands(app, own, exit_code);
+    keep_own_examples(app);
     try {
         std::vector<std::string> words(argv + 1, argv + argc);
         if (std::getenv(kCompleteVariable) != nullptr) {

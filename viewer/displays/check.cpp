@@ -137,7 +137,7 @@ Fault finish_fault(Wall const& wall, std::size_t i)
                                 "warp",
                                 *fault,
                                 "the picture would be torn",
-                                "export the mesh again, row by row from below"};
+                                "write nodes row by row from below, each to the right of the one before"};
     return {};
 }
 

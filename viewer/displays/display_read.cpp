@@ -73,7 +73,8 @@ void read_warp(Wall& wall, Yaml const& y, std::filesystem::path const& folder)
     mesh.only_keys({"columns", "rows", "nodes"});
     wall.warp = read_mesh(mesh);
     if (auto const fault = find_fault(*wall.warp))
-        throw mesh.error(*fault, "the picture would be torn", "export the mesh again, row by row from below");
+        throw mesh.error(*fault, "the picture would be torn",
+                         "write nodes row by row from below, each to the right of the one before");
 }
 
 WallBlend read_blend(Yaml const& y)

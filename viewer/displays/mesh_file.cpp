@@ -45,7 +45,13 @@ struct MeshReader {
 
     gi::InputError error(MeshLine const& line, std::string const& problem) const
     {
-        return {{name, line.number, 0}, problem, "the mesh cannot be read", "export it again"};
+        return {
+            {name, line.number, 0},
+            problem,
+            "the mesh cannot be read",
+            std::filesystem::path(name).extension() == ".obj"
+                ? "correct this line: v X Y, vt U V, or f with three vertices or more"
+                : "correct this line: type, then columns and rows, then X Y U V WEIGHT of a node in each line"};
     }
     double number(MeshLine const& line, std::size_t word) const
     {
@@ -66,7 +72,8 @@ struct MeshReader {
 WallMesh bourke_mesh(std::vector<MeshLine> const& lines, MeshReader const& r)
 {
     if (lines.size() < 2)
-        throw gi::InputError({r.name, 1, 0}, "no mesh", "type and size are missing", "export it again");
+        throw gi::InputError({r.name, 1, 0}, "no mesh", "type and size are missing",
+                             "begin with a line for the type, and one for columns and rows");
     WallMesh mesh;
     double const columns = r.number(lines[1], 0), rows = r.number(lines[1], 1);
     if (!(columns >= 2 && columns <= kMostWarpNodes && rows >= 2 && rows <= kMostWarpNodes))
@@ -115,7 +122,7 @@ WallMesh obj_mesh(std::vector<MeshLine> const& lines, MeshReader const& r)
                              fmt::format("{} faces, {} vertices, {} places in the picture", faces.size(),
                                          places.size(), pictures.size()),
                              "each vertex of a mesh has one place in the picture",
-                             "export it with texture coordinates");
+                             "switch texture coordinates on when it is exported: vt lines, one for each vertex");
     // A face of a grid with c columns joins vertices whose numbers differ by at most c + 1.
     auto const spread = [](std::set<std::size_t> const& s) { return *s.rbegin() - *s.begin(); };
     std::size_t columns = 0;
@@ -154,7 +161,8 @@ WallMesh parse_mesh_file(std::string const& text, std::string const& name, doubl
     MeshReader const reader{name, aspect};
     WallMesh mesh = kind == ".data" ? bourke_mesh(lines_of(text), reader) : obj_mesh(lines_of(text), reader);
     if (auto const fault = find_fault(mesh))
-        throw gi::InputError({name, 0, 0}, *fault, "the picture would be torn", "export the mesh again");
+        throw gi::InputError({name, 0, 0}, *fault, "the picture would be torn",
+                             "write nodes row by row from below, each to the right of the one before");
     return mesh;
 }
 

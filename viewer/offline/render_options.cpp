@@ -251,7 +251,8 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--tone", o.tone, "tone curve, for --png and --video")
         ->check(CLI::IsMember({"srgb", "filmic"}))
         ->capture_default_str();
-    c.add_option("--aovs", o.layers, fmt::format("layers to save beside color, of: {}", fmt::join(kLayers, ", ")))
+    c.add_option("--aovs", o.layers,
+                 fmt::format("layers to save beside color, e.g. L0,L1, of: {}", fmt::join(kLayers, ", ")))
         ->delimiter(',')
         ->allow_extra_args(false);
     c.add_option("--stats", o.stats, "JSON file for statistics: settings, structures, losses, times");

@@ -16,16 +16,18 @@ ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces
                             std::function<void(aiScene const&)> const& use)
 {
     if (regular_file_bytes(file) == 0)
-        throw InputError("'" + file.string() + "' is empty", "there is nothing to load", "export it again");
+        throw InputError("'" + file.string() + "' is empty", "there is nothing to load",
+                         "was it copied or exported to its end? take it from where it came from");
     std::optional<std::string> tried = AssimpTrials::known_outcome(file, faces);
     if (!tried) tried = AssimpTrials({file}, faces).outcome(file, faces);
     AssimpReader reader;
     std::string const why = !tried->empty() ? *tried : reader.read(file, faces);
     if (!why.empty())
-        throw InputError("'" + file.string() + "' cannot be read", why,
-                         Assimp::Importer().IsExtensionSupported(file.extension().string())
-                             ? "export it again"
-                             : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp supports");
+        throw InputError(
+            "'" + file.string() + "' cannot be read", why,
+            Assimp::Importer().IsExtensionSupported(file.extension().string())
+                ? "correct that place, or open it in Blender and export glTF (.glb), which is checked best"
+                : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp supports");
     use(reader.scene());
     return reader.files();
 }

@@ -138,8 +138,9 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
     c->add_option("--paths", a->settings.paths, "Paths of the reference renderer per compared pixel")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    c->footer(R"(Examples:
+    c->footer(R"(Prepared by:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+Examples:
   lightwell ar albedo desk/session.yaml --scene --poses desk/poses.csv --views 2 --paths 4
 
 Exit code 1: most frames were refused.)");

@@ -153,8 +153,9 @@ void add_ar_light(CLI::App& ar, int& exit_code)
         ->capture_default_str();
     c->add_flag("--json", a->json, "Print the result as JSON");
     c->add_option("--stats", a->stats, "File for the result, times and losses, as JSON");
-    c->footer(R"(Examples:
+    c->footer(R"(Prepared by:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+Examples:
   lightwell ar light desk/session.yaml --poses desk/poses.csv --views 2 --out light.exr
 
 Reported are the irradiance of six faces with its standard deviation, lamps, and what the frames do not determine.

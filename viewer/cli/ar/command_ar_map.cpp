@@ -123,8 +123,9 @@ void add_ar_map(CLI::App& ar, int& exit_code)
     c->add_option("--frames", a->frames, "Read at most this many frames; 0 = all (files only)")
         ->check(CLI::NonNegativeNumber);
     declare_require_found(*c, a->require_found);
-    c->footer(R"(Example:
+    c->footer(R"(Prepared by:
   lightwell ar synthesize mapped --quick --frames 12
+Examples:
   lightwell ar map mapped/session.yaml --out map.txt
 
 Then, in the session: pose: {features: map.txt}. Exit code 1: nothing became a point, or as of lightwell ar run.)");

@@ -141,8 +141,9 @@ void add_ar_replay(CLI::App& ar, int& exit_code)
     c->add_flag("--fast", o->fast, "read files as fast as possible");
     c->add_flag("--check", o->check, "exit code 1 if a frame was lost or damaged");
     c->add_flag("--json", o->json, "print JSON");
-    c->footer(R"(Examples:
+    c->footer(R"(Prepared by:
   lightwell ar record counter --out replayed --frames 10
+Examples:
   lightwell ar replay replayed
   lightwell ar replay replayed --fast --json
   lightwell ar replay counter --frames 100 --fast --check)");

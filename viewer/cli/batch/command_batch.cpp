@@ -267,9 +267,11 @@ void add_batch(CLI::App& app, int& exit_code)
     add_batch_work(*c, exit_code);
     c->footer(R"(Examples:
   lightwell batch example --out example.yaml
+  lightwell batch plan example.yaml
   lightwell batch example.yaml
   lightwell batch gather example.batch --out results
   lightwell batch status example.batch
+  lightwell batch resume example.batch
   lightwell batch --store walk.batch render atrium --frames 0:4@24 --paths 1 --size 32x24 --out walk_%04d.exr
 
 `mpirun -n 4 --host a,b,c,d lightwell batch example.yaml` uses four machines that share a disk, and

@@ -81,11 +81,12 @@ void add_bench_report(CLI::App& bench, int& exit_code)
     c->add_option("--next", o->page.next, "command to show at the end; repeatable")
         ->take_all()
         ->allow_extra_args(false);
-    c->footer(R"(Examples:
+    c->footer(R"(Prepared by:
   lightwell bench sweep --scene cornell --budgets 20ms --repeats 1 --size 32x32 --reference-paths 16 --out sweep
-  lightwell bench report sweep
   lightwell render cornell --eye left --paths 4 --size 64x48 --out sweep/left.exr --png sweep/left.png --stats sweep/left.json
   lightwell render cornell --eye right --paths 4 --size 64x48 --out sweep/right.exr --png sweep/right.png --stats sweep/right.json
+Examples:
+  lightwell bench report sweep
   lightwell bench report sweep --out index.html --title Cornell
 
 The page is self-contained: pictures (PNG) and videos (MP4) are embedded. Two renders that differ only in --eye are

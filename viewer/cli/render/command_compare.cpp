@@ -101,9 +101,10 @@ void add_compare(CLI::App& app, int& exit_code)
         ->allow_extra_args(false);
     c->add_option("--diff", o->difference, "map of the FLIP error to write (.png); black = no error");
     c->add_flag("--json", o->json, "print JSON");
-    c->footer(R"(Examples:
+    c->footer(R"(Prepared by:
   lightwell render cornell --size 64x64 --paths 16 --out a.exr
   lightwell render cornell --size 64x64 --paths 64 --seed 1 --out b.exr
+Examples:
   lightwell compare a.exr b.exr --metrics relmse,bias,ztest --diff difference.png
   lightwell compare a.exr b.exr --layer L1 --fail-above flip=0.5 --json)");
     c->callback([o, &exit_code] { exit_code = run(*o); });

@@ -128,11 +128,12 @@ void add_generate(CLI::App& app, int& exit_code)
   lightwell generate boxes --triangles 20000 --seed 1 --out boxes.glb
   lightwell generate sphere --triangles 20000 --out sphere.glb
   lightwell generate mirror --out mirror.glb
+  lightwell generate ring --out ring.glb
   lightwell generate avatar --out avatar.glb
   lightwell generate sky --turbidity 3 --sun-elevation 40 --sun-azimuth 120 --size 256x128 --out sky.exr
-  lightwell render cornell --envmap sky.exr --envmap-scale 0.05 --size 32x32 --paths 4 --out lit.exr
 
-A scene with a sky is saved as three files: F.glb, F_sky.exr and F.yaml, which refers to both.)");
+A scene with a sky is saved as three files: F.glb, F_sky.exr and F.yaml, which refers to both.
+`lightwell render SCENE --envmap sky.exr --envmap-scale 0.05` lights a scene by a sky.)");
     using Make = std::function<gi::Scene()>;
     auto const add = [&](char const* name, char const* help, Make const& make) {
         CLI::App* const kind = c->add_subcommand(name, help);

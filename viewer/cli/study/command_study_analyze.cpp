@@ -168,11 +168,12 @@ void add_study_analyze(CLI::App& study, int& exit_code)
     analyze->add_flag("--json", o->json, "print JSON");
     analyze->add_option("-o,--out", o->out, "folder for each table as CSV and the whole analysis as JSON");
     analyze->callback([o, &exit_code] { exit_code = run_analyze(*o); });
-    analyze->footer(R"(Examples:
+    analyze->footer(R"(Prepared by:
   lightwell study example pairs --out pairs.yaml
   lightwell study simulate pairs.yaml --participants 1..6 --out compared
-  lightwell study analyze compared --script pairs.yaml --exclude P002
   lightwell study export compared --script pairs.yaml --out tables
+Examples:
+  lightwell study analyze compared --script pairs.yaml --exclude P002
   lightwell study analyze --table tables/data/study-pairs_description-trials_data.csv --only analysis=counted --columns participant=participant,first=first,second=second,chosen=chosen)");
 
     CLI::App* const report =
@@ -180,9 +181,10 @@ void add_study_analyze(CLI::App& study, int& exit_code)
     add_options(*report, *o);
     report->add_option("-o,--out", o->out, "file to write (HTML)")->required();
     report->callback([o, &exit_code] { exit_code = run_report(*o); });
-    report->footer(R"(Examples:
+    report->footer(R"(Prepared by:
   lightwell study example staircase --out staircase.yaml
   lightwell study simulate staircase.yaml --participants 1..4 --out climbed
+Examples:
   lightwell study report climbed --script staircase.yaml --out report.html)");
 }
 

@@ -84,7 +84,7 @@ int run_check(CheckOptions const& o)
         doubts.emplace_back("stimuli have sizes, places or luminances in physical units: study run needs "
                             "--display-model, with which check finds what the display cannot show");
     if (std::string const why = why_not_a_folder(s.record.dir); !why.empty())
-        doubts.push_back(fmt::format("record.dir '{}' cannot be made here: {}; study run needs another --dir",
+        doubts.push_back(fmt::format("record.dir '{}' cannot be made here: {}; study run needs another --out",
                                      s.record.dir, why));
     if (o.json) {
         nlohmann::ordered_json j{{"id", s.id},

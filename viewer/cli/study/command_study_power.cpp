@@ -126,8 +126,9 @@ void add_study_power(CLI::App& study, int& exit_code)
     power->add_option("-o,--out", o->out, "folder for power.csv, power.json and power.html (with a figure)");
     power->add_flag("--json", o->json, "print JSON");
     power->callback([o, &exit_code] { exit_code = run_power(*o); });
-    power->footer(R"(Examples:
+    power->footer(R"(Prepared by:
   lightwell study example pairs --out pairs.yaml
+Examples:
   lightwell study power pairs.yaml --block better --test none-wide --participants 6,12 --effects 0,1 --simulations 20
 
 Ctrl-C ends it and keeps the simulations that are complete.)");

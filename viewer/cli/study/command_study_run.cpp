@@ -233,7 +233,7 @@ void add_study_run(CLI::App& study, int& exit_code)
         ->check(CLI::Range(1, 99))
         ->capture_default_str();
     c->add_flag("--resume", o->resume, "continue an interrupted session: same order, nothing is repeated");
-    c->add_option("--dir", o->dir, "folder of the data set (default: record.dir of the script)");
+    c->add_option("-o,--out,--dir", o->dir, "folder of the data set (default: record.dir of the script)");
     c->add_option("--size", o->size, "window size, px")->capture_default_str();
     c->add_option("--fullscreen", o->fullscreen, "full screen on the monitor with this number or name");
     c->add_option("--display", o->display, "display file: walls instead of a window (docs/displays.md)");
@@ -269,7 +269,7 @@ void add_study_run(CLI::App& study, int& exit_code)
     c->add_flag("--json", o->json, "print JSON");
     c->callback([o, &exit_code] { exit_code = run(*o); });
     c->footer(R"(Example (needs a display):
-  lightwell study run pairs.yaml --participant 1 --dir data --fullscreen 0 --remote /tmp/session.sock
+  lightwell study run pairs.yaml --participant 1 --out data --fullscreen 0 --remote /tmp/session.sock
 
 Pressing Escape twice ends the session; completed trials are kept, and --resume continues it.
 Exit codes: 0 all steps are done, 1 not all steps are done, 2 the input or the call is wrong, the disk failed,

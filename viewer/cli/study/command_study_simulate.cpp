@@ -98,7 +98,7 @@ void add_study_simulate(CLI::App& study, int& exit_code)
         "simulate", "Simulate sessions with model observers: to try a script, for power analysis, for tests.");
     simulate->add_option("SCRIPT", o->script, "experiment (YAML, schema study/2)")->required();
     simulate->add_option("--participants", o->participants, "3, 1..24 or 1,4,7..9 (default: all of the script)");
-    simulate->add_option("-o,--out", o->out, "folder of the data set (default: simulated-ID)");
+    simulate->add_option("-o,--out,--dir", o->out, "folder of the data set (default: simulated-ID)");
     simulate->add_option("--observer", o->observer, "model of the observers (YAML, docs/study/analysis.md)");
     simulate->add_option("--seed", o->seed, "seed of the observers and their answers (default: the script's)");
     simulate->add_option("--session", o->session, "number of the session")
@@ -114,8 +114,9 @@ void add_study_simulate(CLI::App& study, int& exit_code)
     simulate->add_flag("--any-settings", o->any_settings, "do not look settings up (as for study check)");
     simulate->add_flag("--json", o->json, "print JSON");
     simulate->callback([o, &exit_code] { exit_code = run_simulate(*o); });
-    simulate->footer(R"(Examples:
+    simulate->footer(R"(Prepared by:
   lightwell study example staircase --out staircase.yaml
+Examples:
   lightwell study simulate staircase.yaml --participants 1..3 --out stairs
   lightwell study simulate staircase.yaml --participants 4 --seed 7 --out others --each
 

@@ -55,9 +55,10 @@ void add_study_tables(CLI::App& study, int& exit_code)
         study.add_subcommand("rebuild", "Rebuild the tables (BIDS) of an experiment from its journals.");
     add_records(*rebuild, *o);
     rebuild->callback([o, &exit_code] { exit_code = run_rebuild(*o); });
-    rebuild->footer(R"(Examples:
+    rebuild->footer(R"(Prepared by:
   lightwell study example rating --out rating.yaml
   lightwell study simulate rating.yaml --participants 1..2 --out records
+Examples:
   lightwell study rebuild records --script rating.yaml
 
 The script is copied to records/code, where later commands find it.)");
@@ -68,9 +69,10 @@ The script is copied to records/code, where later commands find it.)");
     exported->add_option("-o,--out", o->out, "folder for CSV tables (Psych-DS) and analysis.R (lme4)");
     exported->add_option("--sqlite", o->sqlite, "SQLite database to write, with the same tables");
     exported->callback([o, &exit_code] { exit_code = run_export(*o); });
-    exported->footer(R"(Examples:
+    exported->footer(R"(Prepared by:
   lightwell study example rating --out rating.yaml
   lightwell study simulate rating.yaml --participants 1..2 --out rated
+Examples:
   lightwell study export rated --script rating.yaml --out exported --sqlite rated.sqlite)");
 }
 

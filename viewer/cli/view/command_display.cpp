@@ -232,7 +232,7 @@ CLI::App* const calibrate =
 calibrate->add_option("FILE", o->file, "display file (YAML)")->required();
 calibrate->add_option("--pattern", o->pattern, "grid, corners, eyes, colours, crosstalk or blend")
     ->capture_default_str();
-calibrate->add_option("--out-dir", o->out_folder, "folder for the PNG files")->required();
+calibrate->add_option("-o,--out,--out-dir", o->out_folder, "folder for the PNG files")->required();
 calibrate->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
 
 CLI::App* const example = display->add_subcommand("example", "Write one of the built-in example displays.");
@@ -248,7 +248,7 @@ example->callback([o, &exit_code] { exit_code = run_example(*o); });
 display->footer(R"(Examples:
   lightwell display example cave4.yaml --out cave4.yaml
   lightwell display check cave4.yaml
-  lightwell display calibrate cave4.yaml --pattern grid --out-dir patterns
+  lightwell display calibrate cave4.yaml --pattern grid --out patterns
   lightwell display example cave.pvx --out cave.pvx
   lightwell display import cave.pvx --out imported.yaml
 

@@ -104,8 +104,9 @@ void add_recording(CLI::App& app, int& exit_code)
         c->add_subcommand("info", "Print scene, settings, frames, times, and whether the file is complete.");
     info->add_option("FILE", o->file, "recording made by --record")->required();
     info->add_flag("--json", o->json, "print JSON");
-    info->footer(R"(Examples (view needs a display):
+    info->footer(R"(Prepared by (view needs a display):
   lightwell view atrium --record walk.lwr
+Examples:
   lightwell recording info walk.lwr
   lightwell recording info walk.lwr --json)");
     info->callback([o, &exit_code] { exit_code = run_info(*o); });
@@ -113,12 +114,14 @@ void add_recording(CLI::App& app, int& exit_code)
         c->add_subcommand("export", "Write one CSV row per frame: poses, cameras, changes, times.");
     out->add_option("FILE", o->file, "recording made by --record")->required();
     out->add_option("--csv", o->csv, "CSV file to write; its first lines explain the columns")->required();
-    out->footer(R"(Examples (view needs a display):
+    out->footer(R"(Prepared by (view needs a display):
   lightwell view atrium --record walk.lwr
+Examples:
   lightwell recording export walk.lwr --csv walk.csv)");
     out->callback([o, &exit_code] { exit_code = run_export(*o); });
-    c->footer(R"(Examples (view needs a display):
+    c->footer(R"(Prepared by (view needs a display):
   lightwell view atrium --record walk.lwr
+Examples:
   lightwell recording info walk.lwr
   lightwell recording export walk.lwr --csv walk.csv)");
 }

@@ -289,8 +289,9 @@ void add_listen(CLI::App& track, int& exit_code)
     c->add_option("--right-foot", o->right_foot, "the same for the right foot")->capture_default_str();
     c->add_flag("--quiet", o->quiet, "print only the counts at the end, no samples");
     c->add_flag("--json", o->json, "print the counts as JSON");
-    c->footer(R"(Examples:
+    c->footer(R"(Prepared by:
   lightwell track walk --seconds 1 --out walk.csv
+Examples:
   lightwell track listen --type file --file walk.csv --seconds 0.2
   lightwell track listen --type osc --port 9123 --seconds 0.2 --json
 
@@ -319,8 +320,9 @@ void add_send(CLI::App& track, int& exit_code)
         ->check(in_range(0, 1e4))
         ->capture_default_str();
     c->add_option("--seed", o->seed, "seed of loss and jitter")->check(in_range(0, 2147483647));
-    c->footer(R"(Examples:
+    c->footer(R"(Prepared by:
   lightwell track walk --seconds 1 --out walk.csv
+Examples:
   lightwell track send --type osc --file walk.csv --port 9123 --seconds 0.2
   lightwell track send --type dtrack --port 5123 --seconds 0.2 --loss 0.1 --jitter 50)");
     c->callback([o, &exit_code] { exit_code = run_send(*o); });

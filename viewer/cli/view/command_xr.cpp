@@ -65,6 +65,7 @@ void add_xr(CLI::App& app, int& exit_code)
   XR_RUNTIME_JSON=/usr/share/openxr/1/openxr_monado.json lightwell xr info --json
 
 Exit code 2 if there is no runtime or no headset; see docs/hmd.md.)");
+    c->footer("Examples:\n  lightwell xr info");
     info->callback([as_json, &exit_code] { exit_code = run_info(*as_json); });
 }
 

@@ -97,7 +97,7 @@ SoundSamples read_sound(study::Script const& script, study::Sound const& sound,
     sf_count_t const got = sf_readf_float(open.get(), read.data(), info.frames);
     if (got != info.frames)
         throw gi::InputError(place, fmt::format("'{}' ends after {} of {} samples", sound.file, got, info.frames),
-                             "it was cut off, or is damaged", "write it again");
+                             "it was cut off, or is damaged", "copy it again, or write it as WAV of 16 bits");
     SoundSamples out;
     out.rate_hz = info.samplerate;
     auto const amplitude = float(gain(sound));

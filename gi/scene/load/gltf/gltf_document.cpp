@@ -110,7 +110,8 @@ json parse_json(Bytes text, GltfDocument const& d)
         auto const end = text.begin() + std::ptrdiff_t(std::min(e.byte, text.size()));
         int const line = 1 + int(std::count(text.begin(), end, '\n'));
         auto const start = std::find(std::make_reverse_iterator(end), text.rend(), '\n').base();
-        throw InputError({d.name, line, int(end - start)}, "is not valid JSON", e.what(), "export the file again");
+        throw InputError({d.name, line, int(end - start)}, "is not valid JSON", e.what(),
+                         "correct that place, or copy the file again if it was cut off");
     } catch (json::exception const& e) { // e.g. a number outside the range of double
         throw d.error("is not valid JSON", e.what());
     }

@@ -36,7 +36,8 @@ struct GltfDocument {
 
     InputError error(std::string const& problem, std::string const& why) const
     {
-        return {name + ": " + problem, why, "check it with the glTF validator and export it again"};
+        return {name + ": " + problem, why,
+                "the glTF validator names the place; Blender exports files that pass it"};
     }
     /// Counts array elements about to be created. Throws InputError if a small file would create a huge scene:
     /// data may be used several times, but not without limit.
