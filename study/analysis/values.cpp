@@ -140,8 +140,9 @@ void add_model(ScaleResult& r, std::vector<Rating> const& ratings, int observers
 
 void add_spread(ScaleResult& r, Block const& b, std::vector<ObserverTrials> const& trials, RatedItems& items)
 {
-    int const steps = int(std::lround((b.scale.high - b.scale.low) / b.scale.step)) + 1;
-    if (steps < 2 || steps > 101) return;
+    double const range = std::round((b.scale.high - b.scale.low) / b.scale.step);
+    if (!(range >= 1 && range <= 100)) return;
+    int const steps = int(range) + 1;
     r.spread.assign(r.items.size(), std::vector<int>(std::size_t(steps), 0));
     for (ObserverTrials const& o : trials)
         for (TrialRow const& row : o.rows) {

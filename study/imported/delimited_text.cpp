@@ -15,20 +15,35 @@ namespace {
 
 constexpr std::string_view kMark = "\xef\xbb\xbf"; ///< byte-order mark, also where files were joined
 
-/// @param line  of column names
-char separator_of(std::string_view line)
+/// How often a character is in a line outside quotes.
+int count_of(char c, std::string_view line)
 {
-    std::size_t commas = 0, semicolons = 0, tabs = 0;
+    int n = 0;
     bool is_quoted = false;
-    for (char const c : line) {
-        if (c == '"') is_quoted = !is_quoted;
-        if (is_quoted) continue;
-        commas += c == ',';
-        semicolons += c == ';';
-        tabs += c == '\t';
+    for (char const other : line) {
+        if (other == '"') is_quoted = !is_quoted;
+        n += other == c && !is_quoted;
     }
-    if (semicolons > commas && semicolons >= tabs) return ';';
-    return tabs > commas ? '\t' : ',';
+    return n;
+}
+
+/// The most frequent one in the line of column names; before it tabs, and, of two, the one that is as frequent in the
+/// line below: names may have commas, as in "time, ms".
+char separator_of(std::string_view names, std::string_view below)
+{
+    char best = ',';
+    int most = 0;
+    for (char const c : {'\t', ';', ','}) {
+        int const n = count_of(c, names);
+        bool const is_alike = n > 0 && n == count_of(c, below);
+        if (c == '\t' && is_alike) return c;
+        int const score = n == 0 ? 0 : n + (is_alike ? 1'000'000 : 0);
+        if (score > most) {
+            best = c;
+            most = score;
+        }
+    }
+    return best;
 }
 
 class Reader {
@@ -52,7 +67,10 @@ public:
         std::size_t const end = std::min(text_.find_first_of("\n\r", at_), text_.size());
         return text_.substr(at_, end - at_);
     }
-    void separate_as(std::string_view line) { separator_ = given_ ? *given_ : separator_of(line); }
+    void separate_as(std::string_view names, std::string_view below)
+    {
+        separator_ = given_ ? *given_ : separator_of(names, below);
+    }
     char separator() const { return separator_; }
     void skip_line()
     {
@@ -162,23 +180,26 @@ std::vector<TextCell> read_head(Reader& reader, int& comments)
         reader.skip_empty();
         ++comments;
     }
-    if (last_comment) {
+    std::string_view const line = last_comment ? last_comment->rest_of_line() : std::string_view();
+    if (last_comment && std::count(line.begin(), line.end(), '"') % 2 == 0) {
         Reader head = *last_comment, first = reader;
-        head.separate_as(head.rest_of_line());
-        first.separate_as(last_comment->rest_of_line());
+        for (Reader* const r : {&head, &first}) r->separate_as(line, reader.rest_of_line());
         std::vector<TextCell> cells = head.row();
         if (!first.at_end() && cells.size() > 1) {
             auto const row = first.row();
             if (filled(row) <= cells.size() && row.size() >= filled(cells) && has_number(row)) {
                 --comments;
-                reader.separate_as(last_comment->rest_of_line());
+                reader.separate_as(line, reader.rest_of_line());
                 if (cells[0].text.starts_with("# "))
                     cells[0].text = std::string(gi::trimmed(cells[0].text.substr(1)));
                 return cells;
             }
         }
     }
-    reader.separate_as(reader.rest_of_line());
+    Reader below = reader;
+    below.skip_line();
+    below.skip_empty();
+    reader.separate_as(reader.rest_of_line(), below.rest_of_line());
     return reader.at_end() ? std::vector<TextCell>{} : reader.row();
 }
 

@@ -43,7 +43,8 @@ DelimitedText joined(std::vector<DelimitedText> const& tables);
 /// @throws ScriptError unknown columns, a name that occurs twice in a trial
 DelimitedText to_wide(DelimitedText const& table, std::string const& names, std::string const& values);
 
-/// The separator is the one of comma, semicolon and tab that is most frequent in the line of column names. That line may
+/// The separator is the one of comma, semicolon and tab that is most frequent in the line of column names; of two, the one
+/// that is as frequent in the next line. That line may
 /// begin with "# ". Rows may end before the last columns, which are missing there.
 /// @throws ScriptError as decoded_table; no columns, a row with more cells or with only one, a further line of column
 /// names in another order, an open quote

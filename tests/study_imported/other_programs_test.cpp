@@ -100,6 +100,10 @@ TEST(OtherPrograms, WriteTheSameTableInManyWays)
              Case{"joined files", "who,item,value\np1,A,0.5\np1,B,1.5\n\nwho,item,value\np2,A,2.25\np2,B,3\n"},
              Case{"joined files with marks", "\xef\xbb\xbfwho,item,value\np1,A,0.5\np1,B,1.5\n\xef\xbb\xbfwho,"
                                              "item,value\np2,A,2.25\np2,B,3\n"},
+             Case{"commas in names", "who\titem, shown\titem\tvalue\tx, y, z\np1\t1\tA\t0,5\t1\np1\t2\tB\t1,5\t\n"
+                                     "p2\t1\tA\t2,25\t1\np2\t2\tB\t3\t1\n"},
+             Case{"commas in names with semicolons",
+                  "who;item;value;x, y, z, of, all\np1;A;0,5;1\np1;B;1,5;1\np2;A;2,25;1\np2;B;3;1\n"},
              Case{"trailing separators", "who,item,value,,\np1,A,0.5,,\np1,B,1.5\np2,A,2.25,,\np2,B,3,,\n"},
              Case{"more separators than columns", "who,item,value\np1,A,0.5,,\np1,B,1.5,\np2,A,2.25\np2,B,3\n"},
              Case{"equal names", "who,x,item,x,value\np1,1,A,2,0.5\np1,1,B,2,1.5\np2,1,A,2,2.25\np2,1,B,2,3\n"},
