@@ -1,9 +1,9 @@
 // The whole method by kernels, on the host and on the device, against render_slhb: with the same random numbers
 // they trace the same paths, but for rounding.
 
-#include "gi/light_paths/settings.h"
 #include "gi/core/error.h"
 #include "gi/hit_buffers/settings.h"
+#include "gi/light_paths/settings.h"
 #include "gi/methods/slhb/kernels/kernel_render.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
