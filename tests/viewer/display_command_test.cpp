@@ -37,6 +37,11 @@ TEST(DisplayCommand, ImportsAndSaysWhatIsLost)
         EXPECT_TRUE(text.starts_with(std::string("# From ") + name)) << text;
         EXPECT_EQ(text.find("# Not imported, or assumed:\n# - ") == std::string::npos, says_all) << text;
         run_well("display check imported.yaml", folder.path());
+        auto const j = nlohmann::json::parse(
+            run_well(std::string("display import ") + name + " --out imported.yaml --json", folder.path()).out);
+        EXPECT_EQ(j["not_imported"].empty(), says_all) << j;
+        EXPECT_EQ(j["report"]["losses"].empty(), says_all) << j;
+        EXPECT_GE(j["walls"].get<int>(), 2);
     }
 }
 

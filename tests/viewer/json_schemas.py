@@ -75,6 +75,8 @@ CALLS = [
     Call("study run pairs.yaml --participant 1 --dir run --size 64x48 --json", "study_run", codes=(1,), needs="display"),
     Call("display check cave4.yaml --json", "display_check", before=("display example cave4.yaml --out cave4.yaml",)),
     Call("display check room.yaml --json", "display_check"),
+    Call("display import cave.pvx --out imported.yaml --json", "display_import",
+         before=("display example cave.pvx --out cave.pvx",)),
     Call("recording info walk.lwr --json", "recording_info", needs="display",
          before=("view cornell --size 64x48 --time-limit 2 --record walk.lwr",)),
     Call("track listen --type file --file walk.csv --seconds 0.2 --json", "track_listen", before=("track walk --seconds 1 --out walk.csv",)),

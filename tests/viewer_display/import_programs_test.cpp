@@ -6,6 +6,7 @@
 #include "viewer/displays/mesh_file.h"
 #include "viewer/displays/views.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace viewer::test {
@@ -541,6 +542,187 @@ TEST(ImportNDisplay, Json)
     EXPECT_NE(
         message_of([&] { parse_ndisplay(circle, "n.ndisplay", report); }).find("parents go round in a circle"),
         std::string::npos);
+}
+
+/// An observer with these fields.
+std::string equalizer_with(std::string const& observer, std::string const& more = "")
+{
+    return "global { EQ_CONFIG_FATTR_EYE_BASE 0.06 EQ_COMPOUND_IATTR_STEREO_MODE PASSIVE }\n"
+           "server { config { appNode { pipe { window { viewport [ 0 0 200 100 ] channel { name \"l\" viewport [ "
+           "0 0 .5 1 "
+           "] } channel { name \"r\" viewport [ .5 0 .5 1 ] } } } }\n"
+           "observer { " +
+           observer +
+           " }\nlayout { name \"s\" view { mode STEREO observer 0 } } canvas { layout \"s\" wall { } segment { "
+           "eye [ LEFT ] "
+           "channel \"l\" } segment { eye [ RIGHT ] channel \"r\" } } " +
+           more + " } }";
+}
+
+/// Where the eyes of the resting head are.
+void expect_eyes(User const& user, gi::dvec3 left, gi::dvec3 right)
+{
+    Eyes const eyes = eyes_of(user, resting_head(user));
+    EXPECT_LT(glm::length(eyes.left - left), 1e-12) << eyes.left.x << " " << eyes.left.y << " " << eyes.left.z;
+    EXPECT_LT(glm::length(eyes.right - right), 1e-12)
+        << eyes.right.x << " " << eyes.right.y << " " << eyes.right.z;
+}
+
+TEST(ImportEqualizer, EyesAreWhereTheFileSays) // Equalizer's issue 201
+{
+    struct Case {
+        std::string observer;
+        gi::dvec3 left, right;
+        std::vector<std::string> lost; ///< in the order of the file
+    };
+    std::string const unlevel = "eyes at different heights", apart = "eyes of pictures without stereo";
+    for (auto const& [observer, left, right, lost] :
+         {Case{"", {-.03, 0, 0}, {.03, 0, 0}, {}}, Case{"eye_base 0.07", {-.035, 0, 0}, {.035, 0, 0}, {}},
+          Case{"eye_left [ -.04 .01 0 ] eye_right [ .03 0 0 ]", {-.04, .01, 0}, {.03, 0, 0}, {unlevel, apart}},
+          Case{"eye_left [ -.04 .01 0 ] eye_cyclop [ -.005 .005 0 ] eye_right [ .03 0 0 ]",
+               {-.04, .01, 0},
+               {.03, 0, 0},
+               {unlevel}},
+          Case{"eye_left [ -.03 -.02 .01 ] eye_right [ .03 .02 -.01 ]",
+               {-.03, -.02, .01},
+               {.03, .02, -.01},
+               {unlevel}},
+          Case{"eye_left [ -.03 0 .01 ] eye_right [ .03 0 -.01 ]", {-.03, 0, .01}, {.03, 0, -.01}, {}},
+          Case{"eye_left [ 0 -.03 0 ] eye_right [ 0 .03 0 ]", {0, -.03, 0}, {0, .03, 0}, {unlevel}},
+          Case{"eye_left [ .03 0 0 ] eye_right [ -.03 0 0 ]",
+               {.03, 0, 0},
+               {-.03, 0, 0},
+               {"eyes of which the right one"}},
+          Case{"eye_left [ -.04 .1 .2 ] eye_right [ .02 .1 .2 ] eye_cyclop [ -.01 .1 .2 ]",
+               {-.04, .1, .2},
+               {.02, .1, .2},
+               {}},
+          Case{"eye_left [ -.04 0 0 ] eye_base 0.07", {-.035, 0, 0}, {.035, 0, 0}, {}}}) {
+        gi::Report report;
+        ImportLog const log(report);
+        Display const d = parse_equalizer(equalizer_with(observer), "e.eqc", log);
+        ASSERT_EQ(d.walls.size(), 2u);
+        expect_eyes(d.users[0], left, right);
+        ASSERT_EQ(log.parts().size(), lost.size()) << observer << "\n" << skipped(log);
+        for (std::size_t i = 0; i < lost.size(); ++i) {
+            EXPECT_TRUE(log.parts()[i].what.starts_with(lost[i])) << observer << "\n" << skipped(log);
+            EXPECT_TRUE(log.parts()[i].where.starts_with("e.eqc:3:1")) << log.parts()[i].where;
+        }
+    }
+}
+
+/// Settings that the importers read over, or averaged.
+TEST(ImportPrograms, WhatIsNotImportedIsNamed)
+{
+    struct Case {
+        Display (*parse)(std::string const&, std::string const&, ImportLog);
+        std::string text, lost;
+    };
+    auto const vrui = [](std::string const& text, std::string const& name, ImportLog log) {
+        return parse_vrui(text, name, "", log);
+    };
+    auto const vrui_text = [](std::string const& viewer, std::string const& window) {
+        return "section Vrui\nsection a\nscreenNames (S)\nwindowNames (W)\nsection S\norigin (-1, 1, "
+               "0)\nhorizontalAxis (1, "
+               "0, 0)\nverticalAxis (0, 0, 1)\nwidth 60\nheight 60\nendsection\nsection W\nwindowPos (0, 0), (80, "
+               "60)\nscreenName S\nviewerName V\n" +
+               window + "\nendsection\nsection V\nleftEyePosition (-1.25, 0, 0)\nrightEyePosition (1.25, 0, 0)\n" +
+               viewer + "\nendsection\nendsection\nendsection\n";
+    };
+    auto const ndisplay = [](std::string const& node, std::string const& viewport, std::string const& camera,
+                             std::string const& top = "") {
+        return R"({"nDisplay": {)" + top + R"("scene": {"xforms": {}, "cameras": {"c": {)" + camera +
+               R"("location": {"x": 0, "y": 0, "z": 170}}}, "screens": {"s": {"size": {"width": 300, "height": 200}}}},
+               "cluster": {"nodes": {"n": {)" +
+               node + R"("window": {"x": 0, "y": 0, "w": 80, "h": 60}, "viewports": {"v": {)" + viewport +
+               R"("camera": "c", "region": {"x": 0, "y": 0, "w": 80, "h": 60},
+               "projectionPolicy": {"type": "simple", "parameters": {"screen": "s"}}}}}}}}})";
+    };
+    auto const ndisplay_text = [](std::string const& more, std::string const& camera = "") {
+        return "[cluster_node] id=n window=w\n[window] id=w viewports=v ResX=80 ResY=60\n[viewport] id=v x=0 y=0 "
+               "width=80 "
+               "height=60 projection=p\n[projection] id=p type=simple screen=s\n[screen] id=s loc=\"X=1,Y=0,Z=1\" "
+               "size=\"X=3,Y=2\"\n[camera] id=c loc=\"X=0,Y=0,Z=1.7\" " +
+               camera + "\n" + more;
+    };
+    auto const sgct_text = [](std::string const& node, std::string const& window, std::string const& projection) {
+        return R"({"version": 1, "masteraddress": "localhost", "users": [{"pos": {"x": 0, "y": 0, "z": 0}}], "nodes": [{"port": 1, )" +
+               node + R"("windows": [{"size": {"x": 80, "y": 60})" + window +
+               R"(, "viewports": [{"projection": )" + projection + "}]}]}]}";
+    };
+    std::string const plane = R"({"type": "PlanarProjection", "fov": {"hfov": 90, "vfov": 90}})";
+    constexpr char const* kUsual[]{"screens whose size", "ParaView does not say",
+                                   "nDisplay is told on its command line", "windows that show no wall"};
+    for (auto const& [parse, text, lost] :
+         {Case{parse_equalizer, equalizer_with("focus_distance 2"),
+               "Equalizer observer focus_distance: not imported"},
+          Case{parse_equalizer, equalizer_with("", "compound { attributes { stereo_mode HOLOGRAM } }"),
+               "Equalizer stereo_mode HOLOGRAM: not imported"},
+          Case{parse_equalizer, equalizer_with("", "node { host \"far\" pipe { device 0 } }"),
+               "addresses of machines"},
+          Case{parse_equalizer, equalizer_with("", "node { pipe { device 1 } }"),
+               "Equalizer pipe device: not imported"},
+          Case{parse_equalizer, equalizer_with("", "node { pipe { attributes { hint_thread OFF } } }"),
+               "Equalizer pipe attributes: not imported"},
+          Case{parse_equalizer,
+               equalizer_with("", "node { pipe { window { viewport [ 0 0 9 9 ] channel { name \"x\" attributes { "
+                                  "hint_statistics OFF } } } } }"),
+               "Equalizer channel attributes: not imported"},
+          Case{vrui, vrui_text("monoEyePosition (0, 0, 1)", ""), "eyes of pictures without stereo"},
+          Case{vrui, vrui_text("viewDirection (0, 1, 0.5)", ""), "Vrui view directions"},
+          Case{vrui, vrui_text("headLightColor (1, 1, 1)", ""), "Vrui lamps at the head"},
+          Case{vrui, vrui_text("", "display :0.1"), "Vrui displays of windows"},
+          Case{vrui,
+               vrui_text("viewDirection (0, 1, 0)\nmonoEyePosition (0, 0, 0)\nheadLightEnabled false",
+                         "display :0.0"),
+               ""},
+          Case{parse_ndisplay, ndisplay("", "", ""), ""},
+          Case{parse_ndisplay, ndisplay(R"("host": "10.0.0.7", )", "", ""), "addresses of machines"},
+          Case{parse_ndisplay, ndisplay(R"("host": "127.0.0.1", "sound": false, "graphicsAdapter": -1, )", "", ""),
+               ""},
+          Case{parse_ndisplay, ndisplay(R"("renderHeadless": true, )", "", ""),
+               "nDisplay node renderHeadless: not imported"},
+          Case{parse_ndisplay, ndisplay("", R"("gPUIndex": 2, )", ""), "nDisplay viewport gPUIndex: not imported"},
+          Case{parse_ndisplay, ndisplay("", R"("gPUIndex": -1, )", ""), ""},
+          Case{parse_ndisplay, ndisplay("", "", R"("lens": 35, )"), "nDisplay camera lens: not imported"},
+          Case{parse_ndisplay, ndisplay("", "", R"("stereoOffset": "up", )"),
+               "nDisplay camera stereoOffset up: taken as none"},
+          Case{parse_ndisplay, ndisplay("", "", "", R"("misc": {"bFollowLocalPlayerCamera": true}, )"),
+               "nDisplay misc: not imported"},
+          Case{parse_ndisplay_cfg, ndisplay_text(""), ""},
+          Case{parse_ndisplay_cfg, ndisplay_text("", "fov=90"), "nDisplay [camera] fov: not imported"},
+          Case{parse_ndisplay_cfg, ndisplay_text("[network] cln_conn_tries_amount=10"),
+               "nDisplay [network]: not imported"},
+          Case{parse_sgct, sgct_text("", "", plane), ""},
+          Case{parse_sgct, sgct_text(R"("address": "10.0.0.7", )", "", plane), "addresses of machines"},
+          Case{parse_sgct, sgct_text("", R"(, "res": {"x": 4096, "y": 4096})", plane),
+               "SGCT resolutions of pictures"},
+          Case{parse_sgct, sgct_text("", R"(, "res": {"x": 80, "y": 60})", plane), ""},
+          Case{parse_sgct,
+               sgct_text("", "", R"({"type": "TextureMappedProjection", "fov": {"hfov": 90, "vfov": 90}})"),
+               "SGCT TextureMappedProjection: taken as"},
+          Case{parse_sgct,
+               sgct_text("", "", R"({"type": "PlanarProjection", "fov": {"hfov": 90, "vfov": 90, "skew": 1}})"),
+               "SGCT projection.fov.skew: not imported"},
+          Case{parse_pvx,
+               "<pvx><EyeSeparation Value='0.06'/><Machine Geometry='8x6' LowerLeft='-1 -1 -1' LowerRight='1 -1 "
+               "-1' "
+               "UpperLeft='-1 1 -1' UpperRight='1 1.1 -1'/></pvx>",
+               "ParaView UpperRight that makes no rectangle"}}) {
+        gi::Report report;
+        ImportLog const log(report);
+        parse(text, "f", log);
+        std::size_t named = 0, others = 0;
+        for (SkippedPart const& part : log.parts()) {
+            bool const is_usual =
+                std::ranges::any_of(kUsual, [&](char const* w) { return part.what.starts_with(w); });
+            bool const is_it = !lost.empty() && part.what.starts_with(lost);
+            named += is_it;
+            others += !is_it && !is_usual;
+        }
+        EXPECT_EQ(named, lost.empty() ? 0u : 1u) << text << "\n" << skipped(log);
+        EXPECT_EQ(others, 0u) << text << "\n" << skipped(log);
+    }
 }
 
 TEST(ImportNDisplay, OlderText)

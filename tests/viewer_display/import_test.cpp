@@ -52,7 +52,7 @@ TEST(Import, SgctPlanarProjections)
                                  "s.json", report);
     // Two metres away, turned to the right: -z becomes +x.
     expect_corners(d.walls[0], {{2, 0, -2}, {2, 0, 1}, {2, 2, -2}});
-    EXPECT_EQ(report.losses().size(), 1u); // no user
+    EXPECT_EQ(report.losses().size(), 2u); // no user; the machine's address
     Display const e =
         parse_sgct(sgct(R"({"type": "PlanarProjection", "fov": {"hfov": 90, "vfov": 90}})"), "s.json", report);
     expect_corners(e.walls[0], {{-10, -10, -10}, {10, -10, -10}, {-10, 10, -10}});

@@ -122,6 +122,40 @@ double imported_eyes(double metres, std::string const& where, ImportLog const& l
     return User{}.interpupillary_m;
 }
 
+void place_eyes(User& user, gi::dvec3 left, gi::dvec3 right, std::string const& where, ImportLog const& log)
+{
+    gi::dvec3 const between = right - left, middle = 0.5 * (left + right);
+    double const distance = glm::length(between);
+    user.interpupillary_m = imported_eyes(distance, where, log);
+    if (distance > 1e-9 && glm::length(between / distance - gi::dvec3{1, 0, 0}) > 1e-9) {
+        // The turn about y, then the least one that lifts an eye: the head does not nod.
+        double const level = std::hypot(between.x, between.z), yaw = std::atan2(-between.z, between.x);
+        user.head.rotation_deg = {0, glm::degrees(yaw), 0};
+        if (std::abs(between.y) > 1e-9 * distance) {
+            gi::dquat const turn = glm::angleAxis(yaw, gi::dvec3{0, 1, 0}),
+                            lift = glm::angleAxis(std::atan2(between.y, level), gi::dvec3{0, 0, 1});
+            user.head.rotation_deg = placement_of({user.head.translation_m, turn * lift}).rotation_deg;
+        }
+        if (std::abs(between.y) > 1e-3 * distance)
+            log.lose(
+                "eyes at different heights: kept for the resting head, side by side once a tracker gives its pose",
+                1, where);
+        if (between.x < 0)
+            log.lose(
+                "eyes of which the right one is on the left: kept for the resting head, not once a tracker gives "
+                "its pose",
+                1, where);
+    }
+    user.eye_offset_m = glm::conjugate(pose_of(user.head).rotation) * middle;
+}
+
+void lose_address(std::string const& address, std::string const& where, ImportLog const& log)
+{
+    if (address.empty() || address == "localhost" || address.starts_with("127.")) return;
+    log.lose("addresses of machines: not imported, they are given when a cluster is started", 1,
+             where + ": " + address.substr(0, 64));
+}
+
 Viewport from_below(double x, double y, double width, double height)
 {
     return {LengthUnit::fraction, x, 1 - y - height, width, height};

@@ -11,6 +11,12 @@ namespace viewer {
 
 /// The file's distance between the eyes, or 0.063 m (reported) if no person has that distance.
 double imported_eyes(double metres, std::string const& where, ImportLog const& log);
+/// Places the eyes of a user whose head is at `user.head.translation_m`. Ours lie along the head's x axis, so the resting
+/// head is turned for others: eyes at different heights keep them, until a tracker gives the head's pose.
+/// @param left,right  from the head's translation, in the room's directions, m
+void place_eyes(User& user, gi::dvec3 left, gi::dvec3 right, std::string const& where, ImportLog const& log);
+/// Counts the address of a machine that is not this one: ours are given when a cluster is started.
+void lose_address(std::string const& address, std::string const& where, ImportLog const& log);
 inline constexpr std::size_t kMostImportedParts = 1000;
 /// `wanted`, with a number appended if another part has this name. Throws InputError if there are too many parts.
 template <typename Part>

@@ -59,6 +59,7 @@ struct EqualizerContext {
     std::vector<std::string> layout_names;
     std::vector<std::vector<LayoutView>> layouts;
     std::map<std::string, std::string> globals;
+    StereoMode stereo = StereoMode::off; ///< of compounds and segments that state none; off = as their window can
     std::vector<SegmentUse> uses;
 
     gi::InputError error(TextNode const& at, std::string const& problem, std::string const& why,
@@ -66,9 +67,12 @@ struct EqualizerContext {
     {
         return {{file, at.line, at.column}, problem, why, suggestion};
     }
-    void lose(std::string const& what, TextNode const& at)
+    std::string where(TextNode const& at) const { return fmt::format("{}:{}:{}", file, at.line, at.column); }
+    void lose(std::string const& what, TextNode const& at) { log.lose(what, 1, where(at)); }
+    void lose_connections(TextNode const& of)
     {
-        log.lose(what, 1, fmt::format("{}:{}:{}", file, at.line, at.column));
+        for (TextNode const& connection : of.children)
+            if (connection.key == "connection") lose_address(connection.text("hostname"), where(connection), log);
     }
     void lose_others(TextNode const& node, std::set<std::string> const& known)
     {
@@ -132,7 +136,7 @@ std::optional<Area> read_area(TextNode const& of, EqualizerContext const& c)
 
 void read_channel(TextNode const& node, int window, EqualizerContext& c)
 {
-    c.lose_others(node, {"name", "viewport", "attributes"});
+    c.lose_others(node, {"name", "viewport"});
     std::string const name = node.text("name");
     if (name.empty()) {
         c.lose("Equalizer channels without a name: nothing can be shown on them", node);
@@ -189,10 +193,17 @@ void read_window(TextNode const& node, TextNode const& pipe, int rank, Equalizer
 
 void read_node(TextNode const& node, int rank, EqualizerContext& c)
 {
-    c.lose_others(node, {"name", "pipe", "connection", "attributes", "host", "hostname"});
+    c.lose_others(node, {"name", "pipe", "connection", "host", "hostname"});
+    for (char const* key : {"host", "hostname"}) lose_address(node.text(key), c.where(node), c.log);
+    c.lose_connections(node);
     for (TextNode const& pipe : node.children) {
         if (pipe.key != "pipe") continue;
-        c.lose_others(pipe, {"name", "port", "device", "viewport", "window", "attributes"});
+        c.lose_others(pipe, {"name", "port", "device", "viewport", "window"});
+        for (char const* key : {"port", "device"})
+            if (pipe.text(key, "0") != "0")
+                c.lose(fmt::format("Equalizer pipe {}: not imported, windows open on the display of their process",
+                                   key),
+                       *pipe.find(key));
         for (TextNode const& window : pipe.children)
             if (window.key == "window") read_window(window, pipe, rank, c);
     }
@@ -231,6 +242,8 @@ std::optional<WallCorners> stated_wall(TextNode const& node, EqualizerContext& c
 {
     if (TextNode const* wall = node.find("wall")) {
         c.lose_others(*wall, {"bottom_left", "bottom_right", "top_left", "type"});
+        if (TextNode const* projection = node.find("projection"))
+            c.lose("Equalizer projections beside a wall: the wall is taken", *projection);
         if (std::string const type = wall->text("type", "fixed"); type == "HMD") {
             c.lose("Equalizer walls fixed to a head (HMD) skipped", *wall);
             return {};
@@ -389,7 +402,7 @@ void read_segment(TextNode const& segment, TextNode const& canvas, std::optional
     if (eyes.left != eyes.right) {
         add_wall(segment, *corners, part, StereoMode::off, eyes.left ? Eye::left : Eye::right, view.user, c);
     } else if (eyes.left && view.is_stereo) {
-        StereoMode const stated = use ? use->stereo : StereoMode::off;
+        StereoMode const stated = use && use->stereo != StereoMode::off ? use->stereo : c.stereo;
         add_wall(segment, *corners, part, stated == StereoMode::off ? usual_stereo(channel.window, c) : stated,
                  Eye::middle, view.user, c);
     } else if (eyes.cyclop && !(view.is_stereo && !eyes.left)) {
@@ -473,12 +486,21 @@ void note_use(TextNode const& channel, Inherited const& here, EqualizerContext& 
     c.uses.push_back(use);
 }
 
+/// @param otherwise  for modes that do not say how one channel shows both eyes
+StereoMode stereo_named(std::string const& mode, StereoMode otherwise, TextNode const& at, EqualizerContext& c)
+{
+    if (mode == "ANAGLYPH") return StereoMode::anaglyph_red_cyan;
+    if (mode == "QUAD") return StereoMode::quad_buffer;
+    if (mode != "PASSIVE" && mode != "AUTO") // PASSIVE: each eye has channels of its own
+        c.lose("Equalizer stereo_mode " + mode.substr(0, 64) + ": not imported", at);
+    return otherwise;
+}
+
 void read_compound(TextNode const& compound, Inherited around, EqualizerContext& c)
 {
     if (TextNode const* attributes = compound.find("attributes")) {
         std::string const mode = attributes->text("stereo_mode");
-        if (mode == "ANAGLYPH") around.stereo = StereoMode::anaglyph_red_cyan;
-        if (mode == "QUAD") around.stereo = StereoMode::quad_buffer;
+        if (!mode.empty()) around.stereo = stereo_named(mode, around.stereo, *attributes, c);
         c.lose_others(*attributes, {"stereo_mode"});
     }
     c.lose_others(compound,
@@ -512,15 +534,28 @@ void read_compound(TextNode const& compound, Inherited around, EqualizerContext&
         if (child.key == "compound") read_compound(child, around, c);
 }
 
+/// Later fields replace earlier ones, as in Equalizer's loader.
 void read_observer(TextNode const& node, double eye_base, EqualizerContext& c)
 {
     User user;
     user.name = free_name(c.display.users, node.text("name", "observer"));
-    c.lose_others(node, {"name", "eye_left", "eye_right", "eye_cyclop"});
-    gi::dvec3 const left = corner(node, "eye_left", {-eye_base / 2, 0, 0}, c);
-    gi::dvec3 const right = corner(node, "eye_right", {eye_base / 2, 0, 0}, c);
-    user.interpupillary_m = imported_eyes(glm::length(right - left), "observer '" + user.name + "'", c.log);
-    user.eye_offset_m = (left + right) * 0.5;
+    c.lose_others(node, {"name", "eye_base", "eye_left", "eye_right", "eye_cyclop"});
+    gi::dvec3 left{-eye_base / 2, 0, 0}, right{eye_base / 2, 0, 0}, cyclop{0};
+    for (TextNode const& field : node.children) {
+        if (field.key == "eye_left") left = point_of(field, c.file);
+        if (field.key == "eye_right") right = point_of(field, c.file);
+        if (field.key == "eye_cyclop") cyclop = point_of(field, c.file);
+        if (field.key == "eye_base") {
+            double const half = numbers_of(field, 1, c.file)[0] / 2;
+            left = {-half, 0, 0};
+            right = {half, 0, 0};
+            cyclop = gi::dvec3{0};
+        }
+    }
+    place_eyes(user, left, right, c.where(node) + ", observer '" + user.name + "'", c.log);
+    if (glm::length(cyclop - 0.5 * (left + right)) > 1e-6)
+        c.log.lose("eyes of pictures without stereo that are not midway between the two: taken as midway", 1,
+                   c.where(node) + fmt::format(", [{:.4g} {:.4g} {:.4g}]", cyclop.x, cyclop.y, cyclop.z));
     c.display.users.push_back(user);
 }
 
@@ -531,6 +566,9 @@ void read_layout(TextNode const& layout, EqualizerContext& c)
     for (TextNode const& view : layout.children) {
         if (view.key != "view") continue;
         c.lose_others(view, {"name", "mode", "viewport", "observer", "wall", "projection"});
+        if (TextNode const* mode = view.find("mode");
+            mode && view.text("mode") != "STEREO" && view.text("mode") != "MONO")
+            c.lose("Equalizer view modes that are neither MONO nor STEREO: taken as MONO", *mode);
         LayoutView v{checked_area(view, c), view.text("mode") == "STEREO", 0, &view};
         if (TextNode const* observer = view.find("observer"); observer && observer->values.size() == 1) {
             std::string const& wanted = observer->values[0].text;
@@ -574,7 +612,7 @@ void read_config(TextNode const& config, double eye_base, EqualizerContext& c)
     for (TextNode const& node : config.children)
         if (node.key == "layout") read_layout(node, c);
     for (TextNode const& node : config.children)
-        if (node.key == "compound") read_compound(node, {}, c);
+        if (node.key == "compound") read_compound(node, {{}, c.stereo, {}}, c);
     int canvas = 0;
     for (TextNode const& node : config.children)
         if (node.key == "canvas") read_canvas(node, canvas++, c);
@@ -587,7 +625,7 @@ Display parse_equalizer(std::string const& text, std::string const& name, Import
     std::vector<TextToken> const tokens = tokens_of(text, "{}[]()", name);
     std::size_t at = 0;
     std::vector<TextNode> const top = read_block(tokens, at, 0, name);
-    EqualizerContext c{{}, name, log, {}, {}, {}, {}, {}, {}, {}, {}};
+    EqualizerContext c{{}, name, log, {}, {}, {}, {}, {}, {}, {}, StereoMode::off, {}};
     double eye_base = 0.05; // Equalizer's own
     bool has_config = false;
     for (TextNode const& node : top) {
@@ -597,12 +635,16 @@ Display parse_equalizer(std::string const& text, std::string const& name, Import
                     eye_base = numbers_of(setting, 1, name)[0];
                 else if (setting.key == "EQ_WINDOW_IATTR_HINT_FULLSCREEN" ||
                          setting.key == "EQ_WINDOW_IATTR_HINT_DECORATION" ||
-                         setting.key == "EQ_WINDOW_IATTR_HINT_STEREO")
+                         setting.key == "EQ_WINDOW_IATTR_HINT_STEREO" ||
+                         setting.key == "EQ_COMPOUND_IATTR_STEREO_MODE")
                     c.globals[setting.key] = setting.values.empty() ? "" : setting.values[0].text;
                 else
                     c.lose("Equalizer global " + setting.key.substr(0, 64) + ": not imported", setting);
+            if (auto const mode = c.globals.find("EQ_COMPOUND_IATTR_STEREO_MODE"); mode != c.globals.end())
+                c.stereo = stereo_named(mode->second, StereoMode::off, node, c);
         } else if (node.key == "server") {
             c.lose_others(node, {"config", "connection"});
+            c.lose_connections(node);
             for (TextNode const& config : node.children) {
                 if (config.key != "config") continue;
                 if (has_config) {

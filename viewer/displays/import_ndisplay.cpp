@@ -237,12 +237,30 @@ void lose_keys(Yaml const& map, std::set<std::string> const& known, std::string 
             log.lose("nDisplay " + path + key.text().substr(0, 64) + ": not imported", 1, text_of(key.place()));
 }
 
+/// Counts keys that say more than what Unreal writes where nothing was chosen.
+void lose_stated(Yaml const& map, std::initializer_list<char const*> keys, std::string const& path,
+                 ImportLog const& log)
+{
+    for (char const* key : keys) {
+        if (!map.has(key)) continue;
+        Yaml const y = map.at(key);
+        bool const is_usual = y.is_text()  ? y.text() == "-1" || y.text() == "false" || y.text().empty()
+                              : y.is_map() ? y.keys().empty() || (y.has("bEnabled") && !y.at("bEnabled").boolean())
+                                           : y.items().empty();
+        if (!is_usual) log.lose("nDisplay " + path + key + ": not imported", 1, text_of(y.place()));
+    }
+}
+
 double length_in(Yaml const& map, char const* key) { return map.has(key) ? map.at(key).number(-1e9, 1e9) : 0; }
 
 std::string name_in(Yaml const& map, char const* key) { return map.has(key) ? map.at(key).text() : ""; }
 
-UnrealPlace read_unreal_place(Yaml const& y)
+/// @param others  keys that are no place @param kind  for notes
+UnrealPlace read_unreal_place(Yaml const& y, std::set<std::string> others, std::string const& kind,
+                              ImportLog const& log)
 {
+    others.insert({"parentId", "location", "rotation"});
+    lose_keys(y, others, kind, log);
     UnrealPlace p;
     p.at = y.place();
     p.parent = name_in(y, "parentId");
@@ -275,6 +293,7 @@ UnrealViewport read_unreal_viewport(std::string const& name, Yaml const& y, Impo
         log.lose("nDisplay viewport overscan: not imported", 1, text_of(y.at("overscan").place()));
     if (y.has("isShared") && y.at("isShared").boolean())
         log.lose("nDisplay viewport isShared: not imported", 1, text_of(y.at("isShared").place()));
+    lose_stated(y, {"gPUIndex", "allowCrossGPUTransfer"}, "viewport ", log);
     UnrealViewport v;
     v.name = name;
     v.at = y.place();
@@ -284,7 +303,10 @@ UnrealViewport read_unreal_viewport(std::string const& name, Yaml const& y, Impo
     Yaml const policy = y.needed("projectionPolicy", "{type: simple, parameters: {screen: front}}");
     v.policy = policy.needed("type", "simple").text();
     v.at = policy.at("type").place();
-    if (policy.has("parameters")) v.screen = name_in(policy.at("parameters"), "screen");
+    if (policy.has("parameters")) {
+        v.screen = name_in(policy.at("parameters"), "screen");
+        lose_keys(policy.at("parameters"), {"screen"}, "projectionPolicy.parameters.", log);
+    }
     return v;
 }
 
@@ -298,6 +320,9 @@ UnrealNode read_unreal_node(std::string const& name, Yaml const& y, ImportLog co
         log.lose("nDisplay outputRemap: not imported", 1, text_of(y.at("outputRemap").place()));
     if (y.has("postprocess") && !y.at("postprocess").keys().empty())
         log.lose("nDisplay postprocess: not imported", 1, text_of(y.at("postprocess").place()));
+    if (y.has("host") && y.at("host").is_text())
+        lose_address(y.at("host").text(), text_of(y.at("host").place()), log);
+    lose_stated(y, {"sound", "renderHeadless", "graphicsAdapter", "textureShare"}, "node ", log);
     UnrealNode node;
     node.name = name;
     node.at = y.place();
@@ -314,21 +339,26 @@ void read_unreal_scene(Yaml const& scene, UnrealConfig& config, ImportLog const&
     lose_keys(scene, {"xforms", "cameras", "screens"}, "scene.", log);
     if (scene.has("xforms"))
         for (auto const& [name, y] : scene.at("xforms").entries())
-            config.nodes[name.text()] = read_unreal_place(y);
+            config.nodes[name.text()] = read_unreal_place(y, {}, "xform ", log);
     if (scene.has("cameras"))
         for (auto const& [name, y] : scene.at("cameras").entries()) {
-            UnrealCamera camera{read_unreal_place(y), 6.4, false, Eye::middle};
+            UnrealCamera camera{
+                read_unreal_place(y, {"interpupillaryDistance", "swapEyes", "stereoOffset"}, "camera ", log), 6.4,
+                false, Eye::middle};
             if (y.has("interpupillaryDistance")) camera.eyes = length_in(y, "interpupillaryDistance");
             camera.swap_eyes = y.has("swapEyes") && y.at("swapEyes").boolean();
             std::string const offset = name_in(y, "stereoOffset");
             camera.eye = offset == "left" ? Eye::left : offset == "right" ? Eye::right : Eye::middle;
+            if (camera.eye == Eye::middle && !offset.empty() && offset != "none")
+                log.lose("nDisplay camera stereoOffset " + offset.substr(0, 64) + ": taken as none", 1,
+                         text_of(y.at("stereoOffset").place()));
             config.cameras.push_back({name.text(), camera});
         }
     if (scene.has("screens"))
         for (auto const& [name, y] : scene.at("screens").entries()) {
             Yaml const size = y.needed("size", "{width: 300, height: 200}");
-            config.screens[name.text()] = {read_unreal_place(y), length_in(size, "width"),
-                                           length_in(size, "height")};
+            config.screens[name.text()] = {read_unreal_place(y, {"size"}, "screen ", log),
+                                           length_in(size, "width"), length_in(size, "height")};
         }
 }
 
@@ -434,6 +464,30 @@ UnrealLine const& line_of(UnrealLines const& lines, std::string const& id, char 
     return found->second;
 }
 
+/// Counts arguments of a line that are not read; lines of other kinds are counted as a whole.
+void lose_arguments(UnrealLine const& line, ImportLog const& log)
+{
+    static std::map<std::string, std::set<std::string>> const kRead{
+        {"cluster_node", {"id", "window", "addr", "master"}},
+        {"window", {"id", "viewports", "fullscreen", "WinX", "WinY", "ResX", "ResY", "postprocess"}},
+        {"viewport", {"id", "x", "y", "X", "Y", "width", "height", "projection", "camera", "buffer_ratio"}},
+        {"projection", {"id", "type", "screen"}},
+        {"scene_node", {"id", "loc", "rot", "parent", "tracker_id"}},
+        {"screen", {"id", "loc", "rot", "parent", "size", "tracker_id"}},
+        {"camera", {"id", "loc", "rot", "parent", "eye_dist", "eye_swap", "force_offset", "tracker_id"}},
+        {"general", {"swap_sync_policy"}},
+        {"nvidia", {"sync_group", "sync_barrier"}},
+        {"NVIDIA", {"sync_group", "sync_barrier"}}};
+    auto const read = kRead.find(line.kind);
+    if (read == kRead.end()) return;
+    bool const is_simple =
+        line.kind != "projection" || line.text("type") == "simple"; // others are skipped as a whole
+    for (auto const& [key, value] : line.values)
+        if (is_simple && !read->second.contains(key))
+            log.lose("nDisplay [" + line.kind + "] " + key.substr(0, 64) + ": not imported", 1, text_of(line.at));
+    lose_address(line.text("addr"), text_of(line.at), log);
+}
+
 UnrealViewport viewport_of(UnrealLine const& v, UnrealLine const& projection)
 {
     UnrealViewport out;
@@ -459,6 +513,7 @@ Display parse_ndisplay(std::string const& text, std::string const& name, ImportL
         all,
         {"description", "version", "assetPath", "misc", "scene", "cluster", "customParameters", "diagnostics"}, "",
         log);
+    lose_stated(all, {"misc", "customParameters", "diagnostics"}, "", log);
     UnrealConfig config;
     read_unreal_scene(all.needed("scene", "{xforms: {}, cameras: {}, screens: {}}"), config, log);
     Yaml const cluster = all.needed("cluster", "{nodes: {}}");
@@ -469,6 +524,9 @@ Display parse_ndisplay(std::string const& text, std::string const& name, ImportL
         std::transform(type.begin(), type.end(), type.begin(),
                        [](unsigned char c) { return char(std::tolower(c)); });
         config.has_swap_lock = type == "nvidia";
+        if (!config.has_swap_lock && type != "none" && type != "ethernet") // ours swap together over the network
+            log.lose("nDisplay renderSyncPolicy " + type.substr(0, 64) + ": not imported", 1,
+                     text_of(sync.place()));
     }
     for (auto const& [key, node] : cluster.needed("nodes", "{node_0: {...}}").entries())
         config.cluster.push_back(read_unreal_node(key.text(), node, log));
@@ -488,6 +546,7 @@ Display parse_ndisplay_cfg(std::string const& text, std::string const& name, Imp
         at = end + 1;
         if (!line) continue;
         std::string const& kind = line->kind;
+        lose_arguments(*line, log);
         std::string const id = line->text("id");
         if (kind == "cluster_node")
             nodes.push_back(*line);
@@ -513,7 +572,7 @@ Display parse_ndisplay_cfg(std::string const& text, std::string const& name, Imp
         else if (kind == "nvidia" || kind == "NVIDIA") {
             config.swap_group = int(std::clamp(line->number("sync_group", 1), 1.0, 1000.0));
             config.swap_barrier = int(std::clamp(line->number("sync_barrier", 1), 0.0, 1000.0));
-        } else if (kind != "info" && kind != "network")
+        } else if (kind != "info")
             log.lose("nDisplay [" + kind.substr(0, 64) + "]: not imported", 1, text_of(line->at));
         for (char const* tracker : {"tracker_id"})
             if (!line->text(tracker).empty())

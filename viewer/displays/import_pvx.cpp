@@ -157,6 +157,10 @@ void read_machine(XMLElement const& m, int rank, bool is_fullscreen, bool has_bo
     gi::dvec3 const ll = point(m, "LowerLeft", c), lr = point(m, "LowerRight", c);
     wall.corners = {ll, lr,
                     m.Attribute("UpperLeft") ? point(m, "UpperLeft", c) : ll + point(m, "UpperRight", c) - lr};
+    if (m.Attribute("UpperLeft") && m.Attribute("UpperRight") &&
+        glm::length(point(m, "UpperRight", c) - lr + ll - wall.corners.upper_left) > 1e-3)
+        c.log.lose("ParaView UpperRight that makes no rectangle with the three other corners: not imported", 1,
+                   where(m, c));
     if (auto const fault = find_fault(wall.corners))
         throw c.error(m, "machine '" + name.substr(0, 64) + "': " + fault->problem, fault->why, fault->suggestion);
     wall.window = int(c.display.windows.size());

@@ -55,6 +55,7 @@ WallCorners planar(Yaml const& p, ImportLog const& log)
 {
     lose_others(p, {"type", "fov", "distance", "orientation", "offset"}, "projection.", log);
     Yaml const fov = needed(p, "fov");
+    lose_others(fov, {"hfov", "vfov", "left", "right", "up", "down", "distance"}, "projection.fov.", log);
     double const across = number_or(fov, "hfov", 0) / 2, upward = number_or(fov, "vfov", 0) / 2;
     SgctPlanar planar{number_or(fov, "left", across),
                       number_or(fov, "right", across),
@@ -172,8 +173,11 @@ SgctWindow read_window(Yaml const& y, ImportLog const& log)
         w.at = y.at("stereo").place();
     }
     w.picture_aspect = double(w.window.width_px) / std::max(1, w.window.height_px);
-    if (y.has("res"))
-        w.picture_aspect = double(pixel(needed(y.at("res"), "x"))) / std::max(1, pixel(needed(y.at("res"), "y")));
+    if (y.has("res")) {
+        int const across = pixel(needed(y.at("res"), "x")), upward = pixel(needed(y.at("res"), "y"));
+        w.picture_aspect = double(across) / std::max(1, upward);
+        lose_resolution(w, across, upward, y.at("res").place(), log);
+    }
     if (y.has("mpcdi"))
         log.lose("SGCT windows with MPCDI, which is not supported, skipped", 1, text_at(y.at("mpcdi").place()));
     if (y.has("viewports"))
@@ -209,6 +213,8 @@ Display parse_sgct(std::string const& text, std::string const& name, ImportLog l
                 {"version", "masteraddress", "nodes", "users", "scene", "$schema", "title", "description",
                  "author", "generator", "meta"},
                 "", log);
+    if (root.has("masteraddress"))
+        lose_address(root.at("masteraddress").text(), text_at(root.at("masteraddress").place()), log);
     Yaml const nodes = needed(root, "nodes");
     if (root.has("users"))
         for (Yaml const& u : root.at("users").items()) {
@@ -223,6 +229,7 @@ Display parse_sgct(std::string const& text, std::string const& name, ImportLog l
     if (root.has("scene")) read_scene(root.at("scene"), config, log);
     for (Yaml const& node : nodes.items()) {
         lose_others(node, {"address", "port", "datatransferport", "swaplock", "windows"}, "node.", log);
+        if (node.has("address")) lose_address(node.at("address").text(), text_at(node.place()), log);
         config.nodes.emplace_back();
         if (node.has("windows"))
             for (Yaml const& window : node.at("windows").items()) {

@@ -153,7 +153,7 @@ SgctViewport xml_viewport(XMLElement const& e, SgctXml const& x)
 {
     SgctViewport v;
     v.at = x.at(e);
-    x.lose_others(e, {"eye", "mesh", "user", "name"},
+    x.lose_others(e, {"eye", "mesh", "user"},
                   {"Pos", "Size", "Projectionplane", "Viewplane", "PlanarProjection", "FisheyeProjection",
                    "CylindricalProjection", "EquirectangularProjection", "SphericalMirrorProjection",
                    "SpoutOutputProjection", "CubemapProjection", "TextureMappedProjection"});
@@ -201,8 +201,10 @@ SgctWindow xml_window(XMLElement const& e, SgctXml const& x)
     }
     if (XMLElement const* stereo = e.FirstChildElement("Stereo")) w.stereo = word(*stereo, "type");
     w.picture_aspect = double(w.window.width_px) / std::max(1, w.window.height_px);
-    if (XMLElement const* res = e.FirstChildElement("Res"))
+    if (XMLElement const* res = e.FirstChildElement("Res")) {
         w.picture_aspect = x.number(*res, "x") / std::max(1.0, x.number(*res, "y"));
+        lose_resolution(w, pixels(*res, "x"), pixels(*res, "y"), x.at(*res), x.log);
+    }
     for (XMLElement const* v = e.FirstChildElement("Viewport"); v; v = v->NextSiblingElement("Viewport"))
         w.viewports.push_back(xml_viewport(*v, x));
     if (e.Attribute("mpcdi"))
@@ -244,6 +246,7 @@ Display parse_sgct_xml(std::string const& text, std::string const& name, ImportL
                              "is this a file of SGCT?");
     SgctXml const x{name, log};
     SgctConfig config;
+    lose_address(word(*root, "masterAddress"), text_at(x.at(*root)), x.log);
     x.lose_others(*root, {"masterAddress", "externalControlPort"}, {"Node", "User", "Scene"});
     for (XMLElement const* e = root->FirstChildElement(); e; e = e->NextSiblingElement()) {
         std::string const kind = e->Name();
@@ -259,6 +262,8 @@ Display parse_sgct_xml(std::string const& text, std::string const& name, ImportL
             xml_scene(*e, config, x);
         } else if (kind == "Node") {
             x.lose_others(*e, {"address", "ip", "port", "syncPort", "dataTransferPort", "swapLock"}, {"Window"});
+            for (char const* address : {"address", "ip"})
+                lose_address(word(*e, address), text_at(x.at(*e)), x.log);
             config.nodes.emplace_back();
             for (XMLElement const* w = e->FirstChildElement("Window"); w; w = w->NextSiblingElement("Window")) {
                 config.nodes.back().push_back(xml_window(*w, x));

@@ -251,8 +251,12 @@ User read_viewer(TextNode const& s, VruiContext& c)
         "headLightSpotCutoff", "headLightSpotExponent", "headLightAttenuation"};
     std::set<std::string> known{"name",          "headTracked",     "headDevice",      "headDeviceTransformation",
                                 "viewDirection", "monoEyePosition", "leftEyePosition", "rightEyePosition"};
-    known.insert(kLights.begin(), kLights.end()); // our scenes have their own
+    known.insert(kLights.begin(), kLights.end());
     c.lose_others(s, known);
+    bool const has_lamp =
+        std::any_of(kLights.begin(), kLights.end(), [&](std::string const& k) { return s.find(k); });
+    if (has_lamp && s.text("headLightEnabled", "true") != "false")
+        c.log.lose("Vrui lamps at the head: not imported, scenes have their own light", 1, c.where(s));
     User user;
     user.name = s.key;
     VruiMotion head;
@@ -267,15 +271,19 @@ User read_viewer(TextNode const& s, VruiContext& c)
         return user;
     }
     gi::dvec3 const l = c.place(head.turn * point_of(*left, c.name_of(*left))),
-                    r = c.place(head.turn * point_of(*right, c.name_of(*right))), between = r - l;
-    user.interpupillary_m = imported_eyes(glm::length(between), "viewer '" + s.key + "'", c.log);
-    if (glm::length(between) > 0) {
-        double const yaw = std::atan2(-between.z, between.x);
-        if (std::abs(yaw) > 1e-9) user.head.rotation_deg.y = glm::degrees(yaw);
-        if (std::abs(between.y) > 1e-3 * glm::length(between))
-            c.log.lose("Vrui viewers whose eyes are not level: taken as level", 1, c.where(s));
+                    r = c.place(head.turn * point_of(*right, c.name_of(*right)));
+    place_eyes(user, l, r, c.where(s) + ", viewer '" + s.key + "'", c.log);
+    gi::dquat const resting = pose_of(user.head).rotation;
+    if (TextNode const* mono = s.find("monoEyePosition"))
+        if (glm::length(c.place(head.turn * point_of(*mono, c.name_of(*mono))) - 0.5 * (l + r)) > 1e-6)
+            c.log.lose("eyes of pictures without stereo that are not midway between the two: taken as midway", 1,
+                       c.where(*mono));
+    if (TextNode const* view = s.find("viewDirection")) {
+        gi::dvec3 const ahead = c.direction(head.turn * unit(point_of(*view, c.name_of(*view)), *view, c));
+        if (glm::length(ahead - resting * gi::dvec3{0, 0, -1}) > 1e-3)
+            c.log.lose("Vrui view directions that are not straight ahead of the eyes: not imported", 1,
+                       c.where(*view));
     }
-    user.eye_offset_m = glm::conjugate(pose_of(user.head).rotation) * ((l + r) * 0.5);
     if (glm::length(user.eye_offset_m) > 1) { // control windows put the eyes metres behind a fixed place
         user.head.translation_m += (l + r) * 0.5;
         user.eye_offset_m = gi::dvec3{0};
@@ -386,6 +394,9 @@ void read_window(TextNode const& environment, std::string const& name, int rank,
     c.lose_others(s, {"display", "windowPos", "windowSize", "windowFullscreen", "windowType", "screenName",
                       "viewerName", "decorate", "decorated", "leftViewportPos", "rightViewportPos",
                       "interleavePattern", "leftScreenName", "rightScreenName"});
+    if (std::string const x = s.text("display"); !x.empty() && x != ":0" && x != ":0.0")
+        c.log.lose("Vrui displays of windows: not imported, windows open on the display of their process", 1,
+                   c.where(s) + ": " + x.substr(0, 64));
     if (s.text("windowType") == "CompositorClient") {
         c.log.lose("Vrui windows of a headset's compositor skipped: use --hmd", 1, c.where(s));
         return;

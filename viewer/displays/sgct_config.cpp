@@ -134,6 +134,8 @@ void add_viewport(SgctWindow const& w, SgctViewport const& v, SgctStereo stereo,
         return;
     }
     Wall wall;
+    if (p.name == "TextureMappedProjection")
+        c.log.lose("SGCT TextureMappedProjection: taken as a PlanarProjection", 1, text_at(p.at));
     wall.name = free_name(c.display.walls, w.window.name);
     wall.window = window;
     wall.rank = rank;
@@ -141,6 +143,9 @@ void add_viewport(SgctWindow const& w, SgctViewport const& v, SgctStereo stereo,
     if (v.eye == Eye::middle) {
         wall.stereo = stereo.mode;
         wall.swap_eyes = stereo.swap;
+    } else if (stereo.mode != StereoMode::off) {
+        c.log.lose("SGCT stereo mode of a window with a viewport for one eye: shown to that eye alone", 1,
+                   text_at(v.at));
     }
     wall.viewport = from_below(v.x, v.y, v.width, v.height);
     std::string const wanted = v.user.value_or(users.front().name);
@@ -194,6 +199,14 @@ std::optional<RoomPlace> world_of_scene(gi::dvec3 offset, double yaw, double pit
     gi::dvec3 position = back * -offset;
     for (int i = 0; i < 3; ++i) position[i] += 0.0;
     return RoomPlace{position, yaw};
+}
+
+void lose_resolution(SgctWindow const& w, int width_px, int height_px, gi::TextLocation const& at,
+                     ImportLog const& log)
+{
+    if (width_px == w.window.width_px && height_px == w.window.height_px) return;
+    log.lose("SGCT resolutions of pictures other than their window's: only their proportions are imported", 1,
+             fmt::format("{}: {} x {}", text_at(at), width_px, height_px));
 }
 
 std::string text_at(gi::TextLocation const& at)

@@ -65,6 +65,9 @@ gi::dquat sgct_turn(double yaw_deg, double pitch_deg, double roll_deg);
 /// The room's place in a scene that SGCT moves and turns; none if it does more than that.
 std::optional<RoomPlace> world_of_scene(gi::dvec3 offset_m, double yaw_deg, double pitch_deg, double roll_deg,
                                         double scale);
+/// Counts a resolution of a window's pictures that is not the window's.
+void lose_resolution(SgctWindow const& w, int width_px, int height_px, gi::TextLocation const& at,
+                     ImportLog const& log);
 /// "file:line:column"
 std::string text_at(gi::TextLocation const& at);
 

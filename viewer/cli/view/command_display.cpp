@@ -130,6 +130,19 @@ int run_import(DisplayOptions const& o)
     std::vector<SkippedPart> skipped;
     Display const d = import_display(o.file, {o.section, o.base}, report, &skipped);
     gi::write_text(o.out, skipped_comment(o.file, skipped) + to_yaml(d));
+    if (o.json) {
+        nlohmann::ordered_json j{{"out", o.out},
+                                 {"program", name_of(format_of(o.file))},
+                                 {"walls", d.walls.size()},
+                                 {"windows", d.windows.size()},
+                                 {"users", d.users.size()},
+                                 {"not_imported", nlohmann::ordered_json::array()}};
+        for (SkippedPart const& part : skipped)
+            j["not_imported"].push_back({{"what", part.what}, {"where", part.where}});
+        j["report"] = to_json(report);
+        std::fputs(to_text(j).c_str(), stdout);
+        return 0;
+    }
     fmt::print("{}: {} walls, {} windows, {} users, from a configuration of {}\n", o.out, d.walls.size(),
                d.windows.size(), d.users.size(), name_of(format_of(o.file)));
     std::fflush(stdout);
@@ -222,6 +235,7 @@ void add_display(CLI::App& app, int& exit_code)
                      "nDisplay's text) or .ndisplay")
         ->required();
     import->add_option("-o,--out", o->out, "display file to write")->required();
+    import->add_flag("--json", o->json, "print JSON, with all that was not imported or assumed");
     import->add_option("--section", o->section, "Vrui only: name of the environment, usually that of a machine");
     import->add_option("--base", o->base, "Vrui only: configuration that FILE changes, usually its Vrui.cfg");
     import->callback([o, &exit_code] { exit_code = run_import(*o);
