@@ -1,6 +1,7 @@
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "study/observers/simulate.h"
+#include "study/plan/doubts.h"
 #include "study/plan/plan.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/version.h"
@@ -79,11 +80,14 @@ int run_simulate(SimulateOptions const& o)
             print_session(id, outcome);
     }
     keep_tables(settings.dir, o.script);
+    auto const doubts = study::find_idle_procedures(s);
+    if (!o.json) print_doubts(doubts);
     if (o.json)
         std::fputs(to_text({{"id", s.id},
                             {"seed", seed},
                             {"truth", study::truth_file(settings.dir).string()},
-                            {"sessions", sessions}})
+                            {"sessions", sessions},
+                            {"doubts", doubts}})
                        .c_str(),
                    stdout);
     return are_complete ? 0 : 1;
