@@ -30,24 +30,30 @@ bool is_known(std::span<unsigned char const> bytes)
     return starts_with(bytes, "RIFF") && bytes.size() > 12 && starts_with(bytes.subspan(8), "WEBP");
 }
 
-/// The layer "color", of 3 or 4 channels.
+/// Only the layer "color": R, G, B of others may be no colours (normals, data).
 void convert_to_rec709(Picture& picture)
 {
-    Layer* const color = picture.find("color");
-    if (!picture.primaries || color == nullptr || color->channels < 3) return;
+    if (!picture.primaries) return;
     Primaries const& p = *picture.primaries;
-    glm::dmat3 const m = *to_rec709(p);
-    auto const n = std::size_t(color->channels);
-    for (std::size_t i = 0; i < picture.pixels(); ++i) {
-        float* const c = &color->data[i * n];
-        dvec3 const converted = m * dvec3(c[0], c[1], c[2]);
-        for (int k = 0; k < 3; ++k) c[k] = float(converted[k]);
-    }
     auto const text = [](glm::dvec2 xy) { return fmt::format("({:.4g}, {:.4g})", xy.x, xy.y); };
-    picture.notes.push_back(
-        fmt::format("its colours have the primaries {}, {}, {} and white {}: converted to Rec. 709", text(p.red),
-                    text(p.green), text(p.blue), text(p.white)));
-    picture.primaries.reset();
+    std::string note = fmt::format("its primaries are {}, {}, {} and white {}: ", text(p.red), text(p.green),
+                                   text(p.blue), text(p.white));
+    Layer* const color = picture.find("color");
+    if (color != nullptr && color->channels >= 3) {
+        glm::dmat3 const m = *to_rec709(p);
+        auto const n = std::size_t(color->channels);
+        for (std::size_t i = 0; i < picture.pixels(); ++i) {
+            float* const c = &color->data[i * n];
+            dvec3 const converted = m * dvec3(c[0], c[1], c[2]);
+            for (int k = 0; k < 3; ++k) c[k] = float(converted[k]);
+        }
+        picture.primaries.reset();
+        note += "its colours are converted to Rec. 709";
+        if (picture.layers.size() > 1) note += ", its other layers are as they were";
+    } else {
+        note += "its layers are as they were";
+    }
+    picture.notes.push_back(note);
 }
 
 float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }

@@ -408,6 +408,13 @@ TEST(ExrPrimaries, AreConvertedToRec709AndNamed)
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(to[k], glm::dot(rows[k], from), 2e-4 * glm::length(from));
         }
     }
+    // R, G, B of a layer may be normals.
+    write({{"", {"a.R", "a.G", "a.B"}}}, [](Imf::Header& h) {
+        Imf::addChromaticities(h, {{0.708f, 0.292f}, {0.17f, 0.797f}, {0.131f, 0.046f}});
+    });
+    Picture const layer = read_picture(exr_file());
+    EXPECT_EQ(rgb(layer.layers[0], 0), (vec3{value_at(0, 0, 2), value_at(0, 0, 1), value_at(0, 0, 0)}));
+    EXPECT_TRUE(says(layer, "its layers are as they were")) << fmt::format("{}", layer.notes);
     write({{"", {"R", "G", "B"}}}, [](Imf::Header& h) { Imf::addChromaticities(h, Imf::Chromaticities()); });
     EXPECT_TRUE(read_picture(exr_file()).notes.empty());
     write({{"", {"R", "G", "B"}}}, [](Imf::Header& h) {

@@ -157,8 +157,10 @@ Scene material_panels(bool lit)
     mask.alpha_mode = AlphaMode::mask;
     mask.alpha_cutoff = 0.4f;
     add(mask, &M::base_color_map, nearest);
-    add(mask, &M::base_color_map, nearest, {.alphas = true});
-    add(mask, &M::emissive_map, color, {.alphas = true});
+    if (!lit) { // their shadows have long outlines
+        add(mask, &M::base_color_map, nearest, {.alphas = true});
+        add(mask, &M::emissive_map, color, {.alphas = true});
+    }
     M rough_metal = coated;
     rough_metal.metallic = 0.9f;
     rough_metal.roughness = 1;

@@ -147,7 +147,9 @@ TEST_F(SurfaceScenes, ThatAreBlended)
             float chance = 1;
             for (unsigned k = 0; k < kPanes; ++k) {
                 bool const is_there = (there >> k & 1) != 0;
-                chance *= is_there ? scene.materials[k].alpha : 1 - scene.materials[k].alpha;
+                std::vector<float> const& of_vertices = scene.meshes[k].alphas; // all the same
+                float const alpha = scene.materials[k].alpha * (of_vertices.empty() ? 1 : of_vertices[0]);
+                chance *= is_there ? alpha : 1 - alpha;
                 some.materials[k].alpha_mode = is_there ? gi::AlphaMode::opaque : gi::AlphaMode::mask;
                 some.materials[k].alpha = 0;
             }
