@@ -91,8 +91,9 @@ TEST(HelpExamples, AreOfTheirCommand)
             ++count;
         }
         if (command == "display check" || command == "display import" || command == "generate ring" ||
-            command == "study plan" || command == "batch resume")
+            command == "study plan" || command == "batch resume") {
             EXPECT_GT(count, 0) << command;
+        }
     }
 }
 
