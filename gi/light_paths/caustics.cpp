@@ -10,19 +10,18 @@
 namespace gi {
 namespace {
 
-/// How much a material mirrors and refracts, 0 to 1.
-float smooth_share(Bsdf const& b)
-{
-    float const mirrors = bsdf_detail::specular_is_delta(b) ? max_component(b.f0) : 0;
-    return std::min(1.0f, b.clear + mirrors);
-}
-
 float area_of(WorldView const& world, std::uint32_t triangle)
 {
     return 0.5f * glm::length(light_detail::area_vector(world.surfaces[triangle]));
 }
 
 } // namespace
+
+float smooth_share(Bsdf const& b)
+{
+    float const mirrors = bsdf_detail::specular_is_delta(b) ? max_component(b.f0) : 0;
+    return std::min(1.0f, b.clear + mirrors);
+}
 
 StartTargets find_caustic_targets(World const& world, Bounds const& focus)
 {

@@ -35,6 +35,9 @@ namespace gi {
 /// if smooth triangles lie there; empty = there is none
 StartTargets find_caustic_targets(World const& world, Bounds const& focus);
 
+/// How much a material mirrors and refracts without scattering, 0 to 1.
+float smooth_share(Bsdf const& bsdf);
+
 /// Whether there will be caustics, and why.
 PlanItem explain_caustics(World const& world, PhotonSettings const& settings);
 

@@ -1,6 +1,8 @@
 #include "gi/light_paths/lamp_caustics.h"
 
 #include "gi/light_paths/caustics.h"
+#include "gi/light_paths/options.h"
+#include "gi/scene/model/used_materials.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,16 +26,17 @@ std::uint32_t photon_paths(RenderSettings const& s)
     return std::uint32_t(std::min(for_pixels, std::size_t(s.of<PhotonSettings>().caustic_paths)));
 }
 
-bool is_smooth(Bsdf const& b)
+/// As far as no texture changes it.
+bool has_smooth(World const& world)
 {
-    return b.clear > 0 || (bsdf_detail::specular_is_delta(b) && max_component(b.f0) > 0);
+    return uses_material(world, [](Material const&, Bsdf const& b) { return smooth_share(b) > 0; });
 }
 
 } // namespace
 
 bool LampCaustics::exist(World const& world, RenderSettings const& settings)
 {
-    return settings.of<PhotonSettings>().caustic_paths > 0 && explain_lamp_caustics(world).build;
+    return explain_lamp_caustics(world, settings).build;
 }
 
 LampCaustics::LampCaustics(World const& world, RenderSettings const& settings, Report& report)
@@ -98,22 +101,39 @@ void LampCaustics::prepare(ExactVisibility const& visibility, std::uint32_t inde
     photons_ = std::move(photons);
 }
 
-PlanItem explain_lamp_caustics(World const& world)
+PlanItem explain_lamp_caustics(World const& world, RenderSettings const& settings)
 {
-    auto const smooth = std::ranges::count_if(world.bsdfs, is_smooth);
-    bool const exist = !world.lights.empty() && smooth > 0;
-    PlanText const why =
-        world.lights.empty() ? "no lamp without extent"
-        : smooth == 0        ? "nothing mirrors or refracts without scattering"
-                      : PlanText("{} lamps and {} smooth materials: in pictures of paths, slhb and reference on "
-                                 "the CPU, and of photon methods; not in frames, nor by vpl_*, whitted or CUDA",
-                                 {figure("lamps", world.lights.size()), figure("smooth_materials", smooth)});
-    return {"lamp_caustics", "caustics of lamps", exist, why};
+    char const* const what = "caustics of lamps";
+    if (world.lights.empty()) return {"lamp_caustics", what, false, "no lamp without extent"};
+    if (!has_smooth(world))
+        return {"lamp_caustics", what, false,
+                "no material mirrors or refracts without scattering (textures aside)"};
+    Figure const lamps = figure("lamps", world.lights.size());
+    if (settings.of<PhotonSettings>().caustic_paths == 0)
+        return {"lamp_caustics", what, false, {"{} lamps, but --caustic-photons 0", {lamps}}};
+    return {"lamp_caustics",
+            what,
+            true,
+            {"{} lamps, mirrors or glass: in pictures of paths, slhb and reference on the CPU, and of photon "
+             "methods; not in "
+             "frames, with --shutter, nor by vpl_*, whitted, lpv or CUDA",
+             {lamps}}};
+}
+
+std::string lamp_caustic_options(World const& world, RenderSettings const& settings)
+{
+    if (world.lights.empty() || !has_smooth(world)) return {};
+    return changed_options(photon_options(), settings, {"caustic-photons", "caustic-radius"});
+}
+
+std::string lamp_light_version(World const& world)
+{
+    return !world.lights.empty() && has_smooth(world) ? "lamps behind glass" : "";
 }
 
 void lose_lamp_caustics(World const& world, Report& report)
 {
-    if (explain_lamp_caustics(world).build)
+    if (explain_lamp_caustics(world, {}).build)
         report.lose("lamps whose light by way of mirrors and glass was not found", world.lights.size());
 }
 

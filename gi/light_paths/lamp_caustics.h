@@ -46,7 +46,11 @@ private:
 };
 
 /// Whether there are any, and who finds them.
-PlanItem explain_lamp_caustics(World const& world);
+PlanItem explain_lamp_caustics(World const& world, RenderSettings const& settings);
+/// The options that differ from their defaults, where there are any; and what tells states of renders that lacked the light
+/// of lamps behind glass from those that have it.
+std::string lamp_caustic_options(World const& world, RenderSettings const& settings);
+std::string lamp_light_version(World const& world);
 /// Of a picture by a method that does not find them.
 void lose_lamp_caustics(World const& world, Report& report);
 

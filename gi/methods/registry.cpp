@@ -27,9 +27,9 @@ namespace gi {
 namespace {
 
 /// Of a method that builds nothing by the scene.
-std::vector<PlanItem> explain_light(World const& world, RenderSettings const&, Camera const&)
+std::vector<PlanItem> explain_light(World const& world, RenderSettings const& asked, Camera const&)
 {
-    return {explain_lamp_caustics(world)};
+    return {explain_lamp_caustics(world, asked)};
 }
 
 /// @param visibility, variant  see Method

@@ -1,5 +1,7 @@
 #include "gi/render/exact_visibility.h"
 
+#include "gi/scene/model/used_materials.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -235,7 +237,7 @@ ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threa
       stop_(stop),
       world_(view(world)),
       alpha_tests_(alpha_tests),
-      panes_(std::ranges::any_of(world.materials, is_pane))
+      panes_(has_panes(world))
 {
     if (!device_) throw std::runtime_error("Embree could not be started");
     auto const triangles = std::uint32_t(world.triangles.size());

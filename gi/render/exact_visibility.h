@@ -19,7 +19,7 @@ namespace gi {
 
 class ExactVisibility {
 public:
-    /// Copies the vertices; with alpha tests, `world` must outlive this object. threads 0 = all.
+    /// Copies the vertices; with alpha tests or panes, `world` must outlive this object. threads 0 = all.
     /// @param first_moving  index of the first triangle that may move; all later ones may move too
     /// @param stop  checked while the BVH is built, which throws Interrupted if a stop is requested; null = never
     ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving = ~std::size_t(0),

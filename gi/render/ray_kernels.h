@@ -24,6 +24,7 @@ struct NearestHits {
     }
 };
 
+template <bool panes>
 struct ShadowRays {
     WorldView world;
     KernelRays rays;
@@ -33,7 +34,7 @@ struct ShadowRays {
     GI_FN void operator()(std::size_t i) const
     {
         RayQuery const q = queries.load(i);
-        if (q.reach > 0) left.store(i, rays.transmittance(world, q));
+        if (q.reach > 0) left.store(i, rays.transmittance<panes>(world, q));
     }
 };
 

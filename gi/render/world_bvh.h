@@ -13,7 +13,6 @@ namespace gi {
 struct KernelRays {
     BvhView trees[2];         ///< static, dynamic; either may be empty
     bool alpha_tests = false; ///< some surfaces are partly transparent
-    bool panes = false;       ///< some are panes
 
     /// As ExactVisibility::nearest.
     GI_FN Hit nearest(WorldView const& world, RayQuery const& q) const
@@ -29,7 +28,8 @@ struct KernelRays {
                    return meets(world, q, triangle, weights);
                }).triangle != kNoBvhTriangle;
     }
-    /// As ExactVisibility::transmittance.
+    /// As ExactVisibility::transmittance. @tparam panes  there are some: kernels without are smaller
+    template <bool panes>
     GI_FN vec3 transmittance(WorldView const& world, RayQuery const& q) const
     {
         if (!panes || q.to_lamp == 0) return vec3{occluded(world, q) ? 0.0f : 1.0f};
@@ -79,11 +79,10 @@ public:
         for (int k = 0; k < 2; ++k) trees_[k] = build_bvh<S>(list(world, k), stop);
     }
     void test_alpha(bool alpha_tests) { alpha_tests_ = alpha_tests; }
-    void test_panes(bool panes) { panes_ = panes; }
     /// Refits the dynamic tree.
     void moved(WorldView const& world) { refit(trees_[1], list(world, 1)); }
 
-    KernelRays rays() const { return {{trees_[0].view(), trees_[1].view()}, alpha_tests_, panes_}; }
+    KernelRays rays() const { return {{trees_[0].view(), trees_[1].view()}, alpha_tests_}; }
     Bvh<S> const& still() const { return trees_[0]; }
     Bvh<S> const& moving() const { return trees_[1]; }
     bool alpha_tests() const { return alpha_tests_; }
@@ -96,7 +95,7 @@ private:
 
     std::uint32_t first_[3] = {}; ///< triangles of the trees: of the first, of the second, end
     Bvh<S> trees_[2];             ///< static, dynamic
-    bool alpha_tests_, panes_ = false;
+    bool alpha_tests_;
 };
 
 } // namespace gi

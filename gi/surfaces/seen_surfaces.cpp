@@ -3,11 +3,11 @@
 #include "gi/render/path_step.h"
 #include "gi/render/ray_path.h"
 #include "gi/scene/model/plan.h"
+#include "gi/scene/model/used_materials.h"
 #include "gi/scene/shading/seen_mirror.h"
 #include "gi/surfaces/light_picture.h"
 #include "gi/surfaces/mirror_boxes.h"
 
-#include <algorithm>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -59,11 +59,14 @@ bool SeenSurfaces::mirrors_in(World const& world)
                        [&](std::uint32_t m) { return may_mirror(world.bsdfs[m]); });
 }
 
+bool SeenSurfaces::can_light(World const& world)
+{
+    return !world.lights.empty() && world.lights.size() <= kMostLights;
+}
+
 bool SeenSurfaces::has_few_lights(World const& world)
 {
-    // Panes colour the light of lamps, which the shadow bits of pixels and the shadow maps of OpenGL cannot say.
-    return !world.lights.empty() && world.lights.size() <= kMostLights &&
-           std::ranges::none_of(world.materials, is_pane);
+    return can_light(world) && !has_panes(world); // which colour light, as OpenGL's shadow maps cannot say
 }
 
 void SeenSurfaces::find_needs()
@@ -71,7 +74,8 @@ void SeenSurfaces::find_needs()
     std::vector<char> may;
     for (Bsdf const& b : world_.bsdfs) may.push_back(may_mirror(b) ? 1 : 0);
     mirrors_ = mirror_boxes(world_, may);
-    bool const needed = has_mirrors() || has_few_lights(world_);
+    panes_ = has_panes(world_);
+    bool const needed = has_mirrors() || can_light(world_);
     if (needed == (exact_ != nullptr)) return;
     exact_.reset();
     if (needed)
@@ -110,7 +114,7 @@ bool SeenSurfaces::may_show_mirrors(CameraRays const& camera, int width, int hei
 void SeenSurfaces::look_at_mirrors(CameraRays const& camera, int width, int height, Lights lights)
 {
     look(camera, width, height);
-    lights_ = lights == Lights::few && has_few_lights(world_) ? std::uint32_t(world_.lights.size()) : 0;
+    lights_ = lights == Lights::few && can_light(world_) ? std::uint32_t(world_.lights.size()) : 0;
 }
 
 void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights lights, vec2 at)
@@ -124,7 +128,7 @@ void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights 
     grid_ = camera_grid(camera_, width, height, at, kNear * glm::max(world_.bounds.radius(), 1e-30f));
     draw_view(soup_, 0, soup_.count, cut_outs_, grid_, kSeed, map_);
     coarse_.clear();
-    lights_ = lights == Lights::few && has_few_lights(world_) ? std::uint32_t(world_.lights.size()) : 0;
+    lights_ = lights == Lights::few && can_light(world_) ? std::uint32_t(world_.lights.size()) : 0;
     if (lights_ == 0) return;
     // First every fourth row and column: a pixel whose surrounding ones agree needs no shadow ray of its own.
     int const columns = (width + kCoarse - 1) / kCoarse, rows = (height + kCoarse - 1) / kCoarse;
@@ -143,7 +147,7 @@ void SeenSurfaces::look(CameraRays const& camera, int width, int height, Lights 
 /// Whether a light reaches a surface, if the coarse pixels around agree.
 std::optional<bool> SeenSurfaces::known_shadow(SeenSurface const& s, std::uint32_t light, int x, int y) const
 {
-    if (coarse_.empty()) return std::nullopt;
+    if (coarse_.empty() || panes_) return std::nullopt;
     int const columns = (int(map_.width) + kCoarse - 1) / kCoarse,
               rows = (int(map_.height) + kCoarse - 1) / kCoarse;
     int const left = (x + kCoarse / 2) / kCoarse - 1, top = (y + kCoarse / 2) / kCoarse - 1;
@@ -231,7 +235,7 @@ void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
 {
     bool const only_mirrors = which == Pixels::mirrors;
     thread_local std::vector<Sent> sent;
-    thread_local std::vector<std::uint8_t> blocked;
+    thread_local std::vector<vec3> left_of;
     sent.clear();
     thread_local std::vector<Way> ways, aside;
     thread_local std::vector<RayQuery> rays;
@@ -286,16 +290,16 @@ void SeenSurfaces::fill(int y, std::span<SeenSurface> out, Pixels which) const
     if (sent.empty()) return;
     rays.clear();
     for (Sent const& l : sent) rays.push_back(l.ray);
-    blocked.resize(rays.size());
-    exact_->occluded(rays, blocked);
+    left_of.resize(rays.size());
+    exact_->transmittance(rays, left_of);
     for (std::size_t k = 0; k < sent.size(); ++k) {
         SeenSurface& to = out[sent[k].pixel];
         auto const bit = std::uint8_t(1u << sent[k].light);
-        if (blocked[k] != 0) {
+        if (left_of[k] == vec3{0}) {
             to.blocked |= bit;
             continue;
         }
-        to.direct += sent[k].radiance;
+        to.direct += left_of[k] * sent[k].radiance;
         to.lit |= bit;
     }
 }

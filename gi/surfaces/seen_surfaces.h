@@ -61,7 +61,8 @@ public:
     /// False only if a picture shows no mirror and no pane. @param width, height  px
     bool may_show_mirrors(CameraRays const& camera, int width, int height) const;
     static constexpr std::size_t kMostLights = 4;
-    static bool has_few_lights(World const& world); ///< at least one, and no panes
+    static bool can_light(World const& world);      ///< there are lamps, but not many
+    static bool has_few_lights(World const& world); ///< and no panes: OpenGL can light surfaces, too
 
 private:
     struct Way;
@@ -88,6 +89,7 @@ private:
     PerspectiveGrid grid_;
     NearestMap map_;
     std::uint32_t lights_ = 0;        ///< punctual lights in the last view
+    bool panes_ = false;              ///< the world has some
     std::vector<SeenSurface> coarse_; ///< every fourth pixel, with its own shadow rays
     std::vector<Corners> now_;        ///< of triangles that can move
     EarlierCorners earlier_;

@@ -3,6 +3,7 @@
 #include "gi/core/rng.h"
 #include "gi/filter/tone_map.h"
 #include "gi/image_io/picture_file.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/metrics/metrics.h"
 #include "gi/render/fingerprint.h"
 #include "viewer/base/version.h"
@@ -30,7 +31,9 @@ double relative_variance(gi::Picture const& picture)
 
 std::string hash(SweepScene const& scene, gi::RenderSettings const& s, ReferenceOf valid)
 {
-    std::uint64_t h = gi::fingerprint(scene.world, scene.camera, s, "reference", {});
+    std::uint64_t h =
+        gi::fingerprint(scene.world, scene.camera, s, "reference",
+                        gi::lamp_caustic_options(scene.world, s) + gi::lamp_light_version(scene.world));
     auto const add = [&](std::uint64_t v) { h = gi::mix_bits(h ^ (v + 0x9e3779b97f4a7c15ULL)); };
     add(s.paths);
     std::string const program = valid == ReferenceOf::any_program ? "L1" : scene.options.scene + '\n' + git_hash();

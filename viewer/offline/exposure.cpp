@@ -1,6 +1,8 @@
 #include "viewer/offline/exposure.h"
 
 #include "gi/core/rng.h"
+#include "gi/light_paths/lamp_caustics.h"
+#include "gi/methods/registry.h"
 #include "gi/render/fingerprint.h"
 #include "gi/render/pass_samples.h"
 #include "gi/scene/motion/motion.h"
@@ -45,6 +47,7 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
         now.camera = exposure.camera(world.world(), after_s);
         return now;
     };
+    if (!gi::render_option("photons").read_by(plan.method)) gi::lose_lamp_caustics(world.world(), report);
     gi::RenderResult result = renderer->frame(first, stop, progress, moments);
     if (!exposure.still) world.advance(exposure.from_s);
     if (plan.method != method.name) {

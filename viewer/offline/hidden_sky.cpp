@@ -18,11 +18,11 @@ gi::vec3 direction(int k, int n)
 
 } // namespace
 
-std::string mesh_before_sky(gi::World const& world, gi::vec3 from_m)
+std::string mesh_before_sky(gi::World const& world, gi::vec3 from_m, int threads)
 {
     constexpr int kDirections = 256, kMostOfThem = 230;
     if (world.triangles.empty()) return {};
-    gi::ExactVisibility const visibility(world, gi::plan_scene(world).alpha_tests, 0);
+    gi::ExactVisibility const visibility(world, gi::plan_scene(world).alpha_tests, threads);
     // From outside, so that what they meet first is what lies before the sky.
     float const far_m = 2 * (world.bounds.radius() + glm::length(from_m - world.bounds.center()));
     std::vector<gi::RayQuery> rays;

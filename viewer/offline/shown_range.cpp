@@ -35,11 +35,12 @@ std::string ShownRange::problem(std::string const& file, double exposure_ev) con
         std::ranges::nth_element(logs, middle);
         shows_ev = std::log2(kMiddle) - double(*middle);
     }
-    if (shows_ev > kMost_ev)
+    if (black >= kMostlyBlack && shows_ev > kMost_ev)
         return fmt::format("'{}' is black: next to no light reaches what the camera sees. Lights may be missing "
                            "or without power, or "
                            "a mesh around the scene hides its sky; lightwell info lists its lights",
                            file);
+    if (logs_.empty()) return fmt::format("'{}' is white: its values are not finite", file);
     return fmt::format(
         "{:.0f} % of '{}' is {}, which lies beyond what a PNG shows at --exposure {:g}: --exposure {:.1f} "
         "shows its middle",

@@ -8,6 +8,7 @@
 #include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/paths/costs.h"
 #include "gi/methods/paths/lobes.h"
+#include "gi/scene/model/used_materials.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -41,7 +42,8 @@ Costs costs_of(World const& world, TriangleSoup const& soup) { return {world, la
 
 bool needs_exact_rays(World const& world, bool orthographic, RenderSettings const& s)
 {
-    return !s.of<PathAlgorithm>().only_looks_up() || s.of<SlhbSettings>().exact.any() || orthographic || narrow_somewhere(world);
+    return !s.of<PathAlgorithm>().only_looks_up() || s.of<SlhbSettings>().exact.any() || orthographic ||
+           narrow_somewhere(world) || has_panes(world);
 }
 
 namespace {
@@ -288,7 +290,7 @@ std::vector<PlanItem> explain_choices(World const& world, RenderSettings const& 
                      lit, !lit   ? "there are no lights"
                      : rays ? "each path has its own light samples, so that pixels share no error"
                             : "all paths of a pass share a few light samples"});
-    items.push_back(explain_lamp_caustics(world));
+    items.push_back(explain_lamp_caustics(world, asked));
     bool const narrow = narrow_somewhere(world);
     items.push_back({"exact_rays", "exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
                      !walks                ? "in place of look-ups"

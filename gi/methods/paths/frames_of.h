@@ -253,7 +253,7 @@ private:
     bool can_leave_out() const
     {
         World const& world = world_.world();
-        return !settings_.of<SlhbSettings>().exact.any() &&
+        return !settings_.of<SlhbSettings>().exact.any() && !(has_panes(world) && !world.lights.empty()) &&
                std::ranges::none_of(world.emitters, [&](std::uint32_t t) { return t >= world.static_triangles; });
     }
 

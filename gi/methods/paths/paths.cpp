@@ -14,13 +14,15 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     PassLoop loop(settings, stop, progress, report, settings.of<SpentBeforehand>().seconds);
     TriangleSoup soup = make_soup(world);
     RenderSettings const chosen = choose_settings(settings, world, soup);
-    std::string const options = as_options(chosen);
+    std::string options = as_options(chosen);
+    if (std::string const more = lamp_caustic_options(world, settings); !more.empty()) options += " " + more;
     bool const rays = chosen.of<PathAlgorithm>().surfaces == SurfacesBy::rays;
     FrameView const eye{camera, settings.width, settings.height};
     PathsRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
                            rays ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);
     renderer.find_lamp_caustics();
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, name, options) : 0;
+    std::uint64_t const print =
+        loop.keeps_state() ? fingerprint(world, camera, chosen, name, options + lamp_light_version(world)) : 0;
     bool const cached = chosen.of<PathsSettings>().cache == RadianceCaching::on;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)

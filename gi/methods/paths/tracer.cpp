@@ -146,7 +146,9 @@ void PathsTracer::add_lit(Pass const& pass, Direct& direct, PathsWork& counts) c
     } else {
         if (panes_) { // which block all light in maps
             auto const lamps = std::ranges::partition(direct.maps, [](Unshadowed const& d) { return !d.of_lamp; });
-            add_exactly(pass, lamps);
+            if (!lamps.empty()) add_exactly(pass, lamps);
+            counts.shadow_lookups -= lamps.size();
+            counts.shadow_rays += lamps.size();
             direct.maps.erase(lamps.begin(), lamps.end());
         }
         for (Unshadowed const& d : direct.maps) {

@@ -21,8 +21,8 @@
 #include "gi/render/exact_visibility.h"
 #include "gi/render/interleaving.h"
 #include "gi/render/path_sample.h"
+#include "gi/scene/model/used_materials.h"
 
-#include <algorithm>
 #include <span>
 
 namespace gi {
@@ -100,7 +100,7 @@ public:
           roulette_(settings.of<PathsSettings>().roulette),
           free_(settings.of<PathAlgorithm>().surfaces == SurfacesBy::rays || parts_.directions),
           meets_light_(!world_.environment_radiance.empty() || !world_.emitter_pdf.empty()),
-          panes_(std::ranges::any_of(world.materials, is_pane))
+          panes_(has_panes(world))
     {
     }
 

@@ -55,6 +55,10 @@ protected:
     virtual bool stores(LightVertex const& v) const { return v.scatterings > 0; }
     /// Whether light that comes by mirrors and glass alone has photons of its own.
     virtual bool has_caustics() const { return true; }
+    bool photons_pass_panes() const override
+    {
+        return has_caustics() && settings_.of<PhotonSettings>().caustic_paths > 0;
+    }
     /// Indirect bounces that the method's light paths give, at most.
     virtual int bounces() const { return std::min(settings_.of<PhotonSettings>().reflections, settings_.bounces); }
     virtual PhotonRays rays_kind() const { return settings_.of<PhotonSettings>().rays; }

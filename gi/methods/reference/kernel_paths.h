@@ -9,6 +9,7 @@
 #include "gi/render/sums_on.h"
 #include "gi/render/tiled_pass.h"
 #include "gi/scene/model/plan.h"
+#include "gi/scene/model/used_materials.h"
 #include "gi/scene/model/world_on.h"
 
 #include <algorithm>
@@ -84,10 +85,7 @@ public:
         StageTimer const timer(report_, "update of dynamic triangles");
         there_.update(world_, changes);
         if (!bvh_) return;
-        if (changes.materials || changes.coverage) {
-            bvh_->test_alpha(plan_scene(world_).alpha_tests);
-            bvh_->test_panes(has_panes());
-        }
+        if (changes.materials || changes.coverage) bvh_->test_alpha(plan_scene(world_).alpha_tests);
         if (changes.geometry) bvh_->moved(there_.view());
     }
 
@@ -96,7 +94,6 @@ public:
         if (!bvh_) {
             StageTimer const timer(report_, "build (BVH)");
             bvh_.emplace(there_.view(), plan_scene(world_).alpha_tests, first_moving_, stop_of_building(stop_));
-            bvh_->test_panes(has_panes());
         }
         return there_.view();
     }
@@ -131,7 +128,6 @@ public:
     }
 
 private:
-    bool has_panes() const { return std::ranges::any_of(world_.materials, is_pane); }
     /// @param most  paths of each pixel that are traced together
     /// @param to     (number of its first path) -> where samples go
     /// @param ended  called with that number when all samples are there
@@ -179,6 +175,7 @@ private:
         auto const n = std::uint32_t(all.slots.count), few = std::min(n / 8, kFew);
         WorldView const& world = all.steps.world;
         KernelRays const rays = bvh_->rays();
+        bool const panes = has_panes(world_);
         memory_.take_none();
         launch(S, "start paths", n, StartPaths{all});
         for (;;) {
@@ -188,7 +185,10 @@ private:
             std::uint32_t const end = all.pixels * all.paths, idle = taken > end ? taken - end : 0;
             if (idle == n) return all.paths;
             if (n - idle <= few) {
-                launch(S, "finish paths", n, FinishPaths{{all}, rays});
+                if (panes)
+                    launch(S, "finish paths", n, FinishPaths<true>{{all}, rays});
+                else
+                    launch(S, "finish paths", n, FinishPaths<false>{{all}, rays});
                 launch(S, "scatter paths", n, ScatterPaths{all});
                 launch(S, "end paths", n, EndPaths<Samples>{all, to});
                 continue;
@@ -196,7 +196,10 @@ private:
             for (int k = 0; k < kSteps; ++k) {
                 launch(S, "rays of paths", n, NearestHits{world, rays, all.queries, all.hits});
                 launch(S, "scatter paths", n, ScatterPaths{all});
-                launch(S, "shadow rays of paths", n, ShadowRays{world, rays, all.shadows, all.left});
+                if (panes)
+                    launch(S, "shadow rays of paths", n, ShadowRays<true>{world, rays, all.shadows, all.left});
+                else
+                    launch(S, "shadow rays of paths", n, ShadowRays<false>{world, rays, all.shadows, all.left});
                 launch(S, "end paths", n, EndPaths<Samples>{all, to});
             }
         }

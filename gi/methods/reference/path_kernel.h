@@ -174,7 +174,8 @@ protected:
     }
 };
 
-/// Traces paths to their ends: the last ones are too few to fill a device.
+/// Traces paths to their ends: the last ones are too few to fill a device. @tparam panes  see ShadowRays
+template <bool panes>
 struct FinishPaths : ScatterPaths {
     KernelRays rays;
 
@@ -187,7 +188,7 @@ struct FinishPaths : ScatterPaths {
             scatter(i, s);
             RayQuery const shadow = shadows.load(i);
             if (!(shadow.reach > 0)) continue;
-            vec3 const comes = rays.transmittance(steps.world, shadow);
+            vec3 const comes = rays.transmittance<panes>(steps.world, shadow);
             if (comes != vec3{0}) lights.store(i, lit(lights.load(i), comes));
         } while (s.stage == PathStage::goes_on);
         slots.store(i, s);

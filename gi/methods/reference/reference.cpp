@@ -183,8 +183,10 @@ RenderResult render_picture(char const* name, World const& world, Camera const& 
     PassLoop loop(settings, stop, progress, report);
     Paths tracing(world, settings, world.triangles.size(), report, &stop);
     PathSteps const steps = start_steps(tracing, world, camera, settings);
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name, {}) : 0;
     constexpr bool kMayFindCaustics = std::is_same_v<Paths, EmbreePaths>;
+    std::string const options = kMayFindCaustics ? lamp_caustic_options(world, settings) : "";
+    std::uint64_t const print =
+        loop.keeps_state() ? fingerprint(world, camera, settings, name, options + lamp_light_version(world)) : 0;
     if constexpr (kMayFindCaustics) tracing.find_caustics(settings);
     auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
         if constexpr (kMayFindCaustics)
@@ -197,7 +199,9 @@ RenderResult render_picture(char const* name, World const& world, Camera const& 
             }
         trace_pass(tracing, steps, sums, loop.first_path(), paths, {}, nullptr, &stop);
     };
-    return trace_all(loop, print, pass, world, settings, report);
+    RenderResult result = trace_all(loop, print, pass, world, settings, report);
+    if (!options.empty()) result.options = options;
+    return result;
 }
 
 } // namespace

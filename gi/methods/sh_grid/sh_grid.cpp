@@ -71,6 +71,9 @@ protected:
         return &*light_;
     }
 
+protected:
+    bool photons_pass_panes() const override { return settings_.of<PhotonSettings>().caustic_paths > 0; }
+
 private:
     /// Of the photons that the settings ask for: less if a budget allows no more.
     double photon_share() const { return double(field_.light_paths()) / settings_.of<PhotonSettings>().paths; }

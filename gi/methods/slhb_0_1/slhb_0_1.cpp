@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/kernel/device.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/automatic/automatic.h"
 #include "gi/methods/paths/lobes.h"
 #include "gi/methods/paths/paths.h"
@@ -87,6 +88,7 @@ RenderResult render_slhb_0_1(World const& world, Camera const& camera, RenderSet
 {
     if (settings.space == Space::device) {
         check_device_options(settings);
+        lose_lamp_caustics(world, report);
         return render_by_kernels(Space::device, world, camera, settings, stop, progress, report);
     }
     PathAlgorithm const by = algorithm_of(settings, world, camera, RenderUse::picture);

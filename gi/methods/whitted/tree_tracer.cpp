@@ -37,7 +37,7 @@ void TreeTracer::aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int 
         if (!(max_component(value) > 0)) continue;
         RayQuery query = shadow_ray(at.position, at.geometric_normal, at.clearance, sampled);
         query.seed = r.rng.next();
-        if (light != nullptr) query.to_lamp = 0; // photons have gone through panes
+        if (panes_by_photons) query.to_lamp = 0;
         if (query.reach > 0)
             shadows.push_back({query, r.state.throughput * value, r.state.scatterings + 1, r.sample});
         else // the light lies on the surface

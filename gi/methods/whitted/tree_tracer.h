@@ -66,6 +66,7 @@ struct TreeTracer {
     int width;
     int bounces;                         ///< indirect ones: limits what rays of glossy lobes bring
     SurfaceLight const* light = nullptr; ///< null = no indirect light
+    bool panes_by_photons = false;       ///< shadow rays go through none
 
     /// Traces the trees number `index` of some pixels to their ends.
     /// @param samples, first  one per pixel, overwritten

@@ -61,7 +61,8 @@ void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLi
                             .filter = settings_.filter,
                             .width = v.width,
                             .bounces = settings_.bounces,
-                            .light = light};
+                            .light = light,
+                            .panes_by_photons = photons_pass_panes()};
     tbb::combinable<TreeCounts> counts;
     PassStop const given_up(stop, PassStop::of(sums.paths));
     TiledPass pass(sums, 1, given_up);

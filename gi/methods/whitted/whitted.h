@@ -32,6 +32,8 @@ protected:
     {
         return nullptr;
     }
+    /// True if photons bring the light of lamps that goes through panes; else shadow rays do.
+    virtual bool photons_pass_panes() const { return false; }
 
     World const& world_;
     RenderSettings const& settings_;

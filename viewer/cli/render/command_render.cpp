@@ -72,8 +72,9 @@ Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi
         trace(o, work, guard, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
             return gi::find_method(o.method).render(world, camera, settings, stop, progress, report);
         });
-    if (world.environment && is_black(result.picture)) {
-        std::string const mesh = mesh_before_sky(world, gi::camera_rays(camera, 1, 1, world.origin).origin);
+    if (world.environment && result.end != gi::RenderEnd::interrupted && is_black(result.picture)) {
+        std::string const mesh =
+            mesh_before_sky(world, gi::camera_rays(camera, 1, 1, world.origin).origin, settings.threads);
         if (!mesh.empty())
             say("the sky lights nothing: the mesh '" + mesh +
                 "' lies before all of it, seen from the camera. Give it an emission, put lamps inside, or take it "
