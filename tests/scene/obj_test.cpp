@@ -144,11 +144,19 @@ TEST_F(ObjFolder, VerticesWithoutAColorAreWhite)
     EXPECT_EQ(m.base_color, vec3{1}) << "the colours are the albedo";
     EXPECT_EQ(m.specular, 0);
 }
-TEST_F(ObjFolder, ColorsBehindAFourthCoordinate)
+TEST_F(ObjFolder, ColorsWithAlphaAndBehindAFourthCoordinate)
 {
-    Scene const scene = load("v 0 0 0 2 1 0 0\nv 2 0 0 2 0 1 0\nv 0 1 0 1 0 0 1\nf 1 2 3\n");
+    for (char const* text : {"v 0 0 0 1 0 0 1\nv 1 0 0 0 1 0 .5\nv 0 1 0 0 0 1 1\nf 1 2 3\n",
+                             "v 0 0 0 2 1 0 0 1\nv 2 0 0 2 0 1 0 .5\nv 0 1 0 1 0 0 1 1\nf 1 2 3\n"}) {
+        Report report;
+        Scene const scene = load_scene(write("m.obj", text), report);
+        EXPECT_EQ(scene.meshes.at(0).positions.at(1), (vec3{1, 0, 0})) << text;
+        EXPECT_EQ(scene.meshes[0].colors, (std::vector{vec3{1, 0, 0}, vec3{0, 1, 0}, vec3{0, 0, 1}})) << text;
+        ASSERT_EQ(report.losses().size(), 1u) << text;
+        EXPECT_EQ(report.losses().at("vertices with an alpha of their own, taken as opaque").count, 1u) << text;
+    }
+    Scene const scene = load("v 0 0 0 2\nv 2 0 0 2\nv 0 1 0 1\nf 1 2 3\n");
     EXPECT_EQ(scene.meshes.at(0).positions.at(1), (vec3{1, 0, 0}));
-    EXPECT_EQ(scene.meshes[0].colors, (std::vector{vec3{1, 0, 0}, vec3{0, 1, 0}, vec3{0, 0, 1}}));
 }
 TEST_F(ObjFolder, WhatIsNotReadIsNamed)
 {

@@ -199,6 +199,7 @@ void ObjImporter::InternReadFile(std::string const& file, aiScene* scene, Assimp
     for (auto const& [word, count] : model.skipped)
         notes_.lose("statements of OBJ that are not read (curves, surfaces, ...)", count, file + ": " + word);
     notes_.lose("faces of smoothing groups without normals, flat", model.flat_faces, file);
+    notes_.lose("vertices with an alpha of their own, taken as opaque", model.alphas, file);
     convert(model, fs::path(file).filename().string(), *scene);
     auto all = materials.take();
     scene->mMaterials = new aiMaterial*[all.size()];

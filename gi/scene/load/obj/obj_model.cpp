@@ -59,22 +59,25 @@ private:
         return {n[0], n[1], n[2]};
     }
 
-    /// x y z, x y z w, or either and red, green, blue.
+    /// By how many numbers there are: x y z; x y z w; x y z and red, green, blue (and alpha); x y z w and red, green,
+    /// blue, alpha. Programs that write seven mean an alpha.
     void add_vertex(std::string_view rest)
     {
-        std::array<float, 7> n{};
+        std::array<float, 8> n{};
         std::size_t const count = leading_numbers(rest, n);
         if (count < 3) fail("a vertex has three numbers");
         vec3 position{n[0], n[1], n[2]};
-        if (count == 4 || count == 7) {
+        if (count == 4 || count == 8) {
             if (n[3] == 0) fail("the vertex lies at infinity");
             position /= n[3];
         }
         bool const has_color = count >= 6;
+        std::size_t const first = count == 8 ? 4 : 3; // of the colour
+        if (count >= 7 && n[count - 1] != 1) ++m_.alphas;
         if (has_color && m_.colors.empty()) m_.colors.resize(m_.positions.size(), vec3{1});
         m_.positions.push_back(position);
         if (has_color)
-            m_.colors.push_back({n[count - 3], n[count - 2], n[count - 1]});
+            m_.colors.push_back({n[first], n[first + 1], n[first + 2]});
         else if (!m_.colors.empty())
             m_.colors.push_back(vec3{1});
     }

@@ -48,6 +48,7 @@ struct ObjModel {
     std::vector<ObjMesh> meshes;      ///< of rising first faces; may be empty
     std::map<std::string, std::uint64_t> skipped; ///< statements that are not read, by their first word
     std::uint64_t flat_faces = 0;                 ///< without normals in a smoothing group
+    std::uint64_t alphas = 0;                     ///< vertices with one that is not 1
 };
 
 struct ObjMaterialsOfFile {
