@@ -349,7 +349,7 @@ TEST_F(PlyFolder, MistakesAreToldWithTheirLine)
         std::string file, part;
     };
     for (auto const& [file, part] :
-         {Case{"plx\nend_header\n", "line 1 of its header: it is not"},
+         {Case{"ply", "no line end_header"}, Case{"plx\nend_header\n", "line 1 of its header: it is not"},
           Case{"ply\nelement vertex 1\nend_header\n", "no line format"},
           Case{"ply\nformat text 1.0\nend_header\n", "line 2 of its header: 'text' is no format"},
           Case{begin + "property float x\n" + end, "line 3 of its header: a property before"},

@@ -123,7 +123,7 @@ PlyFormat format_of_ply(std::string_view rest, std::size_t line)
 /// line end, and may look like another one.
 std::vector<std::string_view> header_lines(std::string_view file, PlyHeader& header)
 {
-    std::size_t const first_end = file.find_first_of("\r\n");
+    std::size_t const first_end = std::min(file.find_first_of("\r\n"), file.size());
     bool const old_mac = first_end + 1 < file.size() && file[first_end] == '\r' && file[first_end + 1] != '\n';
     std::vector<std::string_view> lines;
     for (std::size_t at = 0; at < file.size();) {
