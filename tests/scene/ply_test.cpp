@@ -329,6 +329,38 @@ TEST_F(PlyFolder, LinesOfHeadersThatAreNotUnderstoodAreNamed) // Blender 2.47
               std::string::npos);
 }
 
+TEST_F(PlyFolder, TextBesideWhatTheHeaderNamesIsCountedOrRefused)
+{
+    std::string const face = element("face", 1, "property list uchar int vertex_indices\n"),
+                      loss = "values of PLY that its header does not name, skipped", square = kPlySquare;
+    EXPECT_EQ(corners_of(load(square_and(face), "0 0 0 7\n1 0 0 7 8\n1 1 0\n0 1 0\n4 0 1 2 3 255 0 0\n")),
+              "00 10 11, 00 11 01");
+    EXPECT_EQ(lost(loss), 6u);
+    EXPECT_NE(report_.losses().at(loss).first.find("a.ply: line 10"), std::string::npos);
+    EXPECT_EQ(corners_of(load(square_and(face), square + "4 0 1 2 3\n\n4 0 1\n 2 \n")), "00 10 11, 00 11 01");
+    EXPECT_EQ(lost(loss), 6u + 4u) << "lines behind the last row";
+    EXPECT_EQ(corners_of(load(square_and(face), "0 0 0 1 0 0 1 1 0 0 1 0 4 0 1 2 3 9\n")), "00 10 11, 00 11 01");
+    EXPECT_EQ(lost(loss), 6u + 4u + 1u) << "all on one line";
+    std::string const header = "ply\nformat ascii 1.0\n" + square_and(face) + "end_header\n";
+    EXPECT_NE(refusal(header + "0 0 0\n1 0\n1 1 0\n0 1 0\n4 0 1 2 3\n").find("line 11: it has fewer values"),
+              std::string::npos);
+}
+
+TEST_F(PlyFolder, BytesBehindTheLastRowAreCounted)
+{
+    PlyBytes values(false);
+    for (float const x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f}) values.add(x);
+    values.add(std::uint8_t(3));
+    for (std::int32_t const i : {0, 1, 2}) values.add(i);
+    std::string const file = "ply\nformat binary_little_endian 1.0\n" + element("vertex", 3, kXyz) +
+                             element("face", 1, "property list uchar int vertex_indices\n") + "end_header\n" +
+                             values.text;
+    load_bytes(file + "\n");
+    EXPECT_TRUE(report_.losses().empty());
+    load_bytes(file + "abc");
+    EXPECT_EQ(lost("bytes of PLY behind those that its header names, skipped"), 3u);
+}
+
 TEST_F(PlyFolder, NormalsAreKeptAndPointsCounted)
 {
     Scene const scene = load(

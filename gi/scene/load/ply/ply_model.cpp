@@ -135,6 +135,10 @@ public:
         for (std::string const& line : header_.unknown)
             notes_.lose("lines of headers of PLY that are not understood, skipped", 1, at(line));
         for (PlyElement const& element : header_.elements) read_element(element);
+        if (values_.is_text())
+            lose_values(values_.count_left());
+        else
+            notes_.lose("bytes of PLY behind those that its header names, skipped", values_.count_left(), name_);
         finish();
         return std::move(m_);
     }
@@ -161,6 +165,13 @@ private:
         }
     }
 
+    void lose_values(std::size_t count)
+    {
+        if (count > 0)
+            notes_.lose("values of PLY that its header does not name, skipped", count,
+                        at("line " + std::to_string(values_.line())));
+    }
+
     std::string at(std::string const& what) const { return name_ + ": " + shortened(what, 60); }
 
     template <std::size_t n>
@@ -185,6 +196,7 @@ private:
     {
         indices_.clear();
         row_uvs_.clear();
+        values_.begin_row();
         for (std::size_t i = 0; i < t.roles.size(); ++i) {
             PlyProperty const& p = t.element.properties[i];
             if (!p.is_list) {
@@ -202,6 +214,7 @@ private:
                 if (t.roles[i] == kCornerUvs) row_uvs_.push_back(float(value));
             }
         }
+        lose_values(values_.end_row());
     }
 
     vec4 color(PlyTable const& t) const

@@ -153,6 +153,14 @@ double largest_of(PlyType type)
     return std::exp2(double(8 * bytes_of(type)) - (is_signed ? 1 : 0)) - 1;
 }
 
+std::uint64_t PlyHeader::rows() const
+{
+    std::uint64_t all = 0;
+    for (PlyElement const& e : elements)
+        if (!e.properties.empty()) all += e.rows;
+    return all;
+}
+
 PlyHeader read_ply_header(std::string_view file)
 {
     PlyHeader header;
@@ -183,7 +191,7 @@ PlyHeader read_ply_header(std::string_view file)
 
 double PlyValues::take(PlyType type)
 {
-    if (format_ == PlyFormat::ascii) return take_word();
+    if (is_text()) return take_word();
     std::size_t const size = bytes_of(type);
     if (rest_.size() < size) throw std::runtime_error("the file ends early");
     bool const swapped = (format_ == PlyFormat::big_endian) != (std::endian::native == std::endian::big);
@@ -192,11 +200,53 @@ double PlyValues::take(PlyType type)
     return value;
 }
 
-double PlyValues::take_word()
+void PlyValues::skip_blanks()
 {
     std::size_t at = 0;
     for (; at < rest_.size() && (rest_[at] == '\n' || is_blank(rest_[at])); ++at) line_ += rest_[at] == '\n';
     rest_.remove_prefix(at);
+}
+
+/// Lines that are not blank.
+std::size_t PlyValues::lines_left() const
+{
+    std::size_t lines = 0;
+    for (std::string_view rest = rest_; !rest.empty();) lines += !trimmed(take_until(rest, '\n')).empty();
+    return lines;
+}
+
+void PlyValues::begin_row()
+{
+    if (!has_row_a_line_) return;
+    skip_blanks();
+    row_line_ = line_;
+}
+
+std::size_t PlyValues::end_row()
+{
+    if (!has_row_a_line_) return 0;
+    std::string_view line = rest_.substr(0, std::min(rest_.find('\n'), rest_.size()));
+    rest_.remove_prefix(line.size());
+    std::size_t words = 0;
+    while (!gi::take_word(line).empty()) ++words;
+    if (words > 0 && line_ != row_line_)
+        throw std::runtime_error("line " + std::to_string(row_line_) +
+                                 ": it has fewer values than its element's properties");
+    return words;
+}
+
+std::size_t PlyValues::count_left()
+{
+    if (is_text()) skip_blanks();
+    std::size_t words = 0;
+    for (std::string_view rest = rest_; !rest.empty();)
+        for (std::string_view line = take_until(rest, '\n'); !gi::take_word(line).empty();) ++words;
+    return is_text() || words == 0 ? words : rest_.size();
+}
+
+double PlyValues::take_word()
+{
+    skip_blanks();
     std::size_t end = 0;
     while (end < rest_.size() && rest_[end] != '\n' && !is_blank(rest_[end])) ++end;
     std::string_view const word = rest_.substr(0, end);
