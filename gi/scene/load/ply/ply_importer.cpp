@@ -18,10 +18,10 @@ namespace {
 /// Makes a mesh of the faces of one texture.
 class PlyMeshBuilder {
 public:
-    PlyMeshBuilder(PlyModel const& model, std::int32_t texture) : m_(model), texture_(texture)
+    /// @param faces  of that texture
+    PlyMeshBuilder(PlyModel const& model, std::int32_t texture, std::vector<std::size_t> faces)
+        : m_(model), texture_(texture), faces_(std::move(faces))
     {
-        for (std::size_t f = 0; f < m_.faces.size(); ++f)
-            if (m_.faces[f].texture == texture_) faces_.push_back(f);
         // Vertices that the file shares stay shared, unless corners have something of their own, or there are others.
         shared_ = m_.corner_uvs.empty() && m_.face_colors.empty() && faces_.size() == m_.faces.size();
     }
@@ -139,8 +139,11 @@ void PlyImporter::InternReadFile(std::string const& file, aiScene* scene, Assimp
     PlyModel const model = read_ply(*text, notes_, file);
     std::vector<std::unique_ptr<aiMesh>> meshes;
     std::vector<std::unique_ptr<aiMaterial>> materials;
+    std::vector<std::vector<std::size_t>> faces_of(model.textures.size() + 1); // those of [0] have none
+    for (std::size_t f = 0; f < model.faces.size(); ++f)
+        faces_of[std::size_t(model.faces[f].texture + 1)].push_back(f);
     for (std::int32_t texture = -1; texture < std::int32_t(model.textures.size()); ++texture) {
-        PlyMeshBuilder builder(model, texture);
+        PlyMeshBuilder builder(model, texture, std::move(faces_of[std::size_t(texture + 1)]));
         if (!builder.has_faces()) continue;
         if (builder.drops_colors())
             notes_.lose("vertex colours of PLY where there is a texture, skipped", 1,
