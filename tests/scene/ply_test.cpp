@@ -238,6 +238,32 @@ TEST_F(PlyFolder, VertexColorsAreSrgbAndTheAlbedo)
     EXPECT_TRUE(report_.losses().empty());
 }
 
+TEST_F(PlyFolder, BytesWrittenAsWiderIntegersAreDividedBy255)
+{
+    std::string const loss = "colours of integers of more than 8 bits that stay within 255, divided by 255",
+                      face = "property list uchar int vertex_indices\n";
+    std::uint64_t expected = 0;
+    for (std::string const type : {"short", "ushort", "int", "uint", "int64", "uint64"}) {
+        std::string const rgb =
+            "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\n";
+        Scene const scene =
+            load(element("vertex", 4, kXyz + rgb) + element("face", 1, face),
+                 "0 0 0 255 128 0\n1 0 0 255 128 0\n1 1 0 255 128 0\n0 1 0 255 128 0\n4 0 1 2 3\n");
+        for (vec3 const c : scene.meshes.at(0).colors)
+            EXPECT_LT(glm::length(c - vec3{1, 0.21586f, 0}), 1e-4f) << type;
+        EXPECT_EQ(lost(loss), expected += 4) << type;
+        Scene const faces = load(square_and(element("face", 2, face + rgb)),
+                                 std::string(kPlySquare) + "3 0 1 2 255 0 0\n3 0 2 3 0 255 0\n");
+        Mesh const& mesh = faces.meshes.at(0);
+        EXPECT_LT(glm::length(mesh.colors.at(mesh.triangles.at(1).x) - vec3{0, 1, 0}), 1e-5f) << type;
+        EXPECT_EQ(lost(loss), expected += 2) << type;
+    }
+    load(element("vertex", 4, kXyz + std::string("property int red\nproperty int green\nproperty int blue\n")) +
+             element("face", 1, face),
+         "0 0 0 256 0 0\n1 0 0 0 0 0\n1 1 0 0 0 0\n0 1 0 0 0 0\n4 0 1 2 3\n");
+    EXPECT_EQ(lost(loss), expected) << "256 is no byte";
+}
+
 TEST_F(PlyFolder, ColorsOfFacesAndAlpha)
 {
     Scene const scene =

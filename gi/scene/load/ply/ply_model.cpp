@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 namespace gi {
@@ -201,7 +202,10 @@ private:
             PlyProperty const& p = t.element.properties[i];
             if (!p.is_list) {
                 double const value = values_.take(p.type);
-                if (t.roles[i] < kRoles) row_[t.roles[i]] = value / t.unit[t.roles[i]];
+                if (t.roles[i] >= kRoles) continue;
+                double const unit = t.unit[t.roles[i]];
+                row_[t.roles[i]] = value / unit;
+                if (unit > kMostOfByte) most_of_wide_ = std::max(most_of_wide_, value);
                 continue;
             }
             double const count = values_.take(p.count_type);
@@ -222,8 +226,22 @@ private:
         return {row_[kRed], row_[kGreen], row_[kBlue], t.has({kAlpha}) ? row_[kAlpha] : 1.0};
     }
 
+    /// Colours of wide integers, none of which exceeds 255, are bytes that a program wrote as e.g. `int`.
+    void divide_by_255(PlyTable const& t, std::span<vec4> colors)
+    {
+        if (most_of_wide_ <= 0 || most_of_wide_ > kMostOfByte || colors.empty()) return;
+        for (int channel = 0; channel < 4; ++channel) {
+            double const unit = t.unit[std::size_t(kRed + channel)];
+            if (unit <= kMostOfByte) continue;
+            for (vec4& c : colors) c[channel] = float(double(c[channel]) * (unit / kMostOfByte));
+        }
+        notes_.lose("colours of integers of more than 8 bits that stay within 255, divided by 255", colors.size(),
+                    at(t.element.name));
+    }
+
     void read_vertices(PlyTable const& t)
     {
+        most_of_wide_ = 0;
         if (!t.has({kX, kY, kZ})) throw std::runtime_error("its vertices have no x, y and z");
         if (!m_.positions.empty()) throw std::runtime_error("it has two elements of vertices");
         for (std::uint64_t row = 0; row < t.element.rows; ++row) {
@@ -233,6 +251,7 @@ private:
             if (t.has({kU, kV})) m_.uvs.emplace_back(row_[kU], row_[kV]);
             if (t.has({kRed, kGreen, kBlue})) m_.colors.push_back(color(t));
         }
+        divide_by_255(t, m_.colors);
     }
 
     void read_faces(PlyTable const& t, bool are_strips)
@@ -240,6 +259,8 @@ private:
         if (!t.has_list(kIndices))
             throw std::runtime_error("its element '" + shortened(t.element.name, 40) +
                                      "' has no list vertex_indices");
+        most_of_wide_ = 0;
+        std::size_t const first_face = m_.faces.size();
         for (std::uint64_t row = 0; row < t.element.rows; ++row) {
             read_row(t);
             face_ = {0, t.has({kPicture}) ? picture(row_[kPicture]) : 0};
@@ -256,6 +277,8 @@ private:
                 end_face(indices_.size());
             }
         }
+        if (!m_.face_colors.empty() && t.has({kRed, kGreen, kBlue}))
+            divide_by_255(t, std::span(m_.face_colors).subspan(first_face));
     }
 
     static std::int32_t picture(double number) { return number >= 0 && number < 1e9 ? std::int32_t(number) : -1; }
@@ -326,6 +349,8 @@ private:
         }
     }
 
+    static constexpr double kMostOfByte = 255;
+
     PlyHeader header_;
     PlyValues values_;
     ImportedFiles& notes_;
@@ -336,6 +361,7 @@ private:
     std::vector<float> row_uvs_;     ///< likewise
     PlyModel::Face face_{};          ///< likewise
     std::optional<vec4> face_color_; ///< likewise
+    double most_of_wide_ = 0;        ///< largest colour of integers of more than 8 bits, of an element
 };
 
 } // namespace
