@@ -343,6 +343,22 @@ TEST_F(PlyFolder, TexturesByCoordinatesOfFaces)
     EXPECT_EQ(lost("textures that could not be read"), 1u);
 }
 
+TEST_F(PlyFolder, VerticesAreJoinedBesideAMeshWithColors)
+{
+    picture("one.png", 50);
+    Scene const scene =
+        load("comment TextureFile one.png\n" +
+                 element("vertex", 4,
+                         kXyz + std::string("property float s\nproperty float t\nproperty uchar "
+                                            "red\nproperty uchar green\nproperty uchar blue\n")) +
+                 element("face", 3, "property list uchar int vertex_indices\nproperty int texnumber\n"),
+             "0 0 0 0 0 255 0 0\n1 0 0 1 0 0 255 0\n1 1 0 1 1 0 0 255\n0 1 0 0 1 9 9 9\n"
+             "3 0 1 2 0\n3 0 2 3 0\n3 0 1 3 -1\n");
+    ASSERT_EQ(scene.meshes.size(), 2u);
+    for (Mesh const& mesh : scene.meshes)
+        EXPECT_EQ(mesh.positions.size(), mesh.colors.empty() ? 4u : 3u) << mesh.triangles.size();
+}
+
 TEST_F(PlyFolder, LinesOfHeadersThatAreNotUnderstoodAreNamed) // Blender 2.47
 {
     Scene const scene = load("Created by Blender3D 247 - www.blender.org\n" +

@@ -61,12 +61,15 @@ void ImportedFiles::pass_on_losses(Report& report) const
 Scene load_assimp(std::filesystem::path const& file, Report& report)
 {
     Scene scene;
-    ImportedFiles const files = import_assimp(
-        file, AssimpFaces::merged, [&](aiScene const& source) { scene = convert_assimp(source, file, report); });
+    bool is_joined = false;
+    ImportedFiles const files = import_assimp(file, AssimpFaces::merged, [&](aiScene const& source) {
+        scene = convert_assimp(source, file, report);
+        is_joined = can_be_joined(source);
+    });
     scene.files.insert(scene.files.end(), files.opened.begin(), files.opened.end());
     files.pass_on_losses(report);
-    for (Mesh& mesh : scene.meshes)
-        if (!mesh.colors.empty() || !mesh.uv1.empty()) join_equal_vertices(mesh); // Assimp did not
+    if (!is_joined)
+        for (Mesh& mesh : scene.meshes) join_equal_vertices(mesh);
     return scene;
 }
 

@@ -41,14 +41,13 @@ unsigned steps(AssimpFaces faces)
     return aiProcess_Triangulate | aiProcess_SortByPType;
 }
 
-/// Assimp 5.2 joins vertices of different colours, or second texture coordinates (JoinVerticesProcess compares neither).
+} // namespace
+
 bool can_be_joined(aiScene const& scene)
 {
     return std::none_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes,
                         [](aiMesh const* mesh) { return mesh->HasVertexColors(0) || mesh->HasTextureCoords(1); });
 }
-
-} // namespace
 
 AssimpReader::AssimpReader()
 {

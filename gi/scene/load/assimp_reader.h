@@ -7,6 +7,10 @@
 
 namespace gi {
 
+/// True if AssimpReader lets Assimp join equal vertices (AssimpFaces::merged). It does so for all meshes or none, and
+/// version 5.2 joins vertices of different colours, or second texture coordinates (JoinVerticesProcess compares neither).
+bool can_be_joined(aiScene const& scene);
+
 class AssimpReader {
 public:
     AssimpReader();
