@@ -156,6 +156,14 @@ TEST_F(AssimpFolder, OptionsOfMapsWithoutAnEquivalentAreNamed)
     EXPECT_EQ(lost(what), before);
 }
 
+TEST_F(AssimpFolder, MapsOfMtlWithoutAFileAreNamed)
+{
+    load_material("Kd 1 1 1\nmap_Kd -x.png\nmap_Ke -clamp on\n");
+    std::string const what = "texture maps without a file, skipped";
+    EXPECT_EQ(lost(what), 2u) << "the first one looks like an option";
+    EXPECT_EQ(report_.losses().at(what).first, (folder_ / "m.mtl").string() + ":3: map_Kd");
+}
+
 TEST_F(AssimpFolder, StatementsOfMtlWithoutAnEquivalentAreNamed)
 {
     load_material("Ka 1 1 1\nKd 0.5 0.5 0.5\nPs 0.0\nPc 0\nsharpness 60\n# a comment\n");

@@ -162,7 +162,7 @@ void ObjMaterials::read_line(aiMaterial& m, std::string_view word, std::string_v
             m.AddProperty(&*model, 1, AI_MATKEY_OBJ_ILLUM);
     } else if (Map const* const map = find(kMaps, word)) {
         MtlMap const read = read_mtl_map(values);
-        if (read.file.empty()) return;
+        if (read.file.empty()) return notes_.lose("texture maps without a file, skipped", 1, where);
         read_map(m, map->type, read);
         bool const is_scalar = map->type == aiTextureType_OPACITY;
         std::vector<std::string> dropped = read.dropped;
