@@ -3,6 +3,8 @@
 #include "gi/core/error.h"
 #include "gi/core/report.h"
 #include "gi/scene/load/load.h"
+#include "gi/scene/load/obj/mtl_map.h"
+#include "gi/scene/load/obj/obj_libraries.h"
 #include "gi/scene/load/obj/obj_model.h"
 #include "gi/scene/load/obj/obj_text.h"
 #include "tests/scene/obj_assimp.h"
@@ -157,6 +159,31 @@ TEST_F(ObjFolder, ColorsWithAlphaAndBehindAFourthCoordinate)
     }
     Scene const scene = load("v 0 0 0 2\nv 2 0 0 2\nv 0 1 0 1\nf 1 2 3\n");
     EXPECT_EQ(scene.meshes.at(0).positions.at(1), (vec3{1, 0, 0}));
+}
+TEST(MtlMap, OptionsAtTheEndAndWhatOnlyLooksLikeThem)
+{
+    struct Case {
+        char const *values, *file;
+        float scale_u;
+    };
+    for (auto const& [values, file, scale] :
+         {Case{"t.png -s 2 -clamp on", "t.png", 2}, Case{"t -s 2.png -s 3", "t -s 2.png", 3},
+          Case{"t -type -s 3", "t -type", 3}, Case{"t -s 2 -s 4 x", "t -s 2 -s 4 x", 1},
+          Case{"t\t-s 2 -s 4", "t\t-s 2", 4}, Case{"t -s", "t -s", 1}}) {
+        MtlMap const map = read_mtl_map(values);
+        EXPECT_EQ(map.file, file);
+        EXPECT_EQ(map.scale_u, scale) << values;
+    }
+}
+TEST(ObjNames, HostileLinesTakeTimeInProportionToTheirLength)
+{
+    std::string options = "t", names;
+    for (int i = 0; i < 200'000; ++i) {
+        options += " -s 1";
+        names += "ab ";
+    }
+    EXPECT_EQ(read_mtl_map(options + " x").file, options + " x");
+    EXPECT_EQ(library_names(names).size(), 200'000u);
 }
 TEST_F(ObjFolder, WhatIsNotReadIsNamed)
 {

@@ -120,12 +120,23 @@ void apply(WrittenOption const& o, MtlMap& map)
 /// Removes options at the end of a text, if it has anything before them.
 std::vector<WrittenOption> take_options_at_end(std::string_view& text)
 {
+    std::vector<bool> fails(text.size() + 1); // from that character on there are not only options
     for (std::size_t at = text.find(" -"); at != text.npos; at = text.find(" -", at + 1)) {
         if (trimmed(text.substr(0, at)).empty()) continue;
         std::string_view rest = text.substr(at);
         std::vector<WrittenOption> options;
-        while (auto option = take_option(rest, true)) options.push_back(std::move(*option));
-        if (options.empty() || !trimmed(rest).empty()) continue;
+        std::vector<std::size_t> begins;
+        while (!(rest = trimmed(rest)).empty()) {
+            begins.push_back(std::size_t(rest.data() - text.data()));
+            if (fails[begins.back()]) break;
+            auto option = take_option(rest, true);
+            if (!option) break;
+            options.push_back(std::move(*option));
+        }
+        if (!rest.empty()) {
+            for (std::size_t const begin : begins) fails[begin] = true;
+            continue;
+        }
         text = text.substr(0, at);
         return options;
     }

@@ -27,6 +27,7 @@ std::string with_slashes(std::string name)
 std::vector<std::string> library_names(std::string_view names)
 {
     std::vector<std::string> all;
+    bool has_ending = true; // a later word may end in .mtl
     for (names = trimmed(names); !names.empty(); names = trimmed(names)) {
         if (names.front() == '"' && names.find('"', 1) != names.npos) {
             names.remove_prefix(1);
@@ -36,10 +37,11 @@ std::vector<std::string> library_names(std::string_view names)
         // Up to the next word that ends in .mtl; without one, the next word.
         std::string_view rest = names;
         std::size_t end = 0;
-        while (end == 0 && !rest.empty()) {
+        while (has_ending && end == 0 && !rest.empty()) {
             std::string_view const word = take_word(rest);
             if (ends_as_library(word)) end = std::size_t(word.data() - names.data()) + word.size();
         }
+        has_ending = end > 0;
         if (end == 0) {
             all.emplace_back(take_word(names));
         } else {
