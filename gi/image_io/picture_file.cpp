@@ -3,6 +3,7 @@
 #include "gi/core/claimed_size.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/core/srgb.h"
 
 #include <cmath>
 #include <cstring>
@@ -55,8 +56,6 @@ void convert_to_rec709(Picture& picture)
     }
     picture.notes.push_back(note);
 }
-
-float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 } // namespace
 

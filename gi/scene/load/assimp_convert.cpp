@@ -1,6 +1,7 @@
 #include "gi/scene/load/assimp_convert.h"
 
 #include "gi/core/error.h"
+#include "gi/core/srgb.h"
 #include "gi/scene/load/assimp_parts.h"
 
 #include <algorithm>
@@ -17,15 +18,6 @@ dmat4 to_matrix(aiMatrix4x4 const& m)
     for (unsigned r = 0; r < 4; ++r)
         for (unsigned c = 0; c < 4; ++c) out[int(c)][int(r)] = double(m[r][c]);
     return out;
-}
-
-/// Vertex colours of these formats are as monitors show them (three.js and Blender read them so too).
-vec3 decoded_srgb(vec3 v)
-{
-    auto const decoded = [](float s) {
-        return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
-    };
-    return {decoded(v.x), decoded(v.y), decoded(v.z)};
 }
 
 class Converter {
@@ -162,7 +154,8 @@ private:
                 vec3 const clamped = all_finite(rgb) ? glm::clamp(rgb, vec3{0}, vec3{1}) : vec3{1};
                 if (clamped != rgb) report_.lose("vertex colours not within 0..1, clamped", 1, where_);
                 if (c.a < 1) report_.lose("vertices with an alpha of their own, taken as opaque", 1, where_);
-                mesh.colors.push_back(decoded_srgb(clamped));
+                // as monitors show them: three.js and Blender read these formats so too
+                mesh.colors.push_back({decode_srgb(clamped.x), decode_srgb(clamped.y), decode_srgb(clamped.z)});
             }
         if (!mesh.colors.empty() && mesh.material < 0) mesh.material = white();
         for (unsigned f = 0; f < source.mNumFaces; ++f) {

@@ -1,5 +1,7 @@
 #include "gi/scene/model/texture.h"
 
+#include "gi/core/srgb.h"
+
 #include <array>
 
 namespace gi {
@@ -8,10 +10,7 @@ View<float const> linear_of_srgb()
 {
     static std::array<float, 256> const table = [] {
         std::array<float, 256> t;
-        for (std::size_t i = 0; i < t.size(); ++i) {
-            double const s = double(i) / 255;
-            t[i] = float(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-        }
+        for (std::size_t i = 0; i < t.size(); ++i) t[i] = float(decode_srgb(double(i) / 255));
         return t;
     }();
     return {table.data(), table.size()};
