@@ -1,12 +1,14 @@
 // OBJ, PLY, STL, ... through Assimp: what becomes of their materials, textures, bones and units.
 
 #include "gi/core/error.h"
+#include "gi/scene/load/assimp_parts.h"
 #include "gi/scene/load/assimp_trial.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/world.h"
 #include "gi/scene/motion/animation.h"
 #include "tests/support/processor_time.h"
 
+#include <assimp/material.h>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -122,6 +124,26 @@ TEST_F(AssimpFolder, MapsOfMtlAreScaledMovedAndClamped)
             EXPECT_LT(glm::length(placed(m.base_color_map, uv) - (scale * uv + offset)), 1e-6f) << options;
     }
     EXPECT_TRUE(report_.losses().empty()) << report_.losses().begin()->first;
+}
+
+TEST_F(AssimpFolder, MapsAreScaledThenTurnedAboutTheirCentreThenMoved)
+{
+    aiScene source;
+    source.mNumMaterials = 1;
+    source.mMaterials = new aiMaterial* [1] { new aiMaterial };
+    aiString const file("gone.png");
+    source.mMaterials[0]->AddProperty(&file, AI_MATKEY_TEXTURE(aiTextureType_DIFFUSE, 0));
+    aiUVTransform t;
+    t.mScaling = {2, 4};
+    t.mRotation = kPi / 2; // (x, y) about the centre: (1 - y, x)
+    t.mTranslation = {0.25f, 0.5f};
+    source.mMaterials[0]->AddProperty(&t, 1, AI_MATKEY_UVTRANSFORM(aiTextureType_DIFFUSE, 0));
+    Scene scene;
+    convert_materials(source, folder_, scene, report_);
+    for (vec2 const uv : {vec2{0, 0}, vec2{1, 0}, vec2{0, 1}, vec2{0.3f, 0.7f}}) {
+        vec2 const expected{1 - 4 * uv.y + 0.25f, 2 * uv.x + 0.5f};
+        EXPECT_LT(glm::length(placed(scene.materials.at(0).base_color_map, uv) - expected), 1e-5f) << uv.x << uv.y;
+    }
 }
 
 TEST_F(AssimpFolder, APictureThatRepeatsInTwoWaysIsDecodedOnce)

@@ -205,13 +205,15 @@ private:
         return ref;
     }
 
-    /// Assimp's transform (TextureTransform.h: turned, then scaled, then moved; v upwards) for our v downwards.
+    /// Assimp's transform for our v downwards. It has v upwards and is, as documented, scaled, then turned
+    /// counter-clockwise about (0.5, 0.5), then moved (TextureTransform.cpp, aiUVTransform in material.h). Assimp's own
+    /// step, which is not used here, turns about (0, 0) and multiplies in the reverse order.
     void place(TextureRef& ref, aiUVTransform const& t)
     {
         float const c = std::cos(t.mRotation), s = std::sin(t.mRotation);
-        vec2 const row_u = t.mScaling.x * vec2{c, -s}, row_v = t.mScaling.y * vec2{s, c};
-        vec2 const offset{t.mTranslation.x, t.mTranslation.y};
-        // v = 1 - w: u' = a u + b (1 - w) + ..., w' = 1 - v'
+        vec2 const row_u{c * t.mScaling.x, -s * t.mScaling.y}, row_v{s * t.mScaling.x, c * t.mScaling.y};
+        vec2 const center{0.5f * (1 - c + s), 0.5f * (1 - s - c)}; // moves the centre of the turn back
+        vec2 const offset = vec2{t.mTranslation.x, t.mTranslation.y} + center;
         if (!all_finite(vec3{row_u, offset.x}) || !all_finite(vec3{row_v, offset.y})) {
             report_.lose("textures placed by numbers that are not finite, placed as they are", 1, where_);
             return;
