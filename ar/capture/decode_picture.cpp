@@ -26,7 +26,8 @@ DecodedPicture decoded_exr(std::span<std::uint8_t const> bytes, bool is_matte)
     if (!color) {
         std::string names;
         for (gi::Layer const& layer : picture.layers) names += (names.empty() ? "" : ", ") + layer.name;
-        return refused(fmt::format("the EXR has no channels R, G, B without a layer (its layers: {})", names));
+        return refused(
+            fmt::format("the EXR has no channels R, G and B, or Y, without a layer (its layers: {})", names));
     }
     DecodedPicture out{.format = PixelFormat::rgb_linear, .notes = picture.notes};
     out.pixels.create(picture.height, picture.width, CV_32FC3);

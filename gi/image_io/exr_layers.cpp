@@ -43,8 +43,8 @@ public:
             }
         return taken;
     }
-    /// All that are left, in the order of R G B A, X Y Z W, U V, then of the file. @param suffixes  theirs, in a row
-    std::vector<ExrChannel> take_rest(std::string& suffixes)
+    /// All that are left, in the order of R G B A, X Y Z W, U V, then of the file.
+    std::vector<ExrChannel> take_rest()
     {
         static constexpr std::string_view kOrder = "RXUGYVBZAW";
         std::stable_sort(channels_.begin(), channels_.end(), [](Channel const& a, Channel const& b) {
@@ -54,10 +54,7 @@ public:
             return place(a.known) < place(b.known);
         });
         std::vector<ExrChannel> taken;
-        for (Channel const& c : channels_) {
-            taken.push_back(c.channel);
-            suffixes += c.suffix;
-        }
+        for (Channel const& c : channels_) taken.push_back(c.channel);
         channels_.clear();
         return taken;
     }
@@ -87,6 +84,8 @@ void sort_out(std::string const& name, Unsorted from, std::vector<ExrLayer>& lay
     auto const add = [&](ExrKind kind, std::initializer_list<char const*> names) {
         layers.push_back({name, kind, from.take(names)});
     };
+    if (name.empty() && from.has({"R", "G"}) && !from.has({"B"})) // no colours, but s and t of STMaps
+        layers.push_back({"RG", ExrKind::values, from.take({"R", "G"})});
     if (from.has({"R", "G", "B"}))
         add(ExrKind::rgb, {"R", "G", "B", "A"});
     else if (from.has({"Y", "RY", "BY"}))
@@ -97,10 +96,11 @@ void sort_out(std::string const& name, Unsorted from, std::vector<ExrLayer>& lay
         add(ExrKind::luminance_alpha, {"Y", "A"});
     else if (from.has({"Y"}) && !from.has({"X"}))
         add(ExrKind::luminance, {"Y"});
-    else if (!name.empty() || from.has({"R", "G"}) || from.has({"U", "V"})) {
-        std::string suffixes;
-        std::vector<ExrChannel> rest = from.take_rest(suffixes);
-        layers.push_back({name.empty() ? suffixes : name, ExrKind::values, std::move(rest)});
+    else if (!name.empty())
+        layers.push_back({name, ExrKind::values, from.take_rest()});
+    else if (from.has({"U", "V"})) {
+        std::vector<ExrChannel> uv = from.take({"U", "V"});
+        layers.push_back({uv[0].name + uv[1].name, ExrKind::values, std::move(uv)});
     }
     while (!from.empty()) {
         auto const [suffix, channel] = from.take_first();

@@ -27,11 +27,9 @@ struct ExrLayer {
 };
 
 /// Channels by their names up to the last '.'. Colours (R, G, B and A; Y and A; Y, RY, BY and A) and vectors (X, Y,
-/// Z, W) are one layer, any other channel beside them is one of its own: NAME.Z. Channels are also known by small
-/// letters and as red, green, blue and alpha, as Nuke writes them.
+/// Z, W) are one layer, any other channel beside them is one of its own: NAME.Z. R and G without B and without a layer
+/// are the layer RG. Channels are also known by small letters and as red, green, blue and alpha, as Nuke writes them.
 /// @param file  for messages. @throws InputError sub-sampled channels other than RY and BY
 std::vector<ExrLayer> exr_layers(Imf::ChannelList const& channels, std::string const& file);
-
-inline bool is_color(ExrLayer const& layer) { return layer.kind != ExrKind::values; }
 
 } // namespace gi

@@ -29,8 +29,9 @@ Layer const& color_of(Picture const& picture, std::string const& name)
     if (Layer const* const color = picture.find("color")) return *color;
     std::string layers;
     for (Layer const& l : picture.layers) layers += (layers.empty() ? "" : ", ") + l.name;
-    throw InputError("'" + name + "' has no channels R, G, B or Y without a layer",
-                     "they hold its colours; it has: " + layers, "save the colours under these names");
+    throw InputError("'" + name + "' has no colours: no channels R, G and B, or Y, without a layer",
+                     "these hold them, R, G and B together; its layers: " + layers,
+                     "save the colours under these names");
 }
 
 Picture PictureRows::whole(StopRequest const* stop) const

@@ -13,7 +13,9 @@ Layer const& find_layer(Picture const& picture, std::string const& name, char co
     if (Layer const* layer = picture.find(name)) return *layer;
     std::string known;
     for (Layer const& l : picture.layers) known += l.name + " ";
-    throw InputError(fmt::format("the {} has no layer '{}'", which, name), "that is the layer to compare",
+    throw InputError(fmt::format("the {} has no layer '{}'", which, name),
+                     name == "color" ? "its colours are R, G and B together, or Y, without a layer"
+                                     : "that is the layer to compare",
                      "it has: " + known);
 }
 
