@@ -264,10 +264,11 @@ std::string format_calibration(Calibration const& c)
     return s;
 }
 
-Calibration read_calibration(std::filesystem::path const& file, std::optional<glm::ivec2> size_px)
+Calibration read_calibration(std::filesystem::path const& file, std::optional<glm::ivec2> size_px,
+                             gi::Report* report)
 {
     Calibration c = parse_calibration(gi::read_text(file), file.string(), size_px);
-    if (!c.stmap.empty()) c.camera = with_stmap(c.camera, c.stmap);
+    if (!c.stmap.empty()) c.camera = with_stmap(c.camera, c.stmap, report);
     return c;
 }
 

@@ -5,6 +5,7 @@
 #include "ar/calibration/sensor.h"
 #include "ar/camera/camera_model.h"
 #include "ar/camera/photometry.h"
+#include "gi/core/report.h"
 
 #include <filesystem>
 #include <optional>
@@ -36,8 +37,9 @@ Calibration parse_calibration(std::string const& text, std::string const& file,
                               std::optional<glm::ivec2> size_px = std::nullopt);
 std::string format_calibration(Calibration const& calibration);
 
-/// @throws gi::InputError
-Calibration read_calibration(std::filesystem::path const& file, std::optional<glm::ivec2> size_px = std::nullopt);
+/// @param report  if not null: as with_stmap. @throws gi::InputError
+Calibration read_calibration(std::filesystem::path const& file, std::optional<glm::ivec2> size_px = std::nullopt,
+                             gi::Report* report = nullptr);
 /// Writes atomically: if writing fails, the old file remains. @throws gi::InputError
 void write_calibration(std::filesystem::path const& file, Calibration const& calibration);
 

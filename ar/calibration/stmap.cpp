@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace ar {
 namespace {
@@ -52,15 +53,22 @@ void write_stmap(std::filesystem::path const& file, cv::Mat const& st)
     gi::write_exr(file, picture, gi::PixelType::single, none_lost);
 }
 
-CameraModel with_stmap(CameraModel const& camera, std::filesystem::path const& file)
+CameraModel with_stmap(CameraModel const& camera, std::filesystem::path const& file, gi::Report* report)
 {
     gi::Picture const picture = gi::read_exr(file);
+    if (report != nullptr)
+        for (std::string const& note : picture.notes)
+            report->lose("STMaps not used as they are", 1, file.string() + ": " + note);
     std::string const name = "'" + file.string() + "'";
     gi::Layer const* st = picture.find("RG");
     if (!st) st = picture.find("color");
-    if (!st || st->channels < 2)
-        throw gi::InputError(name + " has no channels R and G without a layer", "they hold s and t of an STMap",
+    if (!st || st->channels < 2) {
+        std::vector<std::string> layers;
+        for (gi::Layer const& layer : picture.layers) layers.push_back(layer.name);
+        throw gi::InputError(name + " has no channels R and G without a layer",
+                             fmt::format("they hold s and t of an STMap; its layers: {}", fmt::join(layers, ", ")),
                              "write one by lightwell ar lens CALIBRATION --stmap FILE");
+    }
     if (picture.width != camera.size_px.x || picture.height != camera.size_px.y)
         throw gi::InputError(fmt::format("{} has {} x {} pixels", name, picture.width, picture.height),
                              fmt::format("the calibration is of {} x {}", camera.size_px.x, camera.size_px.y),
@@ -76,7 +84,9 @@ CameraModel with_stmap(CameraModel const& camera, std::filesystem::path const& f
     try {
         out.table = std::make_shared<LensTable const>(std::move(plane));
     } catch (gi::InputError const& e) {
-        throw gi::InputError(name + ": " + e.problem(), e.why(), e.suggestion());
+        std::string const notes = fmt::format("{}", fmt::join(picture.notes, "; "));
+        throw gi::InputError(name + ": " + e.problem(), notes.empty() ? e.why() : e.why() + "; " + notes,
+                             e.suggestion());
     }
     out.lens = LensModel::stmap;
     check(out, file.string());

@@ -5,6 +5,7 @@
 // have the size, focal lengths and principal point of the distorted ones; values beyond 0..1 lie outside of them.
 
 #include "ar/camera/camera_model.h"
+#include "gi/core/report.h"
 
 #include <filesystem>
 
@@ -26,6 +27,7 @@ void write_stmap(std::filesystem::path const& file, cv::Mat const& st);
 
 /// The camera with the lens that a map `distort` describes, in place of its own. @throws gi::InputError no OpenEXR
 /// file with channels R and G, a size other than the camera's, values that are not finite, a map that folds
-CameraModel with_stmap(CameraModel const& camera, std::filesystem::path const& file);
+/// @param report  if not null: what was cut or left out of the file
+CameraModel with_stmap(CameraModel const& camera, std::filesystem::path const& file, gi::Report* report = nullptr);
 
 } // namespace ar

@@ -57,13 +57,13 @@ gi::InputError other_size(fs::path const& file, cv::Size is, glm::ivec2 needed)
 
 } // namespace
 
-LiveOccluders::LiveOccluders(OcclusionPictures const& settings, CameraModel const& camera)
-    : settings_(settings), camera_(camera)
+LiveOccluders::LiveOccluders(OcclusionPictures const& settings, CameraModel const& camera, gi::Report& report)
+    : settings_(settings), camera_(camera), report_(&report)
 {
-    if (!settings.camera.empty()) depth_camera_ = read_calibration(settings.camera).camera;
+    if (!settings.camera.empty()) depth_camera_ = read_calibration(settings.camera, std::nullopt, report_).camera;
     if (settings.depth) {
         depths_ = numbered(settings.depth->source);
-        depth(depths_.begin()->second); // says at once what is wrong with all
+        depth(depths_.begin()->second, nullptr); // says at once what is wrong with all
     }
     if (settings.matte) {
         mattes_ = numbered(settings.matte->source);
@@ -72,9 +72,9 @@ LiveOccluders::LiveOccluders(OcclusionPictures const& settings, CameraModel cons
 }
 
 /// Metres along the axis in the camera's picture; 0 = hole.
-cv::Mat LiveOccluders::depth(fs::path const& file) const
+cv::Mat LiveOccluders::depth(fs::path const& file, gi::Report* report) const
 {
-    cv::Mat const map = read_depth_map(file, settings_.metres_per_unit);
+    cv::Mat const map = read_depth_map(file, settings_.metres_per_unit, report);
     cv::Size const size(camera_.size_px.x, camera_.size_px.y);
     if (!depth_camera_) {
         if (map.size() == size) return map;
@@ -151,7 +151,7 @@ cv::Mat LiveOccluders::of_frame(std::optional<FramePictures> const& which, Files
 void LiveOccluders::hide(RenderedPair& pair, cv::Mat const& modelled_m, std::uint64_t frame, double time_s)
 {
     cv::Mat const measured = of_frame(settings_.depth, depths_, frame, time_s, counts_.without_depth,
-                                      [&](fs::path const& file) { return depth(file); });
+                                      [&](fs::path const& file) { return depth(file, report_); });
     cv::Mat const real = of_frame(settings_.matte, mattes_, frame, time_s, counts_.without_matte,
                                   [&](fs::path const& file) { return matte(file); });
     if (measured.empty() && real.empty()) return;

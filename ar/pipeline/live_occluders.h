@@ -3,6 +3,7 @@
 
 #include "ar/camera/camera_model.h"
 #include "ar/scene/occlusion.h"
+#include "gi/core/report.h"
 
 #include <map>
 
@@ -19,9 +20,9 @@ struct LiveOccluderCounts {
 
 class LiveOccluders {
 public:
-    /// @param camera  of the frames
+    /// @param camera  of the frames  @param report  where depth maps are cut or unknown; outlives this
     /// @throws gi::InputError no pictures, a first picture that cannot be used (another size, no depths)
-    LiveOccluders(OcclusionPictures const& settings, CameraModel const& camera);
+    LiveOccluders(OcclusionPictures const& settings, CameraModel const& camera, gi::Report& report);
 
     /// @param modelled_m  CV_32FC1 in the camera's lens: virtual objects and the model of the place; 0 = none
     void hide(RenderedPair& pair, cv::Mat const& modelled_m, std::uint64_t frame, double time_s);
@@ -29,7 +30,7 @@ public:
 
 private:
     using Files = std::map<std::int64_t, std::filesystem::path>;
-    cv::Mat depth(std::filesystem::path const& file) const;
+    cv::Mat depth(std::filesystem::path const& file, gi::Report* report) const;
     cv::Mat matte(std::filesystem::path const& file) const;
     template <typename Read>
     cv::Mat of_frame(std::optional<FramePictures> const& which, Files const& files, std::uint64_t frame,
@@ -37,6 +38,7 @@ private:
 
     OcclusionPictures settings_;
     CameraModel camera_;
+    gi::Report* report_;
     std::optional<CameraModel> depth_camera_; ///< nothing = registered
     Files depths_, mattes_;
     LiveOccluderCounts counts_;

@@ -59,7 +59,7 @@ Pipeline::Pipeline(Session const& session, CalibratedCamera const& camera, Marke
       report_(report),
       prefix_(std::move(prefix))
 {
-    if (session.occlusion && !poses_only) occluders_.emplace(*session.occlusion, camera.model);
+    if (session.occlusion && !poses_only) occluders_.emplace(*session.occlusion, camera.model, report);
     renderer_.set_environment(light_.begin());
     std::string const why = renderer_.choose(session.render.light);
     lit_by_ = renderer_.is_prefiltered() ? "prefiltered light" : fmt::format("paths ({})", why);

@@ -48,9 +48,9 @@ RunFrame record_of(FrameInFlight const& w, bool is_timed)
 
 } // namespace
 
-CalibratedCamera load_camera(std::filesystem::path const& file)
+CalibratedCamera load_camera(std::filesystem::path const& file, gi::Report* report)
 {
-    Calibration const c = read_calibration(file);
+    Calibration const c = read_calibration(file, std::nullopt, report);
     CalibratedCamera camera{c.camera, c.photometry ? *c.photometry : srgb_photometry(), {}};
     if (c.noise) {
         camera.noise.constant.fill(float(c.noise->read));
@@ -73,7 +73,7 @@ void run_frames(Session const& session, FrameSource& source, RunOptions const& o
                 std::function<void(RunFrame&, FrameResult const&)> const& shown, gi::StopRequest const& stop,
                 gi::Report& report, RunSummary& summary)
 {
-    CalibratedCamera const camera = load_camera(session.camera);
+    CalibratedCamera const camera = load_camera(session.camera, &report);
     MarkerMap const markers = read_marker_map(session.markers);
     SourceDescription const about = source.description();
     check_size(about.size_px, camera);

@@ -73,7 +73,8 @@ struct RunSummary {
     double seconds = 0;
 };
 
-CalibratedCamera load_camera(std::filesystem::path const& calibration);
+/// @param report  if not null: as read_calibration
+CalibratedCamera load_camera(std::filesystem::path const& calibration, gi::Report* report = nullptr);
 
 /// The source's delivered frames are the sum of the summary's frames, refused, overtaken and unfinished ones.
 /// Exceptions of any thread are rethrown here, after the results that were ready.

@@ -7,14 +7,19 @@
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace ar {
 namespace {
 
-cv::Mat decoded_exr(std::filesystem::path const& file)
+cv::Mat decoded_exr(std::filesystem::path const& file, gi::Report* report)
 {
     gi::Picture const picture = gi::read_exr(file);
+    if (report != nullptr && !picture.notes.empty())
+        report->lose("depth maps not used as they are", 1,
+                     fmt::format("{}: {}{}", file.string(), fmt::join(picture.notes, "; "),
+                                 picture.has_gaps ? ": depth is unknown outside of the data window" : ""));
     gi::Layer const* depth = nullptr;
     for (char const* name : {"depth", "Z", "Y", "color"}) // a channel Y without a layer is read as "color"
         if (gi::Layer const* const layer = picture.find(name); depth == nullptr && layer && layer->channels == 1)
@@ -51,12 +56,12 @@ cv::Mat decoded_png(std::filesystem::path const& file)
 
 } // namespace
 
-cv::Mat read_depth_map(std::filesystem::path const& file, double metres_per_unit)
+cv::Mat read_depth_map(std::filesystem::path const& file, double metres_per_unit, gi::Report* report)
 {
     std::string ending = file.extension().string();
     for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
     bool const is_exr = ending == ".exr";
-    cv::Mat const map = is_exr ? decoded_exr(file) : decoded_png(file);
+    cv::Mat const map = is_exr ? decoded_exr(file, report) : decoded_png(file);
     return map * (metres_per_unit > 0 ? metres_per_unit : is_exr ? 1 : 1e-3);
 }
 

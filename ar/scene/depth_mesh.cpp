@@ -10,9 +10,9 @@
 namespace ar {
 namespace {
 
-CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
+CameraModel camera_of(ProxyDepth const& depth, cv::Size size, gi::Report& report)
 {
-    CameraModel const camera = read_calibration(depth.camera).camera;
+    CameraModel const camera = read_calibration(depth.camera, std::nullopt, &report).camera;
     glm::ivec2 const map_px(size.width, size.height);
     if (camera.size_px == map_px) return camera;
     if (std::abs(double(camera.size_px.x) * map_px.y - double(camera.size_px.y) * map_px.x) > camera.size_px.x)
@@ -27,8 +27,8 @@ CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
 
 gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report)
 {
-    cv::Mat const map = read_depth_map(depth.file, depth.metres_per_unit);
-    CameraModel const camera = camera_of(depth, map.size());
+    cv::Mat const map = read_depth_map(depth.file, depth.metres_per_unit, &report);
+    CameraModel const camera = camera_of(depth, map.size(), report);
     int const step = depth.step_px, columns = (map.cols - 1) / step + 1, rows = (map.rows - 1) / step + 1;
     gi::Mesh mesh;
     constexpr std::uint32_t kNone = ~std::uint32_t(0);

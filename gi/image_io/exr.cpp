@@ -286,9 +286,14 @@ void take_window(Imf::Header const& header, std::size_t values_in_file, std::siz
     constexpr std::size_t kMuch = std::size_t(1) << 28; // 1 GiB
     Imath::Box2i const window = window_of(header);
     std::size_t const values = pixels_of(window, name) * channels;
-    if (values > kMostValues || (values > kMuch && values / 64 > values_in_file))
+    if (values > kMuch && values / 64 > values_in_file)
         throw bad_exr(name, fmt::format("its display window is {} x {} for little data", width_of(window),
                                         height_of(window)));
+    if (values > kMostValues)
+        throw bad_exr(name,
+                      fmt::format("its {} channels (of all parts) of {} x {} pixels are {} values, more than "
+                                  "{}",
+                                  channels, width_of(window), height_of(window), values, kMostValues));
     picture.left = window.min.x;
     picture.top = window.min.y;
     picture.width = width_of(window);
@@ -304,6 +309,7 @@ void say_windows(Imath::Box2i const& data, std::string const& whose, Picture& pi
     };
     std::int64_t const w = inside(data.min.x, data.max.x, picture.left, picture.width),
                        h = inside(data.min.y, data.max.y, picture.top, picture.height);
+    picture.has_gaps = picture.has_gaps || w < picture.width || h < picture.height;
     if (w <= 0 || h <= 0) {
         picture.notes.push_back(whose + " data window lies outside of the display window: all pixels are 0");
         return;

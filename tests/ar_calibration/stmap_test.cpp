@@ -7,6 +7,11 @@
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <array>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <opencv2/core/persistence.hpp>
@@ -123,6 +128,50 @@ TEST(StMaps, WorkInCalibrationsAndPictures)
     auto const d = direction_of(back.camera, {100.5, 80.5}), h = direction_of(half, {50, 40});
     EXPECT_NEAR(glm::length(*d - *h), 0, 1e-9);
     std::filesystem::remove(map);
+    std::filesystem::remove(file);
+}
+
+/// Single precision, with an alpha beside s and t. @param data  window
+void write_with_alpha(std::filesystem::path const& file, cv::Mat st, Imath::Box2i const& data,
+                      std::array<char const*, 2> const& names)
+{
+    Imf::Header h({{0, 0}, {st.cols - 1, st.rows - 1}}, data);
+    Imf::FrameBuffer buffer;
+    std::vector<float> alpha(st.total(), 1.0f);
+    auto* const at = reinterpret_cast<char*>(st.ptr<float>());
+    for (std::size_t c = 0; c < 2; ++c) {
+        h.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+        buffer.insert(names[c], Imf::Slice(Imf::FLOAT, at + c * sizeof(float), sizeof(cv::Vec2f), st.step[0]));
+    }
+    h.channels().insert("A", Imf::Channel(Imf::FLOAT));
+    buffer.insert("A", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(alpha.data()), sizeof(float),
+                                  sizeof(float) * std::size_t(st.cols)));
+    Imf::OutputFile out(file.c_str(), h);
+    out.setFrameBuffer(buffer);
+    out.writePixels(data.max.y - data.min.y + 1);
+}
+
+TEST(StMaps, MayHaveAnAlphaAndOtherNames)
+{
+    CameraModel const lens = camera_with(LensModel::radial_tangential);
+    auto const file = own("alpha.exr");
+    cv::Mat const st = stmap_of(lens, StMap::distort);
+    for (auto const& names : {std::array{"R", "G"}, {"r", "g"}, {"red", "green"}}) {
+        write_with_alpha(file, st, {{0, 0}, {319, 239}}, names);
+        gi::Report report;
+        CameraModel const table = with_stmap(lens, file, &report);
+        auto const a = direction_of(lens, {20, 30}), b = direction_of(table, {20, 30});
+        ASSERT_TRUE(a && b);
+        EXPECT_LT(glm::length(*a / a->z - *b / b->z), 1e-4) << names[0];
+        EXPECT_TRUE(report.losses().empty());
+    }
+    // Zeros outside of the data window fold the map: the cause is named.
+    write_with_alpha(file, st, {{0, 0}, {299, 239}}, {"R", "G"});
+    gi::Report report;
+    EXPECT_THROW(with_stmap(lens, file, &report), gi::InputError);
+    EXPECT_NE(refusal(lens, file).find("its data window covers 300 x 240 of 320 x 240"), std::string::npos)
+        << refusal(lens, file);
+    EXPECT_EQ(report.losses().at("STMaps not used as they are").count, 1u);
     std::filesystem::remove(file);
 }
 

@@ -127,6 +127,32 @@ TEST(ExrKinds, FlatPicturesOfTheStrongestCompressionAreNoAttack)
     EXPECT_EQ(read_exr(scratch()).width, side);
 }
 
+/// 9 channels of 16384 x 16384 pixels are 2.4e9 values: too many although the file has much data.
+TEST(ExrKinds, TooManyChannelsAreRefusedByTheirSum)
+{
+    Imf::Header h(Imath::Box2i({0, 0}, {16383, 16383}), Imath::Box2i({0, 0}, {2047, 2111}));
+    h.compression() = Imf::ZIP_COMPRESSION;
+    std::vector<half> values(std::size_t(2048) * 2112, half(0.5f));
+    Imf::FrameBuffer buffer;
+    for (char const* c : {"R", "G", "B", "a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}) {
+        h.channels().insert(c, Imf::Channel(Imf::HALF));
+        buffer.insert(c, Imf::Slice::Make(Imf::HALF, values.data(), Imath::V2i(0), 2048, 2112));
+    }
+    {
+        Imf::OutputFile out(scratch().c_str(), h);
+        out.setFrameBuffer(buffer);
+        out.writePixels(2112);
+    }
+    try {
+        read_exr(scratch());
+        FAIL();
+    } catch (InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("9 channels (of all parts) of 16384 x 16384 pixels"),
+                  std::string::npos)
+            << e.what();
+    }
+}
+
 TEST(ExrKinds, SubSampledAndDeepAreRefusedByName)
 {
     Imf::Header h(4, 4);

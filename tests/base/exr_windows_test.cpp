@@ -10,10 +10,12 @@
 #include <ImfEnvmapAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -133,6 +135,9 @@ TEST(ExrWindows, NamesWhatIsMissingAndWhatIsCut)
     Picture const p = read_exr(exr_file());
     EXPECT_TRUE(says(p, "covers 6 x 4 of 8 x 4 pixels, the others are 0")) << fmt::format("{}", p.notes);
     EXPECT_TRUE(says(p, "8 x 4 pixels are cut to the 6 x 4")) << fmt::format("{}", p.notes);
+    EXPECT_TRUE(p.has_gaps);
+    write({{"", {"R", "G", "B"}, {V2i(-2, 0), V2i(7, 3)}}});
+    EXPECT_FALSE(read_exr(exr_file()).has_gaps) << "cut, but whole";
 }
 
 /// ImfEnvmap.h: the poles are at the borders of the data window.
@@ -262,6 +267,13 @@ TEST(ExrChannels, AreGroupedByTheirMeaning)
                            {{"Z"}, "Z 0"},
                            {{"R"}, "R 0"},
                            {{"R", "G"}, "RG 10"},
+                           {{"R", "G", "A"}, "RG 21, A 0"}, // as STMaps with an alpha or a mask
+                           {{"r", "g"}, "RG 10"},
+                           {{"red", "green"}, "RG 10"},
+                           {{"red", "green", "mask"}, "RG 20, mask 1"},
+                           {{"R", "G", "Z"}, "RG 10, Z 2"},
+                           {{"R", "G", "Y"}, "color 2, RG 10"},
+                           {{"U", "V", "Z"}, "UV 01, Z 2"},
                            {{"X", "Y", "Z"}, "XYZ 012"},
                            {{"R", "A"}, "R 1, A 0"},
                            {{"u", "v"}, "uv 01"},
@@ -283,6 +295,19 @@ TEST(ExrChannels, AreGroupedByTheirMeaning)
         }
         std::ranges::sort(found, {}, [&](std::string const& s) { return layers.find(s); });
         EXPECT_EQ(fmt::format("{}", fmt::join(found, ", ")), layers);
+    }
+}
+
+TEST(ExrChannels, RedAloneIsNoColour)
+{
+    write({{"p", {"R"}}});
+    try {
+        color_of(read_exr(exr_file()), "x.exr");
+        FAIL();
+    } catch (InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("no channels R, G and B, or Y, without a layer"), std::string::npos)
+            << e.what();
+        EXPECT_NE(std::string(e.what()).find("its layers: R"), std::string::npos) << e.what();
     }
 }
 

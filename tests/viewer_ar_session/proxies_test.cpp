@@ -9,6 +9,10 @@
 #include "gi/scene/model/world.h"
 #include "tests/viewer/run_program.h"
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
@@ -165,6 +169,34 @@ TEST(Proxies, OfDepthMapsAreCutAtJumps)
     EXPECT_THROW(ar::mesh_of(depth, report), gi::InputError) << "another shape";
     cv::imwrite((folder / "d.png").string(), cv::Mat(60, 80, CV_8UC1, cv::Scalar(20)));
     EXPECT_THROW(ar::mesh_of(depth, report), gi::InputError) << "8 bits";
+}
+
+TEST(Proxies, OfDepthMapsSayWhereDepthIsUnknown)
+{
+    TemporaryFolder const folder;
+    ar::Calibration c;
+    c.camera = {ar::LensModel::pinhole, {40, 30}, 35, 35, 19.5, 14.5, {}};
+    ar::write_calibration(folder / "c.yaml", c);
+    std::vector<float> z(30 * 30, 2.0f);
+    Imf::Header h({{0, 0}, {39, 29}}, Imath::Box2i({0, 0}, {29, 29}));
+    h.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    Imf::FrameBuffer buffer;
+    buffer.insert("Z", Imf::Slice::Make(Imf::FLOAT, z.data(), Imath::V2i(0), 30, 30));
+    {
+        Imf::OutputFile out((folder / "d.exr").c_str(), h);
+        out.setFrameBuffer(buffer);
+        out.writePixels(30);
+    }
+    gi::Report report;
+    ar::ProxyDepth depth;
+    depth.file = folder / "d.exr";
+    depth.camera = folder / "c.yaml";
+    depth.step_px = 1;
+    EXPECT_EQ(ar::mesh_of(depth, report).triangles.size(), 2u * 29 * 29);
+    gi::Report::Loss const loss = report.losses().at("depth maps not used as they are");
+    EXPECT_EQ(loss.count, 1u);
+    EXPECT_NE(loss.first.find("30 x 30 of 40 x 30"), std::string::npos) << loss.first;
+    EXPECT_NE(loss.first.find("depth is unknown outside"), std::string::npos) << loss.first;
 }
 
 TEST(Proxies, TakeEstimatedAlbedos)

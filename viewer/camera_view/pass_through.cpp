@@ -30,7 +30,7 @@ struct PassThrough::Side {
     /// @param prefix  for the pipeline's counts in the report
     Side(ar::Session const& session_, ar::Pace pace, gi::Report& report, std::string const& prefix)
         : session(session_),
-          camera(ar::load_camera(session.camera)),
+          camera(ar::load_camera(session.camera, &report)),
           pipeline(session, camera, ar::read_marker_map(session.markers), report, prefix)
     {
         ar::OpenOptions open = session.frames.options;

@@ -94,7 +94,7 @@ int run_albedo(AlbedoArguments const& a)
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    ar::CalibratedCamera const camera = ar::load_camera(session.camera);
+    ar::CalibratedCamera const camera = ar::load_camera(session.camera, &report);
     ar::RealScene real = model_of(session.real, report);
     check_albedo_outputs(a, session, out, real);
     PosedFrames const seen = read_posed_frames(a.read, session, camera, stop, report);

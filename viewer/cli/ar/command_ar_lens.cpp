@@ -4,6 +4,7 @@
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/outputs.h"
+#include "viewer/base/report_json.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -53,7 +54,8 @@ std::string describe(ar::CameraModel const& c)
 
 int run_lens(LensOptions const& o)
 {
-    ar::Calibration const c = ar::read_calibration(o.calibration);
+    gi::Report report;
+    ar::Calibration const c = ar::read_calibration(o.calibration, std::nullopt, &report);
     check_outputs({o.stmap, o.undistort, o.opencv}, {o.calibration, c.stmap.string()});
     for (std::string const& file : {o.stmap, o.undistort})
         if (!file.empty()) check_ending(file, ".exr", "an STMap", "name it .exr");
@@ -78,6 +80,7 @@ int run_lens(LensOptions const& o)
     fmt::print("{}{}", describe(c.camera), placeless);
     for (std::string const& file : {o.stmap, o.undistort, o.opencv})
         if (!file.empty()) fmt::print("{}\n", file);
+    print_losses(report);
     return 0;
 }
 

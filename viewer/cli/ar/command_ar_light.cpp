@@ -87,7 +87,7 @@ int run_light(LightArguments& a)
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    ar::CalibratedCamera const camera = ar::load_camera(session.camera);
+    ar::CalibratedCamera const camera = ar::load_camera(session.camera, &report);
     ar::RealScene real = model_of(session.real, report);
     PosedFrames const seen = read_posed_frames(a.read, session, camera, stop, report);
     if (stop.requested()) return interrupted_code();

@@ -93,7 +93,7 @@ int run_map(MapArguments const& a)
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    ar::CalibratedCamera const camera = ar::load_camera(session.camera);
+    ar::CalibratedCamera const camera = ar::load_camera(session.camera, &report);
     ar::MapBuilder builder(camera.model);
     FrameTally const tally = look(a, session, camera, builder, stop, report);
     if (stop.requested()) return interrupted_code();

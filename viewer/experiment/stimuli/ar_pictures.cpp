@@ -131,7 +131,8 @@ public:
         if (!stimulus.poses.empty()) poses_ = poses_of(stimulus, session.frames, report);
         if (stimulus.show != ArShow::composite) return;
         if (poses_.empty() && session.tracked) poses_ = recorded_poses(*session.tracked, report);
-        pipeline_.emplace(session, ar::load_camera(session.camera), ar::read_marker_map(session.markers), report);
+        pipeline_.emplace(session, ar::load_camera(session.camera, &report), ar::read_marker_map(session.markers),
+                          report);
     }
 
     ArPicture operator()(Frames::Timed const& f)
