@@ -4,6 +4,7 @@
 #include "gi/core/quantile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -28,8 +29,8 @@ struct Arrangement {
         int const first = white_first ? (columns + 1) / 2 : columns / 2;
         int const pair = n / columns, rest = n % columns;
         bool const second = rest >= first;
-        int const begins_white = second == white_first ? 1 : 0;
-        return {2 * (second ? rest - first : rest) + begins_white, 2 * pair + second};
+        int const begins_black = second == white_first ? 1 : 0;
+        return {2 * (second ? rest - first : rest) + begins_black, 2 * pair + second};
     }
     bool has(cv::Point cell) const
     {
@@ -261,7 +262,7 @@ BoardFinding check_board(cv::Mat const& gray, MarkerMap const& map, int thing,
                             own.steps_against, own.steps),
                 "write the numbers of rows and columns, and the first identifier, of what is printed"};
     if (own.squares >= 8 && 2 * own.squares_against > own.squares)
-        return {BoardVerdict::contradicts,
+        return {BoardVerdict::doubtful,
                 fmt::format("{}: {} of {} squares beside its markers are white, and black in the map", name,
                             own.squares_against, own.squares),
                 "markers without a chessboard are a grid: write it under grids:"};

@@ -90,22 +90,25 @@ bool add_inner_corners(Sighting& s, cv::Mat const& gray, CharucoBoard const& boa
 }
 
 /// Whether the picture contradicts the map's board or grid; what earlier pictures said counts where this one is
-/// silent, or in doubt about a board that they confirmed.
+/// silent. A board that they confirmed is given up only after several contradictions in a row: a hand or a reflection
+/// may cause one.
 bool is_contradicted(cv::Mat const& gray, MarkerMap const& map, int thing, std::vector<Match> const& matches,
-                     std::map<int, BoardFinding>& known)
+                     std::map<int, BoardMemory>& known)
 {
+    constexpr int kEnoughAgainst = 3;
     std::vector<FoundMarker> markers;
     for (Match const& m : matches) markers.push_back(m.found);
     BoardFinding const now = check_board(gray, map, thing, markers);
-    BoardFinding& last = known[thing];
-    bool const confirmed = last.verdict == BoardVerdict::agrees;
-    if (now.verdict != BoardVerdict::silent && !(confirmed && now.verdict == BoardVerdict::doubtful)) last = now;
+    auto& [last, against] = known[thing];
+    bool const is_confirmed = last.verdict == BoardVerdict::agrees;
+    against = is_confirmed && now.verdict == BoardVerdict::contradicts ? against + 1 : 0;
+    if (is_confirmed ? against >= kEnoughAgainst : now.verdict != BoardVerdict::silent) last = now;
     return last.verdict == BoardVerdict::doubtful || last.verdict == BoardVerdict::contradicts;
 }
 
 /// @param known  what earlier pictures said about boards and grids, by thing
 Found find(cv::Mat const& gray, cv::Rect part, MarkerMap const& map, DetectorSettings const& settings,
-           std::map<int, BoardFinding>& known)
+           std::map<int, BoardMemory>& known)
 {
     Found out;
     Sighting& s = out.sighting;
@@ -115,7 +118,7 @@ Found find(cv::Mat const& gray, cv::Rect part, MarkerMap const& map, DetectorSet
         for (Match const& m : matches)
             out.around = out.around.empty() ? around(m.found) : out.around | around(m.found);
         if (thing >= lone && is_contradicted(gray, map, thing, matches, known)) {
-            BoardFinding const& why = known.at(thing);
+            BoardFinding const& why = known.at(thing).last;
             s.contradictions.push_back(fmt::format("{}; {}", why.problem, why.remedy));
             continue;
         }
@@ -166,7 +169,7 @@ Sighting detect(cv::Mat const& gray, MarkerMap const& map, DetectorSettings cons
 {
     check_picture(gray);
     check(map, "the map of markers");
-    std::map<int, BoardFinding> nothing;
+    std::map<int, BoardMemory> nothing;
     return find(gray, {{}, gray.size()}, map, settings, nothing).sighting;
 }
 
@@ -195,11 +198,13 @@ Sighting MarkerTracker::next(cv::Mat const& gray)
     if (due || seen_ == 0 || near.area() > 0.8 * whole.area()) near = {};
 
     Found found;
+    auto const known_before = known_; // a picture that is searched twice counts once
     if (!near.empty()) found = find(gray, near, map_, settings_, known_);
     if (near.empty() || found.sighting.markers_seen < seen_) {
         ++counts_.whole;
         counts_.in_vain += !near.empty();
         since_whole_ = 0;
+        known_ = known_before;
         found = find(gray, whole, map_, settings_, known_);
     }
     before_ = last_;

@@ -26,6 +26,12 @@ struct DetectorSettings {
 /// Search settings for pictures of this size; the windows suit widths from 640 to 1920 pixels.
 SearchSettings search_settings(DetectorSettings const& settings, cv::Size picture);
 
+/// What the pictures so far said about a board or grid.
+struct BoardMemory {
+    BoardFinding last; ///< `agrees`: it is confirmed
+    int against = 0;   ///< pictures in a row that contradict a confirmed one
+};
+
 /// Searches the whole picture. Points are corners of markers and inner corners of boards (boards use the corners
 /// of their markers only if fewer than four inner corners are seen). Boards and grids that the picture contradicts
 /// (check_board) have no points.
@@ -60,7 +66,7 @@ private:
     cv::Size size_;
     cv::Rect2f last_{}, before_{}; ///< bounds of the markers in the last two pictures; empty: unknown
     int seen_ = 0;                 ///< markers in the last picture
-    std::map<int, BoardFinding> known_; ///< of boards and grids, by thing: the last picture that could tell
+    std::map<int, BoardMemory> known_; ///< of boards and grids, by thing
     int since_whole_ = 0;
 };
 

@@ -106,6 +106,25 @@ TEST(BoardCheck, IsRememberedWhereAPictureCannotTell)
     EXPECT_TRUE(s.points.empty());
 }
 
+/// Only three in a row give up a board that an earlier picture confirmed.
+TEST(BoardCheck, ASingleContradictionGivesUpNoConfirmedBoard)
+{
+    MarkerMap const map = board(8, 6);
+    cv::Mat const right = picture_of(map), wrong = picture_of(board(8, 6, true));
+    cv::Mat part(right.size(), CV_8UC1, cv::Scalar(100));
+    cv::Rect const middle(260, 190, 120, 110);
+    right(middle).copyTo(part(middle));
+    MarkerTracker tracker(map);
+    for (cv::Mat const& picture : {right, wrong, part, wrong, wrong, right, wrong, wrong}) {
+        Sighting const s = tracker.next(picture);
+        EXPECT_TRUE(s.contradictions.empty()) << s.contradictions[0];
+        EXPECT_GT(s.markers_seen, 0);
+    }
+    EXPECT_EQ(tracker.next(wrong).contradictions.size(), 1u);
+    EXPECT_EQ(tracker.next(wrong).contradictions.size(), 1u);
+    EXPECT_TRUE(tracker.next(right).contradictions.empty()) << "confirmed again";
+}
+
 TEST(BoardCheck, OtherThingsOfTheMapStay)
 {
     MarkerMap printed = board(7, 6, true), map = board(7, 6);
