@@ -65,17 +65,19 @@ Matrix read_matrix(gi::Yaml const& y, int rows, int cols)
     return m;
 }
 
-/// Names of sensor_msgs/distortion_models.hpp of ROS: the same coefficients as OpenCV's models.
+/// Names of sensor_msgs/distortion_models.hpp of ROS and of programs around it (Kalibr: radtan, none): the same
+/// coefficients as OpenCV's models.
 LensModel lens_of_ros(gi::Yaml const& y, std::size_t coefficients)
 {
     std::string const name = y.text();
-    if (name == "plumb_bob" || name.empty())
+    if (name == "none" || name == "pinhole") return LensModel::pinhole;
+    if (name == "plumb_bob" || name == "radtan" || name.empty())
         return coefficients == 0 ? LensModel::pinhole : LensModel::radial_tangential;
     if (name == "rational_polynomial") return LensModel::rational;
-    if (name == "equidistant") return LensModel::fisheye;
+    if (name == "equidistant" || name == "fisheye") return LensModel::fisheye;
     throw y.error("the distortion model '" + name.substr(0, 64) + "' is not read",
                   "its coefficients would be taken for others",
-                  "calibrate as plumb_bob, rational_polynomial or equidistant, or give the lens as a table: "
+                  "calibrate as none, plumb_bob, rational_polynomial or equidistant, or give the lens as a table: "
                   "stmap: FILE.exr");
 }
 
@@ -122,6 +124,8 @@ void read_lens(gi::Yaml const& top, CameraModel& c)
         return;
     }
     c.lens = lens_of(top, d.size());
+    bool const is_zero = std::all_of(d.begin(), d.end(), [](double k_i) { return k_i == 0; });
+    if (c.lens == LensModel::pinhole && is_zero) d.clear(); // programs fill them up
     // 4 of OpenCV's are k1 k2 p1 p2; 14 with zeros behind the eighth are the rational model.
     while (d.size() > 8 && d.back() == 0) d.pop_back();
     auto const needed = std::size_t(coefficient_count(c.lens));

@@ -26,7 +26,7 @@ struct Calibration {
 
 /// Also reads OpenCV files that have only camera_matrix and distortion_coefficients (or dist_coeffs): 0
 /// coefficients mean pinhole, 4 or 5 radial_tangential, 8 rational, unless lens_model, the distortion_model of ROS
-/// (plumb_bob, rational_polynomial, equidistant = fisheye) or OpenCV's fisheye_model states another model. The key `stmap` names an STMap (ar/calibration/stmap.h), relative to the file, that
+/// (none or pinhole, plumb_bob or radtan, rational_polynomial, equidistant or fisheye) or OpenCV's fisheye_model states another model. The key `stmap` names an STMap (ar/calibration/stmap.h), relative to the file, that
 /// replaces the coefficients; `parse` leaves the lens a pinhole, `read` reads the map. The picture's size may be
 /// image_width and image_height, or image_size.
 /// @param file name of the file for messages

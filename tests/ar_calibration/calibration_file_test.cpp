@@ -119,12 +119,19 @@ TEST(CalibrationFile, OfRosNamesItsModel)
           Case{"distortion_model: plumb_bob\n", "", 0, LensModel::pinhole},
           Case{"distortion_model: rational_polynomial\n", "0.1, 0.01, 0, 0, 0, 0.1, 0, 0", 8, LensModel::rational},
           Case{"distortion_model: equidistant\n", "-0.02, 0.01, 0, 0", 4, LensModel::fisheye},
+          Case{"distortion_model: none\n", "", 0, LensModel::pinhole},
+          Case{"distortion_model: none\n", "0, 0, 0, 0, 0", 5, LensModel::pinhole},
+          Case{"distortion_model: pinhole\n", "0, 0, 0, 0", 4, LensModel::pinhole},
+          Case{"distortion_model: radtan\n", "-0.1, 0.01, 0, 0", 4, LensModel::radial_tangential},
+          Case{"distortion_model: fisheye\n", "-0.02, 0.01, 0, 0", 4, LensModel::fisheye},
           Case{"", "-0.1, 0.01, 0, 0", 4, LensModel::radial_tangential}})
         EXPECT_EQ(parse_calibration(text(c.model, c.coefficients, c.n), "ros.yaml").camera.lens, c.lens)
             << c.model;
     for (auto const& [model, coefficients, n] :
          {std::tuple{"distortion_model: thin_prism_fisheye\n", "0, 0, 0, 0", 4},
           {"distortion_model: fov\n", "0.9", 1},
+          {"distortion_model: none\n", "-0.1, 0.01, 0, 0, 0", 5},
+          {"distortion_model: pinhole\n", "-0.1, 0.01, 0, 0", 4},
           {"distortion_model: equidistant\n", "-0.1, 0.01, 0, 0, 0", 5},
           {"distortion_model: rational_polynomial\n", "-0.1, 0.01, 0, 0, 0", 5},
           {"distortion_model: plumb_bob\n", "0.1, 0.01, 0, 0, 0, 0.1, 0, 0", 8}})
