@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace study {
@@ -285,6 +286,7 @@ DelimitedText joined(std::vector<DelimitedText> const& tables)
 
 DelimitedText to_wide(DelimitedText const& table, std::string const& names, std::string const& values)
 {
+    constexpr std::size_t kMostNames = 1000, kManyCells = 10'000'000; // of 48 bytes
     int const name_at = table.column(names), value_at = table.column(values);
     for (auto const& [column, at] : {std::pair(names, name_at), std::pair(values, value_at)})
         if (at < 0)
@@ -303,6 +305,21 @@ DelimitedText to_wide(DelimitedText const& table, std::string const& names, std:
             wide.columns.push_back(table.columns[c]);
             wide.heads.push_back(table.heads[c]);
         }
+    std::map<std::string, std::size_t> place; // of columns
+    for (std::size_t c = 0; c < wide.columns.size(); ++c) place.emplace(wide.columns[c], c);
+    std::set<std::string_view> named;
+    for (auto const& row : table.rows) named.insert(row[std::size_t(name_at)].text);
+    auto const refuse_if = [&](bool is_too_many) {
+        if (!is_too_many) return;
+        TextCell const& head = table.heads[std::size_t(name_at)];
+        throw ScriptError(
+            table.files[std::size_t(head.file)], head.place,
+            fmt::format("column '{}' has {} different texts", names, named.size()),
+            fmt::format("--long makes a column of each, at most {}, fewer for many trials", kMostNames),
+            "name the column whose cells are names of values, such as 'name'");
+    };
+    refuse_if(named.size() > kMostNames);
+    std::size_t const most_cells = std::max(kManyCells, 10 * table.rows.size() * table.columns.size());
     std::map<std::vector<std::string>, std::size_t> trials;
     std::vector<std::vector<bool>> is_set;
     for (auto const& row : table.rows) {
@@ -315,11 +332,13 @@ DelimitedText to_wide(DelimitedText const& table, std::string const& names, std:
             for (std::size_t const k : keys) wide.rows.back().push_back(row[k]);
         }
         TextCell const& name = row[std::size_t(name_at)];
-        if (wide.column(name.text) < 0) {
+        auto const [column, is_first] = place.emplace(name.text, wide.columns.size());
+        if (is_first) {
             wide.columns.push_back(name.text);
             wide.heads.push_back(name);
         }
-        auto const at = std::size_t(wide.column(name.text));
+        refuse_if(wide.rows.size() * wide.columns.size() > most_cells);
+        std::size_t const at = column->second;
         auto& cells = wide.rows[it->second];
         auto& set = is_set[it->second];
         cells.resize(std::max(cells.size(), at + 1), TextCell{"", row.front().place, row.front().file});

@@ -40,7 +40,8 @@ struct DelimitedText {
 DelimitedText joined(std::vector<DelimitedText> const& tables);
 /// One row per trial from a table with one row per value: all rows that agree in the other columns become one row,
 /// with a column for each name in `names` that has the text in `values`.
-/// @throws ScriptError unknown columns, a name that occurs twice in a trial
+/// @throws ScriptError unknown columns, a name that occurs twice in a trial, more than 1000 names, or a wide table of
+/// ten times the cells of the long one
 DelimitedText to_wide(DelimitedText const& table, std::string const& names, std::string const& values);
 
 /// The separator is the one of comma, semicolon and tab that is most frequent in the line of column names; of two, the one

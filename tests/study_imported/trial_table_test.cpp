@@ -81,6 +81,23 @@ TEST(DelimitedText, OfOneRowPerValueBecomesWide)
     EXPECT_THROW(to_wide(t, "name", "value"), ScriptError);
 }
 
+/// Of values instead of names there are too many: a column of each would take rows times rows cells.
+TEST(DelimitedText, HasAtMostAThousandNamesToBecomeWide)
+{
+    auto const table = [](int names) {
+        std::string text = "who,name,value\n";
+        for (int i = 0; i < names; ++i) text += fmt::format("1,n{},{}\n", i, i);
+        return read_delimited(text, "l.csv");
+    };
+    EXPECT_EQ(to_wide(table(1000), "name", "value").columns.size(), 1001u);
+    try {
+        to_wide(table(1001), "name", "value");
+        ADD_FAILURE();
+    } catch (ScriptError const& e) {
+        EXPECT_EQ(std::string(e.what()).find("l.csv:1:5: column 'name' has 1001 different texts"), 0u) << e.what();
+    }
+}
+
 TEST(DelimitedText, BeginsAfterEmptyLinesAndMayEndLinesInCarriageReturns)
 {
     DelimitedText const t = read_delimited("\r\n\n a;b\n\n1;2\n", "t.csv");
