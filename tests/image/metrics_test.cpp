@@ -107,6 +107,16 @@ TEST(Metrics, AveragesALargerPictureDown)
     EXPECT_THROW(compare(large, large, {"nonsense"}, "color"), InputError);
     EXPECT_THROW(compare(large, large, {"rmse"}, "no layer"), InputError);
     EXPECT_EQ(value(compare(large, large, {"rmse"}, "color").values[0]), 0);
+    Picture red = large; // as of an OpenEXR file with a channel R alone
+    red.layers[0].name = "R";
+    try {
+        compare(red, red, {"rmse"}, "color");
+        ADD_FAILURE();
+    } catch (InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("R, G and B together, or Y, without a layer"), std::string::npos)
+            << e.what();
+        EXPECT_NE(std::string(e.what()).find("it has: R"), std::string::npos) << e.what();
+    }
 }
 
 TEST(Ssim, AgreesWithTheDefinitionTakenLiterally)
