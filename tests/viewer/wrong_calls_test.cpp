@@ -175,7 +175,6 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"compare a.exr b.exr", "a.exr"},
              {"info", "SCENE"},
              {"info nowhere.gltf", "nowhere.gltf"},
-             {"info cornell --method whitted", "choose one of: auto, paths, slhb, paths_shadow_maps, slhb_shadow_rays, sh_grid, ispm, lpv, isllpm, multi_image"},
              {"info cornell --method magic", "magic"},
              {"info --directions icosahedron:20 --method slhb", "--method with --directions"},
              {"generate", "subcommand"},
