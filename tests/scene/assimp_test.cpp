@@ -128,10 +128,11 @@ TEST_F(AssimpFolder, MapsOfMtlAreScaledMovedAndClamped)
 
 TEST_F(AssimpFolder, MapsAreScaledThenTurnedAboutTheirCentreThenMoved)
 {
+    cv::imwrite((folder_ / "t.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar(10, 20, 30)));
     aiScene source;
     source.mNumMaterials = 1;
     source.mMaterials = new aiMaterial* [1] { new aiMaterial };
-    aiString const file("gone.png");
+    aiString const file("t.png");
     source.mMaterials[0]->AddProperty(&file, AI_MATKEY_TEXTURE(aiTextureType_DIFFUSE, 0));
     aiUVTransform t;
     t.mScaling = {2, 4};

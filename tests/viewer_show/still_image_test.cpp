@@ -13,20 +13,28 @@ namespace {
 
 class StillPicture : public OnScreen {};
 
-/// Root mean square of the differences of each shown picture from the one before, in bytes, after the first ones that
-/// followed the last motion.
+/// Root mean square of the differences of each shown picture from the one before, in bytes, after the first pictures that
+/// were rendered since the last motion.
 std::vector<double> flicker(LiveView& view, std::size_t first)
 {
     run_well("view --replay walk.lwr --shown --out s_%03d.png", view.folder().path());
     RecordingReader reader(view.folder().path() / "walk.lwr");
     std::vector<ShownFrame> shown;
-    while (auto const record = reader.next_record())
-        if (auto const* const s = std::get_if<ShownFrame>(&*record)) shown.push_back(*s);
+    std::vector<std::size_t> rendered; // pictures before each that was shown; some are shown again and again
+    std::size_t pictures = 0;
+    while (auto const record = reader.next_record()) {
+        pictures += std::holds_alternative<RecordedFrame>(*record) ? 1 : 0;
+        if (auto const* const s = std::get_if<ShownFrame>(&*record)) {
+            shown.push_back(*s);
+            rendered.push_back(pictures);
+        }
+    }
     std::size_t still = shown.size() - 1;
     while (still > 0 && shown[still - 1].moment.views == shown.back().moment.views) --still;
     std::vector<double> rms;
     std::vector<float> last;
-    for (std::size_t k = still + first; k < shown.size(); ++k) {
+    for (std::size_t k = still; k < shown.size(); ++k) {
+        if (rendered[k] < rendered[still] + first) continue;
         std::vector<float> const now =
             gi::tone_map(gi::read_picture(view.folder() / fmt::format("s_{:03}.png", k)).layers[0], {});
         double sum = 0;

@@ -44,8 +44,8 @@ struct ObjModel {
     std::vector<vec3> normals;
     std::vector<ObjCorner> corners;
     std::vector<ObjFace> faces;
-    std::vector<std::string> objects; ///< names
-    std::vector<ObjMesh> meshes;      ///< of rising first faces; may be empty
+    std::vector<std::string> objects;             ///< names
+    std::vector<ObjMesh> meshes;                  ///< of rising first faces; may be empty
     std::map<std::string, std::uint64_t> skipped; ///< statements that are not read, by their first word
     std::uint64_t flat_faces = 0;                 ///< without normals in a smoothing group
     std::uint64_t alphas = 0;                     ///< vertices with one that is not 1

@@ -33,8 +33,8 @@ struct PlyHeader {
     std::vector<PlyElement> elements;  ///< in the order of the file
     std::vector<std::string> comments; ///< what follows `comment` and `obj_info`
     std::vector<std::string>
-        unknown; ///< lines that are no part of a header: Blender 2.4 forgot the word `comment`
-    std::size_t bytes = 0;             ///< up to the first value
+        unknown;           ///< lines that are no part of a header: Blender 2.4 forgot the word `comment`
+    std::size_t bytes = 0; ///< up to the first value
     std::size_t lines = 0;
 
     std::uint64_t rows() const; ///< of all elements with properties
