@@ -209,7 +209,7 @@ void add_batch(CLI::App& app, int& exit_code)
     auto const o = std::make_shared<BatchOptions>();
     CLI::App* const c = app.add_subcommand("batch", about("batch"));
     c->require_subcommand(0, 1);
-    c->add_option("MANIFEST", o->manifest, "tasks to run (YAML, schema batch/1, docs/batch.md)");
+    c->add_option("MANIFEST", o->manifest, "tasks to run (YAML, schema batch/2, docs/batch.md)");
     c->add_option("--store", o->store, "folder for results (default: MANIFEST's name with .batch)");
     c->add_option("--frames-per-task", o->frames_per_task, "of batch render")
         ->check(CLI::Range(1, 100000))

@@ -160,8 +160,8 @@ A scene with a sky is saved as three files: F.glb, F_sky.exr and F.yaml, which r
     add("mirror", "a room with a mirror in front of the camera", [] { return gi::generate_mirror(); });
     add("ring", "a box with a mirroring ring and a glass sphere", [] { return gi::generate_ring(); });
     add("avatar", "a skinned mannequin, for view --avatar", [] { return gi::generate_avatar(); });
-    CLI::App* const boxes =
-        add("boxes", "randomly turned boxes on a grid", [o] { return gi::generate_boxes(o->triangles, o->seed); });
+    CLI::App* const boxes = add("boxes", "randomly turned boxes on a grid, in a closed room with a lamp",
+                                [o] { return gi::generate_boxes(o->triangles, o->seed); });
     CLI::App* const sphere =
         add("sphere", "a displaced sphere", [o] { return gi::generate_sphere(o->triangles, o->seed); });
     for (CLI::App* const kind : {boxes, sphere}) {

@@ -83,11 +83,17 @@ int run_plan(StudyOptions const& o)
     return 0;
 }
 
+std::string names_of_examples()
+{
+    std::string names;
+    for (study::StudyExample const& example : study::study_examples())
+        names += (names.empty() ? "" : ", ") + std::string(example.name);
+    return names;
+}
+
 int run_example(StudyOptions const& o)
 {
-    std::string known;
     for (study::StudyExample const& example : study::study_examples()) {
-        known += (known.empty() ? "" : ", ") + std::string(example.name);
         if (o.example != example.name) continue;
         check_outputs({o.out}, {});
         gi::write_text(o.out, example.text);
@@ -95,7 +101,7 @@ int run_example(StudyOptions const& o)
         return 0;
     }
     throw gi::InputError("there is no example '" + o.example + "'", "no built-in experiment has this name",
-                         "there are: " + known);
+                         "there are: " + names_of_examples());
 }
 
 } // namespace
@@ -120,10 +126,7 @@ void add_study(CLI::App& app, int& exit_code)
     plan->callback([o, &exit_code] { exit_code = run_plan(*o); });
 
     CLI::App* const example = study->add_subcommand("example", "Write one of the built-in example experiments.");
-    example
-        ->add_option("NAME", o->example,
-                     "visibility2026, pairs, active, staircase, sensitivity, rating or ar_paths")
-        ->required();
+    example->add_option("NAME", o->example, names_of_examples())->required();
     example->add_option("-o,--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
