@@ -171,7 +171,8 @@ Scene material_panels(bool lit)
     add(tinted, &M::specular_color_map, color);
     M clear = coated;
     clear.transmission = 0.4f;
-    add(clear, &M::transmission_map, data);
+    if (!lit)
+        add(clear, &M::transmission_map, data); // where there are panes, OpenGL leaves lamps to pictures of light
     M phong;
     phong.model = MaterialModel::phong;
     phong.base_color = {0.4f, 0.3f, 0.2f};

@@ -86,7 +86,8 @@ inline CpuForm cpu_form(gi::World const& w, SurfaceView const& v, LightField con
     gi::find_mean(out.light);
     if (out.light.mean == gi::vec3{0}) out.light.mean = field(gi::vec3{0}, gi::vec3{0, 1, 0}); // an image alone
     gi::CameraRays const rays = gi::camera_rays(v.camera, v.size_px.x, v.size_px.y, w.origin);
-    seen.look(rays, v.size_px.x, v.size_px.y, gi::SeenSurfaces::Lights::few);
+    seen.look(rays, v.size_px.x, v.size_px.y,
+              out.light.without_punctual ? gi::SeenSurfaces::Lights::few : gi::SeenSurfaces::Lights::none);
     gi::LitCounts counts;
     out.picture = gi::lit_picture(seen, v.size_px.x, v.size_px.y, kept, {}, counts);
     return out;
