@@ -102,7 +102,8 @@ TEST_F(Environment, ChannelsThatAreNoColoursAreRefusedByName)
             load_environment(folder_ / "map.exr", report_);
             FAIL();
         } catch (InputError const& e) {
-            EXPECT_NE(std::string(e.what()).find(channels == 1 ? "it has: Z" : "it has: RG"), std::string::npos)
+            EXPECT_NE(std::string(e.what()).find(channels == 1 ? "its layers: Z" : "its layers: RG"),
+                      std::string::npos)
                 << e.what();
         }
     }

@@ -146,6 +146,7 @@ Store Store::open_or_make(fs::path const& folder)
                 if (entry.path().filename() != "batches" && entry.path().filename() != "objects" &&
                     entry.path().filename() != "results" && entry.path().filename() != "journal" &&
                     entry.path().filename() != "claims" && entry.path().filename() != "work" &&
+                    entry.path().filename() != "format" && // another process has just made the store
                     !entry.path().filename().string().starts_with(".format"))
                     throw gi::InputError("'" + folder.string() + "' cannot be the store of a batch",
                                          "it holds other files, such as '" + entry.path().filename().string() +
