@@ -4,6 +4,7 @@
 #include "gi/scene/model/plan.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 namespace viewer {
@@ -18,9 +19,10 @@ gi::vec3 direction(int k, int n)
 
 } // namespace
 
-std::string mesh_before_sky(gi::World const& world, gi::vec3 from_m, int threads)
+std::vector<std::string> meshes_before_sky(gi::World const& world, gi::vec3 from_m, int threads)
 {
     constexpr int kDirections = 256, kMostOfThem = 230;
+    constexpr std::size_t kMostMeshes = 3;
     if (world.triangles.empty()) return {};
     gi::ExactVisibility const visibility(world, gi::plan_scene(world).alpha_tests, threads);
     // From outside, so that what they meet first is what lies before the sky.
@@ -34,13 +36,21 @@ std::string mesh_before_sky(gi::World const& world, gi::vec3 from_m, int threads
     visibility.nearest(rays, hits);
     std::map<std::uint32_t, int> met; // directions, by node
     for (gi::Hit const& hit : hits) {
-        if (hit.triangle == gi::kNoTriangle) return {};
+        if (hit.triangle == gi::kNoTriangle) continue;
         auto const next = std::ranges::upper_bound(world.placed, hit.triangle, {},
                                                    [](auto const& p) { return p.first_triangle; });
         ++met[std::prev(next)->node];
     }
-    auto const most = std::ranges::max_element(met, {}, [](auto const& m) { return m.second; });
-    return most->second >= kMostOfThem ? world.scene->nodes[most->first].name : "";
+    std::vector<std::pair<int, std::uint32_t>> most;
+    for (auto const& [node, directions] : met) most.emplace_back(directions, node);
+    std::ranges::sort(most, std::greater());
+    std::vector<std::string> names;
+    int hidden = 0;
+    for (std::size_t k = 0; k < std::min(most.size(), kMostMeshes) && hidden < kMostOfThem; ++k) {
+        hidden += most[k].first;
+        names.push_back(world.scene->nodes[most[k].second].name);
+    }
+    return hidden >= kMostOfThem ? names : std::vector<std::string>();
 }
 
 } // namespace viewer

@@ -4,11 +4,13 @@
 #include "gi/scene/model/world.h"
 
 #include <string>
+#include <vector>
 
 namespace viewer {
 
-/// The mesh around a place behind which the whole sky lies; empty = the sky is seen from there, or no single mesh hides it.
+/// The meshes, at most three, behind which nearly all of the sky lies, seen from a place; empty = more is seen of it, or more
+/// meshes hide it.
 /// @param from_m  in the world's coordinates  @param threads  0 = all
-std::string mesh_before_sky(gi::World const& world, gi::vec3 from_m, int threads = 0);
+std::vector<std::string> meshes_before_sky(gi::World const& world, gi::vec3 from_m, int threads = 0);
 
 } // namespace viewer

@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -51,15 +52,23 @@ struct Shot {
     std::unique_ptr<InterruptGuard> guard;
 };
 
-/// Of nearly all pixels, where they are known.
-bool is_black(gi::Picture const& picture)
+/// Of nearly all pixels of some rows.
+bool is_black(gi::RenderResult const& result)
 {
     constexpr double kNearlyAll = 0.98;
-    constexpr float kDark = 1e-6f; // beside a sky's radiance of about 1
-    gi::Layer const* const color = picture.find("color");
-    if (color == nullptr || color->data.empty()) return false;
-    auto const black = std::ranges::count_if(color->data, [&](float v) { return !(v > kDark); });
-    return double(black) >= kNearlyAll * double(color->data.size());
+    constexpr float kDark = 1e-3f; // beside a sky's radiance of about 1
+    constexpr int kRows = 16;
+    gi::PictureRows const& rows = result.color_rows.read ? result.color_rows : result.rows;
+    if (!rows.read || rows.height < 1) return false;
+    std::size_t black = 0, all = 0;
+    for (int k = 0; k < kRows; ++k) {
+        gi::Picture const row = rows.read((2 * k + 1) * rows.height / (2 * kRows), 1);
+        gi::Layer const* const color = row.find("color");
+        if (color == nullptr) return false;
+        all += color->data.size();
+        black += std::size_t(std::ranges::count_if(color->data, [&](float v) { return !(v > kDark); }));
+    }
+    return double(black) >= kNearlyAll * double(all);
 }
 
 Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi::World const& world,
@@ -72,13 +81,14 @@ Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi
         trace(o, work, guard, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
             return gi::find_method(o.method).render(world, camera, settings, stop, progress, report);
         });
-    if (world.environment && result.end != gi::RenderEnd::interrupted && is_black(result.picture)) {
-        std::string const mesh =
-            mesh_before_sky(world, gi::camera_rays(camera, 1, 1, world.origin).origin, settings.threads);
-        if (!mesh.empty())
-            say("the sky lights nothing: the mesh '" + mesh +
-                "' lies before all of it, seen from the camera. Give it an emission, put lamps inside, or take it "
-                "out of the model");
+    if (world.environment && result.end != gi::RenderEnd::interrupted && is_black(result)) {
+        std::vector<std::string> const meshes =
+            meshes_before_sky(world, gi::camera_rays(camera, 1, 1, world.origin).origin, settings.threads);
+        if (!meshes.empty())
+            say(fmt::format(
+                "the sky lights nothing: seen from the camera, nearly all of it lies behind '{}'. Give that an "
+                "emission, put lamps inside, or take it out of the model",
+                fmt::join(meshes, "', '")));
     }
     return {gi::plan_scene(world), std::move(result), loaded, std::move(guard)};
 }
