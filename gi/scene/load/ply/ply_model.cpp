@@ -38,65 +38,30 @@ struct PlyRoleName {
     std::string_view name;
     PlyRole role;
 };
-constexpr PlyRoleName kVertexRoles[]{{"x", kX},
-                                     {"y", kY},
-                                     {"z", kZ},
-                                     {"nx", kNx},
-                                     {"ny", kNy},
-                                     {"nz", kNz},
-                                     {"normal_x", kNx},
-                                     {"normal_y", kNy},
-                                     {"normal_z", kNz},
-                                     {"s", kU},
-                                     {"t", kV},
-                                     {"u", kU},
-                                     {"v", kV},
-                                     {"texture_u", kU},
-                                     {"texture_v", kV},
-                                     {"texture_s", kU},
-                                     {"texture_t", kV},
-                                     {"tx", kU},
-                                     {"ty", kV},
-                                     {"texcoord_u", kU},
-                                     {"texcoord_v", kV},
-                                     {"s0", kU},
-                                     {"t0", kV},
-                                     {"u0", kU},
-                                     {"v0", kV},
-                                     {"red", kRed},
-                                     {"green", kGreen},
-                                     {"blue", kBlue},
-                                     {"alpha", kAlpha},
-                                     {"r", kRed},
-                                     {"g", kGreen},
-                                     {"b", kBlue},
-                                     {"a", kAlpha},
-                                     {"diffuse_red", kRed},
-                                     {"diffuse_green", kGreen},
-                                     {"diffuse_blue", kBlue},
-                                     {"diffuse_alpha", kAlpha}};
-constexpr PlyRoleName kFaceRoles[]{{"vertex_indices", kIndices},
-                                   {"vertex_index", kIndices},
-                                   {"vertex_indexes", kIndices},
-                                   {"texcoord", kCornerUvs},
-                                   {"texcoords", kCornerUvs},
-                                   {"texture_coordinates", kCornerUvs},
-                                   {"uv", kCornerUvs},
-                                   {"texnumber", kPicture},
-                                   {"texture_number", kPicture},
-                                   {"tex_number", kPicture},
-                                   {"red", kRed},
-                                   {"green", kGreen},
-                                   {"blue", kBlue},
-                                   {"alpha", kAlpha},
-                                   {"r", kRed},
-                                   {"g", kGreen},
-                                   {"b", kBlue},
-                                   {"a", kAlpha},
-                                   {"diffuse_red", kRed},
-                                   {"diffuse_green", kGreen},
-                                   {"diffuse_blue", kBlue},
-                                   {"diffuse_alpha", kAlpha}};
+/// Of vertices and faces.
+constexpr PlyRoleName kColorRoles[]{{"red", kRed},
+                                    {"green", kGreen},
+                                    {"blue", kBlue},
+                                    {"alpha", kAlpha},
+                                    {"r", kRed},
+                                    {"g", kGreen},
+                                    {"b", kBlue},
+                                    {"a", kAlpha},
+                                    {"diffuse_red", kRed},
+                                    {"diffuse_green", kGreen},
+                                    {"diffuse_blue", kBlue},
+                                    {"diffuse_alpha", kAlpha}};
+constexpr PlyRoleName kVertexRoles[]{
+    {"x", kX},          {"y", kY},         {"z", kZ},         {"nx", kNx},       {"ny", kNy},
+    {"nz", kNz},        {"normal_x", kNx}, {"normal_y", kNy}, {"normal_z", kNz}, {"s", kU},
+    {"t", kV},          {"u", kU},         {"v", kV},         {"texture_u", kU}, {"texture_v", kV},
+    {"texture_s", kU},  {"texture_t", kV}, {"tx", kU},        {"ty", kV},        {"texcoord_u", kU},
+    {"texcoord_v", kV}, {"s0", kU},        {"t0", kV},        {"u0", kU},        {"v0", kV}};
+constexpr PlyRoleName kFaceRoles[]{{"vertex_indices", kIndices}, {"vertex_index", kIndices},
+                                   {"vertex_indexes", kIndices}, {"texcoord", kCornerUvs},
+                                   {"texcoords", kCornerUvs},    {"texture_coordinates", kCornerUvs},
+                                   {"uv", kCornerUvs},           {"texnumber", kPicture},
+                                   {"texture_number", kPicture}, {"tex_number", kPicture}};
 
 /// The properties of an element with what they mean.
 struct PlyTable {
@@ -114,8 +79,11 @@ struct PlyTable {
 template <std::size_t n>
 PlyRole role_of(PlyProperty const& p, PlyRoleName const (&names)[n])
 {
-    for (PlyRoleName const& known : names)
-        if (equals_caseless(p.name, known.name)) return p.is_list == (known.role > kRoles) ? known.role : kNothing;
+    for (std::span<PlyRoleName const> const table :
+         {std::span<PlyRoleName const>(names), std::span<PlyRoleName const>(kColorRoles)})
+        for (PlyRoleName const& known : table)
+            if (equals_caseless(p.name, known.name))
+                return p.is_list == (known.role > kRoles) ? known.role : kNothing;
     return kNothing;
 }
 
