@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 namespace viewer::test {
@@ -278,6 +279,50 @@ TEST(DisplayFile, DoubtsAreCounted)
     power.walls[1].blend.left_m = 0.1;
     parse_display(to_yaml(power), "d.yaml", blend);
     EXPECT_EQ(blend.losses().at("walls whose overlap differs from their blend width").count, 1u);
+}
+
+TEST(DisplayFile, DoubtsWhatNobodyBuilds)
+{
+    auto const doubts = [](std::function<void(Display&)> const& change) {
+        Display d = shipped("cave4.yaml");
+        change(d);
+        gi::Report report;
+        parse_display(to_yaml(d), "d.yaml", report);
+        std::string all;
+        for (auto const& [what, loss] : report.losses())
+            all += fmt::format("{} {}: {}\n", loss.count, what, loss.first);
+        return all;
+    };
+    auto const says = [&](std::string const& part, std::function<void(Display&)> const& change) {
+        std::string const all = doubts(change);
+        EXPECT_NE(all.find(part), std::string::npos) << all;
+    };
+    EXPECT_EQ(doubts([](Display&) {}), "");
+    auto const shift = [](Wall& w, gi::dvec3 by) {
+        for (gi::dvec3* const p : {&w.corners.lower_left, &w.corners.lower_right, &w.corners.upper_left}) *p += by;
+    };
+    says("2 walls that nearly meet", [&](Display& d) { shift(d.walls[0], {-0.05, 0, 0}); });
+    says("the right edge of 'left' and the left edge of 'front' are up to 0.05 m apart", [&](Display& d) {
+        shift(d.walls[0], {-0.05, 0, 0});
+    });
+    EXPECT_EQ(doubts([&](Display& d) { shift(d.walls[0], {-0.001, 0, 0}); }), "") << "a tape measure's error";
+    says("4 resting heads far from a wall", [](Display& d) { d.users[0].head.translation_m.y = 170; });
+    says("4 walls of more than 100 m", [](Display& d) {
+        for (Wall& w : d.walls)
+            for (gi::dvec3* const p : {&w.corners.lower_left, &w.corners.lower_right, &w.corners.upper_left})
+                *p *= 1000.0;
+    });
+    says("1 walls that the resting head is behind", [](Display& d) {
+        WallCorners& c = d.walls[1].corners;
+        c = {c.lower_right, c.lower_left, c.lower_right + c.upper_left - c.lower_left};
+    });
+    says("'left' at (0, 0) and 'front' at (0, 0)", [](Display& d) {
+        for (Wall& w : d.walls) w.rank = 0;
+        d.windows[1].x_px = 0;
+    });
+    EXPECT_EQ(doubts([](Display& d) { d.windows[1].x_px = 0; }), "")
+        << "each process may have a desktop of its own";
+    EXPECT_EQ(doubts([](Display& d) { d = shipped("powerwall.yaml"); }), "") << "blended walls overlap";
 }
 
 TEST(DisplayFile, MeshesAreReadBesideTheFile)

@@ -403,16 +403,6 @@ Fault sharing_fault(Display const& d)
     return {};
 }
 
-/// Width by which walls that lie side by side in one plane overlap along `right` of the first; otherwise 0.
-double overlap_m(WallFrame const& a, WallFrame const& b)
-{
-    if (glm::dot(a.normal, b.normal) < 0.9999 || glm::dot(a.right, b.right) < 0.9999) return 0;
-    gi::dvec3 const to = b.lower_left - a.lower_left;
-    double const across = glm::dot(to, a.right), upward = glm::dot(to, a.up);
-    if (std::abs(glm::dot(to, a.normal)) > 0.01 * a.width_m || std::abs(upward) > 0.5 * a.height_m) return 0;
-    return across > 0 && across < a.width_m ? a.width_m - across : 0;
-}
-
 } // namespace
 
 Fault find_fault(Display const& d)
@@ -444,46 +434,6 @@ Fault find_fault(Display const& d)
 void require_sound(Display const& display, std::string const& file)
 {
     if (auto const f = find_fault(display)) throw gi::InputError({file, 0, 0}, f->problem, f->why, f->suggestion);
-}
-
-void report_doubts(Display const& d, gi::Report& report)
-{
-    for (User const& u : d.users)
-        if (!is_within(u.interpupillary_m, kFewNarrower_m, kFewWider_m))
-            report.lose("unusual interpupillary distances: most people's are 0.050 to 0.075 m", 1,
-                        fmt::format("user '{}', {} m", u.name, u.interpupillary_m));
-    std::set<int> used;
-    for (Wall const& wall : d.walls) used.insert({wall.window, wall.second_window});
-    for (std::size_t i = 0; i < d.windows.size(); ++i)
-        if (!used.contains(int(i))) report.lose("windows without a wall, which stay dark", 1, d.windows[i].name);
-    for (Wall const& wall : d.walls)
-        if (wall.warp)
-            if (MeshFlaws const flaws = find_flaws(*wall.warp); flaws.folded > 0)
-                report.lose("meshes that fold over: a part is drawn twice", 1,
-                            fmt::format("'{}', {} triangles, first in cell {} of row {}", wall.name, flaws.folded,
-                                        flaws.first_fold.x, flaws.first_fold.y));
-    std::vector<WallFrame> frames;
-    std::vector<Wall const*> flat;
-    for (Wall const& wall : d.walls)
-        if (!wall.surface) {
-            frames.push_back(wall_frame(wall.corners));
-            flat.push_back(&wall);
-        }
-    for (std::size_t i = 0; i < frames.size(); ++i)
-        if (frames[i].skew_deg > 0.01)
-            report.lose("walls not quite rectangular, made rectangular", 1,
-                        fmt::format("'{}', {:.3g} degrees", flat[i]->name, frames[i].skew_deg));
-    for (std::size_t i = 0; i < frames.size(); ++i)
-        for (std::size_t j = 0; j < frames.size(); ++j) {
-            double const overlap_width = i == j ? 0 : overlap_m(frames[i], frames[j]);
-            if (overlap_width < 1e-3) continue;
-            double const slack = 0.01 + 0.02 * overlap_width;
-            if (std::abs(flat[i]->blend.right_m - overlap_width) > slack ||
-                std::abs(flat[j]->blend.left_m - overlap_width) > slack)
-                report.lose(
-                    "walls whose overlap differs from their blend width", 1,
-                    fmt::format("'{}' and '{}' overlap by {:.4g} m", flat[i]->name, flat[j]->name, overlap_width));
-        }
 }
 
 } // namespace viewer

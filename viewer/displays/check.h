@@ -24,8 +24,9 @@ struct DisplayFault {
 std::optional<DisplayFault> find_fault(Display const& display);
 /// Throws InputError with the first fault, if any; the message names `file`.
 void require_sound(Display const& display, std::string const& file);
-/// Reports what works but is probably unintended: unusual eye distances, unused windows, skewed walls, blend bands
-/// that do not match the overlap of their walls.
+/// Reports what works but is probably unintended: unusual eye distances, unused windows and windows that cover each
+/// other, walls and heads in other units, walls seen from behind, gaps between walls, skewed walls, blend bands that do
+/// not match the overlap of their walls. Of a display without faults.
 void report_doubts(Display const& display, gi::Report& report);
 
 } // namespace viewer

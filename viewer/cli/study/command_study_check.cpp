@@ -8,6 +8,7 @@
 #include "viewer/cli/command_table.h"
 #include "viewer/experiment/stimuli/script_check.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
+#include "viewer/study/comparisons.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -78,7 +79,9 @@ int run_check(CheckOptions const& o)
     if (!o.display_model.empty()) model = study::load_display_model(o.display_model);
     CheckedScript const checked = check(o, read, model);
     if (!read.mistakes.empty()) return tell(o, read.mistakes);
+    Comparisons const comparisons = find_comparisons(s, checked.longest);
     auto doubts = study::find_doubts(s);
+    doubts.insert(doubts.end(), comparisons.doubts.begin(), comparisons.doubts.end());
     for (std::string& doubt : study::find_doubts(s, checked.longest)) doubts.push_back(std::move(doubt));
     if (checked.needs_display_model && !model)
         doubts.emplace_back("stimuli have sizes, places or luminances in physical units: study run needs "
@@ -96,6 +99,7 @@ int run_check(CheckOptions const& o)
                                  {"stimuli_rendered", checked.stimuli.rendered},
                                  {"ar_stimuli", checked.ar_stimuli},
                                  {"longest_s", double(checked.longest.duration_us) * 1e-6},
+                                 {"comparisons", comparisons.texts},
                                  {"doubts", doubts}};
         if (model)
             for (auto const& [key, value] : study::display_model_facts(*model)) j["display_model"][key] = value;
@@ -103,6 +107,7 @@ int run_check(CheckOptions const& o)
         return 0;
     }
     std::fputs(study::script_text(s, checked.longest).c_str(), stdout);
+    for (std::string const& text : comparisons.texts) fmt::print("{}\n", text);
     if (checked.ar_stimuli > 0) fmt::print("{} stimuli from AR sessions\n", checked.ar_stimuli);
     if (!o.any_settings)
         fmt::print("{} stimuli in {} scenes set up, {} rendered\n", checked.stimuli.stimuli,

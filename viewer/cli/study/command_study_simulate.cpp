@@ -6,6 +6,7 @@
 #include "viewer/base/report_json.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/commands.h"
+#include "viewer/study/comparisons.h"
 #include "viewer/study/setting_lookup.h"
 #include "viewer/study/study_outcome.h"
 
@@ -80,7 +81,10 @@ int run_simulate(SimulateOptions const& o)
             print_session(id, outcome);
     }
     keep_tables(settings.dir, o.script);
-    auto const doubts = study::find_idle_procedures(s);
+    auto doubts = study::find_idle_procedures(s);
+    if (!o.any_settings)
+        for (std::string& doubt : find_comparisons(s, make_plan(s, participants.front())).doubts)
+            doubts.push_back(std::move(doubt));
     if (!o.json) print_doubts(doubts);
     if (o.json)
         std::fputs(to_text({{"id", s.id},

@@ -142,8 +142,8 @@ std::vector<std::string_view> header_lines(std::string_view file, PlyHeader& hea
 
 std::size_t bytes_of(PlyType type)
 {
-    constexpr std::size_t kBytes[]{1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-    return kBytes[std::size_t(type)];
+    constexpr std::size_t kSizes[]{1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+    return kSizes[std::size_t(type)];
 }
 
 double largest_of(PlyType type)
