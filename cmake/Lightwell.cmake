@@ -9,6 +9,7 @@ target_compile_options(lightwell_options INTERFACE
   # GCC 12 warns of std::string concatenation that is right (its bugs 105329 and 105651).
   "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-restrict>"
   "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:Clang>>:-Wno-bitwise-instead-of-logical>" # loops without branches
+  "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:Clang>>:-Wno-inconsistent-missing-override>" # members of templates with one of two bases
   # Without contraction: a function that is inlined at several places, as TBB does it, must round alike at all of them.
   "$<$<COMPILE_LANGUAGE:CXX>:-march=${LIGHTWELL_MARCH};-fno-math-errno;-ffp-contract=off>"
   "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-diag-suppress=20012;-Werror=all-warnings>")

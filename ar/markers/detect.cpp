@@ -53,8 +53,8 @@ std::map<int, std::vector<Match>> match(cv::Mat const& gray, cv::Rect part, Mark
         for (FoundMarker& m : found.markers) {
             for (auto& c : m.corners) c += cv::Point2f(part.tl());
             auto const at = placed.find(m.id);
-            auto const note = [&](std::vector<std::string>& names) {
-                std::string name = fmt::format("marker {} of {}", m.id, dictionary);
+            auto const note = [&, &of = dictionary](std::vector<std::string>& names) {
+                std::string name = fmt::format("marker {} of {}", m.id, of);
                 if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
             };
             if (at == placed.end()) {

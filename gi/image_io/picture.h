@@ -27,6 +27,7 @@ struct Picture {
     // Of files that were read:
     int left = 0, top = 0;                   ///< corner of the display window, where pixel (0, 0) is
     bool has_gaps = false;                   ///< a data window does not cover it: pixels there are 0, and unknown
+    bool ends_at_one = false;                ///< 8 or 16 bits, decoded from sRGB: brighter light was cut off
     bool is_cube = false;                    ///< the six faces of an environment (OpenEXR's attribute envmap)
     std::optional<Primaries> primaries = {}; ///< those of its colours, where they are not of Rec. 709
     std::vector<std::string> notes = {};     ///< what was chosen, left out or converted: "its part 'A' ..."

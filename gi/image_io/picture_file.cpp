@@ -99,6 +99,7 @@ Picture decode_picture(std::span<unsigned char const> bytes, std::string const& 
     for (int y = 0; y < linear.rows; ++y)
         std::memcpy(layer.data.data() + std::size_t(y) * std::size_t(linear.cols) * 3, linear.ptr<float>(y),
                     std::size_t(linear.cols) * 3 * sizeof(float));
+    picture.ends_at_one = encoded;
     if (encoded)
         for (float& v : layer.data) v = decode_srgb(v);
     return picture;

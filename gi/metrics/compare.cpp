@@ -6,6 +6,7 @@
 #include "gi/metrics/flip.h"
 #include "gi/metrics/metrics.h"
 #include "gi/metrics/picture_pair.h"
+#include "gi/metrics/provenance.h"
 #include "gi/metrics/ssim.h"
 #include "gi/metrics/ztest.h"
 
@@ -19,7 +20,8 @@ namespace {
 constexpr std::array kMetrics{
     MetricInfo{"rmse", "root of the mean squared difference, linear", true},
     MetricInfo{"relmse", "mean of (x - r)^2 / (r^2 + 0.01)", true},
-    MetricInfo{"bias", "mean(x) / mean(r), over all and per channel", true},
+    MetricInfo{"bias", "mean(x) / mean(r), 1 = equally bright, over all and per channel; bias.error = |bias - 1|",
+               true},
     MetricInfo{"psnr", "dB, of the display-encoded pictures", true},
     MetricInfo{"ssim", "structural similarity of the display-encoded luminance", true},
     MetricInfo{"flip", "difference visible when the two alternate, 0..1", true},
@@ -27,11 +29,26 @@ constexpr std::array kMetrics{
     MetricInfo{"ztest", "z = (x - r) / sqrt(var x + var r + rounding); needs the layer 'variance'", false},
 };
 
-double mean(std::vector<float> const& v)
+/// Of a value per pixel, over the pixels whose values are finite in both pictures; NaN = there is none.
+double mean_of_finite(std::vector<float> const& v, PicturePair const& p)
 {
     double sum = 0;
-    for (float const x : v) sum += double(x);
-    return sum / double(std::max<std::size_t>(1, v.size()));
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        if (!p.is_finite(i)) continue;
+        sum += double(v[i]);
+        ++n;
+    }
+    return sum / double(n);
+}
+
+/// The encoded values of pixels that are finite in both pictures.
+std::vector<float> finite_ones(std::vector<float> const& encoded, PicturePair const& p)
+{
+    std::vector<float> out;
+    for (std::size_t i = 0; i < encoded.size() / 3; ++i)
+        if (p.is_finite(i)) out.insert(out.end(), &encoded[3 * i], &encoded[3 * i] + 3);
+    return out;
 }
 
 std::vector<float> encoded_luminance(std::vector<float> const& encoded)
@@ -54,18 +71,20 @@ void run_metric(std::string const& name, PicturePair const& p, Comparison& out)
     } else if (name == "bias") {
         ErrorSums const e = measure_errors(x, r, 3);
         add("bias", e.mean_bias);
+        add("bias.error", std::abs(e.mean_bias - 1));
         add("bias.r", e.bias.x);
         add("bias.g", e.bias.y);
         add("bias.b", e.bias.z);
     } else if (name == "psnr") {
-        add(name, psnr(encoded(p.finite_image), encoded(p.finite_reference)));
+        add(name, psnr(finite_ones(encoded(p.finite_image), p), finite_ones(encoded(p.finite_reference), p)));
     } else if (name == "ssim") {
         add(name, ssim(encoded_luminance(encoded(p.finite_image)), encoded_luminance(encoded(p.finite_reference)),
                        p.width, p.height));
     } else if (name == "flip") {
-        add(name, mean(flip(clipped(p.finite_image), clipped(p.finite_reference), p.width, p.height)));
+        add(name,
+            mean_of_finite(flip(clipped(p.finite_image), clipped(p.finite_reference), p.width, p.height), p));
     } else if (name == "hdrflip") {
-        add(name, mean(hdr_flip(p.finite_image.data, p.finite_reference.data, p.width, p.height)));
+        add(name, mean_of_finite(hdr_flip(p.finite_image.data, p.finite_reference.data, p.width, p.height), p));
     } else if (name == "ztest") {
         if (p.image_variance.empty())
             throw InputError("the image has no variance for its layer", "a z-test needs the variance of its noise",
@@ -104,6 +123,11 @@ Comparison compare(Picture const& image, Picture const& reference, std::vector<s
     Comparison out;
     out.notes = p.notes;
     for (std::string const& name : chosen) run_metric(name, p, out);
+    auto const measured = std::ranges::find(out.values, "relmse", &NamedValue::name);
+    auto const notes =
+        provenance_notes(image, reference, measured == out.values.end() ? std::nan("") : measured->value,
+                         std::ranges::find(chosen, "ztest") != chosen.end());
+    out.notes.insert(out.notes.end(), notes.begin(), notes.end());
     return out;
 }
 

@@ -109,11 +109,19 @@ void drop_not_finite(PicturePair& p, std::string const& layer)
         throw InputError("no value of the two pictures is finite in both", "there is nothing to compare",
                          "render them again");
     if (dropped > 0)
-        p.notes.push_back(fmt::format(
-            "{} values that are not finite in one of the two left out (equal to psnr, ssim and flip)", dropped));
+        p.notes.push_back(
+            fmt::format("{} of {} values that are not finite in one of the two left out (black in both to ssim)",
+                        dropped, p.image.size()));
 }
 
 } // namespace
+
+bool PicturePair::is_finite(std::size_t pixel) const
+{
+    for (std::size_t i = 3 * pixel; i < 3 * pixel + 3; ++i)
+        if (!std::isfinite(image[i]) || !std::isfinite(reference[i])) return false;
+    return true;
+}
 
 PicturePair pair_up(Picture const& image, Picture const& reference, std::string const& layer)
 {

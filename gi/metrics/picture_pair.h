@@ -11,6 +11,9 @@ struct PicturePair {
     Layer finite_image, finite_reference;                  ///< both 0 where either is not finite
     std::vector<float> image_variance, reference_variance; ///< empty if the picture has no variance
     std::vector<std::string> notes;                        ///< what was downsampled or omitted
+
+    /// True if all three values of the pixel are finite in both pictures.
+    bool is_finite(std::size_t pixel) const;
 };
 
 /// Throws InputError if a picture lacks the layer, one size is not an integer multiple of the other,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import TYPE_CHECKING, Mapping, Sequence, Union
 
 import numpy as np
@@ -23,10 +24,19 @@ def layers_of(picture: PictureLike) -> dict[str, Floats]:
     """Returns layers by name as contiguous float32 arrays. Arrays that are so already are not copied.
 
     A bare array becomes the layer "color".
+
+    Raises:
+        InputError: a layer holds integers of 8 or 16 bits, which are display-encoded.
     """
     layers = getattr(picture, "layers", picture)
     if not isinstance(layers, Mapping):
         layers = {"color": layers}
+    for name, data in layers.items():
+        if np.asarray(data).dtype.kind in "ui" and np.asarray(data).dtype.itemsize <= 2:
+            raise InputError(
+                f"layer '{name}' holds {np.asarray(data).dtype} (display-encoded bytes are no radiance) "
+                "write them with write_png and read them with read_picture, which decodes them"
+            )
     return {name: np.ascontiguousarray(data, np.float32) for name, data in layers.items()}
 
 
@@ -43,12 +53,15 @@ def compare(
         layer: the layer to compare.
 
     Returns:
-        Values by metric name; some metrics have several values ("bias.r").
+        Values by metric name; some metrics have several values ("bias.r"). Values that are not finite in one of
+        the two are left out; that, and what speaks against the comparison, is warned of.
 
     Raises:
         InputError: there is no such metric or layer, or the sizes do not fit.
     """
-    values, _ = _core.compare(layers_of(image), layers_of(reference), list(metrics), layer)
+    values, notes = _core.compare(layers_of(image), layers_of(reference), list(metrics), layer)
+    for note in notes:
+        warnings.warn(note, stacklevel=2)
     return values
 
 
@@ -111,5 +124,14 @@ def write_exr(file: str | os.PathLike[str], picture: PictureLike, *, half: bool 
 
 
 def write_png(file: str | os.PathLike[str], pixels: NDArray[np.uint8]) -> None:
-    """Writes height x width x 3 (or 4, with alpha) sRGB-encoded bytes, atomically: no partial file is left."""
+    """Writes height x width x 3 (or 4, with alpha) sRGB-encoded bytes, atomically: no partial file is left.
+
+    Raises:
+        InputError: the pixels are no bytes.
+    """
+    if np.asarray(pixels).dtype != np.uint8:
+        raise InputError(
+            f"pixels of {np.asarray(pixels).dtype} (a PNG holds display-encoded bytes) "
+            "give tone_map(picture), or an array of uint8"
+        )
     _core.write_png(os.fspath(file), np.ascontiguousarray(pixels, np.uint8))

@@ -2,6 +2,7 @@
 
 #include "study/analysis/blocks.h"
 #include "study/analysis/whole.h"
+#include "study/journal/scene_facts.h"
 #include "study/plan/doubts.h"
 
 #include <algorithm>
@@ -60,6 +61,11 @@ void add_cautions(Script const& script, std::vector<RecordedSession> const& sess
         c.push_back(fmt::format("{} of {} sessions are not complete: their existing trials are analysed",
                                 a.sessions - a.complete, a.sessions));
     for (std::string& idle : find_idle_procedures(script)) c.push_back(std::move(idle));
+    std::vector<SessionStarted const*> parts;
+    for (RecordedSession const& session : sessions)
+        for (JournalEntry const& entry : session.record.entries)
+            if (auto const* const start = std::get_if<SessionStarted>(&entry)) parts.push_back(start);
+    for (std::string& changed : changed_scenes(parts)) c.push_back(std::move(changed));
     int const used = int(std::count_if(a.observers.begin(), a.observers.end(),
                                        [](ObserverSummary const& o) { return !o.is_excluded; }));
     if (used == 0) c.push_back("nobody is left to analyse");

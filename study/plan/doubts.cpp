@@ -61,6 +61,18 @@ void find_equal_levels(Factor const& f, std::vector<std::string>& doubts)
     }
 }
 
+/// True if one factor tells the level of the other.
+bool is_confounded(Nest const& n)
+{
+    std::vector<int> inner;
+    for (std::vector<int> const& levels : n.levels) {
+        if (levels.size() > 1) return false;
+        inner.insert(inner.end(), levels.begin(), levels.end());
+    }
+    std::ranges::sort(inner);
+    return inner.size() > 1 && std::ranges::adjacent_find(inner) == inner.end();
+}
+
 } // namespace
 
 std::vector<std::string> find_idle_procedures(Script const& s)
@@ -80,6 +92,11 @@ std::vector<std::string> find_idle_procedures(Script const& s)
                                             "threshold; give it several values, such as 20..100/17",
                                             who, p.threshold[0]));
             if (p.method != Method::staircase || !b.compare || p.steps.empty()) continue;
+            int const fewest = p.stop.reversals * (p.up + p.down) / 2;
+            if (p.stop.trials > 0 && p.stop.trials < fewest)
+                found.push_back(
+                    fmt::format("{} ends after {} trials, before {} reversals are possible ({} trials at least)",
+                                who, p.stop.trials, p.stop.reversals, fewest));
             double const width =
                 to_scale(b.compare->scale, b.compare->high) - to_scale(b.compare->scale, b.compare->low);
             if (p.steps.back() >= width)
@@ -101,6 +118,13 @@ std::vector<std::string> find_doubts(Script const& s)
                         "of {} would",
                         s.participants.count, cycle, cycle));
     for (Factor const& f : s.factors) find_equal_levels(f, doubts);
+    for (Block const& b : s.blocks)
+        for (Nest const& n : b.nest)
+            if (is_confounded(n))
+                doubts.push_back(fmt::format(
+                    "block '{}': each level of '{}' has its own level of '{}': what they change cannot "
+                    "be told apart; cross them",
+                    b.name, s.factors[std::size_t(n.within)].name, s.factors[std::size_t(n.factor)].name));
     for (Block const& b : s.blocks) {
         if (!b.pairs || !b.pairs->is_active()) continue;
         std::size_t const levels = levels_of_pairs(*b.pairs).size();

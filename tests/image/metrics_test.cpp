@@ -59,6 +59,7 @@ TEST(Metrics, ClosedForms)
     EXPECT_NEAR(find(c, "rmse"), std::sqrt((0.01 + 0 + 0.04) / 3), 1e-6);
     EXPECT_NEAR(find(c, "relmse"), (0.01 + 0.04) / 3 / (0.16 + 0.01), 1e-6);
     EXPECT_NEAR(find(c, "bias"), 1.1 / 1.2, 1e-6);
+    EXPECT_NEAR(find(c, "bias.error"), 1 - 1.1 / 1.2, 1e-6);
     EXPECT_NEAR(find(c, "bias.r"), 1.25, 1e-6);
     EXPECT_NEAR(find(c, "bias.b"), 0.5, 1e-6);
     double mse = 0;
@@ -88,13 +89,65 @@ TEST(Metrics, ValuesThatAreNotFiniteAreLeftOutAndSaid)
     Comparison const c = compare(a, constant(8, 8, vec3{0.5f}), {"rmse"}, "color");
     EXPECT_EQ(find(c, "rmse"), 0);
     ASSERT_EQ(c.notes.size(), 1u);
-    EXPECT_NE(c.notes[0].find("1 values that are not finite"), std::string::npos);
+    EXPECT_NE(c.notes[0].find("1 of 192 values that are not finite"), std::string::npos);
 
     Comparison const left_out = compare(a, constant(8, 8, vec3{0.3f}), {"rmse"}, "color");
     EXPECT_NEAR(find(left_out, "rmse"), 0.2, 1e-6); // of the 191 others, not diluted by the one
+    // Pixels that are not finite are no agreement: half of them change no figure of the others.
+    Picture const dark = constant(8, 8, vec3{0.3f}), bright = constant(8, 8, vec3{0.5f});
+    Picture half = bright;
+    for (std::size_t i = 0; i < half.layers[0].data.size() / 2; ++i) half.layers[0].data[i] = std::nanf("");
+    EXPECT_NEAR(find(compare(half, dark, {"psnr"}, "color"), "psnr"),
+                find(compare(bright, dark, {"psnr"}, "color"), "psnr"), 1e-6);
+    EXPECT_GT(find(compare(half, dark, {"flip"}, "color"), "flip"),
+              0.9 * find(compare(bright, dark, {"flip"}, "color"), "flip"));
     for (float& v : a.layers[0].data) v = std::nanf("");
     EXPECT_THROW(compare(a, constant(8, 8, vec3{0.5f}), {"flip"}, "color"), InputError);
     EXPECT_TRUE(std::isnan(measure_errors(a.layers[0].data, a.layers[0].data, 3).rmse));
+}
+
+TEST(Metrics, DoubtComparisonsByWhatThePicturesSayOfThemselves)
+{
+    std::map<std::string, std::string> const facts{
+        {"command", "lightwell render a.glb --seed 1 --camera left --paths 64"},
+        {"scene", "a.glb"},
+        {"method", "paths"},
+        {"seed", "1"},
+        {"paths", "64"},
+        {"denoise", "none"},
+        {"estimated_relmse", "0.004"}};
+    auto const notes = [&](std::map<std::string, std::string> const& of_image,
+                           std::vector<std::string> const& metrics = {"relmse"}) {
+        Picture image = constant(8, 8, vec3{0.5f}, 0.1f), reference = constant(8, 8, vec3{0.45f}, 0.1f);
+        image.metadata = reference.metadata = facts;
+        for (auto const& [key, value] : of_image) image.metadata[key] = value;
+        return compare(image, reference, metrics, "color").notes;
+    };
+    EXPECT_TRUE(notes({}).empty()) << "one command: nothing may have changed";
+    std::map<std::string, std::string> other{
+        {"command", "lightwell render a.glb --seed 2 --camera left --paths 16"}, {"seed", "2"}, {"paths", "16"}};
+    auto const only = [&](char const* part, std::map<std::string, std::string> const& change,
+                          std::vector<std::string> const& metrics = {"rmse"}) {
+        std::map<std::string, std::string> all = other;
+        for (auto const& [key, value] : change) all[key] = value;
+        auto const said = notes(all, metrics);
+        ASSERT_EQ(said.size(), 1u) << part << (said.empty() ? "" : " " + said[0]);
+        EXPECT_NE(said[0].find(part), std::string::npos) << said[0];
+    };
+    EXPECT_TRUE(notes(other, {"rmse"}).empty());
+    only("both have seed 1", {{"seed", "1"}});
+    only("fewer than the image (128)", {{"paths", "128"}});
+    only("differ in --camera", {{"command", "lightwell render a.glb --seed 2 --camera right --paths 16"}});
+    only("differ in --camera, --look-from",
+         {{"command", "lightwell render a.glb --seed 2 --look-from 1,2,3 --paths 16"}});
+    only("'b.glb' and 'a.glb'", {{"scene", "b.glb"}});
+    only("own noise, an estimated relMSE of 0.004", {}, {"relmse"});
+    only("filtered (atrous)", {{"denoise", "atrous"}}, {"ztest"});
+    Picture file = constant(8, 8, vec3{0.5f}), whole = constant(8, 8, vec3{2});
+    file.ends_at_one = true;
+    EXPECT_NE(compare(file, whole, {"rmse"}, "color").notes.at(0).find("100 % of the reference's values"),
+              std::string::npos);
+    EXPECT_TRUE(compare(file, file, {"rmse"}, "color").notes.empty());
 }
 
 TEST(Metrics, AveragesALargerPictureDown)

@@ -92,6 +92,25 @@ TEST(GltfNodes, PunctualLightsKeepColorRangeAndCone)
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(scene.nodes[i].light, std::int32_t(i));
 }
 
+TEST(GltfNodes, InvisibleNodesHideAllBelowButCameras)
+{
+    GltfBuilder b;
+    b.add_triangle(); // node 0
+    b.root["extensionsUsed"] = b.root["extensionsRequired"] = {"KHR_node_visibility"};
+    b.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
+    auto const visible = [](bool is) { return nlohmann::json{{"KHR_node_visibility", {{"visible", is}}}}; };
+    b.append("nodes", {{"mesh", 0}, {"extensions", visible(false)}, {"children", {2, 3}}});
+    b.append("nodes", {{"mesh", 0}, {"extensions", visible(true)}}); // below a hidden one
+    b.append("nodes", {{"camera", 0}});
+    b.append("nodes", {{"mesh", 0}, {"extensions", visible(true)}});
+    b.root["scenes"][0]["nodes"] = {0, 1, 4};
+    Scene const scene = b.parse();
+    std::size_t shown = 0;
+    for (Node const& node : scene.nodes) shown += node.meshes.size();
+    EXPECT_EQ(shown, 2u);
+    EXPECT_EQ(scene.cameras.size(), 1u);
+}
+
 /// A triangle on one joint (node 1), with weights that sum to two at the first vertex.
 GltfBuilder skinned_triangle()
 {

@@ -7,8 +7,10 @@
 #include "gi/scene/load/obj/obj_libraries.h"
 #include "gi/scene/load/obj/obj_model.h"
 #include "gi/scene/load/obj/obj_text.h"
+#include "gi/scene/model/world.h"
 #include "tests/scene/obj_assimp.h"
 
+#include <array>
 #include <fstream>
 #include <unistd.h>
 
@@ -228,16 +230,57 @@ TEST_F(ObjFolder, WrongIndicesOfNormalsAndTextureCoordinatesDropThese)
     EXPECT_TRUE(scene.meshes[0].normals.empty());
 }
 
+TEST_F(ObjFolder, DecimalCommasAreRefused)
+{
+    char const* const comma = "has a comma; write a decimal point";
+    for (char const* const line :
+         {"v 0,5 0,5 0\n", "v 0 0 0,25\n", "v 0 0 0 0,5 0,5 0,5\n", "vt 0,5 0,5\n", "vn 0 0,7 0,7\n"}) {
+        std::string const why = refusal(std::string(kThreeVertices) + line + "f 1 2 3\n");
+        EXPECT_NE(why.find("line 4"), std::string::npos) << why;
+        EXPECT_NE(why.find(comma), std::string::npos) << why;
+    }
+    EXPECT_EQ(load("v 0, 0, 0,\nv 1, 0, 0\nv 0, 1, 0\nf 1 2 3\n").meshes.at(0).positions.size(), 3u) << "lists";
+    write("m.mtl", "newmtl a\nKd 0,8 0,8 0,8\n");
+    load(std::string("mtllib m.mtl\nusemtl a\n") + kThreeVertices + "f 1 2 3\n");
+    EXPECT_FALSE(report_.losses().empty()) << "a colour that cannot be read is told";
+}
+
+TEST_F(ObjFolder, FarFromTheOriginNothingIsRounded)
+{
+    // As surveys write it: metres of UTM, where a float has steps of half a metre.
+    Scene const scene =
+        load("v 650000.37 12.125 5300000.37\nv 650001.0 12.125 5300000.37\nv 650000.37 12.75 5300000.37\n"
+             "f 1 2 3\n");
+    World const world = build_world(std::make_shared<Scene const>(scene), {}, report_);
+    auto const at = [&](int corner) { return world.origin + dvec3(world.positions[std::size_t(corner)]); };
+    EXPECT_NEAR(at(0).x, 650000.37, 1e-6);
+    EXPECT_NEAR(at(0).z, 5300000.37, 1e-6);
+    EXPECT_NEAR(at(1).x - at(0).x, 0.63, 1e-6);
+    EXPECT_NEAR(at(2).y - at(0).y, 0.625, 1e-6);
+    EXPECT_EQ(
+        read_obj("v nan 1e30 1e6\nf 1 1 1\n", {[](std::string const&) { return 0u; }, [](std::string const&) {}})
+            .origin_m,
+        dvec3(0));
+}
+
+float rounded(std::string_view text)
+{
+    std::array<float, 1> number{};
+    EXPECT_EQ(leading_numbers(text, std::span<float>(number)), 1u) << text;
+    return number[0];
+}
+
 TEST(ObjText, NumbersAreRoundedToNearest)
 {
-    EXPECT_EQ(leading_number("0.1"), 0.1f);
-    EXPECT_EQ(leading_number("+16777217.0000001"), 16777218.0f);
-    EXPECT_EQ(leading_number("-.5,"), -0.5f);
-    EXPECT_EQ(leading_number("3.1+e2"), 3.1f);
-    EXPECT_EQ(leading_number("1e300"), kInf);
-    EXPECT_EQ(leading_number("-1e300"), -kInf);
-    EXPECT_EQ(leading_number("1e-300"), 0.0f);
+    EXPECT_EQ(rounded("0.1"), 0.1f);
+    EXPECT_EQ(rounded("+16777217.0000001"), 16777218.0f);
+    EXPECT_EQ(rounded("-.5,"), -0.5f);
+    EXPECT_EQ(rounded("3.1+e2"), 3.1f);
+    EXPECT_EQ(rounded("1e300"), kInf);
+    EXPECT_EQ(rounded("-1e300"), -kInf);
+    EXPECT_EQ(rounded("1e-300"), 0.0f);
     EXPECT_FALSE(leading_number("e5"));
+    EXPECT_FALSE(leading_number("0,5"));
     EXPECT_FALSE(leading_number(""));
 }
 

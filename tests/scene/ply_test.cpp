@@ -4,6 +4,7 @@
 #include "gi/core/report.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/load/ply/ply_values.h"
+#include "gi/scene/model/world.h"
 
 #include <algorithm>
 #include <bit>
@@ -453,6 +454,18 @@ TEST(PlyTypes, LargestValues)
     EXPECT_EQ(largest_of(PlyType::uint16), 65535);
     EXPECT_EQ(largest_of(PlyType::int32), 2147483647);
     EXPECT_EQ(largest_of(PlyType::float64), 1);
+}
+
+TEST_F(PlyFolder, FarFromTheOriginNothingIsRounded)
+{
+    Scene const scene =
+        load(element("vertex", 3, "property double x\nproperty double y\nproperty double z\n") +
+                 element("face", 1, "property list uchar int vertex_indices\n"),
+             "650000.37 12.125 5300000.37\n650001 12.125 5300000.37\n650000.37 12.75 5300000.37\n3 0 1 2\n");
+    World const world = build_world(std::make_shared<Scene const>(scene), {}, report_);
+    dvec3 const at = world.origin + dvec3(world.positions[0]), next = world.origin + dvec3(world.positions[1]);
+    EXPECT_NEAR(at.z, 5300000.37, 1e-6);
+    EXPECT_NEAR(next.x - at.x, 0.63, 1e-6);
 }
 
 } // namespace

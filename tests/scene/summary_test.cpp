@@ -49,9 +49,10 @@ TEST(Summary, CountsEverything)
     EXPECT_EQ(line(s, "vertices"), "8");
     EXPECT_EQ(line(s, "bounds"), "0, 0, 0 to 2, 1, 3 m");
     EXPECT_EQ(line(s, "materials"), "3 (1 matt, 0 coated, 0 Phong, 0 metal, 1 mirror, 1 glass; 1 emit)");
+    EXPECT_EQ(line(s, "their names"), "0 'm1', 1 'm2', 2 'm3'");
     EXPECT_EQ(line(s, "textures"), "1 (1.0 MiB)");
-    EXPECT_EQ(line(s, "punctual lights"), "1");
-    EXPECT_EQ(line(s, "emissive triangles"), "2 (6 m2)");
+    EXPECT_EQ(line(s, "punctual lights"), "1: 0 point at 0, 0, 0 m");
+    EXPECT_EQ(line(s, "emissive triangles"), "2 (6 m2; materials 0 'm1')");
     EXPECT_EQ(line(s, "environment map"), "16 x 8");
     EXPECT_EQ(line(s, "light on upward faces"), "3.142, 3.142, 3.142 W/m2");
     EXPECT_EQ(line(s, "on downward faces"), "3.142, 3.142, 3.142 W/m2");

@@ -355,6 +355,21 @@ TEST(Doubts, AreGuessRatesThatTheTaskCannotHave)
               std::string::npos);
 }
 
+TEST(Doubts, AreFactorsThatAlwaysGoTogether)
+{
+    auto const doubts = [](std::string const& levels) {
+        return find_doubts(parse(
+            "factors: {scene: [a, b], tone: [warm, cold, grey]}\ndefaults: {stimulus_ms: 1000}\nsequence: [x]\n"
+            "blocks:\n  x: {task: rating, scale: {min: 1, max: 7}, cross: scene, repeats: 2,\n"
+            "      nest: {tone: {in: scene, levels: {" +
+            levels + "}}}}\n"));
+    };
+    ASSERT_EQ(doubts("a: warm, b: cold").size(), 1u);
+    EXPECT_NE(doubts("a: warm, b: cold")[0].find("cannot be told apart"), std::string::npos);
+    EXPECT_TRUE(doubts("a: [warm, cold], b: [cold, grey]").empty());
+    EXPECT_TRUE(doubts("a: warm, b: warm").empty());
+}
+
 TEST(Doubts, AreProceduresThatCannotLearn)
 {
     auto const idle = [](std::string const& procedure) {

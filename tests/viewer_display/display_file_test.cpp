@@ -270,7 +270,8 @@ TEST(DisplayFile, DoubtsAreCounted)
     text.replace(text.find("[-1, 2, -1]"), 11, "[-1.005, 2, -1]");
     text.replace(text.find("size_px: [800, 600]}"), 20, "size_px: [800, 600]}\n  - {name: idle, size_px: [8, 8]}");
     parse_display(text, "d.yaml", report);
-    EXPECT_EQ(report.losses().size(), 3u);
+    EXPECT_EQ(report.losses().size(), 4u);
+    EXPECT_TRUE(report.losses().contains("walls whose pixels are far from square")) << "2 x 2 m by 800 x 600";
     EXPECT_EQ(report.losses().at("windows without a wall, which stay dark").first, "idle");
     EXPECT_TRUE(report.losses().contains("walls not quite rectangular, made rectangular"));
     EXPECT_TRUE(report.losses().contains("unusual interpupillary distances: most people's are 0.050 to 0.075 m"));
@@ -307,7 +308,7 @@ TEST(DisplayFile, DoubtsWhatNobodyBuilds)
     });
     EXPECT_EQ(doubts([&](Display& d) { shift(d.walls[0], {-0.001, 0, 0}); }), "") << "a tape measure's error";
     says("4 resting heads far from a wall", [](Display& d) { d.users[0].head.translation_m.y = 170; });
-    says("4 walls of more than 100 m", [](Display& d) {
+    says("4 walls of more than 30 m", [](Display& d) {
         for (Wall& w : d.walls)
             for (gi::dvec3* const p : {&w.corners.lower_left, &w.corners.lower_right, &w.corners.upper_left})
                 *p *= 1000.0;
@@ -320,6 +321,13 @@ TEST(DisplayFile, DoubtsWhatNobodyBuilds)
         for (Wall& w : d.walls) w.rank = 0;
         d.windows[1].x_px = 0;
     });
+    says("1 walls in one place", [](Display& d) { d.walls[1].corners = d.walls[0].corners; });
+    says("1 walls upside down", [](Display& d) {
+        WallCorners& c = d.walls[1].corners;
+        gi::dvec3 const up = c.upper_left - c.lower_left;
+        c = {c.lower_right + up, c.lower_left + up, c.lower_right};
+    });
+    says("'front', 3 x 3 m by 1024 x 512 pixels", [](Display& d) { d.windows[1].height_px = 512; });
     EXPECT_EQ(doubts([](Display& d) { d.windows[1].x_px = 0; }), "")
         << "each process may have a desktop of its own";
     EXPECT_EQ(doubts([](Display& d) { d = shipped("powerwall.yaml"); }), "") << "blended walls overlap";

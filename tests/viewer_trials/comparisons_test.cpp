@@ -1,6 +1,8 @@
 #include "viewer/study/comparisons.h"
 
 #include "study/script/script_file.h"
+#include "viewer/experiment/stimuli/idle_settings.h"
+#include "viewer/experiment/stimuli/stimulus_check.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -29,6 +31,8 @@ std::string first(std::vector<std::string> const& list) { return list.empty() ? 
 constexpr char const* kFollowing =
     "{method: staircase, up: 1, down: 2, start: 0.8, steps: [0.2, 0.1], stop: {reversals: 8, max_trials: 40}}";
 
+constexpr char const* kConstant = "{method: constant, levels: [1, 2, 4], trials_per_level: 4}";
+
 TEST(Comparisons, SayWhatIsBesideWhat)
 {
     EXPECT_EQ(first(comparisons_of("vary: exposure, range: [0, 1], against: {}, harder: down", kFollowing).texts),
@@ -45,12 +49,12 @@ TEST(Comparisons, DoubtTheWrongEnd)
         return first(comparisons_of("vary: exposure, against: {}, " + rest, procedure).doubts);
     };
     EXPECT_EQ(doubt("range: [0, 1], harder: down"), "");
-    EXPECT_EQ(doubt("range: [-1, 0], harder: up", "{method: constant, levels: [-1, 0], trials: 4}"), "");
+    EXPECT_EQ(doubt("range: [-1, 0], harder: up", "{method: constant, levels: [-1, 0], trials_per_level: 4}"), "");
     EXPECT_NE(doubt("range: [0, 1], harder: up").find("write harder: down"), std::string::npos);
     EXPECT_NE(doubt("range: [0.5, 1], harder: up").find("write harder: down"), std::string::npos);
     EXPECT_NE(doubt("range: [-1, 2], harder: down").find("lies within the range"), std::string::npos);
     EXPECT_EQ(first(comparisons_of("vary: exposure, against: {}, range: [-1, 2], harder: down",
-                                   "{method: constant, levels: [-1, 0, 1, 2], trials: 4}")
+                                   "{method: constant, levels: [-1, 0, 1, 2], trials_per_level: 4}")
                         .doubts),
               "")
         << "whole functions may have both sides";
@@ -59,6 +63,49 @@ TEST(Comparisons, DoubtTheWrongEnd)
                   .doubts),
         "")
         << "stimuli that differ in more are never alike";
+}
+
+TEST(Comparisons, KnowThatFactorsOnAScenesLightAreOneByDefault)
+{
+    auto const doubt = [](std::string const& key) {
+        return first(
+            comparisons_of("vary: " + key + ", range: [1, 4], against: {}, harder: up", kConstant).doubts);
+    };
+    EXPECT_NE(doubt("light.0.scale").find("write harder: down"), std::string::npos);
+    EXPECT_NE(doubt("material.floor.emission_scale").find("write harder: down"), std::string::npos);
+    EXPECT_EQ(doubt("material.floor.roughness"), "") << "the scene has it";
+}
+
+TEST(Comparisons, DoubtStaircasesThatStartWhereNothingIsSeen)
+{
+    std::string const at_0 =
+        "{method: staircase, up: 1, down: 2, start: 0, steps: [0.1], stop: {reversals: 8, max_trials: 40}}";
+    Comparisons const c = comparisons_of("vary: exposure, range: [0, 1], against: {}, harder: down", at_0);
+    EXPECT_NE(first(c.doubts).find("starts at 0, where the two stimuli are alike"), std::string::npos)
+        << first(c.doubts);
+}
+
+TEST(IdleSettings, AreThoseThatNoMethodUses)
+{
+    auto const idle = [](std::string const& levels) {
+        study::Script const s = study::parse_script(
+            "schema: study/2\nid: t\nseed: 5\nparticipants: {count: 2}\nfactors: {scene: [cornell], f: {" +
+                levels +
+                "}}\nsequence: [b]\nblocks:\n  b: {task: rating, scale: {min: 1, max: 5}, cross: [scene, f], "
+                "stimulus_ms: 500}\n",
+            "t.yaml");
+        StimulusCollection stimuli(s, {});
+        study::Mistakes m;
+        stimuli.add(make_plan(s, 1), m);
+        EXPECT_TRUE(m.empty());
+        return first(find_idle_settings(s, stimuli.list()));
+    };
+    EXPECT_NE(idle("few: {light_paths: 8}, many: {light_paths: 64}")
+                  .find("'light_paths' is varied, but changes no picture"),
+              std::string::npos);
+    EXPECT_EQ(idle("few: {light_paths: 8, method: vpl_exact}, many: {light_paths: 64, method: vpl_exact}"), "");
+    EXPECT_EQ(idle("one: {bounces: 1}, two: {bounces: 2}"), "");
+    EXPECT_EQ(idle("one: {exposure: 1}, two: {exposure: 2}"), "");
 }
 
 TEST(Comparisons, DoubtCrossedFactorsThatOneSideDoesNotFollow)

@@ -7,12 +7,13 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
+#include <tuple>
 
 namespace viewer {
 namespace {
 
-constexpr double kLargestWall_m = 100; ///< larger ones are probably written in other units
-constexpr double kFarHead = 20;        ///< diagonals of a wall from its middle: nobody looks at it from there
+constexpr double kLargestWall_m = 30; ///< larger ones are probably written in other units
+constexpr double kFarHead = 6;        ///< diagonals of a wall from its middle: nobody looks at it from there
 
 /// Width by which walls that lie side by side in one plane overlap along `right` of the first; otherwise 0.
 double overlap_m(WallFrame const& a, WallFrame const& b)
@@ -36,11 +37,20 @@ std::array<Edge, 4> edges_of(WallFrame const& f)
             Edge{"upper", p(0, 1), p(1, 1)}};
 }
 
-/// The larger distance between the ends of two edges, whichever way round.
+double length_m(Edge const& e) { return glm::distance(e.from, e.to); }
+
+double distance_m(gi::dvec3 p, Edge const& e)
+{
+    gi::dvec3 const along = e.to - e.from;
+    double const t = glm::clamp(glm::dot(p - e.from, along) / glm::dot(along, along), 0.0, 1.0);
+    return glm::distance(p, e.from + t * along);
+}
+
+/// The larger distance of the ends of the shorter edge from the longer one.
 double apart_m(Edge const& a, Edge const& b)
 {
-    return std::min(std::max(glm::distance(a.from, b.from), glm::distance(a.to, b.to)),
-                    std::max(glm::distance(a.from, b.to), glm::distance(a.to, b.from)));
+    auto const& [s, l] = length_m(a) < length_m(b) ? std::tie(a, b) : std::tie(b, a);
+    return std::max(distance_m(s.from, l), distance_m(s.to, l));
 }
 
 /// True if the rectangle about `b`, seen along the normal of `a`, covers a part of `a`.
@@ -57,18 +67,25 @@ bool overlap_upright(WallFrame const& a, WallFrame const& b)
 /// Edges of two walls that nearly meet. Gaps within a plane are bezels up to 5 cm.
 void report_gaps(std::vector<Wall const*> const& walls, std::vector<WallFrame> const& frames, gi::Report& report)
 {
-    constexpr double kTouch_m = 0.002, kBezel_m = 0.05, kNearly = 0.2;
+    constexpr double kTouch_m = 0.002, kBezel_m = 0.05, kNearly = 0.3;
     for (std::size_t i = 0; i < walls.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
+            if (glm::distance(frames[i].point(0, 0), frames[j].point(0, 0)) +
+                    glm::distance(frames[i].point(1, 1), frames[j].point(1, 1)) <
+                kTouch_m) {
+                if (walls[i]->eye == walls[j]->eye && walls[i]->user == walls[j]->user && !walls[i]->warp)
+                    report.lose("walls in one place: is one of them copied?", 1,
+                                fmt::format("'{}' and '{}'", walls[j]->name, walls[i]->name));
+                continue;
+            }
             bool const is_plane = glm::dot(frames[i].normal, frames[j].normal) > 0.9999;
             if (is_plane && overlap_upright(frames[i], frames[j])) continue; // blended
             double nearest_m = INFINITY;
             std::string text;
             for (Edge const& a : edges_of(frames[i]))
                 for (Edge const& b : edges_of(frames[j])) {
-                    double const length_m = std::min(glm::distance(a.from, a.to), glm::distance(b.from, b.to));
                     double const d = apart_m(a, b);
-                    if (d > kNearly * length_m || d >= nearest_m) continue;
+                    if (d > kNearly * std::min(length_m(a), length_m(b)) || d >= nearest_m) continue;
                     nearest_m = d;
                     text = fmt::format("the {} edge of '{}' and the {} edge of '{}' are up to {:.3g} m apart",
                                        b.name, walls[j]->name, a.name, walls[i]->name, d);
@@ -84,8 +101,19 @@ void report_sizes(std::vector<Wall const*> const& walls, std::vector<WallFrame> 
     for (std::size_t i = 0; i < walls.size(); ++i) {
         WallFrame const& f = frames[i];
         if (std::max(f.width_m, f.height_m) > kLargestWall_m)
-            report.lose("walls of more than 100 m: are their corners in metres?", 1,
+            report.lose("walls of more than 30 m: are their corners in metres?", 1,
                         fmt::format("'{}', {:.4g} x {:.4g} m", walls[i]->name, f.width_m, f.height_m));
+        if (f.up.y < -0.7)
+            report.lose("walls upside down: corners are given as seen by the viewer", 1,
+                        "'" + walls[i]->name + "'");
+        PixelRectangle const px = viewport_px(*walls[i], d.windows[std::size_t(walls[i]->window)]);
+        double const shape = double(px.width) / f.width_m / (double(px.height) / f.height_m);
+        bool const is_halved =
+            walls[i]->stereo == StereoMode::side_by_side || walls[i]->stereo == StereoMode::top_bottom;
+        if (!is_halved && !walls[i]->warp && (shape > 1.25 || shape < 0.8))
+            report.lose("walls whose pixels are far from square", 1,
+                        fmt::format("'{}', {:.3g} x {:.3g} m by {} x {} pixels", walls[i]->name, f.width_m,
+                                    f.height_m, px.width, px.height));
         User const& user = d.users[std::size_t(walls[i]->user)];
         gi::dvec3 const eye = eyes_of(user, resting_head(user)).middle;
         double const away_m = glm::distance(eye, f.point(0.5, 0.5));

@@ -89,8 +89,13 @@ std::size_t find(Change const& c, std::string const& name, std::size_t count, Na
     for (std::size_t i = 0; i < count; ++i)
         if (!name.empty() && name_of(i) == name) return i;
     if (auto const index = gi::parse_number<std::size_t>(name); index && *index < count) return *index;
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < count; ++i)
+        if (std::string one = name_of(i); !one.empty()) known.push_back(std::move(one));
+    std::string const of_number =
+        count > 0 ? fmt::format("give a number from 0 to {}", count - 1) : "leave it out";
     refuse(c, fmt::format("there are {}, and none is called '{}'", count, name),
-           "give a name, or a number from 0");
+           known.empty() ? of_number : fmt::format("{}, or a name: {}", of_number, gi::suggest(name, known)));
 }
 
 std::vector<std::size_t> edited_lights(Change const& c, Key const& key, std::size_t count)

@@ -2,6 +2,7 @@
 
 #include "gi/filter/tone_map.h"
 #include "viewer/base/standard_streams.h"
+#include "viewer/offline/empty_view.h"
 #include "viewer/offline/shown_range.h"
 
 #include <algorithm>
@@ -88,7 +89,10 @@ void write_files(RenderOptions const& o, gi::PictureRows const& picture, gi::Sto
             range.add(*rows.find("color"), bytes);
             return bytes;
         });
-        if (std::string const problem = range.problem(o.png, o.exposure_ev); !problem.empty()) say(problem);
+        std::string const problem = range.problem(o.png, o.exposure_ev);
+        bool const is_explained = report.losses().contains(std::string(kSeesNothing)) ||
+                                  report.losses().contains(std::string(kSeesSpeck));
+        if (!problem.empty() && !is_explained) say(problem);
     }
     if (o.out.empty()) return;
     gi::PictureRows kept = picture;

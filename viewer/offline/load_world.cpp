@@ -23,6 +23,8 @@ std::string set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report
     }
     std::string const added = add_light(scene, o.light);
     if (!added.empty()) say(added);
+    if (!added.empty() && (o.environment_rotate_deg != 0 || o.environment_scale != 1))
+        say("--envmap-rotate and --envmap-scale turn and scale the light that was added: no --envmap is given");
     if (scene.environment) {
         scene.environment->rotation_rad += float(glm::radians(o.environment_rotate_deg));
         scene.environment->scale *= float(o.environment_scale);

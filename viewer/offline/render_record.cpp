@@ -21,10 +21,10 @@ std::string filter_of(gi::RenderSettings const& s) { return gi::render_option("f
 std::string normalised_command(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
                                Chosen const& chosen)
 {
-    std::string command =
-        fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}",
-                    gi::shell_quoted(o.scene), chosen.method.empty() ? o.method : chosen.method, s.width, s.height, s.bounces, filter_of(s),
-                    o.seed_per_frame && !o.frames.empty() ? o.settings.seed : s.seed, amount);
+    std::string command = fmt::format(
+        "lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}",
+        gi::shell_quoted(o.scene), chosen.method.empty() ? o.method : chosen.method, s.width, s.height, s.bounces,
+        filter_of(s), o.seed_per_frame && !o.frames.empty() ? o.settings.seed : s.seed, amount);
     auto const add = [&](char const* option, std::string const& value) {
         if (!value.empty()) command += fmt::format(" {} {}", option, gi::shell_quoted(value));
     };
@@ -93,18 +93,21 @@ Json relmse_json(gi::RenderResult const& r) { return knows_error(r) ? Json(r.rel
 std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::RenderSettings const& s,
                                                  gi::RenderResult const& result)
 {
-    return {{"version", version_number()},
-            {"git", git_hash()},
-            {"command", normalised_command(o, s, paths_option(result), chosen_of(result))},
-            {"scene", o.scene},
-            {"method", result.method.empty() ? o.method : result.method},
-            {"size", fmt::format("{}x{}", s.width, s.height)},
-            {"seed", std::to_string(s.seed)},
-            {"filter", filter_of(s)},
-            {"denoise", o.denoise},
-            {"bounces", std::to_string(s.bounces)},
-            {"paths", std::to_string(result.paths)},
-            {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
+    std::map<std::string, std::string> facts{
+        {"version", version_number()},
+        {"git", git_hash()},
+        {"command", normalised_command(o, s, paths_option(result), chosen_of(result))},
+        {"scene", o.scene},
+        {"method", result.method.empty() ? o.method : result.method},
+        {"size", fmt::format("{}x{}", s.width, s.height)},
+        {"seed", std::to_string(s.seed)},
+        {"filter", filter_of(s)},
+        {"denoise", o.denoise},
+        {"bounces", std::to_string(s.bounces)},
+        {"paths", std::to_string(result.paths)},
+        {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
+    if (knows_error(result)) facts["estimated_relmse"] = fmt::format("{:.3g}", result.relmse); // unfiltered
+    return facts;
 }
 
 Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,

@@ -7,6 +7,10 @@
 
 namespace viewer {
 
+namespace {
+constexpr unsigned char kNearlyBlack = 8; ///< of 255: nobody sees it beside a window or a lamp
+}
+
 void ShownRange::add(gi::Layer const& color, std::vector<unsigned char> const& bytes)
 {
     constexpr std::size_t kEvery = 7; // pixels
@@ -16,7 +20,7 @@ void ShownRange::add(gi::Layer const& color, std::vector<unsigned char> const& b
         ++pixels_;
         auto const [least, most] = std::minmax({bytes[i], bytes[i + 1], bytes[i + 2]});
         white_ += least == 255;
-        black_ += most == 0;
+        black_ += most < kNearlyBlack;
         float const y = 0.2126f * color.data[i] + 0.7152f * color.data[i + 1] + 0.0722f * color.data[i + 2];
         if (pixels_ % kEvery == 0 && y > 0 && std::isfinite(y)) logs_.push_back(std::log2(y));
     }

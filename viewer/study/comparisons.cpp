@@ -2,6 +2,7 @@
 
 #include "gi/core/text.h"
 #include "study/script/procedure.h"
+#include "viewer/engine/scene_edits.h"
 #include "viewer/study/study_settings.h"
 
 #include <algorithm>
@@ -22,8 +23,10 @@ std::map<std::string, std::string> plain(study::Patch const& patch)
     return settings;
 }
 
+/// "" = as the scene has it.
 std::string usual_value(std::string const& key)
 {
+    if (is_scene_edit(key)) return key.ends_with("scale") && !is_object_edit(key) ? "1" : "";
     static std::vector<StudySetting> const all = study_settings();
     auto const s = std::ranges::find_if(all, [&](StudySetting const& a) { return plain_key(a.key) == key; });
     return s == all.end() ? "" : s->usual;
@@ -68,6 +71,18 @@ Others others_of(study::Script const& s, study::Plan const& plan, int block)
     for (auto const& [name, n] : differing_factors)
         if (n < trials) o.factors.insert(name);
     return o;
+}
+
+/// Staircases that begin where there is nothing to see.
+void doubt_starts(study::Block const& b, Others const& o, std::vector<std::string>& doubts)
+{
+    if (o.values.size() != 1 || !o.always.empty()) return;
+    for (study::Procedure const& p : b.procedures)
+        if (p.method == study::Method::staircase && gi::parse_finite(*o.values.begin()) == p.start)
+            doubts.push_back(
+                fmt::format("block '{}': procedure '{}' starts at {:g}, where the two stimuli are alike; start "
+                            "where the answer is easy",
+                            b.name, p.name, p.start));
 }
 
 /// Empty = nothing to doubt.
@@ -127,6 +142,7 @@ Comparisons find_comparisons(study::Script const& s, study::Plan const& plan)
         Others const o = others_of(s, plan, int(block));
         if (o.values.empty()) continue; // nothing is shown beside it
         found.texts.push_back(text_of(s, b, o));
+        if (b.compare->factor < 0) doubt_starts(b, o, found.doubts);
         if (b.compare->factor < 0)
             if (std::string doubt = doubt_of_direction(b, o); !doubt.empty())
                 found.doubts.push_back(std::move(doubt));

@@ -16,8 +16,6 @@
 namespace gi {
 namespace {
 
-/// Fraction of a pilot's look-ups that must be right, as far as columns show.
-constexpr double kTrusted = 0.87;
 /// Largest fraction of the budget that building a BVH may take.
 constexpr double kMostForBvh = 0.8;
 
@@ -57,7 +55,7 @@ AlgorithmChoice choose_algorithm(World const& world, RenderSettings const& asked
     RenderSettings const chosen = choose_settings(with({SurfacesBy::look_ups, ShadowsBy::maps}, asked), world, soup);
     double const trusted = look_up_agreement(world, soup, camera_rays(camera, asked.width, asked.height, world.origin),
                                              std::uint32_t(chosen.of<SlhbSettings>().resolution));
-    bool const look_ups = trusted >= kTrusted, bvh = narrow_somewhere(world);
+    bool const look_ups = trusted >= kTrustedLookUps, bvh = narrow_somewhere(world);
     PathAlgorithm const by{look_ups ? SurfacesBy::look_ups : SurfacesBy::rays,
                            look_ups && !bvh ? ShadowsBy::maps : ShadowsBy::rays};
     return {by,

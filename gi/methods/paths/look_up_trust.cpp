@@ -6,6 +6,7 @@
 #include "gi/scene/shading/shading_point.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <vector>
 
@@ -127,6 +128,19 @@ double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRay
     std::vector<Start> const met = continue_paths(seen, buffers[0], view(world).surfaces, sums);
     continue_paths(met, buffers[1], view(world).surfaces, sums);
     return sums.asked > 0 ? double(sums.agreed) / double(sums.asked) : 1;
+}
+
+void report_untrusted_look_ups(World const& world, TriangleSoup const& soup, CameraRays const& camera,
+                               std::uint32_t resolution, Report& report)
+{
+    double const trusted = look_up_agreement(world, soup, camera, resolution);
+    constexpr double kMisleading = 0.75; // below it, light of measured rooms was wrong by percents
+    if (trusted >= kMisleading) return;
+    float const texel_m = make_grid(world.bounds, vec3{0, 1, 0}, resolution, vec2{0.5f}, 0.5f).texel;
+    report.lose(
+        "pictures whose look-ups are not reliable: light may be wrong by more than the estimated error; exact are "
+        "--method paths, reference and auto",
+        1, fmt::format("{:.0f} % of look-ups can be trusted, texels are {:.2g} m wide", 100 * trusted, texel_m));
 }
 
 } // namespace gi

@@ -5,6 +5,7 @@
 // windows, furniture), the columns disagree, or lack the surface that the look-up starts from, or a texel is
 // large compared with the distance to what the camera sees.
 
+#include "gi/core/report.h"
 #include "gi/raster/triangle_soup.h"
 #include "gi/scene/model/camera.h"
 
@@ -16,5 +17,10 @@ namespace gi {
 /// @param camera  not orthographic  @param resolution  texels per side of a hit buffer
 double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRays const& camera,
                          std::uint32_t resolution);
+/// Below this agreement light by look-ups is not reliable.
+inline constexpr double kTrustedLookUps = 0.87;
+/// Reports a loss if it is so far below that light is biased by percents: the estimate of error holds noise alone, and nothing else would tell.
+void report_untrusted_look_ups(World const& world, TriangleSoup const& soup, CameraRays const& camera,
+                               std::uint32_t resolution, Report& report);
 
 } // namespace gi

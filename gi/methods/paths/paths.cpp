@@ -1,6 +1,7 @@
 #include "gi/methods/paths/paths.h"
 
 #include "gi/methods/paths/frames_of.h"
+#include "gi/methods/paths/look_up_trust.h"
 #include "gi/render/fingerprint.h"
 
 namespace gi {
@@ -17,6 +18,9 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     std::string options = as_options(chosen);
     if (std::string const more = lamp_caustic_options(world, settings); !more.empty()) options += " " + more;
     bool const rays = chosen.of<PathAlgorithm>().surfaces == SurfacesBy::rays;
+    if (!rays && !camera.orthographic)
+        report_untrusted_look_ups(world, soup, camera_rays(camera, settings.width, settings.height, world.origin),
+                                  std::uint32_t(chosen.of<SlhbSettings>().resolution), report);
     FrameView const eye{camera, settings.width, settings.height};
     PathsRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
                            rays ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);

@@ -145,11 +145,13 @@ void PathsTracer::add_lit(Pass const& pass, Direct& direct, PathsWork& counts) c
         add_exactly(pass, direct.maps);
     } else {
         if (panes_) { // which block all light in maps
-            auto const lamps = std::ranges::partition(direct.maps, [](Unshadowed const& d) { return !d.of_lamp; });
+            std::span<Unshadowed> const lamps(std::partition(direct.maps.begin(), direct.maps.end(),
+                                                             [](Unshadowed const& d) { return !d.of_lamp; }),
+                                              direct.maps.end());
             if (!lamps.empty()) add_exactly(pass, lamps);
             counts.shadow_lookups -= lamps.size();
             counts.shadow_rays += lamps.size();
-            direct.maps.erase(lamps.begin(), lamps.end());
+            direct.maps.erase(direct.maps.end() - std::ptrdiff_t(lamps.size()), direct.maps.end());
         }
         for (Unshadowed const& d : direct.maps) {
             if (d.light_point->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;

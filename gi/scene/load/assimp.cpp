@@ -45,6 +45,19 @@ std::vector<std::string> assimp_extensions()
     return all;
 }
 
+dvec3 near_origin(dvec3 first_m)
+{
+    constexpr double kFar_m = 1 << 14, kFarthest_m = 1e15;
+    dvec3 origin_m{0};
+    bool is_far = false;
+    for (int i = 0; i < 3; ++i) {
+        if (!(std::abs(first_m[i]) < kFarthest_m)) return dvec3(0);
+        origin_m[i] = std::floor(first_m[i]);
+        is_far |= std::abs(first_m[i]) > kFar_m;
+    }
+    return is_far ? origin_m : dvec3(0);
+}
+
 void ImportedFiles::lose(std::string const& what, std::uint64_t count, std::string const& where)
 {
     if (count == 0) return;
@@ -68,6 +81,10 @@ Scene load_assimp(std::filesystem::path const& file, Report& report)
     });
     scene.files.insert(scene.files.end(), files.opened.begin(), files.opened.end());
     files.pass_on_losses(report);
+    if (files.origin_m != dvec3(0))
+        for (Node& node : scene.nodes)
+            if (node.parent < 0)
+                node.matrix = glm::translate(dmat4(1), files.origin_m) * node.matrix.value_or(dmat4(1));
     if (!is_joined)
         for (Mesh& mesh : scene.meshes) join_equal_vertices(mesh);
     return scene;

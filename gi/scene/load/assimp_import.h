@@ -1,6 +1,7 @@
 #pragma once
 // Imports model files by the Assimp library, with limits of time and memory.
 
+#include "gi/core/math.h"
 #include "gi/core/report.h"
 
 #include <filesystem>
@@ -25,12 +26,17 @@ enum class AssimpFaces : unsigned char {
 /// own readers could not take from them.
 struct ImportedFiles {
     std::set<std::string> opened;
+    dvec3 origin_m{0};                          ///< in the file, of what was read: far from 0 floats are coarse
     std::map<std::string, Report::Loss> losses; ///< by what was lost
 
     /// As Report::lose.
     void lose(std::string const& what, std::uint64_t count, std::string const& where);
     void pass_on_losses(Report& report) const;
 };
+
+/// What positions of a file are counted from: 0, or whole metres near the first one if floats would round that by more
+/// than 1 mm (beyond 2^14 m, as maps and surveys have it).
+dvec3 near_origin(dvec3 first_m);
 
 /// Imports a file and passes it to `use`. Throws InputError if it cannot be read within limits of time and memory.
 ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces,

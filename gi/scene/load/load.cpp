@@ -52,7 +52,26 @@ std::vector<std::string> scene_extensions()
     return all;
 }
 
-Scene load_scene(std::string const& file_or_name, Report& report)
+namespace {
+
+/// Meshes whose material has a texture for which they have no coordinates.
+void report_missing_coordinates(Scene const& scene, Report& report)
+{
+    for (Mesh const& mesh : scene.meshes) {
+        if (mesh.material < 0 || mesh.triangles.empty()) continue;
+        Material const& m = scene.materials[std::size_t(mesh.material)];
+        for (TextureRef const* const map :
+             {&m.base_color_map, &m.metallic_roughness_map, &m.normal_map, &m.emissive_map, &m.specular_map,
+              &m.specular_color_map, &m.transmission_map})
+            if (map->texture >= 0 && (map->uv_set == 0 ? mesh.uv0 : mesh.uv1).empty()) {
+                report.lose("meshes with textures but without coordinates for them: one colour is shown", 1,
+                            mesh.name);
+                break;
+            }
+    }
+}
+
+Scene read_scene(std::string const& file_or_name, Report& report)
 {
     std::filesystem::path const file = file_or_name;
     std::error_code error;
@@ -79,6 +98,15 @@ Scene load_scene(std::string const& file_or_name, Report& report)
         break;
     }
     return load_assimp(file, report);
+}
+
+} // namespace
+
+Scene load_scene(std::string const& file_or_name, Report& report)
+{
+    Scene scene = read_scene(file_or_name, report);
+    report_missing_coordinates(scene, report);
+    return scene;
 }
 
 bool is_read_by_assimp(std::filesystem::path const& file) { return reader_of(file) == Reader::assimp; }

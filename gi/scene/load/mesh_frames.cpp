@@ -49,6 +49,8 @@ SequenceFrame read_sequence_frame(std::filesystem::path const& file)
             }
         }
     });
+    for (MeshFrame& mesh : frame.meshes) // frames may be counted from several origins, their meshes are not
+        for (vec3& p : mesh.positions) p = vec3(dvec3(p) + files.origin_m);
     frame.files.assign(files.opened.begin(), files.opened.end());
     return frame;
 }

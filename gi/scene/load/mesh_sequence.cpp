@@ -81,6 +81,8 @@ public:
             import_assimp(files_[0], AssimpFaces::triangles,
                           [&](aiScene const& source) { scene_ = convert_assimp(source, files_[0], report_); });
         first_files.pass_on_losses(report_);
+        for (Mesh& mesh : scene_.meshes)
+            for (vec3& p : mesh.positions) p = vec3(dvec3(p) + first_files.origin_m);
         scene_.name = folder_.string();
         SequenceFrame first = read_sequence_frame(files_[0]);
         bool same = first.meshes.size() == scene_.meshes.size();

@@ -3,7 +3,9 @@
 #include "gi/scene/shading/bsdf.h"
 #include "gi/scene/shading/environment_harmonics.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <numeric>
 
 namespace gi {
 namespace {
@@ -54,6 +56,39 @@ std::string join(Items const& items, Text const& text)
     return out.empty() ? "none" : out;
 }
 
+std::string numbered(SceneSummary const& s, std::size_t material)
+{
+    std::string const& name = s.material_names[material];
+    return name.empty() ? std::to_string(material) : fmt::format("{} '{}'", material, name);
+}
+
+/// "0 point at 1, 2, 3 m", for the first few.
+std::string places(std::vector<LightSummary> const& lights)
+{
+    constexpr std::size_t kMost = 12;
+    std::string out = std::to_string(lights.size());
+    for (std::size_t i = 0; i < std::min(lights.size(), kMost); ++i) {
+        LightSummary const& l = lights[i];
+        dvec3 const p = l.position_m, d = l.direction;
+        out += fmt::format("{} {} ", i == 0 ? ":" : ";", i);
+        out += l.type == LightType::directional
+                   ? fmt::format("directional, shines along {:.3g}, {:.3g}, {:.3g}", d.x, d.y, d.z)
+                   : fmt::format("{} at {:.6g}, {:.6g}, {:.6g} m", l.type == LightType::spot ? "spot" : "point",
+                                 p.x, p.y, p.z);
+    }
+    return lights.size() > kMost ? out + fmt::format("; and {} more (--json)", lights.size() - kMost) : out;
+}
+
+/// "0 'floor', 1 'wall'", for the first few.
+std::string names(SceneSummary const& s, std::vector<std::size_t> const& materials)
+{
+    constexpr std::size_t kMost = 24;
+    std::string out;
+    for (std::size_t i = 0; i < std::min(materials.size(), kMost); ++i)
+        out += (i == 0 ? "" : ", ") + numbered(s, materials[i]);
+    return materials.size() > kMost ? out + fmt::format(" and {} more (--json)", materials.size() - kMost) : out;
+}
+
 } // namespace
 
 SceneSummary summarise(World const& world)
@@ -68,6 +103,12 @@ SceneSummary summarise(World const& world)
     if (!world.bounds.empty())
         s.bounds_m = {dvec3(world.bounds.low) + world.origin, dvec3(world.bounds.high) + world.origin};
     s.materials = material_kinds(scene);
+    s.material_names = scene.material_names;
+    s.material_names.resize(scene.materials.size());
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        if (emits(scene.materials[m])) s.emitting_materials.push_back(m);
+    for (Light const& l : world.lights)
+        s.lights.push_back({l.type, dvec3(l.position) + world.origin, dvec3(l.direction)});
     s.textures = scene.textures.textures.size();
     s.texture_bytes = scene.textures.texels.size() * sizeof(Rgba8);
     s.punctual_lights = world.lights.size();
@@ -98,15 +139,22 @@ std::vector<SummaryLine> text_lines(SceneSummary const& s)
     add("vertices", std::to_string(s.vertices));
     if (s.bounds_m) {
         auto const& [low, high] = *s.bounds_m;
-        add("bounds", fmt::format("{:.6g}, {:.6g}, {:.6g} to {:.6g}, {:.6g}, {:.6g} m", low.x, low.y, low.z,
-                                  high.x, high.y, high.z));
+        double const far = glm::length(high + low) / std::max(glm::length(high - low), 1e-30);
+        int const digits = far > 1000 ? 10 : 6;
+        add("bounds", fmt::format("{:.{}g}, {:.{}g}, {:.{}g} to {:.{}g}, {:.{}g}, {:.{}g} m", low.x, digits, low.y,
+                                  digits, low.z, digits, high.x, digits, high.y, digits, high.z, digits));
     }
     MaterialKinds const& k = s.materials;
     add("materials", fmt::format("{} ({} matt, {} coated, {} Phong, {} metal, {} mirror, {} glass; {} emit)",
                                  k.all, k.matt, k.coated, k.phong, k.metal, k.mirror, k.glass, k.emitting));
+    std::vector<std::size_t> all(s.material_names.size());
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    if (!all.empty()) add("their names", names(s, all));
     add("textures", fmt::format("{} ({:.1f} MiB)", s.textures, double(s.texture_bytes) / (1 << 20)));
-    add("punctual lights", std::to_string(s.punctual_lights));
-    add("emissive triangles", fmt::format("{} ({:.6g} m2)", s.emissive_triangles, s.emissive_area_m2));
+    add("punctual lights", places(s.lights));
+    add("emissive triangles",
+        fmt::format("{} ({:.6g} m2{}{})", s.emissive_triangles, s.emissive_area_m2,
+                    s.emitting_materials.empty() ? "" : "; materials ", names(s, s.emitting_materials)));
     add("environment map",
         s.environment ? fmt::format("{} x {}", s.environment->width, s.environment->height) : "none");
     if (auto const& e = s.environment) {

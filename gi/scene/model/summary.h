@@ -41,10 +41,20 @@ struct PlayingClip {
     double weight = 1;
 };
 
+/// Of a light without extent.
+struct LightSummary {
+    LightType type = LightType::point;
+    dvec3 position_m{0},
+        direction{0, 0, -1}; ///< of the scene; directional lights have no position, points no direction
+};
+
 struct SceneSummary {
     std::size_t nodes = 0, meshes = 0, placed_meshes = 0, triangles = 0, vertices = 0;
     std::optional<std::pair<dvec3, dvec3>> bounds_m; ///< low and high corner; nothing without geometry
     MaterialKinds materials;
+    std::vector<std::string> material_names;     ///< by number; may be empty or alike
+    std::vector<std::size_t> emitting_materials; ///< numbers
+    std::vector<LightSummary> lights;            ///< by number
     std::size_t textures = 0, texture_bytes = 0;
     std::size_t punctual_lights = 0, emissive_triangles = 0;
     double emissive_area_m2 = 0;

@@ -8,6 +8,7 @@
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/commands.h"
+#include "viewer/offline/empty_view.h"
 #include "viewer/offline/exposure.h"
 #include "viewer/offline/finish_picture.h"
 #include "viewer/offline/frame_options.h"
@@ -75,6 +76,7 @@ Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi
                   FrameCamera const& eye, RankWork& work, gi::Report& report)
 {
     gi::Camera const camera = eye.of(world, o.time_s.value_or(0), 0);
+    report_empty_view(world, camera, settings.width, settings.height, report);
     auto const loaded = report.losses();
     std::unique_ptr<InterruptGuard> guard;
     gi::RenderResult result =

@@ -153,9 +153,20 @@ nlohmann::ordered_json content_json(gi::SceneSummary const& s)
     gi::MaterialKinds const& k = s.materials;
     j["materials"] = {{"all", k.all},     {"matt", k.matt},     {"coated", k.coated}, {"phong", k.phong},
                       {"metal", k.metal}, {"mirror", k.mirror}, {"glass", k.glass},   {"emitting", k.emitting}};
+    j["material_names"] = s.material_names;
+    j["emitting_materials"] = s.emitting_materials;
     j["textures"] = s.textures;
     j["texture_bytes"] = s.texture_bytes;
     j["punctual_lights"] = s.punctual_lights;
+    j["lights"] = Json::array();
+    for (gi::LightSummary const& l : s.lights) {
+        bool const is_far = l.type == gi::LightType::directional;
+        j["lights"].push_back({{"type", is_far                          ? "directional"
+                                        : l.type == gi::LightType::spot ? "spot"
+                                                                        : "point"},
+                               {"position_m", is_far ? Json() : triple(l.position_m)},
+                               {"direction", l.type == gi::LightType::point ? Json() : triple(l.direction)}});
+    }
     j["emissive_triangles"] = s.emissive_triangles;
     j["emissive_area_m2"] = s.emissive_area_m2;
     j["environment_map"] = nullptr;

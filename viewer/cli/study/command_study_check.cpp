@@ -81,7 +81,8 @@ int run_check(CheckOptions const& o)
     if (!read.mistakes.empty()) return tell(o, read.mistakes);
     Comparisons const comparisons = find_comparisons(s, checked.longest);
     auto doubts = study::find_doubts(s);
-    doubts.insert(doubts.end(), comparisons.doubts.begin(), comparisons.doubts.end());
+    for (auto const* const list : {&comparisons.doubts, &checked.idle_settings})
+        doubts.insert(doubts.end(), list->begin(), list->end());
     for (std::string& doubt : study::find_doubts(s, checked.longest)) doubts.push_back(std::move(doubt));
     if (checked.needs_display_model && !model)
         doubts.emplace_back("stimuli have sizes, places or luminances in physical units: study run needs "

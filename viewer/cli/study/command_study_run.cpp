@@ -1,6 +1,9 @@
 #include "gi/core/error.h"
 #include "gi/core/host_name.h"
 #include "study/display/model_file.h"
+#include "study/journal/journal_file.h"
+#include "study/journal/journal_folders.h"
+#include "study/journal/scene_facts.h"
 #include "study/run/session.h"
 #include "study/run/session_plan.h"
 #include "study/script/setting_place.h"
@@ -20,11 +23,13 @@
 #include "viewer/experiment/stimuli/study_stimuli.h"
 #include "viewer/experiment/trial_presenter.h"
 #include "viewer/report/machine.h"
+#include "viewer/study/scene_content.h"
 #include "viewer/study/study_outcome.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <memory>
 #include <unistd.h>
 
@@ -45,9 +50,17 @@ struct RunOptions {
 
 /// Checks before the session that all settings are known, and that stimuli can be loaded, set up and seen from
 /// their cameras. Pictures are not rendered: `study check` does.
-void check_stimuli(LoadedScript const& loaded, study::Plan const& plan, SceneAccess const& scenes,
-                   ShownOn const& shown_on)
+/// @returns facts of the scenes' contents for the record
+std::vector<std::pair<std::string, std::string>> check_stimuli(LoadedScript const& loaded, study::Plan const& plan,
+                                                               SceneAccess scenes, ShownOn const& shown_on)
 {
+    std::map<std::string, std::string> contents;
+    scenes.load = [&contents, load = scenes.load](std::string const& name, gi::Report& report) {
+        auto scene = load(name, report);
+        if (std::string digits = scene_sha256(*scene); !digits.empty())
+            contents[study::scene_fact(name)] = std::move(digits);
+        return scene;
+    };
     study::Mistakes m;
     StimulusCollection stimuli(loaded.script, find_wrong_settings(loaded.script, loaded.text, loaded.folder, m));
     stimuli.add(plan, m);
@@ -59,6 +72,26 @@ void check_stimuli(LoadedScript const& loaded, study::Plan const& plan, SceneAcc
     };
     if (m.empty()) find_wrong_stimuli(stimuli.list(), scenes, options, m);
     throw_first(m);
+    return {contents.begin(), contents.end()};
+}
+
+/// Warns of scenes whose files have changed since other sessions of the data set.
+void warn_of_changed_scenes(std::filesystem::path const& dir, study::SessionStarted const& now)
+{
+    std::vector<study::SessionRecord> records;
+    for (std::filesystem::path const& file : study::find_journals(dir).files) {
+        try {
+            records.push_back(study::read_journal(file).record);
+        } catch (gi::InputError const&) { // analyses report it
+        }
+    }
+    std::vector<study::SessionStarted const*> parts;
+    for (study::SessionRecord const& record : records)
+        for (study::JournalEntry const& entry : record.entries)
+            if (auto const* const s = std::get_if<study::SessionStarted>(&entry)) parts.push_back(s);
+    parts.push_back(&now);
+    for (std::string const& changed : study::changed_scenes(parts))
+        std::fputs(("lightwell: caution: " + changed + "\n").c_str(), stderr);
 }
 
 void check_prepared(study::Script const& script, study::Plan const& plan, glm::ivec2 screen_px,
@@ -168,7 +201,7 @@ int run(RunOptions const& o)
     ArStimulusCheck ar(loaded, shown_on);
     ar.add(plan);
     ar.check();
-    check_stimuli(loaded, plan, trials.scenes, shown_on);
+    auto const scenes = check_stimuli(loaded, plan, trials.scenes, shown_on);
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
     check_gaze(script, o, model);
     trials.sounds = load_sounds(script, loaded.folder);
@@ -205,6 +238,12 @@ int run(RunOptions const& o)
                     {"program", version_text()},
                     {"processor", to_text(this_machine())},
                     {"os", operating_system()}};
+    trials.about.insert(trials.about.end(), scenes.begin(), scenes.end());
+    study::SessionStarted now;
+    now.participant_id = participant;
+    now.session = o.session;
+    now.about = trials.about;
+    warn_of_changed_scenes(settings.dir, now);
 
     study::SessionOutcome outcome;
     {

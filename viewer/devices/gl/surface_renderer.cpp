@@ -231,8 +231,8 @@ void SurfaceRenderer::draw_batches(Pass pass, Eye const& eye)
 /// Of depths, as SeenSurfaces.
 float SurfaceRenderer::nearest_m() const
 {
-    constexpr float kNear = 1e-5f; // of the scene's radius
-    return kNear * std::max(meshes_.scene().radius_m, 1e-30f);
+    constexpr float kShare = 1e-5f; // of the scene's radius
+    return kShare * std::max(meshes_.scene().radius_m, 1e-30f);
 }
 
 void SurfaceRenderer::bind_light(GlProgram const& program, Eye const& eye) const

@@ -3,6 +3,7 @@
 #include "study/script/setting_place.h"
 #include "viewer/experiment/answer_keys.h"
 #include "viewer/experiment/sound/sound_files.h"
+#include "viewer/experiment/stimuli/idle_settings.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ CheckedScript check_script(ScriptToCheck& read, SceneAccess const& scenes, Scrip
     options.place_of = [&](std::string const& key, std::string const& value) {
         return study::place_of_setting(loaded.text, key, value);
     };
+    checked.idle_settings = find_idle_settings(s, stimuli.list());
     checked.stimuli = find_wrong_stimuli(stimuli.list(), scenes, options, m);
     return checked;
 }

@@ -16,6 +16,7 @@ struct CheckedScript {
     int plans = 0;       ///< made: of the first 2,000 participants
     std::size_t ar_stimuli = 0;
     StimulusCheckResult stimuli;
+    std::vector<std::string> idle_settings; ///< that are varied, one line each
     bool needs_display_model = false; ///< stimuli have physical units
 };
 

@@ -18,12 +18,13 @@ using nlohmann::json;
 
 constexpr int kDeepestJson = 64; ///< maximum nesting of JSON; deeper files would exhaust the parser's stack
 
-constexpr std::array<std::string_view, 15> kKnownExtensions{
+constexpr std::array<std::string_view, 16> kKnownExtensions{
     "KHR_draco_mesh_compression", "KHR_lights_punctual",    "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_specular", "KHR_materials_transmission",
     "KHR_materials_volume",       "KHR_materials_unlit",    "KHR_materials_pbrSpecularGlossiness",
     "KHR_mesh_quantization",      "KHR_texture_transform",  "EXT_meshopt_compression",
-    "EXT_texture_webp",           "KHR_materials_variants", "KHR_xmp_json_ld"};
+    "EXT_texture_webp",           "KHR_materials_variants", "KHR_xmp_json_ld",
+    "KHR_node_visibility"};
 
 struct Container {
     Bytes text, binary;

@@ -80,8 +80,9 @@ private:
         struct Visit {
             int node;
             std::int32_t parent;
+            bool visible;
         };
-        std::vector<Visit> stack{{root, -1}};
+        std::vector<Visit> stack{{root, -1, true}};
         while (!stack.empty()) {
             Visit const v = stack.back();
             stack.pop_back();
@@ -89,13 +90,23 @@ private:
                 continue; // the scene lists this root twice, or also below another root
             place_[std::size_t(v.node)] = std::int32_t(scene_.nodes.size());
             tinygltf::Node const& source = d_.model.nodes[std::size_t(v.node)];
-            scene_.nodes.push_back(make_node(source, v.node, v.parent, shown));
+            bool const visible = v.visible && is_visible(source);
+            scene_.nodes.push_back(make_node(source, v.node, v.parent, shown, visible));
             for (auto it = source.children.rbegin(); it != source.children.rend(); ++it)
-                stack.push_back({*it, place_[std::size_t(v.node)]});
+                stack.push_back({*it, place_[std::size_t(v.node)], visible});
         }
     }
 
-    Node make_node(tinygltf::Node const& source, int index, std::int32_t parent, bool shown)
+    /// False hides the node and all below it, but no cameras (KHR_node_visibility).
+    static bool is_visible(tinygltf::Node const& source)
+    {
+        auto const it = source.extensions.find("KHR_node_visibility");
+        if (it == source.extensions.end() || !it->second.IsObject() || !it->second.Has("visible")) return true;
+        tinygltf::Value const& visible = it->second.Get("visible");
+        return !visible.IsBool() || visible.Get<bool>();
+    }
+
+    Node make_node(tinygltf::Node const& source, int index, std::int32_t parent, bool shown, bool visible)
     {
         Node node;
         node.name = source.name.empty() ? fmt::format("node {}", index) : source.name;
@@ -120,8 +131,9 @@ private:
             node.rotation = q / length;
         }
         if (!shown) return node;
-        if (source.mesh >= 0) attach_mesh(source, node, where);
         if (source.camera >= 0) attach_camera(source.camera, node);
+        if (!visible) return node;
+        if (source.mesh >= 0) attach_mesh(source, node, where);
         if (auto const it = source.extensions.find("KHR_lights_punctual"); it != source.extensions.end())
             if (it->second.IsObject() && it->second.Has("light") && it->second.Get("light").IsInt())
                 attach_light(it->second.Get("light").GetNumberAsInt(), node, where);

@@ -192,6 +192,7 @@ void ObjImporter::InternReadFile(std::string const& file, aiScene* scene, Assimp
     ObjModel const model = read_obj(*text, {[&](std::string const& name) { return materials.index_of(name); },
                                             [&](std::string const& names) { libraries.read(names); }});
     if (model.faces.empty()) throw std::runtime_error("it has no faces");
+    notes_.origin_m = model.origin_m;
     notes_.lose("points and lines skipped",
                 std::size_t(std::ranges::count_if(
                     model.faces, [](ObjFace const& f) { return f.kind != ObjFace::Kind::polygon; })),

@@ -1,6 +1,7 @@
 #include "gi/scene/load/obj/obj_model.h"
 
 #include "gi/core/text.h"
+#include "gi/scene/load/assimp_import.h"
 #include "gi/scene/load/obj/obj_text.h"
 
 #include <array>
@@ -55,7 +56,8 @@ private:
     vec3 three_numbers(std::string_view rest, char const* what) const
     {
         std::array<float, 3> n{};
-        if (leading_numbers(rest, n) < n.size()) fail(std::string(what) + " has three numbers");
+        if (leading_numbers(rest, n) < n.size())
+            fail(std::string(what) + " has three numbers" + comma_advice(rest));
         return {n[0], n[1], n[2]};
     }
 
@@ -63,10 +65,11 @@ private:
     /// blue, alpha. Programs that write seven mean an alpha.
     void add_vertex(std::string_view rest)
     {
-        std::array<float, 8> n{};
+        std::array<double, 8> n{};
         std::size_t const count = leading_numbers(rest, n);
-        if (count < 3) fail("a vertex has three numbers");
-        vec3 position{n[0], n[1], n[2]};
+        if (std::string const advice = comma_advice(rest); count < 3 || !advice.empty())
+            fail("a vertex has three numbers" + advice);
+        dvec3 position{n[0], n[1], n[2]};
         if (count == 4 || count == 8) {
             if (n[3] == 0) fail("the vertex lies at infinity");
             position /= n[3];
@@ -75,9 +78,10 @@ private:
         std::size_t const first = count == 8 ? 4 : 3; // of the colour
         if (count >= 7 && n[count - 1] != 1) ++m_.alphas;
         if (has_color && m_.colors.empty()) m_.colors.resize(m_.positions.size(), vec3{1});
-        m_.positions.push_back(position);
+        if (m_.positions.empty()) m_.origin_m = near_origin(position);
+        m_.positions.emplace_back(position - m_.origin_m);
         if (has_color)
-            m_.colors.push_back({n[first], n[first + 1], n[first + 2]});
+            m_.colors.emplace_back(n[first], n[first + 1], n[first + 2]);
         else if (!m_.colors.empty())
             m_.colors.push_back(vec3{1});
     }
@@ -86,7 +90,7 @@ private:
     {
         std::array<float, 3> n{};
         std::size_t const count = leading_numbers(rest, n);
-        if (count == 0) fail("a texture coordinate has a number");
+        if (count == 0) fail("a texture coordinate has a number" + comma_advice(rest));
         for (float& x : n)
             if (!std::isfinite(x)) x = 0;
         m_.uvs.push_back({n[0], n[1], n[2]});

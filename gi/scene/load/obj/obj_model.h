@@ -37,6 +37,7 @@ struct ObjMesh {
 };
 
 struct ObjModel {
+    dvec3 origin_m{0}; ///< in the file, of all positions
     std::vector<vec3> positions;
     std::vector<vec3> colors; ///< as many as positions, or none; white where a vertex has none
     std::vector<vec3> uvs;

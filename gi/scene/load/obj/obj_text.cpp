@@ -49,23 +49,53 @@ std::string ObjLines::at(std::string const& problem) const
     return "line " + std::to_string(number_) + ": " + problem;
 }
 
-std::optional<float> leading_number(std::string_view word)
-{
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double value = 0;
-    if (std::from_chars(word.data(), word.data() + word.size(), value).ec != std::errc{}) return std::nullopt;
-    constexpr double kMost = std::numeric_limits<float>::max();
-    return std::abs(value) > kMost ? std::copysign(kInf, float(value > 0) - 0.5f) : float(value);
-}
+namespace {
 
-std::size_t leading_numbers(std::string_view line, std::span<float> numbers)
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+template <typename Number>
+std::size_t read_leading(std::string_view line, std::span<Number> numbers)
 {
     for (std::size_t n = 0; n < numbers.size(); ++n) {
         auto const number = leading_number(take_word(line));
         if (!number) return n;
-        numbers[n] = *number;
+        numbers[n] = Number(*number);
     }
     return numbers.size();
+}
+
+} // namespace
+
+std::optional<double> leading_number(std::string_view word)
+{
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0;
+    auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{}) return std::nullopt;
+    std::string_view const rest(end, std::size_t(word.data() + word.size() - end));
+    if (rest.size() > 1 && rest[0] == ',' && is_digit(rest[1])) return std::nullopt;
+    constexpr double kMost = std::numeric_limits<float>::max();
+    return std::abs(value) > kMost ? std::copysign(double(kInf), value) : value;
+}
+
+std::size_t leading_numbers(std::string_view line, std::span<float> numbers)
+{
+    return read_leading(line, numbers);
+}
+std::size_t leading_numbers(std::string_view line, std::span<double> numbers)
+{
+    return read_leading(line, numbers);
+}
+
+std::string comma_advice(std::string_view line)
+{
+    for (std::string_view word; !(word = take_word(line)).empty();) {
+        std::size_t const comma = word.find(',');
+        if (comma != std::string_view::npos && comma > 0 && comma + 1 < word.size() && is_digit(word[comma - 1]) &&
+            is_digit(word[comma + 1]))
+            return " ('" + shortened(std::string(word), 40) + "' has a comma; write a decimal point)";
+    }
+    return {};
 }
 
 bool equals_caseless(std::string_view word, std::string_view lower)

@@ -28,10 +28,14 @@ private:
     std::size_t number_ = 0, taken_ = 0;
 };
 
-/// The number that a word begins with: "+.5", "2.e1", "1e-3,", "nan". Beyond the range of float: infinity.
-std::optional<float> leading_number(std::string_view word);
+/// The number that a word begins with: "+.5", "2.e1", "1e-3,", "nan". Beyond the range of float: infinity. None of
+/// "0,5": whoever wrote it meant a half.
+std::optional<double> leading_number(std::string_view word);
 /// The numbers that a line begins with, at most as many as fit. @return how many there are
 std::size_t leading_numbers(std::string_view line, std::span<float> numbers);
+std::size_t leading_numbers(std::string_view line, std::span<double> numbers);
+/// " ('0,5' has a comma; write a decimal point)" if a word of the line is such a number, else empty.
+std::string comma_advice(std::string_view line);
 /// Without regard to upper and lower case. @param lower in lower case
 bool equals_caseless(std::string_view word, std::string_view lower);
 

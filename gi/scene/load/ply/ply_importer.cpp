@@ -137,6 +137,7 @@ void PlyImporter::InternReadFile(std::string const& file, aiScene* scene, Assimp
     auto const text = import_text(file, *files);
     if (!text) throw std::runtime_error("it cannot be opened");
     PlyModel const model = read_ply(*text, notes_, file);
+    notes_.origin_m = model.origin_m;
     std::vector<std::unique_ptr<aiMesh>> meshes;
     std::vector<std::unique_ptr<aiMaterial>> materials;
     std::vector<std::vector<std::size_t>> faces_of(model.textures.size() + 1); // those of [0] have none

@@ -214,7 +214,9 @@ private:
         if (!m_.positions.empty()) throw std::runtime_error("it has two elements of vertices");
         for (std::uint64_t row = 0; row < t.element.rows; ++row) {
             read_row(t);
-            m_.positions.emplace_back(row_[kX], row_[kY], row_[kZ]);
+            dvec3 const position{row_[kX], row_[kY], row_[kZ]};
+            if (row == 0) m_.origin_m = near_origin(position);
+            m_.positions.emplace_back(position - m_.origin_m);
             if (t.has({kNx, kNy, kNz})) m_.normals.emplace_back(row_[kNx], row_[kNy], row_[kNz]);
             if (t.has({kU, kV})) m_.uvs.emplace_back(row_[kU], row_[kV]);
             if (t.has({kRed, kGreen, kBlue})) m_.colors.push_back(color(t));

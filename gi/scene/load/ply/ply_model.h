@@ -27,6 +27,7 @@ struct PlyModel {
         std::int32_t texture = 0; ///< index into `textures`, if there is one
     };
 
+    dvec3 origin_m{0}; ///< in the file, of all positions
     std::vector<vec3> positions;
     std::vector<vec3> normals;          ///< as many as positions, or none
     std::vector<vec2> uvs;              ///< likewise; v upwards
