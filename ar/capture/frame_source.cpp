@@ -40,7 +40,9 @@ void check(Controls const& c)
 
 std::string describe(SourceCounts const& c)
 {
-    std::string text = fmt::format("{} frames, {} dropped, {} refused", c.delivered, c.dropped, c.refused);
+    std::string const missing = c.missing.empty() ? "" : fmt::format(" (not there: {})", c.missing);
+    std::string text =
+        fmt::format("{} frames, {} dropped{}, {} refused", c.delivered, c.dropped, missing, c.refused);
     if (c.refused > 0) text += " (last: " + c.last_refusal + ")";
     if (c.changed > 0) text += fmt::format(", {} not as they are (last: {})", c.changed, c.last_change);
     return text;
@@ -61,16 +63,21 @@ std::vector<std::string> cannot_set(Controls const& c, std::string const& why)
     return all;
 }
 
-void report_changes(SourceCounts const& counts, gi::Report& report)
+void report_counts(SourceCounts const& counts, gi::Report& report)
 {
-    report.lose("frames not used as they are", counts.changed, counts.last_change);
+    if (counts.refused > 0)
+        report.lose("frames that could not be read", std::size_t(counts.refused), counts.last_refusal);
+    if (!counts.missing.empty())
+        report.lose("numbered pictures that are not there", counts.dropped, "number " + counts.missing);
+    if (!counts.unnumbered.empty())
+        report.lose("pictures that are numbered by their order, not by their names", counts.delivered,
+                    counts.unnumbered);
+    if (counts.changed > 0) report.lose("frames not used as they are", counts.changed, counts.last_change);
 }
 
 void report_losses(SourceCounts const& counts, SourceState const& state, gi::Report& report)
 {
-    if (counts.refused > 0)
-        report.lose("frames that could not be read", std::size_t(counts.refused), counts.last_refusal);
-    report_changes(counts, report);
+    report_counts(counts, report);
     if (state.kind == SourceState::Kind::lost)
         throw gi::InputError("the source was lost: " + state.reason, describe(counts),
                              "check the file, or the camera's cable");

@@ -43,6 +43,7 @@ struct SourceDescription {
     bool is_live = false;                   ///< frames arrive whether they are requested or not
     std::vector<std::string> controls = {}; ///< settable parts of `Controls`: "exposure_time", "gain",
                                             ///< "white_balance", "automatic", "frame_duration"
+    std::optional<std::uint64_t> first = {}; ///< sequence number of the time 0; nothing: that of the first frame
 };
 
 struct SourceCounts {
@@ -52,6 +53,8 @@ struct SourceCounts {
     std::string last_refusal = {}; ///< the frame and the reason
     std::uint64_t changed = 0;     ///< delivered, but of its file something was cut, chosen or converted
     std::string last_change = {};  ///< the frame, and what
+    std::string missing = {};      ///< of numbered pictures: the numbers that are not there, "3, 5 to 7"
+    std::string unnumbered = {};   ///< of a folder of pictures: why the digits in their names are no frame numbers
 
     friend bool operator==(SourceCounts const&, SourceCounts const&) = default;
 };
@@ -89,16 +92,16 @@ public:
     virtual std::vector<std::string> set(Controls const& controls) = 0;
 };
 
-/// One line: "290 frames, 3 dropped, 1 refused (picture 0017.png: ...)".
+/// One line: "290 frames, 3 dropped (not there: 7, 12 to 13), 1 refused (picture 0017.png: ...)".
 std::string describe(SourceCounts const& counts);
 
 /// Returns the sentence "NAME cannot be set: WHY" for each value set in `controls`; for sources without controls.
 std::vector<std::string> cannot_set(Controls const& controls, std::string const& why);
 
-/// Counts frames that differ from their files.
-void report_changes(SourceCounts const& counts, gi::Report& report);
+/// Counts refused and changed frames, numbers of pictures that are missing, and names that are not numbers of frames.
+void report_counts(SourceCounts const& counts, gi::Report& report);
 
-/// Counts refused and changed frames. @throws gi::InputError if the source was lost
+/// report_counts. @throws gi::InputError if the source was lost
 void report_losses(SourceCounts const& counts, SourceState const& state, gi::Report& report);
 
 } // namespace ar

@@ -8,6 +8,8 @@
 #include "gi/core/error.h"
 #include "gi/core/text.h"
 
+#include <fmt/format.h>
+
 namespace ar {
 namespace {
 
@@ -26,15 +28,26 @@ int device_number(std::string const& text)
     return *number;
 }
 
+void refuse_first(std::string const& name, OpenOptions const& o)
+{
+    if (o.first_number)
+        throw gi::InputError(fmt::format("frames.first: {} with '{}'", *o.first_number, name),
+                             "it is the number of the picture at time 0, and only pictures have one",
+                             "leave it out");
+}
+
 std::unique_ptr<FrameSource> open_files(std::filesystem::path const& path, OpenOptions const& o)
 {
     std::error_code error;
     bool const is_folder = std::filesystem::is_directory(path, error);
-    if (is_folder && std::filesystem::exists(path / kSessionFile, error))
-        return std::make_unique<SessionSource>(path, o.pace);
-    if (is_folder ||
-        (path.filename().string().find('%') != std::string::npos && !std::filesystem::exists(path, error)))
-        return std::make_unique<PictureSource>(path, PictureOptions{o.frames_per_s, o.pace});
+    bool const is_recorded = is_folder && std::filesystem::exists(path / kSessionFile, error);
+    bool const is_pictures =
+        !is_recorded && (is_folder || (path.filename().string().find('%') != std::string::npos &&
+                                       !std::filesystem::exists(path, error)));
+    if (!is_pictures) refuse_first(path.string(), o);
+    if (is_recorded) return std::make_unique<SessionSource>(path, o.pace);
+    if (is_pictures)
+        return std::make_unique<PictureSource>(path, PictureOptions{o.frames_per_s, o.pace, o.first_number});
     return open_video(path, o.pace);
 }
 
@@ -49,6 +62,9 @@ std::unique_ptr<FrameSource> open_source(std::string const& name, OpenOptions co
                            .format = o.format,
                            .delivery = o.delivery,
                            .controls = o.controls};
+    for (char const* device : {"camera", "camera:", "device:", "gstreamer:", "counter"})
+        if (name == device || (std::string_view(device).ends_with(':') && name.starts_with(device)))
+            refuse_first(name, o);
     if (name == "camera" || name.starts_with("camera:"))
         return open_libcamera({.id = after(name, "camera:").value_or(""),
                                .size_px = o.size_px,

@@ -31,7 +31,11 @@ std::vector<std::uint8_t> bytes_of_file(std::filesystem::path const& file, std::
 } // namespace
 
 PictureSource::PictureSource(std::filesystem::path const& what, PictureOptions const& options)
-    : name_(what.string()), options_(options), pictures_(find_pictures(what)), player_(options.pace)
+    : name_(what.string()),
+      options_(options),
+      found_(find_pictures(what)),
+      pictures_(found_.pictures),
+      player_(options.pace)
 {
     if (!(options.frames_per_s > 0))
         throw gi::InputError(fmt::format("{} frames per second", options.frames_per_s),
@@ -39,6 +43,11 @@ PictureSource::PictureSource(std::filesystem::path const& what, PictureOptions c
     if (pictures_.empty())
         throw gi::InputError("no pictures in '" + name_ + "'", "there is nothing to play",
                              "name a folder of pictures, or a pattern like frame_%04d.png");
+    if (options.first && !found_.has_numbers)
+        throw gi::InputError(fmt::format("frames.first: {} with pictures that have no numbers", *options.first),
+                             "it is the number of the picture at time 0",
+                             "name the pictures 000012.png, or leave first out");
+    if (options.first && pictures_.front().number > *options.first) tally_.expect(*options.first);
     while (at_ < pictures_.size() && (ready_ = decoded(pictures_[at_])).empty()) ++at_;
     if (ready_.empty())
         throw gi::InputError(
@@ -85,7 +94,9 @@ std::optional<Frame> PictureSource::next(std::chrono::milliseconds wait)
     if (at_ >= pictures_.size()) return std::nullopt;
     Frame f;
     f.sequence = pictures_[at_].number;
-    auto const due_s = player_.wait_for(double(f.sequence) / options_.frames_per_s, until);
+    // Numbers may be larger than those at which a double has fractions of a frame.
+    auto const due_s =
+        player_.wait_for(double(f.sequence - pictures_.front().number) / options_.frames_per_s, until);
     if (!due_s) return std::nullopt;
     f.captured_s = *due_s;
     f.origin = TimestampOrigin::file;
@@ -104,6 +115,20 @@ SourceState PictureSource::state() const
     return {};
 }
 
+SourceCounts PictureSource::counts() const
+{
+    SourceCounts c = tally_.counts();
+    if (!found_.left_out.empty()) {
+        c.refused += found_.left_out.size();
+        if (c.last_refusal.empty())
+            c.last_refusal = found_.left_out.front().filename().string() +
+                             ": its name is not numbered like those of the other pictures";
+    }
+    if (c.dropped > 0) c.missing = missing_numbers(pictures_, options_.first);
+    c.unnumbered = found_.why_not;
+    return c;
+}
+
 SourceDescription PictureSource::description() const
 {
     return {.name = name_,
@@ -112,7 +137,8 @@ SourceDescription PictureSource::description() const
             .format = format_,
             .frames_per_s = options_.frames_per_s,
             .is_live = false,
-            .controls = {}};
+            .controls = {},
+            .first = options_.first};
 }
 
 std::vector<std::string> PictureSource::set(Controls const& controls)

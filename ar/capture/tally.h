@@ -30,6 +30,8 @@ public:
         see(sequence);
         ++counts_.dropped;
     }
+    /// The number that the first frame should have.
+    void expect(std::uint64_t sequence) { next_ = sequence; }
     SourceCounts const& counts() const { return counts_; }
 
 private:

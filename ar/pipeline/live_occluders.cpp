@@ -33,14 +33,21 @@ std::map<std::int64_t, fs::path> numbered(fs::path const& source)
     std::map<std::int64_t, fs::path> files;
     std::error_code error;
     bool const is_folder = fs::is_directory(source, error);
-    for (NumberedPicture const& p : find_pictures(source)) {
-        auto const number = is_folder ? number_in(p.file) : std::optional(std::int64_t(p.number));
-        if (!number)
-            throw gi::InputError("'" + p.file.string() + "' has no number in its name",
-                                 "it says which frame the picture belongs to", "name the pictures 000012.png");
-        if (!files.emplace(*number, p.file).second)
-            throw gi::InputError(fmt::format("two pictures of '{}' have the number {}", source.string(), *number),
+    auto const add = [&](std::int64_t number, fs::path const& file) {
+        if (!files.emplace(number, file).second)
+            throw gi::InputError(fmt::format("two pictures of '{}' have the number {}", source.string(), number),
                                  "a frame has one", "remove one of the two");
+    };
+    if (is_folder) {
+        for (fs::path const& file : picture_files(source)) {
+            auto const number = number_in(file);
+            if (!number)
+                throw gi::InputError("'" + file.string() + "' has no number in its name",
+                                     "it says which frame the picture belongs to", "name the pictures 000012.png");
+            add(*number, file);
+        }
+    } else {
+        for (NumberedPicture const& p : find_pictures(source).pictures) add(std::int64_t(p.number), p.file);
     }
     if (files.empty())
         throw gi::InputError("no pictures in '" + source.string() + "'", "nothing says what is in front",

@@ -129,7 +129,7 @@ std::string options_text(SynthesizeOptions const& o)
 std::string session_text(SynthesizeOptions const& o)
 {
     return options_text(o) + fmt::format(R"(schema: ar/2
-frames: {{source: frames, rate_hz: {}}}
+frames: {{source: frames, rate_hz: {}, first: 0}}
 camera: camera.yaml
 markers: markers.yaml
 light: {{map: probe.exr}}

@@ -111,9 +111,9 @@ void compare_composites(gi::Scene const& near, cv::Mat const& truth, SyntheticCa
                                     by_truth);
     };
     TruthErrors const e = flip_of(out.light.map);
-    out.flip = e.flip_affected;
-    out.flip_nothing = e.camera_affected;
-    out.flip_even = flip_of(even).flip_affected;
+    out.flip = e.flip_affected.value_or(-1);
+    out.flip_nothing = e.camera_affected.value_or(-1);
+    out.flip_even = flip_of(even).flip_affected.value_or(-1);
 }
 
 } // namespace

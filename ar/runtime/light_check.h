@@ -28,7 +28,7 @@ struct LightChecked {
     double truth_lamp_share = 0; ///< of the upward irradiance in the truth by its strongest lamp
     double up_sigmas = 0;        ///< error of the upward irradiance over its stated standard deviation
     double estimate_s = 0;
-    double flip = -1;         ///< composite by the estimate against by the truth, affected pixels, mean
+    double flip = -1;         ///< composite by the estimate against by the truth, affected pixels, mean; -1 = none
     double flip_even = -1;    ///< the same of an even environment of the right upward irradiance
     double flip_nothing = -1; ///< of adding nothing
 };

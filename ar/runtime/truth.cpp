@@ -36,14 +36,17 @@ cv::Mat affected_by_truth(cv::Mat const& camera, cv::Mat const& truth)
 TruthErrors errors_against_truth(cv::Mat const& composite, cv::Mat const& camera, cv::Mat const& truth)
 {
     cv::Mat const region = affected_by_truth(camera, truth);
-    cv::Mat const flip = flip_of(composite, truth);
+    auto const mean = [](cv::Mat const& flip, cv::Mat const& where) {
+        return cv::countNonZero(where) > 0 ? std::optional(cv::mean(flip, where)[0]) : std::nullopt;
+    };
+    cv::Mat const flip = flip_of(composite, truth), nothing = flip_of(camera, truth);
     TruthErrors e;
     e.affected = double(cv::countNonZero(region)) / double(region.total());
-    e.flip_affected = cv::mean(flip, region)[0];
-    e.flip_elsewhere = cv::mean(flip, ~region)[0];
-    cv::Mat const nothing = flip_of(camera, truth);
-    e.camera_affected = cv::mean(nothing, region)[0];
-    e.camera_elsewhere = cv::mean(nothing, ~region)[0];
+    e.flip_affected = mean(flip, region);
+    e.flip_elsewhere = mean(flip, ~region);
+    e.camera_affected = mean(nothing, region);
+    e.camera_elsewhere = mean(nothing, ~region);
+    e.equals_camera = cv::norm(camera, truth, cv::NORM_INF) == 0;
     return e;
 }
 

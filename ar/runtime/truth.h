@@ -4,15 +4,17 @@
 #include "ar/camera/pose.h"
 
 #include <opencv2/core.hpp>
+#include <optional>
 
 namespace ar {
 
-/// Means of FLIP (Andersson et al. 2020), 0 to 1.
+/// Means of FLIP (Andersson et al. 2020), 0 to 1; nothing: over no pixel.
 struct TruthErrors {
-    double flip_affected = 0;                         ///< where the truth differs from the camera's frame
-    double flip_elsewhere = 0;                        ///< elsewhere: any change there is an error
-    double affected = 0;                              ///< share of the picture
-    double camera_affected = 0, camera_elsewhere = 0; ///< of the unchanged camera frame
+    std::optional<double> flip_affected;                     ///< where the truth differs from the camera's frame
+    std::optional<double> flip_elsewhere;                    ///< elsewhere: any change there is an error
+    double affected = 0;                                     ///< share of the picture
+    std::optional<double> camera_affected, camera_elsewhere; ///< of the unchanged camera frame
+    bool equals_camera = false;                              ///< the truth is the camera's frame, byte for byte
 };
 
 /// CV_8UC1, 255 where bytes of the truth and of the camera's frame differ by more than 1 (2 % of radiance are one

@@ -59,7 +59,7 @@ private:
 
     void read_frames(Yaml const& f)
     {
-        f.only_keys({"source", "rate_hz", "size", "format"});
+        f.only_keys({"source", "rate_hz", "size", "format", "first"});
         if (!f.has("source"))
             throw f.error("no 'source'", "a session needs frames",
                           "name a camera, a video or a folder of pictures");
@@ -67,6 +67,7 @@ private:
         session_.frames.source = is_device(name) ? name : (folder_ / name).string();
         OpenOptions& o = session_.frames.options;
         if (f.has("rate_hz")) o.frames_per_s = f.at("rate_hz").number(0.01, 1000);
+        if (f.has("first")) o.first_number = std::uint64_t(f.at("first").integer(0, 1000000000));
         if (f.has("size")) {
             auto const size = f.at("size").items();
             if (size.size() != 2)

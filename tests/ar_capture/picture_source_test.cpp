@@ -46,7 +46,7 @@ TEST(Pictures, OfAFolderComeInOrderAndUnchanged)
     }
     EXPECT_FALSE(source.next(0ms));
     EXPECT_EQ(source.state().kind, SourceState::Kind::ended);
-    EXPECT_EQ(source.counts(), (SourceCounts{.delivered = 3}));
+    EXPECT_EQ(source.counts(), (SourceCounts{.delivered = 3, .dropped = 7, .missing = "3 to 9"}));
 }
 
 TEST(Pictures, OfAPatternHaveTheirNumbersAndGapsAreDropped)
@@ -57,10 +57,103 @@ TEST(Pictures, OfAPatternHaveTheirNumbersAndGapsAreDropped)
     PictureSource source(folder / "f_%04d.png", {.pace = Pace::fastest});
     EXPECT_EQ(source.description().format, PixelFormat::gray8);
     EXPECT_EQ(play(source), (std::vector<std::uint64_t>{3, 4, 7, 12}));
-    EXPECT_EQ(source.counts(), (SourceCounts{.delivered = 4, .dropped = 6}));
+    EXPECT_EQ(source.counts(), (SourceCounts{.delivered = 4, .dropped = 6, .missing = "5 to 6, 8 to 11"}));
     EXPECT_THROW(find_pictures(folder / "f_%s.png"), gi::InputError);
     EXPECT_THROW(find_pictures(folder / "f_%d_%d.png"), gi::InputError);
     EXPECT_THROW(find_pictures(folder / "f_%"), gi::InputError);
+}
+
+TEST(Pictures, OfAFolderHaveTheNumberInWhichTheirNamesDiffer)
+{
+    struct Case {
+        std::vector<std::string> files;
+        std::vector<std::uint64_t> numbers;
+        std::string missing;
+        bool has_numbers = true;
+        std::vector<std::string> left_out = {};
+    };
+    std::vector<Case> const cases{
+        {{"000000.png", "000001.png", "000003.png"}, {0, 1, 3}, "2"},
+        {{"9.png", "10.png", "8.png"}, {8, 9, 10}, ""},
+        {{"099.png", "100.png", "101.png"}, {99, 100, 101}, ""},
+        {{"1.png", "2.png", "3.png"}, {1, 2, 3}, ""},
+        {{"100.png", "102.png", "105.png"}, {100, 102, 105}, "101, 103 to 104"},
+        {{"f_1.png", "f_2.jpg", "f_03.PNG"}, {1, 2, 3}, ""},
+        {{"cam2_001.png", "cam2_002.png", "cam2_004.png"}, {1, 2, 4}, "3"},
+        {{"take_3_v2.png", "take_4_v2.png", "take_6_v2.png"}, {3, 4, 6}, "5"},
+        {{"0.png", "1.png", "2.png", "cover.png"}, {0, 1, 2}, "", true, {"cover.png"}},
+        {{"f_0.png", "f_1.png", "f_2.png", "f_1 copy.png"}, {0, 1, 2}, "", true, {"f_1 copy.png"}},
+        {{"7.png"}, {7}, ""},
+        {{"a.png", "b.png", "c.png"}, {0, 1, 2}, "", false},
+        {{"left_1.png", "right_1.png", "left_2.png", "right_2.png"}, {0, 1, 2, 3}, "", false},
+        {{"1403636579763555584.png", "1403636579813555456.png"}, {0, 1}, "", false},
+        {{"1305031102.175304.png", "1305031102.211214.png", "1305031103.2.png"}, {0, 1, 2}, "", false},
+        {{"99999999999999999999998.png", "99999999999999999999999.png"}, {0, 1}, "", false},
+    };
+    for (Case const& c : cases) {
+        TemporaryFolder folder;
+        for (std::string const& name : c.files) write_file(folder / name, "");
+        write_file(folder / "notes_12.txt", "no picture");
+        FoundPictures const found = find_pictures(folder.path());
+        std::vector<std::uint64_t> numbers;
+        for (NumberedPicture const& p : found.pictures) numbers.push_back(p.number);
+        std::vector<std::string> left_out;
+        for (auto const& file : found.left_out) left_out.push_back(file.filename().string());
+        EXPECT_EQ(numbers, c.numbers) << c.files[0];
+        EXPECT_EQ(found.has_numbers, c.has_numbers) << c.files[0];
+        EXPECT_EQ(left_out, c.left_out) << c.files[0];
+        EXPECT_EQ(missing_numbers(found.pictures), c.missing) << c.files[0];
+        EXPECT_EQ(found.why_not.empty(), c.has_numbers || c.files[0] == "a.png") << c.files[0];
+    }
+}
+
+TEST(Pictures, OfOneNumberTwiceAreRefused)
+{
+    for (auto const& [a, b] : std::vector<std::pair<std::string, std::string>>{
+             {"3.png", "3.jpg"}, {"3.png", "03.png"}, {"f_003.png", "f_3.exr"}}) {
+        for (bool const alone : {true, false}) {
+            TemporaryFolder folder;
+            write_file(folder / a, "");
+            write_file(folder / b, "");
+            std::string const before = a.starts_with("f_") ? "f_" : "";
+            if (!alone) write_file(folder / (before + "4.png"), "");
+            try {
+                find_pictures(folder.path());
+                FAIL() << a << " " << b;
+            } catch (gi::InputError const& e) {
+                EXPECT_NE(std::string(e.what()).find("have the number 3"), std::string::npos) << e.what();
+                EXPECT_NE(std::string(e.what()).find(b), std::string::npos) << e.what();
+            }
+        }
+    }
+}
+
+TEST(Pictures, AreTimedByTheNumberOfTheFirst)
+{
+    TemporaryFolder folder;
+    for (int i : {2, 3, 5}) cv::imwrite(folder / fmt::format("{:06}.png", i), noise(24, 32, CV_8UC3, i));
+    PictureSource source(folder.path(), {.pace = Pace::fastest, .first = 0});
+    EXPECT_EQ(play(source), (std::vector<std::uint64_t>{2, 3, 5}));
+    EXPECT_EQ(source.counts(), (SourceCounts{.delivered = 3, .dropped = 3, .missing = "0 to 1, 4"}));
+    EXPECT_EQ(source.description().first, 0u);
+
+    TemporaryFolder letters;
+    cv::imwrite(letters / "a.png", noise(24, 32, CV_8UC3, 1));
+    EXPECT_THROW(PictureSource(letters.path(), {.first = 0}), gi::InputError);
+}
+
+TEST(Pictures, WithoutANumberBesideNumberedOnesAreRefused)
+{
+    TemporaryFolder folder;
+    for (int i = 0; i < 3; ++i) cv::imwrite(folder / fmt::format("{}.png", i), noise(24, 32, CV_8UC3, i));
+    cv::imwrite(folder / "cover.png", noise(24, 32, CV_8UC3, 9));
+    PictureSource source(folder.path(), {.pace = Pace::fastest});
+    EXPECT_EQ(play(source), (std::vector<std::uint64_t>{0, 1, 2}));
+    EXPECT_EQ(source.counts().refused, 1u);
+    EXPECT_NE(source.counts().last_refusal.find("cover.png"), std::string::npos);
+    gi::Report report;
+    report_counts(source.counts(), report);
+    EXPECT_EQ(report.losses().at("frames that could not be read").count, 1u);
 }
 
 TEST(Pictures, ThatAreSpoiltAreRefusedAndNamed)

@@ -3,7 +3,9 @@
 #include "ar/pose/pose_file.h"
 #include "tests/viewer/run_program.h"
 
+#include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 namespace viewer::test {
@@ -80,6 +82,65 @@ TEST_F(ArRuns, AreNearTheTruth)
     // Six paths for the truth and four for the composite: most of it is noise.
     EXPECT_LT(inside, 0.6 * nothing);
     EXPECT_LT(elsewhere, 0.03);
+}
+
+TEST_F(ArRuns, PairLostFramesWithTheirOwnTruth)
+{
+    fs::remove(desk() / "frames/000001.png");
+    Outcome const o =
+        run("ar run session.yaml --fast --poses poses.csv --truth truth --table t.csv --stats s.json");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("2 frames, 1 dropped (not there: 1)"), std::string::npos) << o.out;
+    EXPECT_NE(o.err.find("numbered pictures that are not there: 1 (first: number 1)"), std::string::npos) << o.err;
+    std::string const table = file_text(desk() / "t.csv");
+    EXPECT_NE(table.find("\n2,0.066667,"), std::string::npos) << table;
+    EXPECT_LT(number_behind(o.out, "FLIP elsewhere"), 0.03);
+    auto const stats = nlohmann::json::parse(file_text(desk() / "s.json"));
+    EXPECT_EQ(stats["losses"]["numbered pictures that are not there"]["count"], 1);
+    EXPECT_EQ(stats["truth"]["frames_compared"], 2);
+
+    // Without the first one the session's `first` says which time the others have.
+    fs::remove(desk() / "frames/000000.png");
+    Outcome const last = run("ar run session.yaml --fast --poses poses.csv --true-poses poses.csv --table t.csv");
+    ASSERT_EQ(last.code, 0) << last.err;
+    EXPECT_NE(file_text(desk() / "t.csv").find("\n2,0.066667,"), std::string::npos);
+    EXPECT_NE(last.out.find("2 of them before the first frame"), std::string::npos) << last.out;
+    EXPECT_LT(number_behind(last.out, "position error (mm)"), 1e-6);
+
+    std::string text = session();
+    text.erase(text.find(", first: 0"), 10);
+    write(desk() / "other.yaml", text);
+    Outcome const other = run("ar run other.yaml --fast --poses poses.csv");
+    EXPECT_NE(other.err.find("frames: {first: 0}"), std::string::npos) << other.err;
+}
+
+TEST_F(ArRuns, OfAWrongTruthHaveNoErrors)
+{
+    Outcome const o = run("ar run session.yaml --fast --poses poses.csv --truth frames --stats s.json");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_TRUE(std::isnan(number_behind(o.out, "FLIP where it is affected"))) << o.out;
+    EXPECT_NE(o.out.find("no pixel is affected in 3 of 3 frames: their truth is the camera's frame"),
+              std::string::npos)
+        << o.out;
+    EXPECT_NE(o.err.find("in which the truth affects no pixel"), std::string::npos) << o.err;
+    auto const stats = nlohmann::json::parse(file_text(desk() / "s.json"));
+    EXPECT_TRUE(stats["truth"]["flip_affected"].is_null());
+    EXPECT_EQ(stats["truth"]["frames_equal_to_the_camera"], 3);
+
+    fs::remove(desk() / "truth/000001.png");
+    cv::imwrite((desk() / "truth/000002.png").string(), cv::Mat(8, 8, CV_8UC3, cv::Scalar(0)));
+    Outcome const some = run("ar run session.yaml --fast --poses poses.csv --truth truth");
+    EXPECT_NE(some.out.find("no truth picture: 1 frames (first: frame 1)"), std::string::npos) << some.out;
+    EXPECT_NE(some.out.find("cannot be compared: 1 (first: frame 2: '000002.png' has 8 x 8"), std::string::npos)
+        << some.out;
+    EXPECT_EQ(some.err.find("imread"), std::string::npos) << some.err;
+
+    fs::create_directories(desk() / "none");
+    EXPECT_EQ(run("ar run session.yaml --fast --truth none").code, 2);
+    write(desk() / "later.csv", "time_s,x_m,y_m,z_m,qx,qy,qz,qw\n9,0,0,0,0,0,0,1\n");
+    Outcome const later = run("ar run session.yaml --fast --poses poses.csv --true-poses later.csv");
+    EXPECT_NE(later.out.find("no true pose at their time: 3 frames"), std::string::npos) << later.out;
+    EXPECT_TRUE(std::isnan(number_behind(later.out, "position error (mm)"))) << later.out;
 }
 
 TEST_F(ArRuns, FollowTheLight)

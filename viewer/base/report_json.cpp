@@ -25,8 +25,8 @@ nlohmann::ordered_json to_json(gi::Report const& report)
 void print_losses(gi::Report const& report, std::string const& whose)
 {
     for (auto const& [what, loss] : report.losses())
-        std::fputs(fmt::format("lost: {}{}: {}{}\n", whose, what, loss.count,
-                               loss.first.empty() ? "" : " (first: " + loss.first + ")")
+        std::fputs(fmt::format("{}{}{}: {}{}\n", what.starts_with("in doubt: ") ? "" : "lost: ", whose, what,
+                               loss.count, loss.first.empty() ? "" : " (first: " + loss.first + ")")
                        .c_str(),
                    stderr);
 }

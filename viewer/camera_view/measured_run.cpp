@@ -79,6 +79,7 @@ MeasuredRun measure_run(ar::Session const& session, MeasureSettings const& setti
     if (shown_s.size() > 1) m.frames_per_s = double(shown_s.size() - 1) / (shown_s.back() - shown_s.front());
     for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
     m.errors = truth.errors();
+    ar::report_losses(m.errors, report);
     if (settings.still_frames > 1 && first_frame)
         m.flicker =
             ar::measure_flicker(session, *first_frame, first_pose, first_s, settings.still_frames, stop, report);

@@ -93,8 +93,9 @@ std::vector<fs::path> files_of_source(std::string const& source)
     fs::path const path = source;
     if (is_folder(path) && fs::exists(path / ar::kSessionFile)) return files_of_folder(path);
     if (!is_folder(path) && !is_pattern(path)) return {path};
+    if (is_folder(path)) return ar::picture_files(path);
     std::vector<fs::path> files;
-    for (auto const& picture : ar::find_pictures(path)) files.push_back(picture.file);
+    for (auto const& picture : ar::find_pictures(path).pictures) files.push_back(picture.file);
     return files;
 }
 

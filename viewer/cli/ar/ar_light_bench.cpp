@@ -30,10 +30,11 @@ BenchTable measure_light_estimates(LightBenchSettings const& s, gi::StopRequest 
         if (stop.requested()) break;
         // Between the strongest lamps: only where the truth has one that matters.
         Cell const lamp = c.truth_lamp_share >= 0.1 && c.lamp_deg >= 0 ? Cell(c.lamp_deg) : Cell();
+        auto const flip = [](double v) { return v >= 0 ? Cell(v) : Cell(); };
         table.add({std::filesystem::path(s.maps[k]).stem().string(), c.irradiance_rms, c.facing_rms, c.up_ratio,
                    c.mean_ratio, c.white_deg, lamp, c.truth_lamp_share, c.vector_deg, c.up_sigmas,
-                   c.light.undetermined_share, c.light.fit.residual, c.flip, c.flip_even, c.flip_nothing,
-                   c.estimate_s});
+                   c.light.undetermined_share, c.light.fit.residual, flip(c.flip), flip(c.flip_even),
+                   flip(c.flip_nothing), c.estimate_s});
     }
     std::stable_sort(table.rows.begin(), table.rows.end(),
                      [](auto const& a, auto const& b) { return number(a[1]) > number(b[1]); });

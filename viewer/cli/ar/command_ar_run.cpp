@@ -1,5 +1,7 @@
 #include "ar/runtime/frame_truth.h"
+#include "ar/runtime/pose_rows.h"
 #include "ar/runtime/runner.h"
+#include "ar/scene/read_values.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/interrupt.h"
@@ -11,6 +13,7 @@
 #include "viewer/camera_view/session_inputs.h"
 #include "viewer/cli/ar/ar_outcome.h"
 #include "viewer/cli/ar/ar_recording.h"
+#include "viewer/cli/ar/ar_truth_json.h"
 #include "viewer/cli/ar/pose_arguments.h"
 #include "viewer/cli/commands.h"
 
@@ -125,6 +128,24 @@ int run_in_hmd(RunArguments const& a, ar::Session const& session, ar::RunOptions
                                   parse_share("--require-found", a.require_found)));
 }
 
+/// How a file's poses cover the frames of a source that ended by itself; empty without a file.
+std::string rows_of(std::vector<ar::TimedPose> const& poses, std::string const& file,
+                    ar::RunSummary const& summary, ar::Session const& session, gi::Report& report)
+{
+    bool const is_whole = summary.end.kind == ar::SourceState::Kind::ended;
+    if (file.empty() || poses.empty() || summary.frames.empty() || !is_whole) return {};
+    ar::PoseRows const rows = ar::compare_rows(poses, summary.frames);
+    std::uint64_t const first = summary.frames.front().sequence;
+    if (rows.after > 0 && first > 0 && !ar::is_device(session.frames.source) &&
+        !session.frames.options.first_number)
+        report.lose(
+            "in doubt: which picture the first pose belongs to", 1,
+            fmt::format("'{}' has poses after the last frame, and the first frame, number {}, is taken for "
+                        "time 0; if the numbers begin with 0, write frames: {{first: 0}}",
+                        file, first));
+    return describe(rows, "poses of '" + file + "'");
+}
+
 int run_session(RunArguments const& a, bool poses_only)
 {
     auto const required = parse_share("--require-found", a.require_found);
@@ -152,7 +173,8 @@ int run_session(RunArguments const& a, bool poses_only)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
-    ar::FrameTruth truth(a.truth, true_poses_of(a.true_poses, a.poses.order, session, report));
+    std::vector<ar::TimedPose> const true_poses = true_poses_of(a.true_poses, a.poses.order, session, report);
+    ar::FrameTruth truth(a.truth, true_poses);
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
                            a.fast ? ar::PictureThread::WhenFull::wait : ar::PictureThread::WhenFull::lose,
                            poses_only ? ar::PassSettings{} : session.passes});
@@ -175,13 +197,20 @@ int run_session(RunArguments const& a, bool poses_only)
     };
     ar::RunSummary summary;
     auto const keep = [&](std::string const& recorded) {
-        ar::report_changes(summary.source, report);
-        if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+        ar::report_counts(summary.source, report);
+        std::string const rows = rows_of(o.poses, a.poses.file, summary, session, report) +
+                                 rows_of(true_poses, a.true_poses, summary, session, report);
+        ar::report_losses(truth.errors(), report);
+        if (!a.stats.empty()) {
+            nlohmann::ordered_json stats = to_json(report);
+            if (truth.errors().has_pictures || truth.errors().has_poses) stats["truth"] = to_json(truth.errors());
+            gi::write_text(a.stats, to_text(stats));
+        }
         if (tracker) fmt::print("{}", tracker->describe());
         if (!a.frame_table.empty()) gi::write_text(a.frame_table, ar::frame_table(summary));
         if (!a.confidence.empty())
             gi::write_text(a.confidence, to_csv(ar::confidence_curve(truth.errors().poses.estimates())));
-        fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recorded);
+        fmt::print("{}{}{}{}", describe(summary), rows, describe(truth.errors()), recorded);
         print_losses(report);
     };
     auto const shown = [&](ar::RunFrame& f, ar::FrameResult const& r) {
