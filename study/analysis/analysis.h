@@ -28,6 +28,7 @@ struct AnalysisSettings {
     double confidence = 0.95;
     std::uint64_t seed = 1;
     bool has_outliers = true;               ///< outlier scores of observers of pairs: a scale without each of them
+    bool has_deviations = true;             ///< intervals of how much thresholds and d' differ between observers
     bool has_hierarchy = false;             ///< hierarchical models of pairs, too: a second or so for each
     std::optional<double> guess{}, lapse{}; ///< fixed rates of psychometric functions; none = as the task requires
     /// Called often while a hierarchical model is sampled, with its name and the share that is done.
@@ -113,11 +114,13 @@ struct ThresholdEstimate {
     double proportion = kUnknown;
     Uncertain level;
     std::string note;
+    std::string doubt{}; ///< what in the note is counted over runs, without numbers of this one; empty = nothing
 };
 /// Posterior of one parameter of QUEST+ with several settings or further parameters.
 struct ParameterEstimate {
     std::string name;
     double mean = kUnknown, sd = kUnknown;
+    std::string note{};
 };
 struct ThresholdRun {
     std::string participant, procedure, cell;
@@ -136,6 +139,7 @@ struct ThresholdSummary {
     double proportion = kUnknown;
     Uncertain level;
     double deviation = kUnknown; ///< of thresholds between observers, in units of the scale
+    Interval deviation_interval{kUnknown, kUnknown}; ///< an end that the answers leave open is infinite
     std::string note;
 };
 /// The psychometric function of the average observer in one condition, from all procedures.
@@ -149,6 +153,7 @@ struct CurveResult {
     double eta = 0;                    ///< overdispersion
     Uncertain threshold;               ///< mean over the population of the level at `proportion`
     double deviation = kUnknown;       ///< of these levels between observers, in units of the scale
+    Interval deviation_interval{kUnknown, kUnknown}; ///< as ThresholdSummary
     /// A decade in units of the scale: log10 1, log2 3.32, db 20; 1 where levels are linear.
     double scale_unit = 1;
     double proportion = kUnknown;
@@ -165,6 +170,7 @@ struct DetectionResult {
     double dprime = kUnknown;    ///< all trials pooled, log-linear correction; negative below chance
     Uncertain observer_dprime;   ///< mean of the population
     double deviation = kUnknown; ///< of d' between observers
+    Interval deviation_interval{kUnknown, kUnknown};
     double p = kUnknown;         ///< of "the mean is 0"
     double criterion = kUnknown; ///< mean; unknown for oddity
     std::string model, note;
@@ -246,6 +252,15 @@ struct GroupDifference {
     WelchTest test;
     double p_holm = kUnknown; ///< over the comparisons of one measure
 };
+/// How a factor that varies enters the tests of effects.
+struct FactorUse {
+    std::string name;
+    bool is_between =
+        false; ///< it tells groups of participants apart; else each of them is compared with himself or herself
+    std::vector<std::string> levels;
+    std::vector<int> participants; ///< with counted trials at each level
+    int with_several = 0;          ///< participants with more than one level
+};
 /// Why a measure was not tested, or with fewer observers.
 struct EffectNote {
     std::string block, measure, text;
@@ -253,6 +268,8 @@ struct EffectNote {
 
 struct Analysis {
     std::string experiment, title;
+    std::string version, git_hash; ///< of the program; empty = unknown
+    std::vector<InputFile> inputs; ///< script, journals, tables
     AnalysisSettings settings;
     int participants = 0, sessions = 0, complete = 0, simulated = 0, planned = 0;
     int other_plans = 0;   ///< sessions whose recorded plan is not the one that this version makes
@@ -262,6 +279,7 @@ struct Analysis {
     std::vector<BlockResult> blocks;
     std::vector<QuestionnaireResult> questionnaires;
     std::vector<QuestionnaireChange> changes;
+    std::vector<FactorUse> factors;
     std::vector<EffectResult> effects;
     std::vector<GroupDifference> group_differences;
     std::vector<EffectNote> effect_notes;

@@ -54,7 +54,12 @@ std::string to_text(Analysis const& a)
 
 std::string to_json(Analysis const& a)
 {
-    Json j{{"experiment", a.experiment},
+    Json inputs = Json::array();
+    for (InputFile const& f : a.inputs) inputs.push_back({{"file", f.file}, {"sha256", f.sha256}});
+    Json j{{"version", a.version},
+           {"git", a.git_hash},
+           {"inputs", std::move(inputs)},
+           {"experiment", a.experiment},
            {"title", a.title},
            {"participants", a.participants},
            {"participants_planned", a.planned},

@@ -135,6 +135,7 @@ Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessi
 
     analyze_questionnaires(script, used, settings, a);
     auto const groups = participant_factors(script, used);
+    a.factors = factor_use(script, kept, groups);
     for (BlockResult const& result : a.blocks)
         for (std::size_t b = 0; b < script.blocks.size(); ++b)
             if (script.blocks[b].name == result.name)
@@ -151,6 +152,7 @@ Analysis analyze(Dataset const& records, AnalysisSettings const& settings)
 {
     Analysis a = analyze(records.script, records.sessions, settings);
     a.cautions.insert(a.cautions.begin(), records.remarks.begin(), records.remarks.end());
+    a.inputs = records.inputs;
     return a;
 }
 

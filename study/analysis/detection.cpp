@@ -108,13 +108,16 @@ void add_dprime(DetectionResult& d, Block const& b, std::vector<DetectionCounts>
     if (!task) return;
     d.dprime = detection_point(*task, all).dprime;
     try {
-        GroupDPrime const g = group_dprime(*task, counts, settings.confidence);
+        GroupDPrime const g = group_dprime(*task, counts, settings.confidence, settings.has_deviations);
         // What is far below its error is where the search for the best fit ended.
         double const error = (g.interval.high - g.interval.low) / 2;
         double const least = kShareOfError * (std::isfinite(error) ? error : 1);
         auto const fitted = [&](double v) { return std::abs(v) < least ? 0 : v; };
         d.observer_dprime = {fitted(g.mean), g.interval, int(g.observer.size())};
         if (g.observer.size() > 1) d.deviation = g.deviation > 1.1 * kLeastDPrimeSd ? g.deviation : 0;
+        Interval const i = g.deviation_interval; // around 0 it begins at 0
+        d.deviation_interval = {std::fmin(i.low, d.deviation), std::fmax(i.high, d.deviation)};
+        if (std::isnan(i.low)) d.deviation_interval = i;
         d.p = g.p;
         if (has_criterion(*task)) d.criterion = fitted(g.criterion);
         d.note = g.note;

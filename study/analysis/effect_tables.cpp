@@ -45,7 +45,9 @@ ResultTable effects_table(Analysis const& a)
         "Effects of conditions and groups of participants",
         "Analysis of variance of observers' means (type III; groups have equal weight). p_gg: with the epsilon of "
         "Greenhouse and Geisser, p_hf: of Huynh and Feldt; p_perm: by permutation, without assuming normality; "
-        "p_holm: p_gg corrected for all effects of the measure. eta2: partial eta squared.",
+        "p_holm: p_gg corrected for all effects of the measure. eta2: partial eta squared, interval by the "
+        "noncentral "
+        "F distribution, or up to the estimate where F is smaller than chance makes it.",
         false,
         {}};
     t.table.columns = {name_column("block", "Block or questionnaire"),

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <map>
 
 namespace study {
 namespace {
@@ -47,6 +49,26 @@ QuestPlus replayed(ThresholdRun const& run, QuestSettings const& s, auto const& 
         quest.respond(std::size_t(nearest - s.stimuli.begin()), run.correct[i] != 0);
     }
     return quest;
+}
+
+/// Says where the posterior of the threshold is cut by its prior: what lies beyond was excluded before the first trial.
+std::string note_of_cut(QuestPlus const& quest, auto const& to_level)
+{
+    QuestSettings const& s = quest.settings();
+    std::map<double, double> posterior; // by level, where the prior is not 0
+    for (std::size_t i = 0; i < s.threshold.size(); ++i)
+        if (s.threshold_prior.empty() || s.threshold_prior[i] > 0) posterior[to_level(s.threshold[i])] = 0;
+    for (std::size_t i = 0; i < quest.posterior().size(); ++i)
+        if (auto const at = posterior.find(to_level(quest.parameters(i).threshold)); at != posterior.end())
+            at->second += quest.posterior()[i];
+    std::vector<double> values;
+    for (auto const& [unused, v] : posterior) values.push_back(v);
+    std::string const end = cut_end(values);
+    if (end.empty()) return {};
+    return fmt::format("the posterior is cut at the {} end of the prior of the threshold, {:.4g} to {:.4g}: the "
+                       "threshold may lie "
+                       "beyond",
+                       end, posterior.begin()->first, posterior.rbegin()->first);
 }
 
 } // namespace
@@ -102,6 +124,9 @@ ThresholdEstimate questplus_estimate(ThresholdRun const& run, Block const& b, Pr
             }
         } else
             e.note = "most functions of the posterior never reach this proportion";
+        if (!run.levels.empty())
+            e.doubt = note_of_cut(quest, [&](double t) { return takes_levels ? t : from_scale(c.scale, t); });
+        if (!e.doubt.empty()) e.note += (e.note.empty() ? "" : "; ") + e.doubt;
     } catch (std::invalid_argument const& error) {
         e.note = error.what();
     }

@@ -24,6 +24,13 @@ std::vector<Column> with_interval(std::vector<Column> columns, std::vector<Colum
     return columns;
 }
 
+/// An end that is open is missing.
+void add_deviation(std::vector<std::string>& row, double value, Interval const& interval)
+{
+    for (double const v : {value, interval.low, interval.high})
+        row.push_back(std::isfinite(v) ? cell(v) : cell(""));
+}
+
 ResultTable agreement(Analysis const& a)
 {
     ResultTable t{
@@ -73,24 +80,29 @@ ResultTable thresholds(Analysis const& a)
         "Thresholds",
         "Population means on the scale of the levels. likelihood: of all answers, integrated over observers' "
         "thresholds, interval by the profile; mean of reversals: mean over observers, corrected for the bias of "
-        "such runs, Student's interval. Methods estimate different proportions correct: compare only equal ones.",
+        "such runs, Student's interval. sd: where its interval begins at 0, the answers do not show that "
+        "observers differ. Methods estimate different proportions correct: compare only equal ones.",
         false,
         {}};
-    t.table.columns =
-        with_interval({name_column("block", "Block"),
-                       name_column("cell", "Condition"),
-                       name_column("procedure", "Procedure"),
-                       {"method", "Method of estimation"},
-                       {"share", "Proportion correct at the threshold"},
-                       {"level", "Threshold"}},
-                      {{"sd", "Standard deviation of thresholds between observers, in units of the scale"},
-                       {"observers", "Observers with an estimate"}});
+    t.table.columns = with_interval(
+        {name_column("block", "Block"),
+         name_column("cell", "Condition"),
+         name_column("procedure", "Procedure"),
+         {"method", "Method of estimation"},
+         {"share", "Proportion correct at the threshold"},
+         {"level", "Threshold"}},
+        {estimate_column("sd",
+                         "Standard deviation of thresholds between observers, in units of the scale; by means "
+                         "of reversals with the errors of the runs"),
+         {"sd_low", "Lower end of its interval"},
+         {"sd_high", "Upper end"},
+         {"observers", "Observers with an estimate"}});
     for (BlockResult const& b : a.blocks)
         for (ThresholdSummary const& s : b.thresholds) {
             std::vector<std::string> row{cell(b.name), cell(s.cell), cell(s.procedure), cell(s.method),
                                          cell(s.proportion)};
             add_estimate(row, s.level);
-            row.push_back(cell(s.deviation));
+            add_deviation(row, s.deviation, s.deviation_interval);
             row.push_back(cell(s.level.n));
             t.table.rows.push_back(std::move(row));
         }
@@ -163,7 +175,7 @@ ResultTable parameters(Analysis const& a)
                 t.table.rows.back().insert(t.table.rows.back().end(), rest.begin(), rest.end());
             };
             for (ParameterEstimate const& e : r.parameters)
-                add({cell(e.name), cell(e.mean), cell(e.sd), cell("")});
+                add({cell(e.name), cell(e.mean), cell(e.sd), cell(e.note)});
             if (!r.note.empty()) add({cell(""), cell(""), cell(""), cell(r.note)});
         }
     return t;
@@ -188,7 +200,9 @@ ResultTable curves(Analysis const& a)
          {"share", "Proportion correct at the threshold"},
          {"threshold", "Level"}},
         {name_column("function", "Psychometric function, or its formula"),
-         {"sd", "Standard deviation of thresholds between observers"},
+         estimate_column("sd", "Standard deviation of thresholds between observers"),
+         {"sd_low", "Lower end of its interval"},
+         {"sd_high", "Upper end"},
          {"scale", "Spread of the function; of a formula its slope"},
          {"lapse", "Lapse rate"},
          {"eta", "Overdispersion: n answers at a level have the variance of n p q (1 + (n - 1) eta^2)"},
@@ -206,10 +220,12 @@ ResultTable curves(Analysis const& a)
             add_estimate(row, c.threshold);
             bool const is_fitted = !c.counts.empty();
             auto const fitted = [&](double v) { return is_fitted ? cell(v) : cell(""); };
+            row.push_back(cell(c.function));
+            Interval const unknown{kUnknown, kUnknown};
+            add_deviation(row, is_fitted ? c.deviation : kUnknown, is_fitted ? c.deviation_interval : unknown);
             row.insert(row.end(),
-                       {cell(c.function), fitted(c.deviation), fitted(c.parameters.scale * c.scale_unit),
-                        fitted(c.parameters.lapse), fitted(c.eta), fitted(c.pooled.deviance),
-                        fitted(c.pooled.degrees_of_freedom), fitted(c.pooled.fit_p)});
+                       {fitted(c.parameters.scale * c.scale_unit), fitted(c.parameters.lapse), fitted(c.eta),
+                        fitted(c.pooled.deviance), fitted(c.pooled.degrees_of_freedom), fitted(c.pooled.fit_p)});
             t.table.rows.push_back(std::move(row));
         }
     return t;
@@ -309,7 +325,9 @@ ResultTable detection(Analysis const& a)
                        {"low", "Lower end"},
                        {"high", "Upper end"},
                        {"p", "p-value of that mean being 0"},
-                       {"sd", "Standard deviation of d' between observers"},
+                       estimate_column("sd", "Standard deviation of d' between observers"),
+                       {"sd_low", "Lower end of its interval"},
+                       {"sd_high", "Upper end"},
                        {"criterion", "Mean criterion; positive: no, same or second is preferred"},
                        {"model", "Model of d'"}};
     for (BlockResult const& b : a.blocks)
@@ -322,8 +340,9 @@ ResultTable detection(Analysis const& a)
             add_estimate(
                 row,
                 {without_noise(u.value), {without_noise(u.interval.low), without_noise(u.interval.high)}, u.n});
-            row.insert(row.end(), {cell(d.p), cell(without_noise(d.deviation)), cell(without_noise(d.criterion)),
-                                   cell(d.model)});
+            row.push_back(cell(d.p));
+            add_deviation(row, without_noise(d.deviation), d.deviation_interval);
+            row.insert(row.end(), {cell(without_noise(d.criterion)), cell(d.model)});
             t.table.rows.push_back(std::move(row));
         }
     return t;

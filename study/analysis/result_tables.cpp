@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace study {
 namespace {
@@ -85,6 +86,27 @@ ResultTable observers(Analysis const& a)
                                 has_pairs ? cell(o.triads) : cell(""), has_pairs ? cell(o.most_triads) : cell(""),
                                 cell(o.zeta), cell(outlier), cell(o.reaction_median_ms)});
     }
+    return t;
+}
+
+ResultTable factors(Analysis const& a)
+{
+    ResultTable t{"factors",
+                  "Factors within and between participants",
+                  "As tests of effects take them. An id that is used for several people makes a factor one within "
+                  "participants.",
+                  false,
+                  {}};
+    t.table.columns = {
+        name_column("factor", "Factor that varies"),
+        {"taken_as", "within participants: each is compared with himself or herself; between: they are groups"},
+        name_column("levels", "Its levels"),
+        name_column("participants", "Participants with each of them, in this order"),
+        {"with_several", "Participants with more than one"}};
+    for (FactorUse const& f : a.factors)
+        t.table.rows.push_back({cell(f.name), f.is_between ? "between participants" : "within participants",
+                                cell(fmt::format("{}", fmt::join(f.levels, ", "))),
+                                cell(fmt::format("{}", fmt::join(f.participants, ", "))), cell(f.with_several)});
     return t;
 }
 
@@ -212,6 +234,34 @@ ResultTable fits(Analysis const& a)
     return t;
 }
 
+/// Doubts about single runs, counted by cell, procedure and method.
+std::vector<std::pair<std::string, std::string>> doubts_of_runs(BlockResult const& b)
+{
+    struct Count {
+        int runs = 0;
+        std::map<std::string, int> doubts{};
+    };
+    std::map<std::pair<std::string, std::string>, Count> counts;   // group, method
+    std::map<std::pair<std::string, std::string>, int> parameters; // group, name and note
+    for (ThresholdRun const& r : b.runs) {
+        std::string const group = r.cell + ", " + r.procedure;
+        for (ThresholdEstimate const& e : r.estimates) {
+            Count& c = counts[{group, fmt::format("{} at {:.3g} %", e.method, 100 * e.proportion)}];
+            ++c.runs;
+            if (!e.doubt.empty()) ++c.doubts[e.doubt];
+        }
+        for (ParameterEstimate const& e : r.parameters)
+            if (!e.note.empty()) ++parameters[{group, e.name + ": " + e.note}];
+    }
+    std::vector<std::pair<std::string, std::string>> found;
+    for (auto const& [where, c] : counts)
+        for (auto const& [doubt, n] : c.doubts)
+            found.emplace_back(where.first, fmt::format("{} of {} runs, {}: {}", n, c.runs, where.second, doubt));
+    for (auto const& [where, n] : parameters)
+        found.emplace_back(where.first, fmt::format("{} runs, {}", n, where.second));
+    return found;
+}
+
 ResultTable refusals(Analysis const& a)
 {
     ResultTable t{"remarks", "Results that could not be computed, or only with regularisation", "", false, {}};
@@ -230,6 +280,7 @@ ResultTable refusals(Analysis const& a)
             say(b.name, c.cell, c.refused);
             say(b.name, c.cell, c.note);
         }
+        for (auto const& [group, text] : doubts_of_runs(b)) say(b.name, group, text);
         for (ThresholdSummary const& h : b.thresholds) say(b.name, h.cell + ", " + h.procedure, h.note);
         for (DetectionResult const& d : b.detections) say(b.name, d.condition, d.note);
         for (HierarchicalResult const& h : b.hierarchical) {
@@ -245,9 +296,9 @@ ResultTable refusals(Analysis const& a)
 
 std::vector<ResultTable> result_tables(Analysis const& a)
 {
-    std::vector<ResultTable> all{exclusions(a),      observers(a),     scores(a),
-                                 cheapest(a),        differences(a),   fits(a),
-                                 hierarchy_table(a), effects_table(a), group_differences_table(a)};
+    std::vector<ResultTable> all{
+        exclusions(a),  observers(a), factors(a),         scores(a),        cheapest(a),
+        differences(a), fits(a),      hierarchy_table(a), effects_table(a), group_differences_table(a)};
     for (ResultTable& t : detail_tables(a)) all.push_back(std::move(t));
     all.push_back(refusals(a));
     std::erase_if(all, [](ResultTable const& t) { return t.table.rows.empty(); });

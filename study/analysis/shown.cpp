@@ -50,7 +50,8 @@ std::string shown_estimate(double value, double low, double high)
     if (!std::isfinite(value))
         return fmt::format("– [{}, {}]", has_low ? shown_number(low) : "open",
                            has_high ? shown_number(high) : "open");
-    double const half = has_low && has_high ? (high - low) / 2 : std::abs(value - (has_low ? low : high));
+    double half = has_low && has_high ? (high - low) / 2 : std::abs(value - (has_low ? low : high));
+    if (!(half > 0)) half = std::abs(value - low); // of an interval without width, beside the value
     double largest = std::abs(value);
     if (has_low) largest = std::fmax(largest, std::abs(low));
     if (has_high) largest = std::fmax(largest, std::abs(high));

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace study {
 namespace {
@@ -153,6 +154,32 @@ RateCount false_alarms(std::vector<TrialRow> const& trials)
     return noise;
 }
 
+std::string outside_of(double level, double low, double high)
+{
+    constexpr double kTolerance = 1e-9;
+    if (level < low - kTolerance * std::abs(low)) return "below";
+    return level > high + kTolerance * std::abs(high) ? "above" : "";
+}
+
+void note_outside(ThresholdRun const& run, ThresholdEstimate& e)
+{
+    auto const [low, high] = std::minmax_element(run.levels.begin(), run.levels.end());
+    if (low == run.levels.end()) return;
+    std::string const where = outside_of(e.level.value, *low, *high);
+    if (where.empty()) return;
+    std::string const doubt = fmt::format("the threshold lies {} all levels shown", where);
+    e.note += fmt::format("{}{}, {:.4g} to {:.4g}", e.note.empty() ? "" : "; ", doubt, *low, *high);
+    e.doubt += (e.doubt.empty() ? "" : "; ") + doubt;
+}
+
+std::string cut_end(std::vector<double> const& posterior)
+{
+    if (posterior.size() < 2) return {};
+    double const least = 0.5 * *std::max_element(posterior.begin(), posterior.end());
+    bool const below = posterior.front() >= least, above = posterior.back() >= least;
+    return below && above ? "lower and upper" : below ? "lower" : above ? "upper" : "";
+}
+
 std::string open_ends(Interval const& interval)
 {
     bool const below = !std::isfinite(interval.low), above = !std::isfinite(interval.high);
@@ -239,6 +266,20 @@ ThresholdEstimate likelihood_estimate(ThresholdRun const& run, Block const& b, P
 
 namespace {
 
+/// Where the posterior of a parameter is cut by its prior; not at 0, beyond which there are no rates.
+std::string note_of_cut(QuestGrid const& grid, std::vector<double> const& marginal)
+{
+    std::map<double, double> posterior;
+    for (std::size_t i = 0; i < grid.values.size(); ++i)
+        if (grid.prior.empty() || grid.prior[i] > 0) posterior[grid.values[i]] += marginal[i];
+    std::vector<double> values;
+    for (auto const& [unused, v] : posterior) values.push_back(v);
+    std::string const end = cut_end(values);
+    if (end.empty() || (end == "lower" && posterior.begin()->first == 0)) return {};
+    return fmt::format("the posterior is cut at the {} end of its prior, {:.4g} to {:.4g}", end,
+                       posterior.begin()->first, posterior.rbegin()->first);
+}
+
 /// Replays QUEST+ of several settings on the recorded trials.
 void add_parameters(ThresholdRun& run, Block const& b, Procedure const& p, std::vector<TrialRow> const& trials)
 {
@@ -257,7 +298,10 @@ void add_parameters(ThresholdRun& run, Block const& b, Procedure const& p, std::
         }
         auto const mean = quest.mean(), sd = quest.standard_deviation();
         auto const names = names_of({}, quest_many_settings(p).parameters);
-        for (std::size_t i = 0; i < names.size(); ++i) run.parameters.push_back({names[i], mean[i], sd[i]});
+        auto const settings = quest_many_settings(p);
+        for (std::size_t i = 0; i < names.size(); ++i)
+            run.parameters.push_back(
+                {names[i], mean[i], sd[i], note_of_cut(settings.parameters[i], quest.marginal(i))});
     } catch (std::invalid_argument const& e) {
         run.note = e.what();
     }

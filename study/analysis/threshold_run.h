@@ -31,6 +31,14 @@ struct GroupCurve {
 /// the group's function; the interval holds the thresholds at which such runs give this mean by chance.
 ThresholdEstimate reversal_estimate(ThresholdRun const& run, Block const& block, Procedure const& procedure,
                                     std::optional<GroupCurve> const& group, AnalysisSettings const& settings);
+/// "below" or "above" if the level lies beyond these; empty if it does not, or is unknown.
+std::string outside_of(double level, double low, double high);
+/// Adds a note and a doubt if the estimate lies beyond all levels that the run has shown.
+void note_outside(ThresholdRun const& run, ThresholdEstimate& estimate);
+/// Which end of a grid a posterior is cut at: its value there is at least half of the largest one.
+/// @param posterior  of each value of the grid, which rises, where the prior is not 0
+/// @return "lower" or "upper", "lower and upper" where little was learned; empty = at none, or the grid is one point
+std::string cut_end(std::vector<double> const& posterior);
 /// "the interval is open above" (or below) if an end of the interval is unknown; empty if both are known.
 std::string open_ends(Interval const& interval);
 /// Note on a posterior's interval with an unknown end: "the interval is open above ..."; empty if both are known.

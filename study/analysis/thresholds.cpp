@@ -2,6 +2,7 @@
 #include "study/analysis/hierarchical_result.h"
 #include "study/analysis/own_fit.h"
 #include "study/analysis/threshold_run.h"
+#include "study/numeric/special.h"
 #include "study/script/procedure_settings.h"
 #include "study/stats/summary.h"
 #include "study/stats/threshold_marginal.h"
@@ -39,6 +40,15 @@ double deviation_of(GroupCurve const& g, Compare const& c)
     if (g.threshold.observers < 2) return kUnknown;
     double const range = std::abs(transformed(g.settings.shape, c.high) - transformed(g.settings.shape, c.low));
     return g.threshold.deviation > 1.1 * kLeastThresholdSd * range ? g.threshold.deviation * scale_units(c) : 0;
+}
+
+/// Its interval, in units of the scale; around 0 it begins at 0.
+Interval deviation_interval_of(GroupCurve const& g, Compare const& c)
+{
+    double const deviation = deviation_of(g, c), unit = scale_units(c);
+    Interval const i = g.threshold.deviation_interval;
+    if (std::isnan(i.low)) return i;
+    return {std::min(i.low * unit, deviation), std::max(i.high * unit, deviation)};
 }
 
 /// One observer's run with the rows it is made of.
@@ -98,6 +108,7 @@ GroupThresholdSettings group_settings(Compare const& c, PsychometricChoice const
     s.low = c.low;
     s.high = c.high;
     s.confidence = settings.confidence;
+    s.has_deviation = settings.has_deviations;
     return s;
 }
 
@@ -195,6 +206,21 @@ void note_gaps(GroupData const& data, GroupCurve& g, std::string& note)
     include_gap(gaps[0], g.settings.shape, g.threshold.interval);
 }
 
+/// Says if the mean lies beyond all levels that were shown, within the range on offer.
+void note_outside(GroupData const& data, GroupCurve& g)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (ObserverLevels const& o : data.observers)
+        for (LevelCount const& l : o.counts) {
+            low = std::min(low, l.level);
+            high = std::max(high, l.level);
+        }
+    std::string const where = outside_of(level_of(g.settings.shape, g.threshold.mean), low, high);
+    if (!where.empty() && g.threshold.note.find("outside the range") == std::string::npos)
+        append(g.threshold.note,
+               fmt::format("the mean threshold lies {} all levels shown, {:.4g} to {:.4g}", where, low, high));
+}
+
 std::optional<GroupCurve> group_curve(Compare const& c, PsychometricChoice const& function, GroupData const& data,
                                       double proportion, AnalysisSettings const& settings, std::string& note)
 {
@@ -205,6 +231,7 @@ std::optional<GroupCurve> group_curve(Compare const& c, PsychometricChoice const
         Interval const interval = level_of(g.settings.shape, g.threshold.mean, g.threshold.interval, 0).interval;
         if (std::string const open = open_ends(interval); !open.empty())
             append(g.threshold.note, open + ": the answers do not exclude means far beyond all levels");
+        note_outside(data, g);
         note_gaps(data, g, g.threshold.note);
         append(note, g.threshold.note);
         append(note, data.note);
@@ -223,6 +250,13 @@ void average(ThresholdSummary& s, Compare const& c, std::map<std::string, std::v
     for (auto const& [who, values] : by_observer) means.push_back(mean(values));
     Uncertain u = mean_of(means, settings.confidence);
     s.deviation = standard_deviation(means);
+    if (auto const n = double(means.size()); n > 1 && s.deviation > 0) {
+        double const tail = (1 - settings.confidence) / 2;
+        auto const end = [&](double share) {
+            return s.deviation * std::sqrt((n - 1) / chi_square_quantile(share, n - 1));
+        };
+        s.deviation_interval = {end(1 - tail), end(tail)};
+    }
     if (u.is_constant) append(s.note, "no variation between observers: no interval");
     if (u.n > 0) u.value = from_scale(c.scale, u.value);
     u.interval = {from_scale(c.scale, u.interval.low), from_scale(c.scale, u.interval.high)};
@@ -234,15 +268,27 @@ void add_proportion_by_formula(Block const& b, PsychometricChoice const& functio
                                double proportion, AnalysisSettings const& settings, BlockResult& result)
 {
     Compare const& c = *b.compare;
-    ThresholdSummary s{
-        runs.front().run.procedure, runs.front().run.cell, "maximum likelihood", proportion, {}, kUnknown, {}};
+    ThresholdSummary s{runs.front().run.procedure,
+                       runs.front().run.cell,
+                       "maximum likelihood",
+                       proportion,
+                       {},
+                       kUnknown,
+                       {kUnknown, kUnknown},
+                       {}};
     std::map<std::string, std::vector<double>> by_observer;
+    int outside = 0;
     for (RunOf& r : runs) {
         ThresholdEstimate e = maximum_likelihood_estimate(r.run, b, function, r.guess, proportion, settings);
         if (e.level.value >= c.low && e.level.value <= c.high)
             by_observer[r.run.participant].push_back(to_scale(c.scale, e.level.value));
+        else
+            ++outside;
         r.run.estimates.push_back(std::move(e));
     }
+    if (outside > 0)
+        append(s.note, fmt::format("{} of {} runs without a threshold in the range of levels are left out",
+                                   outside, runs.size()));
     average(s, c, by_observer, settings);
     result.thresholds.push_back(std::move(s));
 }
@@ -257,7 +303,8 @@ std::optional<GroupCurve> add_proportion(Block const& b, Procedure const& p, std
     PsychometricChoice const function = fitted_function({p}, c.scale);
     std::vector<RunOf const*> all;
     for (RunOf const& r : runs) all.push_back(&r);
-    ThresholdSummary likelihood{p.name, runs.front().run.cell, "likelihood", proportion, {}, kUnknown, {}};
+    ThresholdSummary likelihood{
+        p.name, runs.front().run.cell, "likelihood", proportion, {}, kUnknown, {kUnknown, kUnknown}, {}};
     std::optional<GroupCurve> group;
     GroupData const data = data_of(all, proportion);
     if (!function.formula) group = group_curve(c, function, data, proportion, settings, likelihood.note);
@@ -265,8 +312,10 @@ std::optional<GroupCurve> add_proportion(Block const& b, Procedure const& p, std
         GroupThreshold const& g = group->threshold;
         likelihood.level = level_of(group->settings.shape, g.mean, g.interval, g.observers);
         likelihood.deviation = deviation_of(*group, c);
+        likelihood.deviation_interval = deviation_interval_of(*group, c);
     }
-    ThresholdSummary reversals{p.name, runs.front().run.cell, "mean of reversals", proportion, {}, kUnknown, {}};
+    ThresholdSummary reversals{
+        p.name, runs.front().run.cell, "mean of reversals", proportion, {}, kUnknown, {kUnknown, kUnknown}, {}};
     std::map<std::string, std::vector<double>> by_observer;
     for (RunOf& r : runs) {
         if (with_reversals) {
@@ -371,6 +420,7 @@ void add_curve(Block const& b, std::string const& cell, std::vector<RunOf const*
         r.eta = g.eta;
         r.threshold = level_of(r.shape, g.mean, g.interval, g.observers);
         r.deviation = deviation_of(*group, c);
+        r.deviation_interval = deviation_interval_of(*group, c);
         try {
             PsychometricSettings s{r.shape, {r.parameters.guess, data.fits_guess ? 0.5 : 0}, {0.01, 0.06}};
             if (settings.lapse) s.lapse = {*settings.lapse, 0};
@@ -409,6 +459,7 @@ void analyze_thresholds(Script const& script, Block const& b, std::vector<Observ
         for (RunOf& r : runs) {
             if (p.method == Method::questplus)
                 r.run.estimates.push_back(questplus_estimate(r.run, b, p, middle(b.task), settings));
+            for (ThresholdEstimate& e : r.run.estimates) note_outside(r.run, e);
             cells[place.first].push_back(&r);
             result.runs.push_back(r.run);
         }

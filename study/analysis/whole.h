@@ -19,6 +19,10 @@ void analyze_timing(Script const& script, std::vector<ObserverTrials> const& obs
                     std::vector<RecordedSession const*> const& sessions, Analysis& analysis);
 void analyze_transitions(Script const& script, std::vector<RecordedSession const*> const& sessions,
                          Analysis& analysis);
+/// The factors that vary between the counted trials of these observers, in the order of the script.
+/// @param groups  from participant_factors
+std::vector<FactorUse> factor_use(Script const& script, std::vector<ObserverTrials> const& observers,
+                                  std::vector<ParticipantFactor> const& groups);
 /// Tests effects of conditions and of groups of participants on a measure: an analysis of variance of observers'
 /// means (mixed_anova.h) if there is something to compare, and Welch's tests between groups in each condition and
 /// over all. Observers without one of the cells are left out of the former, with a note.

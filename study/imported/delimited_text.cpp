@@ -5,6 +5,7 @@
 #include "study/imported/table_encoding.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <map>
 #include <optional>
@@ -219,6 +220,36 @@ std::string skipped(int n, char const* one, char const* more, int first)
     return fmt::format("{} {} skipped{}", n, n == 1 ? one : more, where);
 }
 
+bool are_equal(DelimitedText const& a, DelimitedText const& b)
+{
+    auto const same = [](TextCell const& x, TextCell const& y) { return x.text == y.text; };
+    return a.columns == b.columns &&
+           std::equal(a.rows.begin(), a.rows.end(), b.rows.begin(), b.rows.end(),
+                      [&](auto const& x, auto const& y) {
+                          return std::equal(x.begin(), x.end(), y.begin(), y.end(), same);
+                      });
+}
+
+void check_different(std::vector<DelimitedText> const& tables)
+{
+    for (std::size_t i = 0; i < tables.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (!tables[i].rows.empty() && are_equal(tables[i], tables[j]))
+                throw ScriptError(tables[i].file, {},
+                                  tables[i].file == tables[j].file
+                                      ? "the file is given twice"
+                                      : fmt::format("the file has the same rows as '{}'", tables[j].file),
+                                  "each trial would count twice", "leave one of them out");
+}
+
+/// Names of files without folders and endings, or, if two of these are equal, as they are.
+std::vector<std::string> short_names(std::vector<std::string> const& files)
+{
+    std::vector<std::string> names;
+    for (std::string const& f : files) names.push_back(std::filesystem::path(f).stem().string());
+    return std::set(names.begin(), names.end()).size() == names.size() ? names : files;
+}
+
 } // namespace
 
 int DelimitedText::column(std::string const& name) const
@@ -248,6 +279,7 @@ bool DelimitedText::is_missing(std::string const& text)
 
 DelimitedText joined(std::vector<DelimitedText> const& tables)
 {
+    check_different(tables);
     DelimitedText all;
     using Name = std::pair<std::string, int>; // and its number among equal ones
     std::map<Name, std::size_t> place;
@@ -282,6 +314,29 @@ DelimitedText joined(std::vector<DelimitedText> const& tables)
         row.resize(all.columns.size(), TextCell{"", {row.front().place.line, 0}, row.front().file});
     if (all.files.size() > 3) all.file = fmt::format("{} and {} others", all.files.front(), all.files.size() - 1);
     return all;
+}
+
+DelimitedText with_file_names(DelimitedText const& table)
+{
+    DelimitedText t = table;
+    auto const names = short_names(t.files);
+    t.columns.emplace_back("file");
+    t.heads.push_back({"file", {1, 1}, 0});
+    for (auto& row : t.rows) {
+        TextCell const& first = row.front();
+        row.push_back({names[std::size_t(first.file)], {first.place.line, 0}, first.file});
+    }
+    return t;
+}
+
+std::string label_of(DelimitedText const& table)
+{
+    constexpr std::size_t kMostNamed = 3;
+    std::vector<std::string> names = short_names(table.files);
+    if (names.size() > kMostNamed) return fmt::format("{} and {} others", names[0], names.size() - 1);
+    std::string const last = names.back();
+    names.pop_back();
+    return names.empty() ? last : fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
 
 DelimitedText to_wide(DelimitedText const& table, std::string const& names, std::string const& values)

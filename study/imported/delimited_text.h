@@ -37,7 +37,12 @@ struct DelimitedText {
 /// Rows of several tables one after another, such as one file per participant;
 /// columns that a table does not have are empty there. Of columns with equal names the first ones belong together, the
 /// second ones, and so on.
+/// @throws ScriptError two tables with the same cells: a file that is given twice
 DelimitedText joined(std::vector<DelimitedText> const& tables);
+/// The table with a last column `file`: the name of each row's file without folder and ending, as far as these names differ.
+DelimitedText with_file_names(DelimitedText const& table);
+/// A short name: "young", "young and old", "young and 9 others".
+std::string label_of(DelimitedText const& table);
 /// One row per trial from a table with one row per value: all rows that agree in the other columns become one row,
 /// with a column for each name in `names` that has the text in `values`.
 /// @throws ScriptError unknown columns, a name that occurs twice in a trial, more than 1000 names, or a wide table of

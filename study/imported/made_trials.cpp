@@ -1,10 +1,12 @@
 #include "study/imported/made_trials.h"
 
 #include "study/imported/decimal_number.h"
+#include "study/imported/table_doubts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <set>
 
 namespace study {
@@ -63,27 +65,63 @@ bool is_between(MadeExperiment const& made, std::size_t factor)
            std::all_of(levels.begin(), levels.end(), [](auto const& of) { return of.second.size() == 1; });
 }
 
-/// A caution if a factor seems to differ between participants, but a few of them have several of its levels, as if the
-/// same id had been given in two groups. Empty if not.
+/// Whether all trials of each level stand together, as where tables of groups were joined, each with the same ids in the order
+/// of its own trials. Tables that a program turned from wide to long stand so, too, but have the same trials in each level.
+bool are_levels_joined(MadeExperiment const& made, std::size_t factor)
+{
+    std::vector<std::vector<std::string>> blocks; // what is shown to whom, by level
+    std::vector<std::set<std::string>> people;
+    std::set<std::string> levels;
+    std::string const* last = nullptr;
+    for (MadeTrial const& t : made.trials) {
+        std::string const& level = t.factors[factor];
+        if (last == nullptr || level != *last) {
+            if (!levels.insert(level).second) return false;
+            blocks.emplace_back();
+            people.emplace_back();
+        }
+        last = &level;
+        std::string shown = fmt::format("{}\x1f{}\x1f{}", t.participant, t.run, t.level.value_or(0));
+        for (std::string const& item : t.items) shown += '\x1f' + item;
+        for (std::size_t f = 0; f < t.factors.size(); ++f)
+            if (f != factor) shown += '\x1f' + t.factors[f];
+        blocks.back().push_back(std::move(shown));
+        people.back().insert(t.participant);
+    }
+    bool const have_several =
+        std::all_of(people.begin(), people.end(), [](auto const& ids) { return ids.size() > 1; });
+    return have_several && std::adjacent_find(blocks.begin(), blocks.end(), std::not_equal_to<>()) != blocks.end();
+}
+
+/// A caution if one id seems to be given to several people: a factor of the people themselves by its name; levels that stand
+/// together under numbers from 1; or a factor of which only a few have several levels. Empty if not.
 std::string shared_ids(MadeExperiment const& made, std::size_t factor)
 {
-    std::string who, example;
-    int several = 0, one = 0;
+    std::vector<std::string> who, all;
+    std::string example;
+    int pieces = 0; // people, if each level has its own
     for (auto const& [id, own] : levels_of_people(made, factor)) {
-        if (own.size() == 1) {
-            ++one;
-            continue;
-        }
-        constexpr int kMostNamed = 5;
-        if (several++ < kMostNamed) who += (who.empty() ? "" : ", ") + id;
+        all.push_back(id);
+        pieces += int(own.size());
+        if (own.size() == 1) continue;
+        who.push_back(id);
         if (example.empty()) example = fmt::format("{}", fmt::join(own, " and "));
     }
-    if (several == 0 || several >= one) return {};
-    return fmt::format(
-        "'{}': {} participant{} ({}{}) {} several levels ({}), the other {} have one each: it is taken as "
-        "within participants; if an id was used for two people, rename one",
-        made.factors[factor], several, several == 1 ? "" : "s", who, several > 5 ? ", ..." : "",
-        several == 1 ? "has" : "have", example, one);
+    std::size_t const one = all.size() - who.size();
+    bool const is_few = who.size() < one;
+    if (who.empty() || all.size() < 2) return {};
+    std::string const& name = made.factors[factor];
+    if (!is_few && !names_people(name) && !(are_numbered(all) && are_levels_joined(made, factor))) return {};
+    std::string text =
+        fmt::format("'{}': {} participant{} ({}) {} several levels ({})", name, who.size(),
+                    who.size() == 1 ? "" : "s", named_few(who), who.size() == 1 ? "has" : "have", example);
+    if (one > 0) text += fmt::format(", the other {} have one each", one);
+    text += ": it is taken as within participants; if an id was used for ";
+    if (is_few)
+        return text +
+               fmt::format("two people, rename one, or use participant={}+{}", name, made.participant_column);
+    return text + fmt::format("several people, {} are analysed as {}: use participant={}+{}", pieces, all.size(),
+                              name, made.participant_column);
 }
 
 bool is_of_pairs(Task task) { return task == Task::pair || task == Task::pair_with_reference; }
@@ -224,6 +262,16 @@ ImportedTable sessions_of(MadeExperiment const& made)
     }
     std::vector<std::string> const items = ordered(item_list.names());
     index(items);
+    NameList people;
+    for (MadeTrial const& t : made.trials) people.add(t.participant);
+    auto const doubt = [&](std::string const& what, std::vector<std::string> const& names) {
+        if (std::string caution = similar_names_caution(what, names); !caution.empty())
+            out.notes.push_back(std::move(caution));
+    };
+    doubt("participants", people.names());
+    doubt("items", items);
+    for (std::size_t f = 0; f < levels.size(); ++f)
+        doubt(fmt::format("levels of '{}'", made.factors[f]), levels[f]);
     out.script = script_of(made, levels, items, out.notes);
 
     std::map<std::string, std::size_t> session_of;

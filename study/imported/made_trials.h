@@ -24,11 +24,12 @@ struct MadeExperiment {
     Scale scale = Scale::linear;
     bool harder_up = false;
     std::string level_name = "level";
+    std::string participant_column; ///< columns with the ids, as given; empty = one person
     std::vector<std::string> notes;
 };
 
 /// A factor whose level is the same in all trials of each participant, and differs between them, is one between
-/// participants; a note says so if a few participants have several of its levels. Levels are in numeric order, or in that of their appearance.
+/// participants; notes name those that are within them although ids seem to be used for several people. Levels are in numeric order, or in that of their appearance.
 ImportedTable sessions_of(MadeExperiment const& made);
 
 } // namespace study

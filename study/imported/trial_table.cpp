@@ -4,10 +4,10 @@
 #include "gi/core/text.h"
 #include "study/imported/decimal_number.h"
 #include "study/imported/made_trials.h"
+#include "study/imported/table_doubts.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
 #include <set>
 
@@ -15,9 +15,10 @@ namespace study {
 namespace {
 
 constexpr std::string_view kRoles[] = {
-    "participant",   "run",         "item",      "first",    "second",  "chosen",     "first_chosen", "first_wins",
-    "second_wins",   "ties",        "value",     "level",    "signal",  "correct",    "yes",          "trials",
-    "correct_count", "wrong_count", "yes_count", "no_count", "percent", "reaction_s", "reaction_ms"};
+    "participant",  "run",           "item",       "first",       "second",     "chosen",
+    "first_chosen", "chosen_from_0", "first_wins", "second_wins", "ties",       "value",
+    "level",        "signal",        "correct",    "yes",         "trials",     "correct_count",
+    "wrong_count",  "yes_count",     "no_count",   "percent",     "reaction_s", "reaction_ms"};
 
 constexpr int kMostImportedTrials = 2'000'000;
 constexpr double kLargestValue = 1e15; ///< whole numbers are exact up to it, and squares do not overflow
@@ -36,13 +37,38 @@ std::string known_roles()
     return out;
 }
 
+/// A position in a pair: 0, 1 or 2, also as other programs write whole numbers, "1.0".
+std::optional<int> position_of(std::string const& text)
+{
+    auto const v = read_decimal(text);
+    return v && (v->value == 0 || v->value == 1 || v->value == 2) ? std::optional(int(v->value)) : std::nullopt;
+}
+
+/// Columns that a role names: "group+id" are two, if none is called so, of the roles that are names.
+std::vector<std::string> parts_of(DelimitedText const& table, std::string const& role, std::string const& column)
+{
+    std::vector<std::string> parts;
+    bool const may_join = (role == "participant" || role == "run") && table.column(column) < 0;
+    for (std::size_t at = 0; may_join && at <= column.size();) {
+        std::size_t const end = std::min(column.find('+', at), column.size());
+        parts.push_back(std::string(gi::trimmed(std::string_view(column).substr(at, end - at))));
+        at = end + 1;
+    }
+    return may_join ? parts : std::vector{column};
+}
+
 class Importer {
 public:
     Importer(DelimitedText const& table, ColumnRoles const& roles) : t_(table), roles_(roles)
     {
-        for (auto const& [role, column] : roles.column) at_[role] = column_of(column, "--columns names it");
+        for (auto const& [role, column] : roles.column) {
+            for (std::string const& part : parts_of(t_, role, column))
+                parts_[role].push_back(std::size_t(column_of(part, "--columns names it")));
+            at_[role] = int(parts_[role].front());
+        }
         for (std::string const& f : roles.factors) factors_.push_back(column_of(f, "--factors names it"));
         for (auto const& [column, unused] : roles.only) column_of(column, "--only names it");
+        for (auto const& [column, text] : roles.missing) codes_.push_back({text, columns_of_code(column)});
     }
 
     ImportedTable import()
@@ -55,17 +81,24 @@ public:
             for (auto const& row : t_.rows) read(row);
             check_percent();
             check_thousands();
+            resolve_positions();
             note_ambiguous_choices();
+            note_buttons();
             note_reaction_unit();
+            note_codes();
+            note_files();
+            if (std::string caution = repeated_rows_caution(used_, ids_); !caution.empty())
+                made_.notes.push_back(std::move(caution));
         }
         if (made_.trials.empty())
             throw ScriptError(t_.file, {}, "no trials are left", notes_of_rows(), "check --columns and --only");
-        made_.id = roles_.id.empty() ? std::filesystem::path(t_.file).stem().string() : roles_.id;
+        made_.id = roles_.id.empty() ? label_of(t_) : roles_.id;
         made_.file = t_.file;
         made_.notes.insert(made_.notes.begin(), t_.notes.begin(), t_.notes.end());
         made_.scale = roles_.scale;
         made_.harder_up = roles_.harder_up;
         made_.level_name = has("level") ? roles_.column.at("level") : "level";
+        if (has("participant")) made_.participant_column = roles_.column.at("participant");
         for (std::string const& f : roles_.factors) made_.factors.push_back(f);
         if (rounded_ > 0)
             made_.notes.push_back(fmt::format(
@@ -78,6 +111,19 @@ public:
 
 private:
     using Row = std::vector<TextCell>;
+    /// An answer by its position in the pair.
+    struct Position {
+        std::size_t trial; ///< of made_.trials
+        TextCell const* cell;
+        int number; ///< 0, 1 or 2, as written
+        bool is_button;
+    };
+    /// What stands for a missing value.
+    struct Code {
+        std::string text;
+        std::vector<std::size_t> columns;
+        bool is_found = false;
+    };
 
     [[noreturn]] void refuse_cell(TextCell const& c, std::string const& column, std::string const& why,
                                   std::string const& suggestion) const
@@ -102,6 +148,13 @@ private:
     }
     bool has(std::string const& role) const { return at_.count(role) > 0; }
     TextCell const& cell(Row const& row, std::string const& role) const { return row[std::size_t(at_.at(role))]; }
+    /// The cells of all columns of the role: "young+1".
+    std::string name(Row const& row, std::string const& role) const
+    {
+        std::string text;
+        for (std::size_t const column : parts_.at(role)) text += (text.empty() ? "" : "+") + row[column].text;
+        return text;
+    }
     double number(Row const& row, std::string const& role)
     {
         TextCell const& c = cell(row, role);
@@ -112,6 +165,7 @@ private:
                         c.text.find(',') == std::string::npos
                             ? "use digits with a decimal point"
                             : "use digits with a decimal point or comma, and nothing between thousands");
+        numbers_[role].push_back(v->value);
         if (v->mark == '\0') return v->value;
         Decimals& found = decimals_[{c.file, at_.at(role)}];
         TextCell const*& same = v->mark == ',' ? found.comma : found.point;
@@ -134,16 +188,20 @@ private:
                             "it may have a decimal comma, or one between thousands",
                             "write numbers with a decimal point, and nothing between thousands");
     }
-    bool flag(Row const& row, std::string const& role) const
+    bool flag(Row const& row, std::string const& role)
     {
+        if (is_button(row, role)) ++buttons_[role];
         std::string const text = lower_case(cell(row, role).text);
         // Spreadsheets write them in their own language.
         for (char const* yes : {"1", "1.0", "1,0", "true", "yes", "wahr", "vrai", "verdadero", "vero", "waar"})
             if (text == yes) return true;
         for (char const* no : {"0", "0.0", "0,0", "false", "no", "falsch", "faux", "falso", "onwaar"})
             if (text == no) return false;
+        auto const number = read_decimal(text);
         refuse_cell(cell(row, role), roles_.column.at(role), fmt::format("'{}' is 1 or 0", role),
-                    "use 1 and 0, true and false, or yes and no");
+                    number && is_missing_code(number->value)
+                        ? fmt::format("use 1 and 0, or --missing {} if nothing was answered", text)
+                        : "use 1 and 0, true and false, or yes and no");
     }
     int count(Row const& row, std::string const& role)
     {
@@ -189,12 +247,18 @@ private:
         if (made_.task == Task::pair || made_.task == Task::pair_with_reference) {
             need("first");
             need("second");
+            std::string both;
+            for (char const* role : {"first_wins", "first_chosen", "chosen_from_0", "chosen"})
+                if (has(role)) both += (both.empty() ? "'" : " and '") + std::string(role) + "'";
+            if (both.find(" and ") != std::string::npos)
+                throw ScriptError(t_.file, {}, "columns for " + both, "each of them tells the choice",
+                                  "name one of them");
             if (has("first_wins")) {
                 made_.detail = TrialDetail::counts;
                 need("first_wins");
                 need("second_wins");
             } else
-                need(has("first_chosen") ? "first_chosen" : "chosen");
+                need(has("first_chosen") ? "first_chosen" : has("chosen_from_0") ? "chosen_from_0" : "chosen");
             return;
         }
         if (made_.task == Task::rating || made_.task == Task::magnitude || made_.task == Task::adjustment) {
@@ -229,6 +293,34 @@ private:
         if (has_two_kinds) need("signal");
     }
 
+    std::vector<std::size_t> columns_of_code(std::string const& column) const
+    {
+        if (!column.empty()) return {std::size_t(column_of(column, "--missing names it"))};
+        std::vector<std::size_t> all;
+        for (char const* role : {"value", "level", "signal", "correct", "yes", "trials", "correct_count",
+                                 "wrong_count", "yes_count", "no_count", "percent", "reaction_s", "reaction_ms",
+                                 "first_chosen", "chosen_from_0", "chosen", "first_wins", "second_wins", "ties"})
+            if (has(role)) all.push_back(std::size_t(at_.at(role)));
+        return all;
+    }
+    /// The code of --missing that the cell is; null = none.
+    Code* code_of(Row const& row, std::size_t column)
+    {
+        std::string const& text = row[column].text;
+        for (Code& code : codes_) {
+            if (std::find(code.columns.begin(), code.columns.end(), column) == code.columns.end()) continue;
+            auto const a = read_decimal(text), b = read_decimal(code.text);
+            if (text != code.text && !(a && b && a->value == b->value)) continue;
+            code.is_found = true;
+            return &code;
+        }
+        return nullptr;
+    }
+    bool is_missing(Row const& row, std::size_t column)
+    {
+        return DelimitedText::is_missing(row[column].text) || code_of(row, column) != nullptr;
+    }
+
     bool is_used(Row const& row)
     {
         for (auto const& [column, value] : roles_.only)
@@ -237,12 +329,15 @@ private:
                 return false;
             }
         auto const is_there = [&](std::size_t column) {
-            if (!DelimitedText::is_missing(row[column].text)) return true;
-            ++left_out_[fmt::format("no '{}'", t_.columns[column])];
+            if (!is_missing(row, column)) return true;
+            Code const* const code = code_of(row, column);
+            ++left_out_[code != nullptr ? fmt::format("'{}' is {}", t_.columns[column], code->text)
+                                        : fmt::format("no '{}'", t_.columns[column])];
             return false;
         };
         for (std::string const& role : needed_)
-            if (!is_there(std::size_t(at_.at(role)))) return false;
+            for (std::size_t const column : parts_.at(role))
+                if (!is_there(column)) return false;
         for (int const f : factors_)
             if (!is_there(std::size_t(f))) return false;
         return true;
@@ -252,16 +347,24 @@ private:
     {
         if (!is_used(row)) return;
         MadeTrial m;
-        m.participant = has("participant") ? cell(row, "participant").text : "all";
-        if (has("run")) m.run = cell(row, "run").text;
+        m.participant = has("participant") ? name(row, "participant") : "all";
+        if (has("run")) m.run = name(row, "run");
+        used_.push_back(&row);
+        ids_.push_back(m.participant);
         for (int const f : factors_) m.factors.push_back(row[std::size_t(f)].text);
         for (auto const& [role, unit_ms] : {std::pair("reaction_ms", 1.0), std::pair("reaction_s", 1000.0)}) {
-            if (m.reaction_ms || !has(role) || DelimitedText::is_missing(cell(row, role).text)) continue;
+            if (m.reaction_ms || !has(role)) continue;
+            if (is_missing(row, std::size_t(at_.at(role)))) {
+                if (Code const* const code = code_of(row, std::size_t(at_.at(role))))
+                    ++left_out_times_[fmt::format("'{}' is {}", roles_.column.at(role), code->text)];
+                continue;
+            }
             m.reaction_ms = unit_ms * number(row, role);
             reactions_[role].push_back(*m.reaction_ms);
             if (*m.reaction_ms < 0)
                 refuse_cell(cell(row, role), roles_.column.at(role), "no reaction time is below 0",
-                            "leave the cell empty if there was none");
+                            fmt::format("leave the cell empty if there was none, or use --missing {}",
+                                        cell(row, role).text));
         }
         switch (made_.task) {
         case Task::pair:
@@ -305,24 +408,150 @@ private:
             if (text == "0.5" || text == "0,5") return answered("neither", 1);
             return answered(flag(row, "first_chosen") ? "first" : "second", 1);
         }
-        TextCell const& c = cell(row, "chosen");
+        bool const is_from_0 = !has("chosen") || has("chosen_from_0");
+        TextCell const& c = cell(row, is_from_0 ? "chosen_from_0" : "chosen");
         std::string const text = lower_case(c.text);
         auto const is = [&](std::initializer_list<char const*> words) {
             return std::any_of(words.begin(), words.end(), [&](char const* w) { return text == w; });
         };
+        std::optional<int> const position = position_of(c.text);
+        if (is_from_0 && position && *position < 2) return answered(*position == 0 ? "first" : "second", 1);
+        if (is_from_0 && position)
+            refuse_cell(c, roles_.column.at("chosen_from_0"), "the positions of two are 0 and 1, counted from 0",
+                        "write neither if it means that there was no difference, or leave such rows out");
         char const* const as_name = c.text == m.items[0] ? "first" : c.text == m.items[1] ? "second" : nullptr;
-        char const* const as_word = is({"first", "left", "1"})                        ? "first"
-                                    : is({"second", "right", "2"})                    ? "second"
+        char const* const as_word = is({"first", "left"}) || position == 1            ? "first"
+                                    : is({"second", "right"}) || position == 2        ? "second"
                                     : is({"neither", "tie", "equal", "same", "none"}) ? "neither"
+                                    : position == 0                                   ? "position 0"
                                                                                       : nullptr;
         if (as_name != nullptr && as_word == nullptr) is_chosen_by_name_ = true;
         if (as_name != nullptr && as_word != nullptr && std::string_view(as_name) != as_word) ++as_names_[c.text];
         if (as_name == nullptr && as_word != nullptr) ++as_words_[c.text];
+        if (as_name == nullptr && position)
+            positions_.push_back({made_.trials.size(), &c, *position, is_button(row, "chosen")});
         if (as_name != nullptr || as_word != nullptr) return answered(as_name != nullptr ? as_name : as_word, 1);
         refuse_cell(
-            c, roles_.column.at("chosen"),
+            c, roles_.column.at(is_from_0 ? "chosen_from_0" : "chosen"),
             fmt::format("it is neither '{}' nor '{}', nor first, second or neither", m.items[0], m.items[1]),
-            "name the chosen item, or use first_chosen for 1 and 0");
+            "name the chosen item, or write first, second or neither");
+    }
+
+    /// Whether the cell is the response to a trial with buttons of jsPsych: their numbers begin at 0 ("button_pressed" before
+    /// version 7; https://www.jspsych.org/latest/plugins/html-button-response).
+    bool is_button(Row const& row, std::string const& role) const
+    {
+        std::string const& column = roles_.column.at(role);
+        int const type = t_.column("trial_type");
+        return type >= 0 && (column == "response" || column == "button_pressed") &&
+               row[std::size_t(type)].text.ends_with("button-response") && position_of(cell(row, role).text);
+    }
+
+    /// Answers by position count from 1, or from 0 if the program that wrote them is known to do so. Elsewhere a 0 is refused,
+    /// since 0 and 1 may also be flags of "the first was chosen", which mean the opposite.
+    void resolve_positions()
+    {
+        if (positions_.empty()) return;
+        Position const *zero = nullptr, *two = nullptr;
+        bool are_buttons = true;
+        for (Position const& p : positions_) {
+            if (p.number == 0 && zero == nullptr) zero = &p;
+            if (p.number == 2 && two == nullptr) two = &p;
+            are_buttons = are_buttons && p.is_button;
+        }
+        std::string const& column = roles_.column.at("chosen");
+        if (zero != nullptr && two != nullptr)
+            refuse_cell(
+                *zero->cell, column,
+                fmt::format("the column has 2, too (line {}): 0 may be the first of three buttons, or no choice",
+                            two->cell->place.line),
+                "write first, second and neither, or leave rows without a choice empty");
+        if (zero != nullptr && !are_buttons)
+            refuse_cell(
+                *zero->cell, column,
+                "0 and 1 may be positions counted from 0, or 1 may mean that the first was chosen: these are "
+                "opposites",
+                fmt::format("use chosen_from_0={0} if 0 means that the first was chosen, first_chosen={0} if 1 "
+                            "does",
+                            column));
+        bool const from_0 = zero != nullptr || (are_buttons && two == nullptr);
+        if (from_0)
+            for (Position const& p : positions_)
+                made_.trials[p.trial].response = p.number == 0 ? "first" : "second";
+        if (from_0)
+            made_.notes.push_back(
+                fmt::format("column '{}' has numbers of jsPsych's buttons, which count from 0: 0 is read as "
+                            "first, 1 as second ({} rows)",
+                            column, positions_.size()));
+        else if (two == nullptr && positions_.size() == made_.trials.size())
+            made_.notes.push_back(
+                fmt::format("answers in column '{0}' that are positions are all 1 ({1} rows): they are read "
+                            "as first; use chosen_from_0={0} if they count from 0",
+                            column, positions_.size()));
+    }
+
+    /// A caution if numbers of buttons are read as 1 = yes: the button 0 may be the one of yes.
+    void note_buttons()
+    {
+        for (auto const& [role, n] : buttons_)
+            made_.notes.push_back(fmt::format(
+                "column '{0}' has numbers of jsPsych's buttons, which count from 0: {1}={0} reads 1, the second "
+                "button, as "
+                "yes ({2} rows){3}",
+                roles_.column.at(role), role, n,
+                role == "first_chosen" ? fmt::format("; if button 0 is that of the first, use chosen_from_0={}",
+                                                     roles_.column.at(role))
+                                       : "; if button 0 is that of yes, exchange 0 and 1"));
+    }
+
+    /// Cautions on numbers that look like codes of missing values, on codes that do not occur, and the times left out.
+    void note_codes()
+    {
+        for (auto const& [why, n] : left_out_times_)
+            made_.notes.push_back(fmt::format("{} reaction times left out: {}", n, why));
+        for (Code const& code : codes_)
+            if (!code.is_found) made_.notes.push_back(fmt::format("--missing {}: no cell has it", code.text));
+        auto const doubt = [&](std::vector<double> const& numbers, NumberKind kind, std::string const& column,
+                               std::string const& option) {
+            for (MissingCode const& c : missing_codes(numbers, kind))
+                made_.notes.push_back(
+                    missing_code_caution(column, c, fmt::format("--missing {}{}", option, c.code)));
+        };
+        bool const is_judged = roles_.scale == Scale::linear && made_.task == Task::rating;
+        for (auto const& [role, kind] :
+             {std::pair("value", is_judged ? NumberKind::judgements : NumberKind::ratios),
+              std::pair("level", NumberKind::ratios), std::pair("reaction_s", NumberKind::times),
+              std::pair("reaction_ms", NumberKind::times)})
+            if (numbers_.contains(role)) doubt(numbers_.at(role), kind, roles_.column.at(role), "");
+        for (int const f : factors_) {
+            std::vector<double> levels;
+            for (Row const* row : used_)
+                if (auto const v = read_decimal((*row)[std::size_t(f)].text)) levels.push_back(v->value);
+            std::string const& column = t_.columns[std::size_t(f)];
+            if (levels.size() == used_.size()) doubt(levels, NumberKind::ratios, column, column + "=");
+        }
+    }
+
+    /// A caution if ids are in several files that have several participants each: each file may number its own people.
+    void note_files()
+    {
+        std::map<int, std::set<std::string>> people;
+        std::map<std::string, std::set<int>> files;
+        for (std::size_t r = 0; r < used_.size(); ++r) {
+            people[used_[r]->front().file].insert(ids_[r]);
+            files[ids_[r]].insert(used_[r]->front().file);
+        }
+        if (!has("participant") || people.size() < 2) return;
+        std::vector<std::string> shared;
+        for (auto const& [id, in] : files)
+            if (in.size() > 1 && std::all_of(in.begin(), in.end(), [&](int f) { return people[f].size() > 1; }))
+                shared.push_back(id);
+        if (shared.empty()) return;
+        made_.notes.push_back(fmt::format("{} of {} ids ({}) are in several files: they are taken as the same "
+                                          "people; if each file numbers its own, use "
+                                          "participant=file+{}",
+                                          shared.size(), files.size(), named_few(shared),
+                                          roles_.column.at("participant")));
     }
 
     /// A caution if reaction times seem to be in another unit: their median is beyond half a minute, or below what people
@@ -355,7 +584,7 @@ private:
         for (auto const& [text, n] : doubtful)
             made_.notes.push_back(
                 fmt::format("answer '{}' ({} of {} rows) may name an item, a position or a tie: it is read as the "
-                            "item if the pair has one of that name; use first_chosen for positions",
+                            "item if the pair has one of that name; write first, second or neither for positions",
                             text, n, t_.rows.size()));
     }
 
@@ -472,7 +701,15 @@ private:
 
     DelimitedText const& t_;
     ColumnRoles const& roles_;
-    std::map<std::string, int> at_; ///< column by role
+    std::map<std::string, int> at_; ///< column by role, the first one
+    std::map<std::string, std::vector<std::size_t>> parts_;
+    std::vector<Code> codes_;
+    std::vector<Row const*> used_; ///< rows that are not left out, with the ids of their participants
+    std::vector<std::string> ids_;
+    std::vector<Position> positions_;
+    std::map<std::string, int> buttons_; ///< numbers of buttons that are read as flags, by role
+    std::map<std::string, int> left_out_times_;
+    std::map<std::string, std::vector<double>> numbers_; ///< by role
     std::vector<int> factors_;
     std::vector<std::string> needed_;
     std::map<std::string, int> left_out_;
@@ -521,7 +758,12 @@ std::map<std::string, std::string> parse_roles(std::string const& text)
 
 ImportedTable import_trials(DelimitedText const& table, ColumnRoles const& roles)
 {
-    return Importer(table, roles).import();
+    bool names_files = std::find(roles.factors.begin(), roles.factors.end(), "file") != roles.factors.end();
+    for (auto const& [role, column] : roles.column)
+        for (std::string const& part : parts_of(table, role, column)) names_files = names_files || part == "file";
+    if (!names_files || table.column("file") >= 0) return Importer(table, roles).import();
+    DelimitedText const named = with_file_names(table);
+    return Importer(named, roles).import();
 }
 
 } // namespace study

@@ -146,7 +146,7 @@ private:
         a.replicates = 2;
         a.permutations = 0;
         a.draws = 0;
-        a.has_outliers = false;
+        a.has_outliers = a.has_deviations = false;
         a.confidence = 1 - settings_.alpha;
         return analyze_one_block(s, sessions.first(std::size_t(participants)), settings_.block, a);
     }

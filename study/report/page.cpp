@@ -393,7 +393,7 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
     };
     html += gi::html_section(
         "Observers", (a.exclusions.empty() ? gi::html_paragraph("Nothing except practice was excluded.") : "") +
-                         exclusions_html(a) + shown({"observers", "agreement"}));
+                         exclusions_html(a) + shown({"observers", "factors", "agreement"}));
     html += gi::html_section("Timing", timing_html(a, facts) + shown({"timing", "reactions", "calibrations"}) +
                                            sounds_html(script, sessions) + gaze_html(sessions));
     std::string orders;

@@ -190,6 +190,15 @@ public:
         return std::max(0.0, 2 * (most_ - maximise(last_, free_)));
     }
     void start_over() { last_ = best_; }
+    /// Twice the loss of log-likelihood if the parameter of the deviation of d' is this.
+    double loss_of_deviation(double parameter)
+    {
+        last_[1] = parameter;
+        std::vector<int> free{0};
+        for (int const i : free_)
+            if (i != 1) free.push_back(i);
+        return std::max(0.0, 2 * (most_ - maximise(last_, free)));
+    }
 
 private:
     double maximise(Population& at, std::vector<int> const& free)
@@ -238,6 +247,21 @@ double variance_ratio(DetectionTask task, Fit& fit)
     return moderated(std::min(1.0, sum / (dd - slope * dc)), n, surprises / n, trials / n);
 }
 
+Interval deviation_interval(Fit& fit, double n, double confidence)
+{
+    constexpr double kNone = -6, kMost = 2; // logarithms of deviations: below 0.0025, beyond 7
+    double const tail = (1 - confidence) / 2, best = fit.best()[1];
+    auto const end = [&](double direction, double from, double farthest) {
+        fit.start_over();
+        double const limit = deviation_limit(n, direction > 0 ? tail : 1 - tail);
+        double const x = profile_end({from, limit, direction, farthest, 0.3, 0.02},
+                                     [&](double parameter) { return fit.loss_of_deviation(parameter); });
+        return std::isinf(x) ? x : deviation(x);
+    };
+    double const low = best > kNone ? end(-1, best, kNone) : 0;
+    return {std::isinf(low) ? 0 : low, end(1, std::max(best, kVisibleLogSd), kMost)};
+}
+
 void check(std::span<DetectionCounts const> observers)
 {
     double trials = 0;
@@ -254,7 +278,8 @@ void check(std::span<DetectionCounts const> observers)
 
 } // namespace
 
-GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> observers, double confidence)
+GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> observers, double confidence,
+                         bool has_deviation)
 {
     check(observers);
     double signals = 0, noises = 0;
@@ -296,6 +321,8 @@ GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> ob
                            [&](double mean) { return fit.loss(mean); });
     };
     g.interval = {end(-1), end(1)};
+    if (has_deviation && n > 1 && std::isfinite(g.mean))
+        g.deviation_interval = deviation_interval(fit, n, confidence);
     return g;
 }
 

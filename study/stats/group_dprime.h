@@ -11,6 +11,7 @@
 #include "study/stats/binomial.h"
 #include "study/stats/detection_model.h"
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ inline constexpr double kLeastDPrimeSd = 0.01; ///< fitted instead of 0, of d' a
 struct GroupDPrime {
     double mean = 0;      ///< of d' in the population; may be infinite
     double deviation = 0; ///< standard deviation of d' between observers; at least kLeastDPrimeSd
+    /// Of the deviation, by its profile: 0 where the answers do not show that observers differ; the upper end may be infinite. NaN
+    /// with one observer, or if it is not asked for.
+    Interval deviation_interval{std::nan(""), std::nan("")};
     double criterion = 0;
     Interval interval;            ///< of the mean; ends may be infinite
     double p = 1;                 ///< of "the mean is 0", by the same likelihood ratio
@@ -30,6 +34,7 @@ struct GroupDPrime {
 };
 
 /// Observers without trials are left out. @throws std::invalid_argument no observer has trials, or invalid counts
-GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> observers, double confidence = 0.95);
+GroupDPrime group_dprime(DetectionTask task, std::span<DetectionCounts const> observers, double confidence = 0.95,
+                         bool has_deviation = true);
 
 } // namespace study

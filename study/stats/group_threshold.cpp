@@ -102,6 +102,14 @@ public:
     }
 
     void start_over() { last_ = best_; }
+    double loss_of_spread(double spread)
+    {
+        last_[kSpread] = spread;
+        std::vector<int> free{kMean};
+        for (int const i : shared_)
+            if (i != kSpread) free.push_back(i);
+        return std::max(0.0, 2 * (most_ - maximise(last_, free)));
+    }
     double loss(double mean)
     {
         last_[kMean] = mean;
@@ -175,6 +183,24 @@ GroupThreshold described(ThresholdFit const& fit, GroupThresholdSettings const& 
     return g;
 }
 
+/// Ends in ranges.
+Interval deviation_interval(ThresholdFit& fit, double n, double confidence)
+{
+    constexpr double kNone = -8; // spreads below it are one: the logarithm of that part of a range
+    double const best = fit.best()[ThresholdPart::kSpread], tail = (1 - confidence) / 2;
+    auto const end = [&](double direction, double from, double farthest) {
+        fit.start_over();
+        ProfileSearch const search{
+            from, deviation_limit(n, direction > 0 ? tail : 1 - tail), direction, farthest, 0.3, 0.02};
+        double const x = profile_end(search, [&](double spread) { return fit.loss_of_spread(spread); });
+        return std::isinf(x) ? x : spread_of(x);
+    };
+    double const low = best > kNone ? end(-1, best, kNone) : 0;
+    // As in loss(): where the best spread is 0 its logarithm has no gradient.
+    double const high = end(1, std::max(best, kVisibleLogSpread), std::log(kMostDeviation));
+    return {std::isinf(low) ? 0 : low, high};
+}
+
 } // namespace
 
 GroupThreshold group_threshold_mode(std::span<ObserverLevels const> observers,
@@ -204,6 +230,10 @@ GroupThreshold group_threshold(std::span<ObserverLevels const> observers, GroupT
         return std::isinf(x) ? x : m.centre() + m.range() * x;
     };
     g.interval = {end(-1), end(1)};
+    if (g.observers > 1 && settings.has_deviation) {
+        Interval const spread = deviation_interval(fit, n, settings.confidence);
+        g.deviation_interval = {m.range() * spread.low, m.range() * spread.high};
+    }
     return g;
 }
 

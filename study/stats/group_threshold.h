@@ -12,6 +12,7 @@
 #include "study/stats/binomial.h"
 #include "study/stats/psychometric_fit.h"
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,12 +32,18 @@ struct GroupThresholdSettings {
     double confidence = 0.95;
     std::optional<double> lapse{}; ///< fixed; none = it is fitted
     bool fits_guess = false;       ///< a common rate is fitted in place of those of the observers
+    bool has_deviation = true;     ///< with the interval of the deviation
 };
+
+constexpr double kMostDeviation = 2; ///< of thresholds, in ranges
 
 /// Thresholds and deviations in units of u (see transformed).
 struct GroupThreshold {
     double mean = 0, deviation = 0; ///< of thresholds in the population
     Interval interval;              ///< of the mean; ends beyond 1.5 ranges from the range are infinite
+    /// Of the deviation, by its profile: 0 where the answers do not show that observers differ, infinite beyond kMostDeviation
+    /// ranges. NaN with one observer.
+    Interval deviation_interval{std::nan(""), std::nan("")};
     PsychometricParameters shared;  ///< threshold: the mean; scale, guess, lapse
     double scale_error = 0;         ///< standard error of the scale's logarithm; 0 = not computed
     double eta = 0;                 ///< overdispersion: variance of n answers is n p q (1 + (n - 1) eta^2)

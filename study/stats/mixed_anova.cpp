@@ -240,6 +240,7 @@ std::vector<AnovaEffect> mixed_anova(Matrix const& cells, MixedDesign const& des
             e.p_hf = f_tail(e.f, e.huynh_feldt * e.df1, e.huynh_feldt * e.df2);
             e.partial_eta2 = s.effect / (s.effect + s.error);
             e.eta2 = eta2_interval(e.f, e.df1, e.df2, settings.confidence);
+            e.eta2.high = std::max(e.eta2.high, e.partial_eta2);
             e.p_permutation = settings.permutations > 0 ? permuted_p(z, own, others, all, e.is_between, settings,
                                                                      std::uint64_t(effects.size()))
                                                         : std::numeric_limits<double>::quiet_NaN();

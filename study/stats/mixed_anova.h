@@ -43,7 +43,9 @@ struct AnovaEffect {
            p_gg = 1;                  ///< epsilon, and p with it; 1 and p without a within factor of 3 or more
     double huynh_feldt = 1, p_hf = 1; ///< at most 1
     double partial_eta2 = 0;          ///< squares / (squares + those of the error)
-    Interval eta2;                    ///< by the noncentral F distribution (Steiger 2004, Psychol. Methods 9:164)
+    /// By the noncentral F distribution (Steiger 2004, Psychol. Methods 9:164). F that is smaller than chance allows has the
+    /// upper end 0 there; the end is at least the estimate, which is never 0, and the interval wider than need be.
+    Interval eta2;
     /// Without assumption of normality: for effects that involve groups, observers change groups; otherwise the
     /// signs of an observer's contrasts change (Fisher 1935; Anderson & ter Braak 2003). NaN if not asked for.
     double p_permutation = 0;

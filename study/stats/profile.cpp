@@ -15,6 +15,12 @@ double profile_limit(double confidence, double n, double ratio)
     return there <= 1 ? n * ratio * square : n * (std::log(there) + 1 - ratio);
 }
 
+double deviation_limit(double n, double tail)
+{
+    double const ratio = n / chi_square_quantile(tail, n - 1); // variance at the end by the estimate
+    return n * (std::log(ratio) + 1 / ratio - 1);
+}
+
 double profile_p(double loss, double n, double ratio)
 {
     if (!(n > 1)) return chi_square_tail(loss, 1);

@@ -55,6 +55,11 @@ double profile_end(ProfileSearch const& s, Loss const& loss)
 /// @param n      1: chi-square's limit
 double profile_limit(double confidence, double n, double ratio);
 
+/// The limit of the likelihood ratio of a deviation between n observers, more than one, for the ends of the chi-square interval with
+/// n - 1 degrees of freedom: exact where what deviates is known of each observer and normal.
+/// @param tail  probability beyond the end: of the upper end as 0.025, of the lower one as 0.975
+double deviation_limit(double n, double tail);
+
 /// p of a value with this loss: 1 - the confidence whose limit is the loss, so that intervals
 /// exclude the value where p is smaller.
 double profile_p(double loss, double n, double ratio);

@@ -85,6 +85,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
             d.script = parse_script(text.text, text.file);
             d.script_text = text.text;
             hash = gi::sha256(text.text);
+            d.inputs.insert(d.inputs.begin(), {text.file, hash});
         }
         if (start.script_sha256 != hash)
             throw ScriptError(file.string(), {}, "the session was recorded with another script",
@@ -97,6 +98,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
         if (!planned.remark.empty())
             plans[planned.source].push_back(file.parent_path().parent_path().lexically_relative(dir).string() +
                                             ": " + planned.remark);
+        d.inputs.push_back({file.string(), gi::sha256(gi::read_text(file))});
         d.sessions.push_back({std::move(planned.plan), std::move(journal.record), {}, planned.source});
         fill_chosen(d.script, d.sessions.back());
     }

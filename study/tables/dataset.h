@@ -7,11 +7,17 @@
 
 namespace study {
 
+/// A file that was read.
+struct InputFile {
+    std::string file, sha256;
+};
+
 struct Dataset {
     Script script;
     std::string script_text;
     std::vector<RecordedSession> sessions; ///< by folder: participant, then session
     std::vector<std::string> remarks;      ///< such as folders without a journal, incomplete lines
+    std::vector<InputFile> inputs{};       ///< script and journals, or tables
 };
 
 /// Reads DIR/sub-*/ses-*/beh/journal.jsonl with the recorded plan of each session. Where this version makes

@@ -50,6 +50,89 @@ TEST(QuestPlusEstimate, SaysWhereItsIntervalIsOpen)
     EXPECT_EQ(prior_estimate("threshold: 5..20/9, slope: 2, guess: [0.1, 0.15, 0.2], lapse: 0.02").note, "");
 }
 
+/// Answers of somebody whose threshold is at this level, without errors, at levels around it.
+ThresholdRun run_around(double threshold)
+{
+    ThresholdRun run;
+    for (int i = 0; i < 40; ++i) {
+        run.levels.push_back(std::pow(10.0, 0.5 * (i % 5)));
+        run.correct.push_back(run.levels.back() >= threshold);
+    }
+    return run;
+}
+
+TEST(QuestPlusEstimate, SaysWhereItsPriorCutsIt)
+{
+    auto const note = [](double threshold, std::string const& prior, std::string const& harder = "down") {
+        Script const s = yes_no_script(harder, "{method: questplus, levels: 1..100/5, threshold: " + prior +
+                                                   ", slope: 3, guess: 0.1, lapse: 0.02, stop: {trials: 40}}");
+        Block const& b = s.blocks.at(0);
+        ThresholdRun run = run_around(threshold);
+        if (harder == "up")
+            for (int& c : run.correct) c = 1 - c;
+        ThresholdEstimate const e = questplus_estimate(run, b, b.procedures.at(0), 0.55, {});
+        EXPECT_EQ(e.note.find(e.doubt) == std::string::npos, false);
+        return e.doubt;
+    };
+    std::string const why = " end of the prior of the threshold, 30 to 60: the threshold may lie beyond";
+    EXPECT_EQ(note(5, "30..60/10"), "the posterior is cut at the lower" + why);
+    EXPECT_EQ(note(5, "30..60/10", "up"), "the posterior is cut at the lower" + why);
+    EXPECT_EQ(note(5, "1..3/10"),
+              "the posterior is cut at the upper end of the prior of the threshold, 1 to 3: the threshold "
+              "may lie beyond");
+    EXPECT_EQ(note(5, "1..100/20"), "");
+}
+
+TEST(ThresholdEstimates, BeyondAllLevelsShownAreNamedAndCounted)
+{
+    ThresholdRun run;
+    run.levels = {0.2, 0.1, 0.4};
+    struct Case {
+        double level;
+        char const* doubt;
+    };
+    for (Case const& c : {Case{0.05, "the threshold lies below all levels shown"},
+                          {0.1, ""},
+                          {0.25, ""},
+                          {0.4, ""},
+                          {0.5, "the threshold lies above all levels shown"},
+                          {kUnknown, ""}}) {
+        ThresholdEstimate e{"likelihood", 0.75, {c.level}, "a note"};
+        note_outside(run, e);
+        EXPECT_EQ(e.doubt, c.doubt);
+        EXPECT_EQ(e.note, *c.doubt == '\0' ? "a note" : "a note; " + std::string(c.doubt) + ", 0.1 to 0.4");
+    }
+    EXPECT_EQ(cut_end({0.1, 0.3, 0.6}), "upper");
+    EXPECT_EQ(cut_end({0.6, 0.3, 0.1}), "lower");
+    EXPECT_EQ(cut_end({0.1, 0.3, 0.1}), "");
+    EXPECT_EQ(cut_end({1}), "");
+
+    // Three people who hear everything that is shown, of a range that has softer sounds, and one who does not.
+    Script const s = yes_no_script("down", "{method: constant, levels: 10..100/5, trials_per_level: 8}");
+    std::vector<RecordedSession> sessions;
+    for (int p = 1; p <= 3; ++p) {
+        MadeSession made(s, "P00" + std::to_string(p));
+        for (int k = 0; k < 5; ++k)
+            for (int i = 0; i < 8; ++i) {
+                made.add_yes_no(10 * std::pow(10.0, k / 4.0), i > 0 || k + p > 2, false);
+                made.add_yes_no(10, i == 0, true);
+            }
+        sessions.push_back(made.finished());
+    }
+    AnalysisSettings settings;
+    settings.draws = 0;
+    Analysis const a = analyze(s, sessions, settings);
+    EXPECT_NE(
+        a.blocks.at(0).thresholds.at(0).note.find("the mean threshold lies below all levels shown, 10 to 100"),
+        std::string::npos)
+        << a.blocks[0].thresholds[0].note;
+    std::string const text = to_text(a);
+    EXPECT_NE(text.find("3 of 3 runs, likelihood at 50 %: the threshold lies below all levels shown"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(to_json(a).find("the threshold lies below all levels shown, 10 to 100"), std::string::npos);
+}
+
 TEST(QuestPlusEstimate, OfAPriorOfOnePointIsNone)
 {
     ThresholdEstimate const e = prior_estimate("threshold: 10, slope: 2, guess: 0.2, lapse: 0.02");

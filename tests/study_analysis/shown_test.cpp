@@ -28,7 +28,8 @@ TEST(Shown, EstimatesHaveTheDigitsThatCarryTheirErrors)
           Case{0.75, 0.7, kNone, "0.750 [0.700, open]"}, Case{0.75, kNone, kNone, "0.75"},
           Case{0.1 + 0.2, kNone, kNone, "0.3"}, Case{kNone, kNone, kNone, "–"},
           Case{kNone, 2.6049, kNone, "– [2.605, open]"}, Case{0, 0, 0, "0 [0, 0]"},
-          Case{0.5, 0.5, 0.5, "0.500000 [0.500000, 0.500000]"},
+          Case{0.5, 0.5, 0.5, "0.500000 [0.500000, 0.500000]"}, Case{0.00115385, 0, 0, "0.0012 [0.0000, 0.0000]"},
+          Case{0.00115385, 0, 0.00115385, "0.00115 [0.00000, 0.00115]"},
           Case{99.96, 99.9, 100.05, "99.960 [99.900, 100.050]"}})
         EXPECT_EQ(shown_estimate(c.value, c.low, c.high), c.text);
 }

@@ -226,8 +226,12 @@ TEST(OtherPrograms, CautionsOfUnitsAndIdsAreInTheResults)
     EXPECT_TRUE(has(notes_of(groups, by_group),
                     "'group': 1 participant (p3) has several levels (old and young), the "
                     "other 4 have one each: it is taken as within participants"));
-    EXPECT_FALSE(
-        has(notes_of("who,group,item,value\np1,x,A,1\np1,y,A,2\np2,x,A,1\np2,y,A,2\n", by_group), "taken"));
+    char const* const both = "p1,x,A,1\np1,y,A,2\np2,x,A,1\np2,y,A,2\n";
+    EXPECT_TRUE(has(notes_of("who,group,item,value\n" + std::string(both), by_group), "4 are analysed as 2"))
+        << "nobody is in two groups";
+    EXPECT_FALSE(has(notes_of("who,light,item,value\n" + std::string(both),
+                              roles_of("participant=who,item=item,value=value", {"light"})),
+                     "taken"));
 
     ImportedTable const t = import_trials(read_delimited(ms, "t.csv"), seconds);
     Dataset const records{t.script, {}, t.sessions, t.notes};

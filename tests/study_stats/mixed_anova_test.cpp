@@ -90,6 +90,10 @@ TEST(MixedAnova, FindsNothingAsOftenAsItShould)
         found += effect(all, "g").p < 0.05;
         permuted += effect(all, "g x c").p_permutation < 0.05;
         wide += effect(all, "c").p_permutation < 0.05;
+        for (AnovaEffect const& e : all) {
+            EXPECT_LE(e.eta2.low, e.partial_eta2);
+            EXPECT_LE(e.partial_eta2, e.eta2.high) << "F = " << e.f;
+        }
     }
     EXPECT_NEAR(found / 400.0, 0.05, 0.035);
     EXPECT_NEAR(permuted / 400.0, 0.05, 0.035);
@@ -138,6 +142,22 @@ TEST(EffectSize, HasScipysIntervals)
     EXPECT_NEAR(eta2_interval(3.5, 2, 20).high, 0.4794635291865553, 1e-9);
     EXPECT_NEAR(eta2_interval(9, 2, 20).low, 0.10452044786199498, 1e-9);
     EXPECT_NEAR(eta2_interval(9, 2, 20).high, 0.645550421898111, 1e-9);
+}
+
+/// Of F that is smaller than chance makes it no noncentrality is the upper end.
+TEST(EffectSize, OfSmallRatiosEndsAtTheEstimate)
+{
+    EXPECT_EQ(eta2_interval(0.0005, 1, 7).high, 0);
+    Matrix cells(8, 2);
+    for (std::size_t o = 0; o < 8; ++o) {
+        cells(o, 0) = double(o % 3);
+        cells(o, 1) = cells(o, 0) + (o % 2 ? 1 : -1) + (o == 0 ? 0.01 : 0);
+    }
+    AnovaEffect const e = mixed_anova(cells, {{{"c", 2}}, {}}).at(0);
+    EXPECT_LT(e.f, 0.001);
+    EXPECT_GT(e.partial_eta2, 0);
+    EXPECT_EQ(e.eta2.low, 0);
+    EXPECT_EQ(e.eta2.high, e.partial_eta2);
 }
 
 TEST(Welch, HasScipysNumbers)

@@ -6,6 +6,9 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <span>
+#include <tuple>
+#include <vector>
 
 namespace study::test {
 namespace {
@@ -115,6 +118,47 @@ TEST(OwnThreshold, TellsFixedLevelsFromThoseThatFollowAnswers)
     EXPECT_FALSE(group_threshold(people, settings()).are_levels_fixed);
     people[1] = answers_at({0.4, 0.7, 1, 1.3, 1.5}, 12, 1, random);
     EXPECT_FALSE(group_threshold(people, settings()).are_levels_fixed);
+}
+
+/// How often the interval of the deviation between observers holds it.
+double deviation_held(double deviation, int observers, int trials)
+{
+    int held = 0;
+    constexpr int kStudies = 120;
+    for (int i = 0; i < kStudies; ++i) {
+        Random random = Random::part(31, std::uint64_t(i));
+        std::vector<ObserverLevels> people;
+        for (int o = 0; o < observers; ++o)
+            people.push_back(answers_at({0.4, 0.7, 1, 1.3, 1.6}, trials, 1 + deviation * random.normal(), random));
+        Interval const found = group_threshold(people, settings()).deviation_interval;
+        held += found.low <= deviation && deviation <= found.high;
+    }
+    return double(held) / kStudies;
+}
+
+TEST(GroupThreshold, HoldsTheDeviationBetweenObserversAsOftenAsItSays)
+{
+    for (auto const& [deviation, observers, trials] :
+         {std::tuple(0.02, 6, 16), {0.1, 4, 16}, {0.1, 6, 16}, {0.3, 6, 16}, {0.3, 12, 40}}) {
+        double const held = deviation_held(deviation, observers, trials);
+        EXPECT_GE(held, 0.9) << deviation << " " << observers;
+        RecordProperty("held at " + std::to_string(deviation) + " by " + std::to_string(observers),
+                       std::to_string(held));
+    }
+}
+
+TEST(GroupThreshold, HasNoDeviationOfOneObserverAndWideOnesOfFew)
+{
+    Random random = Random::part(32, 0);
+    std::vector<ObserverLevels> people;
+    for (int o = 0; o < 3; ++o) people.push_back(answers_at({0.4, 0.7, 1, 1.3, 1.6}, 16, 1, random));
+    EXPECT_TRUE(std::isnan(group_threshold(std::span(people).first(1), settings()).deviation_interval.low));
+    GroupThreshold const g = group_threshold(people, settings());
+    EXPECT_LT(g.deviation_interval.low, 0.02);
+    EXPECT_GT(g.deviation_interval.high, 0.2) << "three equal observers do not show that all are";
+    GroupThresholdSettings without = settings();
+    without.has_deviation = false;
+    EXPECT_TRUE(std::isnan(group_threshold(people, without).deviation_interval.high));
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // lightwell study rebuild, export, analyze, report: what they write and refuse.
 
+#include "gi/core/sha256.h"
 #include "tests/viewer/run_program.h"
 
 #include <nlohmann/json.hpp>
@@ -40,6 +41,8 @@ TEST(StudyRecords, AreAnalysedExportedAndReported)
     auto const j = nlohmann::json::parse(run_well("study analyze records --json", folder.path()).out);
     EXPECT_EQ(j["participants"], 2);
     EXPECT_FALSE(j["tables"]["scores"].empty());
+    ASSERT_EQ(j["inputs"].size(), 3u) << "script and two journals";
+    EXPECT_EQ(j["inputs"][0]["sha256"], gi::sha256(file_text(folder / "rating.yaml")));
     EXPECT_TRUE(j["tables"]["scores"][0]["score"].is_number());
     EXPECT_TRUE(std::filesystem::exists(folder / "numbers/scores.csv"));
     EXPECT_TRUE(nlohmann::json::accept(file_text(folder / "numbers/analysis.json")));
@@ -106,6 +109,44 @@ TEST(StudyTables, OfOthersAreAnalysedAndReportedLikeRecords)
                    "no room for a psychometric function");
     expect_refused("study analyze --table no.csv --columns item=a,value=b", folder, "no.csv");
     expect_refused("study analyze " + table + " --only age", folder, "--only 'age'");
+}
+
+TEST(StudyTables, TellWhatTheyWereComputedFromAndHowIdsWereTaken)
+{
+    TemporaryFolder const folder;
+    auto const write = [&](char const* name, int shift) {
+        std::ofstream file(folder / name);
+        file << "id,i,v\n";
+        for (int p = 1; p <= 4; ++p)
+            for (int i = 0; i < 3; ++i)
+                file << p << ","
+                     << "ABC"[i] << "," << (p == 2 && i == 1 ? -99 : 2 + (p + i * shift) % 5) << "\n";
+    };
+    write("young.csv", 1);
+    write("old.csv", 3);
+    std::string const roles = " --draws 0 --replicates 100 --columns item=i,value=v,participant=";
+    auto const j = nlohmann::json::parse(
+        run_well("study analyze --json --table young.csv old.csv --factors file --missing -99" + roles + "file+id",
+                 folder.path())
+            .out);
+    EXPECT_EQ(j["experiment"], "young and old");
+    EXPECT_EQ(j["participants"], 8);
+    EXPECT_EQ(j["cautions"][0], "2 of 24 rows left out: 'v' is -99");
+    EXPECT_EQ(j["tables"]["factors"][0]["factor"], "file");
+    EXPECT_EQ(j["tables"]["factors"][0]["taken_as"], "between participants");
+    EXPECT_EQ(j["tables"]["factors"][1]["taken_as"], "within participants");
+    EXPECT_FALSE(j["version"].get<std::string>().empty() || j["git"].get<std::string>().empty());
+    ASSERT_EQ(j["inputs"].size(), 2u);
+    EXPECT_EQ(j["inputs"][1]["file"], "old.csv");
+    EXPECT_EQ(j["inputs"][1]["sha256"], gi::sha256(file_text(folder / "old.csv")));
+    Outcome const text = run_well("study analyze --table young.csv old.csv" + roles + "id", folder.path());
+    EXPECT_NE(text.out.find("are in several files"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("-99 2 times in column 'v' is far from all others"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("within participants"), std::string::npos) << text.out;
+    std::filesystem::copy_file(folder / "young.csv", folder / "copy.csv");
+    expect_refused("study analyze --table young.csv copy.csv" + roles + "id", folder,
+                   "copy.csv: the file has the same rows as 'young.csv'");
+    expect_refused("study analyze --table young.csv --missing id=" + roles + "id", folder, "--missing 'id='");
 }
 
 TEST(StudyPower, PrintsPowerAndWritesACurve)

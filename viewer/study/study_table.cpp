@@ -1,6 +1,7 @@
 #include "viewer/study/study_table.h"
 
 #include "gi/core/file.h"
+#include "gi/core/sha256.h"
 
 #include <fmt/format.h>
 
@@ -37,7 +38,7 @@ std::pair<std::string, std::string> halves(std::string const& option, std::strin
 
 } // namespace
 
-study::ImportedTable load_table(TableOptions const& o)
+study::Dataset load_table(TableOptions const& o)
 {
     if (o.columns.empty() && !o.is_matrix)
         throw gi::InputError("--table without --columns", "the meaning of its columns is unknown",
@@ -46,14 +47,25 @@ study::ImportedTable load_table(TableOptions const& o)
     roles.column = study::parse_roles(o.columns);
     roles.factors = o.factors;
     for (std::string const& text : o.only) roles.only.push_back(halves("--only", text, "for example phase=main"));
+    for (std::string const& text : o.missing)
+        if (text.ends_with('='))
+            throw gi::InputError(fmt::format("--missing '{}'", text), "empty cells are missing anyway",
+                                 "for example age=-99");
+    for (std::string const& text : o.missing)
+        roles.missing.push_back(text.find('=') == std::string::npos
+                                    ? std::pair(std::string(), text)
+                                    : halves("--missing", text, "for example age=-99"));
     if (!o.task.empty()) roles.task = task_of(o.task);
     roles.scale = scale_of(o.scale);
     roles.harder_up = o.harder == "up";
     roles.is_matrix = o.is_matrix;
     std::vector<study::DelimitedText> tables;
+    std::vector<study::InputFile> inputs;
     for (std::string const& file : o.files) {
         auto const bytes = gi::read_bytes(file, std::size_t(1) << 30);
-        tables.push_back(study::read_delimited({bytes.begin(), bytes.end()}, file));
+        std::string const text(bytes.begin(), bytes.end());
+        inputs.push_back({file, gi::sha256(text)});
+        tables.push_back(study::read_delimited(text, file));
     }
     study::DelimitedText all = study::joined(tables);
     if (!o.names_and_values.empty()) {
@@ -62,7 +74,7 @@ study::ImportedTable load_table(TableOptions const& o)
     }
     auto table = study::import_trials(all, roles);
     for (std::string const& note : table.notes) fmt::print(stderr, "{}: {}\n", all.file, note);
-    return table;
+    return {std::move(table.script), {}, std::move(table.sessions), std::move(table.notes), std::move(inputs)};
 }
 
 } // namespace viewer

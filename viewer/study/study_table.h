@@ -2,6 +2,7 @@
 // Tables of other programs, as commands read them.
 
 #include "study/imported/trial_table.h"
+#include "study/tables/dataset.h"
 
 #include <string>
 #include <vector>
@@ -13,10 +14,11 @@ struct TableOptions {
     std::string columns, task, scale = "linear", harder = "down";
     std::string names_and_values;           ///< "name=value" of a long table; empty = one row per trial
     std::vector<std::string> factors, only; ///< only: "column=value"
+    std::vector<std::string> missing;       ///< "value", or "column=value"
     bool is_matrix = false;
 };
 
-/// Reads the table and prints its notes on stderr. Throws InputError with file:line:column.
-study::ImportedTable load_table(TableOptions const& options);
+/// Reads the tables as a data set, whose remarks it prints on stderr, too. Throws InputError with file:line:column.
+study::Dataset load_table(TableOptions const& options);
 
 } // namespace viewer

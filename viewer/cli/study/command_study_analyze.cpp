@@ -40,8 +40,7 @@ study::Dataset load(AnalyzeOptions& o)
                              "together they leave no room for a psychometric function",
                              "use rates whose sum is below 1");
     if (!o.dir.empty()) return load_records(o.dir, o.script);
-    study::ImportedTable table = load_table(o.table);
-    return {std::move(table.script), {}, std::move(table.sessions), std::move(table.notes)};
+    return load_table(o.table);
 }
 
 /// With a progress bar for each hierarchical model, and for each time that it is drawn.
@@ -56,7 +55,10 @@ study::Analysis analyze_with_progress(study::Dataset const& records, study::Anal
         last = share;
         bar->update(share);
     };
-    return study::analyze(records, settings);
+    study::Analysis analysis = study::analyze(records, settings);
+    analysis.version = version_number();
+    analysis.git_hash = git_hash();
+    return analysis;
 }
 
 /// Each table as CSV.
@@ -117,14 +119,20 @@ void add_options(CLI::App& command, AnalyzeOptions& o)
     command.add_option(
         "--columns", o.table.columns,
         "what its columns are: ROLE=COLUMN,... with the roles participant, run; pairs: first, second and "
-        "chosen, first_chosen, or first_wins, second_wins, ties; ratings: item, value; answers: level, "
+        "chosen, first_chosen, chosen_from_0, or first_wins, second_wins, ties; ratings: item, value; answers: "
+        "level, "
         "signal and correct or yes, or correct_count, wrong_count, yes_count, no_count, percent, trials; "
-        "reaction_s, reaction_ms");
+        "reaction_s, reaction_ms. participant=group+id: ids that begin anew in each group, file+id: in each file");
     command
         .add_option("--factors", o.table.factors,
                     "its columns with conditions or groups of participants: scene,age")
         ->delimiter(',');
     command.add_option("--only", o.table.only, "use only rows with COLUMN=VALUE (repeatable)");
+    command
+        .add_option("--missing", o.table.missing,
+                    "what stands for a missing value in columns of numbers and answers: -99,999; COLUMN=VALUE: in "
+                    "this one")
+        ->delimiter(',');
     command.add_option(
         "--long", o.table.names_and_values,
         "the table has a row per value: NAME=VALUE, its columns with the names and values of variables");
