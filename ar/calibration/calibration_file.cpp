@@ -1,6 +1,7 @@
 #include "ar/calibration/calibration_file.h"
 
 #include "ar/calibration/stmap.h"
+#include "ar/camera/camera_doubts.h"
 #include "gi/core/durable_file.h"
 #include "gi/core/file.h"
 #include "gi/core/yaml.h"
@@ -273,6 +274,9 @@ Calibration read_calibration(std::filesystem::path const& file, std::optional<gl
 {
     Calibration c = parse_calibration(gi::read_text(file), file.string(), size_px);
     if (!c.stmap.empty()) c.camera = with_stmap(c.camera, c.stmap, report);
+    if (report != nullptr && c.stmap.empty())
+        for (std::string const& doubt : doubts_about(c.camera))
+            report->lose("in doubt: numbers of the calibration", 1, fmt::format("'{}': {}", file.string(), doubt));
     return c;
 }
 

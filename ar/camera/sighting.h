@@ -2,6 +2,8 @@
 // Output of marker detectors and input of pose estimation: world points and their pixel positions.
 
 #include <glm/glm.hpp>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct Sighting {
     int candidates_rejected = 0; ///< squares without a code that is known
     /// Of the unknown and of the ambiguous ones, each once: "marker 7 of DICT_4X4_50".
     std::vector<std::string> unknown, ambiguous;
+    std::map<std::string, std::set<int>> ids; ///< all identifiers that were seen, by dictionary
     /// Boards and grids left out, since the picture contradicts the map: problem and remedy of each.
     std::vector<std::string> contradictions;
 };

@@ -30,7 +30,7 @@ int device_number(std::string const& text)
 
 void refuse_first(std::string const& name, OpenOptions const& o)
 {
-    if (o.first_number)
+    if (o.first_number.value_or(0) != 0)
         throw gi::InputError(fmt::format("frames.first: {} with '{}'", *o.first_number, name),
                              "it is the number of the picture at time 0, and only pictures have one",
                              "leave it out");

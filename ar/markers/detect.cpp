@@ -49,7 +49,10 @@ std::map<int, std::vector<Match>> match(cv::Mat const& gray, cv::Rect part, Mark
         FoundMarkers found = find_markers(gray(part), dictionary, search);
         s.candidates_rejected += found.rejected;
         std::map<int, int> times;
-        for (FoundMarker const& m : found.markers) ++times[m.id];
+        for (FoundMarker const& m : found.markers) {
+            ++times[m.id];
+            s.ids[dictionary].insert(m.id);
+        }
         for (FoundMarker& m : found.markers) {
             for (auto& c : m.corners) c += cv::Point2f(part.tl());
             auto const at = placed.find(m.id);

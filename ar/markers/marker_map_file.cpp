@@ -1,5 +1,6 @@
 #include "ar/markers/marker_map_file.h"
 
+#include "ar/markers/map_doubts.h"
 #include "gi/core/durable_file.h"
 #include "gi/core/file.h"
 #include "gi/core/yaml.h"
@@ -150,9 +151,11 @@ std::string format_marker_map(MarkerMap const& map)
     return s;
 }
 
-MarkerMap read_marker_map(std::filesystem::path const& file)
+MarkerMap read_marker_map(std::filesystem::path const& file, gi::Report* report)
 {
-    return parse_marker_map(gi::read_text(file), file.string());
+    MarkerMap const map = parse_marker_map(gi::read_text(file), file.string());
+    if (report != nullptr) report_doubts(map, file.string(), *report);
+    return map;
 }
 
 void write_marker_map(std::filesystem::path const& file, MarkerMap const& map)

@@ -14,6 +14,7 @@
 // first_id 0, legacy_pattern false, position 0, no rotation.
 
 #include "ar/markers/marker_map.h"
+#include "gi/core/report.h"
 
 #include <filesystem>
 
@@ -23,8 +24,8 @@ namespace ar {
 MarkerMap parse_marker_map(std::string const& text, std::string const& file);
 std::string format_marker_map(MarkerMap const& map);
 
-/// @throws gi::InputError
-MarkerMap read_marker_map(std::filesystem::path const& file);
+/// @param report  if not null: doubts about sizes (map_doubts.h). @throws gi::InputError
+MarkerMap read_marker_map(std::filesystem::path const& file, gi::Report* report = nullptr);
 /// Writes atomically. @throws gi::InputError
 void write_marker_map(std::filesystem::path const& file, MarkerMap const& map);
 

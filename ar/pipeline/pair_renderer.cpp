@@ -9,7 +9,11 @@ namespace ar {
 
 PairRenderer::PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report,
                            std::string method)
-    : local_(std::move(local)), method_(std::move(method)), settings_(settings), report_(report), world_(local_.scene, 0, report)
+    : local_(std::move(local)),
+      method_(std::move(method)),
+      settings_(settings),
+      report_(report),
+      world_(local_.scene, 0, report)
 {
     auto const& lights = world_.world().lights;
     virtual_lights_.assign(lights.begin() + std::ptrdiff_t(std::min(local_.first_virtual_light, lights.size())),
@@ -43,6 +47,28 @@ SceneChange PairRenderer::change_since_last(gi::SceneTime time_s)
                       pose.morph_weights == last_pose_->morph_weights;
     last_pose_ = pose;
     return same ? SceneChange::none : SceneChange::unknown;
+}
+
+std::vector<glm::dvec3> PairRenderer::virtual_corners(gi::SceneTime time_s) const
+{
+    gi::Scene const& scene = *local_.scene;
+    gi::Pose const pose = local_pose(local_, time_s, gi::PairSide::with);
+    std::vector<glm::dvec3> corners;
+    for (std::size_t n = local_.first_virtual_node; n < scene.nodes.size(); ++n)
+        for (std::int32_t const m : scene.nodes[n].meshes) {
+            auto const& positions = scene.meshes[std::size_t(m)].positions;
+            if (positions.empty()) continue;
+            gi::vec3 low = positions.front(), high = low;
+            for (gi::vec3 const& p : positions) {
+                low = glm::min(low, p);
+                high = glm::max(high, p);
+            }
+            for (int k = 0; k < 8; ++k)
+                corners.emplace_back(pose.world_from_node[n] * glm::dvec4((k & 1) != 0 ? high.x : low.x,
+                                                                          (k & 2) != 0 ? high.y : low.y,
+                                                                          (k & 4) != 0 ? high.z : low.z, 1));
+        }
+    return corners;
 }
 
 gi::World const& PairRenderer::world_with(gi::SceneTime time_s)

@@ -32,6 +32,8 @@ public:
     PairPictures render(gi::Camera const& camera, int width, int height, std::uint32_t paths, gi::SceneTime time_s,
                         gi::DenoiseSettings filter, gi::StopRequest const& stop);
     gi::World const& world() const { return world_.world(); }
+    /// Corners of the boxes around the virtual meshes, as they are placed at that time (of skins and morphs: at rest).
+    std::vector<glm::dvec3> virtual_corners(gi::SceneTime time_s) const;
     /// The world with all virtual objects in place; valid until the next picture.
     gi::World const& world_with(gi::SceneTime time_s);
 

@@ -6,6 +6,7 @@
 #include "gi/core/error.h"
 #include "gi/scene/load/load.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace ar {
@@ -77,6 +78,11 @@ void Pipeline::render(FrameResult& found, Frame const& frame, double time_s, gi:
     PairPictures const p =
         renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
                          session_.render.paths, time_s, session_.render.denoise, stop);
+    std::vector<glm::dvec3> const corners_m = renderer_.virtual_corners(time_s);
+    found.visibility =
+        visibility_of(camera_.model, world_from_camera, corners_m, cv::countNonZero(p.coverage) > 0);
+    for (glm::dvec3 const& corner : corners_m)
+        found.virtual_m = std::min(found.virtual_m, glm::length(corner - world_from_camera.position));
     FinishFrame of{{}, world_from_camera, time_s, frame.exposure.time_s};
     if (finish_->needs_radiance()) of.radiance = radiance_of(found.camera, camera_.photometry, frame.exposure);
     found.pair = (*finish_)(p, of, finish_->needs_world() ? renderer_.world_with(time_s) : renderer_.world());

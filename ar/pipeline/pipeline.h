@@ -10,6 +10,9 @@
 #include "ar/pipeline/place_light.h"
 #include "ar/pipeline/pose_finder.h"
 #include "ar/pipeline/pose_losses.h"
+#include "ar/pipeline/visibility.h"
+
+#include <limits>
 
 namespace ar {
 
@@ -38,6 +41,9 @@ struct FrameResult {
     UsedPose used;     ///< what the frame is composited with
     std::string lost_by; ///< FoundPose::lost_by
     CompositeCounts counts;
+    Visibility visibility = Visibility::unknown; ///< of the virtual objects' surfaces
+    /// From the camera to the nearest corner of the boxes around them.
+    double virtual_m = std::numeric_limits<double>::infinity();
     std::optional<RenderedPair> pair;     ///< in the camera's lens
     std::optional<SeenDepth> depth;       ///< of the pair; only after Pipeline::keep_depth
     cv::Mat light;                        ///< CV_8UC3 RGB, thumbnail of the environment map used; empty = no map

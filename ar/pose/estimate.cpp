@@ -1,6 +1,7 @@
 #include "ar/pose/estimate.h"
 
 #include "ar/pose/candidates.h"
+#include "ar/pose/expected_error.h"
 #include "ar/pose/refine.h"
 #include "gi/core/quantile.h"
 #include "gi/core/rotation.h"
@@ -288,6 +289,7 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera,
     Refined const& r = best->refined;
     e.world_from_camera = r.world_from_camera;
     e.rms_px = rms_px(camera, best->points, r.world_from_camera);
+    e.distance_m = glm::length(kept.centre_m - r.world_from_camera.position);
     double const scale = chi2_scale(*best);
     e.covariance = scale * *r.covariance;
     for (int i = 0; i < 3; ++i) {
@@ -301,6 +303,7 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera,
     e.fit =
         double(e.points_used) / double(e.points_used + e.points_rejected) * std::min(1.0, 2 / std::sqrt(scale));
     e.confidence = confidence_of(e.fit, own_likelihood, e.rotation_sigma_deg);
+    e.expected_error_m = expected_error(e);
     return e;
 }
 

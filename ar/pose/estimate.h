@@ -46,6 +46,8 @@ struct PoseEstimate {
     /// 0.5 where `last` decided), over 1 + (largest standard deviation of the rotation in degrees)^2.
     double confidence = 0;
     double fit = 0; ///< the first two factors of the confidence
+    std::optional<double> expected_error_m; ///< of the position, see ar/pose/expected_error.h
+    double distance_m = 0;                  ///< from the camera to the middle of the points used
 
     bool found() const { return failure == PoseFailure::none; }
 };

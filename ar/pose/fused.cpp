@@ -1,5 +1,6 @@
 #include "ar/pose/fused.h"
 
+#include "ar/pose/expected_error.h"
 #include "gi/core/rotation.h"
 
 #include <algorithm>
@@ -168,6 +169,10 @@ PoseEstimate PoseFusion::next(double time_s, PoseEstimate const& estimate)
     e.other_likelihood = std::clamp(1 - likely, 0.0, 1.0);
     e.ambiguous = estimate.ambiguous && e.other_likelihood > kRivalry;
     e.confidence = confidence_of(e.fit, 1 - e.other_likelihood, e.rotation_sigma_deg);
+    // A hypothesis of an earlier frame is no likely pose of this one unless its own picture allows another.
+    PoseEstimate likely_off = e;
+    likely_off.other_likelihood = std::min(e.other_likelihood, estimate.other ? estimate.other_likelihood : 0);
+    e.expected_error_m = expected_error(likely_off);
     return e;
 }
 

@@ -11,7 +11,7 @@ std::string frame_table(RunSummary const& summary)
         "composite_ms,latency_ms,show_wait_ms,present_ms,swapped_ms,"
         "markers,points_used,points_rejected,rms_px,confidence,x_m,y_m,z_m,qx,qy,qz,qw,changed_px,clipped_px,"
         "negative_values,not_finite_px,state,shown,"
-        "markers_unknown,markers_ambiguous,boards_left_out,lost_by\n";
+        "markers_unknown,markers_ambiguous,boards_left_out,lost_by,expected_error_mm,distance_m\n";
     for (RunFrame const& f : summary.frames) {
         text += fmt::format("{},{:.6f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},", f.sequence, f.captured_s,
                             f.overtaken, f.read_ms, f.age_ms, f.times.decode_ms, f.times.detect_ms,
@@ -27,9 +27,11 @@ std::string frame_table(RunSummary const& summary)
         } else {
             text += ",,,,,,,";
         }
-        text += fmt::format("{},{},{},{},{},{:.3f},{},{},{},{}\n", f.counts.pixels - f.counts.copied,
+        text += fmt::format("{},{},{},{},{},{:.3f},{},{},{},{},{},{}\n", f.counts.pixels - f.counts.copied,
                             f.counts.clipped, f.counts.negative, f.counts.not_finite, name_of(f.state), f.shown,
-                            f.markers_unknown, f.markers_ambiguous, f.boards_left_out, f.lost_by);
+                            f.markers_unknown, f.markers_ambiguous, f.boards_left_out, f.lost_by,
+                            f.expected_error_m ? fmt::format("{:.3f}", 1e3 * *f.expected_error_m) : "",
+                            f.distance_m > 0 ? fmt::format("{:.5f}", f.distance_m) : "");
     }
     return text;
 }

@@ -72,9 +72,11 @@ void PoseTruth::add(std::uint64_t sequence, gi::RigidPose const& truth,
 std::string describe(PoseTruth const& t)
 {
     if (t.estimates().empty()) return {};
-    std::string text = fmt::format(
-        "jumps of more than {:g} mm: {} in {} steps, {} of them between tracked frames; largest {:.1f} mm\n",
-        kJump_mm, t.jumps(), t.steps(), t.tracked_jumps(), t.largest_jump_mm());
+    std::string text = t.steps() == 0
+                           ? std::string("jumps: - (no two successive frames with a pose)\n")
+                           : fmt::format("jumps of more than {:g} mm: {} in {} steps, {} of them between tracked "
+                                         "frames; largest {:.1f} mm\n",
+                                         kJump_mm, t.jumps(), t.steps(), t.tracked_jumps(), t.largest_jump_mm());
     text += fmt::format("{:<16} {:>7} {:>11} {:>9} {:>11} {:>9}\n", "confidence", "frames", "median (mm)", "95 %",
                         "median (deg)", "95 %");
     for (ConfidenceBin const& b : confidence_curve(t.estimates()))

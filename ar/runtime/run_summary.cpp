@@ -84,7 +84,8 @@ std::string describe(RunSummary const& s)
     text += fmt::format("{:<24} {:>9} {:>9} {:>9}\n", "", "median", "95 %", "most");
     auto const line = [&](char const* name, auto const& value) {
         std::vector<double> values;
-        for (RunFrame const& f : s.frames) values.push_back(value(f));
+        for (RunFrame const& f : s.frames)
+            if (std::optional<double> const v = value(f)) values.push_back(*v);
         Spread const d = spread_of(std::move(values));
         if (d.most > 0) text += fmt::format("{:<24} {:>9.2f} {:>9.2f} {:>9.2f}\n", name, d.median, d.p95, d.most);
     };
@@ -102,6 +103,9 @@ std::string describe(RunSummary const& s)
     line("present (ms)", [](auto const& f) { return f.present_ms; });
     line("capture to swap (ms)", [](auto const& f) { return f.swapped_ms; });
     line("reprojection RMS (px)", [](auto const& f) { return f.rms_px; });
+    line("expected error (mm)", [](auto const& f) {
+        return f.expected_error_m ? std::optional(1e3 * *f.expected_error_m) : std::nullopt;
+    });
     return text;
 }
 

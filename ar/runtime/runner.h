@@ -7,7 +7,9 @@
 // thread waits, and the composites are bit for bit those of a single thread.
 
 #include "ar/capture/frame_source.h"
+#include "ar/markers/seen_ids.h"
 #include "ar/pipeline/pipeline.h"
+#include "ar/pose/focal_check.h"
 #include "ar/pose/pose_file.h"
 
 #include <array>
@@ -55,6 +57,12 @@ struct RunFrame {
     int markers_unknown = 0, markers_ambiguous = 0, boards_left_out = 0; ///< of the Sighting
     std::string lost_by; ///< why it has no trusted pose of its own; empty if it has one
     double rms_px = 0, confidence = 0;
+    /// Of the pose that was used (ar/pose/expected_error.h). Of one held, faded or predicted: with its distance from
+    /// the frame's own estimate, if it has one. Nothing: no pose, or one of a tracker or file.
+    std::optional<double> expected_error_m;
+    double distance_m = 0; ///< from the camera to the middle of the points; 0 = no estimate; held: of the last
+    Visibility visibility = Visibility::unknown;
+    double virtual_m = 0;                   ///< to the virtual objects, FrameResult::virtual_m
     std::optional<gi::RigidPose> estimated; ///< the frame's own pose, trusted or not
     PoseState state = PoseState::lost;
     double shown = 0;                          ///< share of the objects' change that is shown
@@ -71,6 +79,11 @@ struct RunSummary {
     std::uint64_t overtaken = 0;  ///< discarded for a newer one
     std::uint64_t unfinished = 0; ///< in progress when the run was stopped
     double seconds = 0;
+    CameraModel camera;
+    MarkerMap markers;
+    SeenIds ids;                                     ///< identifiers that the frames showed
+    std::optional<OtherDictionary> other_dictionary; ///< of a frame in which none of the map's markers was seen
+    std::optional<FocalFinding> focal;               ///< of a few frames with many points, found or not
 };
 
 /// @param report  if not null: as read_calibration

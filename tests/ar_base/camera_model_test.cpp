@@ -1,5 +1,6 @@
 #include "ar/camera/camera_model.h"
 
+#include "ar/camera/camera_doubts.h"
 #include "ar/camera/pose.h"
 #include "gi/core/error.h"
 
@@ -127,6 +128,24 @@ TEST(Poses, AreThoseOfRodrigues)
     }
     EXPECT_NEAR(angle_between_deg(pose_of({0, 0, 0.1}, {}).rotation, pose_of({0, 0, -0.1}, {}).rotation),
                 glm::degrees(0.2), 1e-9);
+}
+
+TEST(CameraDoubts, AreAboutNumbersThatNoUsualCameraHas)
+{
+    auto const of = [](double fx, double fy, double cx, double cy, LensModel lens = LensModel::pinhole) {
+        return doubts_about(CameraModel{lens, {640, 480}, fx, fy, cx, cy, {}});
+    };
+    EXPECT_TRUE(of(550, 555, 322, 236).empty());
+    EXPECT_TRUE(of(200, 200, 300, 260).empty()) << "wide";
+    EXPECT_TRUE(of(20000, 20000, 319, 239).empty()) << "far";
+    EXPECT_TRUE(of(60, 60, 319, 239, LensModel::fisheye).empty());
+    EXPECT_EQ(of(4.2, 4.2, 322, 236).size(), 1u) << "millimetres";
+    EXPECT_EQ(of(4e5, 4e5, 322, 236).size(), 1u);
+    EXPECT_EQ(of(550, 400, 322, 236).size(), 1u) << "not square";
+    EXPECT_TRUE(of(550, 550, 350, 200).empty());
+    EXPECT_EQ(of(550, 550, 320, 420).size(), 1u) << "cy of another picture";
+    EXPECT_EQ(of(550, 550, 236.8, 322.4).size(), 1u) << "exchanged";
+    EXPECT_EQ(of(1100, 1100, 640, 480).size(), 1u) << "of twice the size";
 }
 
 } // namespace

@@ -31,6 +31,11 @@ TEST(OpenSource, FindsOutWhatAFolderIs)
     EXPECT_EQ(name(folder / "pictures"), folder / "pictures");
     auto const numbered = open_source(folder / "pictures/%d.png");
     EXPECT_EQ(numbered->next(0ms)->sequence, 7u);
+    // Only pictures are numbered: of others the first has the time 0.
+    EXPECT_EQ(open_source(folder / "pictures", {.first_number = 5})->description().first, 5u);
+    EXPECT_EQ(open_source(folder / "session", {.first_number = 0})->description().first, std::nullopt);
+    EXPECT_THROW(open_source(folder / "session", {.first_number = 5}), gi::InputError);
+    EXPECT_THROW(open_source("counter", {.first_number = 5}), gi::InputError);
 }
 
 TEST(OpenSource, SaysWhatIsNotThere)

@@ -1,5 +1,7 @@
 #include "ar/markers/marker_map_file.h"
 
+#include "ar/markers/map_doubts.h"
+#include "ar/markers/seen_ids.h"
 #include "gi/core/error.h"
 
 #include <gtest/gtest.h>
@@ -91,6 +93,74 @@ TEST(MarkerMap, NumbersThingsAndPlacesMarkers)
     EXPECT_EQ(all[10].corners_m[2], glm::dvec3(5, 0, 0));
     EXPECT_EQ(inner_corners(map.boards[0]).front(), glm::dvec3(1, 3, 0));
     EXPECT_EQ(marker_count(map.boards[0]), 6);
+}
+
+TEST(MarkerMapDoubts, AreAboutSizesThatAreHardlyInMetres)
+{
+    auto const marker = [](double side_m, glm::dvec3 at = {}) {
+        return MarkerMap{{{"DICT_4X4_50", 1, side_m, {at, {1, 0, 0, 0}}}}, {}, {}};
+    };
+    auto const board = [](double square_m, double marker_m, glm::dvec3 at = {}) {
+        return MarkerMap{{}, {{7, 5, square_m, marker_m, "DICT_4X4_50", 0, false, {at, {1, 0, 0, 0}}}}, {}};
+    };
+    auto const grid = [](double marker_m, double gap_m) {
+        return MarkerMap{{}, {}, {{2, 3, marker_m, gap_m, "DICT_4X4_50", 0, {}}}};
+    };
+    struct Case {
+        MarkerMap map;
+        std::string words; ///< empty: no doubt
+    };
+    std::vector<Case> const cases{
+        {marker(0.08), ""},
+        {marker(2.5), ""},
+        {marker(80), "write 0.08"},
+        {marker(3.5), "metres?"},
+        {marker(0.00008), "these are 0.08 mm"},
+        {marker(0.006), ""},
+        {marker(0.08, {0, 0, 320}), "320 m from the origin"},
+        {board(0.045, 0.034), ""},
+        {board(45, 34),
+         "board 1 (7 x 5 squares) is 315 m wide: are its lengths in metres? if it is 315 mm, write 0.315"},
+        {board(4.5, 3.4), "31.5 m wide"},
+        {board(0.000045, 0.000034), "these are 0.315 mm"},
+        {board(0.045, 0.034, {-157.5, 0, 320}), "from the origin"},
+        {grid(0.05, 0.01), ""},
+        {grid(50, 10), "grid 1 (2 x 3 markers) is 170 m wide"},
+    };
+    for (Case const& c : cases) {
+        std::vector<std::string> const doubts = doubts_about(c.map);
+        EXPECT_EQ(doubts.size(), c.words.empty() ? 0u : 1u) << c.words;
+        if (!doubts.empty()) {
+            EXPECT_NE(doubts[0].find(c.words), std::string::npos) << doubts[0];
+        }
+        gi::Report report;
+        report_doubts(c.map, "m.yaml", report);
+        EXPECT_EQ(report.losses().size(), doubts.size());
+    }
+}
+
+TEST(SeenIds, AreComparedWithTheMaps)
+{
+    EXPECT_EQ(ranges_of({0, 1, 2, 5, 7, 8}), "0 to 2, 5, 7 to 8");
+    EXPECT_EQ(ranges_of({}), "");
+    std::set<int> all;
+    for (int id = 0; id < 17; ++id) all.insert(id);
+    auto const board = [](int first) {
+        return MarkerMap{{}, {{7, 5, 0.045, 0.034, "DICT_4X4_50", first, false, {}}}, {}};
+    };
+    EXPECT_EQ(compare_ids({{"DICT_4X4_50", all}}, board(0)).problem, "");
+    EXPECT_EQ(compare_ids({{"DICT_5X5_50", {44}}}, board(0)).problem, "") << "not of its dictionary";
+    for (int const first : {7, 10, 30}) {
+        IdFinding const f = compare_ids({{"DICT_4X4_50", all}}, board(first));
+        EXPECT_NE(
+            f.problem.find("identifiers 0 to 16 of DICT_4X4_50 were seen, the map has " + std::to_string(first)),
+            std::string::npos)
+            << f.problem;
+        EXPECT_EQ(f.remedy, "write first_id: 0 for board 1 (7 x 5 squares)");
+    }
+    IdFinding const some = compare_ids({{"DICT_4X4_50", {0, 1, 2, 10, 11}}}, board(10));
+    EXPECT_EQ(some.problem, "identifiers 0 to 2, 10 to 11 of DICT_4X4_50 were seen, the map has 10 to 26");
+    EXPECT_EQ(some.remedy, "") << "too few to tell";
 }
 
 } // namespace

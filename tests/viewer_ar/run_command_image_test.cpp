@@ -25,7 +25,8 @@ double number_behind(std::string const& text, std::string const& words, int colu
         if (!line.starts_with(words)) continue;
         std::istringstream values(line.substr(words.size()));
         double value = std::numeric_limits<double>::quiet_NaN();
-        for (int i = 0; i <= column; ++i) values >> value;
+        for (int i = 0; i <= column; ++i)
+            if (!(values >> value)) return std::numeric_limits<double>::quiet_NaN();
         return value;
     }
     return std::numeric_limits<double>::quiet_NaN();
@@ -141,6 +142,27 @@ TEST_F(ArRuns, OfAWrongTruthHaveNoErrors)
     Outcome const later = run("ar run session.yaml --fast --poses poses.csv --true-poses later.csv");
     EXPECT_NE(later.out.find("no true pose at their time: 3 frames"), std::string::npos) << later.out;
     EXPECT_TRUE(std::isnan(number_behind(later.out, "position error (mm)"))) << later.out;
+}
+
+TEST_F(ArRuns, SayWhyNothingVirtualIsSeen)
+{
+    for (auto const& [at_m, words] :
+         std::vector<std::pair<std::string, std::string>>{{"[0, 0, 40]", "behind the camera in 3"},
+                                                          {"[0, 0, -900]", "smaller than 4 pixels in 3"},
+                                                          {"[4, 0, -1]", "outside of the picture in 3"}}) {
+        std::string text = session();
+        std::size_t const at = text.find("at: [");
+        text.replace(at, text.find(']', at) + 1 - at, "at: " + at_m);
+        write(desk() / "unseen.yaml", text);
+        Outcome const o = run("ar run unseen.yaml --fast --poses poses.csv");
+        EXPECT_EQ(o.code, 0) << o.err;
+        EXPECT_NE(o.err.find("in doubt: composites that show nothing virtual: 3"), std::string::npos)
+            << at_m << o.err;
+        EXPECT_NE(o.err.find("the virtual objects are " + words), std::string::npos) << at_m << o.err;
+    }
+    EXPECT_EQ(run("ar run session.yaml --fast --poses poses.csv").err, "");
+    write(desk() / "none.yaml", empty_session());
+    EXPECT_EQ(run("ar run none.yaml --fast --poses poses.csv").err, "") << "nothing virtual was asked for";
 }
 
 TEST_F(ArRuns, FollowTheLight)

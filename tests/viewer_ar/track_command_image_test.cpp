@@ -6,6 +6,7 @@
 #include "tests/ar_markers/drawn_view.h"
 #include "tests/viewer/run_program.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -127,6 +128,110 @@ TEST(ArTrack, UsesFisheyesBeyondWhatIsRendered)
     EXPECT_NE(lens.out.find("holds over 100 % of the picture, up to 1"), std::string::npos) << lens.out;
     auto const at = lens.out.find("by up to ");
     EXPECT_LT(std::stod(lens.out.substr(at + 9)), 5000) << lens.out;
+}
+
+/// More frames for write_session's: from other places.
+void add_frames(std::filesystem::path const& folder, ar::MarkerMap const& printed, int frames,
+                ar::CameraModel const& camera = kPinhole)
+{
+    ar::test::ViewSettings settings;
+    settings.rays = 2;
+    ar::test::DrawnWorld const world(printed, camera, settings);
+    for (int i = 1; i < frames; ++i)
+        cv::imwrite((folder / fmt::format("frames/{:06}.png", i)).string(),
+                    world.picture(ar::test::looking(kEye + 0.05 * i * glm::dvec3(-1, 0.3, 0.2), {0.13, 0.09, 0})));
+}
+
+TEST(ArTrack, NamesIdentifiersOfAWrongFirstId)
+{
+    TemporaryFolder const folder;
+    ar::MarkerMap map = board(9, 6, false);
+    for (int const first : {9, 40}) { // two rows too low, and none of the map's
+        map.boards[0].first_id = first;
+        write_session(folder.path(), board(9, 6, false), map);
+        Outcome const o = run("ar track session.yaml --fast --stats s.json", folder.path());
+        EXPECT_NE(o.err.find(fmt::format("identifiers 0 to 26 of DICT_5X5_100 were seen, the map has {} to {}",
+                                         first, first + 26)),
+                  std::string::npos)
+            << o.err;
+        EXPECT_NE(o.err.find("write first_id: 0 for board 1 (9 x 6 squares)"), std::string::npos) << o.err;
+        EXPECT_TRUE(stats(folder / "s.json").at("losses").contains("in doubt: identifiers of the map's markers"));
+    }
+}
+
+TEST(ArTrack, NamesTheDictionaryOfThePictures)
+{
+    TemporaryFolder const folder;
+    ar::MarkerMap map = board(9, 6, false);
+    map.boards[0].dictionary = "DICT_6X6_50";
+    write_session(folder.path(), board(9, 6, false), map);
+    Outcome const o = run("ar track session.yaml --fast", folder.path());
+    EXPECT_EQ(o.code, 1);
+    EXPECT_NE(o.err.find("markers 0 to 26 of DICT_5X5_"), std::string::npos) << o.err;
+}
+
+TEST(ArTrack, SaysHowNearMarkersMustBe)
+{
+    TemporaryFolder const folder;
+    ar::CameraModel const small{ar::LensModel::pinhole, {120, 90}, 112, 112, 59.5, 44.5, {}};
+    write_session(folder.path(), board(9, 6, false), board(9, 6, false), small, 3.0 * kEye);
+    Outcome const o = run("ar track session.yaml --fast", folder.path());
+    EXPECT_EQ(o.code, 1);
+    EXPECT_NE(o.err.find("in these pictures of 120 x 90 those of 22 mm have them up to 0.099 m"),
+              std::string::npos)
+        << o.err;
+}
+
+TEST(ArTrack, DoubtsBoardsInMillimetres)
+{
+    TemporaryFolder const folder;
+    ar::MarkerMap map = board(9, 6, false);
+    map.boards[0].square_m = 30;
+    map.boards[0].marker_m = 22;
+    write_session(folder.path(), board(9, 6, false), map);
+    Outcome const o = run("ar track session.yaml --fast --stats s.json", folder.path());
+    EXPECT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.err.find("is 270 m wide: are its lengths in metres? if it is 270 mm, write 0.27"),
+              std::string::npos)
+        << o.err;
+    EXPECT_NE(o.err.find("in doubt: cameras more than 100 m from their markers: 1"), std::string::npos) << o.err;
+    EXPECT_EQ(stats(folder / "s.json").at("losses").at("in doubt: sizes and places of markers").at("count"), 1);
+    Outcome const drawn = run("ar board --squares 7x5 --square 45 --marker 34 --out b.svg", folder.path());
+    EXPECT_NE(drawn.err.find("315 m wide"), std::string::npos) << drawn.err;
+}
+
+TEST(ArTrack, NamesTheFocalLengthThatPicturesContradict)
+{
+    TemporaryFolder const folder;
+    write_session(folder.path(), board(9, 6, false), board(9, 6, false));
+    add_frames(folder.path(), board(9, 6, false), 5);
+    Outcome const right = run("ar track session.yaml --fast", folder.path());
+    EXPECT_EQ(right.err, "");
+    ar::Calibration wrong;
+    wrong.camera = kPinhole;
+    wrong.camera.fx = wrong.camera.fy = 760;
+    ar::write_calibration(folder / "camera.yaml", wrong);
+    Outcome const o = run("ar track session.yaml --fast --stats s.json", folder.path());
+    std::string const words = "the pictures of the markers fit a focal length of ";
+    ASSERT_NE(o.err.find(words), std::string::npos) << o.err;
+    EXPECT_NEAR(std::stod(o.err.substr(o.err.find(words) + words.size())), 600, 10);
+    EXPECT_NE(o.err.find("the calibration has 760"), std::string::npos) << o.err;
+}
+
+TEST(ArTrack, DoubtsPosesOfFarMarkers)
+{
+    TemporaryFolder const folder;
+    ar::MarkerMap const map{{marker(7, {0, 0, 0})}, {}, {}};
+    write_session(folder.path(), map, map, kPinhole, glm::dvec3(0.9, 0.7, 1.5), {0, 0, 0});
+    std::ofstream(folder / "session.yaml", std::ios::app) << "pose: {least_confidence: 0}\n";
+    Outcome const o = run("ar track session.yaml --fast --table t.csv --stats s.json", folder.path());
+    EXPECT_EQ(o.code, 0) << o.err;
+    double const expected_mm = std::stod(cell(folder / "t.csv", "expected_error_mm"));
+    EXPECT_NEAR(std::stod(cell(folder / "t.csv", "distance_m")), 1.9, 0.2);
+    fmt::print("expected error: {:.1f} mm\n", expected_mm);
+    EXPECT_EQ(o.err.find("likely off by more than 5 % of their distance") != std::string::npos, expected_mm > 95)
+        << o.err;
+    EXPECT_NE(o.out.find("expected error (mm)"), std::string::npos) << o.out;
 }
 
 } // namespace

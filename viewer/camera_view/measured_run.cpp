@@ -4,6 +4,7 @@
 #include "ar/capture/frame_source.h"
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/loop_source.h"
+#include "ar/runtime/run_doubts.h"
 #include "ar/scene/camera_poses.h"
 
 namespace viewer {
@@ -80,6 +81,7 @@ MeasuredRun measure_run(ar::Session const& session, MeasureSettings const& setti
     for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
     m.errors = truth.errors();
     ar::report_losses(m.errors, report);
+    ar::report_doubts(fast, report);
     if (settings.still_frames > 1 && first_frame)
         m.flicker =
             ar::measure_flicker(session, *first_frame, first_pose, first_s, settings.still_frames, stop, report);

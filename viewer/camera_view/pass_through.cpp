@@ -31,7 +31,7 @@ struct PassThrough::Side {
     Side(ar::Session const& session_, ar::Pace pace, gi::Report& report, std::string const& prefix)
         : session(session_),
           camera(ar::load_camera(session.camera, &report)),
-          pipeline(session, camera, ar::read_marker_map(session.markers), report, prefix)
+          pipeline(session, camera, ar::read_marker_map(session.markers, &report), report, prefix)
     {
         ar::OpenOptions open = session.frames.options;
         open.pace = pace;

@@ -1,6 +1,7 @@
 #include "viewer/cli/ar/ar_arguments.h"
 
 #include "ar/capture/whole_picture.h"
+#include "ar/markers/map_doubts.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "gi/core/text.h"
@@ -100,11 +101,18 @@ glm::ivec2 parse_squares(std::string const& option, std::string const& text)
                          "two whole numbers from 2 to 200 are needed, across and upwards", "write 7x5");
 }
 
+void say_doubts(ar::MarkerMap const& map, std::string const& where)
+{
+    for (std::string const& doubt : ar::doubts_about(map)) fmt::print(stderr, "in doubt: {}: {}\n", where, doubt);
+}
+
 ar::CharucoBoard board_of(BoardArguments const& a)
 {
     glm::ivec2 const n = parse_squares("--squares", a.squares);
     ar::CharucoBoard board{n.x, n.y, a.square_m, a.marker_m, a.dictionary, a.first_id, a.legacy_pattern, {}};
-    ar::check({{}, {board}, {}}, "--squares " + a.squares);
+    ar::MarkerMap const map{{}, {board}, {}};
+    ar::check(map, "--squares " + a.squares);
+    say_doubts(map, "--squares " + a.squares);
     return board;
 }
 

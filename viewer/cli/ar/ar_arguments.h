@@ -37,6 +37,8 @@ struct BoardArguments {
 void declare_board_arguments(CLI::App& command, BoardArguments& a);
 /// The board, placed at the origin of the world. @throws InputError if its values are invalid
 ar::CharucoBoard board_of(BoardArguments const& a);
+/// Says doubts about a map (ar/markers/map_doubts.h) on stderr. @param where  its file, or the options
+void say_doubts(ar::MarkerMap const& map, std::string const& where);
 /// Parses "7x5": whole numbers from 2 to 200. @throws gi::InputError
 glm::ivec2 parse_squares(std::string const& option, std::string const& text);
 

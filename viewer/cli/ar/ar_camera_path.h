@@ -14,7 +14,7 @@ class CameraPath {
 public:
     CameraPath(PoseArguments const& poses, ar::Session const& session, ar::CalibratedCamera const& camera,
                gi::Report& report)
-        : finder_(session.pose, ar::read_marker_map(session.markers), camera.model), report_(report)
+        : finder_(session.pose, ar::read_marker_map(session.markers, &report), camera.model), report_(report)
     {
         check_rotation_order(poses.order, {poses.file});
         if (!poses.file.empty())

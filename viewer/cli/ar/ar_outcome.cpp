@@ -42,6 +42,7 @@ std::optional<std::string> shortfall(FrameTally const& t, std::optional<double> 
     std::uint64_t const all = t.looked_at + t.refused;
     std::string const refused = t.refused > 0 ? fmt::format(", {} were refused", t.refused) : "";
     std::string const help = (t.lost_by.empty() ? "" : "mostly: " + t.lost_by + "; ") +
+                             (t.hint.empty() ? "" : t.hint + "; ") +
                              std::string("check markers, light, calibration and pose.least_confidence");
     if (required && double(t.found) < *required * double(all))
         return fmt::format("the camera was found in {} of {} frames{} ({:g} % are required) {}", t.found, all,

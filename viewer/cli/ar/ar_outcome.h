@@ -16,6 +16,7 @@ struct FrameTally {
     std::uint64_t found = 0;     ///< of these, with a trusted pose of their own
     std::uint64_t refused = 0;   ///< frames that could not be read or used, besides those
     std::string lost_by = {};    ///< the most frequent cause of a missing pose; empty = unknown
+    std::string hint = {};       ///< what the pictures say about it; empty = nothing
 };
 
 /// Declares --require-found; the text is empty unless given.

@@ -91,10 +91,10 @@ std::vector<double> values_of(std::vector<ar::RunFrame> const& frames, double (*
     return values;
 }
 
-/// Frames with a trusted pose of their own.
-double found_percent(std::vector<ar::RunFrame> const& frames)
+/// Frames with a trusted pose of their own; empty without frames.
+Cell found_percent(std::vector<ar::RunFrame> const& frames)
 {
-    return frames.empty() ? 0 : 100 * double(ar::count_found(frames)) / double(frames.size());
+    return frames.empty() ? Cell() : Cell(100 * double(ar::count_found(frames)) / double(frames.size()));
 }
 
 /// Median, 95th percentile and maximum of each stage.

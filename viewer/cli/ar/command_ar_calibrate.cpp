@@ -1,6 +1,7 @@
 #include "ar/calibration/collector.h"
 #include "ar/calibration/lens_choice.h"
 #include "ar/calibration/report.h"
+#include "ar/camera/camera_doubts.h"
 #include "ar/camera/lens_domain.h"
 #include "ar/markers/detect.h"
 #include "ar/markers/marker_map_file.h"
@@ -52,6 +53,8 @@ Finder finder(CalibrateOptions const& o)
         if (n.x < 3 || n.y < 3)
             throw gi::InputError("--chessboard " + o.chessboard, "at least 3 inner corners each way are needed",
                                  "count corners where four squares meet");
+        say_doubts({{}, {{n.x + 1, n.y + 1, o.board.square_m, 0, {}, 0, false, {}}}, {}},
+                   "--chessboard " + o.chessboard);
         return [n, square_m = o.board.square_m](cv::Mat const& gray, std::string const& name) {
             return FoundBoard{
                 ar::find_chessboard(gray, n.x, n.y, square_m, name).value_or(ar::BoardView{name, {}, {}}), {}};
@@ -59,6 +62,7 @@ Finder finder(CalibrateOptions const& o)
     }
     ar::MarkerMap const map =
         o.markers.empty() ? ar::MarkerMap{{}, {board_of(o.board)}, {}} : ar::read_marker_map(o.markers);
+    if (!o.markers.empty()) say_doubts(map, o.markers);
     if (map.boards.empty())
         throw gi::InputError("there is no board in " + o.markers, "calibrating a lens needs a flat board",
                              "add it under boards:, see lightwell ar board --help");
@@ -248,6 +252,7 @@ int run_calibrate(CalibrateOptions const& o)
     fmt::print("coverage: {:.0f} % of the picture{}\n", 100 * report.lens.coverage,
                collector.enough() ? "" : "; to improve it: " + collector.next());
     for (std::string const& w : report.lens.warnings) fmt::print("warning: {}\n", w);
+    for (std::string const& d : doubts_about(report.lens.camera)) fmt::print("warning: {}\n", d);
     if (ar::LensReach const reach = ar::reach_of(report.lens.camera); reach.share < 1)
         fmt::print("warning: the lens {}; elsewhere pixels have no rays\n", describe(reach));
     fmt::print("{}\n", o.out);

@@ -242,6 +242,7 @@ int run_probe(ProbeOptions const& o)
                              "give an even one");
     ar::Calibration const calibration = ar::read_calibration(o.calibration);
     ar::MarkerMap const markers = ar::read_marker_map(o.markers);
+    say_doubts(markers, o.markers);
     if (!calibration.photometry)
         fmt::print(stderr, "{}: it has no response, bytes are assumed to be sRGB\n", o.calibration);
     auto const seconds = o.exposures.empty() ? std::vector<double>() : parse_exposures(o.exposures);

@@ -1,5 +1,6 @@
 #include "ar/runtime/frame_truth.h"
 #include "ar/runtime/pose_rows.h"
+#include "ar/runtime/run_doubts.h"
 #include "ar/runtime/runner.h"
 #include "ar/scene/read_values.h"
 #include "gi/core/error.h"
@@ -201,6 +202,7 @@ int run_session(RunArguments const& a, bool poses_only)
         std::string const rows = rows_of(o.poses, a.poses.file, summary, session, report) +
                                  rows_of(true_poses, a.true_poses, summary, session, report);
         ar::report_losses(truth.errors(), report);
+        ar::report_doubts(summary, report);
         if (!a.stats.empty()) {
             nlohmann::ordered_json stats = to_json(report);
             if (truth.errors().has_pictures || truth.errors().has_poses) stats["truth"] = to_json(truth.errors());
@@ -247,7 +249,8 @@ int run_session(RunArguments const& a, bool poses_only)
     bool const was_closed = window && window->wants_close();
     if (stop.requested()) return was_closed ? 0 : interrupted_code();
     return exit_code_of(shortfall({summary.frames.size(), ar::count_found(summary.frames),
-                                   summary.refused + summary.source.refused, ar::most_lost_by(summary.frames)},
+                                   summary.refused + summary.source.refused, ar::most_lost_by(summary.frames),
+                                   ar::hint_of(summary)},
                                   required));
 }
 

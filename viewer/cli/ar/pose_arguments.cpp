@@ -11,6 +11,19 @@ namespace {
 
 bool is_nuke(std::string const& file) { return std::filesystem::path(file).extension() == ".chan"; }
 
+/// Poses in millimetres are far away.
+void doubt_distance(std::vector<ar::TimedPose> const& poses, std::string const& file, gi::Report& report)
+{
+    constexpr double kFar_m = 100;
+    std::uint64_t n = 0;
+    std::string first;
+    for (ar::TimedPose const& p : poses)
+        if (double const far = glm::length(p.world_from_camera.position); far > kFar_m && n++ == 0)
+            first = fmt::format("'{}': {:.4g} m at {:.3f} s; are positions in metres?", file, far, p.time_s);
+    if (n > 0)
+        report.lose(fmt::format("in doubt: camera poses more than {:g} m from the origin", kFar_m), n, first);
+}
+
 std::vector<ar::TimedPose> timed_poses(PoseArguments const& a, ar::Session const& session, char const* hint,
                                        gi::Report& report)
 {
@@ -33,6 +46,7 @@ std::vector<ar::TimedPose> timed_poses(PoseArguments const& a, ar::Session const
                         *poses.first_frame, a.file, hint)
                 .c_str(),
             stderr);
+    doubt_distance(poses.poses, a.file, report);
     return std::move(poses.poses);
 }
 
