@@ -165,9 +165,9 @@ FoundPictures numbered_by_names(std::vector<fs::path> const& files, std::string 
     std::uint64_t const span = found.pictures.back().number - found.pictures.front().number;
     if (span / kMostNumbersPerFile >= found.pictures.size())
         return in_order(files, "hardly any number between the first and the last is there");
-    for (fs::path const& file : files)
-        if (std::none_of(largest.begin(), largest.end(), [&](auto const& l) { return l.first == file; }))
-            found.left_out.push_back(file);
+    for (auto const& [unused, group] : groups)
+        for (auto const& [file, name] : group)
+            if (&group != &largest) found.left_out.push_back(file);
     return found;
 }
 

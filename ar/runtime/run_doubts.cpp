@@ -32,8 +32,30 @@ void doubt_poses(RunSummary const& s, gi::Report& report)
     }
 }
 
+/// Longest side of a marker of the map in any frame, pixels; 0: none is in front of the camera, or no pose is known.
+double longest_side_px(RunSummary const& s, std::vector<TimedPose> const& true_poses)
+{
+    double most = 0;
+    if (true_poses.empty()) return most;
+    std::vector<PlacedMarker> const markers = placed_markers(s.markers);
+    for (RunFrame const& f : s.frames) {
+        auto const world_from_camera = recorded_pose(true_poses, f.captured_s);
+        if (!world_from_camera) continue;
+        for (PlacedMarker const& m : markers) {
+            gi::RigidPose const camera_from_thing =
+                inverse(*world_from_camera) * world_from_thing(s.markers, m.thing);
+            for (std::size_t i = 0; i < 4; ++i) {
+                auto const a = project(s.camera, camera_from_thing * m.corners_m[i]),
+                           b = project(s.camera, camera_from_thing * m.corners_m[(i + 1) % 4]);
+                if (a && b) most = std::max(most, glm::length(*a - *b));
+            }
+        }
+    }
+    return most;
+}
+
 /// At which distance markers are large enough; empty: most frames have other causes.
-std::string size_hint(RunSummary const& s)
+std::string size_hint(RunSummary const& s, std::vector<TimedPose> const& true_poses = {})
 {
     constexpr double kLeastSide_px = 25;
     auto const blind = std::size_t(std::count_if(s.frames.begin(), s.frames.end(),
@@ -47,11 +69,14 @@ std::string size_hint(RunSummary const& s)
     double largest_m = 0;
     for (PlacedMarker const& m : placed_markers(s.markers))
         largest_m = std::max(largest_m, glm::length(m.corners_m[1] - m.corners_m[0]));
-    return fmt::format(
+    std::string const text = fmt::format(
         "markers need sides of {:g} pixels or more; in these pictures of {} x {} those of {:.3g} mm have "
         "them up to {:.2g} m from the camera",
         kLeastSide_px, s.camera.size_px.x, s.camera.size_px.y, 1e3 * largest_m,
         s.camera.fx * largest_m / kLeastSide_px);
+    double const side_px = longest_side_px(s, true_poses);
+    return side_px > 0 ? text + fmt::format(" (by the true poses theirs are {:.0f} pixels at most)", side_px)
+                       : text;
 }
 
 void doubt_lost(RunSummary const& s, gi::Report& report)
@@ -119,7 +144,7 @@ void report_doubts(RunSummary const& s, gi::Report& report)
     doubt_nothing_seen(s, report);
 }
 
-std::string hint_of(RunSummary const& s)
+std::string hint_of(RunSummary const& s, std::vector<TimedPose> const& true_poses)
 {
     std::string hint;
     auto const add = [&](std::string const& text) {
@@ -129,7 +154,7 @@ std::string hint_of(RunSummary const& s)
     add(ids.problem);
     add(ids.remedy);
     if (s.focal) add(describe(*s.focal, s.camera));
-    add(size_hint(s));
+    add(size_hint(s, true_poses));
     return hint;
 }
 

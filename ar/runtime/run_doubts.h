@@ -10,7 +10,7 @@ namespace ar {
 void report_doubts(RunSummary const& summary, gi::Report& report);
 
 /// What the pictures and the map say about why the camera was not found: identifiers, the size at which markers appear,
-/// the focal length. Empty: nothing.
-std::string hint_of(RunSummary const& summary);
+/// the focal length. Empty: nothing. @param true_poses  say how large the markers are in the frames; empty: unknown
+std::string hint_of(RunSummary const& summary, std::vector<TimedPose> const& true_poses = {});
 
 } // namespace ar

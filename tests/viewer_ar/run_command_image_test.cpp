@@ -146,10 +146,10 @@ TEST_F(ArRuns, OfAWrongTruthHaveNoErrors)
 
 TEST_F(ArRuns, SayWhyNothingVirtualIsSeen)
 {
-    for (auto const& [at_m, words] :
-         std::vector<std::pair<std::string, std::string>>{{"[0, 0, 40]", "behind the camera in 3"},
-                                                          {"[0, 0, -900]", "smaller than 4 pixels in 3"},
-                                                          {"[4, 0, -1]", "outside of the picture in 3"}}) {
+    for (auto const& [at_m, words] : std::vector<std::pair<std::string, std::string>>{
+             {"[0, 0, 40]", "behind the camera in 3"},
+             {"[-0.02, 0, -0.1], scale: 0.001", "smaller than 4 pixels in 3"},
+             {"[4, 0, -1]", "outside of the picture in 3"}}) {
         std::string text = session();
         std::size_t const at = text.find("at: [");
         text.replace(at, text.find(']', at) + 1 - at, "at: " + at_m);

@@ -3,6 +3,7 @@
 
 #include "ar/calibration/calibration_file.h"
 #include "ar/markers/marker_map_file.h"
+#include "ar/pose/pose_file.h"
 #include "tests/ar_markers/drawn_view.h"
 #include "tests/viewer/run_program.h"
 
@@ -180,6 +181,12 @@ TEST(ArTrack, SaysHowNearMarkersMustBe)
     EXPECT_NE(o.err.find("in these pictures of 120 x 90 those of 22 mm have them up to 0.099 m"),
               std::string::npos)
         << o.err;
+
+    gi::RigidPose const pose = ar::test::looking(3.0 * kEye, {0.13, 0.09, 0});
+    std::ofstream(folder / "true.csv") << ar::format_poses({{0, pose}});
+    Outcome const sized = run("ar track session.yaml --fast --true-poses true.csv", folder.path());
+    // 22 mm at 1.4 m and less
+    EXPECT_NE(sized.err.find("by the true poses theirs are 2 pixels at most"), std::string::npos) << sized.err;
 }
 
 TEST(ArTrack, DoubtsBoardsInMillimetres)

@@ -250,7 +250,7 @@ int run_session(RunArguments const& a, bool poses_only)
     if (stop.requested()) return was_closed ? 0 : interrupted_code();
     return exit_code_of(shortfall({summary.frames.size(), ar::count_found(summary.frames),
                                    summary.refused + summary.source.refused, ar::most_lost_by(summary.frames),
-                                   ar::hint_of(summary)},
+                                   ar::hint_of(summary, true_poses)},
                                   required));
 }
 
