@@ -5,6 +5,7 @@
 #include "tests/viewer_show/live_view.h"
 
 #include <fstream>
+#include <set>
 
 namespace viewer::test {
 namespace {
@@ -76,6 +77,41 @@ TEST_F(ShownReplay, WritesItsPictures)
     std::string const told = walk_and_replay("cornell", "--shown --out " + (out / "s_%03d.png").string());
     EXPECT_EQ(int(out.files().size()), drawn_again(told));
     EXPECT_GT(gi::read_picture(out / "s_000.png").width, 0);
+}
+
+/// What a screenshot showed is among the pictures drawn again, in each stereo mode, and all have the window's size.
+TEST_F(ShownReplay, WritesWhatTheWindowShowed)
+{
+    for (std::string const mode : {"off", "side-by-side", "anaglyph-dubois"}) {
+        SCOPED_TRACE(mode);
+        LiveView view(
+            "cornell --size 200x120 --record walk.lwr --set panel=false --set refine=false --set stereo=" + mode);
+        view.settle();
+        view.ask({{"do", "key"}, {"key", "w"}, {"action", "press"}});
+        sleep_ms(700);
+        view.ask({{"do", "key"}, {"key", "w"}, {"action", "release"}});
+        view.screenshot("window.png");
+        view.quit();
+        TemporaryFolder const& folder = view.folder();
+        std::vector<float> const window = gi::read_picture(folder / "window.png").find("color")->data;
+        run_well("view --replay walk.lwr --shown --out s_%03d.png", folder.path());
+        bool found = false;
+        std::set<int> widths;
+        for (std::string const& name : folder.files()) {
+            if (!name.starts_with("s_")) continue;
+            gi::Picture const p = gi::read_picture(folder / name);
+            widths.insert(p.width);
+            found |= p.find("color")->data == window;
+        }
+        EXPECT_EQ(widths, std::set<int>{200});
+        EXPECT_TRUE(found);
+        run_well("view --replay walk.lwr --shown --size 100x60 --out t_%03d.png", folder.path());
+        for (std::string const& name : folder.files()) {
+            if (!name.starts_with("t_")) continue;
+            gi::Picture const p = gi::read_picture(folder / name);
+            ASSERT_EQ(glm::ivec2(p.width, p.height), glm::ivec2(100, 60)) << name;
+        }
+    }
 }
 
 TEST_F(ShownReplay, IsLeftOutUnlessAskedFor)

@@ -2,6 +2,7 @@
 // Renders a recording again, off-screen: bit by bit as it was, or with other settings.
 
 #include "gi/core/progress.h"
+#include "viewer/app/replayed_eyes.h"
 #include "viewer/devices/tracking/footsteps.h"
 #include "viewer/engine/render_session.h"
 #include "viewer/protocol/recording/recording.h"
@@ -10,11 +11,12 @@ namespace viewer {
 
 struct ReplayOptions {
     std::string file;
-    std::vector<Change> settings;            ///< override the recorded settings throughout
-    int paths = 0;                           ///< per pixel; 0 = as recorded
-    std::optional<std::pair<int, int>> size; ///< of every view, pixels
-    std::string out;                         ///< pattern of EXR or PNG frames of the first view; empty = none
-    std::string video;                       ///< of the first view, at `fps`
+    std::vector<Change> settings;   ///< override the recorded settings throughout
+    int paths = 0;                  ///< per pixel; 0 = as recorded
+    std::optional<glm::ivec2> size; ///< of the pictures that are written, and so of the views
+    ReplayedEyes eyes = ReplayedEyes::window;
+    std::string out;   ///< pattern of EXR or PNG frames; empty = none
+    std::string video; ///< of the same, at `fps`
     double fps = 30;
     int threads = 0;
     bool shown = false; ///< what was shown instead of what was rendered, drawn by OpenGL
@@ -25,6 +27,7 @@ struct ReplaySummary {
     std::optional<std::uint64_t> first_other;
     std::uint64_t shown = 0, shown_same = 0, shown_other = 0; ///< pictures drawn; compared with their hashes
     std::optional<std::uint64_t> first_shown_other;           ///< its number, from 0
+    std::vector<std::string> changed_files;                   ///< of the scenes, since the recording
     RecordingEnd end;
     bool interrupted = false;
 };

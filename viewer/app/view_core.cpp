@@ -96,6 +96,7 @@ void ViewCore::load(std::string const& name, std::function<void(std::string cons
         name,
         [this, made, name, choose, settings = state.settings()] {
             *made = session.prepare(name, settings, choose);
+            if (!options.record.empty()) made->change.files = hashes_of(made->scene->files);
         },
         [this, made, done, known](std::exception_ptr const& failure) {
             if (failure) return state.inbox.put([this, failure, done] { not_loaded(failure, done); });
@@ -189,6 +190,7 @@ void ViewCore::make_files(SceneChange const& scene)
     header.settings = {{"settings", all_settings(state.settings())},
                        {"load", options.load_options},
                        {"start", to_json(*scene.start)}};
+    if (!scene.files.empty()) header.settings["files"] = scene.files;
     for (Change const& c : options.settings)
         if (is_hidden_mask(c.key)) header.settings["settings"][c.key] = c.value;
     recorder_ = std::make_unique<Recorder>(options.record, header, report);

@@ -57,7 +57,9 @@ SceneStart start_from_json(Json const& j)
 Change to_change(SceneChange const& c)
 {
     if (!c.start) return {"scene", c.name};
-    return {"scene", {{"file", c.name}, {"start", to_json(*c.start)}}};
+    Change change{"scene", {{"file", c.name}, {"start", to_json(*c.start)}}};
+    if (!c.files.empty()) change.value["files"] = c.files;
+    return change;
 }
 
 SceneChange scene_change_of(Change const& c)
@@ -71,6 +73,7 @@ SceneChange scene_change_of(Change const& c)
     if (!c.value.is_object()) return {named(c.value), {}};
     SceneChange s{named(c.value.value("file", Json())), {}};
     if (c.value.contains("start")) s.start = start_from_json(c.value.at("start"));
+    if (c.value.contains("files")) s.files = file_hashes_from_json(c.value.at("files"));
     return s;
 }
 

@@ -2,8 +2,10 @@
 // The change "scene": which scene is shown next, and for which camera and how many pixels its method is started.
 // The latter decide what the method builds (the plan of slhb), so recordings and ranks have them:
 //   "atrium"                                     a name alone: the method starts with the next frame's views
-//   {"file": "atrium", "start": {"pixels": ..., "world_from_camera": [16 numbers], "yfov_rad": ...}}
+//   {"file": "atrium", "start": {"pixels": ..., "world_from_camera": [16 numbers], "yfov_rad": ...},
+//    "files": {"room.obj": "c0ffee...", ...}}     with the files that it was read from (scene_files.h), if it is recorded
 
+#include "viewer/engine/scene_files.h"
 #include "viewer/protocol/frame_command.h"
 
 namespace viewer {
@@ -18,6 +20,7 @@ struct SceneStart {
 struct SceneChange {
     std::string name;
     std::optional<SceneStart> start;
+    FileHashes files{}; ///< only of what is recorded
 };
 
 /// With all bits of the numbers.

@@ -31,6 +31,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -41,7 +42,7 @@ struct ViewArguments {
     RenderOptions scene; ///< scene, camera, sky
     std::vector<std::string> settings, fullscreen;
     std::string size, navigate = "fly", record, frame_log, remote, stats, screenshots, display, display_model,
-                      replay, out, video, avatar, avatar_joints;
+                      replay, out, video, eye = "window", avatar, avatar_joints;
     RankOptions ranks;
     double fps = 30, eye_height_m = 1.6;
     int paths = 0;
@@ -287,7 +288,11 @@ int run_replay(ViewArguments const& a)
     o.file = a.replay;
     o.settings = parse_changes(a.settings);
     o.paths = a.paths;
-    if (!a.size.empty()) o.size = parse_size(a.size);
+    if (!a.size.empty()) {
+        auto const size = parse_size(a.size);
+        o.size = {size.first, size.second};
+    }
+    o.eyes = parse_replayed_eyes(a.eye);
     o.out = a.out;
     o.video = a.video;
     o.fps = a.fps;
@@ -314,6 +319,8 @@ int run_replay(ViewArguments const& a)
     if (as_recorded(o))
         fmt::print(": {} as recorded bit by bit, {} not, {} unknown", done.same, done.other, done.unknown);
     fmt::print("\n");
+    if (!done.changed_files.empty())
+        fmt::print("the scene has changed since the recording: {} of its files\n", done.changed_files.size());
     if (done.first_other) fmt::print("first different frame: {}\n", *done.first_other);
     if (o.shown)
         fmt::print("{} shown pictures drawn again: {} as recorded bit by bit, {} not, {} unknown\n", done.shown,
@@ -324,6 +331,33 @@ int run_replay(ViewArguments const& a)
     std::fflush(stdout);
     print_losses(report);
     return done.interrupted ? interrupted_code() : done.other + done.shown_other > 0 ? 1 : 0;
+}
+
+/// Throws for settings that decide nothing in a replay: the recording has what they decided.
+void check_replayed_setting(ViewArguments const& a, std::string const& text)
+{
+    static std::map<std::string, std::string> const without_effect{
+        {"paths", "give --paths N"},
+        {"scale", "give --size WxH"},
+        {"auto_exposure", "set exposure"},
+        {"eye_distance", "leave it out, or record with it"},
+        {"speed", "leave it out; --fps is the rate of a video"},
+        {"play", "leave it out"},
+        {"predict", "leave it out"},
+        {"reproject", "leave it out"},
+        {"refine", "leave it out"},
+        {"rate", "leave it out"},
+        {"panel", "leave it out"},
+        {"font_scale", "leave it out"}};
+    std::string const key = current_key(parse_change(text).key);
+    if (auto const found = without_effect.find(key); found != without_effect.end())
+        throw gi::InputError("--set " + text + " with --replay",
+                             "it would have no effect: cameras, times and sizes "
+                             "are those of the recording",
+                             found->second);
+    if ((key == "stereo" || key == "swap_eyes") && a.eye != "window")
+        throw gi::InputError("--set " + text + " with --eye " + a.eye, "it would have no effect",
+                             "leave one out: it is of the picture of the window");
 }
 
 /// Throws if an option is given that has no effect in the chosen mode.
@@ -343,7 +377,10 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
                 "--hash-shown"},
                "with --replay");
     else
-        refuse({"--out", "--video", "--paths", "--fps", "--shown"}, "without --replay");
+        refuse({"--out", "--video", "--paths", "--fps", "--shown", "--eye"}, "without --replay");
+    if (replays && a.out.empty() && a.video.empty()) refuse({"--eye"}, "without --out or --video");
+    if (replays)
+        for (std::string const& s : a.settings) check_replayed_setting(a, s);
     if (a.record.empty()) refuse({"--hash-shown"}, "without --record");
     if (!a.hmd) refuse({"--seated", "--no-depths", "--no-insets"}, "without --hmd");
     if (a.hmd) refuse({"--size", "--fullscreen", "--no-vsync"}, "with --hmd");
@@ -377,7 +414,8 @@ void add_view(CLI::App& app, int& exit_code)
          "--set", a->settings,
          "KEY=VALUE, set before the first frame, e.g. quality=exact or stereo=anaglyph-dubois; repeatable")
         ->take_all();
-    c->add_option("--size", a->size, "window size, pixels (default: 1280x720); with --replay: size of each view");
+    c->add_option("--size", a->size,
+                  "window size, pixels (default: 1280x720); with --replay: size of the pictures");
     c->add_option("--fullscreen", a->fullscreen,
                   "full screen on the monitor with this number or name; LEFT,RIGHT for stereo=two-windows")
         ->delimiter(',');
@@ -417,8 +455,14 @@ void add_view(CLI::App& app, int& exit_code)
         "with --replay: every picture that was shown, drawn again by OpenGL, in place of every frame rendered");
     c->add_option("--paths", a->paths, "with --replay: paths per pixel and frame; 0 = as recorded")
         ->check(in_range(0, 1 << 20));
-    c->add_option("-o,--out", a->out, "with --replay: frames of the first view, e.g. walk_%05d.png or .exr");
-    c->add_option("--video", a->video, "with --replay: video of the first view, .mkv (FFV1) or .mp4 (H.264)");
+    c->add_option("-o,--out", a->out, "with --replay: pictures of the window, e.g. walk_%05d.png or .exr");
+    c->add_option("--video", a->video, "with --replay: video of the same pictures, .mkv (FFV1) or .mp4 (H.264)");
+    offer(c->add_option(
+               "--eye", a->eye,
+               "with --replay: pictures as the window showed them in its stereo mode (of walls and headsets: the "
+               "first view), of one eye, or of both side by side")
+              ->capture_default_str(),
+          {"window", "left", "right", "both"});
     c->add_option("--fps", a->fps, "frame rate of --video")->check(in_range(0.01, 1000))->capture_default_str();
     c->add_option("--screenshots", a->screenshots, "prefix of the files of screenshots (F2)");
     c->add_option("--time-limit", a->time_limit_s, "end after this many seconds; 0 = never")
