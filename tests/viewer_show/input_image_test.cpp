@@ -134,6 +134,30 @@ TEST_F(Input, ExposureFollowsAndHolds)
     EXPECT_NE(o.out.find(" 0 not, 0 unknown"), std::string::npos) << o.out;
 }
 
+/// By its key, while a head walks; what was rendered and what was shown are replayed.
+TEST_F(Input, HeadlightGoesAlong)
+{
+    open("cornell --size 80x60 --record walk.lwr --hash-shown --set panel=false --set refine=false",
+         "Lightwell: cornell");
+    view->settle();
+    view->ask({{"do", "key"}, {"key", "l"}});
+    view->settle();
+    EXPECT_EQ(view->ask({{"do", "get"}, {"key", "headlight"}}).at("value"), true);
+    view->ask({{"do", "key"}, {"key", "w"}, {"action", "press"}});
+    sleep_ms(700);
+    view->ask({{"do", "key"}, {"key", "w"}, {"action", "release"}});
+    view->settle();
+    view->ask({{"do", "key"}, {"key", "l"}});
+    view->settle();
+    EXPECT_EQ(view->ask({{"do", "get"}, {"key", "headlight"}}).at("value"), false);
+    view->quit();
+    Outcome const o = run_well("view --replay walk.lwr --shown", view->folder().path());
+    std::string const all = " 0 not, 0 unknown\n";
+    std::size_t const rendered = o.out.find(all);
+    ASSERT_NE(rendered, std::string::npos) << o.out;
+    EXPECT_NE(o.out.find(all, rendered + 1), std::string::npos) << "shown: " << o.out;
+}
+
 TEST_F(Input, ConvergedScreenshotOfAPictureThatRests)
 {
     open("cornell --size 200x150" + kStill, "Lightwell: cornell");

@@ -18,6 +18,7 @@ enum class Command {
     help,
     open_scene,
     hold_exposure,
+    headlight,
     screenshot,
     swap_eyes,
     next_navigation,

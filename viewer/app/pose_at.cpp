@@ -63,6 +63,8 @@ std::vector<gi::Light> lights_at(SessionFrame const& frame, FrameCommand const& 
     for (Change const& c : moment.changes)
         if (is_light_edit(c.key) && !lights.empty())
             if_possible([&] { edit_lights(lights, c, scene.authored_intensities, scene.world->origin); });
+    if (frame.headlight && !lights.empty() && !moment.views.empty())
+        lights.back() = light_at(*frame.headlight, eye_of(moment.views), scene.world->origin);
     return lights;
 }
 

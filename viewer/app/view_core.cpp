@@ -273,6 +273,9 @@ void ViewCore::obey(Command command)
     case Command::hold_exposure:
         state.change({"auto_exposure", s.auto_exposure == "on" ? "hold" : "on"});
         break;
+    case Command::headlight:
+        state.change({"headlight", !s.headlight});
+        break;
     case Command::screenshot:
         state.wants_screenshot = state.own_screenshot = true;
         break;

@@ -16,6 +16,7 @@ SceneFacts facts_of(RenderSession const& s)
     for (std::size_t i = 0; i < w.scene->materials.size(); ++i)
         f.materials.push_back({w.scene->material_names[i], w.materials[i]});
     f.lights = w.lights;
+    if (s.has_headlight()) f.lights.pop_back();
     f.cameras = w.cameras;
     f.origin = w.origin;
     if (!w.bounds.empty()) {

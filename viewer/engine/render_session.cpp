@@ -37,6 +37,13 @@ void release_memory()
     malloc_trim(0);
 }
 
+/// Puts the headlight of a new world at the eye.
+void shine(gi::MovingWorld& world, gi::dvec3 eye_m)
+{
+    gi::World const& w = world.world();
+    world.set_light(w.lights.size() - 1, light_at(headlight_of(w), eye_m, w.origin));
+}
+
 /// A view of all that is around the eye, of a quarter of it in each frame.
 gi::FrameView around(FrameCommand const& command)
 {
@@ -88,14 +95,7 @@ void RenderSession::apply(Change const& change)
         if (wanted.start) choose = [&](gi::World const&) { return *wanted.start; };
         return adopt(prepare(wanted.name, settings_, choose));
     }
-    if (is_scene_edit(change.key)) {
-        if (!world_) throw gi::InputError("'" + change.key + "'", "no scene is loaded", "load one first");
-        if (is_object_edit(change.key)) return place_object(change);
-        pending_.add(edit(*world_, change));
-        std::erase_if(edits_, [&](Change const& c) { return c.key == change.key; });
-        edits_.push_back(change);
-        return;
-    }
+    if (is_scene_edit(change.key)) return edit_scene(change);
     if (is_hidden_mask(change.key)) {
         hidden_.apply(change);
         hidden_surfaces_.apply(change);
@@ -105,9 +105,24 @@ void RenderSession::apply(Change const& change)
     set(changed, change);
     if (change.key == "device") gi::check_device(changed.render.space);
     if (change.key == "denoise") gi::check_filter(denoise_settings(changed, 0));
+    bool const switches_headlight = changed.headlight != settings_.headlight;
     settings_ = std::move(changed);
+    if (switches_headlight && world_)
+        rebuild(settings_.headlight ? with_headlight(*scene_) : without_headlight(*scene_));
     if (restarts_methods(change.key)) restart();
     if (change.key == "compare") compared_.reset();
+}
+
+void RenderSession::edit_scene(Change const& change)
+{
+    if (!world_) throw gi::InputError("'" + change.key + "'", "no scene is loaded", "load one first");
+    if (is_object_edit(change.key)) return place_object(change);
+    if (headlight_ && change.key.starts_with("light." + std::to_string(world_->world().lights.size() - 1) + "."))
+        throw gi::InputError("'" + change.key + "'", "it is the headlight, which goes with the head",
+                             "switch it off by headlight=false");
+    pending_.add(edit(*world_, change));
+    std::erase_if(edits_, [&](Change const& c) { return c.key == change.key; });
+    edits_.push_back(change);
 }
 
 void RenderSession::restart()
@@ -124,6 +139,7 @@ PreparedScene RenderSession::prepare(std::string const& name, Settings const& se
     made.change.name = name;
     gi::at_step("reading");
     made.scene = load_(name, report_);
+    if (settings.headlight) made.scene = with_headlight(*made.scene);
     gi::at_step("world");
     // Not at the time of the last frame, which is not known before the scene is ready.
     made.world = std::make_unique<gi::MovingWorld>(made.scene, 0.0, report_);
@@ -131,6 +147,7 @@ PreparedScene RenderSession::prepare(std::string const& name, Settings const& se
     if (!choose) return made;
     gi::at_step("first camera");
     made.change.start = choose(made.world->world());
+    if (settings.headlight) shine(*made.world, gi::dvec3(made.change.start->camera.world_from_camera[3]));
     start_method(made);
     return made;
 }
@@ -149,8 +166,16 @@ void RenderSession::start_method(PreparedScene& scene) const
 
 void RenderSession::adopt(PreparedScene p)
 {
-    bool const as_set = std::ranges::all_of(
+    bool as_set = std::ranges::all_of(
         setting_keys(), [&](SettingKey const& k) { return !k.restarts || k.get(p.settings) == k.get(settings_); });
+    if (p.settings.headlight != settings_.headlight) {
+        p.scene = settings_.headlight ? with_headlight(*p.scene) : without_headlight(*p.scene);
+        p.method.reset(); // it refers to the old world
+        p.world = std::make_unique<gi::MovingWorld>(p.scene, 0.0, report_);
+        if (settings_.headlight && p.change.start)
+            shine(*p.world, gi::dvec3(p.change.start->camera.world_from_camera[3]));
+        as_set = false;
+    }
     if (!as_set) {
         p.settings = settings_;
         p.method.reset();
@@ -167,6 +192,7 @@ void RenderSession::adopt(PreparedScene p)
     pending_ = {};
     world_ = std::move(p.world);
     scene_ = std::move(p.scene);
+    note_headlight();
     main_ = std::move(p.method);
     shown_ = std::move(p.change);
     release_memory();
@@ -182,8 +208,22 @@ void RenderSession::rebuild(std::shared_ptr<gi::Scene const> scene)
     forget_smoothed();
     world_ = std::move(world);
     scene_ = std::move(scene);
+    note_headlight();
     pending_ = {};
-    for (Change const& c : edits_) edit(*world_, c);
+    std::erase_if(edits_, [&](Change const& c) { // of all lights, where there was but the headlight
+        try {
+            edit(*world_, c);
+            return false;
+        } catch (gi::InputError const&) {
+            return true;
+        }
+    });
+}
+
+void RenderSession::note_headlight()
+{
+    headlight_.reset();
+    if (settings_.headlight) headlight_ = headlight_of(world_->world());
 }
 
 gi::dvec3 RenderSession::position_of(std::string const& object) const
@@ -216,6 +256,13 @@ gi::Changes RenderSession::move_to(FrameCommand const& command)
     place(*scene_, placed_, pose);
     if (drive_) drive_(*scene_, command, pose);
     gi::Changes changes = std::exchange(pending_, {});
+    std::optional<gi::dvec3> eye = std::exchange(eye_, {});
+    if (!eye && !command.views.empty()) eye = eye_of(command.views);
+    if (headlight_ && eye) {
+        gi::Light const light = light_at(*headlight_, *eye, world_->world().origin);
+        changes.add(world_->set_light(world_->world().lights.size() - 1, light));
+        pose.world_from_node.back()[3] = glm::dvec4(*eye, 1);
+    }
     changes.add(world_->advance(pose));
     return changes;
 }
@@ -379,6 +426,7 @@ SessionFrame RenderSession::render_whole(FrameCommand const& command, gi::StopRe
     SessionFrame frame;
     frame.scene = shown_world_;
     if (shown_world_) frame.placed = placed_;
+    frame.headlight = headlight_;
     frame.moved = changes.geometry;
     frame.lamps = lamps_;
     if (command.views.empty()) return frame;

@@ -6,6 +6,7 @@
 #include "gi/surfaces/antialiasing.h"
 #include "gi/surfaces/light_cells.h"
 #include "gi/surfaces/planar_mirrors.h"
+#include "viewer/engine/headlight.h"
 #include "viewer/engine/hidden_views.h"
 #include "viewer/engine/method_runner.h"
 #include "viewer/engine/scene_edits.h"
@@ -55,6 +56,7 @@ struct SessionFrame {
     std::string choice;  ///< of a method that chooses another: which and why, a sentence; else empty
     std::shared_ptr<gi::ShownScene const> scene; ///< null: nobody draws surfaces
     std::vector<PlacedObject> placed;            ///< where they are then
+    std::optional<Headlight> headlight;          ///< if it is on: the last of the scene's lights
     std::shared_ptr<gi::LightCellTable const>
         cells; ///< light of what no picture shows; null: nobody draws surfaces
 };
@@ -86,6 +88,9 @@ public:
     /// Light of another rank's view: what the next frames' cells know besides.
     void learn(gi::LightPicture const& light);
 
+    /// Where the headlight is in the next frame, m, world: of commands whose views are not all views of the frame.
+    void headlight_at(gi::dvec3 eye_m) { eye_ = eye_m; }
+
     /// Sets a callback for every following frame.
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
 
@@ -96,6 +101,7 @@ public:
     std::string const& scene_name() const { return shown_.name; }
     SceneChange const& shown_scene() const { return shown_; } ///< as it was prepared
     bool has_scene() const { return world_ != nullptr; }
+    bool has_headlight() const { return headlight_.has_value(); } ///< the last of world()'s lights
     gi::World const& world() const { return world_->world(); }
     /// Current position of an object, m, world. Throws InputError if no object has this name.
     gi::dvec3 position_of(std::string const& object) const;
@@ -105,6 +111,8 @@ private:
     void start_method(PreparedScene& scene) const;
     void rebuild(std::shared_ptr<gi::Scene const> scene);
     void place_object(Change const& change);
+    void edit_scene(Change const& change);
+    void note_headlight(); ///< of a new world
     void restart();
     gi::Changes move_to(FrameCommand const& command);
     void forget_smoothed();
@@ -141,6 +149,8 @@ private:
     std::shared_ptr<gi::LightCellTable const> known_;        ///< to cells_, in the last frame
     std::optional<gi::LightCells> cells_;                    ///< of the world, if surfaces are drawn by others
     DriveBodies drive_;
+    std::optional<Headlight> headlight_; ///< if it is on
+    std::optional<gi::dvec3> eye_;       ///< for the next frame
     gi::Changes pending_; ///< edits since the last frame
     double time_s_ = 0;   ///< of the last frame
     bool draws_all_ = false;

@@ -84,10 +84,13 @@ std::vector<SettingKey> make_keys()
              "smaller one",
              &S::first_surfaces),
          own("share-eyes", {}, "each eye may reuse light of the other", &S::share_eyes)});
-    add("Exposure", {own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),
-                     own("auto-exposure", {"off", "on", "hold"},
-                         "exposure follows what is shown: off, on, or held as it is now", &S::auto_exposure),
-                     own("tone", {"srgb", "filmic"}, "tone curve", &S::tone)});
+    add("Exposure",
+        {own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),
+         own("auto-exposure", {"off", "on", "hold"},
+             "exposure follows what is shown: off, on, or held as it is now", &S::auto_exposure),
+         own("tone", {"srgb", "filmic"}, "tone curve", &S::tone),
+         own("headlight", {}, "headlight; a white light at the eye, for scenes where no lamp was meant",
+             &S::headlight)});
     add("Time against error",
         {own("rate", {0.1, 1000}, "target frame rate, Hz", &S::rate_hz),
          own("paths", {0, 65536}, "paths per pixel and frame, 0 = as the rate allows", &S::paths),

@@ -36,6 +36,7 @@ struct Settings {
     double eye_distance_m = 0.063; ///< between the pupils
     std::string stereo = "off";
     bool swap_eyes = false;
+    bool headlight = false;       ///< a light at the eye (headlight.h)
     std::string view = "picture"; ///< picture, split, flicker, difference
     double split = 0.5;           ///< position of the split, as a share of the width
     bool predict = true;          ///< render for where users and clips will be when the picture is seen

@@ -472,7 +472,7 @@ void add_view(CLI::App& app, int& exit_code)
         R"(Keys: W A S D Q E move, drag to look around, wheel to approach, click to select,
 Ctrl + drag to move the selection, 1..9 0 stereo mode, V split/flicker/difference, C compare with the reference,
 M method, + - exposure, Space play/pause, Tab fly/walk/orbit, Z X raise the avatar's hands, P reprojection,
-R back to the first camera, O open a scene, T automatic exposure, H help, F1 panel, F2 screenshot, F11 swap eyes,
+R back to the first camera, O open a scene, T automatic exposure, L headlight, H help, F1 panel, F2 screenshot, F11 swap eyes,
 Esc end. All settings: docs/viewer.md.
 
 Exit code 1: the recording or the frame log is not complete, or a rank was lost.

@@ -417,6 +417,7 @@ LiveRenderer::Rendered LiveRenderer::render(FrameCommand command, FrameBudget co
     std::shared_ptr<gi::StopRequest> const stop = stop_;
     if (hooks_.own_views) {
         frame->ordered = command.views;
+        if (!command.views.empty()) session_.headlight_at(eye_of(command.views));
         command.views = hooks_.own_views(command);
     }
     gi::StepListener const listener([this](gi::Step const& step) {
