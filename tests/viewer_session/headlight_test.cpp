@@ -133,6 +133,7 @@ TEST(Headlight, IsNotEditedByItsNumber)
     s.apply({"scene", "lamp"});
     s.apply({"headlight", true});
     EXPECT_THROW(s.apply({"light.1.scale", 2}), gi::InputError);
+    EXPECT_THROW(s.apply({"object.headlight.position", {0, 0, 0}}), gi::InputError);
     s.apply({"light.0.scale", 2});
     s.apply({"object.wall.position", {0, 0, -1}}); // the world is built again
     lit_pixels(s, seen_from({0, 0, 3}));

@@ -44,6 +44,12 @@ void shine(gi::MovingWorld& world, gi::dvec3 eye_m)
     world.set_light(w.lights.size() - 1, light_at(headlight_of(w), eye_m, w.origin));
 }
 
+[[noreturn]] void refuse_headlight(Change const& change)
+{
+    throw gi::InputError("'" + change.key + "'", "it is the headlight, which goes with the head",
+                         "switch it off by headlight=false");
+}
+
 /// A view of all that is around the eye, of a quarter of it in each frame.
 gi::FrameView around(FrameCommand const& command)
 {
@@ -118,8 +124,7 @@ void RenderSession::edit_scene(Change const& change)
     if (!world_) throw gi::InputError("'" + change.key + "'", "no scene is loaded", "load one first");
     if (is_object_edit(change.key)) return place_object(change);
     if (headlight_ && change.key.starts_with("light." + std::to_string(world_->world().lights.size() - 1) + "."))
-        throw gi::InputError("'" + change.key + "'", "it is the headlight, which goes with the head",
-                             "switch it off by headlight=false");
+        refuse_headlight(change);
     pending_.add(edit(*world_, change));
     std::erase_if(edits_, [&](Change const& c) { return c.key == change.key; });
     edits_.push_back(change);
@@ -240,6 +245,7 @@ void RenderSession::place_object(Change const& change)
     gi::Pose now = gi::evaluate_pose(*scene_, time_s_);
     place(*scene_, placed_, now);
     PlacedObject const object = placed_object(*scene_, now, placed_, change);
+    if (headlight_ && object.node + 1 == scene_->nodes.size()) refuse_headlight(change);
     if (!scene_->nodes[object.node].driven) {
         auto scene = std::make_shared<gi::Scene>(*scene_);
         scene->nodes[object.node].driven = true;
