@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <span>
 
 namespace study::test {
 namespace {
@@ -159,6 +160,26 @@ TEST(GroupDPrime, OfOnlyRightAnswersIsInfiniteForOneObserverToo)
     EXPECT_NE(g.note, "");
     EXPECT_EQ(group_dprime(DetectionTask::two_interval, std::vector<DetectionCounts>{{0, 10, 10, 10}}).mean,
               -INFINITY);
+}
+
+TEST(GroupDPrime, HoldsTheDeviationBetweenObserversAsOftenAsItSays)
+{
+    for (double const deviation : {0.05, 0.6})
+        for (DetectionTask const task : {DetectionTask::yes_no, DetectionTask::two_interval}) {
+            int held = 0;
+            constexpr int kStudies = 100;
+            for (int i = 0; i < kStudies; ++i) {
+                Interval const found =
+                    group_dprime(task, simulated(task, 1.2, deviation, 8, 80, std::uint64_t(700 + i)))
+                        .deviation_interval;
+                held += found.low <= deviation && deviation <= found.high;
+            }
+            EXPECT_GE(held, 90) << deviation << " " << int(task);
+        }
+    auto const people = simulated(DetectionTask::yes_no, 1.2, 0.6, 8, 80, 7);
+    EXPECT_TRUE(std::isnan(group_dprime(DetectionTask::yes_no, people, 0.95, false).deviation_interval.low));
+    EXPECT_TRUE(
+        std::isnan(group_dprime(DetectionTask::yes_no, std::span(people).first(1)).deviation_interval.high));
 }
 
 } // namespace
