@@ -62,6 +62,12 @@ Pipeline::Pipeline(Session const& session, CalibratedCamera const& camera, Marke
 {
     if (session.occlusion && !poses_only) occluders_.emplace(*session.occlusion, camera.model, report);
     renderer_.set_environment(light_.begin());
+    bool const may_be_lit = !session.light.empty() || session.light_from_frame || session.live_light > 0;
+    if (gi::World const& w = renderer_.world(); !poses_only && !session.virtual_things.scene.empty() &&
+                                                !may_be_lit && w.lights.empty() && w.emitters.empty() &&
+                                                !w.environment)
+        report.lose("in doubt: sessions without any light, whose virtual objects are black", 1,
+                    "write light: to one");
     std::string const why = renderer_.choose(session.render.light);
     lit_by_ = renderer_.is_prefiltered() ? "prefiltered light" : fmt::format("paths ({})", why);
     session_.render.resolution = resolution_of(session.render, renderer_.is_prefiltered());

@@ -165,6 +165,18 @@ TEST_F(ArRuns, SayWhyNothingVirtualIsSeen)
     EXPECT_EQ(run("ar run none.yaml --fast --poses poses.csv").err, "") << "nothing virtual was asked for";
 }
 
+TEST_F(ArRuns, WithoutLightSayThatObjectsAreBlack)
+{
+    std::string text = session();
+    std::size_t const at = text.find("light:");
+    ASSERT_NE(at, std::string::npos);
+    write(desk() / "dark.yaml", text.erase(at, text.find('\n', at) + 1 - at));
+    Outcome const o = run("ar run dark.yaml --fast --poses poses.csv --frames 1");
+    EXPECT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.err.find("sessions without any light, whose virtual objects are black: 1"), std::string::npos)
+        << o.err;
+}
+
 TEST_F(ArRuns, FollowTheLight)
 {
     std::string text = session();
