@@ -42,7 +42,7 @@ private:
         for (unsigned c = 0; c < ours.mNumChildren; ++c) compare(*ours.mChildren[c], *theirs.mChildren[c]);
     }
 
-    static void compare(aiScene const& ours, aiScene const& theirs)
+    void compare(aiScene const& ours, aiScene const& theirs) const
     {
         ASSERT_EQ(ours.mNumMeshes, theirs.mNumMeshes);
         for (unsigned m = 0; m < ours.mNumMeshes; ++m) compare(*ours.mMeshes[m], *theirs.mMeshes[m]);
@@ -50,7 +50,7 @@ private:
         for (unsigned m = 0; m < ours.mNumMaterials; ++m) compare(*ours.mMaterials[m], *theirs.mMaterials[m]);
     }
 
-    static void compare(aiMesh const& ours, aiMesh const& theirs)
+    void compare(aiMesh const& ours, aiMesh const& theirs) const
     {
         SCOPED_TRACE(std::string("mesh ") + theirs.mName.C_Str());
         EXPECT_STREQ(ours.mName.C_Str(), theirs.mName.C_Str());
@@ -61,7 +61,13 @@ private:
         ASSERT_EQ(ours.mNumFaces, theirs.mNumFaces);
         for (unsigned f = 0; f < ours.mNumFaces; ++f)
             ASSERT_EQ(corners_of(ours.mFaces[f]), corners_of(theirs.mFaces[f])) << f;
-        compare(ours.mVertices, theirs.mVertices, ours.mNumVertices);
+        std::vector<aiVector3D> places; // Assimp's are not counted from an origin
+        for (unsigned v = 0; v < ours.mNumVertices; ++v) {
+            aiVector3D const& p = ours.mVertices[v];
+            vec3 const place(dvec3(p.x, p.y, p.z) + reader_.files().origin_m);
+            places.emplace_back(place.x, place.y, place.z);
+        }
+        compare(places.data(), theirs.mVertices, ours.mNumVertices);
         compare(ours.mNormals, theirs.mNormals, ours.mNumVertices);
         compare(ours.mTextureCoords[0], theirs.mTextureCoords[0], ours.mNumVertices);
         compare(ours.mColors[0], theirs.mColors[0], ours.mNumVertices);
