@@ -61,9 +61,15 @@ void find_equal_levels(Factor const& f, std::vector<std::string>& doubts)
     }
 }
 
-/// True if one factor tells the level of the other.
-bool is_confounded(Nest const& n)
+/// True if one factor tells the level of the other. Cameras are those of scenes: they cannot be crossed with them.
+bool is_confounded(Nest const& n, Factor const& nested)
 {
+    bool const are_cameras = std::ranges::all_of(nested.levels, [](FactorLevel const& level) {
+        return !level.settings.empty() && std::ranges::all_of(level.settings, [](auto const& one) {
+            return plain_key(one.first).starts_with("camera");
+        });
+    });
+    if (are_cameras) return false;
     std::vector<int> inner;
     for (std::vector<int> const& levels : n.levels) {
         if (levels.size() > 1) return false;
@@ -120,7 +126,7 @@ std::vector<std::string> find_doubts(Script const& s)
     for (Factor const& f : s.factors) find_equal_levels(f, doubts);
     for (Block const& b : s.blocks)
         for (Nest const& n : b.nest)
-            if (is_confounded(n))
+            if (is_confounded(n, s.factors[std::size_t(n.factor)]))
                 doubts.push_back(fmt::format(
                     "block '{}': each level of '{}' has its own level of '{}': what they change cannot "
                     "be told apart; cross them",

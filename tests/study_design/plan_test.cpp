@@ -357,17 +357,20 @@ TEST(Doubts, AreGuessRatesThatTheTaskCannotHave)
 
 TEST(Doubts, AreFactorsThatAlwaysGoTogether)
 {
-    auto const doubts = [](std::string const& levels) {
-        return find_doubts(parse(
-            "factors: {scene: [a, b], tone: [warm, cold, grey]}\ndefaults: {stimulus_ms: 1000}\nsequence: [x]\n"
-            "blocks:\n  x: {task: rating, scale: {min: 1, max: 7}, cross: scene, repeats: 2,\n"
-            "      nest: {tone: {in: scene, levels: {" +
-            levels + "}}}}\n"));
+    auto const doubts = [](std::string const& levels, std::string const& tones = "[warm, cold, grey]") {
+        return find_doubts(
+            parse("factors: {scene: [a, b], tone: " + tones +
+                  "}\ndefaults: {stimulus_ms: 1000}\nsequence: [x]\n"
+                  "blocks:\n  x: {task: rating, scale: {min: 1, max: 7}, cross: scene, repeats: 2,\n"
+                  "      nest: {tone: {in: scene, levels: {" +
+                  levels + "}}}}\n"));
     };
     ASSERT_EQ(doubts("a: warm, b: cold").size(), 1u);
     EXPECT_NE(doubts("a: warm, b: cold")[0].find("cannot be told apart"), std::string::npos);
     EXPECT_TRUE(doubts("a: [warm, cold], b: [cold, grey]").empty());
     EXPECT_TRUE(doubts("a: warm, b: warm").empty());
+    EXPECT_TRUE(doubts("a: warm, b: cold", "{warm: {camera: left}, cold: {camera: front}}").empty())
+        << "of scenes";
 }
 
 TEST(Doubts, AreProceduresThatCannotLearn)
@@ -381,7 +384,8 @@ TEST(Doubts, AreProceduresThatCannotLearn)
                   procedure + "}\n"));
         return found.empty() ? "" : found.at(0);
     };
-    std::string const questplus = "method: questplus, levels: 1..1024/11, guess: 0.5, lapse: 0.02, stop: {trials: 9}, ";
+    std::string const questplus =
+        "method: questplus, levels: 1..1024/11, guess: 0.5, lapse: 0.02, stop: {trials: 9}, ";
     EXPECT_NE(idle(questplus + "threshold: 64, slope: 2").find("a prior of one point"), std::string::npos);
     EXPECT_NE(idle(questplus + "threshold: [64], slope: [2]").find("a prior of one point"), std::string::npos);
     EXPECT_NE(idle(questplus + "threshold: 64, slope: [1, 2]").find("a prior with one threshold, 64"),
