@@ -48,6 +48,11 @@ TEST(EmptyView, OfASceneWithoutTriangles)
     gi::Report report;
     report_empty_view(world_of(gi::Scene{}), gi::look_at({0, 0, 0}, {0, 0, -1}, 45), 64, 64, report);
     EXPECT_TRUE(report.losses().contains(std::string(kSeesNothing)));
+    gi::Scene sky;
+    set_environment(sky, gi::vec3{1});
+    gi::Report none;
+    report_empty_view(world_of(sky), gi::look_at({0, 0, 0}, {0, 0, -1}, 45), 64, 64, none);
+    EXPECT_TRUE(none.losses().empty()) << "a picture of the sky";
 }
 
 } // namespace

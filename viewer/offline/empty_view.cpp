@@ -44,6 +44,8 @@ void report_empty_view(gi::World const& world, gi::Camera const& camera, int wid
                 std::max(seen.bottom, of.bottom)};
         if (seen.width() > speck_px || seen.height() > speck_px) return;
     }
+    bool const is_sky = world.environment && world.scene->background.kind == gi::BackgroundKind::map;
+    if (world.triangles.empty() && is_sky) return; // a picture of it was asked for
     if (world.triangles.empty()) return report.lose(std::string(kSeesNothing), 1, "the scene has no triangles");
     std::string const where = fmt::format("the scene lies from {} to {} m, the camera is at {} m",
                                           metres(world.origin + gi::dvec3(world.bounds.low)),
