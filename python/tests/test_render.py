@@ -123,6 +123,8 @@ def test_a_budget_ends_a_render(cornell):
         (lambda w: lightwell.Camera.look_at((0, 0, 0), (0, 0, 0)), "camera"),
         (lambda w: lightwell.load("no such scene"), "no such scene"),
         (lambda w: lightwell.compare(np.zeros((4, 4, 3)), np.zeros((5, 7, 3))), "size"),
+        (lambda w: lightwell.compare(np.zeros((4, 4, 3), np.uint8), np.zeros((4, 4, 3))), "no radiance"),
+        (lambda w: lightwell.write_png("never.png", np.zeros((4, 4, 3))), "tone_map"),
         (lambda w: lightwell.compare(np.zeros((4, 4)), np.zeros((4, 4, 3)), ["what"]), "what"),
         (lambda w: lightwell.tone_map(np.zeros((0, 4, 3))), "no picture"),
     ],
