@@ -75,7 +75,7 @@ struct FoundLight {
     float lacks; // the share that lacks the light of punctual lights
 };
 
-const uint kOfCells = 1u << 30, kOfNothing = 2u << 30; // LightSource of viewer/devices/gl/surface_renderer.h
+const uint kOfCells = 1u << 30, kOfNothing = 2u << 30, kSources = 3u << 30; // LightSource of viewer/devices/gl/surface_renderer.h
 const uint kNoSlope = 512u | 512u << 10 | 512u << 20;
 
 // By how much light for one normal differs from that for another.
@@ -87,66 +87,92 @@ float turned(uint slope, vec3 from, vec3 to)
 
 vec3 turned_to(FoundLight found, vec3 n) { return turned(found.bent.y, unpack_normal(found.bent.x), n) * found.light; }
 
+// What pictures show that is like a surface.
+struct Likes {
+    vec3 sum, weights, facings, best_facing;
+    float best, lacks, counted;
+    ivec3 nearest;
+    int shown_in; // the first of the newest pictures in which the place lies
+};
+
+const Likes kNothingAlike = Likes(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, ivec3(0), -1);
+
+// ring: 0 = the four texels around the place, 1 to 3 = corners and sides of the ring around these
+void ask(inout Likes s, int picture, int ring, vec3 at, vec3 n)
+{
+    ivec2 size = light_size[picture];
+    vec3 from = at - light_eye[picture], h = texel_from_world[picture] * from;
+    vec2 u = h.xy / max(h.z, 1e-9) - texel_at[picture];
+    bool inside = picture < pictures && h.z > 0.0 && all(greaterThan(u, vec2(-1.0))) && all(lessThan(u, vec2(size))) && (ring == 0 || s.shown_in >= 0);
+    s.shown_in = inside && s.shown_in < 0 && picture < newest_pictures ? picture : s.shown_in;
+    float trust = all(greaterThan(u, vec2(0.5))) && all(lessThan(u, vec2(size) - 1.5)) ? 1.0 : kEdge;
+    vec2 whole = floor(u), f = u - whole;
+    int taps = inside ? 4 : 0;
+    for (int j = 0; j < taps; ++j) {
+        ivec2 step = ivec2(j & 1, j >> 1);
+        float w = (step.x == 0 ? 1.0 - f.x : f.x) * (step.y == 0 ? 1.0 - f.y : f.y) + 0.02;
+        if (ring > 0) {
+            ivec2 far = 3 * step - 1;
+            step = ivec2(ring == 2 ? step.x : far.x, ring == 3 ? step.y : far.y);
+            w = 0.25;
+        }
+        ivec2 p = ivec2(whole) + step;
+        bool there = all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, size));
+        ivec3 texel = ivec3(clamp(p, ivec2(0), size - 1), light_layers[picture]);
+        uvec4 t = texelFetch(lights, texel, 0);
+        vec3 facing = unpack_normal(t.x);
+        float depth = uintBitsToFloat(t.w & ~7u), off = (dot(facing, from) - uintBitsToFloat(t.y)) / (kOfDepth * max(depth, 1e-30));
+        float cosine = max(0.0, dot(facing, n)), c2 = cosine * cosine, c4 = c2 * c2, like = c4 * c4 / (1.0 + off * off * off * off);
+        w = there && depth > 0.0 ? w * trust * (like + kLeast) : 0.0;
+        like *= trust;
+        vec3 by_channel = w * vec3(1u - (uvec3(t.w) >> uvec3(0u, 1u, 2u) & 1u));
+        s.sum += by_channel * unpack_light(t.z);
+        s.weights += by_channel;
+        s.lacks += w * lacks_punctual[picture];
+        s.counted += w;
+        s.facings += w * facing;
+        s.nearest = w > 0.0 && like > s.best ? texel : s.nearest;
+        s.best_facing = w > 0.0 && like > s.best ? facing : s.best_facing;
+        s.best = max(s.best, w > 0.0 ? like : 0.0);
+    }
+}
+
+// In all pictures; those of each eye in the same order.
+Likes ask_pictures(vec3 at, vec3 n)
+{
+    Likes s = kNothingAlike;
+    for (int k = 0; k < pictures && s.best <= kAlike; ++k) ask(s, k, 0, at, n);
+    bool around = s.best <= kAlike;
+    for (int ring = 1; ring < 4 && around; ++ring) ask(s, max(s.shown_in, 0), ring, at, n);
+    return s;
+}
+
+FoundLight light_of(Likes s, vec3 n)
+{
+    FoundLight found = FoundLight(mean_light, uvec2(pack_normal(n), kNoSlope), mean_lacks_punctual);
+    if (s.best >= kUnlike || (s.shown_in >= 0 && s.counted > 0.0)) {
+        found.light = mix(mean_light, s.sum / max(s.weights, vec3(1e-20)), greaterThan(s.weights, vec3(0.0)));
+        found.lacks = s.lacks / s.counted;
+        if (s.best >= kUnlike) {
+            found.bent = texelFetch(slopes, s.nearest, 0).xy;
+            found.bent.x = pack_normal(unpack_normal(found.bent.x) + s.facings / s.counted - s.best_facing);
+        }
+    }
+    found.bent.y |= s.best < kUnlike ? kOfNothing : 0u;
+    return found;
+}
+
+// a: 0 = cells know nothing
+FoundLight light_of(vec4 known, vec3 n)
+{
+    return FoundLight(known.rgb / known.a, uvec2(pack_normal(n), kNoSlope | kOfCells), cells_lack_punctual);
+}
+
 FoundLight find_light(vec3 at, vec3 n)
 {
-    vec3 sum = vec3(0.0), weights = vec3(0.0), facings = vec3(0.0), best_facing = n;
-    float best = 0.0, lacks = 0.0, counted = 0.0;
-    ivec3 nearest = ivec3(0);
-    int shown_in = -1; // the first of the newest pictures in which the place lies
-    for (int k = 0; k < pictures + 3 && (best <= kAlike || k > pictures); ++k) {
-        bool around = k >= pictures; // the ring around the four: its corners, its sides
-        int picture = around ? max(shown_in, 0) : k;
-        ivec2 size = light_size[picture];
-        vec3 from = at - light_eye[picture], h = texel_from_world[picture] * from;
-        vec2 u = h.xy / max(h.z, 1e-9) - texel_at[picture];
-        bool inside = h.z > 0.0 && all(greaterThan(u, vec2(-1.0))) && all(lessThan(u, vec2(size))) && (!around || shown_in >= 0);
-        shown_in = inside && shown_in < 0 && k < newest_pictures ? k : shown_in;
-        float trust = all(greaterThan(u, vec2(0.5))) && all(lessThan(u, vec2(size) - 1.5)) ? 1.0 : kEdge;
-        vec2 whole = floor(u), f = u - whole;
-        int taps = inside ? 4 : 0;
-        for (int j = 0; j < taps; ++j) {
-            ivec2 step = ivec2(j & 1, j >> 1);
-            float w = (step.x == 0 ? 1.0 - f.x : f.x) * (step.y == 0 ? 1.0 - f.y : f.y) + 0.02;
-            if (around) {
-                ivec2 far = 3 * step - 1;
-                step = ivec2(k == pictures + 1 ? step.x : far.x, k == pictures + 2 ? step.y : far.y);
-                w = 0.25;
-            }
-            ivec2 p = ivec2(whole) + step;
-            bool there = all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, size));
-            ivec3 texel = ivec3(clamp(p, ivec2(0), size - 1), light_layers[picture]);
-            uvec4 t = texelFetch(lights, texel, 0);
-            vec3 facing = unpack_normal(t.x);
-            float depth = uintBitsToFloat(t.w & ~7u), off = (dot(facing, from) - uintBitsToFloat(t.y)) / (kOfDepth * max(depth, 1e-30));
-            float cosine = max(0.0, dot(facing, n)), c2 = cosine * cosine, c4 = c2 * c2, like = c4 * c4 / (1.0 + off * off * off * off);
-            w = there && depth > 0.0 ? w * trust * (like + kLeast) : 0.0;
-            like *= trust;
-            vec3 by_channel = w * vec3(1u - (uvec3(t.w) >> uvec3(0u, 1u, 2u) & 1u));
-            sum += by_channel * unpack_light(t.z);
-            weights += by_channel;
-            lacks += w * lacks_punctual[picture];
-            counted += w;
-            facings += w * facing;
-            nearest = w > 0.0 && like > best ? texel : nearest;
-            best_facing = w > 0.0 && like > best ? facing : best_facing;
-            best = max(best, w > 0.0 ? like : 0.0);
-        }
-    }
-    FoundLight found = FoundLight(mean_light, uvec2(pack_normal(n), kNoSlope), mean_lacks_punctual);
+    FoundLight found = light_of(ask_pictures(at, n), n);
     vec4 known = vec4(0.0);
-    for (int once = 0; once < 1 && best < kUnlike; ++once) known = find_in_cells(at, n, distance(at, head));
-    if (known.a > 0.0) {
-        found.light = known.rgb / known.a;
-        found.lacks = cells_lack_punctual;
-        found.bent.y |= kOfCells;
-    } else if (best >= kUnlike || (shown_in >= 0 && counted > 0.0)) {
-        found.light = mix(mean_light, sum / max(weights, vec3(1e-20)), greaterThan(weights, vec3(0.0)));
-        found.lacks = lacks / counted;
-        if (best >= kUnlike) {
-            found.bent = texelFetch(slopes, nearest, 0).xy;
-            found.bent.x = pack_normal(unpack_normal(found.bent.x) + facings / counted - best_facing);
-        }
-    }
-    found.bent.y |= known.a == 0.0 && best < kUnlike ? kOfNothing : 0u;
+    for (int once = 0; once < 1 && (found.bent.y & kOfNothing) != 0u; ++once) known = find_in_cells(at, n, distance(at, head));
+    if (known.a > 0.0) found = light_of(known, n);
     return found;
 }

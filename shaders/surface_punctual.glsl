@@ -6,18 +6,16 @@ struct PunctualLight {
     vec4 direction; // w: 1 = a spot
     vec4 intensity; // w: range, m; 0 = unlimited
     vec4 cone;      // cosines of the inner and outer angle; width of a texel of the second map
-    vec4 map;       // first, number, width of a texel (at a distance of 1 m, if in perspective)
+    vec4 map;       // first layer, number, width of a texel (at a distance of 1 m, if in perspective)
 };
 
 layout(std140, binding = 1) uniform Punctual
 {
     PunctualLight punctual[4];
-    mat4 map_from_world[24];
+    mat4 map_from_world[24]; // six places for each
 };
 
 layout(binding = 13) uniform sampler2DArrayShadow shadows;
-
-uniform int punctual_lights;
 
 float schlick(float f0, float f90, float cosine)
 {
@@ -25,65 +23,89 @@ float schlick(float f0, float f90, float cosine)
     return f0 + (f90 - f0) * m2 * m2 * m;
 }
 
-// 1 = lit
-float reached(PunctualLight light, vec3 at, vec3 n)
+// Of light k, a constant: software drivers read what all pixels read at one place many times faster. SHADOW_MAPS is the number
+// of its maps, 0 if any is possible. 1 = lit
+float reached(const int k, PunctualLight light, vec3 at, vec3 n)
 {
     const float kOff = 1.5; // texels
-    int map = int(light.map.x), face = 0;
-    vec3 away = at - light.position.xyz, size = abs(away);
-    if (light.map.y == 6.0) {
-        bool x = size.x >= size.y && size.x >= size.z, y = !x && size.y >= size.z;
-        face = x ? (away.x < 0.0 ? 1 : 0) : y ? (away.y < 0.0 ? 3 : 2) : (away.z < 0.0 ? 5 : 4);
-    }
-    vec4 p = map_from_world[map + face] * vec4(at, 1.0);
-    vec3 off = at + kOff * light.map.z * max(p.w, 0.0) * n;
-    p = map_from_world[map + face] * vec4(off, 1.0);
+    int face = 0;
+    vec4 p = vec4(0.0);
+#if SHADOW_MAPS != 6
+    p = map_from_world[6 * k] * vec4(at, 1.0);
+    p = map_from_world[6 * k] * vec4(at + kOff * light.map.z * max(p.w, 0.0) * n, 1.0);
+#endif
+#if SHADOW_MAPS == 0 || SHADOW_MAPS == 2
     if (light.map.y == 2.0 && any(greaterThan(abs(p.xy), vec2(1.0)))) {
         face = 1;
-        p = map_from_world[map + 1] * vec4(at + kOff * light.cone.z * n, 1.0);
+        p = map_from_world[6 * k + 1] * vec4(at + kOff * light.cone.z * n, 1.0);
     }
+#endif
+#if SHADOW_MAPS == 0 || SHADOW_MAPS == 6
+    if (light.map.y == 6.0) {
+        vec3 away = at - light.position.xyz, size = abs(away);
+        bool x = size.x >= size.y && size.x >= size.z, y = !x && size.y >= size.z;
+        face = x ? (away.x < 0.0 ? 1 : 0) : y ? (away.y < 0.0 ? 3 : 2) : (away.z < 0.0 ? 5 : 4);
+        mat4 map = map_from_world[6 * k + face];
+        p = map * vec4(at, 1.0);
+        p = map * vec4(at + kOff * light.map.z * max(p.w, 0.0) * n, 1.0);
+    }
+#endif
     vec3 q = p.xyz / max(p.w, 1e-6);
-    return any(greaterThan(abs(q.xy), vec2(1.0))) || q.z >= 1.0 ? 1.0 : texture(shadows, vec4(0.5 * q.xy + 0.5, float(map + face), q.z));
+    return any(greaterThan(abs(q.xy), vec2(1.0))) || q.z >= 1.0 ? 1.0
+                                                                : texture(shadows, vec4(0.5 * q.xy + 0.5, light.map.x + float(face), q.z));
 }
 
-// Radiance towards `to_viewer`. gloss: of surface_packing.glsl
-vec3 punctual_light(vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec4 gloss)
+// Radiance towards `to_viewer` by light k, a constant.
+vec3 punctual_of(const int k, vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec4 gloss)
 {
     const float kPi = 3.14159265359;
-    bool phong = gloss.w < 0.0;
-    float metallic = phong ? 0.0 : gloss.y, opaque = (1.0 - metallic) * (1.0 - max(gloss.w, 0.0)), coat = gloss.z > 0.0 ? 1.0 : 0.0;
-    vec3 sum = vec3(0.0), base = max(albedo - (phong ? gloss.y : opaque * gloss.z), vec3(0.0));
-    vec3 f0 = opaque * gloss.z + metallic * base;
-    float f90 = opaque * coat + metallic, alpha = gloss.x * gloss.x, a2 = alpha * alpha, exponent = 2.0 / max(a2, 1e-12) - 2.0;
-    float cos_o = max(dot(n, to_viewer), 1e-3);
-    for (int k = 0; k < punctual_lights; ++k) {
-        PunctualLight light = punctual[k];
-        vec3 way = light.position.xyz - at, wi = -light.direction.xyz;
-        float factor = 1.0;
-        if (light.position.w == 0.0) {
-            float squared = max(dot(way, way), 1e-12), reach = light.intensity.w;
-            wi = way * inversesqrt(squared);
-            float window = 1.0 - squared * squared / max(reach * reach * reach * reach, 1e-30);
-            factor = (reach > 0.0 ? clamp(window, 0.0, 1.0) : 1.0) / squared;
-            float cone = clamp((-dot(wi, light.direction.xyz) - light.cone.y) / max(light.cone.x - light.cone.y, 1e-3), 0.0, 1.0);
-            factor *= light.direction.w > 0.0 ? cone * cone : 1.0;
-        }
-        float cos_i = dot(n, wi);
-        factor *= max(cos_i, 0.0);
-        // Loops, as both sides of a condition would be executed for all pixels that are drawn together.
-        for (int once = 0; once < 1 && factor > 0.0; ++once) factor *= reached(light, at, n);
-        for (int once = 0; once < 1 && factor > 0.0; ++once) {
-            float mean = 1.0 - mix(gloss.z, coat, 1.0 / 21.0);
-            float passes = mean > 0.0 ? (1.0 - schlick(gloss.z, coat, cos_o)) * (1.0 - schlick(gloss.z, coat, cos_i)) / mean : 0.0;
-            vec3 h = normalize(to_viewer + wi), across = cross(n, h);
-            float cos_h = dot(n, h), t = dot(across, across) / max(a2, 1e-12) + cos_h * cos_h, grazing = schlick(0.0, 1.0, dot(to_viewer, h));
-            float visible = 0.5 / (cos_i * sqrt(a2 + (1.0 - a2) * cos_o * cos_o) + cos_o * sqrt(a2 + (1.0 - a2) * cos_i * cos_i));
-            float lobe = alpha < SMOOTH_ALPHA ? 0.0 : visible / (kPi * a2 * t * t);
-            vec3 f = opaque * passes / kPi * base + lobe * (f0 + (f90 - f0) * grazing);
-            float along = max(dot(reflect(-to_viewer, n), wi), 0.0);
-            vec3 by_phong = base / kPi + gloss.y * (exponent + 1.0) * (0.5 / kPi) * pow(along, exponent);
-            sum += factor * light.intensity.rgb * (phong ? by_phong : f);
-        }
+    PunctualLight light = punctual[k];
+    vec3 way = light.position.xyz - at, wi = -light.direction.xyz, sum = vec3(0.0);
+    float factor = 1.0;
+    if (light.position.w == 0.0) {
+        float squared = max(dot(way, way), 1e-12), reach = light.intensity.w;
+        wi = way * inversesqrt(squared);
+        float window = 1.0 - squared * squared / max(reach * reach * reach * reach, 1e-30);
+        factor = (reach > 0.0 ? clamp(window, 0.0, 1.0) : 1.0) / squared;
+        float cone = clamp((-dot(wi, light.direction.xyz) - light.cone.y) / max(light.cone.x - light.cone.y, 1e-3), 0.0, 1.0);
+        factor *= light.direction.w > 0.0 ? cone * cone : 1.0;
+    }
+    float cos_i = dot(n, wi);
+    factor *= max(cos_i, 0.0);
+    if (factor > 0.0) {
+        factor *= reached(k, light, at, n);
+        bool phong = gloss.w < 0.0;
+        float metallic = phong ? 0.0 : gloss.y, opaque = (1.0 - metallic) * (1.0 - max(gloss.w, 0.0)), coat = gloss.z > 0.0 ? 1.0 : 0.0;
+        vec3 base = max(albedo - (phong ? gloss.y : opaque * gloss.z), vec3(0.0)), f0 = opaque * gloss.z + metallic * base;
+        float f90 = opaque * coat + metallic, alpha = gloss.x * gloss.x, a2 = alpha * alpha, exponent = 2.0 / max(a2, 1e-12) - 2.0;
+        float cos_o = max(dot(n, to_viewer), 1e-3), mean = 1.0 - mix(gloss.z, coat, 1.0 / 21.0);
+        float passes = mean > 0.0 ? (1.0 - schlick(gloss.z, coat, cos_o)) * (1.0 - schlick(gloss.z, coat, cos_i)) / mean : 0.0;
+        vec3 h = normalize(to_viewer + wi), across = cross(n, h);
+        float cos_h = dot(n, h), t = dot(across, across) / max(a2, 1e-12) + cos_h * cos_h, grazing = schlick(0.0, 1.0, dot(to_viewer, h));
+        float visible = 0.5 / (cos_i * sqrt(a2 + (1.0 - a2) * cos_o * cos_o) + cos_o * sqrt(a2 + (1.0 - a2) * cos_i * cos_i));
+        float lobe = alpha < SMOOTH_ALPHA ? 0.0 : visible / (kPi * a2 * t * t);
+        vec3 f = opaque * passes / kPi * base + lobe * (f0 + (f90 - f0) * grazing);
+        if (phong)
+            f = base / kPi + gloss.y * (exponent + 1.0) * (0.5 / kPi) * pow(max(dot(reflect(-to_viewer, n), wi), 0.0), exponent);
+        sum = factor * light.intensity.rgb * f;
     }
     return sum;
 }
+
+#if PUNCTUAL
+// Radiance towards `to_viewer` by all PUNCTUAL lights. gloss: of surface_packing.glsl
+vec3 punctual_light(vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec4 gloss)
+{
+    vec3 sum = punctual_of(0, at, n, to_viewer, albedo, gloss);
+#if PUNCTUAL > 1
+    sum += punctual_of(1, at, n, to_viewer, albedo, gloss);
+#endif
+#if PUNCTUAL > 2
+    sum += punctual_of(2, at, n, to_viewer, albedo, gloss);
+#endif
+#if PUNCTUAL > 3
+    sum += punctual_of(3, at, n, to_viewer, albedo, gloss);
+#endif
+    return sum;
+}
+#endif

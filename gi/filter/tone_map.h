@@ -14,6 +14,7 @@ enum class ToneCurve : std::uint8_t {
 struct ToneMapSettings {
     float exposure_ev = 0; ///< stops: radiance is multiplied by 2^ev
     ToneCurve curve = ToneCurve::srgb;
+    bool operator==(ToneMapSettings const&) const = default;
 };
 
 /// sRGB encoding (IEC 61966-2-1) of v in [0, 1].

@@ -67,6 +67,8 @@ protected:
         moment.scene_s += 0.03;
         moment.views[0].camera = walked(12.5);
         views.begin(1, &moment, {});
+        moment.pose_s += 1; // the newest light has faded in
+        views.begin(1, &moment, {});
         EyeView const eye = views.eye(0, &moment.views[0].camera);
         EXPECT_TRUE(views.drew_surfaces());
         EXPECT_EQ(eye.picture.size_px, kSize);

@@ -2,6 +2,8 @@
 
 #include "gi/core/error.h"
 
+#include <algorithm>
+
 namespace viewer {
 namespace {
 
@@ -36,6 +38,19 @@ FrameCommand moment_at(LiveFrame const& frame, Viewpoint const& at, double now_s
     if (at.views.size() == moment.views.size())
         for (std::size_t k = 0; k < at.views.size(); ++k) moment.views[k].camera = at.views[k].camera;
     return moment;
+}
+
+double drawing_pace(std::vector<Change> const& edits)
+{
+    return std::ranges::any_of(edits, is_light_edit, &Change::key) ? 2 : 1;
+}
+
+bool look_same(LiveFrame const& frame, FrameCommand const& a, FrameCommand const& b)
+{
+    bool const can_move = frame.result.scene && !frame.result.scene->moving->instances.empty();
+    return std::ranges::equal(a.views, b.views, {}, &ViewCommand::camera, &ViewCommand::camera) &&
+           a.changes == b.changes && a.world_from_room == b.world_from_room &&
+           (!can_move || (a.scene_s == b.scene_s && a.tracked == b.tracked && a.others == b.others));
 }
 
 gi::Pose pose_at(SessionFrame const& frame, FrameCommand const& moment, DriveBodies const& drive)

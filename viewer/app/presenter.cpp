@@ -123,6 +123,21 @@ void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, 
                            GL_COLOR_BUFFER_BIT, GL_LINEAR);
 }
 
+void Presenter::draw_one(std::size_t pane, DrawTarget const& part, EyeView const& view, gi::Camera const& camera,
+                         bool as_rendered, DisplaySettings const& settings, bool fades)
+{
+    if (view.is_drawn) {
+        TextureTarget const& drawn = surface_display_->draw(pass_, part, view, settings);
+        if (fades) fades_[pane].show_surfaces(drawn, camera);
+    } else if (fades && as_rendered) {
+        LiveFrame const& f = views_.frame();
+        fades_[pane].draw(pass_, part, view, camera, {f.command.frame, f.result.still_frames}, settings);
+    } else {
+        fades_.erase(pane);
+        pass_.draw(part, view, view, settings);
+    }
+}
+
 void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& all,
                      PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
@@ -148,8 +163,11 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
             if (s.swap_eyes) std::swap(left, right);
             if (pane.right_alone) left = right;
             settings.light = s.light;
-            if (left.is_drawn && settings.stereo == StereoMode::off)
-                surface_display_->draw(pass_, part, left, settings);
+            gi::Camera const& rendered = views_.command(pane.left).camera;
+            gi::Camera const& camera =
+                std::size_t(pane.left) < now.size() ? now[std::size_t(pane.left)] : rendered;
+            if (settings.stereo == StereoMode::off && settings.comparison == Comparison::off)
+                draw_one(k, part, left, camera, camera == rendered, settings, s.fades);
             else
                 pass_.draw(part, left, right, settings);
             continue;

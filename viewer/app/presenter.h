@@ -4,11 +4,13 @@
 
 #include "gi/light_paths/settings.h"
 #include "viewer/app/shown_views.h"
+#include "viewer/app/still_fade.h"
 #include "viewer/app/surface_display.h"
 #include "viewer/devices/gl/surface_pass.h"
 #include "viewer/devices/gl/wall_pass.h"
 #include "viewer/displays/wall_ray.h"
 
+#include <algorithm>
 #include <deque>
 
 namespace viewer {
@@ -50,6 +52,7 @@ struct PresentSettings {
     DriveBodies drive;                  ///< moves bodies then
     /// Side of surfaces drawn for a newer camera over that of the view; 0: pictures are reprojected.
     double surfaces_scale = 0;
+    bool fades = false; ///< pictures of a head that stands still fade in
 };
 
 class Presenter {
@@ -65,6 +68,11 @@ public:
     /// @param now  one camera per view, for reprojection; empty = as rendered
     void draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
               PresentSettings const& settings, std::vector<gi::Camera> const& now);
+    /// Draw again soon: a picture fades in.
+    bool fades() const
+    {
+        return views_.fades() || std::ranges::any_of(fades_, [](auto const& f) { return f.second.fades(); });
+    }
     ShownViews const& views() const { return views_; }
     ShownViews& views() { return views_; }
 
@@ -76,6 +84,9 @@ private:
     /// The picture of one eye on a wall that is not flat, in flat_.
     void draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings, std::size_t side,
                     std::vector<gi::Camera> const& now);
+    /// A pane that shows one view, for one eye.
+    void draw_one(std::size_t pane, DrawTarget const& part, EyeView const& view, gi::Camera const& camera,
+                  bool as_rendered, DisplaySettings const& settings, bool fades);
     void draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, DrawTarget const& wall_picture);
 
     std::shared_ptr<WallOverlay const> uploaded_;
@@ -88,6 +99,7 @@ private:
     std::vector<glm::ivec2> face_px_;
     std::array<std::optional<TextureTarget>, 2> flat_, bent_;
     std::optional<SurfaceDisplay> surface_display_;
+    std::map<std::size_t, StillFade> fades_; ///< of panes, by their places in draw()
     glm::ivec2 bent_px_{};
 };
 

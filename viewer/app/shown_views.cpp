@@ -118,6 +118,7 @@ void ShownViews::begin(double surfaces_scale, FrameCommand const* moment, DriveB
     bool const moved =
         !std::ranges::equal(moment->views, rendered.views, {}, &ViewCommand::camera, &ViewCommand::camera);
     if (moved || rendered.only_light) add_light();
+    renderer_->show_at(moment->pose_s);
     renderer_->update_shadows();
 }
 

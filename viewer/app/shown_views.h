@@ -40,9 +40,12 @@ public:
         return renderer_ ? renderer_->light_sources(view) : LightSources{};
     }
 
+    LiveFrame const& frame() const { return *frame_; } ///< of the last take()
     /// True if surfaces are about to be drawn, once more of the scene is on the GPU: draw again soon.
     bool prepares() const { return prepares_; }
     bool drew_surfaces() const { return drew_surfaces_; } ///< since begin()
+    /// Light fades in: draw again soon, even if nothing moves.
+    bool fades() const { return drew_surfaces_ && renderer_ && renderer_->fades(); }
     /// Side of surfaces over that of the view, if any could be drawn since begin(); else 0.
     double drawn_scale() const { return is_ready_ ? surfaces_scale_ : 0; }
     /// Puts the rest of the scene on the GPU, however long it takes. False: surfaces cannot be drawn.

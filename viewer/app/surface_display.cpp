@@ -23,10 +23,12 @@ TextureTarget const& SurfaceDisplay::smoothed(int number, DisplayPass& pass, Eye
     return smoothed;
 }
 
-void SurfaceDisplay::draw(DisplayPass& pass, DrawTarget const& to, EyeView const& view,
-                          DisplaySettings const& settings)
+TextureTarget const& SurfaceDisplay::draw(DisplayPass& pass, DrawTarget const& to, EyeView const& view,
+                                          DisplaySettings const& settings)
 {
-    stretch(smoothed(0, pass, view, settings).target(), to);
+    TextureTarget const& drawn = smoothed(0, pass, view, settings);
+    stretch(drawn.target(), to);
+    return drawn;
 }
 
 } // namespace viewer

@@ -31,7 +31,7 @@ namespace {
 constexpr double kLook_s = 0.004;       // between two reads of input and sockets
 constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture,
 constexpr double kDrawings = 5;         // at most 1/5 of the time, as software drivers slow the renderer
-constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kMessage_s = 5;
+constexpr double kFlicker_Hz = 2, kMessages_Hz = 12, kFades_Hz = 30, kMessage_s = 5;
 
 class WindowLoop {
 public:
@@ -336,6 +336,13 @@ private:
         return state_.loading || state_.building || is_new || state_.shows_help || state_.open_dialog.is_open();
     }
 
+    /// Surfaces that would be drawn now were drawn last.
+    bool shows(LiveFrame const& frame)
+    {
+        if (!drawn_moment_ || has_moved()) return false;
+        return look_same(frame, *drawn_moment_, moment_of(frame, state_.clock.now_s(), 0).moment);
+    }
+
     void show()
     {
         if (presenting_->busy()) return;
@@ -347,16 +354,18 @@ private:
         }
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
-        bool const moved = !follows() && state_.settings().reproject &&
-                           (has_moved() || (newest && newest->command.only_light)) &&
-                           since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_);
+        bool const moved = !follows() && state_.settings().reproject && newest &&
+                           (has_moved() || (newest->command.only_light && !shows(*newest))) &&
+                           since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_) &&
+                           since_s > (drawing_pace(core_.renderer->edits_since(*newest)) - 1) * surfaces_s_;
+        bool const fades = fades_ && since_s > 1 / kFades_Hz;
         bool const draws = prepares_ && since_s > 1 / kMessages_Hz;
         bool const flickers = state_.settings().view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
         bool const messages = has_messages();
         bool const tells = messages != had_messages_ || (messages && since_s > 1 / kMessages_Hz);
-        if (next || fresh || moved || draws || flickers || dirty_ > 0 || resized || tells ||
+        if (next || fresh || moved || fades || draws || flickers || dirty_ > 0 || resized || tells ||
             state_.wants_screenshot)
             present(newest, fresh, next ? next->number : 0);
     }
@@ -370,6 +379,7 @@ private:
         std::optional<ShownFrame> shown;   ///< for a recording
         bool fresh = false, panel = false, messages = false, wants_bytes = false, reprojected = false;
         bool surfaces = false, prepares = false; ///< drawn; or about to be
+        bool fades = false;
         bool can_draw = true;                    ///< surfaces of all views
         std::string why_no_surfaces;
         PresentSettings settings;
@@ -427,11 +437,13 @@ private:
             p->settings.moment = p->moment->moment;
             p->settings.moment->views = own_views(p->moment->moment.views);
             p->cameras = cameras_of(p->settings.moment->views);
+            drawn_moment_ = p->moment->moment;
             p->reprojected = !(p->cameras == cameras_of(newest->command.views)) || newest->command.only_light;
             if (link_ != nullptr && core_.display)
                 set_panes(
                     display_panes(*core_.display, p->settings.moment->views, p->settings.moment->world_from_room));
         }
+        p->settings.fades = !p->wants_bytes && link_ == nullptr;
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();
@@ -497,6 +509,7 @@ private:
                                       p.cameras);
             p.surfaces |= shown.pictures().views().drew_surfaces();
             p.prepares |= shown.pictures().views().prepares();
+            p.fades |= shown.pictures().fades();
             p.can_draw &= shown.pictures().views().draws_surfaces();
             p.why_no_surfaces = shown.pictures().views().why_no_surfaces();
             if (p.wants_bytes) shoot(target_of(shown.window), p.shots);
@@ -530,6 +543,7 @@ private:
     void presented(Presentation const& p)
     {
         prepares_ = p.prepares;
+        fades_ = p.fades;
         draws_surfaces_ = p.can_draw;
         if (!p.why_no_surfaces.empty() && !std::exchange(no_surfaces_told_, true)) {
             core_.report.lose("surfaces not drawn, pictures are reprojected", 1, p.why_no_surfaces);
@@ -631,6 +645,7 @@ private:
     ErrorMeter meter_;
     Anticipation anticipation_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of all views: current, and as shown
+    std::optional<FrameCommand> drawn_moment_;        ///< of the last picture
     std::optional<ShownMoment> last_shown_;           ///< that the leader showed, on a rank that follows
     int dirty_ = 1; ///< pictures that are to be shown although nothing else changed
     bool fallback_told_ = false, no_surfaces_told_ = false, had_messages_ = false;
@@ -641,6 +656,7 @@ private:
     SurfacesScale surfaces_scale_;
     double surfaces_s_ = 0; ///< from the start of a picture whose surfaces are drawn until it is shown, smoothed
     bool draws_surfaces_ = false; ///< pictures may be of light alone
+    bool fades_ = false;          ///< a picture, into that before
     bool prepares_ = false;       ///< surfaces will be drawn when more of the scene is on the GPU
 };
 

@@ -26,7 +26,8 @@ namespace viewer {
 namespace {
 
 constexpr double kApart_m = 0.063, kFov_deg = 60;
-constexpr double kStill_s = 2; ///< that the head holds still after its path
+constexpr double kStill_s = 6;   ///< that the head holds still after its path, and clips stand
+constexpr double kSettles_s = 2; ///< until flicker is measured then
 constexpr double kFirst_s = 1; ///< of the path, which is not scored
 
 /// What is counted while the head moves, and between the first change and the last.
@@ -60,6 +61,7 @@ public:
           renderer_(session, clock_, nullptr, hooks())
     {
         settings_.tone = tone_settings(session.settings());
+        settings_.fades = true;
         for (int e = 0; e < o.eyes; ++e) {
             panes_.push_back({{0, 0}, size_px, StereoMode::off, e, -1});
             for (int k = 0; k < 2; ++k) targets_.emplace_back(TextureTarget::Format::bytes, size_px);
@@ -87,6 +89,7 @@ public:
         for (double now = 0; now < end_s; now = clock_.now_s() - begun_s_) {
             if (stop_.requested()) throw gi::Interrupted();
             make_changes(now);
+            if (now > walker_.path().seconds() && !std::exchange(stands_, true)) renderer_.post({"play", false});
             show(now);
             wait(now);
         }
@@ -197,11 +200,15 @@ private:
         double const seen_s = begun_s_ + now + std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s);
         if (surfaces_s_ > 0) at = anticipation_.at(begun_s_ + now, seen_s);
         auto const newest = renderer_.newest();
+        FrameCommand moment = moment_at(*newest, at, seen_s, renderer_.edits_since(*newest));
+        if (newest == shown_ && !presenter_.fades() && settings_.moment &&
+            look_same(*newest, *settings_.moment, moment))
+            return;
         if (newest != shown_) presenter_.take(newest, panes_);
         shown_ = newest;
         note_light(now);
         double const drawing = clock_.now_s();
-        settings_.moment = moment_at(*newest, at, seen_s, renderer_.edits_since(*newest));
+        settings_.moment = std::move(moment);
         settings_.drive = scenes_.drive;
         settings_.surfaces_scale = draws_surfaces_ ? scale_.next() : 0;
         std::size_t const drawn = 1 - turn_;
@@ -221,7 +228,7 @@ private:
         shown_s_ = moves ? done : 0;
         turn_ = drawn;
         note_mean(done - begun_s_);
-        if (now > walker_.path().seconds() + 0.5 * kStill_s) {
+        if (now > walker_.path().seconds() + kSettles_s) {
             std::vector<unsigned char> picture = on_screen(0);
             if (!still_.empty()) counts_.flicker.push_back(change(still_, picture));
             still_ = std::move(picture);
@@ -261,8 +268,9 @@ private:
     void wait(double now)
     {
         constexpr double kPresentation_Hz = 60, kDrawings = 5, kLook_s = 0.004;
-        double const next_s =
-            now + std::max(1 / kPresentation_Hz, presenter_.views().drew_surfaces() ? 0 : kDrawings * drew_s_);
+        double const pace =
+            presenter_.views().drew_surfaces() ? drawing_pace(renderer_.edits_since(*shown_)) : kDrawings;
+        double const next_s = now + std::max(1 / kPresentation_Hz, pace * drew_s_);
         while (clock_.now_s() - begun_s_ < next_s && renderer_.newest() == shown_) {
             if (double const t = clock_.now_s() - begun_s_; t - last_s_ > kLook_s) look(t);
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -274,6 +282,7 @@ private:
     Walker& walker_;
     std::vector<PathChange> const& changes_;
     std::size_t next_change_ = 0;
+    bool stands_ = false; ///< after the path
     std::string refused_; ///< why one cannot be made
     std::vector<ShownMean> means_;
     glm::ivec2 size_px_;

@@ -53,7 +53,7 @@ void add_bench_shown(CLI::App& bench, int& exit_code)
 scored. Compared is what is still on the screen at a moment with a converged picture of that moment, so the age of
 poses and light counts. interval: time between two pictures while the head moves or changes go on; rendering:
 between two pictures of light; light_age: since the pose for which the light was rendered; still_flicker: root mean square of what
-changes between two pictures of a head at rest, most of them, in steps of 1/255; rivalry: mean difference of the
+changes between two pictures from 2 s after the path on, when head and clips stand, most of them, in steps of 1/255; rivalry: mean difference of the
 eyes' errors at points that both see, in the same steps; response: time after the first change of --at until the mean
 of what is shown has made 90 % of its way to where it is 2.5 s later; unlit_share: share of the pixels of surfaces
 that no picture of light shows, lit by cells of space or by the mean; unlit_error: mean difference there over the mean

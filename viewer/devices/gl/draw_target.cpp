@@ -54,7 +54,7 @@ void stretch(DrawTarget const& from, DrawTarget const& to)
     glm::ivec2 c = to.corner_px, d = to.corner_px + to.size_px;
     if (from.rows != to.rows) std::swap(c.y, d.y);
     glBlitNamedFramebuffer(from.framebuffer, to.framebuffer, a.x, a.y, b.x, b.y, c.x, c.y, d.x, d.y,
-                           GL_COLOR_BUFFER_BIT, GL_LINEAR);
+                           GL_COLOR_BUFFER_BIT, from.size_px == to.size_px ? GL_NEAREST : GL_LINEAR);
 }
 
 std::vector<unsigned char> read_bytes(DrawTarget const& target, unsigned buffer)

@@ -57,6 +57,7 @@ void LightRing::add(std::vector<LightOfView> const& frame, gi::dvec3 origin)
     constexpr float kOlder = 0.85f;
     bool const begins = entries_.empty() || entries_.back().without_punctual != first.without_punctual;
     mean_ = begins ? mean : glm::mix(mean, mean_, std::pow(kOlder, float(known.size())));
+    is_new_ = !begins;
     for (LightOfView const& of : known) add(of, origin);
 }
 
@@ -95,6 +96,14 @@ void LightRing::add(LightOfView const& of, gi::dvec3 origin)
                             GL_UNSIGNED_INT, light.slopes.data());
 }
 
+void LightRing::show_at(double pose_s)
+{
+    // Where nothing was drawn for long, the last light is not older for that.
+    if (std::exchange(is_new_, false)) begun_s_ = std::max(shown_s_, pose_s - kFade_s / 3);
+    shown_s_ = pose_s;
+    share_ = std::clamp(float((pose_s - begun_s_) / kFade_s), 0.0f, 1.0f);
+}
+
 void LightRing::take(std::shared_ptr<gi::LightCellTable const> cells)
 {
     if (known_ == cells) return;
@@ -116,6 +125,7 @@ void LightRing::clear()
 {
     entries_.clear();
     known_ = nullptr;
+    share_ = 1;
 }
 
 /// How wide the gap of places and directions would be that its view's pictures leave without this one. The newest and the
@@ -188,6 +198,10 @@ void LightRing::bind(GlProgram const& program, int head, SeenPart const& seen) c
     program.set("narrowest_cell", known_ ? known_->narrowest_m : 0.0f);
     program.set("cells_lack_punctual", known_ && known_->without_punctual ? 1.0f : 0.0f);
     glBindTextureUnit(14, cells_.id());
+    auto const before =
+        std::ranges::find_if(asked, [&](Entry const& e) { return e.age == 1 && e.view == asked.front().view; });
+    program.set("light_before", before == asked.end() ? -1 : int(before - asked.begin()));
+    program.set("share", share_);
     program.set("mean_light", mean_);
     program.set("mean_lacks_punctual", first.without_punctual ? 1.0f : 0.0f);
     program.set("head", first.eye);

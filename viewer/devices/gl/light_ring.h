@@ -35,6 +35,10 @@ public:
     /// @param origin  of the world
     void add(std::vector<LightOfView> const& frame, gi::dvec3 origin);
     void take(std::shared_ptr<gi::LightCellTable const> cells);
+    /// What is drawn from now on is of this time; light that was added since fades in over kFade_s. @param pose_s  of the
+    /// viewer's clock, as recordings have it
+    void show_at(double pose_s);
+    bool fades() const { return share_ < 1; }
     void forget_pictures() { entries_.clear(); }
     void clear();
     bool empty() const { return entries_.empty(); }
@@ -43,6 +47,7 @@ public:
     void bind(GlProgram const& program, int head, SeenPart const& seen) const;
 
 private:
+    static constexpr double kFade_s = 0.15;
     static constexpr int kNewest = 2; ///< pictures of a view that are always kept
     struct Entry {
         int view = 0, head = 0, layer = 0;
@@ -66,6 +71,9 @@ private:
     int width_ = 0, height_ = 0, layers_ = 0; ///< of the textures; pictures may be smaller
     std::shared_ptr<gi::LightCellTable const> known_; ///< what no picture shows; null = nothing
     GlObject cells_;
+    bool is_new_ = false;              ///< light was added since show_at()
+    double shown_s_ = 0, begun_s_ = 0; ///< of the last show_at(); when light began to fade in
+    float share_ = 1;                  ///< of the newest light
     glm::vec3 mean_{0}; ///< of the light of the last dozen pictures, smoothed
     std::vector<Entry> entries_;
 };

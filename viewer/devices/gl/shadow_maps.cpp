@@ -13,7 +13,7 @@
 namespace viewer {
 namespace {
 
-constexpr std::size_t kMostMaps = 24; ///< six for each of four lights: surface_punctual.glsl
+constexpr std::size_t kMostFaces = 6; ///< maps of a light: surface_punctual.glsl
 /// Beams whose texels would be wider get a second map for what is around the eye, so wide.
 constexpr float kWidestTexel_m = 0.02f, kWindow_m = 40;
 /// Of a light's cone for one map instead of six, and of what is before a map's plane, relative to the range.
@@ -25,7 +25,7 @@ struct LightBlock {
 };
 struct Block {
     std::array<LightBlock, 4> lights;
-    std::array<glm::mat4, kMostMaps> map_from_world;
+    std::array<glm::mat4, 4 * kMostFaces> map_from_world;
 };
 
 glm::mat4 facing(glm::vec3 from, glm::vec3 forward)
@@ -68,13 +68,13 @@ glm::vec3 axis(int face)
 
 bool is_one_cone(gi::Light const& l) { return l.type == gi::LightType::spot && l.cos_outer > kWidestCone_cos; }
 
-int maps_of(gi::Light const& l, bool windowed)
+} // namespace
+
+int ShadowMaps::maps_of(gi::Light const& l, bool windowed)
 {
     if (l.type == gi::LightType::directional) return windowed ? 2 : 1;
     return is_one_cone(l) ? 1 : 6;
 }
-
-} // namespace
 
 void ShadowMaps::take(gi::ShownScene const& scene)
 {
@@ -164,7 +164,7 @@ void ShadowMaps::place(SceneMeshes const& meshes, glm::vec3 eye)
             } else {
                 m = cone(l.position, axis(f), 1 + 4 / float(side), all);
             }
-            block.map_from_world[next + std::size_t(f)] = m;
+            block.map_from_world[kMostFaces * k + std::size_t(f)] = m;
         }
         block.lights[k] = {{l.position, float(l.type == gi::LightType::directional)},
                            {l.direction, float(l.type == gi::LightType::spot)},
@@ -283,9 +283,8 @@ void ShadowMaps::draw(SceneMeshes const& meshes, std::size_t map, GlObject const
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
-void ShadowMaps::bind(GlProgram const& program) const
+void ShadowMaps::bind() const
 {
-    program.set("punctual_lights", int(lights_.size()));
     if (lights_.empty()) return;
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, block_.id());
     glBindTextureUnit(13, shown_.id() != 0 ? shown_.id() : still_.id());

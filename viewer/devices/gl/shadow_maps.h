@@ -21,9 +21,12 @@ public:
     bool prepare(SceneMeshes const& meshes, glm::vec3 eye);
     /// Draws all that is missing or has moved.
     void update(SceneMeshes const& meshes, glm::vec3 eye);
-    /// To block 1 and unit 13, and the uniform of shaders/surface_punctual.glsl.
-    void bind(GlProgram const& program) const;
-    bool any() const { return !lights_.empty(); }
+    /// To block 1 and unit 13 of shaders/surface_punctual.glsl.
+    void bind() const;
+    /// 0 to 4.
+    std::vector<gi::Light> const& lights() const { return lights_; }
+    /// Of a light, once they are prepared: 1, 2 or 6.
+    int maps(std::size_t light) const { return maps_of(lights_[light], window_m_ > 0); }
 
 private:
     struct Map {
@@ -31,6 +34,7 @@ private:
         bool is_drawn = false;
         glm::ivec2 low_px{0}, high_px{0}; ///< what moving surfaces may have covered
     };
+    static int maps_of(gi::Light const& light, bool windowed);
     void place(SceneMeshes const& meshes, glm::vec3 eye);
     void draw_still(SceneMeshes const& meshes, std::size_t map);
     void draw_moving(SceneMeshes const& meshes);

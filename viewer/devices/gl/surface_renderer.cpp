@@ -24,25 +24,6 @@ glm::mat3 clip_from_world(gi::Camera const& camera, glm::ivec2 size_px)
     return glm::mat3(clip_from_pixel * pixel_from_world(camera, size_px));
 }
 
-struct DepthRange {
-    float nearest = 0, farthest = 0;
-};
-
-/// Distances along the axis of the places of a box; none: no place is seen. 0 where it is infinite.
-std::optional<DepthRange> seen_depths(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
-{
-    if (!(box.high.x < gi::kInf)) return DepthRange{};
-    // Most that a linear function reaches in the box, relative to the eye.
-    auto const most = [&](glm::vec3 f) {
-        return glm::dot(glm::max(f * (box.low - eye), f * (box.high - eye)), glm::vec3(1));
-    };
-    auto const row = [&](int r) { return glm::vec3(clip[0][r], clip[1][r], clip[2][r]); };
-    glm::vec3 const x = row(0), y = row(1), w = row(2);
-    for (glm::vec3 const edge : {w, w - x, w + x, w - y, w + y})
-        if (!(most(edge) > 0)) return std::nullopt;
-    return DepthRange{std::max(0.0f, -most(-w)), most(w)};
-}
-
 /// Corners in clip space of the rectangle that a box covers; none: a part of it is behind the eye.
 std::optional<std::pair<glm::vec2, glm::vec2>> box_on(gi::Bounds const& box, glm::vec3 eye, glm::mat3 const& clip)
 {
@@ -84,7 +65,7 @@ void SurfaceRenderer::take(std::shared_ptr<gi::ShownScene const> scene)
         is_ready_ = false;
     }
     if (has_scene_ &&
-        (meshes_.scene().materials != scene->materials || meshes_.scene().lights.empty() != scene->lights.empty()))
+        (meshes_.scene().materials != scene->materials || meshes_.scene().lights.size() != scene->lights.size()))
         is_ready_ = false;
     if (!has_scene_ || meshes_.scene().world != scene->world || meshes_.scene().materials != scene->materials) {
         planar_.take(*scene);
@@ -114,13 +95,14 @@ GlProgram& SurfaceRenderer::program(SurfaceKind const& kind, Pass pass)
         "#define MASKED {}\n#define MAPS {}\n#define COLORS {}\n#define ALPHAS {}\n#define MIRROR {}\n#define "
         "EMITS {}\n#define "
         "MOVES {}\n"
-        "#define SMOOTH_ALPHA {:.9e}\n#define SEARCHES 1\n#define TILE {}\n#define PUNCTUAL {}\n#define PLANAR "
+        "#define SMOOTH_ALPHA {:.9e}\n#define SHADOW_MAPS 0\n#define SEARCHES 1\n#define TILE {}\n#define "
+        "PUNCTUAL {}\n#define PLANAR "
         "{}\n",
         int(kind.alpha == gi::AlphaMode::mask), kind.maps, int(meshes_.has_colors()),
         int(kind.alpha != gi::AlphaMode::opaque && meshes_.has_alphas()),
         int(pass == Pass::mirrors || pass == Pass::planar || (pass == Pass::described && kind.mirror)),
         int(kind.emits), int(kind.moves && pass == Pass::described), gi::kSmoothAlpha, PictureTexture::kTile,
-        int(shadows_.any() && pass == Pass::blended), int(pass == Pass::planar));
+        pass == Pass::blended ? shadows_.lights().size() : 0, int(pass == Pass::planar));
     std::string const key = std::to_string(int(pass)) + defines;
     auto const at = programs_.find(key);
     if (at != programs_.end()) return at->second;
@@ -141,6 +123,22 @@ GlProgram& SurfaceRenderer::program(SurfaceKind const& kind, Pass pass)
     return programs_.emplace(key, std::move(made)).first->second;
 }
 
+GlProgram const& SurfaceRenderer::punctual(std::size_t light)
+{
+    std::pair const key(light, shadows_.maps(light));
+    auto const at = punctual_.find(key);
+    if (at != punctual_.end()) return at->second;
+    std::string const defines =
+        fmt::format("#define EMITS 1\n#define PUNCTUAL 0\n#define LIGHT {}\n#define SHADOW_MAPS {}\n"
+                    "#define SMOOTH_ALPHA {:.9e}\n",
+                    light, key.second, gi::kSmoothAlpha);
+    return punctual_
+        .emplace(key,
+                 GlProgram({"full_screen.vert"},
+                           {"surface_packing.glsl", "surface_punctual.glsl", "surface_punctual.frag"}, defines))
+        .first->second;
+}
+
 bool SurfaceRenderer::prepare(double most_s)
 {
     if (!has_scene_) return false;
@@ -154,21 +152,36 @@ bool SurfaceRenderer::prepare(double most_s)
                 if (takes_part(b.kind, pass) && programs_.size() == compiled) program(b.kind, pass); // one a step
         }
     if (programs_.size() > compiled) return false;
-    if (!lit_ || lit_punctual_ != shadows_.any()) {
-        lit_punctual_ = shadows_.any();
-        lit_.emplace(
-            GlProgram({"full_screen.vert"},
-                      {"surface_packing.glsl", "surface_light.glsl", "surface_punctual.glsl", "surface_lit.frag"},
-                      fmt::format("#define EMITS 1\n#define PUNCTUAL {}\n#define SMOOTH_ALPHA {:.9e}\n",
-                                  int(lit_punctual_), gi::kSmoothAlpha)));
-    }
-    if (!found_)
-        found_.emplace(GlProgram({"full_screen.vert"},
-                                 {"surface_packing.glsl", "surface_light.glsl", "surface_found.frag"},
-                                 "#define EMITS 1\n"));
+    constexpr char const *kPlace = "full_screen.vert", *kPacking = "surface_packing.glsl",
+                         *kLight = "surface_light.glsl", *kEmits = "#define EMITS 1\n";
+    for (char const* step : {"#define STEP 0\n#define FADES 0\n", "#define STEP 1\n#define FADES 0\n",
+                             "#define STEP 0\n#define FADES 1\n"})
+        if (found_.size() < 3)
+            found_.emplace_back(
+                GlProgram({kPlace}, {kPacking, kLight, "surface_found.frag"}, std::string(kEmits) + step));
+    for (int step = 0; lit_.size() < 2; ++step)
+        lit_.emplace_back(GlProgram({kPlace}, {kPacking, kLight, "surface_lit.frag"},
+                                    kEmits + fmt::format("#define STEP {}\n", step)));
+    for (std::size_t k = 0; k < shadows_.lights().size(); ++k) punctual(k);
     if (!sky_) sky_.emplace(GlProgram({"full_screen.vert"}, {"sky.frag"}));
     is_ready_ = true;
     return true;
+}
+
+/// Distances along the axis of the places of a box; none: no place is seen. 0 where it is infinite.
+std::optional<SurfaceRenderer::DepthRange> SurfaceRenderer::seen_depths(gi::Bounds const& box, Eye const& eye)
+{
+    if (!(box.high.x < gi::kInf)) return DepthRange{};
+    // Most that a linear function reaches in the box, relative to the eye.
+    auto const most = [&](glm::vec3 f) {
+        return glm::dot(glm::max(f * (box.low - eye.at), f * (box.high - eye.at)), glm::vec3(1));
+    };
+    glm::mat3 const rows = glm::transpose(eye.clip_from_world);
+    glm::vec3 const x = rows[0], y = rows[1], w = rows[2], kept(eye.kept);
+    for (glm::vec3 const edge : {w, x - eye.low.x * w, eye.high.x * w - x, y - eye.low.y * w, eye.high.y * w - y})
+        if (!(most(edge) > 0)) return std::nullopt;
+    if (kept != glm::vec3(0) && !(most(kept) > eye.kept.w - glm::dot(kept, eye.at))) return std::nullopt;
+    return DepthRange{std::max(0.0f, -most(-w)), most(w)};
 }
 
 /// Clusters that may be seen. What is near is drawn first, for it hides much; what is blended, last.
@@ -179,7 +192,7 @@ std::vector<SurfaceRenderer::Seen> SurfaceRenderer::seen_clusters(Pass pass, Eye
         for (SurfaceBatch const& b : meshes_.batches(m)) {
             if (!takes_part(b.kind, pass)) continue;
             for (SurfaceCluster const& c : b.part->clusters) {
-                auto const depths = seen_depths(c.bounds, eye.at, eye.clip_from_world);
+                auto const depths = seen_depths(c.bounds, eye);
                 if (!depths) continue;
                 // Layers a quarter as deep as they are far away, of which each has surfaces of one material together.
                 float const layer = std::floor(3 * std::log2(std::max(depths->farthest, 1e-30f)));
@@ -209,7 +222,7 @@ void SurfaceRenderer::draw_batches(Pass pass, Eye const& eye)
             }
             if (pass == Pass::blended) {
                 bind_light(p, eye);
-                shadows_.bind(p);
+                shadows_.bind();
             }
             if (pass == Pass::mirrors) {
                 p.set("a_from_b", maps_.a_from_b);
@@ -301,6 +314,12 @@ void SurfaceRenderer::fit(Target& to, glm::ivec2 size_px)
     to.depth = texture_2d(GL_DEPTH_COMPONENT32F, size_px, GL_NEAREST);
     for (auto const* target : {&to.described, &to.color})
         glNamedFramebufferTexture((*target)->target().framebuffer, GL_DEPTH_ATTACHMENT, to.depth.id(), 0);
+    to.lit_steps = texture_2d(GL_DEPTH_COMPONENT16, size_px, GL_NEAREST);
+    to.found_steps = texture_2d(GL_DEPTH_COMPONENT16, (size_px + 1) / 2, GL_NEAREST);
+    to.lighting = GlObject(GlObject::Kind::framebuffer);
+    glNamedFramebufferTexture(to.lighting.id(), GL_COLOR_ATTACHMENT0, to.color->shown().texture, 0);
+    glNamedFramebufferTexture(to.lighting.id(), GL_DEPTH_ATTACHMENT, to.lit_steps.id(), 0);
+    glNamedFramebufferTexture(to.found->target().framebuffer, GL_DEPTH_ATTACHMENT, to.found_steps.id(), 0);
 }
 
 /// A pass over what the first one has described.
@@ -315,6 +334,7 @@ void SurfaceRenderer::light_up(GlProgram const& program, Eye const& eye, Target 
     glBindTextureUnit(4, to.described->shown().texture);
     glBindTextureUnit(12, to.depth.id());
     glBindVertexArray(no_vertices_.id());
+    glTextureBarrier(); // targets are read while they are attached
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -323,33 +343,56 @@ void SurfaceRenderer::draw_lit(Eye const& eye, Target const& to, Part const& par
 {
     gi::ShownScene const& scene = meshes_.scene();
     float const far = 0;
-    glm::ivec2 const half_low = part.low_px / 2, half_size = (part.low_px + part.size_px) / 2 + 1 - half_low;
-    auto const begin = [](TextureTarget const& target, Part const& p) {
-        bind(target.target());
+    auto const begin = [](DrawTarget const& target, Part const& p) {
+        bind(target);
+        glEnable(GL_DEPTH_TEST);
         glEnable(GL_SCISSOR_TEST);
         glScissor(p.low_px.x, p.low_px.y, p.size_px.x, p.size_px.y);
     };
-    begin(*to.described, part);
-    glEnable(GL_DEPTH_TEST);
+    begin(to.described->target(), part);
     glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(to.described->target().framebuffer, GL_DEPTH, 0, &far);
     glDepthFunc(GL_GREATER);
     draw_batches(Pass::described, eye);
-    glDepthMask(GL_FALSE);
-    begin(*to.found, {half_low, half_size});
-    light_up(*found_, eye, to);
-    begin(*to.color, part);
-    glEnable(GL_DEPTH_TEST);
+
+    glm::ivec2 const half_low = part.low_px / 2, half_size = (part.low_px + part.size_px) / 2 + 1 - half_low;
+    begin(to.found->target(), {half_low, half_size});
+    light_up_in_steps(found_[ring_.fades() ? 2 : 0], found_[1], eye, to);
+
     bool const colored = scene.background.kind == gi::BackgroundKind::color && !eye.in_mirror; // as the CPU form
-    glm::vec4 const behind(colored ? scene.background.color : glm::vec3(0), 1);
-    glClearNamedFramebufferfv(to.color->target().framebuffer, GL_COLOR, 0, &behind.x);
-    glDepthFunc(GL_LESS); // than where a surface is
-    lit_->use();
-    shadows_.bind(*lit_);
+    lit_[0].set("behind", colored ? scene.background.color : glm::vec3(0));
+    for (std::size_t k = 0; k < 4; ++k) {
+        bool const there = k < shadows_.lights().size();
+        gi::Light const light = there ? shadows_.lights()[k] : gi::Light{};
+        bool const parallel = light.type == gi::LightType::directional;
+        glm::vec4 const towards = !there     ? glm::vec4(0)
+                                  : parallel ? glm::vec4(-light.direction, 0)
+                                             : glm::vec4(light.position, 1);
+        lit_[0].set(fmt::format("towards[{}]", k).c_str(), towards);
+    }
     glBindTextureUnit(15, to.found->shown().texture);
-    glTextureBarrier(); // depths are read while they are attached
-    light_up(*lit_, eye, to);
+    begin({to.lighting.id(), {0, 0}, to.color->shown().size_px}, part);
+    light_up_in_steps(lit_[0], lit_[1], eye, to);
+    glBindTextureUnit(1, to.color->shown().texture);
+    shadows_.bind();
+    for (std::size_t k = 0; k < shadows_.lights().size(); ++k) light_up(punctual(k), eye, to);
+
+    begin(to.color->target(), part);
     draw_sky(eye);
+}
+
+/// All pixels in the first step, those with a greater depth than 0.75 after it in the second.
+void SurfaceRenderer::light_up_in_steps(GlProgram const& first, GlProgram const& second, Eye const& eye,
+                                        Target const& to) const
+{
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_ALWAYS);
+    light_up(first, eye, to);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_LESS);
+    glDepthRangef(0.75f, 0.75f);
+    light_up(second, eye, to);
+    glDepthRangef(0, 1);
 }
 
 void SurfaceRenderer::draw_blended(Eye const& eye)
@@ -371,8 +414,8 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
     };
     std::vector<InPicture> seen;
     for (gi::PlanarMirror const& m : planar_.all()) {
-        bool const is_seen = std::abs(glm::dot(m.normal, eye.at) - m.distance_m) > apart &&
-                             seen_depths(m.bounds, eye.at, eye.clip_from_world).has_value();
+        bool const is_seen =
+            std::abs(glm::dot(m.normal, eye.at) - m.distance_m) > apart && seen_depths(m.bounds, eye).has_value();
         if (!is_seen && has_drawn_mirrors_) continue;
         glm::ivec2 low(0), high = is_seen ? size_px : glm::ivec2(1);
         if (auto const box = is_seen ? box_on(m.bounds, eye.at, eye.clip_from_world) : std::nullopt) {
@@ -388,7 +431,10 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
     has_drawn_mirrors_ = true;
     for (InPicture const& s : seen) {
         fit(mirror_image_, size_px);
-        Eye const behind = mirrored(eye, *s.mirror, apart);
+        Eye behind = mirrored(eye, *s.mirror, apart);
+        glm::vec2 const px(size_px);
+        behind.low = 2.0f * glm::vec2(s.part.low_px) / px - 1.0f;
+        behind.high = 2.0f * glm::vec2(s.part.low_px + s.part.size_px) / px - 1.0f;
         plane_ = glm::vec4(s.mirror->normal, s.mirror->distance_m);
         glEnable(GL_CLIP_DISTANCE0);
         glFrontFace(GL_CW);

@@ -38,6 +38,10 @@ public:
     void forget_light() { ring_.forget_pictures(); }
     /// What is known of places that no picture shows; null = nothing.
     void take(std::shared_ptr<gi::LightCellTable const> cells) { ring_.take(std::move(cells)); }
+    /// What is drawn from now on is of this time, see LightRing::show_at.
+    void show_at(double pose_s) { ring_.show_at(pose_s); }
+    /// Draw again soon: light fades in.
+    bool fades() const { return ring_.fades(); }
     bool has_light() const { return !ring_.empty(); }
     /// Moves what can move, until the next take().
     void move(gi::Pose const& pose);
@@ -63,6 +67,8 @@ private:
     struct Target {
         std::optional<TextureTarget> described, found, color;
         GlObject depth;
+        GlObject lighting;               ///< to color, with lit_steps instead of depth
+        GlObject found_steps, lit_steps; ///< depths that choose pixels for steps (surface_lit.frag)
     };
     enum class Pass : std::uint8_t { described, mirrors, planar, blended };
     /// What a picture is drawn with.
@@ -73,8 +79,13 @@ private:
         glm::vec3 at{0}; ///< from the world's origin
         glm::mat3 world_from_pixel{1}; ///< directions with a depth of 1
         glm::vec4 kept{0};             ///< of surfaces.vert
+        glm::vec2 low{-1}, high{1};    ///< of the part that is drawn, in clip space over w
         bool in_mirror = false;
     };
+    struct DepthRange {
+        float nearest = 0, farthest = 0;
+    };
+    static std::optional<DepthRange> seen_depths(gi::Bounds const& box, Eye const& eye);
     struct Seen {
         float order = 0;
         std::size_t mesh = 0;
@@ -89,18 +100,21 @@ private:
     void set_moved_box(GlProgram const& program) const;
     static bool takes_part(SurfaceKind const& kind, Pass pass);
     GlProgram& program(SurfaceKind const& kind, Pass pass);
+    GlProgram const& punctual(std::size_t light);
     std::vector<Seen> seen_clusters(Pass pass, Eye const& eye) const;
     void draw_batches(Pass pass, Eye const& eye);
     struct Part { ///< of a picture
         glm::ivec2 low_px, size_px;
     };
     void light_up(GlProgram const& program, Eye const& eye, Target const& to) const;
+    void light_up_in_steps(GlProgram const& first, GlProgram const& second, Eye const& eye,
+                           Target const& to) const;
     void draw_lit(Eye const& eye, Target const& to, Part const& part);
     void draw_sky(Eye const& eye);
     void draw_blended(Eye const& eye);
     void draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 size_px);
 
-    bool has_scene_ = false, is_ready_ = false, lit_punctual_ = false;
+    bool has_scene_ = false, is_ready_ = false;
     SceneMeshes meshes_;
     LightRing ring_;
     ShadowMaps shadows_;
@@ -109,7 +123,9 @@ private:
     glm::vec4 plane_{0};             ///< of the flat mirror that is drawn
     glm::vec3 eye_{0};               ///< of the last picture, m, from the world's origin
     std::map<std::string, GlProgram> programs_;
-    std::optional<GlProgram> found_, lit_, sky_;
+    std::vector<GlProgram> found_, lit_; ///< of each step; found_[2]: the first, while light fades in
+    std::map<std::pair<std::size_t, int>, GlProgram> punctual_; ///< by light and number of its shadow maps
+    std::optional<GlProgram> sky_;
     ReprojectionMaps maps_; ///< from the last picture, and its greatest 1 / depth
     float nearest_ = 0;
     std::map<std::pair<int, ViewPart>, Target> targets_;

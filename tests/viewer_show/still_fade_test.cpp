@@ -1,0 +1,113 @@
+// Pictures of a head that stands still fade in by steps, and are then exact; others are shown at once.
+
+#include "tests/viewer_gl/surfaceless.h"
+#include "viewer/app/presenter.h"
+
+namespace viewer::test {
+namespace {
+
+constexpr glm::ivec2 kSize{32, 24};
+
+class StillFadeTest : public Surfaceless {
+protected:
+    void SetUp() override
+    {
+        Surfaceless::SetUp();
+        if (IsSkipped()) return;
+        window_.emplace(TextureTarget::Format::bytes, kSize);
+        presenter_.emplace(std::vector<WallSettings>{});
+        settings_.fades = true;
+    }
+    void TearDown() override
+    {
+        presenter_.reset();
+        window_.reset();
+        Surfaceless::TearDown();
+    }
+
+    /// @param radiance  of all pixels  @param eye_x  of the camera, m  @return the red byte in the middle
+    int show(std::uint64_t number, int still_frames, float radiance, double eye_x = 0)
+    {
+        auto frame = std::make_shared<LiveFrame>();
+        ViewCommand view{"window", {}, kSize.x, kSize.y, -1};
+        view.camera.yfov_rad = 1;
+        view.camera.world_from_camera[3].x = eye_x;
+        frame->command.views = {view};
+        frame->command.frame = number;
+        frame->result.still_frames = still_frames;
+        gi::Picture picture{kSize.x, kSize.y, {}, {}};
+        for (float& c : picture.add("color", 3).data) c = radiance;
+        for (float& d : picture.add("depth", 1).data) d = 2;
+        frame->result.views.push_back({picture, {}, {}, {}});
+        presenter_->take(frame, panes_);
+        camera_ = view.camera;
+        return again();
+    }
+
+    int again()
+    {
+        presenter_->draw(window_->target(), {0, 0}, panes_, settings_, {camera_});
+        return read_bytes(window_->target())[3 * std::size_t(kSize.x * kSize.y / 2)];
+    }
+
+    std::vector<Pane> const panes_{{{0, 0}, kSize, StereoMode::off, 0, -1}};
+    std::optional<TextureTarget> window_;
+    std::optional<Presenter> presenter_;
+    PresentSettings settings_;
+    gi::Camera camera_;
+};
+
+TEST_F(StillFadeTest, PicturesThatRefineFadeIn)
+{
+    EXPECT_EQ(show(1, 1, 0), 0); // the first is there at once
+    EXPECT_FALSE(presenter_->fades());
+    int last = show(2, 1, 1);
+    for (int step = 2; step <= StillFade::kSteps; ++step) {
+        EXPECT_TRUE(presenter_->fades()) << step;
+        EXPECT_GT(last, 0);
+        int const next = again();
+        EXPECT_NEAR(next - last, 255.0 / StillFade::kSteps, 1.5) << step;
+        last = next;
+    }
+    EXPECT_EQ(last, 255);
+    EXPECT_FALSE(presenter_->fades());
+}
+
+TEST_F(StillFadeTest, ANewPictureGoesOnFromWhatIsShown)
+{
+    show(1, 1, 0);
+    show(2, 1, 1);
+    int last = 0;
+    for (int step = 1; step < StillFade::kSteps / 2; ++step) last = again();
+    int const next = show(3, 1, 0);
+    EXPECT_LE(next, last);
+    EXPECT_NEAR(next, last, 255.0 / StillFade::kSteps);
+}
+
+TEST_F(StillFadeTest, WhatIsTheMeanOfManyPicturesTakesFewerSteps)
+{
+    show(1, StillFade::kSteps / 4 - 1, 0);
+    show(2, StillFade::kSteps / 4, 1);
+    again();
+    again();
+    EXPECT_EQ(again(), 255);
+}
+
+TEST_F(StillFadeTest, OtherViewsAndExposuresAreShownAtOnce)
+{
+    show(1, 1, 0);
+    EXPECT_EQ(show(2, 1, 1, 0.5), 255);
+    settings_.tone.exposure_ev = 20;
+    EXPECT_EQ(again(), 255);
+    EXPECT_FALSE(presenter_->fades());
+}
+
+TEST_F(StillFadeTest, WithoutFadesPicturesAreThereAtOnce)
+{
+    settings_.fades = false;
+    show(1, 1, 0);
+    EXPECT_EQ(show(2, 1, 1), 255);
+}
+
+} // namespace
+} // namespace viewer::test
