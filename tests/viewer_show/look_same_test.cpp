@@ -50,11 +50,12 @@ TEST(LookSame, ClipsAndBodiesDoWhereSomethingCanMove)
     EXPECT_FALSE(look_same(frame, moment(), moved));
 }
 
-TEST(DrawingPace, LeavesTimeToTheLightOfEditedLamps)
+TEST(DrawingPace, OfSoftwareLeavesTimeToTheLightOfEditedLamps)
 {
-    EXPECT_EQ(drawing_pace({}), 1);
-    EXPECT_EQ(drawing_pace({{"object.0", {}}}), 1);
-    EXPECT_EQ(drawing_pace({{"object.0", {}}, {"light.all.scale", 0}}), 2);
+    Change const object{"object.0", {}}, lamp{"light.all.scale", 0};
+    EXPECT_EQ(drawing_pace({object, lamp}, false), 1);
+    EXPECT_EQ(drawing_pace({object}, true), 1);
+    EXPECT_EQ(drawing_pace({object, lamp}, true), 2);
 }
 
 } // namespace

@@ -40,9 +40,10 @@ FrameCommand moment_at(LiveFrame const& frame, Viewpoint const& at, double now_s
     return moment;
 }
 
-double drawing_pace(std::vector<Change> const& edits)
+double drawing_pace(std::vector<Change> const& edits, bool in_software)
 {
-    return std::ranges::any_of(edits, is_light_edit, &Change::key) ? 2 : 1;
+    constexpr double kOfEdits = 2;
+    return in_software && std::ranges::any_of(edits, is_light_edit, &Change::key) ? kOfEdits : 1;
 }
 
 bool look_same(LiveFrame const& frame, FrameCommand const& a, FrameCommand const& b)

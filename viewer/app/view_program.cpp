@@ -336,6 +336,8 @@ private:
         return state_.loading || state_.building || is_new || state_.shows_help || state_.open_dialog.is_open();
     }
 
+    bool in_software() const { return !shown_.windows.empty() && shown_.windows[0]->window.gl().is_software(); }
+
     /// Surfaces that would be drawn now were drawn last.
     bool shows(LiveFrame const& frame)
     {
@@ -354,10 +356,11 @@ private:
         }
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
-        bool const moved = !follows() && state_.settings().reproject && newest &&
-                           (has_moved() || (newest->command.only_light && !shows(*newest))) &&
-                           since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_) &&
-                           since_s > (drawing_pace(core_.renderer->edits_since(*newest)) - 1) * surfaces_s_;
+        bool const moved =
+            !follows() && state_.settings().reproject && newest &&
+            (has_moved() || (newest->command.only_light && !shows(*newest))) &&
+            since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_) &&
+            since_s > (drawing_pace(core_.renderer->edits_since(*newest), in_software()) - 1) * surfaces_s_;
         bool const fades = fades_ && since_s > 1 / kFades_Hz;
         bool const draws = prepares_ && since_s > 1 / kMessages_Hz;
         bool const flickers = state_.settings().view == "flicker" && since_s > 0.5 / kFlicker_Hz;

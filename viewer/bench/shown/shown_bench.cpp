@@ -50,13 +50,15 @@ double change(std::vector<unsigned char> const& a, std::vector<unsigned char> co
 class ShownRun {
 public:
     ShownRun(ShownOptions const& o, std::vector<PathChange> const& changes, RenderSession& session,
-             RecordedScenes const& scenes, Walker& walker, glm::ivec2 size_px, gi::StopRequest const& stop)
+             RecordedScenes const& scenes, Walker& walker, glm::ivec2 size_px, bool in_software,
+             gi::StopRequest const& stop)
         : o_(o),
           scenes_(scenes),
           walker_(walker),
           changes_(changes),
           size_px_(size_px),
           stop_(stop),
+          in_software_(in_software),
           draws_surfaces_(session.settings().draw_surfaces),
           renderer_(session, clock_, nullptr, hooks())
     {
@@ -268,8 +270,9 @@ private:
     void wait(double now)
     {
         constexpr double kPresentation_Hz = 60, kDrawings = 5, kLook_s = 0.004;
-        double const pace =
-            presenter_.views().drew_surfaces() ? drawing_pace(renderer_.edits_since(*shown_)) : kDrawings;
+        double const pace = presenter_.views().drew_surfaces()
+                                ? drawing_pace(renderer_.edits_since(*shown_), in_software_)
+                                : kDrawings;
         double const next_s = now + std::max(1 / kPresentation_Hz, pace * drew_s_);
         while (clock_.now_s() - begun_s_ < next_s && renderer_.newest() == shown_) {
             if (double const t = clock_.now_s() - begun_s_; t - last_s_ > kLook_s) look(t);
@@ -287,7 +290,7 @@ private:
     std::vector<ShownMean> means_;
     glm::ivec2 size_px_;
     gi::StopRequest const& stop_;
-    bool draws_surfaces_;
+    bool in_software_, draws_surfaces_;
     SessionClock clock_;
     Presenter presenter_{{}};
     PresentSettings settings_;
@@ -330,7 +333,7 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
                   o.eyes == 2 ? kApart_m : 0,
                   scenes.avatars.empty() ? std::nullopt : std::optional(scenes.avatars[0].stance));
     gi::dvec3 const origin = session.world().origin;
-    ShownRun run(o, changes, session, scenes, walker, {width, height}, stop);
+    ShownRun run(o, changes, session, scenes, walker, {width, height}, gl.is_software(), stop);
     run.run();
     ShownErrors const errors = score(o, changes, scenes, run.seen(), origin, stop);
 

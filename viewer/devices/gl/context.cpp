@@ -4,6 +4,8 @@
 #include "viewer/devices/gl/messages.h"
 
 #include <GLFW/glfw3.h>
+#include <algorithm>
+#include <array>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -209,6 +211,13 @@ void GlContext::release() const
 EglHandles GlContext::egl() const { return {state_->egl.display, state_->egl.config, state_->egl.context}; }
 
 GlxHandles GlContext::glx() const { return state_->window ? current_glx_handles() : GlxHandles{}; }
+
+bool GlContext::is_software() const
+{
+    return std::ranges::any_of(std::array{"llvmpipe", "softpipe", "swrast"}, [&](char const* driver) {
+        return state_->description.find(driver) != std::string::npos;
+    });
+}
 
 std::string const& GlContext::description() const { return state_->description; }
 

@@ -52,6 +52,8 @@ public:
     EglHandles egl() const;
     /// The context must be current.
     GlxHandles glx() const;
+    /// Draws on the processor.
+    bool is_software() const;
     /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe (LLVM 15.0.6, 256 bits)"
     std::string const& description() const;
     /// Number of OpenGL errors so far, including those whose text is not kept.
