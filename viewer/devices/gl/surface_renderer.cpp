@@ -334,7 +334,6 @@ void SurfaceRenderer::light_up(GlProgram const& program, Eye const& eye, Target 
     glBindTextureUnit(4, to.described->shown().texture);
     glBindTextureUnit(12, to.depth.id());
     glBindVertexArray(no_vertices_.id());
-    glTextureBarrier(); // targets are read while they are attached
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -373,9 +372,11 @@ void SurfaceRenderer::draw_lit(Eye const& eye, Target const& to, Part const& par
     glBindTextureUnit(15, to.found->shown().texture);
     begin({to.lighting.id(), {0, 0}, to.color->shown().size_px}, part);
     light_up_in_steps(lit_[0], lit_[1], eye, to);
-    glBindTextureUnit(1, to.color->shown().texture);
     shadows_.bind();
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE);
     for (std::size_t k = 0; k < shadows_.lights().size(); ++k) light_up(punctual(k), eye, to);
+    glDisable(GL_BLEND);
 
     begin(to.color->target(), part);
     draw_sky(eye);
