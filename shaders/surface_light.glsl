@@ -75,7 +75,7 @@ struct FoundLight {
     float lacks; // the share that lacks the light of punctual lights
 };
 
-const uint kOfCells = 1u << 30, kOfNothing = 2u << 30, kSources = 3u << 30; // LightSource of viewer/devices/gl/surface_renderer.h
+const uint kOfCells = 1u << 30, kOfNothing = 2u << 30; // LightSource of viewer/devices/gl/surface_renderer.h
 const uint kNoSlope = 512u | 512u << 10 | 512u << 20;
 
 // By how much light for one normal differs from that for another.

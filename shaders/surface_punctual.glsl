@@ -86,7 +86,7 @@ vec3 punctual_of(const int k, vec3 at, vec3 n, vec3 to_viewer, vec3 albedo, vec4
         float lobe = alpha < SMOOTH_ALPHA ? 0.0 : visible / (kPi * a2 * t * t);
         vec3 f = opaque * passes / kPi * base + lobe * (f0 + (f90 - f0) * grazing);
         if (phong)
-            f = base / kPi + gloss.y * (exponent + 1.0) * (0.5 / kPi) * pow(max(dot(reflect(-to_viewer, n), wi), 0.0), exponent);
+            f = base / kPi + gloss.y * (exponent + 1.0) * (0.5 / kPi) * pow(max(dot(reflect(-to_viewer, n), wi), 1e-6), exponent);
         sum = factor * light.intensity.rgb * f;
     }
     return sum;

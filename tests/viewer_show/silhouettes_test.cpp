@@ -59,7 +59,7 @@ protected:
         eye.is_drawn = true;
         TextureTarget const to(TextureTarget::Format::bytes, kSize);
         DisplayPass pass;
-        SurfaceDisplay().draw(pass, to.target(), eye, {});
+        SurfaceDisplay().draw(0, pass, to.target(), eye, {});
         std::vector<char> white;
         std::vector<unsigned char> const rgb = read_bytes(to.target());
         for (std::size_t i = 0; i < rgb.size(); i += 3) white.push_back(rgb[i] > 127);

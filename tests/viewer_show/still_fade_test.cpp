@@ -61,27 +61,43 @@ TEST_F(StillFadeTest, PicturesThatRefineFadeIn)
 {
     EXPECT_EQ(show(1, 1, 0), 0); // the first is there at once
     EXPECT_FALSE(presenter_->fades());
-    int last = show(2, 1, 1);
-    for (int step = 2; step <= StillFade::kSteps; ++step) {
+    int last = show(2, 2, 1);
+    for (int step = 2; step <= StillFade::kSteps / 2; ++step) {
         EXPECT_TRUE(presenter_->fades()) << step;
         EXPECT_GT(last, 0);
         int const next = again();
-        EXPECT_NEAR(next - last, 255.0 / StillFade::kSteps, 1.5) << step;
+        EXPECT_NEAR(next - last, 2 * 255.0 / StillFade::kSteps, 1.5) << step;
         last = next;
     }
     EXPECT_EQ(last, 255);
     EXPECT_FALSE(presenter_->fades());
 }
 
+TEST_F(StillFadeTest, WhatMovedBeforeIsShownAtOnce)
+{
+    show(1, 1, 0);
+    EXPECT_EQ(show(2, 1, 1), 255);
+    EXPECT_FALSE(presenter_->fades());
+}
+
 TEST_F(StillFadeTest, ANewPictureGoesOnFromWhatIsShown)
 {
     show(1, 1, 0);
-    show(2, 1, 1);
-    int last = 0;
-    for (int step = 1; step < StillFade::kSteps / 2; ++step) last = again();
-    int const next = show(3, 1, 0);
+    show(2, 2, 1);
+    int const last = again(), next = show(3, 3, 0);
+    EXPECT_GT(last, 0);
     EXPECT_LE(next, last);
-    EXPECT_NEAR(next, last, 255.0 / StillFade::kSteps);
+    EXPECT_NEAR(next, last, 3 * 255.0 / StillFade::kSteps);
+}
+
+TEST_F(StillFadeTest, APaneThatShowsSomethingElseForgetsItsFade)
+{
+    show(1, 1, 0);
+    show(2, 2, 1);
+    EXPECT_TRUE(presenter_->fades());
+    settings_.fades = false;
+    EXPECT_EQ(again(), 255);
+    EXPECT_FALSE(presenter_->fades());
 }
 
 TEST_F(StillFadeTest, WhatIsTheMeanOfManyPicturesTakesFewerSteps)

@@ -126,14 +126,15 @@ void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, 
 void Presenter::draw_one(std::size_t pane, DrawTarget const& part, EyeView const& view, gi::Camera const& camera,
                          bool as_rendered, DisplaySettings const& settings, bool fades)
 {
+    StillFade& fade = fades_[pane];
     if (view.is_drawn) {
-        TextureTarget const& drawn = surface_display_->draw(pass_, part, view, settings);
-        if (fades) fades_[pane].show_surfaces(drawn, camera);
+        TextureTarget const& drawn = surface_display_->draw(int(pane), pass_, part, view, settings);
+        fade.show_surfaces(drawn, camera, settings.tone);
     } else if (fades && as_rendered) {
         LiveFrame const& f = views_.frame();
-        fades_[pane].draw(pass_, part, view, camera, {f.command.frame, f.result.still_frames}, settings);
+        fade.draw(pass_, fade_pass_, part, view, camera, {f.command.frame, f.result.still_frames}, settings);
     } else {
-        fades_.erase(pane);
+        fade.forget();
         pass_.draw(part, view, view, settings);
     }
 }
@@ -146,7 +147,7 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
     std::vector<Pane> panes = all;
     for (Pane& pane : panes)
         if (has_overlay(pane, s)) pane.wall = pane.of_wall; // also through a wall pass that changes nothing
-    std::vector<char> is_drawn(panes.size());
+    std::vector<char> is_drawn(panes.size()), may_fade(panes.size());
     for (std::size_t k = 0; k < panes.size(); ++k) {
         if (is_drawn[k]) continue;
         Pane const& pane = panes[k];
@@ -166,7 +167,8 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
             gi::Camera const& rendered = views_.command(pane.left).camera;
             gi::Camera const& camera =
                 std::size_t(pane.left) < now.size() ? now[std::size_t(pane.left)] : rendered;
-            if (settings.stereo == StereoMode::off && settings.comparison == Comparison::off)
+            may_fade[k] = settings.stereo == StereoMode::off && settings.comparison == Comparison::off;
+            if (may_fade[k])
                 draw_one(k, part, left, camera, camera == rendered, settings, s.fades);
             else
                 pass_.draw(part, left, right, settings);
@@ -190,6 +192,8 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
         settings.comparison = Comparison::off;
         pass_.draw(part, l, r, settings);
     }
+    for (auto& [pane, fade] : fades_)
+        if (pane >= may_fade.size() || !may_fade[pane]) fade.forget();
 }
 
 } // namespace viewer

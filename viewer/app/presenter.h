@@ -99,6 +99,7 @@ private:
     std::vector<glm::ivec2> face_px_;
     std::array<std::optional<TextureTarget>, 2> flat_, bent_;
     std::optional<SurfaceDisplay> surface_display_;
+    FadePass fade_pass_;
     std::map<std::size_t, StillFade> fades_; ///< of panes, by their places in draw()
     glm::ivec2 bent_px_{};
 };

@@ -76,7 +76,7 @@ std::vector<unsigned char> ShownReplay::bytes(EyeView const& left, EyeView const
     // As Presenter does.
     if (left.is_drawn && a.mode == StereoMode::off && drawn_.views.right < 0) {
         if (!surface_display_) surface_display_.emplace();
-        surface_display_->draw(pass_, target_->target(), left, settings);
+        surface_display_->draw(0, pass_, target_->target(), left, settings);
     } else {
         pass_.draw(target_->target(), left, right, settings);
     }

@@ -109,6 +109,7 @@ void ShownViews::begin(double surfaces_scale, FrameCommand const* moment, DriveB
     drawn_.clear();
     prepare(kPrepare_s);
     is_ready_ = has_surfaces() && !prepares_;
+    pose_s_ = moment ? std::optional(moment->pose_s) : std::nullopt;
     if (!is_ready_) return;
     if (moment && renderer_->can_move()) renderer_->move(pose_at(frame_->result, *moment, drive));
     renderer_->light(moment ? lights_at(frame_->result, *moment) : frame_->result.scene->lights);
@@ -118,7 +119,6 @@ void ShownViews::begin(double surfaces_scale, FrameCommand const* moment, DriveB
     bool const moved =
         !std::ranges::equal(moment->views, rendered.views, {}, &ViewCommand::camera, &ViewCommand::camera);
     if (moved || rendered.only_light) add_light();
-    renderer_->show_at(moment->pose_s);
     renderer_->update_shadows();
 }
 
@@ -183,6 +183,7 @@ std::optional<ShownPicture> ShownViews::surfaces(int view, ViewPart part, gi::Ca
     if (!is_ready_ || shown.other) return std::nullopt;
     add_light();
     if (!renderer_->has_light()) return std::nullopt;
+    if (pose_s_ && frame_->ordered.empty()) renderer_->show_at(*pose_s_); // ranks do not show all the same moments
     glm::ivec2 size = glm::max(glm::ivec2(glm::round(surfaces_scale_ * glm::dvec2(size_px))), glm::ivec2(1));
     size = {no_power_of_two(size.x), no_power_of_two(size.y)};
     std::size_t const number = numbers_[std::size_t(view)];

@@ -89,6 +89,7 @@ private:
     std::vector<View> views_;
     std::optional<SurfaceRenderer> renderer_;
     double surfaces_scale_ = 0;
+    std::optional<double> pose_s_; ///< of the moment of begin()
     bool is_ready_ = false; ///< at begin()
     bool prepares_ = false, drew_surfaces_ = false, hashes_pictures_ = false;
     std::vector<std::uint64_t> hashes_; ///< of views

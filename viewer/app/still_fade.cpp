@@ -10,38 +10,49 @@ void StillFade::fit(glm::ivec2 size_px)
     if (before_ && size_px_ == size_px) return;
     for (auto* target : {&before_, &after_, &mixed_}) target->emplace(TextureTarget::Format::bytes, size_px);
     size_px_ = size_px;
-    if (surfaces_ == nullptr) shown_.reset();
+    if (surfaces_ == nullptr) forget();
 }
 
-void StillFade::show_surfaces(TextureTarget const& drawn, gi::Camera const& camera)
+void StillFade::forget()
 {
-    surfaces_ = &drawn;
-    shown_ = camera;
+    surfaces_ = nullptr;
+    shown_.reset();
     share_ = 1;
 }
 
-void StillFade::draw(DisplayPass& pass, DrawTarget const& to, EyeView const& view, gi::Camera const& camera,
-                     StillPicture picture, DisplaySettings const& settings)
+void StillFade::show_surfaces(TextureTarget const& drawn, gi::Camera const& camera,
+                              gi::ToneMapSettings const& tone)
+{
+    surfaces_ = &drawn;
+    shown_ = camera;
+    tone_ = tone;
+    share_ = 1;
+}
+
+void StillFade::draw(DisplayPass& pass, FadePass const& fade, DrawTarget const& to, EyeView const& view,
+                     gi::Camera const& camera, StillPicture picture, DisplaySettings const& settings)
 {
     fit(to.size_px);
     bool const same_view = shown_ == camera && settings.tone == tone_,
-               is_new = surfaces_ != nullptr || picture.frame != frame_, goes_on = same_view && !is_new && fades();
-    if (same_view && is_new) {
+               is_new = surfaces_ != nullptr || picture.frame != frame_,
+               begins = same_view && is_new && (surfaces_ != nullptr || picture.still_frames > 1),
+               goes_on = same_view && !is_new && fades();
+    if (begins) {
         if (surfaces_ != nullptr) {
             stretch(surfaces_->target(), before_->target());
         } else if (fades()) {
-            pass_.draw(mixed_->target(), before_->shown(), after_->shown(), share_);
+            fade.draw(mixed_->target(), before_->shown(), after_->shown(), share_);
             std::swap(before_, mixed_);
         } else {
             std::swap(before_, after_);
         }
         share_ = 0;
     }
-    if (!same_view) share_ = 1;
+    if (!begins && !goes_on) share_ = 1;
     if (!goes_on) pass.draw(after_->target(), view, view, settings);
     if (fades()) share_ = std::min(share_ + float(std::max(picture.still_frames, 1)) / kSteps, 1.0f);
     if (fades())
-        pass_.draw(to, before_->shown(), after_->shown(), share_);
+        fade.draw(to, before_->shown(), after_->shown(), share_);
     else
         stretch(after_->target(), to);
     surfaces_ = nullptr;

@@ -12,7 +12,7 @@ namespace viewer {
 /// A rendered picture of a head that stands still.
 struct StillPicture {
     std::uint64_t frame = 0; ///< another number for each
-    int still_frames = 1;    ///< that it is the mean of
+    int still_frames = 1;    ///< that it is the mean of; 1: something has moved before
 };
 
 /// What is drawn into one pane, step by step. Belongs to the context that was current at its creation.
@@ -21,18 +21,19 @@ public:
     /// The first picture takes so many steps. The next ones change less, and take fewer.
     static constexpr int kSteps = 16;
 
-    /// Shows a picture. The first time, it begins to fade in, if the pane has shown the same view.
-    void draw(DisplayPass& pass, DrawTarget const& to, EyeView const& view, gi::Camera const& camera,
-              StillPicture picture, DisplaySettings const& settings);
+    /// Shows a picture. The first time, it begins to fade in if the pane shows the same view of a scene that stands still.
+    void draw(DisplayPass& pass, FadePass const& fade, DrawTarget const& to, EyeView const& view,
+              gi::Camera const& camera, StillPicture picture, DisplaySettings const& settings);
     /// The pane shows drawn surfaces of this camera now. @param drawn  encoded; valid until the next draw()
-    void show_surfaces(TextureTarget const& drawn, gi::Camera const& camera);
+    void show_surfaces(TextureTarget const& drawn, gi::Camera const& camera, gi::ToneMapSettings const& tone);
+    /// The pane shows something else.
+    void forget();
     /// Draw again soon: the last picture has not its full share yet.
     bool fades() const { return share_ < 1; }
 
 private:
     void fit(glm::ivec2 size_px);
 
-    FadePass pass_;
     glm::ivec2 size_px_{0};
     std::optional<TextureTarget> before_, after_, mixed_;
     TextureTarget const* surfaces_ = nullptr; ///< that are shown; null: before_ and after_

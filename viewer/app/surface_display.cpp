@@ -23,10 +23,10 @@ TextureTarget const& SurfaceDisplay::smoothed(int number, DisplayPass& pass, Eye
     return smoothed;
 }
 
-TextureTarget const& SurfaceDisplay::draw(DisplayPass& pass, DrawTarget const& to, EyeView const& view,
+TextureTarget const& SurfaceDisplay::draw(int number, DisplayPass& pass, DrawTarget const& to, EyeView const& view,
                                           DisplaySettings const& settings)
 {
-    TextureTarget const& drawn = smoothed(0, pass, view, settings);
+    TextureTarget const& drawn = smoothed(number, pass, view, settings);
     stretch(drawn.target(), to);
     return drawn;
 }

@@ -14,8 +14,8 @@ class SurfaceDisplay {
 public:
     /// Drivers compile then, which takes long the first time.
     SurfaceDisplay();
-    /// Returns the smoothed picture before it is stretched. Valid until the next one.
-    TextureTarget const& draw(DisplayPass& pass, DrawTarget const& to, EyeView const& view,
+    /// Returns smoothed().
+    TextureTarget const& draw(int number, DisplayPass& pass, DrawTarget const& to, EyeView const& view,
                               DisplaySettings const& settings);
     /// The smoothed picture before it is stretched. Valid until the next one of this number.
     TextureTarget const& smoothed(int number, DisplayPass& pass, EyeView const& view,

@@ -339,10 +339,12 @@ private:
     bool in_software() const { return !shown_.windows.empty() && shown_.windows[0]->window.gl().is_software(); }
 
     /// Surfaces that would be drawn now were drawn last.
-    bool shows(LiveFrame const& frame)
+    bool shows(LiveFrame const& frame) const
     {
         if (!drawn_moment_ || has_moved()) return false;
-        return look_same(frame, *drawn_moment_, moment_of(frame, state_.clock.now_s(), 0).moment);
+        double const now_s = state_.clock.now_s();
+        return look_same(frame, *drawn_moment_,
+                         moment_at(frame, expected(now_s), now_s + ahead_s(), core_.renderer->edits_since(frame)));
     }
 
     void show()
@@ -356,12 +358,12 @@ private:
         }
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
-        bool const moved =
-            !follows() && state_.settings().reproject && newest &&
-            (has_moved() || (newest->command.only_light && !shows(*newest))) &&
-            since_s > std::max(1 / kPresentation_Hz, kDrawings * draw_s_) &&
-            since_s > (drawing_pace(core_.renderer->edits_since(*newest), in_software()) - 1) * surfaces_s_;
-        bool const fades = fades_ && since_s > 1 / kFades_Hz;
+        double const pause_s =
+            newest ? (drawing_pace(core_.renderer->edits_since(*newest), in_software()) - 1) * surfaces_s_ : 0;
+        bool const moved = !follows() && state_.settings().reproject && newest &&
+                           (has_moved() || (newest->command.only_light && !shows(*newest))) &&
+                           since_s > std::max({1 / kPresentation_Hz, kDrawings * draw_s_, pause_s});
+        bool const fades = !follows() && fades_ && since_s > std::max(1 / kFades_Hz, pause_s);
         bool const draws = prepares_ && since_s > 1 / kMessages_Hz;
         bool const flickers = state_.settings().view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
@@ -395,6 +397,12 @@ private:
         std::vector<Snapshot> shots; ///< per window or eye of a window
     };
 
+    /// From the start of a picture to the middle of the time for which it is shown.
+    double ahead_s() const
+    {
+        return state_.settings().predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0;
+    }
+
     /// The moment in which a frame is shown by a picture that is begun now.
     ShownMoment moment_of(LiveFrame const& frame, double begun_s, double surfaces_scale)
     {
@@ -404,9 +412,7 @@ private:
         bool const reprojects = state_.settings().reproject && cameras_.size() == rendered.size();
         if (reprojects && state_.settings().draw_surfaces) cameras_ = cameras_of(at.views);
         shown_cameras_ = reprojects ? cameras_ : rendered;
-        double const ahead_s =
-            state_.settings().predict ? std::min(1.5 * surfaces_s_, Anticipation::kFarthest_s) : 0;
-        ShownMoment shown{moment_at(frame, at, begun_s + ahead_s, core_.renderer->edits_since(frame)),
+        ShownMoment shown{moment_at(frame, at, begun_s + ahead_s(), core_.renderer->edits_since(frame)),
                           surfaces_scale, 0};
         for (std::size_t k = 0; k < shown_cameras_.size(); ++k) shown.moment.views[k].camera = shown_cameras_[k];
         return shown;
@@ -446,7 +452,7 @@ private:
                 set_panes(
                     display_panes(*core_.display, p->settings.moment->views, p->settings.moment->world_from_room));
         }
-        p->settings.fades = !p->wants_bytes && link_ == nullptr;
+        p->settings.fades = !p->wants_bytes && link_ == nullptr && state_.settings().compare.empty();
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();
@@ -659,7 +665,7 @@ private:
     SurfacesScale surfaces_scale_;
     double surfaces_s_ = 0; ///< from the start of a picture whose surfaces are drawn until it is shown, smoothed
     bool draws_surfaces_ = false; ///< pictures may be of light alone
-    bool fades_ = false;          ///< a picture, into that before
+    bool fades_ = false;          ///< a picture or its light fades in: it is to be drawn again soon
     bool prepares_ = false;       ///< surfaces will be drawn when more of the scene is on the GPU
 };
 

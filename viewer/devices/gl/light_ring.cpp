@@ -99,9 +99,13 @@ void LightRing::add(LightOfView const& of, gi::dvec3 origin)
 void LightRing::show_at(double pose_s)
 {
     // Where nothing was drawn for long, the last light is not older for that.
-    if (std::exchange(is_new_, false)) begun_s_ = std::max(shown_s_, pose_s - kFade_s / 3);
+    if (std::exchange(is_new_, false)) {
+        double const begun_s = std::max(shown_s_, pose_s - kFade_s / 3);
+        fade_s_ = std::clamp(begun_s - begun_s_, 1e-6, kFade_s); // the last light has its full share by then
+        begun_s_ = begun_s;
+    }
     shown_s_ = pose_s;
-    share_ = std::clamp(float((pose_s - begun_s_) / kFade_s), 0.0f, 1.0f);
+    share_ = std::clamp(float((pose_s - begun_s_) / fade_s_), 0.0f, 1.0f);
 }
 
 void LightRing::take(std::shared_ptr<gi::LightCellTable const> cells)

@@ -72,7 +72,8 @@ private:
     std::shared_ptr<gi::LightCellTable const> known_; ///< what no picture shows; null = nothing
     GlObject cells_;
     bool is_new_ = false;              ///< light was added since show_at()
-    double shown_s_ = 0, begun_s_ = 0; ///< of the last show_at(); when light began to fade in
+    double shown_s_ = 0, begun_s_ = 0,
+           fade_s_ = kFade_s;          ///< of the last show_at(); when light began to fade in, for how long
     float share_ = 1;                  ///< of the newest light
     glm::vec3 mean_{0}; ///< of the light of the last dozen pictures, smoothed
     std::vector<Entry> entries_;

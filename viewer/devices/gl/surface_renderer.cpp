@@ -326,7 +326,6 @@ void SurfaceRenderer::fit(Target& to, glm::ivec2 size_px)
 void SurfaceRenderer::light_up(GlProgram const& program, Eye const& eye, Target const& to) const
 {
     program.use();
-    bind_light(program, eye);
     program.set("eye", eye.at);
     program.set("world_from_pixel", eye.world_from_pixel);
     set_moved_box(program);
@@ -388,10 +387,12 @@ void SurfaceRenderer::light_up_in_steps(GlProgram const& first, GlProgram const&
 {
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_ALWAYS);
+    bind_light(first, eye);
     light_up(first, eye, to);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_LESS);
     glDepthRangef(0.75f, 0.75f);
+    bind_light(second, eye);
     light_up(second, eye, to);
     glDepthRangef(0, 1);
 }
