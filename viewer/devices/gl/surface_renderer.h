@@ -1,7 +1,7 @@
 #pragma once
 // Draws the surfaces of a scene for a newer camera than that of the last finished picture, with the light of that
 // picture. The first pass describes what each pixel shows, the second finds the light of every second pixel of every
-// second row, the third lights all of them, by the light of alike surfaces around; then come the sky, what flat mirrors show (all of this once more, from behind them), what other mirrors and panes show (that of the last
+// second row, the third lights all of them, by the light of alike surfaces around; then come punctual lights, the sky, what flat mirrors show (all of this once more, from behind them), what other mirrors and panes show (that of the last
 // picture, by reprojection), and blended surfaces. Textures, outlines, parallax, hard shadows and flat mirrors are
 // those of the new camera; other light is as old as its pictures.
 
