@@ -23,7 +23,7 @@ float schlick(float f0, float f90, float cosine)
     return f0 + (f90 - f0) * m2 * m2 * m;
 }
 
-// Of light k, a constant: software drivers read what all pixels read at one place many times faster. SHADOW_MAPS is the number
+// Of light k, a constant, as software drivers read at other places for each pixel by itself. SHADOW_MAPS is the number
 // of its maps, 0 if any is possible. 1 = lit
 float reached(const int k, PunctualLight light, vec3 at, vec3 n)
 {

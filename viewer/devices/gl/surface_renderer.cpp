@@ -154,9 +154,9 @@ bool SurfaceRenderer::prepare(double most_s)
     if (programs_.size() > compiled) return false;
     constexpr char const *kPlace = "full_screen.vert", *kPacking = "surface_packing.glsl",
                          *kLight = "surface_light.glsl", *kEmits = "#define EMITS 1\n";
-    for (char const* step : {"#define STEP 0\n#define FADES 0\n", "#define STEP 1\n#define FADES 0\n",
-                             "#define STEP 0\n#define FADES 1\n"})
-        if (found_.size() < 3)
+    if (found_.empty())
+        for (char const* step : {"#define STEP 0\n#define FADES 0\n", "#define STEP 1\n#define FADES 0\n",
+                                 "#define STEP 0\n#define FADES 1\n"})
             found_.emplace_back(
                 GlProgram({kPlace}, {kPacking, kLight, "surface_found.frag"}, std::string(kEmits) + step));
     for (int step = 0; lit_.size() < 2; ++step)
