@@ -9,6 +9,7 @@
 #include <csignal>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 namespace viewer::test {
@@ -98,6 +99,20 @@ TEST(ProcessWatch, KnowsWhetherAProcessRuns)
     EXPECT_EQ(state_of(other, here), ProcessState::ended);
     waitpid(child, nullptr, 0);
     EXPECT_EQ(state_of(other, here), ProcessState::ended);
+}
+
+TEST(ProcessWatch, ReadsAProcessThatEndsMeanwhile)
+{
+    ProcessId const here = this_process();
+    for (int i = 0; i < 1000; ++i) {
+        pid_t const child = fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) _exit(0);
+        std::jthread const collects([child] { waitpid(child, nullptr, 0); });
+        ProcessId other = here;
+        other.number = child;
+        while (kill(child, 0) == 0) ASSERT_NO_THROW(state_of(other, here));
+    }
 }
 
 } // namespace

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <unistd.h>
@@ -10,10 +9,12 @@
 namespace viewer {
 namespace {
 
+/// Empty where the file cannot be read, also where its process ends between opening and reading (ESRCH).
 std::string text_of(std::string const& file)
 {
-    std::ifstream in(file);
-    return {std::istreambuf_iterator<char>(in), {}};
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
 }
 
 struct Stat {
