@@ -153,10 +153,9 @@ FoundLight light_of(Likes s, vec3 n)
     if (s.best >= kUnlike || (s.shown_in >= 0 && s.counted > 0.0)) {
         found.light = mix(mean_light, s.sum / max(s.weights, vec3(1e-20)), greaterThan(s.weights, vec3(0.0)));
         found.lacks = s.lacks / s.counted;
-        if (s.best >= kUnlike) {
-            found.bent = texelFetch(slopes, s.nearest, 0).xy;
-            found.bent.x = pack_normal(unpack_normal(found.bent.x) + s.facings / s.counted - s.best_facing);
-        }
+        uvec2 slope = texelFetch(slopes, s.nearest, 0).xy;
+        if (s.best >= kUnlike && slope.y != 0u) // 0 = not known, as of full pictures
+            found.bent = uvec2(pack_normal(unpack_normal(slope.x) + s.facings / s.counted - s.best_facing), slope.y);
     }
     found.bent.y |= s.best < kUnlike ? kOfNothing : 0u;
     return found;

@@ -7,11 +7,13 @@
 #include "tests/support/scenes.h"
 #include "tests/viewer_gl/surfaceless.h"
 
+#include <array>
 #include <epoxy/gl.h>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/packing.hpp>
 #include <iostream>
+#include <numeric>
 
 namespace viewer::test::surfaces {
 namespace {
@@ -84,7 +86,7 @@ protected:
         shown = gi::shown_scene(world, {}, nullptr);
     }
     gi::World const& w() const { return world->world(); }
-    vec3 light(vec3 p) const { return light_at(vec3(dvec3(p) + w().origin - far_)); }
+    vec3 light(vec3 p) const { return bright_ * light_at(vec3(dvec3(p) + w().origin - far_)); }
 
     /// What the camera sees, lit by light_at and punctual lights; its light without these, if asked for.
     gi::Picture exact(gi::Camera const& camera, gi::LightPicture* found = nullptr,
@@ -158,6 +160,7 @@ protected:
     }
 
     dvec3 far_{0};
+    float bright_ = 1;
     std::shared_ptr<gi::MovingWorld> world;
     std::shared_ptr<gi::ShownScene const> shown;
 };
@@ -173,7 +176,7 @@ TEST_F(SurfaceRendererTest, DrawsWhatTheCpuFormDraws)
         start(renderer, found);
         double const share = differing(drawn(renderer, camera, truth, camera), truth.find("color")->data);
         RecordProperty(far > 0 ? "far" : "near", std::to_string(share));
-        EXPECT_LT(share, far > 0 ? 0.02 : 0.001) << far; // measured: 0.007 and 0.00005
+        EXPECT_LT(share, far > 0 ? 0.02 : 0.005) << far; // measured: 0.007 and 0.003, at outlines
     }
 }
 
@@ -214,7 +217,7 @@ TEST_F(SurfaceRendererTest, FindsLightFromAnotherPose)
     double const moved = differing(drawn(renderer, now, last, of), truth.find("color")->data),
                  still = differing(last.find("color")->data, truth.find("color")->data);
     RecordProperty("differ", std::to_string(moved));
-    EXPECT_LT(moved, 0.01); // measured: 0.004
+    EXPECT_LT(moved, 0.015); // measured: 0.009
     EXPECT_GT(still, 0.25);
 }
 
@@ -240,6 +243,40 @@ TEST_F(SurfaceRendererTest, WhoComesBackFindsTheLightOfBefore)
         renderer.add_light({{0, 0, &light}});
     }
     EXPECT_GE(lit_by_pictures(), before);
+}
+
+TEST_F(SurfaceRendererTest, NewLightFadesInUnlessItChangesByMuch)
+{
+    load();
+    gi::Camera const camera = camera_at({0.4, 0.8, 3.2});
+    gi::LightPicture dim, bright;
+    gi::Picture const seen = exact(camera, &dim);
+    double const begun_s = 10, fade_s = 0.15;
+    for (bool const by_much : {false, true}) {
+        bright_ = by_much ? 10 : 1.25f;
+        exact(camera, &bright);
+        bright_ = 1;
+        SurfaceRenderer renderer;
+        start(renderer, dim);
+        auto const mean = [&](double pose_s) {
+            renderer.show_at(pose_s);
+            std::vector<float> const rgb = drawn(renderer, camera, seen, camera);
+            return std::accumulate(rgb.begin(), rgb.end(), 0.0) / double(rgb.size());
+        };
+        mean(begun_s - 1);
+        double const before = mean(begun_s);
+        EXPECT_FALSE(renderer.fades());
+        renderer.add_light({{0, 0, &bright}});
+        std::array<double, 3> between{};
+        for (std::size_t k = 0; k < 3; ++k) between[k] = mean(begun_s + double(k + 1) * fade_s / 4);
+        EXPECT_TRUE(renderer.fades());
+        double const after = mean(begun_s + 1.001 * fade_s);
+        EXPECT_FALSE(renderer.fades());
+        EXPECT_GT(after, 1.1 * before);
+        for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_NEAR((between[k] - before) / (after - before), by_much ? 1 : double(k + 1) / 4, 0.04)
+                << by_much; // what moves and outlines do not fade
+    }
 }
 
 TEST_F(SurfaceRendererTest, WhatNoPictureShowsIsLitFromCells)

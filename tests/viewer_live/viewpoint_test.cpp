@@ -68,6 +68,30 @@ TEST(Anticipation, ConstantVelocityIsExact)
     expect_same(a.at(t, t - 1).views[0].camera.world_from_camera, walking(t).views[0].camera.world_from_camera, 0);
 }
 
+/// Light: on the way, but not behind walls, nor where less than half of what is seen now is in the picture.
+TEST(Anticipation, LooksFarAheadAsFarAsTheWayIsFree)
+{
+    Anticipation a;
+    double const t = watch(a, walking, 10); // 2.1 m/s, 0.8 rad/s
+    auto const ahead = [&](double later_s, double free_m) {
+        return a
+            .far_ahead(t, later_s,
+                       [&](gi::dvec3, gi::dvec3 direction, double most_m) {
+                           EXPECT_NEAR(glm::length(direction), 1, 1e-9);
+                           return std::min(free_m, most_m);
+                       })[0]
+            .camera.world_from_camera;
+    };
+    auto const truth = [&](double later_s) { return walking(t + later_s).views[0].camera.world_from_camera; };
+    expect_same(ahead(0.4, 100), truth(0.4), 1e-9);
+    double const half_fov_rad = std::atan(4.0 / 3 * std::tan(0.5 * walking(0).views[0].camera.yfov_rad));
+    expect_same(ahead(5, 100), truth(std::min(Anticipation::kFarAhead_s, half_fov_rad / 0.8)), 1e-9);
+    expect_same(ahead(0.4, 0.8), truth(0.5 / (1.5 * std::sqrt(2.0))), 1e-9); // 0.3 m are kept from the wall
+    expect_same(ahead(0.4, 0.1), truth(Anticipation::kFarthest_s), 1e-9);
+    expect_same(ahead(0.01, 0), truth(0.01), 1e-9);
+    EXPECT_TRUE(Anticipation().far_ahead(0, 1, [](auto, auto, double m) { return m; }).empty());
+}
+
 TEST(Anticipation, IsOfTheTimeThatPosesAreFor)
 {
     Anticipation a;

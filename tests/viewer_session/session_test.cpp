@@ -469,6 +469,11 @@ TEST(Picking, FindsTheNearestObject)
     ASSERT_TRUE(wall.has_value());
     EXPECT_EQ(wall->material, 0u);
     EXPECT_FALSE(pick(gi::World{}, camera, 1, {0.5, 0.5}).has_value());
+
+    gi::dvec3 const eye{0, 0.5, 0.9}, towards = (hit->position - eye) / hit->distance_m;
+    EXPECT_NEAR(free_way_m(s.world(), eye, towards, 10), hit->distance_m, 1e-5);
+    EXPECT_EQ(free_way_m(s.world(), eye, towards, 0.5 * hit->distance_m), 0.5 * hit->distance_m);
+    EXPECT_EQ(free_way_m(gi::World{}, eye, towards, 3), 3);
 }
 
 /// A second eye whose light, past and filter are the first one's has no more error

@@ -25,16 +25,10 @@ float distance_to(gi::Ray const& ray, gi::Surface const& s)
     return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : gi::kInf;
 }
 
-} // namespace
-
-std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, glm::dvec2 at)
+Nearest nearest(gi::World const& world, gi::Ray const& ray)
 {
-    constexpr int kSide = 4096; // any value works: the position in the picture is continuous
-    int const width = std::max(1, int(std::lround(kSide * aspect)));
-    gi::Ray const ray = gi::camera_rays(camera, width, kSide, world.origin)
-                            .through(gi::vec2(float(at.x * width), float(at.y * kSide)));
     using Range = tbb::blocked_range<std::size_t>;
-    Nearest const found = tbb::parallel_reduce(
+    return tbb::parallel_reduce(
         Range(0, world.surfaces.size(), 4096), Nearest{},
         [&](Range const& range, Nearest best) {
             for (std::size_t t = range.begin(); t < range.end(); ++t)
@@ -43,11 +37,28 @@ std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, dou
             return best;
         },
         [](Nearest a, Nearest b) { return b.distance < a.distance ? b : a; });
+}
+
+} // namespace
+
+std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, glm::dvec2 at)
+{
+    constexpr int kSide = 4096; // any value works: the position in the picture is continuous
+    int const width = std::max(1, int(std::lround(kSide * aspect)));
+    gi::Ray const ray = gi::camera_rays(camera, width, kSide, world.origin)
+                            .through(gi::vec2(float(at.x * width), float(at.y * kSide)));
+    Nearest const found = nearest(world, ray);
     if (!(found.distance < gi::kInf)) return std::nullopt;
     auto const next = std::upper_bound(world.placed.begin(), world.placed.end(), found.triangle,
                                        [](std::uint32_t t, auto const& p) { return t < p.first_triangle; });
     return Picked{found.triangle, std::prev(next)->node, world.surfaces[found.triangle].material,
                   double(found.distance), world.origin + gi::dvec3(ray.origin + found.distance * ray.direction)};
+}
+
+double free_way_m(gi::World const& world, gi::dvec3 from, gi::dvec3 direction, double most_m)
+{
+    gi::Ray const ray{vec3(from - world.origin), vec3(direction)};
+    return std::min(most_m, double(nearest(world, ray).distance));
 }
 
 } // namespace viewer

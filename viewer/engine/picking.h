@@ -1,5 +1,5 @@
 #pragma once
-// Finds the surface under the mouse.
+// Finds the surface under the mouse, and what stands in the way.
 
 #include "gi/scene/model/camera.h"
 #include "gi/scene/model/world.h"
@@ -16,5 +16,9 @@ struct Picked {
 /// Nearest triangle on the camera ray through (x, y) in [0, 1]^2 of its picture, (0, 0) top left. Tests every
 /// triangle: milliseconds for a million. Triangles without area are never hit.
 std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, glm::dvec2 at);
+
+/// Distance to the nearest triangle, at most `most_m`. Takes as long as pick().
+/// @param from  m, absolute  @param direction  unit
+double free_way_m(gi::World const& world, gi::dvec3 from, gi::dvec3 direction, double most_m);
 
 } // namespace viewer

@@ -87,7 +87,7 @@ void LightRing::add(LightOfView const& of, gi::dvec3 origin)
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTextureSubImage3D(texels_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RGBA_INTEGER,
                         GL_UNSIGNED_INT, light.texels.data());
-    gi::LightSlope const none = gi::light_slope(gi::vec3{0, 0, 1}, gi::vec3{0});
+    constexpr gi::LightSlope none{}; // as surface_light.glsl
     if (light.slopes.empty())
         glClearTexSubImage(slopes_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RG_INTEGER,
                            GL_UNSIGNED_INT, &none);

@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "gi/methods/registry.h"
 #include "viewer/engine/live/background_priority.h"
+#include "viewer/engine/picking.h"
 #include "viewer/engine/picture_margin.h"
 
 #include <algorithm>
@@ -256,6 +257,20 @@ void LiveRenderer::choose_updated_axes(bool may_move)
 /// Time from a frame's start to the middle of its display interval, s.
 double LiveRenderer::seen_after_s() const { return std::min(1.5 * frame_s_, Anticipation::kFarthest_s); }
 
+/// In the middle of the time for which a picture of their light is the newest.
+std::vector<ViewCommand> LiveRenderer::views_of_light() const
+{
+    Anticipation anticipation;
+    {
+        std::lock_guard const lock(mutex_);
+        anticipation = anticipation_;
+    }
+    return anticipation.far_ahead(clock_.now_s(), 1.5 * frame_s_,
+                                  [this](auto from, auto direction, double most_m) {
+                                      return free_way_m(session_.world(), from, direction, most_m);
+                                  });
+}
+
 /// Adds margins to the pictures in the direction in which viewers turn, if there is time for it.
 /// @param last  expected viewpoint when the next picture is shown
 void LiveRenderer::add_margins(FrameCommand& command, Viewpoint const& last) const
@@ -291,6 +306,7 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
     if (own_surfaces) {
         command.light_scale = budget.scale;
         command.only_light = now.drawn_scale > 0 && s.draw_surfaces && s.compare.empty() && budget.scale < 1;
+        if (command.only_light && !still && s.predict && link_ == nullptr) command.views = views_of_light();
         if (command.only_light) // mirrors and panes need not be sharper than what is drawn around them
             budget.surfaces = std::max(budget.scale, std::min(budget.surfaces, now.drawn_scale));
         command.surface_scale = budget.surfaces;

@@ -94,13 +94,12 @@ bool Anticipation::jumps(Viewpoint const& now) const
     return false;
 }
 
-Viewpoint Anticipation::at(double now_s, double time_s) const
+Viewpoint Anticipation::at(double now_s, double time_s, double farthest_s) const
 {
     Viewpoint v = seen_.empty() ? Viewpoint{} : seen_.back();
     if (seen_.size() < 2 || now_s - v.pose_s > kForgotten_s) return v;
     Viewpoint const &before = seen_.front(), &last = seen_[seen_.size() - 2];
-    double const over_s = v.time_s() - before.time_s(),
-                 ahead_s = std::clamp(time_s - v.time_s(), 0.0, kFarthest_s);
+    double const over_s = v.time_s() - before.time_s(), ahead_s = std::clamp(time_s - v.time_s(), 0.0, farthest_s);
     bool const stands = same_cameras(last.views, v.views) && last.tracked == v.tracked && last.others == v.others;
     if (stands || !(over_s > 0) || over_s > kLongest_s || !(ahead_s > 0)) return v;
     double const t = 1 + ahead_s / over_s;
@@ -109,6 +108,30 @@ Viewpoint Anticipation::at(double now_s, double time_s) const
     for (std::size_t k = 0; k < v.others.size(); ++k) move_on(before.others[k], v.others[k], t);
     for (std::size_t k = 0; k < v.views.size(); ++k) move_on(before.views[k].camera, v.views[k].camera, t);
     return v;
+}
+
+std::vector<ViewCommand>
+Anticipation::far_ahead(double now_s, double later_s,
+                        std::function<double(gi::dvec3, gi::dvec3, double)> const& free_way_m) const
+{
+    constexpr double kFromWalls_m = 0.3;
+    later_s = std::min(later_s, kFarAhead_s);
+    std::vector<ViewCommand> const now = at(now_s, now_s, 0).views,
+                                   far = at(now_s, now_s + later_s, later_s).views;
+    if (now.empty()) return now;
+    gi::dmat4 const &from = now[0].camera.world_from_camera, &to = far[0].camera.world_from_camera;
+    gi::ViewTangents const edges = gi::view_edges(now[0].camera, now[0].width, now[0].height);
+    double const half_rad = 0.5 * (std::atan(edges.right) - std::atan(edges.left)),
+                 turn_rad = std::acos(std::clamp(glm::dot(gi::dvec3(from[2]), gi::dvec3(to[2])), -1.0, 1.0));
+    double share = turn_rad > half_rad ? half_rad / turn_rad : 1;
+    gi::dvec3 const way = share * gi::dvec3(to[3] - from[3]);
+    if (double const way_m = glm::length(way); way_m > 0) {
+        double const free_m = free_way_m(gi::dvec3(from[3]), way / way_m, way_m + kFromWalls_m) - kFromWalls_m;
+        share *= std::max(0.0, free_m) / way_m;
+    }
+    double const least_s = std::min(later_s, kFarthest_s); // as what is shown, walls or not
+    later_s = std::max(share * later_s, least_s);
+    return at(now_s, now_s + later_s, later_s).views;
 }
 
 } // namespace viewer

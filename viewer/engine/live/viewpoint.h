@@ -4,6 +4,7 @@
 #include "viewer/protocol/frame_command.h"
 
 #include <deque>
+#include <functional>
 
 namespace viewer {
 
@@ -28,17 +29,24 @@ bool same_cameras(std::vector<ViewCommand> const& a, std::vector<ViewCommand> co
 /// by then its viewer has moved on.
 class Anticipation {
 public:
-    /// Farthest prediction, s.
-    static constexpr double kFarthest_s = 0.15;
+    /// Farthest prediction, s: by at(), by far_ahead().
+    static constexpr double kFarthest_s = 0.15, kFarAhead_s = 1;
     static constexpr double kForgotten_s = 0.05;
 
     /// Call for every new viewpoint.
     void see(Viewpoint const& now);
     /// The newest viewpoint, moved on to a time. Unchanged if nothing moves, if it was seen more than
     /// kForgotten_s ago, or if users or views have changed. @param now_s, time_s  session clock
-    Viewpoint at(double now_s, double time_s) const;
+    Viewpoint at(double now_s, double time_s) const { return at(now_s, time_s, kFarthest_s); }
+    /// The views so much later, at most kFarAhead_s, for pictures whose light is looked up from other poses: less far where
+    /// something stands in the way, and so that half of what is seen now stays in the picture.
+    /// @param free_way_m  from a point (m), in a unit direction, at most so far (m)
+    std::vector<ViewCommand>
+    far_ahead(double now_s, double later_s,
+              std::function<double(gi::dvec3, gi::dvec3, double)> const& free_way_m) const;
 
 private:
+    Viewpoint at(double now_s, double time_s, double farthest_s) const;
     bool jumps(Viewpoint const& now) const;
 
     std::deque<Viewpoint> seen_; ///< the newest last
