@@ -1,13 +1,15 @@
 # What every target of the project shares, and the one way to declare a library or a test.
 
 add_library(lightwell_options INTERFACE)
-target_include_directories(lightwell_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(lightwell_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
 target_compile_definitions(lightwell_options INTERFACE GLM_FORCE_SILENT_WARNINGS GLM_FORCE_XYZW_ONLY) # plain members: nvcc 13 miscompiles constants of unions
 set(warnings -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-unknown-pragmas -Werror)
 target_compile_options(lightwell_options INTERFACE
-  "$<$<COMPILE_LANGUAGE:CXX>:${warnings}>"
+  "$<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:${warnings}>>"
   # GCC 12 warns of std::string concatenation that is right (its bugs 105329 and 105651).
   "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-restrict>"
+  # GCC 13 and 14 warn of every reference from a function that is given a temporary.
+  "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>"
   "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:Clang>>:-Wno-bitwise-instead-of-logical>" # loops without branches
   "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:Clang>>:-Wno-inconsistent-missing-override>" # members of templates with one of two bases
   # Without contraction: a function that is inlined at several places, as TBB does it, must round alike at all of them.

@@ -19,7 +19,7 @@ OpenCvSources const& sources()
     if (find != nullptr) return *find();
     char const* const why = dlerror();
     throw gi::InputError("videos and cameras cannot be opened", why != nullptr ? why : "their module is not there",
-                         "build all: scripts/build release");
+                         "install the package lightwell-ar, or build all: scripts/build release");
 }
 
 } // namespace

@@ -5,19 +5,55 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/aruco.hpp>
+#include <opencv2/core/version.hpp>
 #include <opencv2/imgproc.hpp>
+#define LIGHTWELL_OPENCV (100 * CV_VERSION_MAJOR + CV_VERSION_MINOR)
+#if LIGHTWELL_OPENCV >= 407
+#include <opencv2/objdetect/aruco_detector.hpp>
+#else
+#include <opencv2/aruco.hpp>
+#endif
 
 namespace ar {
 namespace {
 
 /// Names in OpenCV's order, so that the index is OpenCV's number.
-cv::Ptr<cv::aruco::Dictionary> dictionary_named(std::string const& name)
+cv::aruco::Dictionary dictionary_named(std::string const& name)
 {
     auto const& names = dictionary_names();
     auto const at = std::find(names.begin(), names.end(), name);
     CV_Assert(at != names.end());
-    return cv::aruco::getPredefinedDictionary(int(at - names.begin()));
+    int const number = int(at - names.begin());
+#if LIGHTWELL_OPENCV >= 407
+    return cv::aruco::getPredefinedDictionary(number);
+#else
+    return *cv::aruco::getPredefinedDictionary(number);
+#endif
+}
+
+using Corners = std::vector<std::vector<cv::Point2f>>;
+
+void detect(cv::Mat const& searched, cv::aruco::Dictionary const& dictionary,
+            cv::aruco::DetectorParameters const& parameters, Corners& corners, std::vector<int>& ids,
+            Corners& rejected)
+{
+#if LIGHTWELL_OPENCV >= 407
+    cv::aruco::ArucoDetector(dictionary, parameters).detectMarkers(searched, corners, ids, rejected);
+#else
+    cv::aruco::detectMarkers(searched, cv::makePtr<cv::aruco::Dictionary>(dictionary), corners, ids,
+                             cv::makePtr<cv::aruco::DetectorParameters>(parameters), rejected);
+#endif
+}
+
+cv::Mat picture_of(cv::aruco::Dictionary const& dictionary, int id, int side_px)
+{
+    cv::Mat picture;
+#if LIGHTWELL_OPENCV >= 407
+    dictionary.generateImageMarker(id, side_px, picture, 1);
+#else
+    dictionary.drawMarker(id, side_px, picture, 1);
+#endif
+    return picture;
 }
 
 /// cv::cornerSubPix with a window that other edges of the marker do not reach: three tenths of a cell, at most 5
@@ -36,18 +72,18 @@ void refine(cv::Mat const& gray, std::array<cv::Point2f, 4>& corners, int cells)
 FoundMarkers find_squares(cv::Mat const& searched, std::string const& dictionary, double longest_px,
                           SearchSettings const& s)
 {
-    auto const p = cv::aruco::DetectorParameters::create();
-    p->minMarkerPerimeterRate = 4 * s.smallest_side_px / longest_px;
-    p->maxMarkerPerimeterRate = 4;
-    p->adaptiveThreshWinSizeMin = s.smallest_window_px;
-    p->adaptiveThreshWinSizeMax = s.largest_window_px;
-    p->adaptiveThreshWinSizeStep = s.window_step_px;
-    p->perspectiveRemovePixelPerCell = 8; // more small markers are read than with 4 (docs/decisions/markers.md)
-    if (s.refinement == Refinement::contour) p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_CONTOUR;
-    if (s.refinement == Refinement::apriltag) p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_APRILTAG;
-    std::vector<std::vector<cv::Point2f>> corners, rejected;
+    cv::aruco::DetectorParameters p;
+    p.minMarkerPerimeterRate = 4 * s.smallest_side_px / longest_px;
+    p.maxMarkerPerimeterRate = 4;
+    p.adaptiveThreshWinSizeMin = s.smallest_window_px;
+    p.adaptiveThreshWinSizeMax = s.largest_window_px;
+    p.adaptiveThreshWinSizeStep = s.window_step_px;
+    p.perspectiveRemovePixelPerCell = 8; // more small markers are read than with 4 (docs/decisions/markers.md)
+    if (s.refinement == Refinement::contour) p.cornerRefinementMethod = cv::aruco::CORNER_REFINE_CONTOUR;
+    if (s.refinement == Refinement::apriltag) p.cornerRefinementMethod = cv::aruco::CORNER_REFINE_APRILTAG;
+    Corners corners, rejected;
     std::vector<int> ids;
-    cv::aruco::detectMarkers(searched, dictionary_named(dictionary), corners, ids, p, rejected);
+    detect(searched, dictionary_named(dictionary), p, corners, ids, rejected);
     FoundMarkers found;
     found.rejected = int(rejected.size());
     std::size_t const turn = is_apriltag(dictionary) ? 2 : 0; // OpenCV's stand on their heads
@@ -86,12 +122,11 @@ FoundMarkers find_markers(cv::Mat const& gray, std::string const& dictionary, Se
 
 std::vector<std::vector<bool>> cells_of(std::string const& dictionary, int id)
 {
-    auto const codes = dictionary_named(dictionary);
-    int const n = codes->markerSize + 2;
-    cv::Mat picture;
-    codes->drawMarker(id, n, picture, 1);
+    cv::aruco::Dictionary const codes = dictionary_named(dictionary);
+    int const n = codes.markerSize + 2;
+    cv::Mat picture = picture_of(codes, id, n);
     if (is_apriltag(dictionary)) cv::rotate(picture, picture, cv::ROTATE_180);
-    std::vector<std::vector<bool>> cells(codes->markerSize + 2u, std::vector<bool>(codes->markerSize + 2u));
+    std::vector<std::vector<bool>> cells(codes.markerSize + 2u, std::vector<bool>(codes.markerSize + 2u));
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) cells[std::size_t(y)][std::size_t(x)] = picture.at<std::uint8_t>(y, x) == 0;
     return cells;

@@ -71,7 +71,7 @@ void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> 
         PacketMask const mask = fill(packet.ray, some);
         std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
         std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
-        rtcIntersect16(mask.valid, scene, &context.rtc, &packet);
+        embree::intersect(mask.valid, scene, context.rtc, packet);
         for (std::size_t k = 0; k < some.size(); ++k)
             hits[first + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
                                   ? Hit{}
@@ -91,7 +91,7 @@ void ExactVisibility::occluded(std::span<RayQuery const> queries, std::span<std:
         auto const some = queries.subspan(first, std::min(kPacket, queries.size() - first));
         RTCRay16 packet;
         PacketMask const mask = fill(packet, some);
-        rtcOccluded16(mask.valid, scene, &context.rtc, &packet);
+        embree::occluded(mask.valid, scene, context.rtc, packet);
         for (std::size_t k = 0; k < some.size(); ++k) blocked[first + k] = packet.tfar[k] < 0;
     }
 }
@@ -106,7 +106,7 @@ void ExactVisibility::transmittance(std::span<RayQuery const> queries, std::span
         PacketMask const mask = fill(packet, some);
         if (panes_)
             for (std::size_t k = 0; k < some.size(); ++k) packet.flags[k] = some[k].to_lamp;
-        rtcOccluded16(mask.valid, scene, &context.rtc, &packet);
+        embree::occluded(mask.valid, scene, context.rtc, packet);
         for (std::size_t k = 0; k < some.size(); ++k) {
             bool const blocked = packet.tfar[k] < 0;
             left[first + k] = vec3{blocked ? 0.0f : 1.0f};
@@ -116,7 +116,7 @@ void ExactVisibility::transmittance(std::span<RayQuery const> queries, std::span
             RTCRay16 one;
             PacketMask const only = fill(one, some.subspan(k, 1));
             one.flags[0] = 1;
-            rtcOccluded16(only.valid, scene, &alone.rtc, &one);
+            embree::occluded(only.valid, scene, alone.rtc, one);
             left[first + k] = alone.crossings.left;
         }
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Exact ray queries against a World through Embree 3 (robust, watertight mode), in packets.
+// Exact ray queries against a World through Embree (robust, watertight mode), in packets.
 // Only triangles with a (partly) transparent material go through the filter that tests coverage; partial coverage
 // is a random decision per ray and triangle that does not depend on traversal order. Panes have a geometry of their
 // own, which only rays towards lamps go through.
@@ -7,11 +7,11 @@
 // is updated, by refitting its boxes. Measured against rebuilding it: docs/decisions/bvh.md.
 
 #include "gi/core/progress.h"
+#include "gi/render/embree.h"
 #include "gi/render/panes.h"
 #include "gi/scene/model/world.h"
 
 #include <cstdint>
-#include <embree3/rtcore.h>
 #include <memory>
 #include <span>
 
@@ -41,8 +41,8 @@ public:
     /// Intersection context with the data that filters need. `rtc` comes first, so that they can reach the rest from
     /// Embree's pointer.
     struct Context {
-        explicit Context(ExactVisibility const& visibility) : owner(&visibility) { rtcInitIntersectContext(&rtc); }
-        RTCIntersectContext rtc;
+        explicit Context(ExactVisibility const& visibility) : owner(&visibility) { embree::begin(rtc); }
+        embree::Context rtc;
         ExactVisibility const* owner;
         bool met_pane = false;              ///< some ray to a lamp went through one
         RayQuery const* crossing = nullptr; ///< the only ray, whose crossings are noted; null = they are not

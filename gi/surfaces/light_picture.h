@@ -21,7 +21,7 @@ struct LightTexel {
 /// How its light changes with the normal, see KeptLight: by the factor 1 + dot(slope, normal - mean normal).
 struct LightSlope {
     std::uint32_t mean_normal = 0; ///< of the surfaces whose light this is, as LightTexel::normal
-    std::uint32_t slope = 0;       ///< ten bits each, 512 = 0, in steps of kSlopeStep
+    std::uint32_t slope = 0;       ///< ten bits each, 512 = 0, in steps of kSlopeStep; all 0: not known
 };
 inline constexpr float kSlopeStep = 1.0f / 64;
 
@@ -40,7 +40,7 @@ struct LightPicture {
     std::uint64_t lamps = 0;        ///< counts changes of the scene's light: pictures of other lamps are not mixed
     bool without_punctual = false;  ///< light of punctual lights is not part of it
     std::vector<LightTexel> texels; ///< rows from the top
-    std::vector<LightSlope> slopes; ///< of the same; empty = light is the same for all normals
+    std::vector<LightSlope> slopes; ///< of the same; empty = not known
 };
 
 /// Distance from the plane of a surface at which another one begins, relative to the depth.

@@ -116,7 +116,7 @@ void by_embree(ExactVisibility const& exact, std::span<RayQuery const> queries, 
         r.ray.id = q.seed;
         r.ray.flags = 0;
         r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(exact.scene(), &context.rtc, &r);
+        embree::intersect(exact.scene(), context.rtc, r);
         hits[i] =
             r.hit.geomID == RTC_INVALID_GEOMETRY_ID ? Hit{} : Hit{r.hit.primID, {r.hit.u, r.hit.v}, r.ray.tfar};
     }
@@ -136,7 +136,7 @@ std::size_t occluded_by_embree(ExactVisibility const& exact, std::span<RayQuery 
         r.dir_z = q.ray.direction.z;
         r.tfar = q.reach;
         r.mask = 0xffffffffu;
-        rtcOccluded1(exact.scene(), &context.rtc, &r);
+        embree::occluded(exact.scene(), context.rtc, r);
         n += r.tfar < 0 ? 1 : 0;
     }
     return n;

@@ -83,9 +83,9 @@ std::uint64_t replay(ExactVisibility const& exact, std::vector<Wave> const& wave
             r.ray.flags = 0;
             r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
             if (wave.shadow)
-                rtcOccluded1(exact.scene(), &context.rtc, &r.ray);
+                embree::occluded(exact.scene(), context.rtc, r.ray);
             else
-                rtcIntersect1(exact.scene(), &context.rtc, &r);
+                embree::intersect(exact.scene(), context.rtc, r);
             hits += wave.shadow ? r.ray.tfar < 0 : r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
         }
     return hits;

@@ -89,7 +89,19 @@ TEST(Anticipation, LooksFarAheadAsFarAsTheWayIsFree)
     expect_same(ahead(0.4, 0.8), truth(0.5 / (1.5 * std::sqrt(2.0))), 1e-9); // 0.3 m are kept from the wall
     expect_same(ahead(0.4, 0.1), truth(Anticipation::kFarthest_s), 1e-9);
     expect_same(ahead(0.01, 0), truth(0.01), 1e-9);
-    EXPECT_TRUE(Anticipation().far_ahead(0, 1, [](auto, auto, double m) { return m; }).empty());
+    auto const all_free = [](auto, auto, double m) { return m; };
+    EXPECT_TRUE(Anticipation().far_ahead(0, 1, all_free).empty());
+    Anticipation wall; // whose edges move with the head
+    double const until = watch(
+        wall,
+        [](double s) {
+            Viewpoint v = walking(s);
+            v.views[0].camera.off_axis = gi::ViewTangents{-1 - s, 1 - s, -1, 1};
+            return v;
+        },
+        10);
+    expect_same(wall.far_ahead(until, 0.4, all_free)[0].camera.world_from_camera,
+                walking(until + Anticipation::kFarthest_s).views[0].camera.world_from_camera, 1e-9);
 }
 
 TEST(Anticipation, IsOfTheTimeThatPosesAreFor)

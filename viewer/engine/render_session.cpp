@@ -327,6 +327,15 @@ void RenderSession::take_light(FrameCommand const& command, SessionFrame& frame)
     }
 }
 
+bool RenderSession::depends_on_poses(std::vector<ViewCommand> const& views) const
+{
+    if (headlight_ || drive_) return true;
+    return seen_ && seen_->has_mirrors() && std::ranges::any_of(views, [&](ViewCommand const& v) {
+               gi::CameraRays const rays = gi::camera_rays(v.camera, v.width, v.height, world_->world().origin);
+               return !flat_mirrors_.left_out(rays, v.width, v.height).empty();
+           });
+}
+
 /// Replaces the pictures of light by larger ones, if they show mirrors or panes that nobody else draws.
 void RenderSession::draw_mirrors(FrameCommand const& command, SessionFrame& frame)
 {

@@ -106,6 +106,8 @@ public:
     /// Current position of an object, m, world. Throws InputError if no object has this name.
     gi::dvec3 position_of(std::string const& object) const;
     bool moves() const; ///< true if something in the scene can move by itself
+    /// True if light of these views is only for poses near theirs: with bodies, a headlight, or mirrors and panes that nobody else draws.
+    bool depends_on_poses(std::vector<ViewCommand> const& views) const;
 
 private:
     void start_method(PreparedScene& scene) const;

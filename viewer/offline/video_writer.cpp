@@ -40,7 +40,8 @@ VideoCodec& video_codec()
                                ? reinterpret_cast<VideoCodec* (*)()>(dlsym(module, "lightwell_video_codec"))
                                : nullptr;
         if (make == nullptr)
-            throw gi::InputError("videos cannot be written", dlerror(), "build all: scripts/build release");
+            throw gi::InputError("videos cannot be written", dlerror(),
+                                 "install the package lightwell-ar, or build all: scripts/build release");
         return *make();
     }();
     return codec;

@@ -206,7 +206,7 @@ void measure_builds(RasterOptions const& o, BenchTable& table)
                    summarise(ms), std::string(), Cell()});
     }
     auto const bvh = measure(std::max(1, o.repeats / 2), [&] { ExactVisibility const exact(world, false, 1); });
-    table.add({fmt::format("peer: Embree 3, robust, default build, {} triangles", soup.count),
+    table.add({fmt::format("peer: Embree " RTC_VERSION_STRING ", robust, default build, {} triangles", soup.count),
                std::string("s on one core"), bvh, std::string(), Cell()});
 }
 

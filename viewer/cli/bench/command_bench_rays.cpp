@@ -90,7 +90,7 @@ std::size_t trace_single(ExactVisibility const& exact, std::vector<RayQuery> con
         r.ray.tfar = RayQuery::kFar;
         r.ray.mask = 0xffffffffu;
         r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(exact.scene(), &context.rtc, &r);
+        gi::embree::intersect(exact.scene(), context.rtc, r);
         hits += r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
     }
     return hits;

@@ -59,7 +59,9 @@ int main(int argc, char** argv)
     words.push_back(nullptr);
     if (!failed) execv(file.c_str(), const_cast<char* const*>(words.data()));
     std::string const why = failed ? "/proc/self/exe: " + failed.message() : file + ": " + std::strerror(errno);
-    std::fprintf(stderr, "lightwell: '%s' cannot be started (%s) build it: scripts/build release %s\n",
+    std::fprintf(stderr,
+                 "lightwell: '%s' cannot be started (%s) install its package (lightwell-view, lightwell-ar), or "
+                 "build it: scripts/build release %s\n",
                  words[1], why.c_str(), std::string(program).c_str());
     return 2;
 }

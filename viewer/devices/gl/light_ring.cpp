@@ -87,10 +87,10 @@ void LightRing::add(LightOfView const& of, gi::dvec3 origin)
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTextureSubImage3D(texels_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RGBA_INTEGER,
                         GL_UNSIGNED_INT, light.texels.data());
-    constexpr gi::LightSlope none{}; // as surface_light.glsl
+    constexpr gi::LightSlope not_known{};
     if (light.slopes.empty())
         glClearTexSubImage(slopes_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RG_INTEGER,
-                           GL_UNSIGNED_INT, &none);
+                           GL_UNSIGNED_INT, &not_known);
     else
         glTextureSubImage3D(slopes_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RG_INTEGER,
                             GL_UNSIGNED_INT, light.slopes.data());

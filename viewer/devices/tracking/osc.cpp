@@ -29,8 +29,13 @@ struct Message {
     std::vector<std::string> texts;             ///< per argument, if it is a text
 };
 
-struct FreeMessage {
+struct FreeMessage { // liblo's handles are void* up to version 0.31
+    using pointer = lo_message;
     void operator()(lo_message m) const { lo_message_free(m); }
+};
+struct FreeBundle {
+    using pointer = lo_bundle;
+    void operator()(lo_bundle b) const { lo_bundle_free_recursive(b); }
 };
 
 /// Length of the text that begins there, including padding; 0 if it does not end within the bytes.
@@ -354,8 +359,7 @@ TrackerPacket parse_osc(std::span<unsigned char const> bytes, std::vector<OscPat
 std::vector<unsigned char> format_osc(std::vector<TrackerSample> const& samples, std::uint64_t frame)
 {
     lo_timetag const at_once{0, 1};
-    std::unique_ptr<void, decltype(&lo_bundle_free_recursive)> const bundle(lo_bundle_new(at_once),
-                                                                            &lo_bundle_free_recursive);
+    std::unique_ptr<void, FreeBundle> const bundle(lo_bundle_new(at_once));
     for (TrackerSample const& s : samples) {
         lo_message const m = lo_message_new();
         for (int i = 0; i < 3; ++i) lo_message_add_double(m, s.pose.position[i]);

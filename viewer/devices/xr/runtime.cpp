@@ -135,7 +135,8 @@ void Runtime::connect(PicturePath path, HmdOptions const& options)
         create.type = XR_TYPE_INSTANCE_CREATE_INFO;
         copy_text(create.applicationInfo.applicationName, "lightwell");
         copy_text(create.applicationInfo.engineName, "lightwell");
-        create.applicationInfo.apiVersion = XR_CURRENT_API_VERSION;
+        create.applicationInfo.apiVersion =
+            XR_MAKE_VERSION(1, 0, 0); // SteamVR refuses what a newer SDK would ask for
         create.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
         create.enabledExtensionNames = names.data();
         check(xrCreateInstance(&create, &instance_), "xrCreateInstance");

@@ -257,20 +257,6 @@ void LiveRenderer::choose_updated_axes(bool may_move)
 /// Time from a frame's start to the middle of its display interval, s.
 double LiveRenderer::seen_after_s() const { return std::min(1.5 * frame_s_, Anticipation::kFarthest_s); }
 
-/// In the middle of the time for which a picture of their light is the newest.
-std::vector<ViewCommand> LiveRenderer::views_of_light() const
-{
-    Anticipation anticipation;
-    {
-        std::lock_guard const lock(mutex_);
-        anticipation = anticipation_;
-    }
-    return anticipation.far_ahead(clock_.now_s(), 1.5 * frame_s_,
-                                  [this](auto from, auto direction, double most_m) {
-                                      return free_way_m(session_.world(), from, direction, most_m);
-                                  });
-}
-
 /// Adds margins to the pictures in the direction in which viewers turn, if there is time for it.
 /// @param last  expected viewpoint when the next picture is shown
 void LiveRenderer::add_margins(FrameCommand& command, Viewpoint const& last) const
@@ -306,7 +292,6 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
     if (own_surfaces) {
         command.light_scale = budget.scale;
         command.only_light = now.drawn_scale > 0 && s.draw_surfaces && s.compare.empty() && budget.scale < 1;
-        if (command.only_light && !still && s.predict && link_ == nullptr) command.views = views_of_light();
         if (command.only_light) // mirrors and panes need not be sharper than what is drawn around them
             budget.surfaces = std::max(budget.scale, std::min(budget.surfaces, now.drawn_scale));
         command.surface_scale = budget.surfaces;
@@ -321,6 +306,7 @@ void LiveRenderer::run_leading()
     bool gave_up = false;
     while (!quit_) {
         Viewpoint now, ahead, last; // last: when the picture is replaced
+        Anticipation anticipation;
         bool looked = false;
         {
             std::lock_guard const lock(mutex_);
@@ -330,6 +316,7 @@ void LiveRenderer::run_leading()
                 double const now_s = clock_.now_s();
                 ahead = anticipation_.at(now_s, now_s + seen_after_s());
                 last = anticipation_.at(now_s, now_s + 2 * frame_s_);
+                anticipation = anticipation_;
             }
             looked = looked_.exchange(false);
             asked_ = false;
@@ -370,6 +357,13 @@ void LiveRenderer::run_leading()
         FrameBudget budget;
         FrameCommand command = make_command(still ? now : ahead, still, budget);
         if (!still) add_margins(command, last);
+        if (command.only_light && !still && s.predict && link_ == nullptr &&
+            !session_.depends_on_poses(ahead.views))
+            command.views =
+                anticipation.far_ahead(begun, 1.5 * frame_s_, // the middle of the time for which it is the newest
+                                       [this](auto from, auto direction, double most_m) {
+                                           return free_way_m(session_.world(), from, direction, most_m);
+                                       });
         last_look_ = std::move(now);
         if (link_ != nullptr) link_->send(command);
         {

@@ -175,7 +175,6 @@ private:
     void measure(FrameWork const& work, FrameBudget const& budget);
     FrameCommand make_command(Viewpoint const& now, bool still, FrameBudget& budget);
     double seen_after_s() const;
-    std::vector<ViewCommand> views_of_light() const;
     void add_margins(FrameCommand& command, Viewpoint const& last) const;
     enum class Rendered : std::uint8_t { whole, failed, given_up };
     Rendered render(FrameCommand command, FrameBudget const& budget, double ahead_s = 0);

@@ -116,21 +116,30 @@ Anticipation::far_ahead(double now_s, double later_s,
 {
     constexpr double kFromWalls_m = 0.3;
     later_s = std::min(later_s, kFarAhead_s);
-    std::vector<ViewCommand> const now = at(now_s, now_s, 0).views,
-                                   far = at(now_s, now_s + later_s, later_s).views;
-    if (now.empty()) return now;
-    gi::dmat4 const &from = now[0].camera.world_from_camera, &to = far[0].camera.world_from_camera;
-    gi::ViewTangents const edges = gi::view_edges(now[0].camera, now[0].width, now[0].height);
-    double const half_rad = 0.5 * (std::atan(edges.right) - std::atan(edges.left)),
-                 turn_rad = std::acos(std::clamp(glm::dot(gi::dvec3(from[2]), gi::dvec3(to[2])), -1.0, 1.0));
-    double share = turn_rad > half_rad ? half_rad / turn_rad : 1;
-    gi::dvec3 const way = share * gi::dvec3(to[3] - from[3]);
-    if (double const way_m = glm::length(way); way_m > 0) {
+    double const least_s = std::min(later_s, kFarthest_s);
+    std::vector<ViewCommand> const now = at(now_s, now_s, 0).views;
+    std::vector<ViewCommand> const far = at(now_s, now_s + later_s, later_s).views;
+    double share = later_s > least_s ? 1 : 0;
+    for (std::size_t k = 0; k < now.size() && share > 0; ++k) {
+        gi::Camera const &camera = now[k].camera, &then = far[k].camera;
+        if (!(camera.off_axis == then.off_axis)) share = 0;
+        gi::dmat4 const &from = camera.world_from_camera, &to = then.world_from_camera;
+        gi::dvec3 const axis =
+            -glm::transpose(glm::dmat3(from)) * gi::dvec3(to[2]); // of the later view, in this one
+        gi::ViewTangents const edges = gi::view_edges(camera, now[k].width, now[k].height);
+        auto const stay = [&](double along, double low, double high) {
+            double const turn_rad = std::atan2(along, -axis.z), edge_rad = std::atan(turn_rad < 0 ? low : high);
+            if (std::abs(turn_rad) > std::abs(edge_rad)) share = std::min(share, edge_rad / turn_rad);
+        };
+        stay(axis.x, edges.left, edges.right);
+        stay(axis.y, edges.bottom, edges.top);
+        gi::dvec3 const way = share * gi::dvec3(to[3] - from[3]);
+        double const way_m = glm::length(way);
+        if (!(way_m > 0)) continue;
         double const free_m = free_way_m(gi::dvec3(from[3]), way / way_m, way_m + kFromWalls_m) - kFromWalls_m;
         share *= std::max(0.0, free_m) / way_m;
     }
-    double const least_s = std::min(later_s, kFarthest_s); // as what is shown, walls or not
-    later_s = std::max(share * later_s, least_s);
+    later_s = std::max(share * later_s, least_s); // as what is shown, walls or not
     return at(now_s, now_s + later_s, later_s).views;
 }
 

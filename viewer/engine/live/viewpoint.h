@@ -38,8 +38,9 @@ public:
     /// The newest viewpoint, moved on to a time. Unchanged if nothing moves, if it was seen more than
     /// kForgotten_s ago, or if users or views have changed. @param now_s, time_s  session clock
     Viewpoint at(double now_s, double time_s) const { return at(now_s, time_s, kFarthest_s); }
-    /// The views so much later, at most kFarAhead_s, for pictures whose light is looked up from other poses: less far where
-    /// something stands in the way, and so that half of what is seen now stays in the picture.
+    /// The views so much later, at most kFarAhead_s, for pictures whose light is looked up from other poses. Less far where
+    /// something stands in the way, where the middle of a view would leave what is seen now, and, as at(), where edges of a view move, as
+    /// those of a wall.
     /// @param free_way_m  from a point (m), in a unit direction, at most so far (m)
     std::vector<ViewCommand>
     far_ahead(double now_s, double later_s,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
+#include <utility>
 
 namespace gi {
 namespace {
@@ -124,7 +125,8 @@ private:
     {
         auto const& s = accessor_->sparse;
         if (s.count < 1 || std::size_t(s.count) > accessor_->count) throw bad("its sparse count is out of range");
-        if (s.indices.byteOffset < 0 || s.values.byteOffset < 0) throw bad("a sparse offset is negative");
+        if (std::cmp_less(s.indices.byteOffset, 0) || std::cmp_less(s.values.byteOffset, 0)) // or unsigned
+            throw bad("a sparse offset is negative");
         std::int32_t const size = tinygltf::GetComponentSizeInBytes(std::uint32_t(s.indices.componentType));
         if (size != 1 && size != 2 && size != 4) throw bad("its sparse indices are not unsigned integers");
         auto const index_bytes = std::size_t(size), count = std::size_t(s.count);

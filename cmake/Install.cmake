@@ -1,0 +1,115 @@
+# What is installed, and the Debian packages. Programs lie together in lib/lightwell, where they look for each other and for their modules; bin has a link to
+# the one that people call. Everything else that programs need is within them.
+
+include(GNUInstallDirs)
+set(programs ${CMAKE_INSTALL_LIBDIR}/lightwell)
+function(lightwell_install component)
+  foreach(target ${ARGN})
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH "\$ORIGIN")
+    install(TARGETS ${target} COMPONENT ${component} RUNTIME DESTINATION ${programs} LIBRARY DESTINATION ${programs})
+  endforeach()
+endfunction()
+lightwell_install(lightwell lightwell_launcher lightwell_render lightwell_study lightwell_batch lightwell_bench)
+lightwell_install(view lightwell_view lightwell_trials)
+lightwell_install(ar lightwell_ar lightwell_capture lightwell_video)
+
+install(CODE "
+  set(link \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/lightwell)
+  get_filename_component(folder \${link} DIRECTORY)
+  file(RELATIVE_PATH target \${folder} \${CMAKE_INSTALL_PREFIX}/${programs}/lightwell)
+  file(MAKE_DIRECTORY \$ENV{DESTDIR}\${folder})
+  file(CREATE_LINK \${target} \$ENV{DESTDIR}\${link} SYMBOLIC)
+  list(APPEND CMAKE_INSTALL_MANIFEST_FILES \${link})"
+  COMPONENT lightwell)
+install(FILES data/desktop/lightwell.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT view)
+install(FILES data/desktop/lightwell.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT view)
+
+# Written by the programs themselves: manual pages of their commands, completions of shells.
+set(written ${PROJECT_BINARY_DIR}/written)
+add_custom_target(written DEPENDS man VERBATIM COMMENT "Writing completions and compressed manual pages to ${written}"
+  COMMAND ${CMAKE_COMMAND} -DBINARY=${PROJECT_BINARY_DIR} -DOUT=${written} -P ${PROJECT_SOURCE_DIR}/cmake/written.cmake)
+install(DIRECTORY ${written}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT lightwell OPTIONAL)
+install(FILES ${written}/lightwell.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lightwell COMPONENT lightwell OPTIONAL)
+install(FILES ${written}/lightwell.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _lightwell COMPONENT lightwell OPTIONAL)
+install(FILES ${written}/lightwell.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT lightwell OPTIONAL)
+
+set(components lightwell view ar cluster dev)
+if(TARGET lightwell_python)
+  list(APPEND components python)
+  set(module lib/python3/dist-packages/lightwell)
+  set_target_properties(lightwell_python PROPERTIES INSTALL_RPATH "\$ORIGIN/../../../../${programs}")
+  install(DIRECTORY python/lightwell/ DESTINATION ${module} COMPONENT python PATTERN __pycache__ EXCLUDE)
+  install(TARGETS lightwell_python LIBRARY DESTINATION ${module} COMPONENT python)
+endif()
+
+# For programs of one's own: find_package(lightwell), then link lightwell::gi or lightwell::study.
+set(of_gi gi_core gi_image_io gi_scene gi_scene_io gi_filter gi_raster gi_bvh gi_render gi_surfaces gi_light_paths gi_methods)
+set(of_study study_display study_adaptive study_design study_stats study_run study_tables study_report)
+install(TARGETS lightwell_options ${of_gi} ${of_study} EXPORT lightwell COMPONENT dev
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lightwell)
+install(EXPORT lightwell NAMESPACE lightwell:: FILE targets.cmake DESTINATION ${package} COMPONENT dev)
+install(DIRECTORY gi study DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell COMPONENT dev FILES_MATCHING PATTERN "*.h")
+include(CMakePackageConfigHelpers)
+configure_package_config_file(cmake/lightwell-config.cmake.in ${PROJECT_BINARY_DIR}/lightwell-config.cmake INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/lightwell-config-version.cmake COMPATIBILITY ExactVersion) # headers and libraries of one build
+install(FILES ${PROJECT_BINARY_DIR}/lightwell-config.cmake ${PROJECT_BINARY_DIR}/lightwell-config-version.cmake DESTINATION ${package} COMPONENT dev)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The Lightwell authors <lightwell@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_COMPONENTS_ALL ${components})
+# lightwell_package(COMPONENT NAME SECTION SUMMARY DETAILS [DEPENDS ...] [RECOMMENDS ...])
+macro(lightwell_package component name section summary details)
+  cmake_parse_arguments(arg "" "" "DEPENDS;RECOMMENDS" ${ARGN})
+  string(TOUPPER ${component} COMPONENT)
+  set(CPACK_DEBIAN_${COMPONENT}_PACKAGE_NAME ${name})
+  set(CPACK_DEBIAN_${COMPONENT}_PACKAGE_SECTION ${section})
+  set(CPACK_COMPONENT_${COMPONENT}_DESCRIPTION "${summary}\n${details}")
+  list(JOIN arg_DEPENDS ", " CPACK_DEBIAN_${COMPONENT}_PACKAGE_DEPENDS)
+  list(JOIN arg_RECOMMENDS ", " CPACK_DEBIAN_${COMPONENT}_PACKAGE_RECOMMENDS)
+  # Every package has its licence and what changed where Debian looks for them.
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} RENAME copyright COMPONENT ${component})
+  install(FILES ${written}/NEWS.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
+endmacro()
+# Another system's package is another release: 1+deb13.
+set(system "ID=unknown")
+if(EXISTS /etc/os-release)
+  file(READ /etc/os-release system)
+endif()
+string(REGEX MATCH "(^|\n)ID=\"?([a-z]+)" none "${system}")
+string(SUBSTRING "${CMAKE_MATCH_2}" 0 3 of)
+string(REGEX MATCH "(^|\n)VERSION_ID=\"?([0-9.]+)" none "${system}")
+set(CPACK_DEBIAN_PACKAGE_RELEASE "1+${of}${CMAKE_MATCH_2}")
+set(same "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
+# Loaded when a JPEG, TIFF or HDR picture is read or written: it pulls in 139 libraries.
+get_target_property(codecs opencv_imgcodecs IMPORTED_SONAME_RELEASE)
+string(REGEX REPLACE "^libopencv_imgcodecs\\.so\\.([0-9]+)d?$" "libopencv-imgcodecs\\1" codecs "${codecs}")
+lightwell_package(lightwell lightwell graphics "global illumination renderer for laboratories"
+  "Renders 3D scenes with path-traced light, compares pictures and analyses\nperceptual experiments." RECOMMENDS ${codecs})
+lightwell_package(view lightwell-view graphics "immersive viewer of globally lit scenes"
+  "Windows, stereo walls and CAVEs, OpenXR headsets; runs perceptual\nexperiments and records their trials."
+  DEPENDS "lightwell ${same}" libgl1-mesa-dri fonts-dejavu-core)
+lightwell_package(ar lightwell-ar graphics "globally lit virtual objects in camera frames"
+  "Calibrates cameras, finds markers, and composites virtual objects with the\nlight of the real place. Also reads and writes videos."
+  DEPENDS "lightwell ${same}")
+lightwell_package(cluster lightwell-cluster metapackages "Lightwell on the walls of several machines"
+  "Pulls in what starts the viewer on several machines." DEPENDS "lightwell-view ${same}" openmpi-bin)
+if(TARGET lightwell_python)
+  string(REGEX REPLACE "^3\\." "" minor "${LIGHTWELL_PYTHON_VERSION}")
+  math(EXPR next "${minor} + 1")
+  lightwell_package(python python3-lightwell python "globally lit pictures in Python"
+    "Pictures as numpy arrays, live frames for stimuli, and experiments."
+    DEPENDS "python3 (>= ${LIGHTWELL_PYTHON_VERSION})" "python3 (<< 3.${next}~)" python3-numpy RECOMMENDS "lightwell ${same}")
+endif()
+lightwell_package(dev liblightwell-dev libdevel "libraries for programs that render by Lightwell"
+  "Static libraries and headers of the renderer and of experiments."
+  DEPENDS libglm-dev libopenexr-dev libpng-dev libopencv-dev libtbb-dev libembree-dev libassimp-dev libdraco-dev libmeshoptimizer-dev libyaml-cpp-dev
+  nlohmann-json3-dev libfmt-dev libsqlite3-dev libhwy-dev libeigen3-dev libboost-dev zlib1g-dev nettle-dev pkg-config RECOMMENDS cmake g++)
+include(CPack)

@@ -1,0 +1,12 @@
+# What programs write of themselves for packages: completions, manual pages; and the changelog. BINARY: build tree, OUT: folder
+file(REMOVE_RECURSE ${OUT})
+file(MAKE_DIRECTORY ${OUT}/man1)
+foreach(shell bash zsh fish)
+  execute_process(COMMAND ${BINARY}/lightwell completion ${shell} OUTPUT_FILE ${OUT}/lightwell.${shell} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+file(GLOB pages ${BINARY}/man/man1/*.1)
+foreach(page ${pages})
+  get_filename_component(name ${page} NAME)
+  execute_process(COMMAND gzip -9nc ${page} OUTPUT_FILE ${OUT}/man1/${name}.gz COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+execute_process(COMMAND gzip -9nc ${CMAKE_CURRENT_LIST_DIR}/../CHANGELOG.md OUTPUT_FILE ${OUT}/NEWS.gz COMMAND_ERROR_IS_FATAL ANY)
