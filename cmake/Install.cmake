@@ -88,7 +88,7 @@ string(SUBSTRING "${CMAKE_MATCH_2}" 0 3 of)
 string(REGEX MATCH "(^|\n)VERSION_ID=\"?([0-9.]+)" none "${system}")
 set(CPACK_DEBIAN_PACKAGE_RELEASE "1+${of}${CMAKE_MATCH_2}")
 set(same "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
-# Loaded when a JPEG, TIFF or HDR picture is read or written: it pulls in 139 libraries.
+# Loaded when a JPEG, TIFF or HDR picture is read or written.
 get_target_property(codecs opencv_imgcodecs IMPORTED_SONAME_RELEASE)
 string(REGEX REPLACE "^libopencv_imgcodecs\\.so\\.([0-9]+)d?$" "libopencv-imgcodecs\\1" codecs "${codecs}")
 lightwell_package(lightwell lightwell graphics "global illumination renderer for laboratories"
