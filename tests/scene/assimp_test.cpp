@@ -6,6 +6,7 @@
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/world.h"
 #include "gi/scene/motion/animation.h"
+#include "tests/scene/obj_assimp.h"
 #include "tests/support/processor_time.h"
 
 #include <assimp/material.h>
@@ -378,8 +379,8 @@ TEST_F(AssimpFolder, OneProcessTriesManyFiles)
     for (int k = 0; k < 40; ++k) {
         auto const outcome = trials.outcome(files[std::size_t(k)], AssimpFaces::merged);
         ASSERT_TRUE(outcome) << k;
-        EXPECT_EQ(outcome->empty(), k != 20 && k % 10 != 3) << k << *outcome;
-        EXPECT_EQ(outcome->find("crashed") != std::string::npos, k == 20) << *outcome;
+        EXPECT_EQ(outcome->empty(), (k != 20 || !is_assimp_5_2()) && k % 10 != 3) << k << *outcome;
+        EXPECT_EQ(outcome->find("crashed") != std::string::npos, k == 20 && is_assimp_5_2()) << *outcome;
     }
     EXPECT_FALSE(trials.outcome(folder_ / "other.obj", AssimpFaces::merged));
     EXPECT_FALSE(trials.outcome(files[0], AssimpFaces::polygons));
@@ -396,7 +397,7 @@ TEST_F(AssimpFolder, AModelThatCrashesAmongOthersIsNamed)
     write("bad.nff", kCrash);
     std::string const why = refusal(write("many.yaml", yaml + "  - file: bad.nff\n  - file: 3.obj\n"));
     EXPECT_NE(why.find("bad.nff"), std::string::npos) << why;
-    EXPECT_NE(why.find("crashed"), std::string::npos) << why;
+    EXPECT_NE(why.find(is_assimp_5_2() ? "crashed" : "no triangles"), std::string::npos) << why;
 }
 
 TEST_F(AssimpFolder, NumbersMayBeginWithAPoint)

@@ -22,7 +22,7 @@ TEST(Psychometric, FitsAreThoseOfR)
     for (auto const& e : expected) {
         std::vector<LevelCount> counts;
         for (auto const& r : rows)
-            if (r[0] == e["participant"] && r[1] == std::to_string(int(e["cond"])))
+            if (r[0] == std::string(e["participant"]) && r[1] == std::to_string(int(e["cond"])))
                 counts.push_back({std::stod(r[2]), std::stod(r[3]), std::stod(r[4])});
         bool const probit = e["link"] == "probit";
         PsychometricSettings settings;

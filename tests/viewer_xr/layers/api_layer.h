@@ -2,6 +2,7 @@
 // What an OpenXR API layer of the tests needs: the loader's interface (version 1, openxr_loader_negotiation.h, which
 // Debian's package does not have), and calls to the runtime behind it.
 
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <openxr/openxr.h>
