@@ -1,17 +1,40 @@
 # What is installed, and the Debian packages. Programs lie together in lib/lightwell, where they look for each other and for their modules; bin has a link to
 # the one that people call. Everything else that programs need is within them.
+# Packages have the programs that render once more for better processors, from builds of their own, in lib/lightwell/LEVEL: lightwell chooses
+# (viewer/cli/main/lightwell.cpp), for Python python/lightwell/__init__.py.
 
+set(LIGHTWELL_LEVEL "" CACHE STRING "Install only what renders, into folders of this level of processors (x86-64-v3)")
 include(GNUInstallDirs)
 set(programs ${CMAKE_INSTALL_LIBDIR}/lightwell)
+set(of_level ${programs})
+set(modules "\$ORIGIN")
+set(python_module lib/python3/dist-packages/lightwell)
+set(python_modules "\$ORIGIN/../../../../${programs}")
+if(LIGHTWELL_LEVEL)
+  string(APPEND of_level /${LIGHTWELL_LEVEL})
+  string(APPEND modules /..)
+  string(APPEND python_module /${LIGHTWELL_LEVEL})
+  set(python_modules "\$ORIGIN/../../../../../${programs}")
+endif()
 function(lightwell_install component)
   foreach(target ${ARGN})
-    set_target_properties(${target} PROPERTIES INSTALL_RPATH "\$ORIGIN")
-    install(TARGETS ${target} COMPONENT ${component} RUNTIME DESTINATION ${programs} LIBRARY DESTINATION ${programs})
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH "${modules}")
+    install(TARGETS ${target} COMPONENT ${component} RUNTIME DESTINATION ${of_level} LIBRARY DESTINATION ${of_level})
   endforeach()
 endfunction()
-lightwell_install(lightwell lightwell_launcher lightwell_render lightwell_study lightwell_batch lightwell_bench)
+lightwell_install(lightwell lightwell_render lightwell_bench)
 lightwell_install(view lightwell_view lightwell_trials)
-lightwell_install(ar lightwell_ar lightwell_capture lightwell_video)
+lightwell_install(ar lightwell_ar)
+if(TARGET lightwell_python)
+  set_target_properties(lightwell_python PROPERTIES INSTALL_RPATH "${python_modules}")
+  install(TARGETS lightwell_python LIBRARY DESTINATION ${python_module} COMPONENT python)
+endif()
+if(LIGHTWELL_LEVEL)
+  return()
+endif()
+lightwell_install(lightwell lightwell_launcher lightwell_study lightwell_batch)
+lightwell_install(ar lightwell_capture lightwell_video)
+lightwell_install(cluster lightwell_cluster)
 
 install(CODE "
   set(link \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/lightwell)
@@ -36,10 +59,7 @@ install(FILES ${written}/lightwell.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fis
 set(components lightwell view ar cluster dev)
 if(TARGET lightwell_python)
   list(APPEND components python)
-  set(module lib/python3/dist-packages/lightwell)
-  set_target_properties(lightwell_python PROPERTIES INSTALL_RPATH "\$ORIGIN/../../../../${programs}")
-  install(DIRECTORY python/lightwell/ DESTINATION ${module} COMPONENT python PATTERN __pycache__ EXCLUDE)
-  install(TARGETS lightwell_python LIBRARY DESTINATION ${module} COMPONENT python)
+  install(DIRECTORY python/lightwell/ DESTINATION ${python_module} COMPONENT python PATTERN __pycache__ EXCLUDE)
 endif()
 
 # For programs of one's own: find_package(lightwell), then link lightwell::gi or lightwell::study.
@@ -77,6 +97,9 @@ macro(lightwell_package component name section summary details)
   # Every package has its licence and what changed where Debian looks for them.
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} RENAME copyright COMPONENT ${component})
   install(FILES ${written}/NEWS.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
+  if(component MATCHES "lightwell|python") # others depend on these
+    install(FILES ${written}/NOTICES.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
+  endif()
 endmacro()
 # Another system's package is another release: 1+deb13.
 set(system "ID=unknown")
@@ -99,8 +122,8 @@ lightwell_package(view lightwell-view graphics "immersive viewer of globally lit
 lightwell_package(ar lightwell-ar graphics "globally lit virtual objects in camera frames"
   "Calibrates cameras, finds markers, and composites virtual objects with the\nlight of the real place. Also reads and writes videos."
   DEPENDS "lightwell ${same}")
-lightwell_package(cluster lightwell-cluster metapackages "Lightwell on the walls of several machines"
-  "Pulls in what starts the viewer on several machines." DEPENDS "lightwell-view ${same}" openmpi-bin)
+lightwell_package(cluster lightwell-cluster graphics "Lightwell on several machines"
+  "Shares pictures and walls between machines, by MPI." DEPENDS "lightwell ${same}" openmpi-bin RECOMMENDS "lightwell-view ${same}")
 if(TARGET lightwell_python)
   string(REGEX REPLACE "^3\\." "" minor "${LIGHTWELL_PYTHON_VERSION}")
   math(EXPR next "${minor} + 1")

@@ -110,6 +110,13 @@ function(lightwell_separate)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
+# lightwell_for_any_processor(files...): sources that run before it is known what the processor can do.
+function(lightwell_for_any_processor)
+  if(CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64)
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -march=x86-64 SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+endfunction()
+
 # One precompiled header for all libraries, one for the cold ones and one for all tests; GCC wants the same kind of code in what reuses it.
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cpp CONTENT "int main() {}\n")
 if(NOT LIGHTWELL_CUDA)

@@ -1,4 +1,4 @@
-# What programs write of themselves for packages: completions, manual pages; and the changelog. BINARY: build tree, OUT: folder
+# What programs write of themselves for packages: completions, manual pages; notices of others; and the changelog. BINARY: build tree, OUT: folder
 file(REMOVE_RECURSE ${OUT})
 file(MAKE_DIRECTORY ${OUT}/man1)
 foreach(shell bash zsh fish)
@@ -9,4 +9,11 @@ foreach(page ${pages})
   get_filename_component(name ${page} NAME)
   execute_process(COMMAND gzip -9nc ${page} OUTPUT_FILE ${OUT}/man1/${name}.gz COMMAND_ERROR_IS_FATAL ANY)
 endforeach()
+# Authors and licences of what is compiled in, as far as a package manager knows them.
+execute_process(COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/../scripts/sbom ${BINARY} --notices OUTPUT_FILE ${OUT}/NOTICES RESULT_VARIABLE failed)
+if(failed)
+  file(REMOVE ${OUT}/NOTICES)
+else()
+  execute_process(COMMAND gzip -9n ${OUT}/NOTICES COMMAND_ERROR_IS_FATAL ANY)
+endif()
 execute_process(COMMAND gzip -9nc ${CMAKE_CURRENT_LIST_DIR}/../CHANGELOG.md OUTPUT_FILE ${OUT}/NEWS.gz COMMAND_ERROR_IS_FATAL ANY)

@@ -26,7 +26,7 @@ def _run(*command: str) -> None:
     subprocess.run(command, cwd=ROOT, check=True, stdout=sys.stderr)
 
 
-def _cached(build: Path, name: str) -> str:
+def cached(build: Path, name: str) -> str:
     cache = build / "CMakeCache.txt"
     found = re.search(rf"^{name}:[A-Z]+=(.*)$", cache.read_text(), re.M) if cache.exists() else None
     return found.group(1) if found else ""
@@ -34,7 +34,7 @@ def _cached(build: Path, name: str) -> str:
 
 def _is_for_this_python(build: Path) -> bool:
     """True if the build tree builds the module for the minor version of the installing interpreter."""
-    python = _cached(build, "Python_EXECUTABLE")
+    python = cached(build, "Python_EXECUTABLE")
     if not os.path.exists(python):
         return False
     ask = "import sysconfig; print(sysconfig.get_config_var('EXT_SUFFIX'))"
@@ -64,18 +64,22 @@ def _metadata() -> str:
         "Requires-Python: >=3.9\nRequires-Dist: numpy>=1.20\n"
         "Provides-Extra: study\nRequires-Dist: pandas; extra == 'study'\n"
         "Provides-Extra: plots\nRequires-Dist: matplotlib; extra == 'plots'\n"
+        "Provides-Extra: oidn\nRequires-Dist: pyoidn==2.5.1; extra == 'oidn'\n"
         "Description-Content-Type: text/markdown\n\n"
     )
     return text + (PACKAGE / "README.md").read_text()
 
 
-def _write_wheel(folder: str, modules: dict[str, bytes]) -> str:
+def write_wheel(folder: str, content: dict[str, bytes]) -> str:
+    """Its name. "{data}" and "{info}" in names of files stand for the folders with these endings (PEP 427)."""
     metadata = _metadata()
     version = re.search(r"^Version: (\S+)$", metadata, re.M).group(1)
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
     tag = f"{python}-{python}-{re.sub(r'[-.]', '_', sysconfig.get_platform())}"
     info = f"lightwell-{version}.dist-info"
-    files = {**modules, f"{info}/METADATA": metadata.encode()}
+    folders = {"info": info, "data": f"lightwell-{version}.data"}
+    files = {name.format(**folders): data for name, data in content.items()}
+    files[f"{info}/METADATA"] = metadata.encode()
     files[f"{info}/WHEEL"] = (
         f"Wheel-Version: 1.0\nGenerator: lightwell\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     )
@@ -88,18 +92,22 @@ def _write_wheel(folder: str, modules: dict[str, bytes]) -> str:
     with zipfile.ZipFile(Path(folder) / wheel, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():
             item = zipfile.ZipInfo(name)
-            item.external_attr = (0o755 if name.endswith(".so") else 0o644) << 16
+            runs = data.startswith((b"\x7fELF", b"#!"))
+            item.external_attr = (0o100755 if runs else 0o100644) << 16
             item.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(item, data)
     return wheel
 
 
+def sources() -> dict[str, bytes]:
+    """The package's files that are not compiled."""
+    found = sorted(p for p in (PACKAGE / "lightwell").rglob("*") if p.suffix in {".py", ".pyi", ".typed"})
+    return {p.relative_to(PACKAGE).as_posix(): p.read_bytes() for p in found}
+
+
 def build_wheel(wheel_directory: str, config_settings=None, metadata_directory=None) -> str:
     module = _build_module()
-    sources = sorted(p for p in (PACKAGE / "lightwell").rglob("*") if p.suffix in {".py", ".pyi", ".typed"})
-    files = {p.relative_to(PACKAGE).as_posix(): p.read_bytes() for p in sources}
-    files[f"lightwell/{module.name}"] = module.read_bytes()
-    return _write_wheel(wheel_directory, files)
+    return write_wheel(wheel_directory, {**sources(), f"lightwell/{module.name}": module.read_bytes()})
 
 
 def build_sdist(sdist_directory: str, config_settings=None) -> str:

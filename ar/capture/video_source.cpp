@@ -1,9 +1,7 @@
 #include "ar/capture/video_source.h"
 
 #include "ar/capture/opencv/opencv_sources.h"
-#include "gi/core/error.h"
-
-#include <dlfcn.h>
+#include "gi/core/module.h"
 
 namespace ar {
 namespace {
@@ -11,15 +9,9 @@ namespace {
 /// The sources of the OpenCV module, which the first call loads.
 OpenCvSources const& sources()
 {
-    // Counted: loaded once, and stays.
-    void* const module = dlopen("liblightwell_capture.so", RTLD_NOW | RTLD_LOCAL);
-    auto* const find = module != nullptr
-                           ? reinterpret_cast<decltype(&lightwell_capture)>(dlsym(module, "lightwell_capture"))
-                           : nullptr;
-    if (find != nullptr) return *find();
-    char const* const why = dlerror();
-    throw gi::InputError("videos and cameras cannot be opened", why != nullptr ? why : "their module is not there",
-                         "install the package lightwell-ar, or build all: scripts/build release");
+    return *reinterpret_cast<decltype(&lightwell_capture)>(
+        gi::module_function("liblightwell_capture.so", "lightwell_capture", "videos and cameras cannot be opened",
+                            "install the package lightwell-ar, or build all: scripts/build release"))();
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "gi/render/exact_visibility.h"
 
+#include "gi/core/processor_level.h"
 #include "gi/scene/model/used_materials.h"
 
 #include <algorithm>
@@ -231,9 +232,25 @@ void ExactVisibility::check() const
         throw std::runtime_error(fmt::format("Embree could not build the scene (error {})", int(e)));
 }
 
+namespace {
+
+/// Embree chooses its instructions by the processor; here at most those of this program's level. So processors of that
+/// level find the same bits, as far as their approximate reciprocals (RCPPS), from which Embree starts, agree.
+std::string embree_settings(int threads)
+{
+    std::string_view const level = kCompiledLevel;
+    std::string settings = fmt::format("threads={}", threads);
+    if (level == "x86-64-v4") settings += ",max_isa=avx512";
+    if (level == "x86-64-v3") settings += ",max_isa=avx2";
+    if (level == "x86-64-v2") settings += ",max_isa=sse4.2";
+    return settings;
+}
+
+} // namespace
+
 ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving,
                                  StopRequest const* stop)
-    : device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)),
+    : device_(rtcNewDevice(embree_settings(threads).c_str())),
       stop_(stop),
       world_(view(world)),
       alpha_tests_(alpha_tests),

@@ -63,6 +63,7 @@ py::dict run(LoadedScript const& loaded, int participant, py::object const& step
     std::string const id = participant_id(loaded.script, participant);
     study::SessionSettings settings = settings_of(loaded, dir, session, resume);
     settings.about = about;
+    settings.about.emplace_back("program", viewer::version_text());
     PythonPresenter presenter(steps);
     study::SessionOutcome outcome;
     try {

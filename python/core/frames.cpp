@@ -2,7 +2,7 @@
 
 #include "gi/core/error.h"
 #include "viewer/engine/scene_edits.h"
-#include "viewer/experiment/stimuli/study_stimuli.h"
+#include "viewer/experiment/stimuli/study_scenes.h"
 
 #include <chrono>
 

@@ -10,13 +10,18 @@ Coordinate frames are right-handed, +Y up, in metres; pictures are linear Rec. 7
 first. Invalid input raises `InputError`, whose message names the problem, why it is one, and a remedy.
 """
 
+from . import _level
+
+__path__ = [*_level.folders(__path__[0]), *__path__]
+
 from . import study
-from ._core import Camera, git_hash, version
+from ._core import Camera, embree_version, git_hash, level, version
 from .errors import InputError, ScriptError
 from .frames import Frame, FrameRenderer, View
 from .pictures import compare, flip_map, metrics, read_picture, tone_map, write_exr, write_png
 from .scenes import Light, Rendered, World, load, methods
 
+_level.check(level)
 __version__ = version
 
 __all__ = [
@@ -30,8 +35,10 @@ __all__ = [
     "View",
     "World",
     "compare",
+    "embree_version",
     "flip_map",
     "git_hash",
+    "level",
     "load",
     "methods",
     "metrics",

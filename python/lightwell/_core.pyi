@@ -7,6 +7,8 @@ import numpy as np
 
 version: str
 git_hash: str
+level: str
+embree_version: str
 
 class Camera:
     """A camera. It looks along -Z of its coordinate frame, +Y up, +X right."""

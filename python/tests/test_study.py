@@ -129,6 +129,7 @@ def test_a_session_runs_and_its_records_are_tables(script, tmp_path):
     assert answers["sure"] == 3 and answers.isna()["hard"]
     assert list(records.participants["complete"]) == [True]
     started = study.read_journal(outcome.folder / "journal.jsonl")[0]
+    assert started["about"].pop("program").startswith("lightwell ")
     assert started["about"] == {"room": "B1", "display": "none"}
 
 

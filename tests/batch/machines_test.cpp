@@ -33,7 +33,7 @@ TEST(BatchUnderMpirun, KilledRankCostsNothing)
     if (!has_mpirun()) GTEST_SKIP() << "no mpirun";
     FakePrograms const p;
     p.sweep(20, 0.2);
-    Mpirun run(2, "--enable-recovery", (p / "bin/lightwell-batch").string() + " batch m.yaml --cores 2",
+    Mpirun run(2, recovery_option(), (p / "bin/lightwell-batch").string() + " batch m.yaml --cores 2",
                p.folder());
     ASSERT_TRUE(wait_until([&] { return !(p.starts().size() < 3); }));
     for (int const rank : processes_with(p.folder(), {"lightwell-batch", "m.yaml", "--cores"}))

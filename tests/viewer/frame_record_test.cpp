@@ -8,8 +8,9 @@ namespace {
 TEST(FrameRecord, AFrameOfAnotherBuildIsSaidToBeThatWhateverElseItLacks)
 {
     std::map<std::string, std::string> wanted;
-    for (char const* key : {"version", "git", "frame", "asked_method", "size", "seed", "filter", "denoise", "bounces",
-                            "stop", "reuse", "shutter", "layers", "numbers", "fingerprint", "motion"})
+    for (char const* key :
+         {"version", "git", "level", "embree", "frame", "asked_method", "size", "seed", "filter", "denoise",
+          "bounces", "stop", "reuse", "shutter", "layers", "numbers", "fingerprint", "motion"})
         wanted[key] = "a";
     gi::Picture there;
     there.metadata = wanted;

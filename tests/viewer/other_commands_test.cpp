@@ -16,7 +16,8 @@ TEST(OtherCommands, Version)
     TemporaryFolder const folder;
     std::string const text = run_well("--version", folder.path()).out;
     EXPECT_TRUE(std::regex_match(text, std::regex("lightwell [0-9]+\\.[0-9]+\\.[0-9]+ "
-                                                  "\\(git ([0-9a-f]{7,}(-dirty)?|unknown)\\)\n")))
+                                                  "\\(git ([0-9a-f]{7,}(-dirty)?|unknown), x86-64(-v[234])?, "
+                                                  "Embree [34]\\.[0-9]+\\.[0-9]+\\)\n")))
         << text;
 }
 

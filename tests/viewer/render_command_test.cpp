@@ -93,6 +93,8 @@ TEST(RenderCommand, ThePictureSaysHowItWasMade)
     EXPECT_EQ(m.at("filter"), "tent");
     EXPECT_FALSE(m.at("version").empty());
     EXPECT_FALSE(m.at("git").empty());
+    EXPECT_TRUE(m.at("level").starts_with("x86-64")) << m.at("level");
+    EXPECT_FALSE(m.at("embree").empty());
     // The command alone makes the same file again.
     std::string const command = m.at("command");
     ASSERT_TRUE(command.starts_with("lightwell ")) << command;

@@ -9,6 +9,16 @@ namespace viewer::test {
 
 inline bool has_mpirun() { return std::system("mpirun --version > /dev/null 2>&1") == 0; }
 
+/// What leaves the other ranks running when one is killed.
+inline std::string const& recovery_option()
+{
+    static std::string const option = [] {
+        bool const is_fifth = std::system("mpirun --version | grep -q 'Open MPI) [5-9]'") == 0;
+        return std::string(is_fifth ? "--enable-recovery --with-ft mpi" : "--enable-recovery");
+    }();
+    return option;
+}
+
 /// A running mpirun with all that it started; its output is in FOLDER/mpirun.out. It ends at the end.
 class Mpirun {
 public:

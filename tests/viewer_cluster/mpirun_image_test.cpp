@@ -100,8 +100,6 @@ protected:
     Clock::time_point signalled_ = Clock::now();
 };
 
-constexpr char const* kRecovery = "--enable-recovery";
-
 TEST_F(Ranks, GoInLockStep)
 {
     auto const mpirun = start(200, "10 stop");
@@ -141,7 +139,7 @@ TEST_F(Ranks, SameOverTcp)
 
 TEST_F(Ranks, AKilledFollowerStopsAll)
 {
-    auto const mpirun = start(100000, "5 stop", kRecovery);
+    auto const mpirun = start(100000, "5 stop", recovery_option());
     std::string const victim = signal_at(2, 20, SIGKILL);
     expect_all_say(victim, 2, "has died", 5);
     mpirun->wait(std::chrono::seconds(20));
@@ -150,7 +148,7 @@ TEST_F(Ranks, AKilledFollowerStopsAll)
 TEST_F(Ranks, AKilledFollowerStopsAllOverTcp)
 {
     auto const mpirun =
-        start(100000, "5 stop", std::string(kRecovery) + " --mca btl self,tcp --mca btl_tcp_if_include lo");
+        start(100000, "5 stop", recovery_option() + " --mca btl self,tcp --mca btl_tcp_if_include lo");
     std::string const victim = signal_at(1, 20, SIGKILL);
     expect_all_say(victim, 1, "has died", 5);
     mpirun->wait(std::chrono::seconds(20));
@@ -158,7 +156,7 @@ TEST_F(Ranks, AKilledFollowerStopsAllOverTcp)
 
 TEST_F(Ranks, OthersGoOnWithoutAKilledFollower)
 {
-    auto const mpirun = start(300, "5 continue", kRecovery);
+    auto const mpirun = start(300, "5 continue", recovery_option());
     std::string const victim = signal_at(2, 20, SIGKILL);
     mpirun->wait(std::chrono::seconds(60));
     std::vector<std::string> const frames = log(0).frames;
@@ -174,7 +172,7 @@ TEST_F(Ranks, OthersGoOnWithoutAKilledFollower)
 
 TEST_F(Ranks, AStalledFollowerStopsAll)
 {
-    auto const mpirun = start(100000, "2 stop", kRecovery);
+    auto const mpirun = start(100000, "2 stop", recovery_option());
     std::string const victim = signal_at(3, 20, SIGSTOP);
     expect_all_say(victim, 3, "has not answered for 2.", 6);
     EXPECT_GT(since_signal_s(), 1.9);
@@ -188,7 +186,7 @@ TEST_F(Ranks, AStalledFollowerStopsAll)
 
 TEST_F(Ranks, OthersGoOnWithoutAStalledFollower)
 {
-    auto const mpirun = start(300, "2 continue", kRecovery);
+    auto const mpirun = start(300, "2 continue", recovery_option());
     std::string const victim = signal_at(1, 20, SIGSTOP);
     for (int r : {0, 2, 3}) {
         Log const l = ended(r, 30);
@@ -203,7 +201,7 @@ TEST_F(Ranks, OthersGoOnWithoutAStalledFollower)
 
 TEST_F(Ranks, FollowersStopWithoutTheirLeader)
 {
-    auto const mpirun = start(100000, "5 continue", kRecovery); // without a leader no rank can continue
+    auto const mpirun = start(100000, "5 continue", recovery_option()); // without a leader no rank can continue
     std::string const victim = signal_at(0, 20, SIGKILL);
     expect_all_say(victim, 0, "has died", 5);
     EXPECT_NE(log(1).all_said().find("it was the leader"), std::string::npos);
@@ -212,7 +210,7 @@ TEST_F(Ranks, FollowersStopWithoutTheirLeader)
 
 TEST_F(Ranks, FollowersStopWhereTheirLeaderStalls)
 {
-    auto const mpirun = start(100000, "2 stop", kRecovery);
+    auto const mpirun = start(100000, "2 stop", recovery_option());
     std::string const victim = signal_at(0, 20, SIGSTOP);
     expect_all_say(victim, 0, "has not answered for 2.", 6);
     kill(log(0).pid, SIGKILL);
@@ -237,7 +235,7 @@ TEST_F(Ranks, WithoutRecoveryMpirunEndsAll)
 
 TEST_F(Ranks, AnotherVersionIsRefused)
 {
-    EXPECT_NE(start(10, "5 stop --other-version 2 0", kRecovery)->wait(), -1);
+    EXPECT_NE(start(10, "5 stop --other-version 2 0", recovery_option())->wait(), -1);
     for (int r = 0; r < kRanks; ++r) {
         Log const l = log(r);
         EXPECT_EQ(l.code, 2) << r;
@@ -249,7 +247,7 @@ TEST_F(Ranks, AnotherVersionIsRefused)
 
 TEST_F(Ranks, AnotherSceneFileIsRefused)
 {
-    EXPECT_NE(start(10, "5 stop --other-scene 3 0", kRecovery)->wait(), -1);
+    EXPECT_NE(start(10, "5 stop --other-scene 3 0", recovery_option())->wait(), -1);
     for (int r = 0; r < kRanks; ++r) {
         EXPECT_EQ(log(r).code, 2) << r;
         EXPECT_NE(log(r).all_said().find("the scene file of rank 3 on "), std::string::npos) << log(r).all_said();
@@ -258,7 +256,7 @@ TEST_F(Ranks, AnotherSceneFileIsRefused)
 
 TEST_F(Ranks, OneThatComputesSomethingElseIsFound)
 {
-    EXPECT_NE(start(100, "5 stop --astray 1 30", kRecovery)->wait(), -1);
+    EXPECT_NE(start(100, "5 stop --astray 1 30", recovery_option())->wait(), -1);
     for (int r = 0; r < kRanks; ++r) {
         EXPECT_EQ(log(r).code, 1) << r;
         EXPECT_EQ(log(r).frames.size(), 31u);

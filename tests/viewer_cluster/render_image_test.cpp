@@ -188,7 +188,7 @@ constexpr char const* kLong = LIGHTWELL_PROGRAM
 TEST_F(RenderByRanks, AKilledRankIsNamedAndTheRestResumes)
 {
     {
-        Mpirun mpirun(2, "--enable-recovery", kLong, shared_.path());
+        Mpirun mpirun(2, recovery_option(), kLong, shared_.path());
         kill_rank(1, shared_.path(), "f_01.exr"); // its first
         mpirun.wait();
         said_ = mpirun.text();
@@ -202,7 +202,7 @@ TEST_F(RenderByRanks, AKilledRankIsNamedAndTheRestResumes)
         if (f.ends_with(".exr")) {
             EXPECT_NO_THROW(gi::read_exr(shared_ / f)) << f;
         }
-    Mpirun again(2, "--enable-recovery", std::string(kLong) + "--resume", shared_.path());
+    Mpirun again(2, recovery_option(), std::string(kLong) + "--resume", shared_.path());
     EXPECT_EQ(again.wait(), 0);
     for (int k = 0; k < 12; ++k)
         EXPECT_TRUE(std::filesystem::exists(shared_ / fmt::format("f_{:02}.exr", k))) << k;
@@ -211,7 +211,7 @@ TEST_F(RenderByRanks, AKilledRankIsNamedAndTheRestResumes)
 
 TEST_F(RenderByRanks, OthersFinishTheirFrames)
 {
-    Mpirun mpirun(2, "--enable-recovery", std::string(kLong) + "--on-rank-loss continue", shared_.path());
+    Mpirun mpirun(2, recovery_option(), std::string(kLong) + "--on-rank-loss continue", shared_.path());
     kill_rank(1, shared_.path(), "f_01.exr");
     mpirun.wait();
     EXPECT_NE(mpirun.text().find("the others go on"), std::string::npos) << mpirun.text();

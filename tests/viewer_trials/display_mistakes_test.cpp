@@ -3,7 +3,7 @@
 #include "gi/core/file.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/experiment/stimuli/script_check.h"
-#include "viewer/experiment/stimuli/study_stimuli.h"
+#include "viewer/experiment/stimuli/study_scenes.h"
 
 #include <gtest/gtest.h>
 

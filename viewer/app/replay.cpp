@@ -298,6 +298,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     if (header.settings.contains("start")) scene.start = start_from_json(header.settings.at("start"));
     if (header.settings.contains("files")) scene.files = file_hashes_from_json(header.settings.at("files"));
     ReplaySummary summary;
+    summary.program = header.program;
     tell_changed(scene.files, summary);
     session.apply(to_change(scene));
     gi::ProgressBar bar("replay " + o.file);

@@ -23,6 +23,7 @@ struct ReplayOptions {
 };
 
 struct ReplaySummary {
+    std::string program; ///< that recorded it, with its level of processors and its Embree
     std::uint64_t frames = 0, same = 0, other = 0, unknown = 0; ///< compared with the recorded pixel hashes
     std::optional<std::uint64_t> first_other;
     std::uint64_t shown = 0, shown_same = 0, shown_other = 0; ///< pictures drawn; compared with their hashes

@@ -1,11 +1,13 @@
 #include "viewer/batch/task.h"
 
 #include "gi/core/error.h"
+#include "gi/core/processor_level.h"
 #include "gi/core/sha256.h"
 #include "viewer/base/version.h"
 #include "viewer/batch/file_hash.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 namespace viewer::batch {
@@ -48,12 +50,19 @@ fs::path program_folder()
 
 std::string program_identity(fs::path const& folder)
 {
-    std::string const version = version_text();
+    std::string version = version_text();
+    // Which programs lightwell starts for tasks (viewer/cli/main/lightwell.cpp).
+    char const* const level = std::getenv("LIGHTWELL_LEVEL");
+    if (level != nullptr && std::string_view(level) != gi::kCompiledLevel)
+        version += ", tasks by " + std::string(level);
     if (version.find("-dirty") == version.npos && version.find("unknown") == version.npos) return version;
-    std::vector<fs::path> programs;
-    for (auto const& entry : fs::directory_iterator(folder))
-        if (entry.is_regular_file() && entry.path().filename().string().starts_with("lightwell-"))
-            programs.push_back(entry.path());
+    std::vector<fs::path> programs, folders{folder};
+    for (char const* const of_level : gi::kProcessorLevels) folders.push_back(folder / of_level);
+    std::error_code none;
+    for (fs::path const& in : folders)
+        for (auto const& entry : fs::directory_iterator(in, none))
+            if (entry.is_regular_file() && entry.path().filename().string().starts_with("lightwell-"))
+                programs.push_back(entry.path());
     std::ranges::sort(programs);
     std::string all;
     for (fs::path const& program : programs) {

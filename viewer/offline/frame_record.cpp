@@ -106,8 +106,9 @@ std::string difference(gi::Picture const& there, std::map<std::string, std::stri
 {
     if (!there.metadata.contains("frame")) return "it is not a frame of a sequence";
     // The build first: frames of another one may have other keys.
-    for (char const* key : {"version", "git", "frame", "asked_method", "size", "seed", "filter", "denoise", "bounces",
-                            "stop", "reuse", "shutter", "layers", "numbers", "fingerprint", "motion"}) {
+    for (char const* key :
+         {"version", "git", "level", "embree", "frame", "asked_method", "size", "seed", "filter", "denoise",
+          "bounces", "stop", "reuse", "shutter", "layers", "numbers", "fingerprint", "motion"}) {
         auto const found = there.metadata.find(key);
         if (found == there.metadata.end()) return "it is not a frame of a sequence";
         std::string const& value = wanted.at(key);

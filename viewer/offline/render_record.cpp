@@ -1,5 +1,6 @@
 #include "viewer/offline/render_record.h"
 
+#include "gi/core/processor_level.h"
 #include "gi/core/shell.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/version.h"
@@ -96,6 +97,8 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
     std::map<std::string, std::string> facts{
         {"version", version_number()},
         {"git", git_hash()},
+        {"level", gi::kCompiledLevel},
+        {"embree", embree_version()},
         {"command", normalised_command(o, s, paths_option(result), chosen_of(result))},
         {"scene", o.scene},
         {"method", result.method.empty() ? o.method : result.method},

@@ -1,9 +1,9 @@
 #include "viewer/offline/video_writer.h"
 
 #include "gi/core/error.h"
+#include "gi/core/module.h"
 #include "viewer/offline/video_codec/video_codec.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
@@ -35,14 +35,9 @@ Codec const& codec_of(fs::path const& file)
 VideoCodec& video_codec()
 {
     static VideoCodec& codec = [&]() -> VideoCodec& {
-        void* const module = dlopen("liblightwell_video.so", RTLD_NOW | RTLD_LOCAL);
-        auto* const make = module != nullptr
-                               ? reinterpret_cast<VideoCodec* (*)()>(dlsym(module, "lightwell_video_codec"))
-                               : nullptr;
-        if (make == nullptr)
-            throw gi::InputError("videos cannot be written", dlerror(),
-                                 "install the package lightwell-ar, or build all: scripts/build release");
-        return *make();
+        return *reinterpret_cast<decltype(&lightwell_video_codec)>(
+            gi::module_function("liblightwell_video.so", "lightwell_video_codec", "videos cannot be written",
+                                "install the package lightwell-ar, or build all: scripts/build release"))();
     }();
     return codec;
 }

@@ -1,21 +1,28 @@
-// Executes the program of the command with the same arguments. Calls without a known command are handled here.
+// Executes the program of the command with the same arguments, the one for this machine's processor. Calls without a known command are handled here.
 
+#include "gi/core/error.h"
+#include "gi/core/processor_level.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/completion.h"
 #include "viewer/cli/program.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 #include <vector>
 
 namespace {
+
+namespace fs = std::filesystem;
 
 void add_completion(CLI::App& parent, int&)
 {
@@ -43,6 +50,31 @@ std::vector<char const*> as_option(int argc, char** argv)
     return words;
 }
 
+/// Which level's programs to use: that in LIGHTWELL_LEVEL, else the best one that is installed and runs on this machine.
+/// @param here the folder of this program, whose programs are of its own level; folders in it are of others
+/// @throws gi::InputError LIGHTWELL_LEVEL is no level, is not installed, or does not run here
+std::string level_in(fs::path const& here)
+{
+    std::error_code none;
+    char const* const forced = std::getenv("LIGHTWELL_LEVEL");
+    if (forced == nullptr || *forced == '\0') {
+        for (char const* const level : gi::kProcessorLevels)
+            if (gi::has_level(level) && fs::is_directory(here / level, none)) return level;
+        return gi::kCompiledLevel;
+    }
+    std::string const wanted = forced, problem = "LIGHTWELL_LEVEL=" + wanted;
+    if (wanted == gi::kCompiledLevel) return wanted;
+    if (std::ranges::find(gi::kProcessorLevels, wanted) == gi::kProcessorLevels.end())
+        throw gi::InputError(problem, "there is no such level of processors",
+                             fmt::format("choose {}", fmt::join(gi::kProcessorLevels, ", ")));
+    if (!gi::has_level(forced))
+        throw gi::InputError(problem, "this machine's processor is of a lower level", "choose that, or unset it");
+    if (!fs::is_directory(here / wanted, none))
+        throw gi::InputError(problem, fmt::format("{} has no programs for it", here.string()),
+                             fmt::format("choose {}, or unset it", gi::kCompiledLevel));
+    return wanted;
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -50,15 +82,31 @@ int main(int argc, char** argv)
     std::vector<char const*> words = as_option(argc, argv);
     // A word that is to be completed names no command yet.
     std::size_t const whole = words.size() - (std::getenv(viewer::kCompleteVariable) != nullptr ? 1 : 0);
-    auto const program = viewer::program_of(whole > 1 ? words[1] : "", whole > 2 ? words[2] : "");
+    std::string_view const first = whole > 1 ? words[1] : "";
+    bool const asks_version = first == "--version" || first == "-V";
+    // What renders says for which level it was compiled.
+    auto const program =
+        asks_version ? viewer::program_of("render", "") : viewer::program_of(first, whole > 2 ? words[2] : "");
     if (program.empty() || program == "lightwell")
         return viewer::run_program(int(words.size()), words.data(), kOwn);
-    std::error_code failed;
-    auto const self = std::filesystem::read_symlink("/proc/self/exe", failed);
-    std::string const file = self.parent_path() / program;
+    std::error_code failed, none;
+    auto const self = fs::read_symlink("/proc/self/exe", failed);
+    fs::path file = self.parent_path() / program;
+    try {
+        std::string const level = level_in(self.parent_path());
+        setenv("LIGHTWELL_LEVEL", level.c_str(), 1); // for what this program starts, as the tasks of a batch
+        // What does not render is the same for all.
+        if (fs::path const own = self.parent_path() / level / program; fs::exists(own, none)) file = own;
+    } catch (gi::InputError const& e) {
+        std::fprintf(stderr, "lightwell: %s\n", e.what());
+        return 2;
+    }
     words.push_back(nullptr);
     if (!failed) execv(file.c_str(), const_cast<char* const*>(words.data()));
-    std::string const why = failed ? "/proc/self/exe: " + failed.message() : file + ": " + std::strerror(errno);
+    words.pop_back();
+    if (asks_version) return viewer::run_program(int(words.size()), words.data(), kOwn);
+    std::string const why =
+        failed ? "/proc/self/exe: " + failed.message() : file.string() + ": " + std::strerror(errno);
     std::fprintf(stderr,
                  "lightwell: '%s' cannot be started (%s) install its package (lightwell-view, lightwell-ar), or "
                  "build it: scripts/build release %s\n",

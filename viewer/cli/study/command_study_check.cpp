@@ -7,7 +7,7 @@
 #include "viewer/base/validators.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/experiment/stimuli/script_check.h"
-#include "viewer/experiment/stimuli/study_stimuli.h"
+#include "viewer/experiment/stimuli/study_scenes.h"
 #include "viewer/study/comparisons.h"
 
 #include <CLI/CLI.hpp>

@@ -10,7 +10,7 @@
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/experiment/prepared_list.h"
-#include "viewer/experiment/stimuli/study_stimuli.h"
+#include "viewer/experiment/stimuli/study_scenes.h"
 #include "viewer/offline/rank_options.h"
 #include "viewer/offline/rank_work.h"
 
@@ -50,7 +50,7 @@ int run(PrepareOptions const& o)
     std::optional<study::DisplayModel> model;
     if (!o.display_model.empty()) model = study::load_display_model(o.display_model);
     auto list =
-        prepared_list(loaded.script, {width, height}, float(o.font_px), version_text(), model ? &*model : nullptr);
+        prepared_list(loaded.script, {width, height}, float(o.font_px), program_text(), model ? &*model : nullptr);
     if (list.empty())
         throw gi::InputError("nothing to prepare in " + o.script, "no block has stimuli: prepared",
                              "add it to a block, or run with live stimuli");

@@ -20,6 +20,7 @@
 #include "viewer/experiment/stimuli/prepared_files.h"
 #include "viewer/experiment/stimuli/script_check.h"
 #include "viewer/experiment/stimuli/stimulus_check.h"
+#include "viewer/experiment/stimuli/study_scenes.h"
 #include "viewer/experiment/stimuli/study_stimuli.h"
 #include "viewer/experiment/trial_presenter.h"
 #include "viewer/report/machine.h"
@@ -97,7 +98,7 @@ void warn_of_changed_scenes(std::filesystem::path const& dir, study::SessionStar
 void check_prepared(study::Script const& script, study::Plan const& plan, glm::ivec2 screen_px,
                     RunOptions const& o, study::DisplayModel const* model)
 {
-    auto const list = prepared_list(script, plan, screen_px, float(o.font_px), version_text(), model);
+    auto const list = prepared_list(script, plan, screen_px, float(o.font_px), program_text(), model);
     for (auto const& [key, wanted] : list) {
         std::filesystem::path const folder = std::filesystem::path(o.prepared) / key;
         if (!std::filesystem::exists(folder))
@@ -232,7 +233,7 @@ int run(RunOptions const& o)
     trials.session = o.session;
     trials.gaze = o.gaze;
     trials.prepared = o.prepared;
-    trials.version = version_text();
+    trials.version = program_text();
     trials.stop = &stop;
     trials.about = {{"host", gi::host_name()},
                     {"program", version_text()},

@@ -326,6 +326,8 @@ int run_replay(ViewArguments const& a)
         fmt::print("{} shown pictures drawn again: {} as recorded bit by bit, {} not, {} unknown\n", done.shown,
                    done.shown_same, done.shown_other, done.shown - done.shown_same - done.shown_other);
     if (done.first_shown_other) fmt::print("first different shown picture: {}\n", *done.first_shown_other);
+    if (done.other + done.shown_other > 0 && done.program != version_text())
+        fmt::print("recorded by {}; this is {}\n", done.program, version_text());
     std::string const loss = describe_loss(done.end);
     if (!loss.empty()) say(loss);
     std::fflush(stdout);

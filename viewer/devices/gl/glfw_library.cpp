@@ -10,6 +10,9 @@ std::shared_ptr<void const> glfw_library()
 {
     static std::weak_ptr<void const> running;
     if (auto held = running.lock()) return held;
+#ifdef GLFW_PLATFORM // of 3.4; windows that are placed and swap groups need X11, the only system of earlier ones
+    glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (!glfwInit())
         throw gi::InputError("no window can be opened", glfw_error(),
                              "start lightwell where DISPLAY names an X server (Xvfb will do)");

@@ -42,7 +42,4 @@ bool is_ar_setting(std::string const& key);
 ArStimulus ar_stimulus(study::Patch const& patch, std::filesystem::path const& folder);
 ar::Session session_of(ArStimulus const& stimulus);
 
-/// Hash of all files of the session (frames, calibration, maps, scenes), of poses and of truth pictures.
-std::string content_hash(ArStimulus const& stimulus);
-
 } // namespace viewer

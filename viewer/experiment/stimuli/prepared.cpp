@@ -4,6 +4,7 @@
 #include "gi/core/file.h"
 #include "gi/core/sha256.h"
 #include "gi/image_io/picture_file.h"
+#include "viewer/experiment/stimuli/ar_content_hash.h"
 #include "viewer/experiment/stimuli/ar_source.h"
 #include "viewer/experiment/stimuli/prepared_files.h"
 #include "viewer/experiment/stimuli/stimulus_place.h"

@@ -1,4 +1,4 @@
-#include "viewer/experiment/stimuli/study_stimuli.h"
+#include "viewer/experiment/stimuli/study_scenes.h"
 #include "viewer/offline/choose_camera.h"
 #include "viewer/offline/load_world.h"
 

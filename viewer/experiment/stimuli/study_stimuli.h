@@ -1,5 +1,5 @@
 #pragma once
-// Scenes and AR sessions that a script uses for stimuli.
+// AR sessions that a script uses for stimuli.
 
 #include "study/plan/plan.h"
 #include "viewer/experiment/stimuli/physical.h"
@@ -11,9 +11,6 @@
 #include <utility>
 
 namespace viewer {
-
-/// Loads scenes as all commands do.
-SceneAccess study_scenes();
 
 /// Collects the stimuli from AR sessions over several plans, each once, and checks them.
 class ArStimulusCheck {

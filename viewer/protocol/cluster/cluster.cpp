@@ -43,7 +43,7 @@ Cluster::~Cluster()
     }
 }
 
-bool Cluster::started_by_mpirun() { return Messenger::started_with_others(); }
+bool Cluster::started_by_mpirun() { return started_with_others(); }
 int Cluster::rank() const { return state_->rank; }
 int Cluster::size() const { return state_->size; }
 std::string Cluster::name(int r) const { return state_->name(r); }

@@ -30,8 +30,8 @@ Cluster::State::State(ClusterIdentity of, ClusterSettings with) : identity(std::
     if (!(settings.silence_s > 0 && settings.start_s > 0))
         throw gi::InputError("a rank may be silent for 0 s", "every rank would be lost at once",
                              "give a time above 0");
-    if (Messenger::started_with_others()) {
-        messenger.emplace();
+    if (started_with_others()) {
+        messenger = make_messenger();
         rank = messenger->rank();
         size = messenger->size();
     }

@@ -6,6 +6,7 @@
 #include "viewer/protocol/cluster/messenger.h"
 #include "viewer/protocol/cluster/process_watch.h"
 
+#include <deque>
 #include <functional>
 #include <optional>
 
@@ -80,7 +81,7 @@ struct Cluster::State {
     ClusterSettings settings;
     std::function<std::string()> farewell;
     int rank = 0, size = 1;
-    std::optional<Messenger> messenger; ///< none without other ranks
+    std::unique_ptr<Messenger> messenger; ///< none without other ranks
     ProcessId here;
     std::vector<Peer> peers; ///< all ranks, including this one
     std::vector<ClusterIdentity> identities;

@@ -1,127 +1,30 @@
 #include "viewer/protocol/cluster/messenger.h"
 
 #include "gi/core/error.h"
+#include "gi/core/module.h"
 
-#include <algorithm>
-#include <chrono>
 #include <cstdlib>
-#include <mpi.h>
-#include <thread>
 
 namespace viewer {
 
-namespace {
-
-constexpr int kTag = 5;
-
-struct Sending {
-    MPI_Request request = MPI_REQUEST_NULL;
-    std::vector<std::uint8_t> bytes;
-};
-
-struct Receiving {
-    MPI_Request request = MPI_REQUEST_NULL;
-    Message message;
-};
-
-bool done(MPI_Request& request)
-{
-    int flag = 0;
-    return MPI_Test(&request, &flag, MPI_STATUS_IGNORE) == MPI_SUCCESS && flag != 0;
-}
-
-} // namespace
-
-struct Messenger::Transfers {
-    std::vector<std::deque<Sending>> sending;     ///< per rank
-    std::vector<std::deque<Receiving>> receiving; ///< per rank
-};
-
-bool Messenger::started_with_others()
+bool started_with_others()
 {
     char const* const size = std::getenv("OMPI_COMM_WORLD_SIZE");
     return size != nullptr && std::atoi(size) > 1;
 }
 
-Messenger::Messenger() : transfers_(std::make_unique<Transfers>())
+std::unique_ptr<Messenger> make_messenger()
 {
-    // Otherwise hwloc queries every X server of this machine for its screens, and a server that ends meanwhile
-    // terminates this process.
-    setenv("HWLOC_COMPONENTS", "-gl", 0);
-    int provided = 0;
-    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
-    if (provided < MPI_THREAD_SERIALIZED)
+    auto* const make = reinterpret_cast<decltype(&lightwell_messenger)>(
+        gi::module_function("liblightwell_cluster.so", "lightwell_messenger",
+                            "mpirun started this program with others, but they cannot talk to each other",
+                            "install the package lightwell-cluster, or build all: scripts/build release"));
+    std::unique_ptr<Messenger> messenger(make());
+    if (!messenger)
         throw gi::InputError("this MPI has no MPI_THREAD_SERIALIZED",
                              "ranks send signs of life from a second thread while they render",
                              "use Open MPI as packaged by Debian");
-    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN); // survive the loss of a rank
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
-    MPI_Comm_size(MPI_COMM_WORLD, &size_);
-    transfers_->sending.resize(std::size_t(size_));
-    transfers_->receiving.resize(std::size_t(size_));
+    return messenger;
 }
-
-// If MPI was not finalized, leak the buffers, because MPI may still read them.
-Messenger::~Messenger()
-{
-    int finalized = 0;
-    MPI_Finalized(&finalized);
-    if (finalized == 0) static_cast<void>(transfers_.release());
-}
-
-void Messenger::send(int to, std::vector<std::uint8_t> bytes)
-{
-    auto& queue = transfers_->sending[std::size_t(to)];
-    queue.push_back({MPI_REQUEST_NULL, std::move(bytes)});
-    Sending& s = queue.back();
-    if (MPI_Isend(s.bytes.data(), int(s.bytes.size()), MPI_BYTE, to, kTag, MPI_COMM_WORLD, &s.request) !=
-        MPI_SUCCESS)
-        queue.pop_back(); // a dead rank is detected elsewhere
-}
-
-std::vector<Message> Messenger::poll()
-{
-    while (true) {
-        int there = 0;
-        MPI_Message handle;
-        MPI_Status status;
-        if (MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &there, &handle, &status) != MPI_SUCCESS ||
-            there == 0)
-            break;
-        int size = 0;
-        MPI_Get_count(&status, MPI_BYTE, &size);
-        auto& queue = transfers_->receiving[std::size_t(status.MPI_SOURCE)];
-        queue.push_back({MPI_REQUEST_NULL, {status.MPI_SOURCE, std::vector<std::uint8_t>(std::size_t(size))}});
-        Receiving& r = queue.back();
-        MPI_Imrecv(r.message.bytes.data(), size, MPI_BYTE, &handle, &r.request);
-    }
-    std::vector<Message> arrived;
-    for (auto& queue : transfers_->receiving)
-        while (!queue.empty() && done(queue.front().request)) {
-            arrived.push_back(std::move(queue.front().message));
-            queue.pop_front();
-        }
-    for (int r = 0; r < size_; ++r) sent_all(r);
-    return arrived;
-}
-
-bool Messenger::sent_all(int to)
-{
-    auto& queue = transfers_->sending[std::size_t(to)];
-    while (!queue.empty() && done(queue.front().request)) queue.pop_front();
-    return queue.empty();
-}
-
-void Messenger::flush(std::span<int const> ranks, double at_most_s)
-{
-    auto const end = std::chrono::steady_clock::now() + std::chrono::duration<double>(at_most_s);
-    auto const all_sent = [&] {
-        return std::all_of(ranks.begin(), ranks.end(), [this](int r) { return sent_all(r); });
-    };
-    while (!all_sent() && std::chrono::steady_clock::now() < end)
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-}
-
-void Messenger::finalize() { MPI_Finalize(); }
 
 } // namespace viewer
