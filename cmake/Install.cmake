@@ -47,10 +47,21 @@ install(CODE "
 install(FILES data/desktop/lightwell.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT view)
 install(FILES data/desktop/lightwell.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT view)
 
+# Another system's package is another release: 1+deb13.
+set(system "ID=unknown")
+if(EXISTS /etc/os-release)
+  file(READ /etc/os-release system)
+endif()
+string(REGEX MATCH "(^|\n)ID=\"?([a-z]+)" none "${system}")
+string(SUBSTRING "${CMAKE_MATCH_2}" 0 3 of)
+string(REGEX MATCH "(^|\n)VERSION_ID=\"?([0-9.]+)" none "${system}")
+set(CPACK_DEBIAN_PACKAGE_RELEASE "1+${of}${CMAKE_MATCH_2}")
+
 # Written by the programs themselves: manual pages of their commands, completions of shells.
 set(written ${PROJECT_BINARY_DIR}/written)
 add_custom_target(written DEPENDS man VERBATIM COMMENT "Writing completions and compressed manual pages to ${written}"
-  COMMAND ${CMAKE_COMMAND} -DBINARY=${PROJECT_BINARY_DIR} -DOUT=${written} -P ${PROJECT_SOURCE_DIR}/cmake/written.cmake)
+  COMMAND ${CMAKE_COMMAND} -DBINARY=${PROJECT_BINARY_DIR} -DOUT=${written}
+          -DRELEASE=${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE} -P ${PROJECT_SOURCE_DIR}/cmake/written.cmake)
 install(DIRECTORY ${written}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT lightwell OPTIONAL)
 install(FILES ${written}/lightwell.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lightwell COMPONENT lightwell OPTIONAL)
 install(FILES ${written}/lightwell.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _lightwell COMPONENT lightwell OPTIONAL)
@@ -96,20 +107,11 @@ macro(lightwell_package component name section summary details)
   list(JOIN arg_RECOMMENDS ", " CPACK_DEBIAN_${COMPONENT}_PACKAGE_RECOMMENDS)
   # Every package has its licence and what changed where Debian looks for them.
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} RENAME copyright COMPONENT ${component})
-  install(FILES ${written}/NEWS.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
-  if(component MATCHES "lightwell|python") # others depend on these
+  install(FILES ${written}/NEWS.gz ${written}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
+  if("${component}" MATCHES "lightwell|python") # others depend on these
     install(FILES ${written}/NOTICES.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
   endif()
 endmacro()
-# Another system's package is another release: 1+deb13.
-set(system "ID=unknown")
-if(EXISTS /etc/os-release)
-  file(READ /etc/os-release system)
-endif()
-string(REGEX MATCH "(^|\n)ID=\"?([a-z]+)" none "${system}")
-string(SUBSTRING "${CMAKE_MATCH_2}" 0 3 of)
-string(REGEX MATCH "(^|\n)VERSION_ID=\"?([0-9.]+)" none "${system}")
-set(CPACK_DEBIAN_PACKAGE_RELEASE "1+${of}${CMAKE_MATCH_2}")
 set(same "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
 # Loaded when a JPEG, TIFF or HDR picture is read or written.
 get_target_property(codecs opencv_imgcodecs IMPORTED_SONAME_RELEASE)

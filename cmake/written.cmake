@@ -1,4 +1,4 @@
-# What programs write of themselves for packages: completions, manual pages; notices of others; and the changelog. BINARY: build tree, OUT: folder
+# What programs write of themselves for packages: completions, manual pages; notices of others; and the changelog. BINARY: build tree, OUT: folder, RELEASE: version of the packages
 file(REMOVE_RECURSE ${OUT})
 file(MAKE_DIRECTORY ${OUT}/man1)
 foreach(shell bash zsh fish)
@@ -17,3 +17,11 @@ else()
   execute_process(COMMAND gzip -9n ${OUT}/NOTICES COMMAND_ERROR_IS_FATAL ANY)
 endif()
 execute_process(COMMAND gzip -9nc ${CMAKE_CURRENT_LIST_DIR}/../CHANGELOG.md OUTPUT_FILE ${OUT}/NEWS.gz COMMAND_ERROR_IS_FATAL ANY)
+# What Debian wants beside it.
+execute_process(COMMAND git -C ${CMAKE_CURRENT_LIST_DIR} log -1 --format=%aD OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT date)
+  execute_process(COMMAND date -R OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE)
+endif()
+file(WRITE ${OUT}/changelog.Debian
+  "lightwell (${RELEASE}) unstable; urgency=medium\n\n  * What changed: NEWS.gz.\n\n -- The Lightwell authors <lightwell@example.org>  ${date}\n")
+execute_process(COMMAND gzip -9n ${OUT}/changelog.Debian COMMAND_ERROR_IS_FATAL ANY)
