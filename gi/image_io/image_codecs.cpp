@@ -26,7 +26,7 @@ bool has_own_opencv()
 }
 
 struct Module {
-    void* library = nullptr;
+    void* handle = nullptr;
     std::string why; ///< why there is none
 };
 
@@ -35,9 +35,9 @@ Module const& module()
 {
     static Module const loaded = [] {
         if (has_own_opencv()) return Module{nullptr, "this program brings its own OpenCV, without codecs"};
-        void* const library = dlopen(OPENCV_IMGCODECS, RTLD_NOW | RTLD_LOCAL);
-        char const* const why = library == nullptr ? dlerror() : nullptr;
-        return Module{library, why != nullptr ? why : ""};
+        void* const handle = dlopen(OPENCV_IMGCODECS, RTLD_NOW | RTLD_LOCAL);
+        char const* const why = handle == nullptr ? dlerror() : nullptr;
+        return Module{handle, why != nullptr ? why : ""};
     }();
     return loaded;
 }
@@ -47,7 +47,7 @@ Module const& module()
 template <typename Function>
 Function* codec(char const* name)
 {
-    return module().library != nullptr ? reinterpret_cast<Function*>(dlsym(module().library, name)) : nullptr;
+    return module().handle != nullptr ? reinterpret_cast<Function*>(dlsym(module().handle, name)) : nullptr;
 }
 
 /// For formats that only the module reads or writes.
