@@ -49,6 +49,7 @@ def main(build: Path) -> int:
         assert "manylinux" in wheel.name, wheel.name
         size_mb = wheel.stat().st_size / 1e6
         print(f"{wheel.name}: {size_mb:.1f} MB")
+        assert size_mb <= 90, size_mb
         venv.create(folder / "empty", with_pip=True)
         python = folder / "empty" / "bin" / "python"
         (site,) = (folder / "empty" / "lib").glob("python*/site-packages")
