@@ -106,14 +106,16 @@ private:
     std::optional<RemoteClient> client_;
 };
 
+/// Of pictures that take longer than a tracker's silence may: the head is followed none the less.
 TEST_F(ViewOnTwoRanks, SurfacesOfAMovingHeadAreShownInTheSameLight)
 {
     int const port = free_port();
     write_two_walls(folder / "walls.yaml", port, 2);
     SentHead head(port);
     Mpirun mpirun(2, "",
-                  LIGHTWELL_PROGRAM " view cornell --display walls.yaml --set refine=false "
-                                    "--set play=false --remote remote --record walk.lwr --stats s.json",
+                  LIGHTWELL_PROGRAM
+                  " view cornell --display walls.yaml --set refine=false "
+                  "--set play=false --set paths=64 --remote remote --record walk.lwr --stats s.json",
                   folder.path());
     Leader leader(folder / "remote");
     XWindow one("Lightwell: a"), two("Lightwell: b");

@@ -155,12 +155,9 @@ TEST(LiveRenderer, GoesByTheSlowestRank)
     for (bool const slow : {true, false}) {
         Live live;
         live.renderer.reset();
+        live.session.apply({"refine", false}); // a frame for each look
         SlowestRank link(slow ? 10 : 1e-4);
         LiveRenderer::Hooks hooks;
-        FrameBudget budget; // of the last frame that moved: those that refine have another
-        hooks.finished = [&](LiveFrame const& f) {
-            if (f.result.still_frames <= 1) budget = f.budget;
-        };
         hooks.own_views = [](FrameCommand const& command) { return std::vector{command.views.at(0)}; };
         live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, &link, hooks);
         std::shared_ptr<LiveFrame const> frame;
@@ -176,8 +173,8 @@ TEST(LiveRenderer, GoesByTheSlowestRank)
             EXPECT_EQ(frame->result.views.size(), 1u);
         }
         live.renderer->stop();
-        EXPECT_EQ(budget.scale, slow ? 0.25 : 1);
-        EXPECT_EQ(budget.paths == 1, slow) << budget.paths;
+        EXPECT_EQ(frame->budget.scale, slow ? 0.25 : 1);
+        EXPECT_EQ(frame->budget.paths == 1, slow) << frame->budget.paths;
     }
 }
 

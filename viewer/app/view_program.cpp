@@ -259,10 +259,11 @@ private:
         Layout layout;
         if (core_.display) {
             Display const& display = *core_.display;
-            double const seen_s = state_.clock.to_steady(at.display_s); // as trackers count
+            // Of a picture that takes long, nobody can say where a head will be when it is seen.
+            at.valid_s = at.pose_s + std::min(expected_s_, Anticipation::kFarthest_s);
+            double const seen_s = state_.clock.to_steady(at.valid_s); // as trackers count
             // The resting head is at the navigation pose.
             at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
-            at.valid_s = at.display_s;
             at.tracked = tracking_->bodies(0, seen_s);
             bodies_.put(
                 display, [&](std::size_t user) { return tracking_->bodies(user, seen_s); }, seconds, at);
