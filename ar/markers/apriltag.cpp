@@ -1,12 +1,12 @@
 #include "ar/markers/apriltag.h"
 
-#include <apriltag.h>
+#include <apriltag/apriltag.h>
+#include <apriltag/tag16h5.h>
+#include <apriltag/tag25h9.h>
+#include <apriltag/tag36h10.h>
+#include <apriltag/tag36h11.h>
 #include <map>
 #include <memory>
-#include <tag16h5.h>
-#include <tag25h9.h>
-#include <tag36h10.h>
-#include <tag36h11.h>
 
 namespace ar {
 namespace {

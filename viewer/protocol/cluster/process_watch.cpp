@@ -43,7 +43,7 @@ ProcessId this_process()
 {
     ProcessId id;
     std::array<char, 256> space{};
-    static_cast<void>(readlink("/proc/self/ns/pid", space.data(), space.size() - 1));
+    if (readlink("/proc/self/ns/pid", space.data(), space.size() - 1) < 0) space = {};
     id.machine = text_of("/proc/sys/kernel/random/boot_id") + space.data();
     id.number = getpid();
     if (auto const stat = read_stat(id.number)) id.started = stat->started;
