@@ -71,6 +71,7 @@ struct Accumulator {
     std::vector<std::uint32_t> further;
     PathCounts counts;  ///< of all paths so far
     double seconds = 0; ///< spent on these paths
+    bool of_several_levels = false; ///< some were traced by programs for other levels of processors
 
     Accumulator() = default;
     Accumulator(int w, int h) { start(w, h); }
@@ -85,6 +86,7 @@ struct Accumulator {
         paths = 0;
         counts = {};
         seconds = 0;
+        of_several_levels = false;
     }
     bool has_paths() const { return paths > 0 || !further.empty(); }
     std::uint32_t paths_of(std::size_t pixel) const { return paths + (further.empty() ? 0 : further[pixel]); }

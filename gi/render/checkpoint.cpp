@@ -1,6 +1,7 @@
 #include "gi/render/checkpoint.h"
 
 #include "gi/core/error.h"
+#include "gi/core/processor_level.h"
 #include "gi/core/xxhash.h"
 
 #include <algorithm>
@@ -20,7 +21,9 @@ struct CheckpointHeader {
     std::uint32_t paths = 0, pixel_bytes = sizeof(PixelMeans);
     PathCounts counts;
     double seconds = 0;
-    std::uint64_t has_further = 0; ///< Accumulator::further follows the means
+    std::uint32_t has_further = 0; ///< Accumulator::further follows the means
+    std::uint32_t level =
+        0; ///< of the program that traced its paths: 1 + its place in kProcessorLevels; 0 = other, or not known; kSeveral
     std::uint64_t hash = 0;        ///< of the whole file, with 0 here
 };
 static_assert(std::is_trivially_copyable_v<CheckpointHeader> && std::is_trivially_copyable_v<PixelMeans>);
@@ -39,6 +42,15 @@ std::uint64_t hash_of_means(std::span<PixelMeans const> pixels, std::uint64_t ha
     for (std::size_t at = 0; at < pixels.size(); at += kTogether)
         hash = hash_of(pixels.subspan(at, std::min(kTogether, pixels.size() - at)), hash);
     return hash;
+}
+
+constexpr std::uint32_t kSeveral = kProcessorLevels.size() + 1;
+
+std::uint32_t own_level()
+{
+    auto const at = std::ranges::find(kProcessorLevels, std::string_view(kCompiledLevel),
+                                      [](char const* level) { return std::string_view(level); });
+    return at == kProcessorLevels.end() ? 0 : std::uint32_t(at - kProcessorLevels.begin()) + 1;
 }
 
 std::uint64_t further_bytes(std::vector<std::uint32_t> const& further)
@@ -71,6 +83,7 @@ void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, st
     header.counts = a.counts;
     header.seconds = a.seconds;
     header.has_further = a.further.empty() ? 0 : 1;
+    header.level = a.of_several_levels ? kSeveral : own_level();
     header.hash = hash_of<std::uint32_t>(
         a.further, hash_of_means(a.pixels, hash_of(std::span<CheckpointHeader const>(&header, 1))));
     std::string_view const parts[]{
@@ -81,7 +94,7 @@ void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, st
 }
 
 bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint,
-                     StopRequest const* stop)
+                     StopRequest const* stop, Report* report)
 {
     if (file.empty() || !std::filesystem::exists(file)) return false;
     auto const damaged = [&](char const* why) {
@@ -105,7 +118,7 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
                          "wrote it",
                          "delete it or drop --resume to start afresh; the version that wrote it can finish it");
     a.further.assign(header.has_further == 1 ? a.pixels.size() : 0, 0);
-    if (header.pixel_bytes != sizeof(PixelMeans) || header.has_further > 1 ||
+    if (header.pixel_bytes != sizeof(PixelMeans) || header.has_further > 1 || header.level > kSeveral ||
         std::filesystem::file_size(file) != checkpoint_bytes(a.width, a.height) + further_bytes(a.further))
         throw damaged("its size does not fit its header");
     std::uint64_t const expected_hash = std::exchange(header.hash, 0);
@@ -122,6 +135,15 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
     a.paths = header.paths;
     a.counts = header.counts;
     a.seconds = header.seconds;
+    a.of_several_levels = header.level != 0 && header.level != own_level();
+    if (report != nullptr && a.of_several_levels)
+        report->lose(
+            "paths of programs for other levels of processors: the picture may differ in its last bits from an "
+            "uninterrupted one",
+            header.paths,
+            fmt::format("{}; this is {}",
+                        header.level == kSeveral ? "several levels" : kProcessorLevels[header.level - 1],
+                        kCompiledLevel));
     return true;
 }
 

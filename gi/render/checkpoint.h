@@ -3,6 +3,7 @@
 
 #include "gi/core/durable_file.h"
 #include "gi/core/progress.h"
+#include "gi/core/report.h"
 #include "gi/render/accumulator.h"
 
 #include <filesystem>
@@ -17,7 +18,8 @@ void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, st
                      DiskWait wait = DiskWait::yes);
 /// Returns false if the file does not exist. Throws InputError if it belongs to another render or is damaged.
 /// @param stop  once it is requested, throws Interrupted; null = never
+/// @param report  is told if its paths were traced by a program for another level of processors
 bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint,
-                     StopRequest const* stop = nullptr);
+                     StopRequest const* stop = nullptr, Report* report = nullptr);
 
 } // namespace gi

@@ -68,7 +68,7 @@ bool PassLoop::is_checkpoint_due() const
 void PassLoop::resume(std::uint64_t print)
 {
     if (settings_.resume && !std::exchange(is_resumed_, true))
-        load_checkpoint(settings_.checkpoint, sums_, print, &stop_);
+        load_checkpoint(settings_.checkpoint, sums_, print, &stop_, &report_);
 }
 
 RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)

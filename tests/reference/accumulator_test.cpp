@@ -1,7 +1,9 @@
 // Running means in single precision: how far they are from sums in double precision, whole and in parts.
 
 #include "gi/core/error.h"
+#include "gi/core/report.h"
 #include "gi/core/rng.h"
+#include "gi/core/xxhash.h"
 #include "gi/render/checkpoint.h"
 
 #include <cstring>
@@ -208,6 +210,37 @@ TEST(Accumulator, ACheckpointHoldsAll)
     EXPECT_THROW(load_checkpoint(file, b, 99), InputError);
     std::filesystem::remove(file);
     EXPECT_FALSE(load_checkpoint(file, b, 99));
+}
+
+/// Paths of another level of processors are kept, and it is said that they are.
+TEST(Accumulator, ACheckpointOfAnotherLevelOfProcessorsIsTold)
+{
+    std::filesystem::path const file = std::filesystem::path(testing::TempDir()) / "level.state";
+    Accumulator const a = noise(4, 2, 3);
+    save_checkpoint(file, a, 99);
+    std::size_t const header = checkpoint_bytes(0, 0), level = header - 12;
+    std::vector<std::byte> bytes(std::filesystem::file_size(file));
+    std::ifstream(file, std::ios::binary)
+        .read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+    auto const told = [&] {
+        Accumulator b(4, 2);
+        Report report;
+        EXPECT_TRUE(load_checkpoint(file, b, 99, nullptr, &report));
+        EXPECT_EQ(b.paths, 3u);
+        return report.losses();
+    };
+    EXPECT_TRUE(told().empty());
+    bytes[level] = std::byte(bytes[level] == std::byte{1} ? 2 : 1);
+    std::fill(bytes.begin() + std::ptrdiff_t(header) - 8, bytes.begin() + std::ptrdiff_t(header), std::byte{0});
+    std::span<std::byte const> const all(bytes);
+    std::uint64_t const hash = xxh64({}, xxh64(all.subspan(header), xxh64(all.first(header))));
+    std::memcpy(&bytes[header - 8], &hash, 8);
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<char const*>(bytes.data()), std::streamsize(bytes.size()));
+    auto const losses = told();
+    ASSERT_EQ(losses.size(), 1u);
+    EXPECT_EQ(losses.begin()->second.count, 3u);
+    std::filesystem::remove(file);
 }
 
 TEST(Accumulator, ACheckpointOfAnEarlierVersionIsReadOrRefusedWithTheWayOut)
