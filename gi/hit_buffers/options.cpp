@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/hit_buffers/directions/directions.h"
+#include "gi/hit_buffers/windows.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -14,9 +15,10 @@ using S = SlhbSettings;
 using Methods = std::vector<std::string_view>;
 
 /// Methods that read options of both look-ups and shadow maps, of look-ups alone,
-/// of shadow maps alone, and of stored axes alone.
+/// of shadow maps alone, and of stored axes alone; slhb_0_1 has no levels.
 Methods const kBoth{"slhb", "slhb_shadow_rays", "paths_shadow_maps", "slhb_0_1"},
-    kLookUps{"slhb", "slhb_shadow_rays", "slhb_0_1"}, kMaps{"slhb", "paths_shadow_maps", "slhb_0_1"};
+    kLevels{"slhb", "slhb_shadow_rays", "paths_shadow_maps"}, kLookUps{"slhb", "slhb_shadow_rays", "slhb_0_1"},
+    kMaps{"slhb", "paths_shadow_maps", "slhb_0_1"};
 Methods with_stored_axes_too(Methods more)
 {
     more.insert(more.begin(), kLookUps.begin(), kLookUps.end());
@@ -68,8 +70,8 @@ RenderOptionTable make_table()
         option("hit-buffer", {0, 8192}, "size of a hit buffer, texels on a side (default: by the plan)",
                &S::resolution, with_stored_axes_too({"vpl_slhb", "sh_grid", "ispm", "lpv", "isllpm"})),
         unless(option("axes", {0, 64},
-                      "axes per bounce in a pass (default: by the plan); schedules streamed and temporal", &S::axes,
-                      kLookUps),
+                      "axes per bounce in a pass (default: by the plan); schedules streamed and temporal",
+                      &S::axes, kLookUps),
                {{stored, "all axes of --directions are used"}}),
         unless(option("fresh-axes", {0, 64},
                       "axes replaced per pass (default: an eighth of them); schedule temporal", &S::fresh_axes,
@@ -78,18 +80,25 @@ RenderOptionTable make_table()
         option("max-layers", {0, 1 << 20}, "most layers per texel, others counted; 0 = all", &S::most_layers,
                with_stored_axes_too({"vpl_slhb"})),
         option("cone", {0, 64}, "radius of the cone approximation, texels", &S::cone, kLookUps),
-        option("packed", {}, "use layers of 32 bits instead of 64, for up to 524288 triangles", &S::packed, kLookUps),
+        option("packed", {}, "use layers of 32 bits instead of 64, for up to 524288 triangles", &S::packed,
+               kLookUps),
         option("gather", {}, "first bounce along all axes in turn instead of at random", &S::gather, kLookUps),
+        option("levels", {0, int(kMostLevels)},
+               "most nested grids of hit buffers and shadow maps, each with finer texels nearer to the cameras, "
+               "each\n"
+               "as costly as the first; 1: one for the whole world; default: as the world's size needs, 2 with a\n"
+               "--budget, 1 with --packed and orthographic cameras",
+               &S::levels, kLevels),
         option("memory", {0, 1 << 24},
                "MiB for hit buffers, and as much for shadow maps; they get fewer texels if it is not enough\n"
                "(default: a quarter of the machine's memory)",
                &S::memory_mib, kBoth),
         option("light-samples,lamps", {0, 1024},
-               "number of light samples given a shadow map per pass (default: by the plan)", &S::light_samples, kMaps,
-               kMapGroup),
-        option("fresh-light-samples,fresh-lamps", {0, 1024},
-               "light samples replaced per pass (default: all; few in consecutive frames)", &S::fresh_light_samples,
+               "number of light samples given a shadow map per pass (default: by the plan)", &S::light_samples,
                kMaps, kMapGroup),
+        option("fresh-light-samples,fresh-lamps", {0, 1024},
+               "light samples replaced per pass (default: all; few in consecutive frames)",
+               &S::fresh_light_samples, kMaps, kMapGroup),
         option("shadow-map", {0, 8192}, "size of a shadow map, texels on a side (default: by the plan)",
                &S::shadow_resolution, kMaps, kMapGroup),
     };
@@ -110,6 +119,10 @@ void check_hit_buffer_options(std::vector<std::string> const& given, RenderSetti
     if (s.schedule == Schedule::automatic && is_given("directions") && (is_given("axes") || is_given("fresh-axes")))
         throw InputError("--directions with --axes or --fresh-axes",
                          "only the stored schedule uses --directions, only the others draw axes",
+                         "leave one of them out");
+    if (s.packed && s.levels > 1)
+        throw InputError("--packed with --levels",
+                         "depths of 12 bits have too few steps for a world that needs levels",
                          "leave one of them out");
     auto const check_part = [](char const* part, int fresh, char const* whole, int all) {
         if (all > 0 && fresh > all)

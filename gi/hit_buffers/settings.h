@@ -36,6 +36,7 @@ struct SlhbSettings {
     int fresh_light_samples = 0; ///< light samples replaced per pass
     int shadow_resolution = 0;   ///< texels per side of a shadow map
     int most_layers = 0;         ///< per texel; 0 = all
+    int levels = 0; ///< most levels of grids, see windows.h; 1 = one grid of the whole; 0 = all that are worth it
     int memory_mib = 0;          ///< memory limit of hit buffers and shadow maps
     bool packed = false;         ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
     float cone = 0;      ///< texels; radius of the disk of columns that a look-up may use (Yu 2012, fig. 5.6)

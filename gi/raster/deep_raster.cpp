@@ -32,6 +32,7 @@ struct Corners {
 };
 
 struct OrthographicLanes {
+    static constexpr bool kLargeMayLieBeside = true; ///< triangles that reach beyond the grid are not clipped
     RasterGrid const& grid;
     V to_x[3], to_y[3], to_z[3], x_zero, y_zero;
 
@@ -71,6 +72,7 @@ struct OrthographicLanes {
 };
 
 struct PerspectiveLanes {
+    static constexpr bool kLargeMayLieBeside = false;
     PerspectiveGrid const& grid;
     V to_x[3], to_y[3], to_w[3], eye[3];
 
@@ -314,7 +316,16 @@ void VectorRaster<Lanes>::run(TriangleSoup const& soup, std::size_t first, std::
         lanes_.add_depth(p, q);
         auto const triangle = hn::Iota(words, std::uint32_t(t));
         V const side = hn::Max(across, down);
-        Mask const micro = hn::Le(side, most_micro), one = hn::Le(side, zero);
+        Mask micro = hn::Le(side, most_micro), one = hn::Le(side, zero);
+        if constexpr (Lanes::kLargeMayLieBeside) { // products of their coordinates would round depths too much
+            auto const extent = [](V const* v) {
+                return hn::Sub(hn::Max(v[0], hn::Max(v[1], v[2])), hn::Min(v[0], hn::Min(v[1], v[2])));
+            };
+            V const most = hn::Set(d, float(kMicroSide + 1) * subpixels_);
+            Mask const small = hn::Le(hn::Max(extent(x), extent(y)), most);
+            micro = hn::And(micro, small);
+            one = hn::And(one, small);
+        }
         auto const push = [&](Queue& queue, Mask mask) {
             if (hn::AllFalse(d, mask)) return;
             V const all[] = {x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]};

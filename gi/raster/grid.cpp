@@ -6,6 +6,12 @@ namespace gi {
 
 RasterGrid make_grid(Bounds const& bounds, vec3 axis, std::uint32_t resolution, vec2 jitter, float turn_rad)
 {
+    return make_window(bounds, bounds, axis, resolution, jitter, turn_rad);
+}
+
+RasterGrid make_window(Bounds const& bounds, Bounds const& whole, vec3 axis, std::uint32_t resolution, vec2 jitter,
+                       float turn_rad)
+{
     constexpr float kLongestSide = 4; // longest side of a grid, as a multiple of the resolution
     RasterGrid g;
     Frame const frame = Frame::about(axis);
@@ -27,7 +33,13 @@ RasterGrid make_grid(Bounds const& bounds, vec3 axis, std::uint32_t resolution, 
     g.corner = middle - reach - g.texel * (vec2(0.995f) * jitter + 0.0025f);
     g.width = std::uint32_t(2 * reach.x / g.texel + 1.01f) + 1;
     g.height = std::uint32_t(2 * reach.y / g.texel + 1.01f) + 1;
-    int const bits = std::bit_width(std::max(g.width, g.height));
+    // Coordinates of all that is drawn must fit, also beside the window.
+    vec3 const all = 0.5f * (whole.high - whole.low), off = glm::abs(whole.center() - center);
+    auto const beside = [&](vec3 along) {
+        return std::uint32_t(glm::min((glm::dot(all + off, glm::abs(along))) / g.texel + 2, 0x1p30f));
+    };
+    std::uint32_t const side = std::max(g.width, g.height);
+    int const bits = std::bit_width(&bounds == &whole ? side : side + std::max(beside(g.right), beside(g.up)));
     g.subpixels = float(1u << (RasterGrid::kCoordinateBits - std::min(bits, RasterGrid::kCoordinateBits - 1)));
     float const scale = g.subpixels / g.texel;
     g.to_x = scale * g.right;
@@ -35,6 +47,8 @@ RasterGrid make_grid(Bounds const& bounds, vec3 axis, std::uint32_t resolution, 
     g.x0 = -scale * g.corner.x;
     g.y0 = -scale * g.corner.y;
     g.rounding = 1e-6f * (glm::length(center) + bounds.radius());
+    if (&bounds != &whole)
+        g.rounding += 1e-7f * (glm::length(whole.center()) + whole.radius()); // of large triangles
     return g;
 }
 

@@ -33,6 +33,12 @@ struct RasterGrid {
     }
     /// Depth along the axis, m.
     GI_FN float depth(vec3 p) const { return std::fma(p.z, axis.z, std::fma(p.y, axis.y, p.x * axis.x)); }
+    /// True if the texel under a point and those beside it are in the grid.
+    GI_FN bool holds(vec3 p) const
+    {
+        float const x = (glm::dot(p, right) - corner.x) / texel, y = (glm::dot(p, up) - corner.y) / texel;
+        return x >= 1 && y >= 1 && x < float(width) - 1 && y < float(height) - 1;
+    }
     /// World point at a depth on the line through the centre of texel (i, j).
     GI_FN vec3 point(std::uint32_t i, std::uint32_t j, float depth_m) const
     {
@@ -44,6 +50,11 @@ struct RasterGrid {
 /// Returns a grid of about resolution^2 square texels that covers the bounds seen along `axis` (unit).
 /// @param jitter  [0, 1)^2, shift of the grid in texels   @param turn_rad  rotation of the grid about the axis
 RasterGrid make_grid(Bounds const& bounds, vec3 axis, std::uint32_t resolution, vec2 jitter, float turn_rad);
+
+/// As make_grid, over a window of a larger whole, whose triangles are drawn where they lie over the window. With a
+/// whole of more than 2^20 texels, vertices are snapped to more than a quarter of a texel.
+RasterGrid make_window(Bounds const& window, Bounds const& whole, vec3 axis, std::uint32_t resolution, vec2 jitter,
+                       float turn_rad);
 
 /// A projected triangle in whole subpixels.
 struct SnappedTriangle {

@@ -47,10 +47,16 @@ TEST_P(KeptLamps, HaveTheShadowsOfNow)
     bounds.low -= vec3{1};
     bounds.high += vec3{1};
     ASSERT_LT(world.static_triangles, world.triangles.size());
-    LightPoints light_points(
-        world, bounds, soup, cut_outs,
-        {.count = 5, .fresh = 2, .resolution = 32, .seed = 3, .first_moving = world.static_triangles});
-    ShadowMapBuilder const builder(bounds, soup, cut_outs, 32);
+    vec3 const half = 0.2f * (bounds.high - bounds.low);
+    std::vector<Bounds> const windows{{bounds.center() - half, bounds.center() + half}};
+    LightPoints light_points(world, bounds, soup, cut_outs,
+                             {.count = 5,
+                              .fresh = 2,
+                              .resolution = 32,
+                              .windows = windows,
+                              .seed = 3,
+                              .first_moving = world.static_triangles});
+    ShadowMapBuilder const builder(bounds, windows, soup, cut_outs, 32);
     std::size_t covered = 0, taken = 0;
     for (std::uint32_t pass = 0; pass < 8; ++pass) {
         if (pass % 3 != 1) {

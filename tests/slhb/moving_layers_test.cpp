@@ -39,6 +39,7 @@ struct Moving {
     AxisSet::Source source(bool split, std::uint32_t most_layers) const
     {
         return {.bounds = {vec3{-2}, vec3{2}},
+                .windows = {{vec3{-1}, vec3{0.5f}}},
                 .soup = soup,
                 .cut_outs = cut_outs,
                 .resolution = 40,

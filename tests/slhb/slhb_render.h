@@ -70,4 +70,21 @@ inline Scene box_with_block_and_lamp()
     return scene;
 }
 
+/// A room of 4 m with an open side, on a plane of `reach` m to each side, under a sky.
+inline Scene room_on_a_plane(float reach)
+{
+    Scene scene;
+    int const wall = add_material(scene, lambert(vec3{0.6f}));
+    add_quad(scene, {-reach, -0.01f, reach}, {2 * reach, 0, 0}, {0, 0, -2 * reach}, wall);
+    add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, wall); // floor
+    add_quad(scene, {-2, 3, -2}, {4, 0, 0}, {0, 0, 4}, wall); // ceiling
+    add_quad(scene, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, wall); // back
+    add_quad(scene, {-2, 0, 2}, {0, 0, -4}, {0, 3, 0}, wall); // left
+    add_quad(scene, {2, 0, -2}, {0, 0, 4}, {0, 3, 0}, wall);  // right
+    add_box(scene, {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}, wall, false);
+    set_environment(scene, vec3{1});
+    return scene;
+}
+inline Camera const kInRoom = look_at({0.5, 1.6, 1.5}, {-0.3, 0.8, -1}, 70);
+
 } // namespace gi::test

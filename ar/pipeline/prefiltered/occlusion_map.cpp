@@ -8,7 +8,7 @@ void OcclusionMap::start(gi::Bounds const& bounds, gi::vec3 towards, std::uint32
                          float turn_rad)
 {
     shadow_.parallel = true;
-    gi::RasterGrid& grid = shadow_.grid;
+    gi::RasterGrid& grid = shadow_.grids[0];
     grid = gi::make_grid(bounds, -towards, texels, jitter, turn_rad);
     gi::clear(shadow_.maps[0], grid.width, grid.height);
     to_x_ = grid.right / grid.texel;
@@ -25,9 +25,9 @@ void OcclusionMap::draw(gi::TriangleSoup const& soup, gi::CutOuts const& cut_out
 {
     thread_local gi::Fragments drawn;
     drawn.count = 0;
-    gi::rasterize(soup, first, last, shadow_.grid, gi::MacroPath::edge_table, drawn);
-    cut_outs.remove(drawn, shadow_.grid, seed);
-    gi::clear(shadow_.maps[0], shadow_.grid.width, shadow_.grid.height);
+    gi::rasterize(soup, first, last, shadow_.grids[0], gi::MacroPath::edge_table, drawn);
+    cut_outs.remove(drawn, shadow_.grids[0], seed);
+    gi::clear(shadow_.maps[0], shadow_.grids[0].width, shadow_.grids[0].height);
     gi::resolve(drawn, -1, shadow_.maps[0]);
     texels_ = shadow_.maps[0].texels.data();
 }

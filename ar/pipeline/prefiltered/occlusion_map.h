@@ -20,7 +20,7 @@ public:
     {
         float const x = glm::dot(p, to_x_) + x0_, y = glm::dot(p, to_y_) + y0_;
         if (!(x >= 0 && y >= 0 && x < width_ && y < height_)) return nullptr;
-        gi::NearestTexel const* const t = texels_ + (std::size_t(y) * shadow_.grid.width + std::size_t(x));
+        gi::NearestTexel const* const t = texels_ + (std::size_t(y) * shadow_.grids[0].width + std::size_t(x));
         return t->primitive == gi::kNoPrimitive ? nullptr : t;
     }
     /// The triangle that hides the light from a point, kNoPrimitive = none.
@@ -32,9 +32,10 @@ public:
         if (t == nullptr) return gi::kNoPrimitive;
         // Beyond this, the look-up below, which allows for slopes, decides the same.
         constexpr float kFar = 12; // texels
-        float const gap = shadow_.grid.depth(p) + t->key;
+        float const gap = shadow_.grids[0].depth(p) + t->key;
         bool const is_free = triangle == gi::kNoPrimitive; // a point in space has no slope
-        if (is_free || std::abs(gap) > kFar * shadow_.grid.texel) return gap > 0 ? t->primitive : gi::kNoPrimitive;
+        if (is_free || std::abs(gap) > kFar * shadow_.grids[0].texel)
+            return gap > 0 ? t->primitive : gi::kNoPrimitive;
         gi::ShadowPlace const place = gi::shadow_detail::look(shadow_, p, normal, gi::vec2(0.5f));
         if (gi::shadow_detail::lit(shadow_, place, surfaces, p, triangle)) return gi::kNoPrimitive;
         return place.texel->primitive;
@@ -42,7 +43,7 @@ public:
     /// Share of the light that is hidden, by the four nearest texels (percentage-closer filtering, Reeves 1987).
     float hidden(gi::View<gi::Surface const> surfaces, gi::vec3 p, gi::vec3 normal, std::uint32_t triangle,
                  std::uint32_t& blocker) const;
-    gi::RasterGrid const& grid() const { return shadow_.grid; }
+    gi::RasterGrid const& grid() const { return shadow_.grids[0]; }
     std::vector<gi::NearestTexel> const& texels() const { return shadow_.maps[0].texels; }
 
 private:

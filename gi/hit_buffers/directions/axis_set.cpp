@@ -47,8 +47,15 @@ void AxisSet::build_elsewhere(std::size_t axis)
     stale_[axis] = 0;
 }
 
-void AxisSet::build(std::vector<NewAxis> const& axes)
+void AxisSet::build(std::vector<NewAxis> axes)
 {
+    std::size_t const coarse = axes.size();
+    for (std::size_t level = 1; level < levels(); ++level)
+        for (std::size_t k = 0; k < coarse; ++k) {
+            NewAxis const& a = axes[k];
+            axes.push_back({a.slot + level * axes_, level, a.direction, a.number});
+        }
+    buffers_.resize(axes_ * levels());
     BuildStop const building(source_.stop);
     std::atomic<std::size_t> bytes = 0;
     for (HitBuffer const& b : buffers_) bytes += bytes_of(b);
@@ -59,8 +66,9 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
         NewAxis const& axis = axes[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(axis.slot), axis.number);
         vec2 const jitter = rng.uniform2();
+        Bounds const& box = axis.level == 0 ? source_.bounds : source_.windows[axis.level - 1];
         RasterGrid const grid =
-            make_grid(source_.bounds, axis.direction, source_.resolution, jitter, 2 * kPi * rng.uniform());
+            make_window(box, source_.bounds, axis.direction, source_.resolution, jitter, 2 * kPi * rng.uniform());
         cut_seeds_[axis.slot] = rng.next();
         if (source_.elsewhere) {
             grids_[axis.slot] = grid;
@@ -125,11 +133,11 @@ std::size_t AxisSet::update_some_axes(std::uint32_t sequences, std::uint32_t cou
         count == 0 ? 1 : std::max(n / std::min<std::size_t>(count, n), (n + FewAxes::kMost - 1) / FewAxes::kMost));
     if (parts == 1) {
         update_axes();
-        return cut_seeds_.size();
+        return axes_;
     }
     some_ = true;
     few_.assign(sequences, {});
-    std::vector<std::uint8_t> updated(n, 0);
+    std::vector<std::uint8_t> updated(cut_seeds_.size(), 0);
     for (std::uint32_t s = 0; s < sequences; ++s) {
         // Every n-th axis: axes of a subdivided solid are ordered by location,
         // so that each part covers the whole sphere.
@@ -141,11 +149,11 @@ std::size_t AxisSet::update_some_axes(std::uint32_t sequences, std::uint32_t cou
         for (std::size_t a = order[turn % parts]; a < n; a += parts) ++few.count;
         for (std::size_t k = 0, a = order[turn % parts]; a < n; a += parts, ++k) {
             few.set(k, tables_.axes[a], tables_.solid_angles[a] * float(parts * few.count) / (2 * kPi), a);
-            updated[a] = 1;
+            for (std::size_t level = 0; level < levels(); ++level) updated[a + level * n] = 1;
         }
     }
     move(updated);
-    return std::size_t(std::ranges::count(updated, 1));
+    return std::size_t(std::ranges::count(updated, 1)) / levels();
 }
 
 void AxisSet::store(DirectionSet const& directions)
@@ -154,10 +162,10 @@ void AxisSet::store(DirectionSet const& directions)
     dquat const rotation = random_rotation(source_.seed);
     for (dvec3& a : turned.axes) a = glm::normalize(rotation * a);
     tables_ = make_cosine_tables(turned, kNormalBins);
-    buffers_.resize(turned.axes.size());
+    axes_ = std::uint32_t(turned.axes.size());
     std::vector<NewAxis> axes;
-    for (dvec3 const a : turned.axes) axes.push_back({axes.size(), vec3(a), 0});
-    build(axes);
+    for (dvec3 const a : turned.axes) axes.push_back({axes.size(), 0, vec3(a), 0});
+    build(std::move(axes));
     buffers_.clear();
     buffers_.shrink_to_fit();
 }
@@ -165,8 +173,9 @@ void AxisSet::store(DirectionSet const& directions)
 void AxisSet::refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass)
 {
     std::uint32_t const first = pass * fresh, last = first + count;
-    if (buffers_.size() != std::size_t(sequences) * count || drawn_ < first || drawn_ > last) {
-        buffers_.resize(std::size_t(sequences) * count);
+    if (axes_ != sequences * count || drawn_ < first || drawn_ > last) {
+        axes_ = sequences * count;
+        buffers_.clear();
         few_.assign(sequences, {});
         few_count_ = count;
         drawn_ = first;
@@ -179,12 +188,12 @@ void AxisSet::refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_
             RqmcStream const stream{std::uint32_t(mix_bits(source_.seed ^ (0xa8e5 + s))), number};
             vec3 const axis = half_sphere(vec2(stream.sample_together(0)));
             std::uint32_t const a = number % count;
-            axes.push_back({std::size_t(s) * count + a, axis, number});
+            axes.push_back({std::size_t(s) * count + a, 0, axis, number});
             few.set(a, axis, 1, std::size_t(s) * count + a);
         }
     }
     drawn_ = last;
-    build(axes);
+    build(std::move(axes));
 }
 
 } // namespace gi

@@ -74,6 +74,17 @@ struct AxisChoice {
     }
 };
 
+/// The slot of an axis whose grid is the finest over a point. Slots of all axes of a level follow each other, from the
+/// coarsest level to the finest. @param axes  of a level  @param grid_of  of a slot
+template <class GridOf>
+GI_FN std::uint32_t finest_slot(std::uint32_t axis, std::uint32_t axes, std::size_t levels, vec3 point,
+                                GridOf const& grid_of)
+{
+    for (auto level = std::uint32_t(levels) - 1; level > 0; --level)
+        if (std::uint32_t const slot = axis + level * axes; grid_of(slot).holds(point)) return slot;
+    return axis;
+}
+
 /// Thrown if hit buffers would exceed their memory limit.
 struct HitBuffersTooLarge {};
 
@@ -85,6 +96,7 @@ public:
     /// Input from which all axes are built.
     struct Source {
         Bounds bounds;
+        std::vector<Bounds> windows = {}; ///< with finer grids, each within the one before, see windows.h
         TriangleSoup const& soup;
         CutOuts const& cut_outs;
         std::uint32_t resolution;
@@ -92,7 +104,7 @@ public:
         bool packed;
         std::uint64_t seed;
         /// If set, this callback builds each buffer from all triangles, and rebuilds it after dynamic geometry
-        /// changes. Arguments: index of the axis, its grid, seed for the cut-outs. Called for one axis at a time.
+        /// changes. Arguments: slot of the axis, its grid, seed for the cut-outs. Called for one axis at a time.
         std::function<BuiltAxis(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
         /// Limit for all buffers together while they are built; exceeding it throws HitBuffersTooLarge.
         std::size_t most_bytes = ~std::size_t(0);
@@ -130,10 +142,19 @@ public:
     /// Makes look-ups find dynamic geometry or ignore it.
     void show_moving(bool shown) { pool_.without_moving = !shown; }
 
+    /// Returns one of first_bounce_axes() or later ones, below axes().
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
     AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
         return AxisChoice{few_, takes_few() ? CosineTablesView{} : view(tables_)}.sample(bounce, normal, u);
+    }
+    std::size_t levels() const { return 1 + source_.windows.size(); }
+    std::uint32_t axes() const { return axes_; } ///< of each level
+    /// Index in the pool of the finest grid of an axis over a point.
+    std::uint32_t slot(std::uint32_t axis, vec3 point) const
+    {
+        return finest_slot(axis, axes_, levels(), point,
+                           [this](std::uint32_t s) -> RasterGrid const& { return pool_.grids[s]; });
     }
     /// True if paths use the axes of few(), not those of tables().
     bool takes_few() const { return some_ || tables_.axes.empty(); }
@@ -144,8 +165,9 @@ public:
     std::size_t first_bounce_layers() const
     {
         std::size_t const n = first_bounce_axes();
-        return n < pool_.size() && pool_.ranges.empty() ? pool_.first_layer[n]
-                                                        : pool_.layers.size() + pool_.packed.size();
+        return n < pool_.size() && pool_.ranges.empty() && levels() == 1
+                   ? pool_.first_layer[n]
+                   : pool_.layers.size() + pool_.packed.size();
     }
     vec3 axis(std::size_t a) const { return pool_.grids[a].axis; }
     float solid_angle(std::size_t a) const
@@ -161,19 +183,21 @@ public:
 
 private:
     struct NewAxis {
-        std::size_t slot;
+        std::size_t slot, level;
         vec3 direction;
         std::uint32_t number; ///< index in the sequence; selects the offset of its grid
     };
-    void build(std::vector<NewAxis> const& axes);
+    /// The same axes in all levels. @param axes  of the coarsest
+    void build(std::vector<NewAxis> axes);
     void build_elsewhere(std::size_t axis);
     void move(std::span<std::uint8_t const> updated);
 
     Source source_;
     std::vector<HitBuffer> buffers_;
-    std::vector<std::uint32_t> cut_seeds_; ///< per axis, of CutOuts
-    std::vector<RasterGrid> grids_;        ///< per axis built by the callback `elsewhere`
-    std::vector<std::uint8_t> stale_;      ///< per axis built by the callback: 1 = outdated after motion
+    std::uint32_t axes_ = 0;               ///< of each level
+    std::vector<std::uint32_t> cut_seeds_; ///< per slot, of CutOuts
+    std::vector<RasterGrid> grids_;        ///< per slot built by the callback `elsewhere`
+    std::vector<std::uint8_t> stale_;      ///< per slot built by the callback: 1 = outdated after motion
     MovingLayers moving_;
     AxisPool pool_;
     CosineTables tables_;

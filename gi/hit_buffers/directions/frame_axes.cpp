@@ -76,6 +76,7 @@ void FrameAxes::report_work() const
 {
     double const axes = double(earlier_.built + set_->built()), layers = double(earlier_.layers + set_->layers());
     double const texels = double(source_->resolution) * source_->resolution;
+    if (walks_) report_.count("levels of hit buffers", double(set_->levels()));
     report_.count("axes built", axes);
     report_.count("layers per texel, mean", axes > 0 ? layers / axes / texels : 0);
 }

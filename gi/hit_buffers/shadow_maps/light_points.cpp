@@ -36,7 +36,7 @@ LightPoints::LightPoints(World const& world, Bounds const& bounds, TriangleSoup 
                          CutOuts const& cut_outs, LightPointSettings const& settings, DrawOnDevice elsewhere)
     : world_(world),
       settings_(settings),
-      builder_(bounds, soup, cut_outs, settings.resolution),
+      builder_(bounds, settings.windows, soup, cut_outs, settings.resolution),
       first_moving_(std::min(settings.first_moving, soup.count)),
       elsewhere_(std::move(elsewhere))
 {

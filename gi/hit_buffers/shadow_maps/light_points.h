@@ -29,6 +29,7 @@ struct LightPointSettings {
     std::uint32_t count = 1;
     std::uint32_t fresh = 1; ///< of these, points replaced in every pass
     std::uint32_t resolution = 64; ///< texels per side of a shadow map
+    std::vector<Bounds> windows{}; ///< of the maps of parallel lights, see windows.h
     std::uint64_t seed = 0;
     std::size_t first_moving = ~std::size_t(0); ///< index of the first triangle that may move
     StopRequest const* stop = nullptr;          ///< makes the constructor throw Interrupted; null = nothing does

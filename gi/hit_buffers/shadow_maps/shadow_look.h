@@ -1,5 +1,5 @@
 #pragma once
-// Shadow map look-ups on the CPU and in kernels, for any type with `parallel`, `grid`, `faces` and texels(face),
+// Shadow map look-ups on the CPU and in kernels, for any type with `parallel`, `grids`, `levels`, `faces` and texels(face),
 // like ShadowMap and ShadowMapView. shadow_map.h describes how a look-up decides.
 
 #include "gi/raster/nearest_map.h"
@@ -16,7 +16,8 @@ struct ShadowPlace {
 /// A ShadowMap that kernels can read.
 struct ShadowMapView {
     bool parallel = false;
-    RasterGrid grid;
+    int levels = 1;
+    RasterGrid grids[6];
     PerspectiveGrid faces[6];
     NearestTexel const* maps[6] = {}; ///< null = empty
 
@@ -52,12 +53,14 @@ GI_FN ShadowPlace look(Map const& map, vec3 position, vec3 normal, vec2 u)
         return cosine != 0 ? glm::clamp(glm::dot(normal, off) / cosine, -most, most) : 0.0f;
     };
     if (map.parallel) {
-        RasterGrid const& grid = map.grid;
+        auto level = std::size_t(map.levels) - 1;
+        while (level > 0 && !map.grids[level].holds(position)) --level;
+        RasterGrid const& grid = map.grids[level];
         float const x = (glm::dot(position, grid.right) - grid.corner.x) / grid.texel;
         float const y = (glm::dot(position, grid.up) - grid.corner.y) / grid.texel;
         std::uint32_t const i = pick(x, u.x, grid.width), j = pick(y, u.y, grid.height);
         float const here = grid.depth(position);
-        return {map.texels(0) + (std::size_t(j) * grid.width + i),
+        return {map.texels(level) + (std::size_t(j) * grid.width + i),
                 here + shift(position - grid.point(i, j, here), grid.axis, grid.texel), grid.texel};
     }
     vec3 const way = position - map.faces[0].eye;
@@ -92,7 +95,7 @@ GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> sur
     vec3 const normal = glm::cross(s.edge1, s.edge2);
     float const here = glm::dot(normal, position - s.corner);
     float const light_point =
-        map.parallel ? -glm::dot(normal, map.grid.axis) : glm::dot(normal, map.faces[0].eye - s.corner);
+        map.parallel ? -glm::dot(normal, map.grids[0].axis) : glm::dot(normal, map.faces[0].eye - s.corner);
     if ((here < 0) == (light_point < 0) || std::abs(here) <= s.clearance * glm::length(normal)) return true;
     if (gap > kBumps * place.side) return false;
     vec3 const own = glm::cross(surfaces[triangle].edge1, surfaces[triangle].edge2);

@@ -30,7 +30,10 @@ void ShadowMapBuilder::start(ShadowView const& view, vec2 jitter, float turn_rad
     map.parallel = view.parallel;
     for (NearestMap& m : map.maps) m.texels.clear();
     if (view.parallel) {
-        map.grid = make_grid(bounds_, -view.at, resolution_, jitter, turn_rad);
+        map.levels = int(windows_.size()) + 1;
+        map.grids[0] = make_grid(bounds_, -view.at, resolution_, jitter, turn_rad);
+        for (std::size_t k = 0; k < windows_.size(); ++k)
+            map.grids[k + 1] = make_window(windows_[k], bounds_, -view.at, resolution_, jitter, turn_rad);
         return;
     }
     float const near_m = 1e-5f * glm::max(bounds_.radius(), 1e-30f);
@@ -41,8 +44,9 @@ void ShadowMapBuilder::draw(int face, std::size_t first, std::size_t last, std::
                             ShadowMap const& map, Fragments& fragments) const
 {
     if (map.parallel) {
-        rasterize(soup_, first, last, map.grid, MacroPath::edge_table, fragments);
-        cut_outs_.remove(fragments, map.grid, seed);
+        RasterGrid const& g = map.grids[std::size_t(face)];
+        rasterize(soup_, first, last, g, MacroPath::edge_table, fragments);
+        cut_outs_.remove(fragments, g, seed);
     } else {
         PerspectiveGrid const& g = map.faces[std::size_t(face)];
         rasterize(soup_, first, last, g, fragments);
@@ -60,12 +64,12 @@ void ShadowMapBuilder::build(ShadowView const& view, int face, std::size_t last,
                              ShadowMap& map) const
 {
     PerspectiveGrid const& g = map.faces[std::size_t(face)];
-    if (view.parallel ? face != 0 : sees_only_dark(view, g)) return;
+    if (view.parallel ? face >= map.levels : sees_only_dark(view, g)) return;
     BorrowedFragments drawn;
     draw(face, 0, last, seed, map, *drawn);
     NearestMap& nearest = map.maps[std::size_t(face)];
     if (view.parallel)
-        clear(nearest, map.grid.width, map.grid.height);
+        clear(nearest, map.grids[std::size_t(face)].width, map.grids[std::size_t(face)].height);
     else
         clear(nearest, g.width, g.height);
     resolve(*drawn, key_sign(map), nearest);

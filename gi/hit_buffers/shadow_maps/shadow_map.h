@@ -1,6 +1,6 @@
 #pragma once
-// The shadow map of a light point: a cube of six pinhole views around a point,
-// or one orthographic view along a direction.
+// The shadow map of a light point: a cube of six pinhole views around a point, or orthographic views along a direction, of
+// the whole and of windows with finer texels, each within the one before.
 //
 // Look-up: the depth of the lit surface's plane is compared with the stored depth at the same texel centre, so
 // that flat and convex surfaces never shadow themselves. A surface only a few texels nearer to the light, such as
@@ -17,10 +17,11 @@
 namespace gi {
 
 struct ShadowMap {
-    bool parallel = false; ///< light comes along grid.axis; else from the faces' eye point
-    RasterGrid grid;
+    bool parallel = false; ///< light comes along grids[0].axis; else from the faces' eye point
+    int levels = 1;        ///< if parallel: grids, the finest last
+    std::array<RasterGrid, 6> grids;
     std::array<PerspectiveGrid, 6> faces;
-    std::array<NearestMap, 6> maps; ///< only [0] if parallel
+    std::array<NearestMap, 6> maps; ///< of the faces, or of the levels
 
     using Place = ShadowPlace;
     /// Null if the face is empty.
@@ -51,15 +52,16 @@ using TakenTexels = std::array<std::vector<std::pair<std::uint32_t, NearestTexel
 /// Builds shadow maps; the faces of a map are independent of each other.
 class ShadowMapBuilder {
 public:
-    /// @param bounds  of all shadow casters  @param resolution  texels per side
-    ShadowMapBuilder(Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
-                     std::uint32_t resolution)
-        : bounds_(bounds), soup_(soup), cut_outs_(cut_outs), resolution_(resolution)
+    /// @param bounds  of all shadow casters  @param windows  of parallel maps, at most 5, see windows.h
+    /// @param resolution  texels per side
+    ShadowMapBuilder(Bounds const& bounds, std::vector<Bounds> windows, TriangleSoup const& soup,
+                     CutOuts const& cut_outs, std::uint32_t resolution)
+        : bounds_(bounds), windows_(std::move(windows)), soup_(soup), cut_outs_(cut_outs), resolution_(resolution)
     {
     }
     /// Prepares all grids of a map.
     void start(ShadowView const& view, vec2 jitter, float turn_rad, ShadowMap& map) const;
-    /// Draws triangles 0..last - 1 into face 0..5; parallel maps have only face 0.
+    /// Draws triangles 0..last - 1 into face 0..5; in parallel maps, into level 0..5.
     void build(ShadowView const& view, int face, std::size_t last, std::uint32_t seed, ShadowMap& map) const;
     /// Draws the triangles from `first` on into a face that contains the earlier ones; first restores the texels
     /// in `taken`, which they overwrote at an earlier moment.
@@ -72,6 +74,7 @@ private:
               Fragments& fragments) const;
 
     Bounds bounds_;
+    std::vector<Bounds> windows_;
     TriangleSoup const& soup_;
     CutOuts const& cut_outs_;
     std::uint32_t resolution_;

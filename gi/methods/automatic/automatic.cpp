@@ -53,8 +53,8 @@ AlgorithmChoice choose_algorithm(World const& world, RenderSettings const& asked
     if (!(bvh_s > kMostForBvh * budget_of(asked))) return {{}, kRays};
     TriangleSoup const soup = make_soup(world);
     RenderSettings const chosen = choose_settings(with({SurfacesBy::look_ups, ShadowsBy::maps}, asked), world, soup);
-    double const trusted = look_up_agreement(world, soup, camera_rays(camera, asked.width, asked.height, world.origin),
-                                             std::uint32_t(chosen.of<SlhbSettings>().resolution));
+    double const trusted = look_up_agreement(
+        world, soup, camera_rays(camera, asked.width, asked.height, world.origin), chosen.of<SlhbSettings>());
     bool const look_ups = trusted >= kTrustedLookUps, bvh = narrow_somewhere(world);
     PathAlgorithm const by{look_ups ? SurfacesBy::look_ups : SurfacesBy::rays,
                            look_ups && !bvh ? ShadowsBy::maps : ShadowsBy::rays};

@@ -24,6 +24,7 @@ struct PathAlgorithm {
     SurfacesBy surfaces = SurfacesBy::rays;
     ShadowsBy shadows = ShadowsBy::rays;
     bool caches = true; ///< RadianceCaching::automatic may choose a cache
+    bool nested = true; ///< look-ups and maps have windows around the cameras (windows.h)
 
     bool only_looks_up() const { return surfaces == SurfacesBy::look_ups && shadows == ShadowsBy::maps; }
 };

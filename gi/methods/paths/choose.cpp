@@ -60,6 +60,11 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
                      : sky && asked.of<SlhbSettings>().axes == 0 ? Schedule::stored
                                                    : Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
+    // Each level costs as much as the first, and packed depths have few steps for a whole world.
+    if (s.packed || !asked.of<PathAlgorithm>().nested)
+        s.levels = 1;
+    else if (s.levels == 0 && asked.budget_s > 0)
+        s.levels = 2;
     double const pixels = double(asked.width) * asked.height;
     // Building the structures of a pass should cost only a fraction of its paths and of the budget, or there
     // would be too few paths to share them.
@@ -217,15 +222,18 @@ std::string as_options(RenderSettings const& chosen)
     SlhbSettings const& s = chosen.of<SlhbSettings>();
     PathAlgorithm const& by = chosen.of<PathAlgorithm>();
     std::vector<std::string_view> own{"roulette", "interleave"}, buffers;
+    bool const states_levels = s.levels > 0 && !s.packed && by.nested;
     if (chosen.of<PathsSettings>().cache != RadianceCaching::automatic) own.push_back("radiance-cache");
     if (by.surfaces == SurfacesBy::look_ups) {
         buffers = {"schedule", "hit-buffer", s.schedule == Schedule::stored ? "directions" : "axes"};
         if (s.schedule == Schedule::temporal) buffers.push_back("fresh-axes");
         if (s.most_layers > 0) buffers.push_back("max-layers");
         if (s.cone > 0) buffers.push_back("cone");
+        if (states_levels) buffers.push_back("levels");
         buffers.insert(buffers.end(), {"packed", "gather"});
     }
     if (by.shadows == ShadowsBy::maps) {
+        if (states_levels && by.surfaces != SurfacesBy::look_ups) buffers.push_back("levels");
         buffers.insert(buffers.end(), {"light-samples", "shadow-map"});
         if (s.fresh_light_samples < s.light_samples) buffers.push_back("fresh-light-samples");
     }
@@ -262,13 +270,14 @@ std::vector<PlanItem> explain_choices(World const& world, RenderSettings const& 
                              {"for {} triangles and {} x {} pixels",
                               {figure("triangles", world.triangles.size()), figure("width_px", asked.width),
                                figure("height_px", asked.height)}}});
-        items.push_back({"hit_buffers",
-                         {"hit buffers of {} x {} texels",
-                          {figure("width_px", s.resolution), figure("height_px", s.resolution)}},
-                         true,
-                         {"{} layers per texel, texels of {} m",
-                          {Figure{{"layers_per_texel", costs.layers}, fmt::format("{:.1f}", costs.layers)},
-                           figure("texel_m", 2 * double(world.bounds.radius()) / s.resolution, 2)}}});
+        items.push_back(
+            {"hit_buffers",
+             {"hit buffers of {} x {} texels",
+              {figure("width_px", s.resolution), figure("height_px", s.resolution)}},
+             true,
+             {"{} layers per texel, texels of {} m, finer around the cameras of a large world (--levels)",
+              {Figure{{"layers_per_texel", costs.layers}, fmt::format("{:.1f}", costs.layers)},
+               figure("texel_m", 2 * double(world.bounds.radius()) / s.resolution, 2)}}});
         Figure const most{{"most_memory_bytes", std::int64_t(s.memory_mib) << 20}, std::to_string(s.memory_mib)};
         items.push_back({"hit_buffer_memory",
                          {"at most {} MiB of hit buffers", {most}},

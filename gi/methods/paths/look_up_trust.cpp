@@ -1,6 +1,7 @@
 #include "gi/methods/paths/look_up_trust.h"
 
 #include "gi/hit_buffers/query.h"
+#include "gi/hit_buffers/windows.h"
 #include "gi/methods/paths/primary_map.h"
 #include "gi/raster/nearest_map.h"
 #include "gi/scene/shading/shading_point.h"
@@ -81,18 +82,26 @@ bool columns_agree(AxisView const& axis, View<Surface const> surfaces, WalkOrigi
     return true;
 }
 
+/// The buffer of the finest level over a point.
+HitBuffer const& finest(std::vector<HitBuffer> const& levels, vec3 point)
+{
+    std::size_t level = levels.size() - 1;
+    while (level > 0 && !levels[level].grid.holds(point)) --level;
+    return levels[level];
+}
+
 struct Agreed {
     std::size_t asked = 0, agreed = 0;
 };
 
-/// Follows all starts along one axis. @return the surfaces hit
-std::vector<Start> continue_paths(std::vector<Start> const& starts, HitBuffer const& buffer,
+/// Follows all starts along one axis. @param levels  of its buffers @return the surfaces hit
+std::vector<Start> continue_paths(std::vector<Start> const& starts, std::vector<HitBuffer> const& levels,
                                   View<Surface const> surfaces, Agreed& sums)
 {
-    AxisView const axis{{view(buffer), {}}};
-    vec3 const along = buffer.grid.axis;
+    vec3 const along = levels[0].grid.axis;
     std::vector<Start> met;
     for (Start const& s : starts) {
+        AxisView const axis{{view(finest(levels, s.position)), {}}};
         vec3 const normal = shading_detail::triangle_normal(surfaces[s.triangle]);
         float const out = glm::dot(normal, s.towards) < 0 ? -1.0f : 1.0f, side = out * glm::dot(normal, along);
         if (!(std::abs(side) > 1e-3f)) continue;
@@ -109,21 +118,30 @@ std::vector<Start> continue_paths(std::vector<Start> const& starts, HitBuffer co
 } // namespace
 
 double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRays const& camera,
-                         std::uint32_t resolution)
+                         SlhbSettings const& settings)
 {
+    auto const resolution = std::uint32_t(settings.resolution);
+    Windows windows(settings);
+    windows.follow(world.bounds, soup, {&camera, 1});
     vec3 const axes[] = {{0.36f, 0.48f, 0.8f}, {0.64f, -0.6f, 0.48f}};
-    std::array<HitBuffer, 2> buffers;
+    std::array<std::vector<HitBuffer>, 2> buffers;
     tbb::parallel_for(std::size_t(0), buffers.size(), [&](std::size_t k) {
-        buffers[k] = make_hit_buffer(soup, make_grid(world.bounds, axes[k], resolution, vec2{0.5f}, 0.5f));
+        auto const make = [&](Bounds const& box) {
+            RasterGrid const grid = make_window(box, world.bounds, axes[k], resolution, vec2{0.5f}, 0.5f);
+            buffers[k].push_back(make_hit_buffer(soup, grid));
+        };
+        make(world.bounds);
+        for (Bounds const& box : windows.boxes()) make(box);
     });
     Agreed sums;
     std::vector<Start> const seen = seen_by(camera, soup, near_plane(world.bounds));
-    std::vector<float> distances;
-    for (Start const& s : seen) distances.push_back(glm::length(s.position - camera.origin));
-    if (!distances.empty()) {
-        auto const middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
-        std::ranges::nth_element(distances, middle);
-        if (buffers[0].grid.texel > kLargeTexel * *middle) return 0;
+    std::vector<float> texels; // over distances
+    for (Start const& s : seen)
+        texels.push_back(finest(buffers[0], s.position).grid.texel / glm::length(s.position - camera.origin));
+    if (!texels.empty()) {
+        auto const middle = texels.begin() + std::ptrdiff_t(texels.size() / 2);
+        std::ranges::nth_element(texels, middle);
+        if (*middle > kLargeTexel) return 0;
     }
     std::vector<Start> const met = continue_paths(seen, buffers[0], view(world).surfaces, sums);
     continue_paths(met, buffers[1], view(world).surfaces, sums);
@@ -131,16 +149,22 @@ double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRay
 }
 
 void report_untrusted_look_ups(World const& world, TriangleSoup const& soup, CameraRays const& camera,
-                               std::uint32_t resolution, Report& report)
+                               SlhbSettings const& settings, Report& report)
 {
-    double const trusted = look_up_agreement(world, soup, camera, resolution);
+    double const trusted = look_up_agreement(world, soup, camera, settings);
     constexpr double kMisleading = 0.75; // measured: light wrong by 2 % at 0.55, by 43 % at 0
     if (trusted >= kMisleading) return;
-    float const texel_m = make_grid(world.bounds, vec3{0, 1, 0}, resolution, vec2{0.5f}, 0.5f).texel;
+    Windows windows(settings);
+    windows.follow(world.bounds, soup, {&camera, 1});
+    Bounds const& box = windows.boxes().empty() ? world.bounds : windows.boxes().back();
+    float const texel_m =
+        make_grid(box, vec3{0, 1, 0}, std::uint32_t(settings.resolution), vec2{0.5f}, 0.5f).texel;
     report.lose(
         "pictures whose look-ups are not reliable: light may be wrong by more than the estimated error; exact are "
         "--method paths, reference and auto",
-        1, fmt::format("{:.0f} % of look-ups can be trusted, texels are {:.2g} m wide", 100 * trusted, texel_m));
+        1,
+        fmt::format("{:.0f} % of look-ups can be trusted, texels are {:.2g} m wide around the camera",
+                    100 * trusted, texel_m));
 }
 
 } // namespace gi

@@ -20,10 +20,11 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     bool const rays = chosen.of<PathAlgorithm>().surfaces == SurfacesBy::rays;
     if (!rays && !camera.orthographic)
         report_untrusted_look_ups(world, soup, camera_rays(camera, settings.width, settings.height, world.origin),
-                                  std::uint32_t(chosen.of<SlhbSettings>().resolution), report);
+                                  chosen.of<SlhbSettings>(), report);
     FrameView const eye{camera, settings.width, settings.height};
     PathsRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
                            rays ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);
+    options += renderer.level_option();
     renderer.find_lamp_caustics();
     std::uint64_t const print =
         loop.keeps_state() ? fingerprint(world, camera, chosen, name, options + lamp_light_version(world)) : 0;

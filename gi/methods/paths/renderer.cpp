@@ -28,14 +28,14 @@ std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n);
 } // namespace
 
 PathsRenderer::PathsRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
-                           TriangleSoup soup, std::size_t first_moving, Report& report,
-                           FirstSurfaces first_surfaces, StopRequest const* stop)
+                             TriangleSoup soup, std::size_t first_moving, Report& report,
+                             FirstSurfaces first_surfaces, StopRequest const* stop)
     : world_(world),
       settings_(settings),
       first_surfaces_(first_surfaces),
       stop_(stop),
       report_(report),
-      traced_(world, std::move(soup), first_moving),
+      traced_(world, std::move(soup), first_moving, slhb_),
       axes_(slhb_, report),
       paths_(world, settings_, report)
 {
@@ -70,6 +70,7 @@ bool PathsRenderer::walks() const
 void PathsRenderer::make_axes()
 {
     axes_.make({.bounds = traced_.grid_bounds,
+                .windows = traced_.windows.boxes(),
                 .soup = traced_.soup,
                 .cut_outs = traced_.cut_outs,
                 .resolution = texels(slhb_.exact.queries, slhb_.resolution),
@@ -89,6 +90,7 @@ void PathsRenderer::make_light_points()
                           LightPointSettings{.count = std::uint32_t(shadow_maps_ ? slhb_.light_samples : 0),
                                              .fresh = std::uint32_t(slhb_.fresh_light_samples),
                                              .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
+                                             .windows = traced_.windows.boxes(),
                                              .seed = settings_.seed,
                                              .first_moving = traced_.first_moving,
                                              .stop = stop_});
@@ -117,6 +119,7 @@ void PathsRenderer::world_moved(bool geometry, bool lights)
         if (!traced_.outgrown(world_, slhb_.schedule, report_)) {
             axes_.set().moved();
         } else {
+            traced_.place_windows(views_);
             make_axes();
             lights = true; // the maps of parallel lights depend on the same bounds
         }
@@ -163,6 +166,11 @@ void PathsRenderer::see(std::span<FrameView const> views)
         fit_primary(v, known);
     }
     if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
+    bool const looks_up = by_.surfaces == SurfacesBy::look_ups || by_.shadows == ShadowsBy::maps;
+    if (looks_up && traced_.place_windows(views_) && light_points_) {
+        make_axes();
+        make_light_points();
+    }
 }
 
 std::optional<PathsRenderer::Before> PathsRenderer::before(bool teaches) const

@@ -81,6 +81,8 @@ public:
     double indirect_share() const { return paths_.indirect_share(); }
     /// Number of look-ups and exact rays so far.
     double rays() const { return paths_.rays(); }
+    /// See Windows::option().
+    std::string level_option() const { return traced_.windows.option(); }
     /// Number of layers beyond a texel's limit, so far.
     std::uint64_t lost_layers() const { return axes_.lost(); }
     /// Number of notes for which the radiance cache had no room, so far.

@@ -4,6 +4,7 @@
 
 #include "gi/hit_buffers/directions/grid_bounds.h"
 #include "gi/hit_buffers/settings.h"
+#include "gi/hit_buffers/windows.h"
 #include "gi/methods/paths/motion.h"
 #include "gi/raster/cut_outs.h"
 #include "gi/render/frame_renderer.h"
@@ -11,11 +12,12 @@
 namespace gi {
 
 struct TracedWorld {
-    TracedWorld(World const& world, TriangleSoup triangles, std::size_t first)
+    TracedWorld(World const& world, TriangleSoup triangles, std::size_t first, SlhbSettings const& settings)
         : first_moving(first),
           soup(std::move(triangles)),
           cut_outs(world),
-          grid_bounds(gi::grid_bounds(world, soup, first))
+          grid_bounds(gi::grid_bounds(world, soup, first)),
+          windows(settings)
     {
     }
 
@@ -33,12 +35,21 @@ struct TracedWorld {
             report.lose("frames outside the bounds of the hit buffers, which were rebuilt");
         return true;
     }
+    /// Follows the cameras of views, see Windows::follow.
+    template <class Views>
+    bool place_windows(Views const& views)
+    {
+        std::vector<CameraRays> cameras;
+        for (auto const& v : views) cameras.push_back(v.rays);
+        return windows.follow(grid_bounds, soup, cameras);
+    }
     void end_frame() { earlier = {first_moving, {}}; }
 
     std::size_t first_moving; ///< index of the first dynamic triangle
     TriangleSoup soup;
     CutOuts cut_outs;
     Bounds grid_bounds; ///< of the hit buffers
+    Windows windows;
     EarlierCorners earlier;
 };
 

@@ -172,17 +172,18 @@ bool PathsTracer::scatter_along_axis(Pass const& pass, State& s, Leaving const& 
     ShadingPoint const& at = from.at;
     AxisSample const a = choose_axis(pass, s, at);
     s.direction = a.direction;
-    next.axis = a.axis;
+    next.axis = pass.axes.slot(a.axis, at.position);
     if (!scatter_along(s, at, from.wo, from.narrow, a, world_.surfaces[s.triangle], s.triangle,
                        pass.axes.axis(a.axis), next.origin))
         return false;
     if (cone_ > 0) {
         float const side = glm::dot(s.direction, at.geometric_normal);
-        RasterGrid const& grid = pass.axes.pool().grids[a.axis];
+        RasterGrid const& grid = pass.axes.pool().grids[next.axis];
         vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(PathDimension::cone)));
         vec3 const shift = off.x * grid.right + off.y * grid.up;
         // Moved along the axis to stay on the surface's plane.
         next.origin.position += shift - (glm::dot(at.geometric_normal, shift) / side) * s.direction;
+        next.axis = pass.axes.slot(a.axis, next.origin.position);
     }
     return true;
 }

@@ -27,16 +27,24 @@ bool says_maps(RenderSettings const& asked)
     return s.light_samples > 0 || s.fresh_light_samples > 0 || s.shadow_resolution > 0 || s.exact.any();
 }
 
+/// One grid for the whole world, as it was.
+RenderSettings of_one_level(RenderSettings settings)
+{
+    settings.of<SlhbSettings>().levels = 1;
+    return settings;
+}
+
 PathAlgorithm algorithm_of(RenderSettings const& asked, World const& world, Camera const& camera, RenderUse use)
 {
     FormerSlhbSettings const& former = asked.of<FormerSlhbSettings>();
     PathAlgorithm by;
+    by.nested = false;
     if (former.look_ups != FormerLookUps::automatic)
         by.surfaces = former.look_ups == FormerLookUps::all ? SurfacesBy::look_ups : SurfacesBy::rays;
     else if (has_look_up_options(asked))
         by.surfaces = SurfacesBy::look_ups;
     else
-        by = choose_algorithm(world, asked, camera, use).algorithm;
+        by.surfaces = choose_algorithm(world, of_one_level(asked), camera, use).algorithm.surfaces;
     bool const bvh = narrow_somewhere(world) || by.surfaces == SurfacesBy::rays;
     bool const maps = says_maps(asked) || has_look_up_options(asked) || !bvh;
     by.shadows = former.shadows == FormerShadows::maps   ? ShadowsBy::maps
@@ -89,7 +97,7 @@ RenderResult render_slhb_0_1(World const& world, Camera const& camera, RenderSet
     if (settings.space == Space::device) {
         check_device_options(settings);
         lose_lamp_caustics(world, report);
-        return render_by_kernels(Space::device, world, camera, settings, stop, progress, report);
+        return render_by_kernels(Space::device, world, camera, of_one_level(settings), stop, progress, report);
     }
     PathAlgorithm const by = algorithm_of(settings, world, camera, RenderUse::picture);
     return render_by("slhb_0_1", world, camera, with(by, settings), stop, progress, report);
@@ -100,7 +108,7 @@ std::unique_ptr<FrameRenderer> start_slhb_0_1_frames(MovingWorld const& world, C
 {
     if (settings.space == Space::device) {
         check_device_options(settings);
-        return start_kernel_frames(Space::device, world, camera, settings, report);
+        return start_kernel_frames(Space::device, world, camera, of_one_level(settings), report);
     }
     PathAlgorithm const by = algorithm_of(settings, world.world(), camera, RenderUse::frames);
     return start_frames_by(world, camera, with(by, settings), report);

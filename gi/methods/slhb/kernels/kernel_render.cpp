@@ -16,9 +16,9 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     TriangleSoup soup = make_soup(world);
     RenderSettings chosen = choose_settings(with(kSlhb, settings), world, soup);
     KernelRenderer<S>::limit(chosen);
-    std::string const options = as_options(chosen);
     FrameView const eye{camera, settings.width, settings.height};
     KernelRenderer<S> renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report);
+    std::string const options = as_options(chosen) + renderer.level_option();
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb by kernels", options) : 0;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         renderer.passes(loop.next_path(), paths, {&sums, 1}, &stop);

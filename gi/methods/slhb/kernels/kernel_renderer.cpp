@@ -37,7 +37,7 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
     : world_(world),
       settings_(settings),
       report_(report),
-      traced_(world, std::move(soup), first_moving),
+      traced_(world, std::move(soup), first_moving, slhb_),
       scene_(world, traced_.soup, traced_.cut_outs, std::uint32_t(slhb_.most_layers)),
       axes_(slhb_, report)
 {
@@ -61,10 +61,12 @@ void KernelRenderer<S>::build_exact()
 template <Space S>
 void KernelRenderer<S>::make_axes()
 {
+    scene_.forget_axes();
     auto const build = [this](std::size_t a, RasterGrid const& grid, std::uint32_t seed) {
         return scene_.build_axis(a, grid, seed);
     };
     axes_.make({.bounds = traced_.grid_bounds,
+                .windows = traced_.windows.boxes(),
                 .soup = traced_.soup,
                 .cut_outs = traced_.cut_outs,
                 .resolution = std::uint32_t(slhb_.resolution),
@@ -85,6 +87,7 @@ void KernelRenderer<S>::make_light_points()
                           LightPointSettings{.count = std::uint32_t(slhb_.light_samples),
                                              .fresh = std::uint32_t(slhb_.fresh_light_samples),
                                              .resolution = std::uint32_t(slhb_.shadow_resolution),
+                                             .windows = traced_.windows.boxes(),
                                              .seed = settings_.seed,
                                              .first_moving = traced_.first_moving},
                           [this](LightPoints::DeviceDraw const& now) { scene_.draw_light_points(now); });
@@ -101,8 +104,10 @@ void KernelRenderer<S>::changed(Changes const& c)
     if (c.materials || c.coverage) build_exact();
     bool axes = axes_.walks() != walks(), light_points = changes_lights(c);
     if (c.geometry) {
-        if (traced_.outgrown(world_, slhb_.schedule, report_))
+        if (traced_.outgrown(world_, slhb_.schedule, report_)) {
+            traced_.place_windows(views_);
             axes = light_points = true; // the maps of parallel lights depend on the same bounds
+        }
         axes_.set().moved();
         light_points_->moved();
     }
@@ -130,6 +135,10 @@ void KernelRenderer<S>::see(std::span<FrameView const> views)
         if (std::ranges::equal(v.hides, now.hidden)) continue;
         v.hides.assign(now.hidden.begin(), now.hidden.end());
         v.hidden = upload<S>(v.hides);
+    }
+    if (traced_.place_windows(views_) && light_points_) {
+        make_axes();
+        make_light_points();
     }
 }
 

@@ -49,6 +49,8 @@ public:
     /// Empty: no light is reused from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
     double rays() const { return double(queries_ + exact_rays_ + shadow_lookups_); }
+    /// See Windows::option().
+    std::string level_option() const { return traced_.windows.option(); }
     std::uint64_t lost_layers() const { return axes_.lost(); }
     void report_work() const;
 

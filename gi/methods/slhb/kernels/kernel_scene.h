@@ -51,6 +51,9 @@ public:
         return {axes_[a].layers.size(), axes_[a].lost};
     }
 
+    /// Those that are built from now on may be fewer.
+    void forget_axes() { axes_.clear(); }
+
     void draw_light_points(LightPoints::DeviceDraw const& now)
     {
         maps_.resize(now.light_points.size());
@@ -58,10 +61,10 @@ public:
             LightPoint const& light_point = now.light_points[k];
             for (std::size_t f = 0; f < 6; ++f) {
                 bool const empty = light_point.view.parallel
-                                       ? f > 0
+                                       ? int(f) >= light_point.shadow.levels
                                        : sees_only_dark(light_point.view, light_point.shadow.faces[f]);
                 maps_[k][f] = empty                       ? Buffer<NearestTexel, S>()
-                              : light_point.view.parallel ? draw(light_point.shadow.grid, now.seed)
+                              : light_point.view.parallel ? draw(light_point.shadow.grids[f], now.seed)
                                                           : draw(light_point.shadow.faces[f], now.seed);
             }
         }
@@ -72,8 +75,9 @@ public:
             views[k].u = light_point.u;
             ShadowMapView& shadow = views[k].shadow;
             shadow.parallel = light_point.view.parallel;
-            shadow.grid = light_point.shadow.grid;
+            shadow.levels = light_point.shadow.levels;
             for (std::size_t f = 0; f < 6; ++f) {
+                shadow.grids[f] = light_point.shadow.grids[f];
                 shadow.faces[f] = light_point.shadow.faces[f];
                 shadow.maps[f] = std::as_const(maps_[k][f]).view().data;
             }
@@ -98,8 +102,10 @@ public:
     void start_pass(AxisSet const& axes, AliasTableView chances)
     {
         std::vector<AxisView> views;
-        for (HitBufferOn<S> const& b : axes_) views.push_back({{b.view(), {}}});
+        std::size_t const slots = std::min(axes_.size(), axes.axes() * axes.levels()); // there may be earlier ones
+        for (std::size_t k = 0; k < slots; ++k) views.push_back({{axes_[k].view(), {}}});
         axis_views_ = upload<S>(views);
+        axes_of_level_ = axes.axes();
         few_ = upload<S>(axes.few());
         if (tables_.size() != axes.tables().entries.size()) { // stored schedule, once only
             tables_ = upload<S>(axes.tables().entries);
@@ -123,6 +129,7 @@ public:
         Buffer<PathKernelCounts, S> counts = upload<S>(std::vector<PathKernelCounts>(kCounts));
         paths.world = world_.view();
         paths.axes = std::as_const(axis_views_).view();
+        paths.axes_of_level = axes_of_level_;
         paths.choice = choice_;
         paths.light_points = std::as_const(light_points_).view();
         paths.chances = {std::as_const(chances_).view()};
@@ -216,6 +223,7 @@ private:
     std::optional<WorldBvh<S>> bvh_; ///< none if no lobe needs exact rays
     std::vector<HitBufferOn<S>> axes_;
     Buffer<AxisView, S> axis_views_;
+    std::uint32_t axes_of_level_ = 0;
     Buffer<FewAxes, S> few_;
     Buffer<AliasEntry, S> tables_, chances_;
     Buffer<vec3, S> directions_;

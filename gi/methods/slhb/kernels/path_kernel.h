@@ -63,7 +63,8 @@ struct PassOfPaths {
     View<std::uint8_t const> hidden;  ///< per pixel: 1 = hidden, nothing is traced; empty = none hidden
     vec2 place;                       ///< subpixel position, the same for all pixels
     std::uint32_t width;
-    View<AxisView const> axes;
+    View<AxisView const> axes; ///< of all levels, see finest_slot()
+    std::uint32_t axes_of_level;
     AxisChoice choice;
     View<LightPointView const> light_points;
     AliasTableView chances; ///< of the light points; empty = equal

@@ -92,7 +92,9 @@ GI_FN bool StepPaths<by_rays>::scatter_by_look_up(State& s, ShadingPoint const& 
         return false;
     AxisSample const a =
         choice.sample(std::uint32_t(s.scatterings), at.frame.normal, s.number(PathDimension::axis));
-    AxisView const& along = axes[a.axis];
+    AxisView const& along =
+        axes[finest_slot(a.axis, axes_of_level, axes.size() / axes_of_level, at.position,
+                         [this](std::uint32_t k) -> RasterGrid const& { return axes[k].grid(); })];
     WalkOrigin origin;
     if (!scatter_along(s, at, wo, narrow, a, world.surfaces[s.triangle], s.triangle, along.grid().axis, origin))
         return false;
