@@ -4,7 +4,7 @@
 //   fc = min_cutoff + beta |v|,  tau = 1 / (2 pi fc),  alpha = dt / (dt + tau),  y += alpha (x - y).
 // Here v comes from successive inputs and not, as in the paper's listing, from input and last output:
 // it then is that of the motion and can be used to predict; its own cutoff rises likewise,
-// so that noise at rest is not extrapolated.
+// so that noise at rest is not extrapolated. What is within 1e-5 (m, rad, and of their velocities a second) of its end has reached it.
 
 #include "gi/core/math.h"
 

@@ -47,36 +47,6 @@ void expect_same(gi::dmat4 const& a, gi::dmat4 const& b, double most)
         for (int r = 0; r < 4; ++r) EXPECT_NEAR(a[c][r], b[c][r], most) << c << ", " << r;
 }
 
-/// What is too small to see is no motion, what adds up is.
-TEST(Viewpoint, HoldsMotionThatNobodySees)
-{
-    Viewpoint const last = walking(0);
-    auto const after = [&](double t) {
-        Viewpoint now = walking(t);
-        now.world_from_room = last.world_from_room;
-        hold_unseen_motion(last, now);
-        return now;
-    };
-    Viewpoint const unseen = after(1e-6);
-    EXPECT_TRUE(same_cameras(unseen.views, last.views));
-    EXPECT_EQ(unseen.tracked, last.tracked);
-    EXPECT_EQ(unseen.others, last.others);
-    Viewpoint const seen = after(1e-4);
-    EXPECT_TRUE(same_cameras(seen.views, walking(1e-4).views));
-    EXPECT_EQ(seen.tracked, walking(1e-4).tracked);
-    EXPECT_EQ(seen.others, walking(1e-4).others);
-
-    Viewpoint wall = last, zoomed = last;
-    wall.views[0].camera.off_axis = gi::ViewTangents{-1, 1, -1, 1};
-    Viewpoint edge = wall;
-    edge.views[0].camera.off_axis->top += 1e-4;
-    hold_unseen_motion(wall, edge);
-    EXPECT_FALSE(same_cameras(wall.views, edge.views));
-    zoomed.views[0].camera.yfov_rad += 1e-7;
-    hold_unseen_motion(last, zoomed);
-    EXPECT_FALSE(same_cameras(last.views, zoomed.views)) << "no motion: it was set";
-}
-
 TEST(Anticipation, ConstantVelocityIsExact)
 {
     Anticipation a;

@@ -49,6 +49,24 @@ TEST(OneEuro, LagOfAConstantMotionIsTau)
     EXPECT_NEAR(p.lag_s, 1 / (2 * 3.14159265358979 * (1.5 + 4 * 1.3)), 1e-6);
 }
 
+/// What stands has an end, to the last bit: pictures refine from then on.
+TEST(OneEuro, ArrivesWhereABodyStands)
+{
+    gi::OneEuroSettings const s{1, 5, 1, 0.3, 16};
+    gi::dvec3 const to{0.15, -0.02, 1e-3};
+    gi::dquat const turned = gi::exp_rotation({0.2, 0, -0.1});
+    gi::OneEuroPosition p = gi::start(gi::dvec3(0));
+    gi::OneEuroRotation r = gi::start(gi::dquat(1, 0, 0, 0));
+    for (int n = 0; n < 400; ++n) { // 8 s
+        p = step(s, p, to, 0.02);
+        r = step(s, r, turned, 0.02);
+    }
+    EXPECT_EQ(p.value, to);
+    EXPECT_EQ(p.velocity, gi::dvec3{0});
+    EXPECT_EQ(r.value, turned);
+    EXPECT_EQ(r.velocity, gi::dvec3{0});
+}
+
 TEST(OneEuro, RestIsQuietAndMotionIsQuick)
 {
     gi::OneEuroSettings const s{1, 4, 1, 1, 6};

@@ -118,7 +118,6 @@ void LiveRenderer::look(Viewpoint viewpoint)
     bool moved = false;
     {
         std::lock_guard const lock(mutex_);
-        hold_unseen_motion(viewpoint_, viewpoint);
         moved = !same_cameras(viewpoint.views, viewpoint_.views) || !(viewpoint.tracked == viewpoint_.tracked) ||
                 viewpoint.others != viewpoint_.others || !same_sizes(viewpoint.views, viewpoint_.views);
         anticipation_.see(viewpoint);

@@ -53,49 +53,7 @@ void move_on(gi::Camera const& a, gi::Camera& b, double t)
     if (moved.left < moved.right && moved.bottom < moved.top) b.off_axis = moved;
 }
 
-constexpr double kUnseen = 1e-5; // m, rad, tangents
-
-bool nearly(gi::dvec3 a, gi::dvec3 b) { return glm::length(a - b) < kUnseen; }
-
-void hold(gi::RigidPose const& last, gi::RigidPose& now)
-{
-    double const turned_rad = glm::length(gi::log_rotation(glm::inverse(last.rotation) * now.rotation));
-    if (nearly(last.position, now.position) && turned_rad < kUnseen) now = last;
-}
-
-void hold(Tracked const& last, Tracked& now)
-{
-    for (auto const body : kBodyMembers)
-        if (last.*body && now.*body) hold(*(last.*body), *(now.*body));
-}
-
-void hold(gi::Camera const& last, gi::Camera& now)
-{
-    gi::Camera moved = last; // equals `now` if nothing but the pose and the edges differ
-    moved.world_from_camera = now.world_from_camera;
-    moved.off_axis = now.off_axis;
-    if (!(moved == now) || last.off_axis.has_value() != now.off_axis.has_value()) return;
-    for (int c = 0; c < 4; ++c)
-        if (!nearly(gi::dvec3(last.world_from_camera[c]), gi::dvec3(now.world_from_camera[c]))) return;
-    if (last.off_axis) {
-        gi::ViewTangents const &a = *last.off_axis, &b = *now.off_axis;
-        if (!nearly({a.left, a.right, a.bottom}, {b.left, b.right, b.bottom}) ||
-            !(std::abs(a.top - b.top) < kUnseen))
-            return;
-    }
-    now = last;
-}
-
 } // namespace
-
-void hold_unseen_motion(Viewpoint const& last, Viewpoint& now)
-{
-    hold(last.tracked, now.tracked);
-    if (last.others.size() == now.others.size())
-        for (std::size_t k = 0; k < now.others.size(); ++k) hold(last.others[k], now.others[k]);
-    if (last.views.size() == now.views.size())
-        for (std::size_t k = 0; k < now.views.size(); ++k) hold(last.views[k].camera, now.views[k].camera);
-}
 
 bool same_cameras(std::vector<ViewCommand> const& a, std::vector<ViewCommand> const& b)
 {

@@ -25,10 +25,6 @@ struct Viewpoint {
 
 bool same_cameras(std::vector<ViewCommand> const& a, std::vector<ViewCommand> const& b);
 
-/// Leaves where they were in `last` all views and bodies that have moved by less than a picture shows, 1e-5 m and
-/// 1e-5 rad, so that pictures refine although filters of trackers come to rest ever more slowly.
-void hold_unseen_motion(Viewpoint const& last, Viewpoint& now);
-
 /// Predicts viewpoints at constant linear and angular velocity, as a picture is seen while the next one is made:
 /// by then its viewer has moved on.
 class Anticipation {
