@@ -38,6 +38,7 @@ bool LslLibrary::load()
     find(get_nominal_srate, "lsl_get_nominal_srate");
     find(create_outlet, "lsl_create_outlet");
     find(destroy_outlet, "lsl_destroy_outlet");
+    find(have_consumers, "lsl_have_consumers");
     find(push_sample_strt, "lsl_push_sample_strt");
     find(resolve_byprop, "lsl_resolve_byprop");
     find(create_inlet, "lsl_create_inlet");

@@ -28,6 +28,7 @@ struct LslLibrary {
     double (*get_nominal_srate)(Info) = nullptr;
     void* (*create_outlet)(Info, int chunk_size, int max_buffered) = nullptr;
     void (*destroy_outlet)(void*) = nullptr;
+    int (*have_consumers)(void* outlet) = nullptr;
     int (*push_sample_strt)(void* outlet, char const** sample, double time_s) = nullptr;
     int (*resolve_byprop)(Info* found, std::uint32_t most, char const* property, char const* value,
                           std::int32_t least, double timeout_s) = nullptr;

@@ -5,10 +5,12 @@
 
 #include <arpa/inet.h>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <thread>
 #include <unistd.h>
 
 namespace viewer {
@@ -43,7 +45,11 @@ struct Markers::Stream {
     }
     ~Stream()
     {
-        if (outlet != nullptr) lsl->destroy_outlet(outlet);
+        if (outlet != nullptr) {
+            // liblsl drops what it has not sent yet, and does not tell when it has.
+            if (lsl->have_consumers(outlet) != 0) std::this_thread::sleep_for(std::chrono::milliseconds(500));
+            lsl->destroy_outlet(outlet);
+        }
         if (info != nullptr) lsl->destroy_streaminfo(info);
     }
 };
