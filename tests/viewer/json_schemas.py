@@ -55,7 +55,7 @@ CALLS = [
     Call("bench rays --scene cornell --directions icosahedron:80 --hit-buffer 64 --repeats 2 --json --out rays", "bench_table"),
     Call("bench accuracy --scene cornell --directions icosahedron:80 --hit-buffers 32 --seeds 2 --paths 8 --direction-paths 8 "
          f"{BENCH} accuracy", "bench_table"),
-    Call("bench thesis --size 16 --paths 2 --most-triangles 2000 --reference-paths 8 --json --out thesis", "bench_table"),
+    Call("bench thesis --tables 6.1,6.5 --size 16 --paths 2 --most-triangles 2000 --reference-paths 8 --json --out thesis", "bench_table"),
     Call(f"bench views --scene cornell --frames 8 {BENCH} views", "bench_table"),
     Call("bench schedules --schedules stored/16 --set directions=icosahedron:80 --set resolution=32 --paths 1 --frames 8 --judged 1 "
          f"{BENCH} schedules", "bench_table"),
