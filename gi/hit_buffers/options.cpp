@@ -15,7 +15,7 @@ using S = SlhbSettings;
 using Methods = std::vector<std::string_view>;
 
 /// Methods that read options of both look-ups and shadow maps, of look-ups alone,
-/// of shadow maps alone, and of stored axes alone; slhb_0_1 has no levels.
+/// of shadow maps alone, and of stored axes alone; slhb_0_1 has no levels and no exact rays for doubts.
 Methods const kBoth{"slhb", "slhb_shadow_rays", "paths_shadow_maps", "slhb_0_1"},
     kLevels{"slhb", "slhb_shadow_rays", "paths_shadow_maps"}, kLookUps{"slhb", "slhb_shadow_rays", "slhb_0_1"},
     kMaps{"slhb", "paths_shadow_maps", "slhb_0_1"};
@@ -89,6 +89,10 @@ RenderOptionTable make_table()
                "as costly as the first; 1: one for the whole world; default: as the world's size needs, 2 with a\n"
                "--budget, 1 with --packed and orthographic cameras",
                &S::levels, kLevels),
+        option("confirm", {"auto", "on", "off"},
+               "where the four texels around a look-up, or around a test by a shadow map, disagree, an exact ray\n"
+               "decides; auto: on, unless the rays' tree would take more than a fifth of a --budget",
+               &S::confirm, kLevels),
         option("memory", {0, 1 << 24},
                "MiB for hit buffers, and as much for shadow maps; they get fewer texels if it is not enough\n"
                "(default: a quarter of the machine's memory)",

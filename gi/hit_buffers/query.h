@@ -20,6 +20,9 @@
 // edge or beyond a wall, the first centre may see different geometry). If none is accepted, the hit of the first
 // column with an own layer is used; if none has an own layer, the first face towards the walk from the origin's
 // depth on, in the nearest column.
+//
+// A result is doubtful if the nearest column was not accepted, or if another of the four gives another surface: then
+// an edge lies near the line from the origin, and which side of it the line passes is not known.
 
 #include "gi/hit_buffers/hit_buffer.h"
 
@@ -56,6 +59,9 @@ GI_FN inline float own_margin(RasterGrid const& grid, float slope) { return grid
 /// Distance, in texels, at which a walk may pass a triangle hit from behind. Chosen by measurement: about as many
 /// true back-face hits are missed as false ones are accepted.
 inline constexpr float kBackReach = 0.25f;
+
+/// How far surfaces hit in different columns may lie from one plane, texels; farther apart, they are different ones.
+inline constexpr float kSameSurface = 0.25f;
 
 /// Hits nearer than this, m, are checked to face the origin.
 GI_FN inline float near_gap(RasterGrid const& grid) { return 4 * grid.texel; }
@@ -168,48 +174,104 @@ GI_FN inline bool can_be_hit(Surface const& s, std::uint32_t primitive, WalkOrig
     return side < -far_enough && covers(s, o.position, grid, kBackReach * grid.texel);
 }
 
+/// True if the first hit of a column can be one of the look-up.
+GI_FN inline bool accepts(Column const& c, View<Surface const> surfaces, WalkOrigin const& o,
+                          RasterGrid const& grid)
+{
+    if (!c.own) return false;
+    if (c.hit == kNoLayerHit || (c.gap >= near_gap(grid) && !is_back(c.hit, o))) return true;
+    return can_be_hit(surfaces[c.hit & kPrimitiveMask], c.hit, o, grid);
+}
+
+/// The four texels around a point: the nearest centre's; then the neighbour across the nearer border, the other
+/// neighbour, and the diagonal one. Beyond the grid's border, the last one again.
+struct TexelsAround {
+    std::uint32_t i[2], j[2];
+    bool nearer_in_x;
+
+    GI_FN TexelsAround(RasterGrid const& grid, vec3 position)
+    {
+        float const x = (glm::dot(position, grid.right) - grid.corner.x) / grid.texel;
+        float const y = (glm::dot(position, grid.up) - grid.corner.y) / grid.texel;
+        auto const held = [](float v, std::uint32_t count) {
+            return v > 0 ? glm::min(std::uint32_t(v), count - 1) : 0u;
+        };
+        auto const other = [](std::uint32_t k, float at, std::uint32_t count) {
+            if (at - float(k) < 0.5f) return k > 0 ? k - 1 : k;
+            return k + 1 < count ? k + 1 : k;
+        };
+        i[0] = held(x, grid.width);
+        j[0] = held(y, grid.height);
+        i[1] = other(i[0], x, grid.width);
+        j[1] = other(j[0], y, grid.height);
+        nearer_in_x = std::abs(x - float(i[0]) - 0.5f) > std::abs(y - float(j[0]) - 0.5f);
+    }
+    GI_FN std::uint32_t column(int attempt) const
+    {
+        return i[attempt == 3 || (attempt == 1) == nearer_in_x ? int(attempt > 0) : 0];
+    }
+    GI_FN std::uint32_t row(int attempt) const
+    {
+        return j[attempt == 3 || (attempt == 2) == nearer_in_x ? int(attempt > 0) : 0];
+    }
+};
+
+/// True if two columns found different surfaces, for another reason than that the nearer one is partly transparent:
+/// whether it is in a column is drawn by lot.
+GI_FN inline bool are_different(View<Surface const> surfaces, WalkOrigin const& o, RasterGrid const& grid,
+                                LayerHit const& a, LayerHit const& b)
+{
+    if (a.triangle == b.triangle) return false;
+    auto const is_cut = [&](LayerHit const& h) { return surfaces[h.triangle].is(Surface::kCut); };
+    if (a.triangle == kNoLayerHit) return !is_cut(b);
+    if (b.triangle == kNoLayerHit) return !is_cut(a);
+    Surface const& s = surfaces[a.triangle];
+    vec3 const normal = glm::cross(s.edge1, s.edge2), off = b.position - a.position;
+    if (std::abs(glm::dot(normal, off)) <= kSameSurface * grid.texel * glm::length(normal)) return false;
+    return !is_cut((glm::dot(off, grid.axis) < 0) == o.up ? b : a);
+}
+
 } // namespace query_detail
 
 GI_FN inline LayerHit nearest_layer(AxisView const& axis, View<Surface const> surfaces, WalkOrigin const& o)
 {
     using namespace query_detail;
     RasterGrid const& grid = axis.grid();
-    float const x = (glm::dot(o.position, grid.right) - grid.corner.x) / grid.texel;
-    float const y = (glm::dot(o.position, grid.up) - grid.corner.y) / grid.texel;
-    auto const held = [](float v, std::uint32_t count) {
-        return v > 0 ? glm::min(std::uint32_t(v), count - 1) : 0u;
-    };
-    auto const other = [](std::uint32_t i, float at, std::uint32_t count) {
-        if (at - float(i) < 0.5f) return i > 0 ? i - 1 : i;
-        return i + 1 < count ? i + 1 : i;
-    };
-    std::uint32_t const i[2] = {held(x, grid.width), other(held(x, grid.width), x, grid.width)};
-    std::uint32_t const j[2] = {held(y, grid.height), other(held(y, grid.height), y, grid.height)};
-    bool const nearer_in_x = std::abs(x - float(i[0]) - 0.5f) > std::abs(y - float(j[0]) - 0.5f);
-
+    TexelsAround const around(grid, o.position);
     Column first;
-    std::uint32_t first_i = i[0], first_j = j[0];
+    std::uint32_t first_i = around.i[0], first_j = around.j[0];
     for (int attempt = 0; attempt < 4; ++attempt) {
-        // The nearest centre; then the neighbour across the nearer border,
-        // the other neighbour, and the diagonal one.
-        int const to_x = attempt == 3 || (attempt == 1) == nearer_in_x ? int(attempt > 0) : 0;
-        int const to_y = attempt == 3 || (attempt == 2) == nearer_in_x ? int(attempt > 0) : 0;
-        std::uint32_t const ti = i[to_x], tj = j[to_y];
-        Column const c = look_into(axis, std::size_t(tj) * grid.width + ti, o);
+        std::uint32_t const i = around.column(attempt), j = around.row(attempt);
+        Column const c = look_into(axis, std::size_t(j) * grid.width + i, o);
         if (attempt == 0 || (!first.own && c.own)) {
             first = c;
-            first_i = ti;
-            first_j = tj;
+            first_i = i;
+            first_j = j;
         }
-        if (!c.own) continue;
+        if (!accepts(c, surfaces, o, grid)) continue;
         if (c.hit == kNoLayerHit) return {};
-        std::uint32_t const triangle = c.hit & kPrimitiveMask;
-        bool const doubtful = c.gap < near_gap(grid) || is_back(c.hit, o);
-        if (doubtful && !can_be_hit(surfaces[triangle], c.hit, o, grid)) continue;
-        return {triangle, grid.point(ti, tj, c.depth), (c.hit & kAlongAxis) != 0};
+        return {c.hit & kPrimitiveMask, grid.point(i, j, c.depth), (c.hit & kAlongAxis) != 0};
     }
     if (first.hit == kNoLayerHit) return {};
     return {first.hit & kPrimitiveMask, grid.point(first_i, first_j, first.depth), (first.hit & kAlongAxis) != 0};
+}
+
+/// See above. @param found  the look-up's result
+GI_FN inline bool is_doubtful(AxisView const& axis, View<Surface const> surfaces, WalkOrigin const& o,
+                              LayerHit const& found)
+{
+    using namespace query_detail;
+    RasterGrid const& grid = axis.grid();
+    TexelsAround const around(grid, o.position);
+    for (int attempt = 0; attempt < 4; ++attempt) {
+        std::uint32_t const i = around.column(attempt), j = around.row(attempt);
+        Column const c = look_into(axis, std::size_t(j) * grid.width + i, o);
+        if (!c.own || (attempt == 0 && !accepts(c, surfaces, o, grid))) return true;
+        LayerHit const other{c.hit == kNoLayerHit ? kNoLayerHit : c.hit & kPrimitiveMask,
+                             grid.point(i, j, c.depth)};
+        if (are_different(surfaces, o, grid, found, other)) return true;
+    }
+    return false;
 }
 
 } // namespace gi

@@ -229,7 +229,8 @@ void fetch_streams(QueryBatch& b, std::size_t i)
 }
 
 /// Runs one attempt for all look-ups of the batch; indices of those without an accepted result go to `unsure`.
-template <class Grids>
+/// @tparam kAccepts  false: all results of columns with an own layer are accepted
+template <class Grids, bool kAccepts = true>
 void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces, int attempt, QueryBatch& b,
          std::vector<std::uint32_t>& unsure)
 {
@@ -292,7 +293,7 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
                 b.near_moving[first + k] = columns.moved[slot(pair) * lanes + k];
         // A pair has up to 32 lanes.
         std::uint32_t const there = queries_of(pair) < 32 ? (1u << queries_of(pair)) - 1 : ~0u;
-        for (std::uint32_t bits = a.doubtful & there; bits != 0; bits &= bits - 1) {
+        for (std::uint32_t bits = kAccepts ? a.doubtful & there : 0; bits != 0; bits &= bits - 1) {
             std::uint32_t const q = std::uint32_t(first) + std::uint32_t(std::countr_zero(bits));
             __builtin_prefetch(&surfaces[b.hit[q] & kPrimitiveMask]);
             doubtful.push_back(q);
@@ -306,6 +307,32 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
     check(doubted);
     check(doubtful);
     std::ranges::sort(unsure);
+}
+
+/// SIMD form of is_doubtful, for look-ups that are answered and whose nearest column was accepted.
+template <class Grids>
+void compare_columns(AxisPool const& pool, std::size_t a, View<Surface const> surfaces, QueryBatch& b)
+{
+    thread_local std::vector<std::uint32_t> compared, unsure;
+    thread_local QueryBatch other;
+    compared.clear();
+    for (std::uint32_t i = 0; i < b.size(); ++i)
+        if (b.doubtful[i] == 0) compared.push_back(i);
+    other.watched = b.watched;
+    other.resize(compared.size());
+    for (std::size_t k = 0; k < compared.size(); ++k) copy_query(b, compared[k], other, k);
+    Grids const grids(pool, a, other);
+    for (int attempt = 1; attempt < 4; ++attempt) {
+        ask<Grids, false>(pool, grids, surfaces, attempt, other, unsure);
+        for (std::uint32_t const k : unsure) b.doubtful[compared[k]] = 1;
+        for (std::size_t k = 0; k < compared.size(); ++k) {
+            std::uint32_t const i = compared[k];
+            if (b.watched) b.near_moving[i] |= other.near_moving[k];
+            if (other.hit[k] != b.hit[i] &&
+                query_detail::are_different(surfaces, b.origin(i), grids.of(k), b.found(i), other.found(k)))
+                b.doubtful[i] = 1;
+        }
+    }
 }
 
 /// Result of the nearest column without an own layer: the first face towards the walk.
@@ -343,6 +370,10 @@ void answer_all(AxisPool const& pool, std::size_t a, View<Surface const> surface
     thread_local QueryBatch again;
     b.resize(b.size());
     ask(pool, Grids(pool, a, b), surfaces, 0, b, waiting);
+    if (b.checked) {
+        std::ranges::fill(b.doubtful, 0);
+        for (std::uint32_t const i : waiting) b.doubtful[i] = 1;
+    }
     for (int attempt = 1; attempt < 4 && !waiting.empty(); ++attempt) {
         again.watched = b.watched;
         again.resize(waiting.size());
@@ -368,6 +399,7 @@ void answer_all(AxisPool const& pool, std::size_t a, View<Surface const> surface
     }
     for (std::uint32_t const i : waiting)
         if (b.hit_layer[i] == kNoLayerHit) answer_plainly(pool, Grids::kMany ? b.axis[i] : a, b, i);
+    if (b.checked) compare_columns<Grids>(pool, a, surfaces, b);
 }
 
 } // namespace
@@ -383,6 +415,7 @@ void QueryBatch::resize(std::size_t n)
         a->resize(n);
     }
     near_moving.resize(watched ? n : 0);
+    doubtful.resize(checked ? n : 0);
 }
 
 void QueryBatch::set(std::size_t i, WalkOrigin const& o, std::uint32_t along_axis)

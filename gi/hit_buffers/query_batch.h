@@ -19,10 +19,19 @@ struct QueryBatch {
     /// might differ without it.
     std::vector<std::uint8_t> near_moving;
     bool watched = false;
+    /// If `checked`, else empty: 1 = the result is doubtful, see query.h.
+    std::vector<std::uint8_t> doubtful;
+    bool checked = false;
 
     void resize(std::size_t n);
     std::size_t size() const { return x.size(); }
     void set(std::size_t i, WalkOrigin const& o, std::uint32_t along_axis);
+    /// The result.
+    LayerHit found(std::size_t i) const
+    {
+        if (hit[i] == kNoLayerHit) return {};
+        return {hit[i] & kPrimitiveMask, {hit_x[i], hit_y[i], hit_z[i]}, (hit[i] & kAlongAxis) != 0};
+    }
     WalkOrigin origin(std::size_t i) const
     {
         return {{x[i], y[i], z[i]},

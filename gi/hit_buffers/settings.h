@@ -25,6 +25,9 @@ struct ExactParts {
     bool any() const { return queries || shadows; }
 };
 
+/// Whether an exact ray decides where the texels around a look-up, or around a test by a shadow map, disagree.
+enum class Confirming : std::uint8_t { automatic, on, off };
+
 /// Settings of hit buffers, of look-ups in them and of shadow maps; 0 or empty = chosen by the scene plan.
 struct SlhbSettings {
     Schedule schedule = Schedule::automatic;
@@ -38,6 +41,7 @@ struct SlhbSettings {
     int most_layers = 0;         ///< per texel; 0 = all
     int levels = 0; ///< most levels of grids, see windows.h; 1 = one grid of the whole; 0 = all that are worth it
     int memory_mib = 0;          ///< memory limit of hit buffers and shadow maps
+    Confirming confirm = Confirming::automatic;
     bool packed = false;         ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
     float cone = 0;      ///< texels; radius of the disk of columns that a look-up may use (Yu 2012, fig. 5.6)
     bool gather = false; ///< first bounce over all axes in turn instead of at random

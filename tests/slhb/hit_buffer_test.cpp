@@ -1,5 +1,6 @@
 #include "gi/core/rng.h"
 #include "gi/hit_buffers/query_batch.h"
+#include "gi/render/exact_visibility.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -111,6 +112,7 @@ TEST(Query, VectorsAnswerAsThePlainForm)
     fill_pool(buffers, pool);
     for (std::size_t const n : {1, 5, 16, 17, 4000}) {
         QueryBatch mixed;
+        mixed.checked = true;
         mixed.resize(n);
         std::vector<QueryBatch> single(pool.size());
         for (std::size_t k = 0; k < n; ++k) {
@@ -118,10 +120,12 @@ TEST(Query, VectorsAnswerAsThePlainForm)
             mixed.set(k, random_origin(world, pool.grids[a].axis, rng), std::uint32_t(a));
         }
         nearest_layers(pool, world.surfaces, mixed);
-        std::size_t differ = 0;
+        std::size_t differ = 0, doubts_differ = 0;
         for (std::size_t k = 0; k < n; ++k) {
             std::size_t const a = mixed.axis[k];
             LayerHit const plain = nearest_layer(pool.axis(a), world.surfaces, mixed.origin(k));
+            bool const doubtful = is_doubtful(pool.axis(a), world.surfaces, mixed.origin(k), plain);
+            doubts_differ += doubtful != (mixed.doubtful[k] != 0);
             QueryBatch alone;
             alone.resize(1);
             alone.set(0, mixed.origin(k), 0);
@@ -136,6 +140,57 @@ TEST(Query, VectorsAnswerAsThePlainForm)
             EXPECT_LT(glm::length(hit - plain.position), 1e-5f);
         }
         EXPECT_LE(differ, n / 1000);
+        EXPECT_LE(doubts_differ, n / 1000);
+    }
+}
+
+/// @return shares of look-ups that are doubtful, and of the others those that rays do not confirm
+std::pair<double, double> doubts(World const& world, std::uint32_t resolution, int threads)
+{
+    TriangleSoup const soup = make_soup(world);
+    ExactVisibility const exact(world, false, threads);
+    Pcg32 rng(5, 1);
+    std::size_t doubtful = 0, wrong = 0, n = 0;
+    for (int a = 0; a < 40; ++a) {
+        vec3 const axis = glm::normalize(vec3{rng.uniform(), rng.uniform(), rng.uniform()} - 0.5f);
+        HitBuffer const b =
+            make_hit_buffer(soup, make_grid(world.bounds, axis, resolution, rng.uniform2(), 6 * rng.uniform()));
+        AxisView const view_of{{view(b), {}}};
+        for (int k = 0; k < 1000; ++k, ++n) {
+            WalkOrigin const o = random_origin(world, axis, rng);
+            LayerHit const found = nearest_layer(view_of, world.surfaces, o);
+            if (is_doubtful(view_of, world.surfaces, o, found)) {
+                ++doubtful;
+                continue;
+            }
+            Surface const& s = world.surfaces[o.triangle];
+            vec3 const way = o.up ? axis : -axis, normal = glm::normalize(glm::cross(s.edge1, s.edge2));
+            RayQuery const ray{
+                .ray = {o.position + (glm::dot(way, normal) > 0 ? s.clearance : -s.clearance) * normal, way}};
+            Hit hit;
+            exact.nearest({&ray, 1}, {&hit, 1});
+            float const distance = glm::length(found.position - o.position);
+            bool const same =
+                hit.triangle == kNoTriangle || found.triangle == kNoLayerHit
+                    ? (hit.triangle == kNoTriangle) == (found.triangle == kNoLayerHit)
+                    : std::abs(hit.distance - distance) < 4 * view_of.grid().texel + 0.02f * distance;
+            wrong += same ? 0 : 1;
+        }
+    }
+    return {double(doubtful) / double(n), double(wrong) / double(n - doubtful)};
+}
+
+TEST(Query, WhatIsNotDoubtfulIsRight)
+{
+    Scene open;
+    int const m = add_material(open, lambert(vec3{0.5f}));
+    add_box(open, {-1, -1, -1}, {1, 1, 1}, m, true);
+    add_box(open, {-40, -1.3f, -40}, {40, -1.2f, 40}, m, false);
+    for (auto const& [world, resolution] : {std::pair(room_with_spheres(), 128u), {world_of(open), 1024u}}) {
+        auto const [doubtful, wrong] = doubts(world, resolution, 1);
+        std::cout << 100 * doubtful << " % doubtful, " << 100 * wrong << " % of the others wrong\n";
+        EXPECT_LT(doubtful, 0.4);
+        EXPECT_LT(wrong, 0.004);
     }
 }
 

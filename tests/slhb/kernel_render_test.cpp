@@ -197,12 +197,14 @@ void check_narrow_lobes()
 }
 LIGHTWELL_TEST_BOTH(KernelRender, NarrowLobesAsOnTheCpu, check_narrow_lobes);
 
-TEST(KernelRender, WithoutNarrowLobesThereIsNoTree)
+TEST(KernelRender, WithoutNarrowLobesAndDoubtsThereIsNoTree)
 {
     auto const builds = [](Scene scene) {
         Report report;
         add_quad(scene, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
-        render_by_kernels(Space::host, world_of(scene), room_camera(), settings_of(1, 1), {}, {}, report);
+        RenderSettings s = settings_of(1, 1);
+        s.of<SlhbSettings>().confirm = Confirming::off;
+        render_by_kernels(Space::host, world_of(scene), room_camera(), s, {}, {}, report);
         auto const times = report.times();
         bool const built =
             std::ranges::any_of(times, [](auto const& stage) { return stage.first == "build (BVH)"; });

@@ -1,4 +1,5 @@
 #include "gi/hit_buffers/shadow_maps/light_points.h"
+#include "gi/render/exact_visibility.h"
 #include "gi/scene/generate/figure.h"
 #include "gi/scene/motion/moving_world.h"
 #include "tests/support/scenes.h"
@@ -87,6 +88,64 @@ TEST_P(KeptLamps, HaveTheShadowsOfNow)
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, KeptLamps, testing::Values(Source::rectangle, Source::sky, Source::point));
+
+/// Points in a room with a window, on its outside, and on the ground around it.
+TEST(ShadowMap, OnlyTexelsThatDisagreeMaySayTheWrongThing)
+{
+    Scene scene;
+    int const m = add_material(scene, lambert(vec3{0.5f}));
+    add_quad(scene, {-6, -0.1, 6}, {12, 0, 0}, {0, 0, -12}, m);
+    add_box(scene, {-2, 0, -2}, {2, 2, 2}, m, true);
+    add_box(scene, {-2.2f, 2, -2.2f}, {1.2f, 2.1f, 2.2f}, m, false); // a roof with an opening beside it
+    World const world = world_of(scene);
+    TriangleSoup const soup = make_soup(world);
+    CutOuts const cut_outs(world);
+    ExactVisibility const exact(world, false, 1);
+    Pcg32 rng(2, 9);
+    std::size_t wrong_single = 0, wrong_certain = 0, some = 0, n = 0;
+    for (bool const parallel : {true, false})
+        for (int map = 0; map < 10; ++map) {
+            vec3 const at{rng.uniform() - 0.5f, 1, rng.uniform() - 0.5f};
+            ShadowView const from{parallel, parallel ? glm::normalize(at) : 12.0f * at, vec3{0}};
+            ShadowMapBuilder const builder(world.bounds, {}, soup, cut_outs, 256);
+            ShadowMap shadow;
+            builder.start(from, rng.uniform2(), 6 * rng.uniform(), shadow);
+            for (int face = 0; face < 6; ++face) builder.build(from, face, soup.count, 0, shadow);
+            for (int k = 0; k < 1000; ++k) {
+                auto const t = std::uint32_t(rng.next() % world.triangles.size());
+                Surface const& s = world.surfaces[t];
+                vec2 u = rng.uniform2();
+                if (u.x + u.y > 1) u = 1.0f - u;
+                vec3 const point = s.corner + u.x * s.edge1 + u.y * s.edge2,
+                           normal = glm::normalize(glm::cross(s.edge1, s.edge2)),
+                           way = parallel ? from.at : from.at - point, towards = glm::normalize(way);
+                if (glm::dot(normal, towards) < 0.05f) continue; // no light falls on it
+                RayQuery const ray{.ray = {point + s.clearance * normal, towards},
+                                   .reach = parallel ? RayQuery::kFar : glm::length(way)};
+                std::uint8_t blocked = 0;
+                exact.occluded({&ray, 1}, {&blocked, 1});
+                ShadowPlace const place = shadow.look(point, normal, rng.uniform2());
+                ++n;
+                wrong_single += shadow.lit(place, world.surfaces, point, t) == (blocked != 0);
+                switch (shadow.lit_by(place, world.surfaces, point, normal, t)) {
+                case LitBy::some:
+                    ++some;
+                    break;
+                case LitBy::all:
+                    wrong_certain += blocked;
+                    break;
+                case LitBy::none:
+                    wrong_certain += 1 - blocked;
+                    break;
+                }
+            }
+        }
+    std::cout << n << " points, " << wrong_single << " wrong by one texel, " << some << " doubtful by four, "
+              << wrong_certain << " of the others wrong\n";
+    EXPECT_GT(wrong_single, n / 200) << "else nothing was tested";
+    EXPECT_LT(some, n / 5);
+    EXPECT_LE(wrong_certain, n / 2000);
+}
 
 TEST(LightPoints, PointsAreSuccessiveOnesHoweverFewAreFresh)
 {

@@ -123,6 +123,7 @@ TEST(RayPlan, SlhbOf01DoesWhatItDid)
     Report report;
     auto const same = [&](RenderFunction now, std::vector<std::pair<char const*, char const*>> const& options) {
         RenderSettings s = small_settings(16, 2, 2);
+        s.of<SlhbSettings>().confirm = Confirming::off;
         for (auto const& [name, value] : options) render_option(name).set(s, value, name);
         return render_slhb_0_1(world, camera, s, stop, {}, report).picture.find("color")->data ==
                now(world, camera, s, stop, {}, report).picture.find("color")->data;

@@ -106,20 +106,24 @@ TEST(Windows, ARoomInALargeWorldHasItsLightByLookUpsAlone)
     s.of<SlhbSettings>().shadow_resolution = 512;
     StopRequest stop;
     Report report;
-    auto const light = [&](int levels) {
+    auto const light = [&](int levels, Confirming confirm) {
         RenderSettings by = with(kSlhb, s);
         by.of<SlhbSettings>().levels = levels;
+        by.of<SlhbSettings>().confirm = confirm;
         return mean_of(render_by("slhb", world, kInRoom, by, stop, {}, report).picture).mean;
     };
-    double const nested = light(0), one = light(1);
+    double const nested = light(0, Confirming::off), one = light(1, Confirming::off),
+                 confirmed = light(0, Confirming::on);
     double const kernels =
         mean_of(render_by_kernels(Space::host, world, kInRoom, with(kSlhb, s), stop, {}, report).picture).mean;
     s.paths = 256;
     double const truth = mean_of(render_reference(world, kInRoom, s, stop, {}, report).picture).mean;
-    std::cout << nested / truth << " of the light, by one level " << one / truth << "\n";
+    std::cout << confirmed / truth << " of the light, without exact rays " << nested / truth
+              << ", and by one level " << one / truth << "\n";
+    EXPECT_NEAR(confirmed, truth, 0.01 * truth);
     EXPECT_NEAR(nested, truth, 0.02 * truth);
     EXPECT_GT(std::abs(one - truth), 0.1 * truth);
-    EXPECT_NEAR(kernels, nested, 0.01 * truth);
+    EXPECT_NEAR(kernels, confirmed, 0.01 * truth);
 }
 
 } // namespace

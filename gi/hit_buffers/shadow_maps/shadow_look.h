@@ -24,6 +24,9 @@ struct ShadowMapView {
     GI_FN NearestTexel const* texels(std::size_t face) const { return maps[face]; }
 };
 
+/// What the four texels around a point say of the light.
+enum class LitBy : std::uint8_t { none, some, all };
+
 namespace shadow_detail {
 
 /// Picks a texel coordinate around a point with the probability of its (bi)linear weight.
@@ -100,6 +103,26 @@ GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> sur
     if (gap > kBumps * place.side) return false;
     vec3 const own = glm::cross(surfaces[triangle].edge1, surfaces[triangle].edge2);
     return glm::dot(own, normal) > kAlike * glm::length(own) * glm::length(normal);
+}
+
+/// Where something partly transparent blocks the light of some, all say what the drawn one does: whether it is in a texel
+/// is drawn by lot.
+/// @param drawn  one of them  @param normal  unit, of the lit triangle, at `position`
+template <class Map>
+GI_FN LitBy lit_by(Map const& map, ShadowPlace const& drawn, View<Surface const> surfaces, vec3 position,
+                   vec3 normal, std::uint32_t triangle)
+{
+    int n = 0;
+    bool cut = false;
+    for (int k = 0; k < 4; ++k) {
+        ShadowPlace const place = look(map, position, normal, vec2{float(k & 1), float(k >> 1)});
+        if (lit(map, place, surfaces, position, triangle))
+            ++n;
+        else
+            cut = cut || surfaces[place.texel->primitive].is(Surface::kCut);
+    }
+    if (cut) return lit(map, drawn, surfaces, position, triangle) ? LitBy::all : LitBy::none;
+    return n == 0 ? LitBy::none : n == 4 ? LitBy::all : LitBy::some;
 }
 
 } // namespace shadow_detail

@@ -16,6 +16,21 @@ bool ShadowMap::lit(Place const& place, View<Surface const> surfaces, vec3 posit
     return shadow_detail::lit(*this, place, surfaces, position, triangle);
 }
 
+bool ShadowMap::shows(vec3 position, vec3 normal, std::uint32_t first) const
+{
+    for (int k = 0; k < 4; ++k) {
+        NearestTexel const* const texel = look(position, normal, vec2{float(k & 1), float(k >> 1)}).texel;
+        if (texel != nullptr && texel->primitive != kNoPrimitive && texel->primitive >= first) return true;
+    }
+    return false;
+}
+
+LitBy ShadowMap::lit_by(Place const& drawn, View<Surface const> surfaces, vec3 position, vec3 normal,
+                        std::uint32_t triangle) const
+{
+    return shadow_detail::lit_by(*this, drawn, surfaces, position, normal, triangle);
+}
+
 bool sees_only_dark(ShadowView const& view, PerspectiveGrid const& face)
 {
     if (view.facing == vec3{0}) return false;

@@ -6,7 +6,7 @@
 // that flat and convex surfaces never shadow themselves. A surface only a few texels nearer to the light, such as
 // a wall beside a floor, casts a shadow if the lit point is behind its plane: no bias, no tolerance.
 // Percentage-closer filtering: one of the four surrounding texels is chosen at random, which averages to the
-// bilinear filter over paths.
+// bilinear filter over paths. Where the four disagree, an exact ray can decide instead (LitBy::some).
 
 #include "gi/hit_buffers/shadow_maps/shadow_look.h"
 #include "gi/raster/cut_outs.h"
@@ -33,6 +33,10 @@ struct ShadowMap {
     Place look(vec3 position, vec3 normal, vec2 u) const;
     /// @param triangle  the lit triangle, at `position`
     bool lit(Place const& place, View<Surface const> surfaces, vec3 position, std::uint32_t triangle) const;
+    /// True if one of the four texels around a point shows a triangle from `first` on.
+    bool shows(vec3 position, vec3 normal, std::uint32_t first) const;
+    LitBy lit_by(Place const& drawn, View<Surface const> surfaces, vec3 position, vec3 normal,
+                 std::uint32_t triangle) const;
 };
 
 /// Parameters of a shadow map.

@@ -42,8 +42,9 @@ Costs costs_of(World const& world, TriangleSoup const& soup) { return {world, la
 
 bool needs_exact_rays(World const& world, bool orthographic, RenderSettings const& s)
 {
-    return !s.of<PathAlgorithm>().only_looks_up() || s.of<SlhbSettings>().exact.any() || orthographic ||
-           narrow_somewhere(world) || has_panes(world);
+    SlhbSettings const& look_ups = s.of<SlhbSettings>();
+    return !s.of<PathAlgorithm>().only_looks_up() || look_ups.exact.any() || look_ups.confirm == Confirming::on ||
+           orthographic || narrow_somewhere(world) || has_panes(world);
 }
 
 namespace {
@@ -66,6 +67,13 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
     else if (s.levels == 0 && asked.budget_s > 0)
         s.levels = 2;
     double const pixels = double(asked.width) * asked.height;
+    constexpr double kShareForDoubts = 0.2;
+    if (!asked.of<PathAlgorithm>().nested)
+        s.confirm = Confirming::off;
+    else if (s.confirm == Confirming::automatic)
+        s.confirm = asked.budget_s > 0 && costs.bvh > kShareForDoubts * asked.budget_s * cores_of(asked)
+                        ? Confirming::off
+                        : Confirming::on;
     // Building the structures of a pass should cost only a fraction of its paths and of the budget, or there
     // would be too few paths to share them.
     constexpr double kPath = 0.5e-6, kShare = 0.5, kShareOfBudget = 0.2;
@@ -222,7 +230,8 @@ std::string as_options(RenderSettings const& chosen)
     SlhbSettings const& s = chosen.of<SlhbSettings>();
     PathAlgorithm const& by = chosen.of<PathAlgorithm>();
     std::vector<std::string_view> own{"roulette", "interleave"}, buffers;
-    bool const states_levels = s.levels > 0 && !s.packed && by.nested;
+    bool const states_levels = s.levels > 0 && !s.packed && by.nested,
+               states_confirm = s.confirm != Confirming::automatic && by.nested;
     if (chosen.of<PathsSettings>().cache != RadianceCaching::automatic) own.push_back("radiance-cache");
     if (by.surfaces == SurfacesBy::look_ups) {
         buffers = {"schedule", "hit-buffer", s.schedule == Schedule::stored ? "directions" : "axes"};
@@ -230,10 +239,13 @@ std::string as_options(RenderSettings const& chosen)
         if (s.most_layers > 0) buffers.push_back("max-layers");
         if (s.cone > 0) buffers.push_back("cone");
         if (states_levels) buffers.push_back("levels");
+        if (states_confirm) buffers.push_back("confirm");
         buffers.insert(buffers.end(), {"packed", "gather"});
     }
     if (by.shadows == ShadowsBy::maps) {
-        if (states_levels && by.surfaces != SurfacesBy::look_ups) buffers.push_back("levels");
+        bool const first = by.surfaces != SurfacesBy::look_ups;
+        if (first && states_levels) buffers.push_back("levels");
+        if (first && states_confirm) buffers.push_back("confirm");
         buffers.insert(buffers.end(), {"light-samples", "shadow-map"});
         if (s.fresh_light_samples < s.light_samples) buffers.push_back("fresh-light-samples");
     }
@@ -300,12 +312,14 @@ std::vector<PlanItem> explain_choices(World const& world, RenderSettings const& 
                      : rays ? "each path has its own light samples, so that pixels share no error"
                             : "all paths of a pass share a few light samples"});
     items.push_back(explain_lamp_caustics(world, asked));
-    bool const narrow = narrow_somewhere(world);
-    items.push_back({"exact_rays", "exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
+    bool const narrow = narrow_somewhere(world), confirms = s.confirm == Confirming::on && (walks || !rays);
+    items.push_back({"exact_rays", "exact rays (Embree)",
+                     !walks || rays || narrow || confirms || camera.orthographic,
                      !walks                ? "in place of look-ups"
                      : rays                ? "for shadows"
                      : camera.orthographic ? "the camera is orthographic"
                      : narrow              ? "mirrors, glass or narrow lobes need more directions than the axes"
+                     : confirms            ? "where the texels around a look-up disagree (--confirm)"
                                            : "every lobe is broad"});
     return items;
 }

@@ -253,6 +253,7 @@ PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassS
             .lights = shadow_maps_ ? nullptr : &lights_,
             .smooth = smooth_somewhere(world_),
             .look_ups = !slhb_.exact.queries && by_.surfaces == SurfacesBy::look_ups,
+            .confirms = slhb_.confirm == Confirming::on,
             .cache = cached && cache_ ? &*cache_ : nullptr,
             .spread = spread_ && by_.surfaces == SurfacesBy::rays,
             .no_punctual = leaves_out_punctual_,

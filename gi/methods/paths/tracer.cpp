@@ -7,13 +7,24 @@
 
 namespace gi {
 
-/// Processes look-ups axis by axis, so that the buffers of one axis stay in the cache.
-std::size_t PathsTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
+namespace {
+
+vec3 off_surface(Surface const& s, vec3 position, vec3 direction)
+{
+    vec3 const normal = shading_detail::triangle_normal(s);
+    return position + (glm::dot(direction, normal) > 0 ? s.clearance : -s.clearance) * normal;
+}
+
+} // namespace
+
+/// Processes look-ups axis by axis, so that the buffers of one axis stay in the cache. Doubtful ones become exact rays.
+void PathsTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices, PathsWork& counts) const
 {
     thread_local std::vector<std::uint32_t> first, order;
     thread_local QueryBatch batch;
     AxisPool const& pool = pass.axes.pool();
     batch.watched = pass.first_watched != kNoPrimitive;
+    batch.checked = pass.confirms;
     first.assign(pool.size() + 1, 0);
     std::size_t n = 0;
     for (Vertex& v : vertices) {
@@ -22,7 +33,8 @@ std::size_t PathsTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) 
         ++first[v.axis + 1];
         ++n;
     }
-    if (n == 0) return 0;
+    counts.queries += n;
+    if (n == 0) return;
     for (std::size_t a = 0; a < pool.size(); ++a) first[a + 1] += first[a];
     order.resize(n);
     for (std::uint32_t k = 0; k < vertices.size(); ++k)
@@ -34,15 +46,23 @@ std::size_t PathsTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) 
         ask();
         for (std::size_t k = from; k < to; ++k) {
             std::uint32_t const hit = batch.hit[k - from];
-            LayerHit& to_fill = vertices[order[k]].hit;
-            to_fill = {};
-            if (batch.watched) vertices[order[k]].near_moving = batch.near_moving[k - from] != 0;
+            Vertex& v = vertices[order[k]];
+            v.hit = {};
+            if (batch.watched) v.near_moving = batch.near_moving[k - from] != 0;
+            if (batch.checked && batch.doubtful[k - from] != 0) {
+                vec3 const axis = pool.grids[v.axis].axis, direction = v.origin.up ? axis : -axis;
+                v.exact = true;
+                v.near_moving = batch.watched;
+                v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction), direction};
+                ++counts.doubtful_queries;
+                continue;
+            }
             if (hit == kNoLayerHit) continue;
-            to_fill = {hit & kPrimitiveMask,
-                       {batch.hit_x[k - from], batch.hit_y[k - from], batch.hit_z[k - from]},
-                       (hit & kAlongAxis) != 0};
-            vertices[order[k]].layer = batch.hit_layer[k - from];
-            __builtin_prefetch(&world_.surfaces[to_fill.triangle]);
+            v.hit = {hit & kPrimitiveMask,
+                     {batch.hit_x[k - from], batch.hit_y[k - from], batch.hit_z[k - from]},
+                     (hit & kAlongAxis) != 0};
+            v.layer = batch.hit_layer[k - from];
+            __builtin_prefetch(&world_.surfaces[v.hit.triangle]);
         }
     };
     constexpr std::size_t kWorthwhile = 64; // look-ups per axis
@@ -55,18 +75,7 @@ std::size_t PathsTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) 
     } else {
         answer(0, n, [&] { nearest_layers(pool, world_.surfaces, batch); });
     }
-    return n;
 }
-
-namespace {
-
-vec3 off_surface(Surface const& s, vec3 position, vec3 direction)
-{
-    vec3 const normal = shading_detail::triangle_normal(s);
-    return position + (glm::dot(direction, normal) > 0 ? s.clearance : -s.clearance) * normal;
-}
-
-} // namespace
 
 void PathsTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const
 {
@@ -77,11 +86,11 @@ void PathsTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> dire
         LightSample const light = sample_light(world_, d.light_point->choice, d.position, d.light_point->u);
         Surface const& surface = world_.surfaces[d.triangle];
         RayQuery ray = shadow_ray(d.position, shading_detail::triangle_normal(surface), surface.clearance, light);
-        ray.seed = hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()));
+        ray.seed = d.seed;
         rays.push_back(ray);
     }
     left.resize(rays.size());
-    pass.exact->transmittance(rays, left);
+    pass.exact->transmittance(rays, left, pass.exact_world);
     for (std::size_t k = 0; k < direct.size(); ++k) {
         if (!(rays[k].reach > 0)) left[k] = vec3{1}; // the light lies on the surface
         if (left[k] != vec3{0}) *direct[k].to += left[k] * direct[k].radiance;
@@ -129,6 +138,30 @@ void PathsTracer::prepare_vertices(std::span<Vertex const> vertices, std::vector
     }
 }
 
+void PathsTracer::add_by_maps(Pass const& pass, std::vector<Unshadowed>& direct, PathsWork& counts) const
+{
+    bool const watches = pass.first_watched != kNoPrimitive;
+    if (pass.confirms) {
+        auto const doubtful = std::partition(direct.begin(), direct.end(), [&](Unshadowed const& d) {
+            vec3 const normal = shading_detail::triangle_normal(world_.surfaces[d.triangle]);
+            LitBy const by =
+                d.light_point->shadow.lit_by(d.place, world_.surfaces, d.position, normal, d.triangle);
+            if (by == LitBy::all) *d.to += d.radiance;
+            if (watches &&
+                (by == LitBy::some || d.light_point->shadow.shows(d.position, normal, pass.first_watched)))
+                d.sample->near_moving = true;
+            return by != LitBy::some;
+        });
+        counts.doubtful_shadows += std::size_t(direct.end() - doubtful);
+        return add_exactly(pass, std::span(doubtful, direct.end()));
+    }
+    for (Unshadowed const& d : direct) {
+        if (d.light_point->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
+        std::uint32_t const caster = d.place.texel != nullptr ? d.place.texel->primitive : kNoPrimitive;
+        if (caster != kNoPrimitive && caster >= pass.first_watched) d.sample->near_moving = true;
+    }
+}
+
 void PathsTracer::add_lit(Pass const& pass, Direct& direct, PathsWork& counts) const
 {
     counts.shadow_lookups += direct.maps.size();
@@ -153,11 +186,7 @@ void PathsTracer::add_lit(Pass const& pass, Direct& direct, PathsWork& counts) c
             counts.shadow_rays += lamps.size();
             direct.maps.erase(direct.maps.end() - std::ptrdiff_t(lamps.size()), direct.maps.end());
         }
-        for (Unshadowed const& d : direct.maps) {
-            if (d.light_point->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
-            std::uint32_t const caster = d.place.texel != nullptr ? d.place.texel->primitive : kNoPrimitive;
-            if (caster != kNoPrimitive && caster >= pass.first_watched) d.sample->near_moving = true;
-        }
+        add_by_maps(pass, direct.maps, counts);
     }
     direct.maps.clear();
     direct.rays.clear();
@@ -176,7 +205,7 @@ void PathsTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::v
                 vec3 const direction = states[v.path].direction;
                 v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction), direction};
             }
-    counts.queries += ask_axes(pass, vertices);
+    ask_axes(pass, vertices, counts);
     rays.clear();
     for (Vertex const& v : vertices)
         if (v.exact)
@@ -201,15 +230,15 @@ void PathsTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::v
             s.position = v.hit.position;
             s.barycentric = vec2{1.0f / 3};
             v.distance = glm::length(s.position - v.origin.position);
-            if (v.near_moving) s.sample->near_moving = true;
         }
+        if (v.near_moving) s.sample->near_moving = true;
     }
 }
 
 /// True if the path ends at a shared vertex here.
 bool PathsTracer::ends_shared(State& s, Vertex const& v, SharedVertex& shared) const
 {
-    if (s.vertex != 1 || s.triangle == kNoPrimitive || !s.along_axis ||
+    if (s.vertex != 1 || s.triangle == kNoPrimitive || !s.along_axis || v.exact ||
         !bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[s.triangle].material]))
         return false;
     Surface const& surface = world_.surfaces[s.triangle];

@@ -30,6 +30,7 @@ namespace gi {
 /// Work done, for --stats.
 struct PathsWork {
     std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0, shadow_rays = 0, cache_reads = 0;
+    std::uint64_t doubtful_queries = 0, doubtful_shadows = 0; ///< of these look-ups, decided by exact rays
     /// Summed over threads: first surfaces with direct light; all later vertices.
     double direct_s = 0, indirect_s = 0;
 };
@@ -80,6 +81,7 @@ public:
         LightPool const* lights = nullptr;
         bool smooth = false;                ///< the world contains a mirror or glass
         bool look_ups = true;               ///< else exact rays
+        bool confirms = false;              ///< exact rays decide where look-ups and shadow maps are doubtful
         RadianceCache* cache = nullptr;     ///< paths may end in its cells; null = no cache
         bool spread = false;                ///< pixels without indirect light will get it from neighbours
         bool no_punctual = false;           ///< see FrameRenderer::leave_out_punctual
@@ -135,12 +137,12 @@ private:
     bool scatter_freely(State& s, Leaving const& from, Vertex& next) const;
     bool starts_indirect(Pass const& pass, State& s) const;
     AxisSample choose_axis(Pass const& pass, State const& s, ShadingPoint const& at) const;
-    /// @return number of look-ups
-    std::size_t ask_axes(Pass const& pass, std::span<Vertex> vertices) const;
+    void ask_axes(Pass const& pass, std::span<Vertex> vertices, PathsWork& counts) const;
     void start_paths(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
                      std::vector<State>& states, std::vector<Vertex>& vertices) const;
     void prepare_vertices(std::span<Vertex const> vertices, std::vector<State>& states) const;
     void add_lit(Pass const& pass, Direct& direct, PathsWork& counts) const;
+    void add_by_maps(Pass const& pass, std::vector<Unshadowed>& direct, PathsWork& counts) const;
     void find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
                    PathsWork& counts) const;
     /// Ends paths whose cell is known, except some that continue to teach it.

@@ -70,7 +70,7 @@ void PathsTracer::aim_at_light(Pass const& pass, State const& s, Leaving const& 
     if (!(max_component(value) > 0)) return;
     vec3* const to = &layer_of(*s.sample, s.scatterings + 1);
     RayQuery query = shadow_ray(from.at.position, from.at.geometric_normal, from.at.clearance, light);
-    query.seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index);
+    query.seed = s.shadow_seed();
     if (query.reach > 0)
         rays.push_back({query, s.throughput * value, to});
     else // the light lies on the surface
@@ -98,7 +98,7 @@ void PathsTracer::add_direct(Pass const& pass, State const& s, Leaving const& fr
         l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(PathDimension::shadow)));
     __builtin_prefetch(place.texel);
     direct.push_back({&l, place, at.position, s.triangle, s.throughput * value,
-                      &layer_of(*s.sample, s.scatterings + 1), s.sample, light.delta});
+                      &layer_of(*s.sample, s.scatterings + 1), s.sample, light.delta, s.shadow_seed()});
 }
 
 void PathsTracer::add_emission(State const& s, Vertex const& last, ShadingPoint const& at) const

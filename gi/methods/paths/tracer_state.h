@@ -29,6 +29,10 @@ struct PathsTracer::State : PathState {
     VertexNumbers* u = nullptr; ///< of the current vertex
 
     std::uint32_t dimension(PathDimension d) const { return dimension_of(std::uint32_t(vertex), d); }
+    std::uint32_t shadow_seed() const
+    {
+        return hash_words(random.own_seed() + std::uint32_t(vertex), ~random.index);
+    }
 };
 
 /// Next segment of a path from its surface.
@@ -69,7 +73,8 @@ struct PathsTracer::Unshadowed {
     vec3 radiance;
     vec3* to;
     PathSample* sample;
-    bool of_lamp; ///< without extent
+    bool of_lamp;       ///< without extent
+    std::uint32_t seed; ///< of an exact ray in its place
 };
 
 /// Direct light of a block of paths, waiting for visibility tests.

@@ -304,6 +304,8 @@ void ViewPaths::add_work(Work& work, PathCounts& paths)
         done_.exact_rays += c.work.exact_rays;
         done_.shadow_lookups += c.work.shadow_lookups;
         done_.shadow_rays += c.work.shadow_rays;
+        done_.doubtful_queries += c.work.doubtful_queries;
+        done_.doubtful_shadows += c.work.doubtful_shadows;
         done_.cache_reads += c.work.cache_reads;
         taken_ += c.taken;
     });
@@ -314,7 +316,8 @@ void ViewPaths::add_work(Work& work, PathCounts& paths)
 
 double ViewPaths::rays() const
 {
-    return double(done_.queries + done_.shadow_lookups + done_.exact_rays + done_.shadow_rays);
+    return double(done_.queries + done_.shadow_lookups + done_.exact_rays + done_.shadow_rays) +
+           double(done_.doubtful_shadows);
 }
 
 void ViewPaths::report_work() const
@@ -322,7 +325,11 @@ void ViewPaths::report_work() const
     report_.count("hit-buffer queries", double(done_.queries));
     report_.count("shadow-map look-ups", double(done_.shadow_lookups));
     report_.count("exact rays", double(done_.exact_rays));
-    report_.count("shadow rays", double(done_.shadow_rays));
+    report_.count("shadow rays", double(done_.shadow_rays + done_.doubtful_shadows));
+    if (done_.doubtful_queries + done_.doubtful_shadows > 0) {
+        report_.count("doubtful look-ups decided by exact rays", double(done_.doubtful_queries));
+        report_.count("doubtful shadow-map look-ups decided by exact rays", double(done_.doubtful_shadows));
+    }
     report_.count("paths that ended in the radiance cache", double(done_.cache_reads));
     report_.count("shared vertices shaded for several paths", double(shared_.shaded()));
     if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));

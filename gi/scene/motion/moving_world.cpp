@@ -219,7 +219,7 @@ Changes MovingWorld::set_material(std::size_t k, Material const& material)
     changes.materials = true;
     changes.coverage = coverage_differs(before, material);
     if (has_textures(before) != has_textures(material) || emits(before) != emits(material) ||
-        before.double_sided != material.double_sided)
+        before.double_sided != material.double_sided || before.alpha_mode != material.alpha_mode)
         update_surfaces_of(world, std::uint32_t(k));
     changes.reasons.push_back(fmt::format("materials: material {} was set", k));
     if (emission_differs(before, material)) {

@@ -1,7 +1,8 @@
 #include "gi/methods/slhb/kernels/kernel_render.h"
 
-#include "gi/methods/slhb/kernels/kernel_renderer.h"
 #include "gi/methods/paths/choose.h"
+#include "gi/methods/paths/look_up_trust.h"
+#include "gi/methods/slhb/kernels/kernel_renderer.h"
 #include "gi/render/fingerprint.h"
 #include "gi/render/pass_loop.h"
 
@@ -16,6 +17,8 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     TriangleSoup soup = make_soup(world);
     RenderSettings chosen = choose_settings(with(kSlhb, settings), world, soup);
     KernelRenderer<S>::limit(chosen);
+    report_untrusted_look_ups(world, soup, camera_rays(camera, settings.width, settings.height, world.origin),
+                              chosen.of<SlhbSettings>(), report);
     FrameView const eye{camera, settings.width, settings.height};
     KernelRenderer<S> renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report);
     std::string const options = as_options(chosen) + renderer.level_option();

@@ -51,7 +51,7 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
 template <Space S>
 void KernelRenderer<S>::build_exact()
 {
-    bool const needed = narrow_somewhere(world_);
+    bool const needed = narrow_somewhere(world_) || slhb_.confirm == Confirming::on;
     if (needed && scene_.has_rays()) return scene_.test_alpha(plan_scene(world_).alpha_tests);
     if (needed == scene_.has_rays()) return;
     StageTimer const timer(report_, "build (BVH)");
@@ -188,6 +188,7 @@ void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sum
         paths.width = std::uint32_t(v.width);
         paths.bounces = settings_.bounces;
         paths.smooth = smooth;
+        paths.confirms = slhb_.confirm == Confirming::on;
         paths.roulette = settings_.of<PathsSettings>().roulette;
         paths.seed = random_key(settings_.seed);
         paths.pass = index;
@@ -199,6 +200,8 @@ void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sum
         queries_ += done.queries;
         exact_rays_ += done.exact_rays;
         shadow_lookups_ += done.shadow_lookups;
+        doubtful_queries_ += done.doubtful_queries;
+        doubtful_shadows_ += done.doubtful_shadows;
         hidden_ += v.hidden_pixels;
         pixels_ += v.pixels();
     }
@@ -220,6 +223,10 @@ void KernelRenderer<S>::report_work() const
     report_.count("hit-buffer queries", double(queries_));
     report_.count("exact rays", double(exact_rays_));
     report_.count("shadow-map look-ups", double(shadow_lookups_));
+    if (slhb_.confirm == Confirming::on) {
+        report_.count("doubtful look-ups decided by exact rays", double(doubtful_queries_));
+        report_.count("doubtful shadow-map look-ups decided by exact rays", double(doubtful_shadows_));
+    }
     if (hidden_ > 0) {
         report_.count("pixels not rendered, as nobody sees them", double(hidden_));
         report_.count("share of pixels not rendered", double(hidden_) / double(pixels_));

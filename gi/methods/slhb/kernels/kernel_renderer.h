@@ -5,7 +5,7 @@
 //
 // Hit buffers are built from all triangles: after motion, the buffers used by paths and all shadow maps are
 // rebuilt (dynamic geometry is not added to static buffers as on the CPU). The BVH for exact rays, built if some
-// lobe is narrow, has a tree of dynamic triangles, which is refitted. Views do not reuse each other's light,
+// lobe is narrow or doubts are decided by rays, has a tree of dynamic triangles, which is refitted. Views do not reuse each other's light,
 // and paths do not share vertices. For the limits of paths see path_kernel.h.
 
 #include "gi/hit_buffers/directions/frame_axes.h"
@@ -48,7 +48,7 @@ public:
     void add_motion(std::size_t view, Picture& picture) const;
     /// Empty: no light is reused from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
-    double rays() const { return double(queries_ + exact_rays_ + shadow_lookups_); }
+    double rays() const { return double(queries_ + exact_rays_ + shadow_lookups_ + doubtful_shadows_); }
     /// See Windows::option().
     std::string level_option() const { return traced_.windows.option(); }
     std::uint64_t lost_layers() const { return axes_.lost(); }
@@ -80,7 +80,7 @@ private:
     KernelScene<S> scene_;
     FrameAxes axes_;
     std::optional<LightPoints> light_points_;
-    std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0;
+    std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0, doubtful_queries_ = 0, doubtful_shadows_ = 0;
     /// Pixels not traced because they are hidden; all pixels; over all passes.
     std::uint64_t hidden_ = 0, pixels_ = 0;
     std::uint64_t earlier_maps_ = 0;        ///< built for earlier light points that no longer exist

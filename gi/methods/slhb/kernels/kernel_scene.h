@@ -141,6 +141,8 @@ public:
                 w = {}; // first, as both together may be too much
                 w = OnWay(most, bvh_.has_value());
             }
+        if (std::size_t const waiting = paths.confirms ? most : 0; doubtful_.size() != waiting)
+            doubtful_ = ColumnBuffer<DoubtfulLight, S>(waiting);
         if (bvh_)
             trace_all<true>(paths);
         else
@@ -162,11 +164,14 @@ private:
             std::size_t const all = std::min(paths.samples.size() - paths.first, kMostOnWay);
             std::size_t const few = std::min(all / 8, kFewOnWay);
             paths.next = on_way_[0].none();
+            paths.doubtful = none_doubtful();
             launch(S, "first steps of paths", all, FirstSteps<by_rays>{{paths}});
+            add_doubtful_light(all, rays, paths);
             for (int now = 0; std::size_t const n = on_way_[now].count(); now = 1 - now) {
                 PathsOnWay const from = paths.next;
                 ColumnView<Hit> const hits = on_way_[now].hits();
                 paths.next = on_way_[1 - now].none();
+                paths.doubtful = none_doubtful();
                 if (by_rays)
                     launch(S, "exact rays of paths", n, NearestHits{world_.view(), rays, from.queries, hits});
                 if (n > few)
@@ -174,8 +179,22 @@ private:
                            FurtherSteps<by_rays, false>{{paths}, from, hits, rays});
                 else
                     launch(S, "last steps of paths", n, FurtherSteps<by_rays, true>{{paths}, from, hits, rays});
+                if (n > few) add_doubtful_light(n, rays, paths); // the last steps add it themselves
             }
         }
+    }
+
+    DoubtfulLights none_doubtful()
+    {
+        if (doubtful_.size() == 0) return {};
+        fill_bytes(S, doubtful_count_.view().data, 0, sizeof(std::uint32_t));
+        return {doubtful_.view(), doubtful_count_.view()};
+    }
+    void add_doubtful_light(std::size_t paths_of_step, KernelRays const& rays, PassOfPaths const& paths)
+    {
+        if (paths.confirms)
+            launch(S, "doubtful light", paths_of_step,
+                   AddDoubtfulLight{world_.view(), rays, paths.doubtful, paths.samples});
     }
 
     /// Memory of paths between two surfaces.
@@ -233,6 +252,8 @@ private:
     Buffer<LightPointView, S> light_points_;
     Buffer<PathSample, S> samples_;
     OnWay on_way_[2];
+    ColumnBuffer<DoubtfulLight, S> doubtful_; ///< empty if no exact rays decide
+    Buffer<std::uint32_t, S> doubtful_count_{1};
     PathKernelCounts counts_;
 };
 

@@ -10,5 +10,6 @@ template void launch_device(char const*, std::size_t, FurtherSteps<false, false>
 template void launch_device(char const*, std::size_t, FurtherSteps<false, true> const&);
 template void launch_device(char const*, std::size_t, FurtherSteps<true, false> const&);
 template void launch_device(char const*, std::size_t, FurtherSteps<true, true> const&);
+template void launch_device(char const*, std::size_t, AddDoubtfulLight const&);
 
 } // namespace gi

@@ -25,6 +25,7 @@ struct LightPointView {
 
 struct PathKernelCounts {
     std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0;
+    std::uint64_t doubtful_queries = 0, doubtful_shadows = 0; ///< of these look-ups, decided by exact rays
     std::uint64_t cut_paths = 0, invalid_paths = 0;
 
     PathKernelCounts& operator+=(PathKernelCounts const& o)
@@ -32,6 +33,8 @@ struct PathKernelCounts {
         queries += o.queries;
         exact_rays += o.exact_rays;
         shadow_lookups += o.shadow_lookups;
+        doubtful_queries += o.doubtful_queries;
+        doubtful_shadows += o.doubtful_shadows;
         cut_paths += o.cut_paths;
         invalid_paths += o.invalid_paths;
         return *this;
@@ -55,6 +58,19 @@ struct PathsOnWay {
     View<std::uint32_t> count;    ///< [0]
 };
 
+/// Light that arrives if a shadow ray is free, as the shadow map's texels disagree.
+struct DoubtfulLight {
+    RayQuery query; ///< no_query() = none
+    vec3 light;
+    std::uint32_t pixel;
+    int scatterings; ///< of the light, see layer_of()
+};
+
+struct DoubtfulLights {
+    ColumnView<DoubtfulLight> lights;
+    View<std::uint32_t> count; ///< [0]
+};
+
 /// What the paths of a pass read and write.
 struct PassOfPaths {
     WorldView world;
@@ -71,14 +87,16 @@ struct PassOfPaths {
     int bounces;
     float roulette; ///< see SlhbSettings
     bool smooth;    ///< the world contains a mirror or glass
+    bool confirms;  ///< exact rays decide where look-ups and shadow maps are doubtful
     std::uint32_t seed, pass;
     std::size_t first;             ///< pixel of the first item of FirstSteps
     View<PathSample> samples;      ///< per pixel
     PathsOnWay next;               ///< to which paths are added
+    DoubtfulLights doubtful;       ///< to which their light is added
     View<PathKernelCounts> counts; ///< to be added up
 };
 
-/// One step of paths. @tparam by_rays  some lobes may be narrow; otherwise no path needs an exact ray
+/// One step of paths. @tparam by_rays  some may need exact rays
 template <bool by_rays>
 struct StepPaths : PassOfPaths {
 protected:
@@ -93,6 +111,8 @@ protected:
         float distance = 0;          ///< m, from the last surface
         int vertex = 0;              ///< number of surfaces before, delta lobes included
         RayQuery query = no_query(); ///< the exact ray that the path needs now
+        DoubtfulLight doubtful{
+            .query = no_query(), .light = vec3{0}, .pixel = 0, .scatterings = 0}; ///< at its last surface
 
         GI_FN std::uint32_t dimension(PathDimension d) const { return dimension_of(std::uint32_t(vertex), d); }
         GI_FN float number(PathDimension d) const { return random.sample(dimension(d)); }
@@ -105,13 +125,17 @@ protected:
     GI_FN bool step(State& s, PathSample& out, PathKernelCounts& local) const;
     GI_FN vec3 sky(State const& s) const;
     GI_FN vec3 emission(State const& s, ShadingPoint const& at) const;
-    GI_FN vec3 direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    GI_FN vec3 direct(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    /// Keeps the light that waits for its shadow ray.
+    GI_FN void wait(std::size_t pixel, State const& s) const;
     GI_FN void go_on(std::size_t pixel, State const& s) const;
     /// Continues the path to the next surface. Returns false if it ends.
     GI_FN bool scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
     /// As scatter(), through a mirror, glass or a narrow lobe, by an exact ray.
     GI_FN bool scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
                               PathKernelCounts& local) const;
+    /// Lets an exact ray find the next surface. Returns true.
+    GI_FN bool follow_ray(State& s, ShadingPoint const& at, vec3 direction, PathKernelCounts& local) const;
     GI_FN bool scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
                                   PathKernelCounts& local) const;
     GI_FN bool survives(State& s) const
@@ -126,6 +150,21 @@ protected:
         return s.scatterings == bounces && !narrow && !smooth;
     }
     GI_FN void add_counts(std::size_t item, PathKernelCounts const& local) const;
+};
+
+/// Adds the light whose shadow ray is free. Item = the light.
+struct AddDoubtfulLight {
+    WorldView world;
+    KernelRays rays;
+    DoubtfulLights doubtful;
+    View<PathSample> samples; ///< per pixel
+
+    GI_FN void operator()(std::size_t i) const
+    {
+        if (i >= doubtful.count[0]) return;
+        DoubtfulLight const d = doubtful.lights.load(i);
+        if (!rays.occluded(world, d.query)) add_light(samples[d.pixel], d.scatterings, d.light);
+    }
 };
 
 /// First step. Item = pixel, from `first` on.

@@ -35,7 +35,7 @@ GI_FN vec3 StepPaths<by_rays>::emission(State const& s, ShadingPoint const& at) 
 }
 
 template <bool by_rays>
-GI_FN vec3 StepPaths<by_rays>::direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
+GI_FN vec3 StepPaths<by_rays>::direct(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
                                       PathKernelCounts& local) const
 {
     std::size_t k = 0;
@@ -55,6 +55,17 @@ GI_FN vec3 StepPaths<by_rays>::direct(State const& s, ShadingPoint const& at, ve
     vec2 const u = s.random.noise2(s.dimension(PathDimension::shadow));
     ShadowPlace const in_map = shadow_detail::look(l.shadow, at.position, at.geometric_normal, u);
     ++local.shadow_lookups;
+    if (by_rays && confirms) {
+        LitBy const by =
+            shadow_detail::lit_by(l.shadow, in_map, world.surfaces, at.position, at.geometric_normal, s.triangle);
+        if (by != LitBy::some) return by == LitBy::all ? s.throughput * value : vec3{0};
+        RayQuery ray = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
+        if (!(ray.reach > 0)) return s.throughput * value; // the light lies on the surface
+        ray.seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index);
+        ++local.doubtful_shadows;
+        s.doubtful = {ray, s.throughput * value, 0, s.scatterings + 1};
+        return vec3{0};
+    }
     bool const reached = shadow_detail::lit(l.shadow, in_map, world.surfaces, at.position, s.triangle);
     return reached ? s.throughput * value : vec3{0};
 }
@@ -73,6 +84,13 @@ GI_FN bool StepPaths<by_rays>::scatter_by_ray(State& s, ShadingPoint const& at, 
     if (!survives(s)) return false;
     if (!sampled.delta) ++s.scatterings;
     ++s.vertex;
+    return follow_ray(s, at, direction, local);
+}
+
+template <bool by_rays>
+GI_FN bool StepPaths<by_rays>::follow_ray(State& s, ShadingPoint const& at, vec3 direction,
+                                          PathKernelCounts& local) const
+{
     std::uint32_t const ray_seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), pass);
     s.query = RayQuery{.ray = {leave(at, direction), direction}, .seed = ray_seed};
     s.direction = direction;
@@ -101,6 +119,12 @@ GI_FN bool StepPaths<by_rays>::scatter_by_look_up(State& s, ShadingPoint const& 
     if (!survives(s)) return false;
     LayerHit const hit = nearest_layer(along, world.surfaces, origin);
     ++local.queries;
+    if (by_rays && confirms && is_doubtful(along, world.surfaces, origin, hit)) {
+        ++local.doubtful_queries;
+        ++s.scatterings;
+        ++s.vertex;
+        return follow_ray(s, at, a.direction, local);
+    }
     s.triangle = hit.triangle;
     s.distance = glm::length(hit.position - at.position);
     s.position = hit.position;
@@ -132,6 +156,8 @@ GI_FN void StepPaths<by_rays>::add_counts(std::size_t item, PathKernelCounts con
     more(all.queries, local.queries);
     more(all.exact_rays, local.exact_rays);
     more(all.shadow_lookups, local.shadow_lookups);
+    more(all.doubtful_queries, local.doubtful_queries);
+    more(all.doubtful_shadows, local.doubtful_shadows);
     more(all.cut_paths, local.cut_paths);
     more(all.invalid_paths, local.invalid_paths);
 }
@@ -188,6 +214,16 @@ GI_FN void StepPaths<by_rays>::go_on(std::size_t pixel, State const& s) const
 }
 
 template <bool by_rays>
+GI_FN void StepPaths<by_rays>::wait(std::size_t pixel, State const& s) const
+{
+    if (!by_rays || !(s.doubtful.query.reach > 0)) return;
+    std::uint32_t const k = atomic_add(doubtful.count[0], 1);
+    DoubtfulLight light = s.doubtful;
+    light.pixel = std::uint32_t(pixel);
+    doubtful.lights.store(k, light);
+}
+
+template <bool by_rays>
 GI_FN void FirstSteps<by_rays>::operator()(std::size_t item) const
 {
     std::size_t const i = this->first + item;
@@ -199,6 +235,7 @@ GI_FN void FirstSteps<by_rays>::operator()(std::size_t item) const
             this->go_on(i, s);
         else
             local.invalid_paths += discard_invalid(out);
+        this->wait(i, s);
         this->add_counts(i, local);
     }
     this->samples[i] = out;
@@ -220,11 +257,22 @@ GI_FN void FurtherSteps<by_rays, last>::operator()(std::size_t i) const
     s.distance = path.distance;
     if (by_rays && from.queries.load(i).reach > 0) this->meet(s, hits.load(i));
     PathSample out;
+    auto const light_last = [&] {
+        if (!by_rays || !(s.doubtful.query.reach > 0)) return;
+        if (!rays.occluded(this->world, s.doubtful.query))
+            add_light(out, s.doubtful.scatterings, s.doubtful.light);
+        s.doubtful.query = no_query();
+    };
     bool goes_on = this->step(s, out, local);
     while (last && goes_on) {
         if (by_rays && s.query.reach > 0) this->meet(s, rays.nearest(this->world, s.query));
+        light_last();
         goes_on = this->step(s, out, local);
     }
+    if (last)
+        light_last();
+    else
+        this->wait(path.pixel, s);
     PathSample& sum = this->samples[path.pixel];
     for (std::size_t k = 0; k < out.radiance.size(); ++k) out.radiance[k] += sum.radiance[k];
     if (goes_on)
