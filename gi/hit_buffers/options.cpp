@@ -68,7 +68,8 @@ RenderOptionTable make_table()
                &S::schedule, kLookUps),
         std::move(directions),
         option("hit-buffer", {0, 8192}, "size of a hit buffer, texels on a side (default: by the plan)",
-               &S::resolution, with_stored_axes_too({"vpl_slhb", "sh_grid", "ispm", "lpv", "isllpm"})),
+               &S::resolution,
+               with_stored_axes_too({"screen_lhb", "vpl_slhb", "sh_grid", "ispm", "lpv", "isllpm"})),
         unless(option("axes", {0, 64},
                       "axes per bounce in a pass (default: by the plan); schedules streamed and temporal",
                       &S::axes, kLookUps),
@@ -91,7 +92,8 @@ RenderOptionTable make_table()
                &S::levels, kLevels),
         option("confirm", {"auto", "on", "off"},
                "where the four texels around a look-up, or around a test by a shadow map, disagree, an exact ray\n"
-               "decides; auto: on, unless the rays' tree would take more than a fifth of a --budget",
+               "decides; auto: on, unless the rays' tree would take more than a fifth of the --budget of a "
+               "picture, or with --cone",
                &S::confirm, kLevels),
         option("memory", {0, 1 << 24},
                "MiB for hit buffers, and as much for shadow maps; they get fewer texels if it is not enough\n"

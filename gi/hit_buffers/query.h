@@ -21,8 +21,9 @@
 // column with an own layer is used; if none has an own layer, the first face towards the walk from the origin's
 // depth on, in the nearest column.
 //
-// A result is doubtful if the nearest column was not accepted, or if another of the four gives another surface: then
-// an edge lies near the line from the origin, and which side of it the line passes is not known.
+// A result is doubtful if the nearest column was not accepted, or if another of the four has no own layer or gives
+// another surface: then an edge lies near the line from the origin, on either side of it. Where one of the four gives
+// a blended surface, results differ by lot, and a difference raises no doubt.
 
 #include "gi/hit_buffers/hit_buffer.h"
 
@@ -60,7 +61,7 @@ GI_FN inline float own_margin(RasterGrid const& grid, float slope) { return grid
 /// true back-face hits are missed as false ones are accepted.
 inline constexpr float kBackReach = 0.25f;
 
-/// How far surfaces hit in different columns may lie from one plane, texels; farther apart, they are different ones.
+/// Distance from a plane, texels, up to which surfaces hit in different columns are one.
 inline constexpr float kSameSurface = 0.25f;
 
 /// Hits nearer than this, m, are checked to face the origin.
@@ -216,19 +217,21 @@ struct TexelsAround {
     }
 };
 
-/// True if two columns found different surfaces, for another reason than that the nearer one is partly transparent:
-/// whether it is in a column is drawn by lot.
-GI_FN inline bool are_different(View<Surface const> surfaces, WalkOrigin const& o, RasterGrid const& grid,
-                                LayerHit const& a, LayerHit const& b)
+/// True if two columns found different surfaces: farther than a quarter texel from one plane, or one found none.
+GI_FN inline bool are_different(View<Surface const> surfaces, RasterGrid const& grid, LayerHit const& a,
+                                LayerHit const& b)
 {
     if (a.triangle == b.triangle) return false;
-    auto const is_cut = [&](LayerHit const& h) { return surfaces[h.triangle].is(Surface::kCut); };
-    if (a.triangle == kNoLayerHit) return !is_cut(b);
-    if (b.triangle == kNoLayerHit) return !is_cut(a);
+    if (a.triangle == kNoLayerHit || b.triangle == kNoLayerHit) return true;
     Surface const& s = surfaces[a.triangle];
-    vec3 const normal = glm::cross(s.edge1, s.edge2), off = b.position - a.position;
-    if (std::abs(glm::dot(normal, off)) <= kSameSurface * grid.texel * glm::length(normal)) return false;
-    return !is_cut((glm::dot(off, grid.axis) < 0) == o.up ? b : a);
+    vec3 const normal = glm::cross(s.edge1, s.edge2);
+    return std::abs(glm::dot(normal, b.position - a.position)) > kSameSurface * grid.texel * glm::length(normal);
+}
+
+/// True if a surface is in a column or not by lot.
+GI_FN inline bool is_by_lot(View<Surface const> surfaces, std::uint32_t triangle)
+{
+    return triangle != kNoLayerHit && surfaces[triangle].is(Surface::kBlended);
 }
 
 } // namespace query_detail
@@ -263,15 +266,17 @@ GI_FN inline bool is_doubtful(AxisView const& axis, View<Surface const> surfaces
     using namespace query_detail;
     RasterGrid const& grid = axis.grid();
     TexelsAround const around(grid, o.position);
+    bool differ = false, by_lot = is_by_lot(surfaces, found.triangle);
     for (int attempt = 0; attempt < 4; ++attempt) {
         std::uint32_t const i = around.column(attempt), j = around.row(attempt);
         Column const c = look_into(axis, std::size_t(j) * grid.width + i, o);
         if (!c.own || (attempt == 0 && !accepts(c, surfaces, o, grid))) return true;
         LayerHit const other{c.hit == kNoLayerHit ? kNoLayerHit : c.hit & kPrimitiveMask,
                              grid.point(i, j, c.depth)};
-        if (are_different(surfaces, o, grid, found, other)) return true;
+        differ = differ || are_different(surfaces, grid, found, other);
+        by_lot = by_lot || is_by_lot(surfaces, other.triangle);
     }
-    return false;
+    return differ && !by_lot;
 }
 
 } // namespace gi

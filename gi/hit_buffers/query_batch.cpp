@@ -313,11 +313,18 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
 template <class Grids>
 void compare_columns(AxisPool const& pool, std::size_t a, View<Surface const> surfaces, QueryBatch& b)
 {
+    using namespace query_detail;
+    enum : std::uint8_t { kDiffers = 1, kByLot = 2 };
     thread_local std::vector<std::uint32_t> compared, unsure;
+    thread_local std::vector<std::uint8_t> seen;
     thread_local QueryBatch other;
     compared.clear();
-    for (std::uint32_t i = 0; i < b.size(); ++i)
-        if (b.doubtful[i] == 0) compared.push_back(i);
+    seen.clear();
+    for (std::uint32_t i = 0; i < b.size(); ++i) {
+        if (b.doubtful[i] != 0) continue;
+        compared.push_back(i);
+        seen.push_back(is_by_lot(surfaces, b.found(i).triangle) ? kByLot : 0);
+    }
     other.watched = b.watched;
     other.resize(compared.size());
     for (std::size_t k = 0; k < compared.size(); ++k) copy_query(b, compared[k], other, k);
@@ -328,11 +335,13 @@ void compare_columns(AxisPool const& pool, std::size_t a, View<Surface const> su
         for (std::size_t k = 0; k < compared.size(); ++k) {
             std::uint32_t const i = compared[k];
             if (b.watched) b.near_moving[i] |= other.near_moving[k];
-            if (other.hit[k] != b.hit[i] &&
-                query_detail::are_different(surfaces, b.origin(i), grids.of(k), b.found(i), other.found(k)))
-                b.doubtful[i] = 1;
+            if (other.hit[k] == b.hit[i]) continue;
+            if (are_different(surfaces, grids.of(k), b.found(i), other.found(k))) seen[k] |= kDiffers;
+            if (is_by_lot(surfaces, other.found(k).triangle)) seen[k] |= kByLot;
         }
     }
+    for (std::size_t k = 0; k < compared.size(); ++k)
+        if (seen[k] == kDiffers) b.doubtful[compared[k]] = 1;
 }
 
 /// Result of the nearest column without an own layer: the first face towards the walk.

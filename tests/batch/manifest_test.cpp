@@ -35,6 +35,15 @@ struct ManifestTest : testing::Test {
     TemporaryFolder folder;
 };
 
+TEST_F(ManifestTest, ThatOfTheThesisHasATaskForEachTableAndModel)
+{
+    std::ifstream in(fs::path(LIGHTWELL_SOURCE_DIR) / "data/batch/thesis.yaml");
+    std::string const text{std::istreambuf_iterator<char>(in), {}};
+    ReadManifest const r = read_manifest(text, "thesis.yaml", kCommands);
+    EXPECT_TRUE(r.mistakes.in_order().empty());
+    EXPECT_EQ(r.batch.tasks.size(), 9u + 1 + 6 + 3 + 6);
+}
+
 /// Without a schema, or of batch/1: for version 0.1.
 TEST_F(ManifestTest, OfVersion01NameMethodsAsThatDid)
 {

@@ -47,6 +47,34 @@ TEST(SlhbExactParts, WithoutLookUpsThereIsNoBias)
     }
 }
 
+/// A veil under an opening whose edges raise doubts: whether it is in a texel is drawn by lot, and by rays once more.
+TEST(SlhbConfirmed, VeilsKeepTheirShareOfTheLight)
+{
+    Scene scene;
+    int const matt = add_material(scene, lambert(vec3{0.6f}));
+    add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, matt);
+    for (float const x : {-1.0f, -0.1f, 0.8f}) add_box(scene, {x, 1, -1}, {x + 0.2f, 1.05f, 1}, matt, false);
+    Material veil = lambert(vec3{0.5f});
+    veil.alpha_mode = AlphaMode::blend;
+    veil.alpha = 0.5f;
+    add_quad(scene, {-1, 0.5f, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, veil));
+    set_environment(scene, vec3{1});
+    World const world = world_of(std::move(scene));
+    Camera const camera = look_at({0, 0.25, 0.9}, {0, 0, 0}, 60);
+    RenderSettings s = small_settings(16, 256, 2);
+    Report report;
+    auto const light = [&](RenderFunction render, Confirming confirm, char const* layer) {
+        s.of<SlhbSettings>().confirm = confirm;
+        return mean_of(render(world, camera, s, {}, {}, report).picture, layer).mean;
+    };
+    for (char const* layer : {"L1", "L2"}) {
+        double const truth = light(render_reference, Confirming::off, layer),
+                     on = light(render_slhb, Confirming::on, layer);
+        std::cout << layer << ": " << on / truth << " of the light\n";
+        EXPECT_NEAR(on, truth, 0.02 * truth) << layer;
+    }
+}
+
 TEST(SlhbExactParts, NothingIsLookedUp)
 {
     // Open, under a sky and parallel light: render_small checks that all is finite.

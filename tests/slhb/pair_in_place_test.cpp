@@ -97,11 +97,14 @@ protected:
                 p.world_from_node[n] = glm::scale(glm::translate(dmat4(1), at), dvec3(1e-12));
         return p;
     }
-    std::vector<PairResult> frames(PairDifference difference, Report& report) const
+    using Start = std::unique_ptr<FrameRenderer> (*)(MovingWorld const&, Camera const&, RenderSettings const&,
+                                                     Report&);
+    std::vector<PairResult> frames(PairDifference difference, Report& report,
+                                   Start start = start_frames_as_set) const
     {
         MovingWorld world(scene_, 0, report);
         Camera const eye = look_at({-0.6, 0.1, 0.95}, {0.2, -0.6, 0}, 80);
-        auto const frames = start_frames_as_set(world, eye, settings_, report);
+        auto const frames = start(world, eye, settings_, report);
         std::vector<PairResult> results;
         for (int k = 0; k < 3; ++k)
             results.push_back(ask<PairFrames>(*frames)->pair(
@@ -157,6 +160,21 @@ TEST_P(InPlace, GivesTheBitsOfBothWorlds)
         EXPECT_LT(share, 0.9);
         EXPECT_EQ(whole_report.counts().count("share of a pair's paths traced on both sides"), 0u);
     }
+}
+
+/// By layers of the view, whose whole passes have other light samples: within the noise.
+TEST_P(InPlace, GivesTheLightOfBothWorldsOnTheScreen)
+{
+    Report report;
+    auto const quick = frames(PairDifference::vanishing, report, start_screen_lhb_frames),
+               whole = frames(PairDifference::anything, report, start_screen_lhb_frames);
+    auto const light = [](std::vector<PairResult> const& all, auto side) {
+        double sum = 0;
+        for (PairResult const& r : all) sum += mean_of((r.*side).picture).mean;
+        return sum;
+    };
+    for (auto const side : {&PairResult::with, &PairResult::without})
+        EXPECT_NEAR(light(quick, side), light(whole, side), 0.05 * light(whole, side));
 }
 
 } // namespace

@@ -29,7 +29,7 @@ questionnaires:
 /// Types text as from a keyboard that has all characters.
 void type(std::string const& text)
 {
-    ASSERT_EQ(gi::test::run_shell("xdotool type --delay 40 '" + text + "'"), 0) << "xdotool";
+    ASSERT_EQ(gi::test::run_shell("LC_ALL=C.UTF-8 xdotool type --delay 40 '" + text + "'"), 0) << "xdotool";
     sleep_ms(100);
 }
 

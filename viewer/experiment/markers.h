@@ -25,6 +25,7 @@ public:
     /// @param wanted  from the script: "udp", "lsl"  @param port  destination port on 127.0.0.1 Throws InputError
     /// on another word, or if no socket can be opened. A missing library is counted in the report.
     Markers(std::vector<std::string> const& wanted, int port, MarkerSession const& session, gi::Report& report);
+    /// Waits half a second if anyone reads the stream, so that the last markers are sent.
     ~Markers();
     Markers(Markers const&) = delete;
     Markers& operator=(Markers const&) = delete;

@@ -105,8 +105,7 @@ GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> sur
     return glm::dot(own, normal) > kAlike * glm::length(own) * glm::length(normal);
 }
 
-/// Where something partly transparent blocks the light of some, all say what the drawn one does: whether it is in a texel
-/// is drawn by lot.
+/// Where something blended blocks the light of some, all say what the drawn one does: it is in a texel or not by lot.
 /// @param drawn  one of them  @param normal  unit, of the lit triangle, at `position`
 template <class Map>
 GI_FN LitBy lit_by(Map const& map, ShadowPlace const& drawn, View<Surface const> surfaces, vec3 position,
@@ -119,7 +118,7 @@ GI_FN LitBy lit_by(Map const& map, ShadowPlace const& drawn, View<Surface const>
         if (lit(map, place, surfaces, position, triangle))
             ++n;
         else
-            cut = cut || surfaces[place.texel->primitive].is(Surface::kCut);
+            cut = cut || surfaces[place.texel->primitive].is(Surface::kBlended);
     }
     if (cut) return lit(map, drawn, surfaces, position, triangle) ? LitBy::all : LitBy::none;
     return n == 0 ? LitBy::none : n == 4 ? LitBy::all : LitBy::some;

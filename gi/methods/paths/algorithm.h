@@ -1,16 +1,17 @@
 #pragma once
-// How paths from the camera find surfaces and test light samples. Each of the four combinations is a method of its
-// own: paths, slhb, paths_shadow_maps, slhb_shadow_rays.
+// How paths from the camera find surfaces and test light samples. Each combination is a method of its own: paths, slhb,
+// paths_shadow_maps, slhb_shadow_rays; of those on the screen, only screen_lhb.
 
 #include "gi/render/render_settings.h"
 
 namespace gi {
 
 /// What finds the next surface of a path that leaves by a broad lobe;
-/// mirrors, glass and narrow lobes always take exact rays.
+/// mirrors, glass and narrow lobes always take exact rays, as may what is doubtful.
 enum class SurfacesBy : std::uint8_t {
-    rays,    ///< each path in its own direction
-    look_ups ///< in hit buffers, along axes that all paths of a pass share
+    rays,     ///< each path in its own direction
+    look_ups, ///< in hit buffers, along axes that all paths of a pass share
+    screen    ///< each path in its own direction, among what the view shows (screen_layers.h)
 };
 
 /// What tests whether a light sample is visible.
@@ -31,6 +32,8 @@ struct PathAlgorithm {
 
 /// Cells of a cache are no part of the method: paths end in them on request only.
 inline constexpr PathAlgorithm kSlhb{SurfacesBy::look_ups, ShadowsBy::maps, false};
+
+inline constexpr PathAlgorithm kScreenLhb{SurfacesBy::screen, ShadowsBy::rays, false};
 
 /// Seconds of the budget that passed before the call, as of choosing the method.
 struct SpentBeforehand {

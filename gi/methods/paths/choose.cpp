@@ -67,13 +67,18 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
     else if (s.levels == 0 && asked.budget_s > 0)
         s.levels = 2;
     double const pixels = double(asked.width) * asked.height;
+    constexpr int kScreenTexels = 256;
+    if (asked.of<PathAlgorithm>().surfaces == SurfacesBy::screen && s.resolution == 0)
+        s.resolution = kScreenTexels;
     constexpr double kShareForDoubts = 0.2;
-    if (!asked.of<PathAlgorithm>().nested)
+    PathAlgorithm const& by = asked.of<PathAlgorithm>();
+    bool const by_texels = by.surfaces == SurfacesBy::look_ups || by.shadows == ShadowsBy::maps,
+               bvh_is_cheap =
+                   asked.budget_s <= 0 || costs.bvh <= kShareForDoubts * asked.budget_s * cores_of(asked);
+    if (!by.nested || !by_texels)
         s.confirm = Confirming::off;
-    else if (s.confirm == Confirming::automatic)
-        s.confirm = asked.budget_s > 0 && costs.bvh > kShareForDoubts * asked.budget_s * cores_of(asked)
-                        ? Confirming::off
-                        : Confirming::on;
+    else if (s.confirm == Confirming::automatic) // a cone moves origins on purpose
+        s.confirm = bvh_is_cheap && s.cone == 0 ? Confirming::on : Confirming::off;
     // Building the structures of a pass should cost only a fraction of its paths and of the budget, or there
     // would be too few paths to share them.
     constexpr double kPath = 0.5e-6, kShare = 0.5, kShareOfBudget = 0.2;
@@ -161,17 +166,24 @@ int choose_interleave(RenderSettings const& asked, RenderSettings const& chosen,
     SlhbSettings const& s = chosen.of<SlhbSettings>();
     PathsSettings const& p = chosen.of<PathsSettings>();
     PathAlgorithm const& by = asked.of<PathAlgorithm>();
-    bool const rays = by.surfaces == SurfacesBy::rays, shadow_rays = by.shadows == ShadowsBy::rays;
+    bool const rays = by.surfaces != SurfacesBy::look_ups, shadow_rays = by.shadows == ShadowsBy::rays;
     // Surfaces after the first one: many paths end by roulette, or most of them in the cache.
     double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3),
                  after = p.cache == RadianceCaching::on ? 1.3
                          : p.roulette > 0               ? std::min(bounces, 1.5)
                                                         : bounces;
     double const shadow = shadow_rays ? costs.shadow_ray : 0;
-    double const fixed = (rays ? 0 : bounces * axes * costs.axis(s.resolution)) +
+    bool const confirms = s.confirm == Confirming::on;
+    constexpr double kDoubtful = 0.5; // of look-ups, in cluttered scenes
+    double const fixed = (confirms ? costs.bvh : 0) + (rays ? 0 : bounces * axes * costs.axis(s.resolution)) +
                          (shadow_rays ? 0 : s.fresh_light_samples * costs.map(s.shadow_resolution)) +
                          pixels * (costs.direct + shadow),
-                 indirect = pixels * after * (costs.bounce + (rays ? costs.ray : 0) + shadow);
+                 indirect = pixels * after *
+                            (costs.bounce +
+                             (rays       ? costs.ray
+                              : confirms ? kDoubtful * costs.ray
+                                         : 0) +
+                             shadow);
     for (int const n : {1, 2, 4})
         if ((fixed + indirect / (n * n)) / cores_of(asked) < asked.budget_s) return n;
     return 4;
@@ -242,6 +254,7 @@ std::string as_options(RenderSettings const& chosen)
         if (states_confirm) buffers.push_back("confirm");
         buffers.insert(buffers.end(), {"packed", "gather"});
     }
+    if (by.surfaces == SurfacesBy::screen) buffers = {"hit-buffer"};
     if (by.shadows == ShadowsBy::maps) {
         bool const first = by.surfaces != SurfacesBy::look_ups;
         if (first && states_levels) buffers.push_back("levels");
@@ -264,7 +277,9 @@ std::vector<PlanItem> explain_choices(World const& world, RenderSettings const& 
     bool const walks = by.surfaces == SurfacesBy::look_ups, rays = by.shadows == ShadowsBy::rays;
     std::vector<PlanItem> items;
     items.push_back({"look_ups", "look-ups in hit buffers", walks,
-                     walks ? "how this method finds surfaces" : "this method finds surfaces by exact rays"});
+                     walks                               ? "how this method finds surfaces"
+                     : by.surfaces == SurfacesBy::screen ? "this method finds surfaces among what the view shows"
+                                                         : "this method finds surfaces by exact rays"});
     if (walks) {
         char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
         items.push_back({std::string("schedule_") + names[int(s.schedule)],

@@ -8,10 +8,11 @@ using P = PathsSettings;
 template <class T>
 RenderOption paths(char const* name, OptionValues values, char const* meaning, T P::*member)
 {
-    return {make_option<RenderSettings>(
-                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.template of<P>().*member; }),
-            "Paths",
-            {"auto", "paths", "paths_shadow_maps", "slhb", "slhb_shadow_rays", "slhb_0_1"}};
+    return {
+        make_option<RenderSettings>(
+            name, std::move(values), meaning, [member](auto& s) -> auto& { return s.template of<P>().*member; }),
+        "Paths",
+        {"auto", "paths", "paths_shadow_maps", "slhb", "slhb_shadow_rays", "screen_lhb", "slhb_0_1"}};
 }
 
 RenderOptionTable make_table()

@@ -17,13 +17,14 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     RenderSettings const chosen = choose_settings(settings, world, soup);
     std::string options = as_options(chosen);
     if (std::string const more = lamp_caustic_options(world, settings); !more.empty()) options += " " + more;
-    bool const rays = chosen.of<PathAlgorithm>().surfaces == SurfacesBy::rays;
-    if (!rays && !camera.orthographic)
+    SurfacesBy const surfaces = chosen.of<PathAlgorithm>().surfaces;
+    if (surfaces == SurfacesBy::look_ups && !camera.orthographic)
         report_untrusted_look_ups(world, soup, camera_rays(camera, settings.width, settings.height, world.origin),
                                   chosen.of<SlhbSettings>(), report);
     FrameView const eye{camera, settings.width, settings.height};
     PathsRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
-                           rays ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);
+                           surfaces == SurfacesBy::rays ? FirstSurfaces::by_rays : FirstSurfaces::by_raster,
+                           &stop);
     options += renderer.level_option();
     renderer.find_lamp_caustics();
     std::uint64_t const print =
@@ -60,6 +61,18 @@ std::unique_ptr<FrameRenderer> start_path_frames(MovingWorld const& world, Camer
                                                  RenderSettings const& settings, Report& report)
 {
     return start_frames_by(world, camera, with(PathAlgorithm{}, settings), report);
+}
+
+RenderResult render_screen_lhb(World const& world, Camera const& camera, RenderSettings const& settings,
+                               StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_by("screen_lhb", world, camera, with(kScreenLhb, settings), stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_screen_lhb_frames(MovingWorld const& world, Camera const& camera,
+                                                       RenderSettings const& settings, Report& report)
+{
+    return start_frames_by(world, camera, with(kScreenLhb, settings), report);
 }
 
 RenderSettings paths_for_display(RenderSettings settings)

@@ -14,6 +14,13 @@ RenderResult render_paths(World const& world, Camera const& camera, RenderSettin
 std::unique_ptr<FrameRenderer> start_path_frames(MovingWorld const& world, Camera const& camera,
                                                  RenderSettings const& settings, Report& report);
 
+/// The same with a single layered hit buffer of the view in place of rays by broad lobes (screen_layers.h). Throw InputError
+/// on orthographic cameras.
+RenderResult render_screen_lhb(World const& world, Camera const& camera, RenderSettings const& settings,
+                               StopRequest const& stop, RenderProgress const& progress, Report& report);
+std::unique_ptr<FrameRenderer> start_screen_lhb_frames(MovingWorld const& world, Camera const& camera,
+                                                       RenderSettings const& settings, Report& report);
+
 RenderSettings paths_for_display(RenderSettings settings);
 ExposurePlan paths_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
                             Triangles triangles);

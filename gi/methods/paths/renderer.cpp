@@ -166,6 +166,10 @@ void PathsRenderer::see(std::span<FrameView const> views)
         fit_primary(v, known);
     }
     if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
+    if (by_.surfaces == SurfacesBy::screen && orthographic())
+        throw InputError("--method screen_lhb with an orthographic camera",
+                         "its layers are those of a pinhole view",
+                         "choose a perspective camera, or another method");
     bool const looks_up = by_.surfaces == SurfacesBy::look_ups || by_.shadows == ShadowsBy::maps;
     if (looks_up && traced_.place_windows(views_) && light_points_) {
         make_axes();
@@ -219,9 +223,19 @@ void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& st
     StageTimer const timer(report_, "G-buffer");
     for (SeenView& v : views_) {
         stop.check();
-        if (!v.primary) continue;
         CameraRays const eye = eye_of_pass(v.rays, settings_.seed, index);
         float const near_m = near_plane(world_.bounds);
+        if (by_.surfaces == SurfacesBy::screen) {
+            auto const draw = [&](std::optional<ScreenLayers>& layers, std::size_t last) {
+                layers.emplace().draw(traced_.soup, last, traced_.cut_outs, eye, v.width, v.height,
+                                      std::uint32_t(slhb_.resolution),
+                                      place_in_pixel(v.filter, settings_.seed, index), near_m,
+                                      std::uint32_t(mix_bits(settings_.seed) + index));
+            };
+            draw(v.screen, traced_.soup.count);
+            if (sides == Sides::pair) draw(v.screen_behind, std::min(traced_.first_moving, traced_.soup.count));
+        }
+        if (!v.primary) continue;
         if (sides == Sides::pair)
             v.primary->refresh_pair(eye, near_m, index, traced_.first_moving);
         else

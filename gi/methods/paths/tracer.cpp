@@ -52,7 +52,6 @@ void PathsTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices, PathsWo
             if (batch.checked && batch.doubtful[k - from] != 0) {
                 vec3 const axis = pool.grids[v.axis].axis, direction = v.origin.up ? axis : -axis;
                 v.exact = true;
-                v.near_moving = batch.watched;
                 v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction), direction};
                 ++counts.doubtful_queries;
                 continue;
@@ -94,6 +93,7 @@ void PathsTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> dire
     for (std::size_t k = 0; k < direct.size(); ++k) {
         if (!(rays[k].reach > 0)) left[k] = vec3{1}; // the light lies on the surface
         if (left[k] != vec3{0}) *direct[k].to += left[k] * direct[k].radiance;
+        if (left[k] != vec3{1} && pass.first_watched != kNoPrimitive) direct[k].sample->near_moving = true;
     }
 }
 
@@ -147,8 +147,7 @@ void PathsTracer::add_by_maps(Pass const& pass, std::vector<Unshadowed>& direct,
             LitBy const by =
                 d.light_point->shadow.lit_by(d.place, world_.surfaces, d.position, normal, d.triangle);
             if (by == LitBy::all) *d.to += d.radiance;
-            if (watches &&
-                (by == LitBy::some || d.light_point->shadow.shows(d.position, normal, pass.first_watched)))
+            if (watches && d.light_point->shadow.shows(d.position, normal, pass.first_watched))
                 d.sample->near_moving = true;
             return by != LitBy::some;
         });
@@ -198,14 +197,22 @@ void PathsTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::v
 {
     thread_local std::vector<RayQuery> rays;
     thread_local std::vector<Hit> hits;
-    if (!pass.look_ups)
-        for (Vertex& v : vertices)
-            if (!v.exact) {
-                v.exact = true;
-                vec3 const direction = states[v.path].direction;
-                v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction), direction};
+    if (!pass.look_ups) {
+        for (Vertex& v : vertices) {
+            if (v.exact) continue;
+            vec3 const direction = states[v.path].direction;
+            if (pass.screen != nullptr) {
+                v.near_moving = false;
+                v.hit = pass.screen->nearest(world_.surfaces, v.origin.position, v.origin.triangle, direction,
+                                             pass.first_watched, v.near_moving);
+                ++counts.queries;
+                continue;
             }
-    ask_axes(pass, vertices, counts);
+            v.exact = true;
+            v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction), direction};
+        }
+    }
+    if (pass.look_ups || pass.screen == nullptr) ask_axes(pass, vertices, counts);
     rays.clear();
     for (Vertex const& v : vertices)
         if (v.exact)

@@ -17,6 +17,7 @@
 #include "gi/methods/paths/algorithm.h"
 #include "gi/methods/paths/light_pool.h"
 #include "gi/methods/paths/radiance_cache.h"
+#include "gi/methods/paths/screen_layers.h"
 #include "gi/methods/paths/settings.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/interleaving.h"
@@ -80,7 +81,8 @@ public:
         /// Light samples tested by exact rays; null = `light_points` are used.
         LightPool const* lights = nullptr;
         bool smooth = false;                ///< the world contains a mirror or glass
-        bool look_ups = true;               ///< else exact rays
+        bool look_ups = true;               ///< else exact rays, or `screen`
+        ScreenLayers const* screen = nullptr; ///< of the view; null = surfaces are found elsewhere
         bool confirms = false;              ///< exact rays decide where look-ups and shadow maps are doubtful
         RadianceCache* cache = nullptr;     ///< paths may end in its cells; null = no cache
         bool spread = false;                ///< pixels without indirect light will get it from neighbours
@@ -100,7 +102,7 @@ public:
           interleaving_{std::uint32_t(settings.of<PathsSettings>().interleave)},
           parts_{settings.of<SlhbSettings>().exact},
           roulette_(settings.of<PathsSettings>().roulette),
-          free_(settings.of<PathAlgorithm>().surfaces == SurfacesBy::rays || parts_.directions),
+          free_(settings.of<PathAlgorithm>().surfaces != SurfacesBy::look_ups || parts_.directions),
           meets_light_(!world_.environment_radiance.empty() || !world_.emitter_pdf.empty()),
           panes_(has_panes(world))
     {

@@ -135,9 +135,11 @@ void ViewPaths::trace_some(PathsTracer::Pass const& pass, PathsTracer const& tra
     }
 }
 
-void ViewPaths::trace_view(PathsTracer::Pass const& pass, SeenViews const& views, SeenView const& view,
+void ViewPaths::trace_view(PathsTracer::Pass const& pass_of_all, SeenViews const& views, SeenView const& view,
                            bool sharing, Work& work)
 {
+    PathsTracer::Pass pass = pass_of_all;
+    if (view.screen) pass.screen = &*view.screen;
     PathsTracer const tracer = tracer_of(view);
     std::optional<PartnerLight> partner;
     if (view.partner >= 0 && view.primary && views[std::size_t(view.partner)].primary) {
@@ -277,6 +279,7 @@ void ViewPaths::trace_pair(PathsTracer::Pass const& pass, SeenViews const& views
     PathsTracer::Pass without = pass;
     without.first_watched = kNoPrimitive;
     without.exact_world = RayWorld::what_stays;
+    if (view.screen_behind) without.screen = &*view.screen_behind;
     PathsTracer const tracer = tracer_of(view);
     auto const trace_some = [&](std::size_t first, std::size_t last, Counts& local) {
         thread_local std::vector<PathStart> starts;

@@ -22,6 +22,8 @@ struct SeenView : TracedView {
     int partner = -1;
     std::span<std::uint8_t const> hidden; ///< as in FrameView
     std::optional<PrimaryMap> primary;    ///< none for orthographic cameras
+    /// If paths find surfaces there: of the view, and of what stays in it, for pairs.
+    std::optional<ScreenLayers> screen, screen_behind;
     std::size_t first = 0;                ///< index of its first pixel among the pixels of all views
 };
 

@@ -27,10 +27,11 @@ bool says_maps(RenderSettings const& asked)
     return s.light_samples > 0 || s.fresh_light_samples > 0 || s.shadow_resolution > 0 || s.exact.any();
 }
 
-/// One grid for the whole world, as it was.
-RenderSettings of_one_level(RenderSettings settings)
+/// One grid for the whole world and no exact rays for doubts, as it was.
+RenderSettings as_it_was(RenderSettings settings)
 {
     settings.of<SlhbSettings>().levels = 1;
+    settings.of<SlhbSettings>().confirm = Confirming::off;
     return settings;
 }
 
@@ -44,7 +45,7 @@ PathAlgorithm algorithm_of(RenderSettings const& asked, World const& world, Came
     else if (has_look_up_options(asked))
         by.surfaces = SurfacesBy::look_ups;
     else
-        by.surfaces = choose_algorithm(world, of_one_level(asked), camera, use).algorithm.surfaces;
+        by.surfaces = choose_algorithm(world, as_it_was(asked), camera, use).algorithm.surfaces;
     bool const bvh = narrow_somewhere(world) || by.surfaces == SurfacesBy::rays;
     bool const maps = says_maps(asked) || has_look_up_options(asked) || !bvh;
     by.shadows = former.shadows == FormerShadows::maps   ? ShadowsBy::maps
@@ -97,7 +98,7 @@ RenderResult render_slhb_0_1(World const& world, Camera const& camera, RenderSet
     if (settings.space == Space::device) {
         check_device_options(settings);
         lose_lamp_caustics(world, report);
-        return render_by_kernels(Space::device, world, camera, of_one_level(settings), stop, progress, report);
+        return render_by_kernels(Space::device, world, camera, as_it_was(settings), stop, progress, report);
     }
     PathAlgorithm const by = algorithm_of(settings, world, camera, RenderUse::picture);
     return render_by("slhb_0_1", world, camera, with(by, settings), stop, progress, report);
@@ -108,7 +109,7 @@ std::unique_ptr<FrameRenderer> start_slhb_0_1_frames(MovingWorld const& world, C
 {
     if (settings.space == Space::device) {
         check_device_options(settings);
-        return start_kernel_frames(Space::device, world, camera, of_one_level(settings), report);
+        return start_kernel_frames(Space::device, world, camera, as_it_was(settings), report);
     }
     PathAlgorithm const by = algorithm_of(settings, world.world(), camera, RenderUse::frames);
     return start_frames_by(world, camera, with(by, settings), report);
@@ -130,7 +131,7 @@ ExposurePlan slhb_0_1_exposure(World const& world, RenderSettings const& asked, 
                                Triangles triangles)
 {
     if (asked.space == Space::device)
-        return {"slhb_0_1", slhb_exposure(world, asked, camera, triangles).settings};
+        return {"slhb_0_1", slhb_exposure(world, as_it_was(asked), camera, triangles).settings};
     RenderSettings s = asked;
     SlhbSettings& buffers = s.of<SlhbSettings>();
     // Which made its paths take look-ups.

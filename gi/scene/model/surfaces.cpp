@@ -29,7 +29,7 @@ Surface surface_of(World const& world, std::size_t triangle)
     if (has_textures(m) || !world.colors.empty()) s.flags |= Surface::kVaries;
     if (emits(m)) s.flags |= Surface::kEmits;
     if (m.double_sided) s.flags |= Surface::kDoubleSided;
-    if (m.alpha_mode != AlphaMode::opaque) s.flags |= Surface::kCut;
+    if (m.alpha_mode == AlphaMode::blend) s.flags |= Surface::kBlended;
     if (world.normals.empty()) return s;
     constexpr float kFlat = 1e-4f; // rad; exceeds the angle error of a small box in float coordinates
     vec3 const n = shading_detail::triangle_normal(s);

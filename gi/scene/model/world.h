@@ -37,8 +37,8 @@ struct alignas(64) Surface {
     static constexpr std::uint32_t kVaries = 2; ///< textures or vertex colours change the material across it
     static constexpr std::uint32_t kEmits = 4;
     static constexpr std::uint32_t kDoubleSided = 8;
-    static constexpr std::uint32_t kCut =
-        16; ///< partly transparent by alpha: hit buffers and maps lack some of its layers
+    static constexpr std::uint32_t kBlended =
+        16; ///< blended: whether it is in a texel or stops a ray is drawn by lot
 
     vec3 corner, edge1, edge2; ///< vertex 0 and the vectors from it to vertices 1 and 2, m
     float normal_scale;        ///< 1 / |edge1 x edge2|; 0 if too large or too small for a float

@@ -312,6 +312,7 @@ renders with the same seeds and light samples, the first two also with the same 
   of_shadow_maps  A minus B, B = A with exact rays to its light samples
   of_directions   stored: B minus C, C = exact rays, cosine-distributed, separately for each path; streamed: 0, as
                   its axes are uniform
+slhb decides what is doubtful by exact rays; with --confirm off, the first two are those of look-ups alone.
 The row "exact rays" is C minus the reference: it should be 0 within its standard error.
 systematic_relmse_indirect is the relMSE of L2 that remains with any number of paths and seeds. It is computed from
 products of different seeds, so noise may make it negative; it does not contain the error of the stored set itself,

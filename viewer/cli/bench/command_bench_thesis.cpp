@@ -9,6 +9,7 @@
 #include "viewer/report/table_file.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 #include <map>
@@ -118,14 +119,14 @@ public:
             write(table_, o_.out);
         }
         if (table_.rows.empty())
-            throw InputError(fmt::format("--triangles {}", o_.triangles),
-                             "no row of these tables has such a model",
-                             "choose one of the thesis, e.g. --tables 6.1 --triangles 250000");
+            throw InputError("none of these tables has a row with such a model",
+                             "they are told apart by --tables, --triangles and --most-triangles",
+                             "choose those of the thesis, e.g. --tables 6.1 --triangles 250000");
     }
     BenchTable const& table() const { return table_; }
 
 private:
-    /// Room with a displaced sphere of so many triangles, as the statue of the thesis has; of the fewest, an empty room.
+    /// Room with a displaced sphere of so many triangles, like the thesis's statue; for the fewest, the Cornell box.
     void take_model(std::uint32_t triangles)
     {
         if (triangles == triangles_) return;
@@ -179,10 +180,11 @@ private:
         made.frame_ms = summarise(frames);
         made.rays_per_s = 1e3 * result.rays / std::max(made.frame_ms.median - made.structures_ms, 1e-3);
         for (NamedValue const& v :
-             compare(result.picture, reference(s.width, s.bounces), {"relmse", "flip", "bias"}, "L2").values)
-            (v.name == "relmse" ? made.relmse
-             : v.name == "flip" ? made.flip
-                                : made.bias) = v.name == "bias" ? v.value - 1 : v.value;
+             compare(result.picture, reference(s.width, s.bounces), {"relmse", "flip", "bias"}, "L2").values) {
+            if (v.name == "relmse") made.relmse = v.value;
+            if (v.name == "flip") made.flip = v.value;
+            if (v.name == "bias") made.bias = v.value - 1;
+        }
         return made;
     }
     /// The same for all rows that differ in hit buffers alone.
@@ -258,6 +260,7 @@ void add_bench_thesis(CLI::App& bench, int& exit_code)
         bench.add_subcommand("thesis", "Repeat tables 6.1 to 6.5 of Yu 2012, with errors and peers.");
     c->add_option("--tables", o->tables, "which, comma-separated (default: all)")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::IsMember(std::vector<std::string>(kTables.begin(), kTables.end())));
     c->add_option("--size", o->size, "pixels on a side (default: as published, 512, in table 6.4 1024)")
         ->check(CLI::Range(1, 8192));
@@ -281,9 +284,9 @@ void add_bench_thesis(CLI::App& bench, int& exit_code)
   lightwell bench thesis --tables 6.1,6.5 --size 16 --paths 2 --most-triangles 2000 --reference-paths 8 --out thesis
 
 frame_ms is the time of the whole frame: hit buffers of all axes (build_ms alone), shadow maps, G-buffers and
-paths. l2_*: errors of indirect light. paths and embree: the methods paths and reference, with as many paths and
+paths. l2_*: errors of indirect light, by look-ups alone (--confirm off). paths and embree: the methods paths and reference, with as many paths and
 bounces. rays_per_s counts look-ups and rays, and leaves out the building of hit buffers or of the tree.
-At full size a CPU takes hours: data/batch/thesis.yaml makes tasks of it, which resume.)");
+At full size a CPU takes hours: data/batch/thesis.yaml makes tasks of it, of which the finished ones are kept.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

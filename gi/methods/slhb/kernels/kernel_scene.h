@@ -239,7 +239,7 @@ private:
     SoupOn<S> soup_;
     Buffer<std::uint8_t, S> marked_;
     std::uint32_t most_layers_;
-    std::optional<WorldBvh<S>> bvh_; ///< none if no lobe needs exact rays
+    std::optional<WorldBvh<S>> bvh_; ///< none if nothing needs exact rays
     std::vector<HitBufferOn<S>> axes_;
     Buffer<AxisView, S> axis_views_;
     std::uint32_t axes_of_level_ = 0;

@@ -62,6 +62,10 @@ GI_FN vec3 StepPaths<by_rays>::direct(State& s, ShadingPoint const& at, vec3 wo,
         RayQuery ray = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
         if (!(ray.reach > 0)) return s.throughput * value; // the light lies on the surface
         ray.seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index);
+        if (!all_finite(s.throughput * value)) {
+            ++local.invalid_paths;
+            return vec3{0};
+        }
         ++local.doubtful_shadows;
         s.doubtful = {ray, s.throughput * value, 0, s.scatterings + 1};
         return vec3{0};
