@@ -47,7 +47,7 @@ struct Options {
 class Queries {
 public:
     Queries(World const& world, Options const& o)
-        : world_(world), o_(o), exact_(world, plan_scene(world).alpha_tests, 0)
+        : world_(world), o_(o), cut_outs_(world), exact_(world, plan_scene(world).alpha_tests, 0)
     {
         CameraRays const through = camera_rays(world.cameras.at(0), o.width, o.height, world.origin);
         std::vector<RayQuery> rays;
@@ -123,8 +123,11 @@ public:
             std::size_t const n = std::min(kTogether, all.size() - first_axis);
             std::vector<HitBuffer> buffers(n);
             tbb::parallel_for(std::size_t(0), n, [&](std::size_t a) {
-                buffers[a] = make_hit_buffer(
-                    soup_, make_grid(world_.bounds, all[first_axis + a], texels, vec2{0.4f}, 0.3f));
+                RasterGrid const grid = make_grid(world_.bounds, all[first_axis + a], texels, vec2{0.4f}, 0.3f);
+                BorrowedFragments fragments;
+                rasterize(soup_, 0, soup_.count, grid, MacroPath::edge_table, *fragments);
+                cut_outs_.remove(*fragments, grid, 0);
+                fill_hit_buffer(*fragments, grid, 0, buffers[a]);
             });
             AxisPool pool;
             fill_pool(buffers, pool);
@@ -170,8 +173,7 @@ public:
     {
         std::vector<float> share(points_.size());
         std::vector<vec3> const all = axes(directions);
-        CutOuts const cut_outs(world_);
-        ShadowMapBuilder const builder(world_.bounds, {}, soup_, cut_outs, texels);
+        ShadowMapBuilder const builder(world_.bounds, {}, soup_, cut_outs_, texels);
         constexpr std::size_t kTogether = 8;
         for (std::size_t first_axis = 0; first_axis < all.size(); first_axis += kTogether) {
             std::size_t const n = std::min(kTogether, all.size() - first_axis);
@@ -294,6 +296,7 @@ private:
 
     World const& world_;
     Options const& o_;
+    CutOuts cut_outs_;
     ExactVisibility exact_;
     TriangleSoup soup_;
     std::vector<Point> points_;

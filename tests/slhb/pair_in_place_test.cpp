@@ -165,6 +165,8 @@ TEST_P(InPlace, GivesTheBitsOfBothWorlds)
 /// By layers of the view, whose whole passes have other light samples: within the noise.
 TEST_P(InPlace, GivesTheLightOfBothWorldsOnTheScreen)
 {
+    settings_.of<SlhbSettings>().light_samples = settings_.of<SlhbSettings>().fresh_light_samples = 64;
+    settings_.of<SlhbSettings>().shadow_resolution = 128;
     Report report;
     auto const quick = frames(PairDifference::vanishing, report, start_screen_lhb_frames),
                whole = frames(PairDifference::anything, report, start_screen_lhb_frames);

@@ -112,15 +112,15 @@ GI_FN LitBy lit_by(Map const& map, ShadowPlace const& drawn, View<Surface const>
                    vec3 normal, std::uint32_t triangle)
 {
     int n = 0;
-    bool cut = false;
+    bool by_lot = false;
     for (int k = 0; k < 4; ++k) {
         ShadowPlace const place = look(map, position, normal, vec2{float(k & 1), float(k >> 1)});
         if (lit(map, place, surfaces, position, triangle))
             ++n;
         else
-            cut = cut || surfaces[place.texel->primitive].is(Surface::kBlended);
+            by_lot = by_lot || surfaces[place.texel->primitive].is(Surface::kBlended);
     }
-    if (cut) return lit(map, drawn, surfaces, position, triangle) ? LitBy::all : LitBy::none;
+    if (by_lot) return lit(map, drawn, surfaces, position, triangle) ? LitBy::all : LitBy::none;
     return n == 0 ? LitBy::none : n == 4 ? LitBy::all : LitBy::some;
 }
 

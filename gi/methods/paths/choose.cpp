@@ -160,7 +160,9 @@ RadianceCaching choose_cache(RenderSettings const& asked, bool lasting)
 
 /// Chooses the interleaving if the first pass would exceed the budget: first surfaces and direct light for all
 /// pixels, indirect light for as many as time allows. @param axes  built per pass and bounce
-int choose_interleave(RenderSettings const& asked, RenderSettings const& chosen, int axes, Costs const& costs)
+/// @param bvh_s  of building what exact rays go through
+int choose_interleave(RenderSettings const& asked, RenderSettings const& chosen, int axes, double bvh_s,
+                      Costs const& costs)
 {
     if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
     SlhbSettings const& s = chosen.of<SlhbSettings>();
@@ -175,7 +177,7 @@ int choose_interleave(RenderSettings const& asked, RenderSettings const& chosen,
     double const shadow = shadow_rays ? costs.shadow_ray : 0;
     bool const confirms = s.confirm == Confirming::on;
     constexpr double kDoubtful = 0.5; // of look-ups, in cluttered scenes
-    double const fixed = (confirms ? costs.bvh : 0) + (rays ? 0 : bounces * axes * costs.axis(s.resolution)) +
+    double const fixed = (confirms ? bvh_s : 0) + (rays ? 0 : bounces * axes * costs.axis(s.resolution)) +
                          (shadow_rays ? 0 : s.fresh_light_samples * costs.map(s.shadow_resolution)) +
                          pixels * (costs.direct + shadow),
                  indirect = pixels * after *
@@ -203,7 +205,9 @@ RenderSettings with_paths(RenderSettings const& asked, SlhbSettings const& buffe
     p.cache = choose_cache(asked, lasting);
     if (p.roulette < 0) p.roulette = !by_time ? 0 : p.cache == RadianceCaching::on ? kRouletteToCells : kRoulette;
     bool const kept = lasting && buffers.schedule == Schedule::stored;
-    if (p.interleave == 0) p.interleave = choose_interleave(asked, chosen, kept ? 0 : buffers.fresh_axes, costs);
+    if (p.interleave == 0)
+        p.interleave =
+            choose_interleave(asked, chosen, kept ? 0 : buffers.fresh_axes, lasting ? 0 : costs.bvh, costs);
     return chosen;
 }
 
@@ -274,12 +278,13 @@ std::vector<PlanItem> explain_choices(World const& world, RenderSettings const& 
     Costs const costs = costs_of(world, soup);
     SlhbSettings const s = choose_look_ups(asked, world, costs);
     PathAlgorithm const& by = asked.of<PathAlgorithm>();
-    bool const walks = by.surfaces == SurfacesBy::look_ups, rays = by.shadows == ShadowsBy::rays;
+    bool const screen = by.surfaces == SurfacesBy::screen, walks = by.surfaces == SurfacesBy::look_ups,
+               rays = by.shadows == ShadowsBy::rays;
     std::vector<PlanItem> items;
     items.push_back({"look_ups", "look-ups in hit buffers", walks,
-                     walks                               ? "how this method finds surfaces"
-                     : by.surfaces == SurfacesBy::screen ? "this method finds surfaces among what the view shows"
-                                                         : "this method finds surfaces by exact rays"});
+                     walks    ? "how this method finds surfaces"
+                     : screen ? "this method finds surfaces among what the view shows"
+                              : "this method finds surfaces by exact rays"});
     if (walks) {
         char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
         items.push_back({std::string("schedule_") + names[int(s.schedule)],
@@ -314,9 +319,10 @@ std::vector<PlanItem> explain_choices(World const& world, RenderSettings const& 
     bool const cached = choose_cache(asked, false) == RadianceCaching::on;
     items.push_back({"radiance_cache", "radiance cache", cached,
                      asked.of<PathsSettings>().cache != RadianceCaching::automatic ? "requested"
-                     : cached ? "there is a budget; it trades noise for a little blur"
+                     : cached     ? "there is a budget; it trades noise for a little blur"
+                     : screen     ? "its light would depend on the view"
                      : !by.caches ? "it is not part of this method; --radiance-cache on"
-                              : "it would leave a small error even in long renders; --radiance-cache on"});
+                                  : "it would leave a small error even in long renders; --radiance-cache on"});
     bool const lit = !world.light_select.empty();
     items.push_back({rays ? "shadow_rays" : "shadow_maps",
                      rays ? "shadow rays"
@@ -330,7 +336,8 @@ std::vector<PlanItem> explain_choices(World const& world, RenderSettings const& 
     bool const narrow = narrow_somewhere(world), confirms = s.confirm == Confirming::on && (walks || !rays);
     items.push_back({"exact_rays", "exact rays (Embree)",
                      !walks || rays || narrow || confirms || camera.orthographic,
-                     !walks                ? "in place of look-ups"
+                     screen                ? "for mirrors, glass, narrow lobes and shadows"
+                     : !walks              ? "in place of look-ups"
                      : rays                ? "for shadows"
                      : camera.orthographic ? "the camera is orthographic"
                      : narrow              ? "mirrors, glass or narrow lobes need more directions than the axes"

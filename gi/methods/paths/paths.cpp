@@ -4,6 +4,8 @@
 #include "gi/methods/paths/look_up_trust.h"
 #include "gi/render/fingerprint.h"
 
+#include <fmt/format.h>
+
 namespace gi {
 
 RenderResult render_by(char const* name, World const& world, Camera const& camera, RenderSettings const& settings,
@@ -67,6 +69,18 @@ RenderResult render_screen_lhb(World const& world, Camera const& camera, RenderS
                                StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
     return render_by("screen_lhb", world, camera, with(kScreenLhb, settings), stop, progress, report);
+}
+
+void check_screen_lhb_options(std::vector<std::string> const&, RenderSettings const& settings)
+{
+    constexpr int kMostTexels = 2048;
+    if (int const n = settings.of<SlhbSettings>().resolution; n > kMostTexels)
+        throw InputError(fmt::format("--hit-buffer {} with --method screen_lhb", n),
+                         "its layers are drawn anew in every pass, and walked through by every ray",
+                         fmt::format("give at most {}", kMostTexels));
+    if (settings.of<PathsSettings>().cache == RadianceCaching::on)
+        throw InputError("--radiance-cache on with --method screen_lhb",
+                         "its light depends on the view, cells do not", "leave it out");
 }
 
 std::unique_ptr<FrameRenderer> start_screen_lhb_frames(MovingWorld const& world, Camera const& camera,

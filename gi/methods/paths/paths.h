@@ -18,6 +18,8 @@ std::unique_ptr<FrameRenderer> start_path_frames(MovingWorld const& world, Camer
 /// on orthographic cameras.
 RenderResult render_screen_lhb(World const& world, Camera const& camera, RenderSettings const& settings,
                                StopRequest const& stop, RenderProgress const& progress, Report& report);
+/// See Method.
+void check_screen_lhb_options(std::vector<std::string> const& given, RenderSettings const& settings);
 std::unique_ptr<FrameRenderer> start_screen_lhb_frames(MovingWorld const& world, Camera const& camera,
                                                        RenderSettings const& settings, Report& report);
 

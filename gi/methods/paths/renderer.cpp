@@ -152,6 +152,11 @@ void PathsRenderer::add_motion(std::size_t view, Picture& picture) const
 
 void PathsRenderer::see(std::span<FrameView const> views)
 {
+    bool const flat = std::ranges::any_of(views, [](FrameView const& v) { return v.camera.orthographic; });
+    if (by_.surfaces == SurfacesBy::screen && flat)
+        throw InputError("--method screen_lhb with an orthographic camera",
+                         "its layers are those of a pinhole view",
+                         "choose a perspective camera, or another method");
     std::size_t first = 0;
     while (views_.size() > views.size()) views_.pop_back();
     for (std::size_t k = 0; k < views.size(); ++k) {
@@ -166,10 +171,6 @@ void PathsRenderer::see(std::span<FrameView const> views)
         fit_primary(v, known);
     }
     if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
-    if (by_.surfaces == SurfacesBy::screen && orthographic())
-        throw InputError("--method screen_lhb with an orthographic camera",
-                         "its layers are those of a pinhole view",
-                         "choose a perspective camera, or another method");
     bool const looks_up = by_.surfaces == SurfacesBy::look_ups || by_.shadows == ShadowsBy::maps;
     if (looks_up && traced_.place_windows(views_) && light_points_) {
         make_axes();
@@ -227,10 +228,11 @@ void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& st
         float const near_m = near_plane(world_.bounds);
         if (by_.surfaces == SurfacesBy::screen) {
             auto const draw = [&](std::optional<ScreenLayers>& layers, std::size_t last) {
-                layers.emplace().draw(traced_.soup, last, traced_.cut_outs, eye, v.width, v.height,
-                                      std::uint32_t(slhb_.resolution),
-                                      place_in_pixel(v.filter, settings_.seed, index), near_m,
-                                      std::uint32_t(mix_bits(settings_.seed) + index));
+                if (!layers) layers.emplace();
+                layers->draw(traced_.soup, last, traced_.cut_outs, eye, v.width, v.height,
+                             std::uint32_t(slhb_.resolution),
+                             place_in_pixel(PixelFilter::box, settings_.seed, index), near_m,
+                             std::uint32_t(mix_bits(settings_.seed) + index));
             };
             draw(v.screen, traced_.soup.count);
             if (sides == Sides::pair) draw(v.screen_behind, std::min(traced_.first_moving, traced_.soup.count));
@@ -269,7 +271,7 @@ PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassS
             .look_ups = !slhb_.exact.queries && by_.surfaces == SurfacesBy::look_ups,
             .confirms = slhb_.confirm == Confirming::on,
             .cache = cached && cache_ ? &*cache_ : nullptr,
-            .spread = spread_ && by_.surfaces == SurfacesBy::rays,
+            .spread = spread_ && by_.surfaces != SurfacesBy::look_ups,
             .no_punctual = leaves_out_punctual_,
             .caustics = caustics_ ? caustics_->map() : nullptr};
 }

@@ -1,5 +1,7 @@
 #include "gi/methods/paths/screen_layers.h"
 
+#include "gi/core/error.h"
+
 #include <algorithm>
 #include <tbb/parallel_for.h>
 
@@ -26,6 +28,11 @@ void ScreenLayers::draw(TriangleSoup const& soup, std::size_t last, CutOuts cons
     offset_.assign(grid_.texels() + 1, 0);
     for (BorrowedFragments& f : parts)
         for (std::size_t k = 0; k < f->count; ++k) ++offset_[f->texel[k] + 1];
+    std::uint64_t sum = 0;
+    for (BorrowedFragments& f : parts) sum += f->count;
+    if (sum > 0x7fffffff)
+        throw InputError("a layered hit buffer of the view has more than 2^31 layers",
+                         "they are indexed with 32 bits", "lower --hit-buffer");
     for (std::size_t t = 0; t < grid_.texels(); ++t) offset_[t + 1] += offset_[t];
     layers_.resize(offset_.back());
     std::vector<std::uint32_t> next(offset_.begin(), offset_.end() - 1);
@@ -60,29 +67,32 @@ LayerHit ScreenLayers::nearest(View<Surface const> surfaces, vec3 origin, std::u
     int const count[2] = {int(grid_.width), int(grid_.height)};
     int way[2]; // in which the ray moves across the picture, the same all along it
     for (int k = 0; k < 2; ++k) {
-        at[k] = std::clamp(int(start[k] / start.z), 0, count[k] - 1);
+        float const place = start[k] / start.z;
+        if (!(place > -1 && place < float(count[k] + 1))) return {}; // beside the view
+        at[k] = std::clamp(int(place), 0, count[k] - 1);
         float const turn = step[k] * start.z - start[k] * step.z;
         way[k] = turn > 0 ? 1 : turn < 0 ? -1 : 0;
     }
+    // Polygons end within texels, so one may be met a little before or after its texel, and a little beside the polygon
+    // itself; where its plane is seen edge-on, that would be far.
     constexpr float kBeside = 0.5f; // texels
     float entered = 0;
+    LayerHit best; // behind the texel, until one of the next is nearer
+    float best_at = kInf;
     while (true) {
         float leaves = end;
         int across = -1; // the border at which the ray leaves the texel
         for (int k = 0; k < 2; ++k) {
-            if (way[k] == 0) continue;
-            auto const border = float(at[k] + (way[k] > 0 ? 1 : 0));
-            float const t = (border * start.z - start[k]) / (step[k] - border * step.z);
-            if (t >= entered && t < leaves) {
+            auto const border = float(at[k] + (way[k] > 0 ? 1 : 0)), way_there = float(way[k]);
+            float const ahead = way_there * (border * start.z - start[k]),
+                        pace = way_there * (step[k] - border * step.z);
+            if (!(pace > 0)) continue;
+            if (float const t = std::max(ahead / pace, entered); t < leaves) {
                 leaves = t;
                 across = k;
             }
         }
-        // Polygons end within texels, so one of this may be met a little before or after it, and a little beside the
-        // polygon itself; where its plane is seen edge-on, that would be far.
         float const slack = leaves < kInf ? 0.5f * (leaves - entered) : 0.0f;
-        LayerHit best;
-        float nearest_at = leaves + slack;
         std::size_t const texel = std::size_t(at[1]) * grid_.width + std::size_t(at[0]);
         for (std::uint32_t k = offset_[texel]; k < offset_[texel + 1]; ++k) {
             if (layers_[k] >= watched) near_watched = true;
@@ -91,16 +101,16 @@ LayerHit ScreenLayers::nearest(View<Surface const> surfaces, vec3 origin, std::u
             float const height = glm::dot(normal, s.corner - origin), slope = glm::dot(normal, direction);
             if (layers_[k] == triangle || std::abs(height) <= s.clearance * glm::length(normal)) continue;
             float const t = height / slope;
-            if (!(t > 0 && t >= entered - slack && t <= nearest_at)) continue;
+            if (!(t > 0 && t < best_at && t >= entered - slack && t <= leaves + slack)) continue;
             vec3 const met = origin + t * direction, position = held_on(s, met);
             float const depth = start.z + t * step.z;
             if (!(glm::length(position - met) <= kBeside * texel_ * depth + s.clearance)) continue;
-            nearest_at = t;
+            best_at = t;
             best = {layers_[k], position, false};
         }
-        if (best.triangle != kNoLayerHit || across < 0) return best;
+        if (best_at <= leaves || across < 0) return best;
         at[across] += way[across];
-        if (at[across] < 0 || at[across] >= count[across]) return {};
+        if (at[across] < 0 || at[across] >= count[across]) return best;
         entered = leaves;
     }
 }

@@ -191,6 +191,15 @@ void PathsTracer::add_lit(Pass const& pass, Direct& direct, PathsWork& counts) c
     direct.rays.clear();
 }
 
+/// True for the back of something shiny, such as a glass body: a path that has missed its front would stay in it.
+bool PathsTracer::meets_inside(LayerHit const& hit, vec3 direction) const
+{
+    if (hit.triangle == kNoLayerHit) return false;
+    Surface const& s = world_.surfaces[hit.triangle];
+    return !bsdf_detail::is_matt(world_.bsdfs[s.material]) &&
+           glm::dot(shading_detail::triangle_normal(s), direction) > 0;
+}
+
 /// Finds the next surfaces of all vertices, by look-ups and exact rays.
 void PathsTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
                            PathsWork& counts) const
@@ -199,14 +208,14 @@ void PathsTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::v
     thread_local std::vector<Hit> hits;
     if (!pass.look_ups) {
         for (Vertex& v : vertices) {
+            v.near_moving = false;
             if (v.exact) continue;
             vec3 const direction = states[v.path].direction;
             if (pass.screen != nullptr) {
-                v.near_moving = false;
                 v.hit = pass.screen->nearest(world_.surfaces, v.origin.position, v.origin.triangle, direction,
                                              pass.first_watched, v.near_moving);
                 ++counts.queries;
-                continue;
+                if (!meets_inside(v.hit, direction)) continue;
             }
             v.exact = true;
             v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction), direction};

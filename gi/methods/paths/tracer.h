@@ -147,6 +147,7 @@ private:
     void add_by_maps(Pass const& pass, std::vector<Unshadowed>& direct, PathsWork& counts) const;
     void find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
                    PathsWork& counts) const;
+    bool meets_inside(LayerHit const& hit, vec3 direction) const;
     /// Ends paths whose cell is known, except some that continue to teach it.
     void end_in_cells(Pass const& pass, std::span<State> states, std::vector<Vertex>& vertices,
                       std::size_t& active, std::vector<Open>& open, PathsWork& counts) const;

@@ -218,9 +218,11 @@ bool PathsTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct
     // Axes can only sample broad lobes; exact rays can sample any.
     bool const narrow = free_ ? !bsdf_detail::is_matt(at.bsdf) : pass.exact != nullptr && has_narrow_lobe(at.bsdf);
     // Light samples must account for all direct light at the last surface (except with narrow lobes, or if
-    // mirrors or glass exist), and at first surfaces whose pixels wait for indirect light.
+    // mirrors or glass exist), at first surfaces whose pixels wait for indirect light, and where paths do not meet
+    // what lies beside the view.
     bool const waits = s.vertex == 0 && pass.spread && interleaving_.n > 1 && bounces_ > 0;
-    bool const alone = waits ? !has_narrow_lobe(at.bsdf) : !narrow && s.scatterings == bounces_ && !pass.smooth;
+    bool const alone = waits ? !has_narrow_lobe(at.bsdf)
+                             : !narrow && ((s.scatterings == bounces_ && !pass.smooth) || pass.screen != nullptr);
     BsdfSample mirror[3];
     bool const seen = pass.no_punctual && s.seen;
     bool const shows_other = seen && s.vertex < kMostMirrors && find_mirror(at, wo, mirror) > 0;
