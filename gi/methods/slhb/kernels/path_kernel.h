@@ -12,6 +12,7 @@
 #include "gi/render/path_random.h"
 #include "gi/hit_buffers/shadow_maps/shadow_look.h"
 #include "gi/render/ray_kernels.h"
+#include "gi/render/ray_path.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
 namespace gi {
