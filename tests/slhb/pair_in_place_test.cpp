@@ -162,7 +162,7 @@ TEST_P(InPlace, GivesTheBitsOfBothWorlds)
     }
 }
 
-/// By layers of the view, whose whole passes have other light samples: within the noise.
+/// Indirect light by layers of the view; whole passes have other light samples, so it is the same within the noise.
 TEST_P(InPlace, GivesTheLightOfBothWorldsOnTheScreen)
 {
     settings_.of<SlhbSettings>().light_samples = settings_.of<SlhbSettings>().fresh_light_samples = 64;
@@ -172,11 +172,13 @@ TEST_P(InPlace, GivesTheLightOfBothWorldsOnTheScreen)
                whole = frames(PairDifference::anything, report, start_screen_lhb_frames);
     auto const light = [](std::vector<PairResult> const& all, auto side) {
         double sum = 0;
-        for (PairResult const& r : all) sum += mean_of((r.*side).picture).mean;
+        for (PairResult const& r : all) sum += mean_of((r.*side).picture, "L2").mean;
         return sum;
     };
-    for (auto const side : {&PairResult::with, &PairResult::without})
-        EXPECT_NEAR(light(quick, side), light(whole, side), 0.05 * light(whole, side));
+    double const with = light(whole, &PairResult::with), without = light(whole, &PairResult::without);
+    EXPECT_NEAR(light(quick, &PairResult::with), with, 0.2 * with);
+    // Of the ground under a sky alone there is none: the object must have left the layers, too.
+    EXPECT_NEAR(light(quick, &PairResult::without), without, 0.04 * without);
 }
 
 } // namespace
