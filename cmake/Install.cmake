@@ -33,7 +33,7 @@ if(LIGHTWELL_LEVEL)
   return()
 endif()
 lightwell_install(lightwell lightwell_launcher lightwell_study lightwell_batch)
-lightwell_install(ar lightwell_capture lightwell_video)
+lightwell_install(ar lightwell_capture)
 lightwell_install(cluster lightwell_cluster)
 
 install(CODE "
@@ -117,12 +117,12 @@ set(same "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
 get_target_property(codecs opencv_imgcodecs IMPORTED_SONAME_RELEASE)
 string(REGEX REPLACE "^libopencv_imgcodecs\\.so\\.([0-9]+)d?$" "libopencv-imgcodecs\\1" codecs "${codecs}")
 lightwell_package(lightwell lightwell graphics "global illumination renderer for laboratories"
-  "Renders 3D scenes with path-traced light, compares pictures and analyses\nperceptual experiments." RECOMMENDS ${codecs})
+  "Renders 3D scenes with path-traced light, compares pictures and analyses\nperceptual experiments." RECOMMENDS ${codecs} ffmpeg)
 lightwell_package(view lightwell-view graphics "immersive viewer of globally lit scenes"
   "Windows, stereo walls and CAVEs, OpenXR headsets; runs perceptual\nexperiments and records their trials."
   DEPENDS "lightwell ${same}" libgl1-mesa-dri fonts-dejavu-core)
 lightwell_package(ar lightwell-ar graphics "globally lit virtual objects in camera frames"
-  "Calibrates cameras, finds markers, and composites virtual objects with the\nlight of the real place. Also reads and writes videos."
+  "Calibrates cameras, finds markers, and composites virtual objects with the\nlight of the real place. Also reads videos."
   DEPENDS "lightwell ${same}")
 lightwell_package(cluster lightwell-cluster graphics "Lightwell on several machines"
   "Shares pictures and walls between machines, by MPI." DEPENDS "lightwell ${same}" openmpi-bin RECOMMENDS "lightwell-view ${same}")

@@ -25,7 +25,12 @@ SCRIPT = """#!python
 import importlib.util
 import os
 import sys
+from pathlib import Path
 
+video = importlib.util.find_spec("imageio_ffmpeg")
+if video is not None:
+    for ffmpeg in Path(video.submodule_search_locations[0], "binaries").glob("ffmpeg-*"):
+        os.environ.setdefault("IMAGEIO_FFMPEG_EXE", str(ffmpeg))
 spec = importlib.util.find_spec("lightwell")
 program = os.path.join(spec.submodule_search_locations[0], "programs", "lightwell")
 os.execv(program, [program, *sys.argv[1:]])

@@ -3,7 +3,10 @@
 #include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 
+#include <csignal>
+#include <cstdlib>
 #include <opencv2/videoio.hpp>
+#include <sys/resource.h>
 
 namespace viewer::test {
 namespace {
@@ -68,15 +71,48 @@ TEST(VideoWriter, LeavesNothingUnfinished)
     EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
 }
 
-TEST(VideoWriter, NoticesWhatIsLost)
+TEST(VideoWriter, NoticesAFullDisk)
 {
     TemporaryFolder const folder;
-    VideoWriter out(folder / "a.mkv", kWidth, kHeight, 30);
-    for (int k = 0; k < kFrames; ++k) out.add(frame(k));
-    ASSERT_EQ(folder.files().size(), 1u);
-    std::filesystem::remove(folder / folder.files()[0]); // as a disk that fails would
-    EXPECT_THROW(out.finish(), gi::InputError);
-    EXPECT_TRUE(folder.files().empty());
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    auto const handler = signal(SIGXFSZ, SIG_IGN); // so that writing fails, as on a full disk
+    rlimit const small{4000, before.rlim_max};
+    for (char const* const name : {"a.mkv", "a.mp4"}) {
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+        {
+            VideoWriter out(folder / name, kWidth, kHeight, 30);
+            ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+            EXPECT_THROW(
+                {
+                    for (int k = 0; k < 300; ++k) out.add(frame(k));
+                    out.finish();
+                },
+                gi::InputError)
+                << name;
+        }
+        EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
+    }
+    signal(SIGXFSZ, handler);
+}
+
+TEST(VideoWriter, SaysThatThereIsNoFfmpeg)
+{
+    TemporaryFolder const folder;
+    setenv("IMAGEIO_FFMPEG_EXE", "/nowhere/ffmpeg", 1);
+    EXPECT_THROW(VideoWriter(folder / "a.mkv", kWidth, kHeight, 30), gi::InputError);
+    setenv("IMAGEIO_FFMPEG_EXE", "false", 1); // one that ends at once
+    {
+        VideoWriter out(folder / "a.mkv", kWidth, kHeight, 30);
+        EXPECT_THROW(
+            {
+                for (int k = 0; k < 300; ++k) out.add(frame(k));
+                out.finish();
+            },
+            gi::InputError);
+    }
+    unsetenv("IMAGEIO_FFMPEG_EXE");
+    EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
 }
 
 TEST(VideoWriter, RefusesWhatNoVideoCanBe)

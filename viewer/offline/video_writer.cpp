@@ -1,11 +1,12 @@
 #include "viewer/offline/video_writer.h"
 
 #include "gi/core/error.h"
-#include "gi/core/module.h"
-#include "viewer/offline/video_codec/video_codec.h"
+#include "viewer/offline/ffmpeg.h"
 
+#include <algorithm>
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
+#include <fstream>
+#include <vector>
 
 namespace viewer {
 namespace {
@@ -14,10 +15,15 @@ namespace fs = std::filesystem;
 
 struct Codec {
     char const* extension;
-    char const* name;
-    char const* code; ///< FourCC
+    std::vector<std::string> options;
 };
-constexpr Codec kCodecs[]{{".mkv", "FFV1", "FFV1"}, {".mp4", "H.264", "avc1"}};
+// FFV1 without loss, with check sums; H.264 that looks the same. Its matrix is BT.601's, and says so: OpenCV and others take no other.
+Codec const kCodecs[]{
+    {".mkv", {"-c:v", "ffv1", "-level", "3", "-slicecrc", "1", "-pix_fmt", "bgr0"}},
+    {".mp4",
+     {"-c:v", "libx264", "-crf", "14", "-preset", "fast", "-vf",
+      "scale=out_color_matrix=bt601:flags=accurate_rnd+full_chroma_int", "-pix_fmt", "yuv420p", "-colorspace",
+      "smpte170m", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart"}}};
 
 gi::InputError cannot(fs::path const& file, std::string const& why, std::string const& suggestion)
 {
@@ -31,15 +37,31 @@ Codec const& codec_of(fs::path const& file)
     throw cannot(file, "its ending is not a supported video format", "choose .mkv (lossless) or .mp4 (H.264)");
 }
 
-/// The module that links FFmpeg, loaded for the first video.
-VideoCodec& video_codec()
+std::vector<std::string> encoding(fs::path const& file, int width, int height, double fps)
 {
-    static VideoCodec& codec = [&]() -> VideoCodec& {
-        return *reinterpret_cast<decltype(&lightwell_video_codec)>(
-            gi::module_function("liblightwell_video.so", "lightwell_video_codec", "videos cannot be written",
-                                "install the package lightwell-ar, or build all: scripts/build release"))();
-    }();
-    return codec;
+    std::vector<std::string> all{"-v",          "error",
+                                 "-nostdin",    "-y",
+                                 "-f",          "rawvideo",
+                                 "-pix_fmt",    "rgb24",
+                                 "-video_size", fmt::format("{}x{}", width, height),
+                                 "-framerate",  fmt::format("{:.9g}", fps),
+                                 "-i",          "pipe:0"};
+    std::ranges::copy(codec_of(file).options, std::back_inserter(all));
+    for (char const* const option : {"-fflags", "+bitexact", "-flags:v", "+bitexact"}) all.emplace_back(option);
+    all.push_back("file:" + file.string());
+    return all;
+}
+
+/// That decode without errors.
+int frames_in(fs::path const& file)
+{
+    Ffmpeg reads({"-v", "error", "-nostdin", "-i", "file:" + file.string(), "-map", "0:v:0", "-fps_mode",
+                  "passthrough", "-f", "framecrc", "-"});
+    reads.finish();
+    std::string const lines = "\n" + reads.printed(); // one of each frame, after "#..." of the stream
+    int frames = 0;
+    for (std::size_t at = 0; (at = lines.find("\n0,", at)) != std::string::npos; ++at) ++frames;
+    return frames;
 }
 
 } // namespace
@@ -57,42 +79,50 @@ void check_video(fs::path const& file, int width, int height, double fps)
 
 VideoWriter::VideoWriter(fs::path const& file, int width, int height, double fps)
     : file_(file),
-      temporary_(fs::absolute(file).parent_path() / // absolute, as FFmpeg reads "a:" as a protocol
-                 ("." + file.stem().string() + ".unfinished" + file.extension().string())),
-      width_(width),
-      height_(height)
+      temporary_(fs::absolute(file).parent_path() /
+                 ("." + file.stem().string() + ".unfinished" + file.extension().string()))
 {
     check_video(file, width, height, fps);
-    Codec const& codec = codec_of(file);
-    stream_ = video_codec().open(temporary_, codec.code, fps, width, height);
-    if (stream_) return;
-    std::error_code ignored;
-    fs::remove(temporary_, ignored);
-    throw cannot(file,
-                 fmt::format("OpenCV and FFmpeg have no encoder for {} here, or the folder is full", codec.name),
-                 "choose .mkv or .mp4, or save --png frames");
+    if (!std::ofstream(temporary_))
+        throw cannot(file, "its folder cannot be written", "choose another folder, or free some space");
+    try {
+        ffmpeg_ = std::make_unique<Ffmpeg>(encoding(temporary_, width, height, fps));
+    } catch (...) {
+        remove_unfinished();
+        throw;
+    }
 }
 
 VideoWriter::~VideoWriter()
 {
-    stream_.reset();
+    ffmpeg_.reset();
+    remove_unfinished();
+}
+
+void VideoWriter::remove_unfinished()
+{
     std::error_code ignored;
     fs::remove(temporary_, ignored);
 }
 
 void VideoWriter::add(std::span<unsigned char const> rgb8)
 {
-    cv::Mat const rgb(height_, width_, CV_8UC3, const_cast<unsigned char*>(rgb8.data()));
-    cv::Mat bgr;
-    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-    stream_->write(bgr);
+    if (!ffmpeg_->write(rgb8)) fail();
     ++frames_;
+}
+
+void VideoWriter::fail()
+{
+    ffmpeg_->finish();
+    std::string const said = ffmpeg_->last_message();
+    throw cannot(file_, "ffmpeg ended early" + (said.empty() ? "" : ": " + said),
+                 "free some space, choose another folder or ending, or save --png frames");
 }
 
 void VideoWriter::finish()
 {
-    stream_.reset();
-    int const read = video_codec().count_frames(temporary_, frames_ + 1);
+    if (!ffmpeg_->finish()) fail();
+    int const read = frames_in(temporary_);
     if (read != frames_)
         throw cannot(file_, fmt::format("only {} of {} frames can be read back", read, frames_),
                      "free some space or choose another folder");
