@@ -6,6 +6,7 @@
 #include "gi/core/report.h"
 #include "gi/image_io/picture_rows.h"
 #include "gi/kernel/space.h"
+#include "gi/render/look_up_bias.h"
 #include "gi/render/method_settings.h"
 
 #include <algorithm>
@@ -91,6 +92,7 @@ struct RenderResult {
     std::uint32_t paths = 0;
     double seconds = 0; ///< for all paths, including those before an interruption
     double relmse = 0;
+    std::optional<LookUpBias> look_up_bias; ///< of a method that looks up, if it was measured
     std::string options;    ///< settings chosen by the method, as command-line options
     std::string method, why_method; ///< of a method that chooses another: its name, and why it was chosen
     bool resumable = false; ///< settings.checkpoint holds the state needed to continue

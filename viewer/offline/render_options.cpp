@@ -291,7 +291,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv
 
 --stats and --json hold: schema, program, command, machine, settings, outputs, result (end, paths_per_pixel, seconds,
-relmse_estimate, rays, rays_per_s), plan (name, what, build, reason, numbers), report (stages_s, counts, losses,
+relmse_estimate, look_up_bias, rays, rays_per_s), plan (name, what, build, reason, numbers), report (stages_s, counts, losses,
 peak_memory_bytes); for --frames, instead of result, one record per frame (frame, time_s, outputs, reused, seconds,
 trace_s, paths_per_pixel, rays, relmse_estimate, end, losses) and frame_seconds (median, p95, p99, most, total).
 

@@ -89,6 +89,20 @@ std::string stop_option(gi::RenderSettings const& s)
     return fmt::format("--paths {}", s.paths);
 }
 
+/// What of light is wrong by look-ups, with 95 % intervals.
+std::string bias_text(gi::LookUpBias const& b)
+{
+    return fmt::format("direct {:+.2f} +- {:.2f} %, indirect {:+.2f} +- {:.2f} %", 100 * b.direct.value,
+                       100 * b.direct.error, 100 * b.indirect.value, 100 * b.indirect.error);
+}
+
+Json bias_json(std::optional<gi::LookUpBias> const& b)
+{
+    if (!b) return {};
+    auto const part = [](gi::Deviation const& d) { return Json{{"value", d.value}, {"error", d.error}}; };
+    return {{"direct", part(b->direct)}, {"indirect", part(b->indirect)}, {"paths", b->paths}};
+}
+
 Json relmse_json(gi::RenderResult const& r) { return knows_error(r) ? Json(r.relmse) : Json(); }
 
 std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::RenderSettings const& s,
@@ -110,6 +124,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
         {"paths", std::to_string(result.paths)},
         {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
     if (knows_error(result)) facts["estimated_relmse"] = fmt::format("{:.3g}", result.relmse); // unfiltered
+    if (result.look_up_bias) facts["look_up_bias"] = bias_text(*result.look_up_bias);
     return facts;
 }
 
@@ -177,9 +192,13 @@ Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePl
                 gi::RenderResult const& r, gi::Report const& report)
 {
     Json j = describe_call(o, s, paths_option(r), chosen_of(r));
-    j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
-                   {"seconds", r.seconds},   {"relmse_estimate", relmse_json(r)},
-                   {"rays", r.rays},         {"rays_per_s", rays_per_second(r)}};
+    j["result"] = {{"end", end_text(r.end)},
+                   {"paths_per_pixel", r.paths},
+                   {"seconds", r.seconds},
+                   {"relmse_estimate", relmse_json(r)},
+                   {"look_up_bias", bias_json(r.look_up_bias)},
+                   {"rays", r.rays},
+                   {"rays_per_s", rays_per_second(r)}};
     j["plan"] = to_json(plan.items);
     j["report"] = to_json(report);
     return j;
@@ -203,12 +222,15 @@ Json to_json(std::vector<gi::PlanItem> const& plan)
 
 std::string summary_line(RenderOptions const& o, gi::RenderSettings const& s, gi::RenderResult const& r)
 {
-    return fmt::format("{} x {} pixels, {} paths each, {:.2f} s, {:.2f} Mrays/s, {}", s.width, s.height, r.paths,
+    std::string const bias =
+        r.look_up_bias ? ", light by look-ups against exact rays: " + bias_text(*r.look_up_bias) : "";
+    return fmt::format("{} x {} pixels, {} paths each, {:.2f} s, {:.2f} Mrays/s, {}{}", s.width, s.height, r.paths,
                        r.seconds, rays_per_second(r) * 1e-6,
                        knows_error(r) ? fmt::format("estimated relMSE {:.2g}{}", r.relmse,
                                                     o.denoise == "none" ? "" : " before the filter")
                        : r.paths == 0 ? std::string("interrupted before all pixels had a path")
-                                      : std::string("relMSE unknown from one path"));
+                                      : std::string("relMSE unknown from one path"),
+                       bias);
 }
 
 } // namespace viewer

@@ -20,15 +20,17 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     std::string options = as_options(chosen);
     if (std::string const more = lamp_caustic_options(world, settings); !more.empty()) options += " " + more;
     SurfacesBy const surfaces = chosen.of<PathAlgorithm>().surfaces;
-    if (surfaces == SurfacesBy::look_ups && !camera.orthographic)
-        report_untrusted_look_ups(world, soup, camera_rays(camera, settings.width, settings.height, world.origin),
-                                  chosen.of<SlhbSettings>(), report);
+    bool const looks_up = surfaces == SurfacesBy::look_ups && !camera.orthographic;
     FrameView const eye{camera, settings.width, settings.height};
     PathsRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
                            surfaces == SurfacesBy::rays ? FirstSurfaces::by_rays : FirstSurfaces::by_raster,
                            &stop);
     options += renderer.level_option();
     renderer.find_lamp_caustics();
+    if (!renderer.control_bias() && looks_up)
+        report_untrusted_look_ups(world, make_soup(world),
+                                  camera_rays(camera, settings.width, settings.height, world.origin),
+                                  chosen.of<SlhbSettings>(), report);
     std::uint64_t const print =
         loop.keeps_state() ? fingerprint(world, camera, chosen, name, options + lamp_light_version(world)) : 0;
     bool const cached = chosen.of<PathsSettings>().cache == RadianceCaching::on;
@@ -41,6 +43,8 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());
     report.lose("radiance samples for which the radiance cache had no room", renderer.refused_notes());
+    result.look_up_bias = renderer.look_up_bias();
+    report_bias(result.look_up_bias, report);
     result.rays = renderer.rays();
     result.options = options;
     loop.deliver(world, result);

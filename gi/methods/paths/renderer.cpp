@@ -269,6 +269,7 @@ PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassS
             .lights = shadow_maps_ ? nullptr : &lights_,
             .smooth = smooth_somewhere(world_),
             .look_ups = !slhb_.exact.queries && by_.surfaces == SurfacesBy::look_ups,
+            .exact_shadows = slhb_.exact.shadows,
             .confirms = slhb_.confirm == Confirming::on,
             .cache = cached && cache_ ? &*cache_ : nullptr,
             .spread = spread_ && by_.surfaces != SurfacesBy::look_ups,
@@ -281,7 +282,9 @@ void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Verte
     prepare(index, Sides::one, stop);
     if (caustics_) caustics_->prepare(*exact_, index, BuildStop(stop_), sums[0].counts);
     StageTimer const timer(report_, "paths");
-    paths_.trace(tracing(index, sharing == VertexSharing::cached, stop), views_, sharing, sums);
+    PathsTracer::Pass const tracing = this->tracing(index, sharing == VertexSharing::cached, stop);
+    paths_.trace(tracing, views_, sharing, sums);
+    if (control_) paths_.control(tracing, views_[0], *control_);
     if (cache_) cache_->end_pass();
     for (Accumulator& s : sums) ++s.paths;
 }

@@ -77,6 +77,13 @@ public:
     {
         if (exact_ && LampCaustics::exist(world_, settings_)) caustics_.emplace(world_, settings_, report_);
     }
+    /// From the next pass on, if exact rays decide what is doubtful: some paths of the first view are traced by them once more. @return whether
+    bool control_bias()
+    {
+        if (slhb_.confirm == Confirming::on && exact_) control_.emplace();
+        return control_.has_value();
+    }
+    std::optional<LookUpBias> look_up_bias() const { return control_ ? control_->bias() : std::nullopt; }
     /// Fraction of the last pass's path time that went into indirect light.
     double indirect_share() const { return paths_.indirect_share(); }
     /// Number of look-ups and exact rays so far.
@@ -129,6 +136,7 @@ private:
     std::vector<SkyAlong> sky_;          ///< in a pass
     std::optional<RadianceCache> cache_; ///< none if switched off
     std::optional<LampCaustics> caustics_;
+    std::optional<BiasControl> control_;
     ViewPaths paths_;
     bool spread_ = false; ///< see Pass::spread
     bool leaves_out_punctual_ = false;

@@ -173,7 +173,7 @@ void PathsTracer::add_lit(Pass const& pass, Direct& direct, PathsWork& counts) c
         for (std::size_t k = 0; k < direct.rays.size(); ++k)
             if (direct.left[k] != vec3{0}) *direct.rays[k].to += direct.left[k] * direct.rays[k].radiance;
     }
-    if (parts_.shadows) {
+    if (pass.exact_shadows) {
         add_exactly(pass, direct.maps);
     } else {
         if (panes_) { // which block all light in maps

@@ -82,6 +82,7 @@ public:
         LightPool const* lights = nullptr;
         bool smooth = false;                ///< the world contains a mirror or glass
         bool look_ups = true;               ///< else exact rays, or `screen`
+        bool exact_shadows = false;         ///< in place of shadow maps
         ScreenLayers const* screen = nullptr; ///< of the view; null = surfaces are found elsewhere
         bool confirms = false;              ///< exact rays decide where look-ups and shadow maps are doubtful
         RadianceCache* cache = nullptr;     ///< paths may end in its cells; null = no cache

@@ -296,6 +296,56 @@ void ViewPaths::trace_pair(PathsTracer::Pass const& pass, SeenViews const& views
     add_work(work, counts);
 }
 
+void ViewPaths::control(PathsTracer::Pass const& pass, SeenView const& view, BiasControl& sums)
+{
+    std::size_t const stride = BiasControl::stride(view.pixels()), n = view.pixels() / stride;
+    PathsTracer::Pass looking = pass, exact = pass;
+    looking.cache = exact.cache = nullptr;
+    exact.look_ups = exact.confirms = false;
+    exact.exact_shadows = true;
+    PathsTracer const tracer = tracer_of(view);
+    std::vector<BiasControl::PassLight> of_blocks((n + kSmallBlock - 1) / kSmallBlock);
+    Work none;
+    auto const trace_twice = [&](std::size_t first, std::size_t last, Counts&) {
+        thread_local std::vector<PathStart> starts, one;
+        thread_local std::vector<PathSample> samples;
+        std::vector<CacheNote> notes;
+        PathCounts paths;
+        PathsWork work;
+        starts.clear();
+        for (std::size_t k = first; k < last; ++k) {
+            std::size_t const p = k * stride + hash_words(std::uint32_t(k), pass.index) % stride;
+            if (view.primary)
+                view.primary->hits(p, p + 1, one);
+            else
+                exact_hits(pass, view, settings_, p, p + 1, one);
+            starts.push_back(one[0]);
+        }
+        samples.resize(starts.size());
+        BiasControl::PassLight& light = of_blocks[first / kSmallBlock];
+        light.paths = starts.size();
+        auto const add = [&](PathsTracer::Pass const& by, std::array<double, 2>& to) {
+            tracer.trace(by, starts, samples, {}, notes, paths, work);
+            for (PathSample const& s : samples)
+                for (std::size_t part = 0; part < to.size(); ++part)
+                    for (int c = 0; c < 3; ++c) to[part] += double(s.radiance[part + 1][c]);
+        };
+        add(looking, light.looked_up);
+        add(exact, light.exact);
+    };
+    none.in_blocks(n, pass.stop, trace_twice, kSmallBlock);
+    if (pass.stop.given_up()) return;
+    BiasControl::PassLight all;
+    for (BiasControl::PassLight const& b : of_blocks) {
+        all.paths += b.paths;
+        for (std::size_t part = 0; part < all.exact.size(); ++part) {
+            all.looked_up[part] += b.looked_up[part];
+            all.exact[part] += b.exact[part];
+        }
+    }
+    sums.add(all);
+}
+
 void ViewPaths::add_work(Work& work, PathCounts& paths)
 {
     double direct_s = 0, indirect_s = 0;

@@ -3,6 +3,7 @@
 // a partner view, and which paths share vertices; adds the results to the sums.
 
 #include "gi/core/report.h"
+#include "gi/methods/paths/bias_control.h"
 #include "gi/methods/paths/partner_light.h"
 #include "gi/methods/paths/primary_map.h"
 #include "gi/methods/paths/shared_vertices.h"
@@ -47,6 +48,9 @@ public:
     /// it, only paths that dynamic geometry may affect (Pass::first_watched).
     void trace_pair(PathsTracer::Pass const& pass, SeenViews const& views, ShowMoving const& show_moving,
                     PairSums& sums, PathCounts& counts);
+
+    /// Traces some paths of a view by look-ups and again by exact rays; adds nothing once Pass::stop is given up.
+    void control(PathsTracer::Pass const& pass, SeenView const& view, BiasControl& sums);
 
     /// Samples of the last pass's paths, one per pixel of a view.
     std::span<PathSample const> samples(SeenView const& view) const
