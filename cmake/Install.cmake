@@ -96,15 +96,16 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_COMPONENTS_ALL ${components})
-# lightwell_package(COMPONENT NAME SECTION SUMMARY DETAILS [DEPENDS ...] [RECOMMENDS ...])
+# lightwell_package(COMPONENT NAME SECTION SUMMARY DETAILS [DEPENDS ...] [RECOMMENDS ...] [SUGGESTS ...])
 macro(lightwell_package component name section summary details)
-  cmake_parse_arguments(arg "" "" "DEPENDS;RECOMMENDS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "DEPENDS;RECOMMENDS;SUGGESTS" ${ARGN})
   string(TOUPPER ${component} COMPONENT)
   set(CPACK_DEBIAN_${COMPONENT}_PACKAGE_NAME ${name})
   set(CPACK_DEBIAN_${COMPONENT}_PACKAGE_SECTION ${section})
   set(CPACK_COMPONENT_${COMPONENT}_DESCRIPTION "${summary}\n${details}")
   list(JOIN arg_DEPENDS ", " CPACK_DEBIAN_${COMPONENT}_PACKAGE_DEPENDS)
   list(JOIN arg_RECOMMENDS ", " CPACK_DEBIAN_${COMPONENT}_PACKAGE_RECOMMENDS)
+  list(JOIN arg_SUGGESTS ", " CPACK_DEBIAN_${COMPONENT}_PACKAGE_SUGGESTS)
   # Every package has its licence and what changed where Debian looks for them.
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} RENAME copyright COMPONENT ${component})
   install(FILES ${written}/NEWS.gz ${written}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component} OPTIONAL)
@@ -117,7 +118,7 @@ set(same "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
 get_target_property(codecs opencv_imgcodecs IMPORTED_SONAME_RELEASE)
 string(REGEX REPLACE "^libopencv_imgcodecs\\.so\\.([0-9]+)d?$" "libopencv-imgcodecs\\1" codecs "${codecs}")
 lightwell_package(lightwell lightwell graphics "global illumination renderer for laboratories"
-  "Renders 3D scenes with path-traced light, compares pictures and analyses\nperceptual experiments." RECOMMENDS ${codecs} ffmpeg)
+  "Renders 3D scenes with path-traced light, compares pictures and analyses\nperceptual experiments." RECOMMENDS ${codecs} SUGGESTS ffmpeg)
 lightwell_package(view lightwell-view graphics "immersive viewer of globally lit scenes"
   "Windows, stereo walls and CAVEs, OpenXR headsets; runs perceptual\nexperiments and records their trials."
   DEPENDS "lightwell ${same}" libgl1-mesa-dri fonts-dejavu-core)
@@ -132,6 +133,9 @@ if(TARGET lightwell_python)
   lightwell_package(python python3-lightwell python "globally lit pictures in Python"
     "Pictures as numpy arrays, live frames for stimuli, and experiments."
     DEPENDS "python3 (>= ${LIGHTWELL_PYTHON_VERSION})" "python3 (<< 3.${next}~)" python3-numpy RECOMMENDS "lightwell ${same}")
+  # Compile the modules, and remove what they were compiled to.
+  set(scripts ${PROJECT_SOURCE_DIR}/cmake/python3-lightwell)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${scripts}/postinst;${scripts}/prerm")
 endif()
 lightwell_package(dev liblightwell-dev libdevel "libraries for programs that render by Lightwell"
   "Static libraries and headers of the renderer and of experiments."
