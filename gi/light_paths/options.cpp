@@ -22,9 +22,19 @@ RenderOptionTable const& photon_options()
 {
     Methods const maps{"ispm", "lpv", "isllpm", "multi_image"},
         all{"sh_grid", "ispm", "lpv", "isllpm", "multi_image"},
-        caustics{"sh_grid",    "ispm",    "isllpm", "multi_image",       "reference",
-                 "auto",       "paths",   "slhb",   "paths_shadow_maps", "slhb_shadow_rays",
-                 "screen_lhb", "slhb_0_1"};
+        caustics{"sh_grid",
+                 "ispm",
+                 "isllpm",
+                 "multi_image",
+                 "reference",
+                 "auto",
+                 "paths",
+                 "slhb",
+                 "paths_shadow_maps",
+                 "slhb_shadow_rays",
+                 "screen_lhb",
+                 "paths_layered_lens",
+                 "slhb_0_1"};
     RenderOption places = photons(
         "impostor-places", {"", "0,1.5,0", "0,1.5,0;4,1.5,0"},
         "centres of the distance impostors, x,y,z;x,y,z in m in the scene's coordinates (default: automatic)",

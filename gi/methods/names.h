@@ -23,8 +23,16 @@ inline constexpr std::string_view kRenderMethodOf01 = "reference";
 /// The other methods start their light afresh.
 constexpr bool resumes_exactly(std::string_view method)
 {
-    constexpr std::array kMethods{"auto",       "paths",    "paths_shadow_maps", "slhb",   "slhb_shadow_rays",
-                                  "screen_lhb", "slhb_0_1", "reference",         "whitted"};
+    constexpr std::array kMethods{"auto",
+                                  "paths",
+                                  "paths_shadow_maps",
+                                  "slhb",
+                                  "slhb_shadow_rays",
+                                  "screen_lhb",
+                                  "paths_layered_lens",
+                                  "slhb_0_1",
+                                  "reference",
+                                  "whitted"};
     return method.starts_with("vpl_") ||
            std::ranges::find(kMethods, method, [](char const* m) { return std::string_view(m); }) != kMethods.end();
 }

@@ -1,6 +1,7 @@
-// Depth of field, by both methods: the circle of confusion of the thin lens, its energy, and what is in focus.
+// Depth of field, by three methods: the circle of confusion of the thin lens, its energy, and what is in focus.
 
 #include "gi/methods/reference/reference.h"
+#include "gi/methods/registry.h"
 #include "tests/slhb/blur_shapes.h"
 #include "tests/slhb/slhb_render.h"
 
@@ -34,8 +35,7 @@ protected:
     Picture render(World const& world, Camera const& camera, RenderSettings const& s) const
     {
         Report report;
-        bool const slhb = std::string(GetParam()) == "slhb";
-        return (slhb ? render_slhb : render_reference)(world, camera, s, {}, {}, report).picture;
+        return find_method(GetParam()).render(world, camera, s, {}, {}, report).picture;
     }
 };
 
@@ -44,7 +44,8 @@ protected:
 TEST_P(Lens, TheCircleOfConfusionHasTheSizeOfTheThinLens)
 {
     for (double const depth : {1.4, 4.0}) {
-        Picture const p = render(world_of(luminous_square(depth)), eye(true), blur_settings(2048));
+        Picture const p = render(world_of(luminous_square(depth)), eye(true),
+                                 blur_settings(std::string(GetParam()) == "paths_layered_lens" ? 256 : 2048));
         double const c = kRadius * std::abs(depth - kFocus) / (depth * kFocus) / pixel_tangent();
         BlurShape const shape = measure(p);
         EXPECT_NEAR(shape.sum, 16, 0.02 * 16) << depth;
@@ -82,7 +83,7 @@ TEST_P(Lens, ThePlaneInFocusIsSharp)
     for (std::size_t k = 0; k < sharp.find("L0")->data.size(); ++k)
         most = std::max(most, std::abs(double(sharp.find("L0")->data[k]) - double(lens.find("L0")->data[k])));
     // Of a pixel that is half covered, 256 paths know the share to 0.03; passes of slhb share their places.
-    EXPECT_LT(most, std::string(GetParam()) == "slhb" ? 0.02 : 0.2);
+    EXPECT_LT(most, std::string(GetParam()) == "reference" ? 0.2 : 0.02);
 }
 
 /// A lens of radius 0 is no lens, bit for bit, whatever it focuses on.
@@ -95,7 +96,7 @@ TEST_P(Lens, APinholeIsAPinhole)
     EXPECT_EQ(render(world, closed, small_settings(24, 4, 2)).find("color")->data, pinhole.find("color")->data);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Lens, testing::Values("slhb", "reference"));
+INSTANTIATE_TEST_SUITE_P(Methods, Lens, testing::Values("slhb", "reference", "paths_layered_lens"));
 
 /// A block before a room, out of focus: both methods agree, and a pinhole sees something else.
 TEST(LensOfBothMethods, GivesThePictureOfTheReference)
@@ -108,11 +109,35 @@ TEST(LensOfBothMethods, GivesThePictureOfTheReference)
     s.of<SlhbSettings>().resolution = 96;
     Report report;
     Picture const expected = render_reference(world, camera, s, {}, {}, report).picture,
-                  found = render_small(world, camera, s).result.picture;
+                  found = render_small(world, camera, s).result.picture,
+                  gathered = render_layered_lens(world, camera, s, {}, {}, report).picture;
     camera.aperture_radius_m = 0;
     Picture const sharp = render_small(world, camera, s).result.picture;
-    EXPECT_LT(block_distance(found, expected), 0.03 * mean_of(expected).mean);
-    EXPECT_GT(block_distance(sharp, expected), 3 * block_distance(found, expected));
+    for (Picture const* const picture : {&found, &gathered}) {
+        EXPECT_LT(block_distance(*picture, expected), 0.03 * mean_of(expected).mean);
+        EXPECT_GT(block_distance(sharp, expected), 3 * block_distance(*picture, expected));
+    }
+    for (char const* const layer : {"L0", "L1", "L2"}) {
+        double const wanted = mean_of(expected, layer).mean;
+        EXPECT_NEAR(mean_of(gathered, layer).mean, wanted, 0.02 * wanted) << layer;
+    }
+}
+
+/// Blurred pixels have less noise by as many paths, since they gather from those of others.
+TEST(LayeredLens, HasLessNoiseByAsManyPaths)
+{
+    World const world = world_of(box_with_block_and_lamp());
+    Camera camera = look_at({0.1, -0.3, 0.95}, {-0.1, -0.5, 0}, 70);
+    camera.aperture_radius_m = 0.3;
+    camera.focus_distance_m = 0.5;
+    RenderSettings const s = small_settings(48, 16, 2);
+    Report report;
+    double const sampled = render_paths(world, camera, s, {}, {}, report).relmse;
+    EXPECT_LT(render_layered_lens(world, camera, s, {}, {}, report).relmse, 0.5 * sampled);
+    camera.aperture_radius_m = 0;
+    EXPECT_EQ(render_layered_lens(world, camera, s, {}, {}, report).picture.find("color")->data,
+              render_paths(world, camera, s, {}, {}, report).picture.find("color")->data)
+        << "no lens, nothing else";
 }
 
 } // namespace

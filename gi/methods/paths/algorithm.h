@@ -1,6 +1,6 @@
 #pragma once
 // How paths from the camera find surfaces and test light samples. Each combination is a method of its own: paths, slhb,
-// paths_shadow_maps, slhb_shadow_rays; of those on the screen, only screen_lhb.
+// paths_shadow_maps, slhb_shadow_rays, paths_layered_lens; of those on the screen, only screen_lhb.
 
 #include "gi/render/render_settings.h"
 
@@ -25,6 +25,7 @@ struct PathAlgorithm {
     SurfacesBy surfaces = SurfacesBy::rays;
     ShadowsBy shadows = ShadowsBy::rays;
     bool caches = true; ///< RadianceCaching::automatic may choose a cache
+    bool layered_lens = false; ///< a view with a lens is shaded once and gathered from (layered_lens.h)
     bool nested = true; ///< look-ups and maps have windows around the cameras (windows.h)
 
     bool only_looks_up() const { return surfaces == SurfacesBy::look_ups && shadows == ShadowsBy::maps; }
@@ -33,6 +34,7 @@ struct PathAlgorithm {
 /// Cells of a cache are no part of the method: paths end in them on request only.
 inline constexpr PathAlgorithm kSlhb{SurfacesBy::look_ups, ShadowsBy::maps, false};
 
+inline constexpr PathAlgorithm kPathsLayeredLens{.layered_lens = true};
 inline constexpr PathAlgorithm kScreenLhb{SurfacesBy::screen, ShadowsBy::rays, false};
 
 /// Seconds of the budget that passed before the call, as of choosing the method.

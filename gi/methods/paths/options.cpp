@@ -12,7 +12,8 @@ RenderOption paths(char const* name, OptionValues values, char const* meaning, T
         make_option<RenderSettings>(
             name, std::move(values), meaning, [member](auto& s) -> auto& { return s.template of<P>().*member; }),
         "Paths",
-        {"auto", "paths", "paths_shadow_maps", "slhb", "slhb_shadow_rays", "screen_lhb", "slhb_0_1"}};
+        {"auto", "paths", "paths_shadow_maps", "slhb", "slhb_shadow_rays", "screen_lhb", "paths_layered_lens",
+         "slhb_0_1"}};
 }
 
 RenderOptionTable make_table()

@@ -93,6 +93,36 @@ std::unique_ptr<FrameRenderer> start_screen_lhb_frames(MovingWorld const& world,
     return start_frames_by(world, camera, with(kScreenLhb, settings), report);
 }
 
+namespace {
+
+/// Gathered pixels have no indirect light of their own that could be left to neighbours.
+RenderSettings with_layered_lens(RenderSettings settings)
+{
+    settings.of<PathsSettings>().interleave = 1;
+    return with(kPathsLayeredLens, std::move(settings));
+}
+
+} // namespace
+
+RenderResult render_layered_lens(World const& world, Camera const& camera, RenderSettings const& settings,
+                                 StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_by("paths_layered_lens", world, camera, with_layered_lens(settings), stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_layered_lens_frames(MovingWorld const& world, Camera const& camera,
+                                                         RenderSettings const& settings, Report& report)
+{
+    return start_frames_by(world, camera, with_layered_lens(settings), report);
+}
+
+void check_layered_lens_options(std::vector<std::string> const&, RenderSettings const& settings)
+{
+    if (int const n = settings.of<PathsSettings>().interleave; n > 1)
+        throw InputError(fmt::format("--interleave {} with --method paths_layered_lens", n),
+                         "pixels gather light of surfaces, they have no paths of their own", "leave it out");
+}
+
 RenderSettings paths_for_display(RenderSettings settings)
 {
     settings.of<PathsSettings>().cache = RadianceCaching::automatic; // LiveSettings says for every frame

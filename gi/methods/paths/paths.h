@@ -23,6 +23,13 @@ void check_screen_lhb_options(std::vector<std::string> const& given, RenderSetti
 std::unique_ptr<FrameRenderer> start_screen_lhb_frames(MovingWorld const& world, Camera const& camera,
                                                        RenderSettings const& settings, Report& report);
 
+/// The same, where a view with a lens is shaded once and gathered from its layers (layered_lens.h).
+RenderResult render_layered_lens(World const& world, Camera const& camera, RenderSettings const& settings,
+                                 StopRequest const& stop, RenderProgress const& progress, Report& report);
+void check_layered_lens_options(std::vector<std::string> const& given, RenderSettings const& settings);
+std::unique_ptr<FrameRenderer> start_layered_lens_frames(MovingWorld const& world, Camera const& camera,
+                                                         RenderSettings const& settings, Report& report);
+
 RenderSettings paths_for_display(RenderSettings settings);
 ExposurePlan paths_exposure(World const& world, RenderSettings const& asked, Camera const& camera,
                             Triangles triangles);

@@ -49,6 +49,11 @@ PathsRenderer::PathsRenderer(World const& world, std::span<FrameView const> view
         cache_.emplace(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20);
 }
 
+bool PathsRenderer::by_lenses() const
+{
+    return by_.layered_lens && std::ranges::all_of(views_, [](SeenView const& v) { return v.rays.has_lens(); });
+}
+
 bool PathsRenderer::orthographic() const
 {
     return std::any_of(views_.begin(), views_.end(), [](SeenView const& v) { return v.rays.orthographic; });
@@ -237,6 +242,14 @@ void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& st
             draw(v.screen, traced_.soup.count);
             if (sides == Sides::pair) draw(v.screen_behind, std::min(traced_.first_moving, traced_.soup.count));
         }
+        if (sides == Sides::pair || !by_lenses()) {
+            v.lens.reset();
+        } else {
+            if (!v.lens) v.lens.emplace();
+            v.lens->look({v.rays, v.width, v.height, v.filter, settings_.seed, index},
+                         {traced_.soup, traced_.cut_outs, view(world_), *exact_}, near_m, stop);
+            continue;
+        }
         if (!v.primary) continue;
         if (sides == Sides::pair)
             v.primary->refresh_pair(eye, near_m, index, traced_.first_moving);
@@ -283,7 +296,10 @@ void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Verte
     if (caustics_) caustics_->prepare(*exact_, index, BuildStop(stop_), sums[0].counts);
     StageTimer const timer(report_, "paths");
     PathsTracer::Pass const tracing = this->tracing(index, sharing == VertexSharing::cached, stop);
-    paths_.trace(tracing, views_, sharing, sums);
+    if (by_lenses())
+        paths_.trace_lenses(tracing, views_, sums);
+    else
+        paths_.trace(tracing, views_, sharing, sums);
     if (control_) paths_.control(tracing, views_[0], *control_);
     if (cache_) cache_->end_pass();
     for (Accumulator& s : sums) ++s.paths;
@@ -332,6 +348,11 @@ void PathsRenderer::report_work() const
 {
     paths_.report_work();
     axes_.report_work();
+    for (SeenView const& v : views_) {
+        if (!v.lens) continue;
+        report_.count("lens rays", double(v.lens->rays()));
+        report_.count("lens rays that met what no layer shows", double(v.lens->alone()));
+    }
     report_.count("shadow maps built", double(earlier_maps_ + light_points_->maps_built()));
     if (!cache_) return;
     report_.count("cells of the radiance cache", double(cache_->cells()));

@@ -108,6 +108,8 @@ private:
     /// Updates colours, roughnesses and the sky.
     void materials_changed();
     bool orthographic() const;
+    /// True if all views are gathered from layers.
+    bool by_lenses() const;
     void build_exact();
     void make_axes();
     void make_light_points();

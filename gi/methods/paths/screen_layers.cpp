@@ -29,7 +29,18 @@ void ScreenLayers::draw(TriangleSoup const& soup, std::size_t last, CutOuts cons
     for (BorrowedFragments& f : parts)
         for (std::size_t k = 0; k < f->count; ++k) ++offset_[f->texel[k] + 1];
     std::uint64_t sum = 0;
-    for (BorrowedFragments& f : parts) sum += f->count;
+    std::uint32_t const across = tiles_across();
+    tiles_.assign(std::size_t(across) * ((grid_.height + kTile - 1) / kTile), {});
+    for (BorrowedFragments& f : parts) {
+        sum += f->count;
+        for (std::size_t k = 0; k < f->count; ++k) {
+            std::uint32_t const x = f->texel[k] % grid_.width, y = f->texel[k] / grid_.width;
+            Depths& tile = tiles_[std::size_t(y / kTile) * across + x / kTile];
+            float const depth_m = 1 / f->depth[k];
+            tile.nearest_m = std::min(tile.nearest_m, depth_m);
+            tile.farthest_m = std::max(tile.farthest_m, depth_m);
+        }
+    }
     if (sum > 0x7fffffff)
         throw InputError("a layered hit buffer of the view has more than 2^31 layers",
                          "they are indexed with 32 bits", "lower --hit-buffer");
@@ -50,6 +61,16 @@ vec3 held_on(Surface const& s, vec3 position)
 }
 
 } // namespace
+
+std::optional<ScreenLayers::Texel> ScreenLayers::texel_at(vec3 point) const
+{
+    vec3 const from = point - grid_.eye;
+    float const depth = glm::dot(grid_.forward, from), scale = 1 / (grid_.subpixels * depth),
+                x = glm::dot(grid_.to_x, from) * scale, y = glm::dot(grid_.to_y, from) * scale;
+    if (!(depth > grid_.near_m && x >= 0 && y >= 0 && x < float(grid_.width) && y < float(grid_.height)))
+        return {};
+    return Texel{std::size_t(y) * grid_.width + std::size_t(x), texel_ * depth};
+}
 
 LayerHit ScreenLayers::nearest(View<Surface const> surfaces, vec3 origin, std::uint32_t triangle, vec3 direction,
                                std::uint32_t watched, bool& near_watched) const

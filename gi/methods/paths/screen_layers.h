@@ -6,6 +6,9 @@
 #include "gi/hit_buffers/query.h"
 #include "gi/raster/cut_outs.h"
 
+#include <optional>
+#include <span>
+
 namespace gi {
 
 class ScreenLayers {
@@ -20,11 +23,30 @@ public:
     LayerHit nearest(View<Surface const> surfaces, vec3 origin, std::uint32_t triangle, vec3 direction,
                      std::uint32_t watched, bool& near_watched) const;
 
+    std::size_t size() const { return layers_.size(); }
+    /// Texel t, row by row, has the layers first(t) to first(t + 1) - 1, in no order.
+    std::uint32_t first(std::size_t t) const { return offset_[t]; }
+    std::uint32_t triangle(std::uint32_t layer) const { return layers_[layer]; }
+    /// The texel that shows a point, with what its width is there, m; none beside the view.
+    struct Texel {
+        std::size_t index;
+        float width_m;
+    };
+    std::optional<Texel> texel_at(vec3 point) const;
+    /// Distances along the view, m, of the layers under kTile x kTile texels; without any, kInf and 0.
+    struct Depths {
+        float nearest_m = kInf, farthest_m = 0;
+    };
+    static constexpr std::uint32_t kTile = 16;
+    std::uint32_t tiles_across() const { return (grid_.width + kTile - 1) / kTile; }
+    std::span<Depths const> tiles() const { return tiles_; }
+
 private:
     PerspectiveGrid grid_;
     float texel_ = 0;                   ///< width of a texel, as a share of the distance along the view
     std::vector<std::uint32_t> offset_; ///< as in HitBuffer
     std::vector<std::uint32_t> layers_; ///< triangles, in no order
+    std::vector<Depths> tiles_;
 };
 
 } // namespace gi

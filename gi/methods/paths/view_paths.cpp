@@ -163,15 +163,22 @@ void ViewPaths::trace_view(PathsTracer::Pass const& pass_of_all, SeenViews const
         for (std::size_t p = first; p < last; ++p)
             if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
     };
-    notes_.resize(view.pixels() / block_ + 1);
+    in_turns(pass, view.pixels(), trace_block, work);
+}
+
+/// Traces blocks of paths, and teaches the cache, if there is one. @param trace_block  of paths first to last - 1, with notes_[first / block_]
+template <class Trace>
+void ViewPaths::in_turns(PathsTracer::Pass const& pass, std::size_t paths, Trace const& trace_block, Work& work)
+{
+    notes_.resize(paths / block_ + 1);
     // With an empty cache, trace some blocks first, so that others can read what those taught.
     constexpr std::uint32_t kTurns = 5;
-    bool const in_turns = pass.cache != nullptr && pass.cache->empty();
-    for (std::uint32_t turn = 0; turn < (in_turns ? kTurns : 1); ++turn) {
+    bool const by_turns = pass.cache != nullptr && pass.cache->empty();
+    for (std::uint32_t turn = 0; turn < (by_turns ? kTurns : 1); ++turn) {
         work.in_blocks(
-            view.pixels(), pass.stop,
+            paths, pass.stop,
             [&](std::size_t first, std::size_t last, Counts& local) {
-                if (!in_turns || turn_of(first / block_) == turn) trace_block(first, last, local);
+                if (!by_turns || turn_of(first / block_) == turn) trace_block(first, last, local);
             },
             block_);
         if (pass.stop.given_up()) {
@@ -261,6 +268,39 @@ void ViewPaths::trace(PathsTracer::Pass const& pass, SeenViews const& views, Ver
                             {std::uint32_t(settings_.of<PathsSettings>().interleave)}, pass.index);
     for (std::size_t k = 0; k < views.size(); ++k) add(views, k, shares, sums, work);
     add_work(work, sums[0].counts);
+}
+
+void ViewPaths::trace_lenses(PathsTracer::Pass const& pass, SeenViews const& views, std::span<Accumulator> all)
+{
+    samples_.resize(views.back().first + views.back().pixels());
+    taken_from_.clear();
+    light_from_.clear();
+    choose_block();
+    Work work;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        SeenView const& view = views[v];
+        std::span<PathStart const> const starts = view.lens->starts();
+        PathsTracer const tracer = tracer_of(view);
+        of_layers_.resize(starts.size());
+        auto const trace_block = [&](std::size_t first, std::size_t last, Counts& local) {
+            tracer.trace(pass, starts.subspan(first, last - first),
+                         std::span(of_layers_).subspan(first, last - first), {}, notes_[first / block_],
+                         local.paths, local.work);
+        };
+        in_turns(pass, starts.size(), trace_block, work);
+        pass.stop.check();
+        LayeredLens::View const through{view.rays,   view.width,     view.height,
+                                        view.filter, settings_.seed, pass.index};
+        WorldView const world = gi::view(world_);
+        work.in_blocks(view.pixels(), PassStop(nullptr), [&](std::size_t first, std::size_t last, Counts&) {
+            for (std::size_t p = first; p < last; ++p) {
+                samples_[view.first + p] = view.lens->gather(through, world, p, of_layers_);
+                all[v].add(p, samples_[view.first + p], all[v].paths);
+            }
+        });
+        pixels_ += view.pixels();
+    }
+    add_work(work, all[0].counts);
 }
 
 void ViewPaths::trace_pair(PathsTracer::Pass const& pass, SeenViews const& views, ShowMoving const& show_moving,

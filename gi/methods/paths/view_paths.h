@@ -4,6 +4,7 @@
 
 #include "gi/core/report.h"
 #include "gi/methods/paths/bias_control.h"
+#include "gi/methods/paths/layered_lens.h"
 #include "gi/methods/paths/partner_light.h"
 #include "gi/methods/paths/primary_map.h"
 #include "gi/methods/paths/shared_vertices.h"
@@ -25,6 +26,7 @@ struct SeenView : TracedView {
     std::optional<PrimaryMap> primary;    ///< none for orthographic cameras
     /// If paths find surfaces there: of the view, and of what stays in it, for pairs.
     std::optional<ScreenLayers> screen, screen_behind;
+    std::optional<LayeredLens> lens;      ///< if it has one, and is gathered from layers
     std::size_t first = 0;                ///< index of its first pixel among the pixels of all views
 };
 
@@ -49,6 +51,8 @@ public:
     void trace_pair(PathsTracer::Pass const& pass, SeenViews const& views, ShowMoving const& show_moving,
                     PairSums& sums, PathCounts& counts);
 
+    /// The same for views through a layered lens, which has looked.
+    void trace_lenses(PathsTracer::Pass const& pass, SeenViews const& views, std::span<Accumulator> sums);
     /// Traces some paths of a view by look-ups and again by exact rays; adds nothing once Pass::stop is given up.
     void control(PathsTracer::Pass const& pass, SeenView const& view, BiasControl& sums);
 
@@ -81,6 +85,8 @@ private:
     void trace_some(PathsTracer::Pass const& pass, PathsTracer const& tracer, SeenView const& view,
                     PartnerLight const* partner, bool sharing, std::vector<PathStart>& starts,
                     std::vector<CacheNote>& notes, Counts& counts);
+    template <class Trace>
+    void in_turns(PathsTracer::Pass const& pass, std::size_t paths, Trace const& trace_block, Work& work);
     void send_on(PathsTracer::Pass const& pass, SeenView const& view, Work& work);
     void add(SeenViews const& views, std::size_t index, bool sharing, std::span<Accumulator> sums, Work& work);
     void add_work(Work& work, PathCounts& counts);
@@ -97,6 +103,7 @@ private:
     std::vector<std::uint32_t> light_from_;               ///< per pixel of all views, for all passes of a frame
     std::vector<std::vector<std::uint32_t>> near_moving_; ///< per block: pixels that dynamic geometry may affect
     std::vector<std::uint32_t> without_pixels_;           ///< all of these pixels
+    std::vector<PathSample> of_layers_;                   ///< that lens rays met
     std::vector<PathSample> without_;                     ///< their paths without dynamic geometry
     PathsWork done_;
     double indirect_share_ = 0;

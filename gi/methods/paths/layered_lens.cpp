@@ -1,0 +1,227 @@
+#include "gi/methods/paths/layered_lens.h"
+
+#include "gi/methods/paths/primary_map.h"
+#include "gi/render/path_random.h"
+#include "gi/render/ray_path.h"
+#include "gi/scene/shading/warp.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+constexpr std::size_t kPixelsOfTask = 2048;
+constexpr int kMostRays = 8, kLeastRays = 4, kMostMargin = 64;
+constexpr std::size_t kMostRayBytes = 256u << 20;
+
+/// Radius of the circle of confusion of what is at this distance along the view, pixels.
+float confusion_px(CameraRays const& eye, float depth_m)
+{
+    float const lens = std::max(glm::length(eye.lens_x), glm::length(eye.lens_y)),
+                step = std::min(glm::length(eye.step_x), glm::length(eye.step_y));
+    return lens * std::abs(1 / depth_m - 1 / eye.focus) / step;
+}
+
+} // namespace
+
+int LayeredLens::rays_of(View const& view, std::size_t pixel) const
+{
+    std::size_t const x = pixel % std::size_t(view.width) + std::size_t(margin_),
+                      y = pixel / std::size_t(view.width) + std::size_t(margin_);
+    return rays_of_[y / ScreenLayers::kTile * layers_.tiles_across() + x / ScreenLayers::kTile];
+}
+
+/// The rays of a pixel are a rank-1 lattice over the lens, shifted at random in every pass.
+Ray LayeredLens::lens_ray(View const& view, std::size_t pixel, int k, int rays) const
+{
+    constexpr std::uint32_t kLens = 0x1e450000; // first dimension of the lens, beyond those of vertices
+    RqmcStream const stream =
+        pixel_stream(random_key(view.seed), std::uint32_t(pixel), std::uint32_t(view.width), view.pass);
+    vec2 const shift = stream.sample2(kLens);
+    vec2 const u{std::fmod((float(k) + shift.x) / float(rays), 1.0f),
+                 std::fmod(float(k) * 0.618034f + shift.y, 1.0f)};
+    std::size_t const x = pixel % std::size_t(view.width), y = pixel / std::size_t(view.width);
+    return view.rays.at_lens(square_to_disk(u)).through(vec2{float(x), float(y)} + at_);
+}
+
+/// The layers are those of the lens' centre, with a margin that holds the blur of the nearest surface within it.
+void LayeredLens::draw(View const& view, Place const& place, float near_m)
+{
+    while (true) {
+        eye_ = view.rays.at_lens(vec2{0});
+        eye_.corner -= float(margin_) * (eye_.step_x + eye_.step_y);
+        int const width = view.width + 2 * margin_, height = view.height + 2 * margin_;
+        layers_.draw(place.soup, place.soup.count, place.cut_outs, eye_, width, height,
+                     std::uint32_t(std::max(width, height)), at_, near_m,
+                     std::uint32_t(mix_bits(view.seed) + view.pass));
+        float reach = confusion_px(view.rays, kInf);
+        for (ScreenLayers::Depths const& d : layers_.tiles())
+            reach = std::max(reach, confusion_px(view.rays, d.nearest_m));
+        int const needed = reach < float(kMostMargin) ? int(std::ceil(reach)) + 1 : kMostMargin;
+        if (needed <= margin_) return;
+        margin_ = needed;
+    }
+}
+
+/// As many lens rays as see all of a pixel's blur, from the depths within the margin around.
+void LayeredLens::choose_numbers(CameraRays const& lens, int most_rays)
+{
+    auto const across = int(layers_.tiles_across()), down = int(layers_.tiles().size()) / std::max(1, across),
+               reach = (margin_ + int(ScreenLayers::kTile) - 1) / int(ScreenLayers::kTile);
+    rays_of_.resize(layers_.tiles().size());
+    tbb::parallel_for(0, down, [&](int y) {
+        for (int x = 0; x < across; ++x) {
+            float radius = 0;
+            for (int j = std::max(0, y - reach); j <= std::min(down - 1, y + reach); ++j)
+                for (int i = std::max(0, x - reach); i <= std::min(across - 1, x + reach); ++i)
+                    if (ScreenLayers::Depths const& d = layers_.tiles()[std::size_t(j * across + i)];
+                        d.farthest_m > 0)
+                        radius =
+                            std::max({radius, confusion_px(lens, d.nearest_m), confusion_px(lens, d.farthest_m)});
+            rays_of_[std::size_t(y * across + x)] =
+                int(std::clamp(std::ceil(2 * kPi * radius * radius), 1.0f, float(most_rays)));
+        }
+    });
+}
+
+void LayeredLens::look(View const& view, Place const& place, float near_m, PassStop const& stop)
+{
+    at_ = place_in_pixel(view.filter, view.seed, view.pass);
+    std::size_t const pixels = std::size_t(view.width) * std::size_t(view.height);
+    most_rays_ = int(std::clamp<std::size_t>(kMostRayBytes / (sizeof(met_[0]) * std::max<std::size_t>(1, pixels)),
+                                             kLeastRays, kMostRays));
+    draw(view, place, near_m);
+    choose_numbers(view.rays, most_rays_);
+    met_.assign(pixels * std::size_t(most_rays_), kBackground);
+    slot_.assign(layers_.size(), 0);
+    std::vector<std::vector<Alone>> alone((pixels + kPixelsOfTask - 1) / kPixelsOfTask);
+    tbb::parallel_for(std::size_t(0), alone.size(), [&](std::size_t k) {
+        if (!stop.given_up())
+            follow(view, place, k * kPixelsOfTask, std::min(pixels, (k + 1) * kPixelsOfTask), alone[k]);
+    });
+    stop.check();
+    make_starts(view);
+    for (std::vector<Alone> const& some : alone)
+        for (Alone const& a : some) {
+            met_[a.at] = std::uint32_t(starts_.size());
+            starts_.push_back(a.start);
+        }
+    for (std::vector<Alone> const& some : alone) alone_ += some.size();
+    for (std::size_t p = 0; p < pixels; ++p) asked_ += std::uint64_t(rays_of(view, p));
+}
+
+/// Follows the lens rays of some pixels.
+void LayeredLens::follow(View const& view, Place const& place, std::size_t first, std::size_t last,
+                         std::vector<Alone>& alone)
+{
+    thread_local std::vector<RayQuery> rays;
+    thread_local std::vector<Hit> hits;
+    thread_local std::vector<std::size_t> places;
+    rays.clear();
+    places.clear();
+    for (std::size_t p = first; p < last; ++p) {
+        int const n = rays_of(view, p);
+        for (int k = 0; k < n; ++k) {
+            Ray const ray = lens_ray(view, p, k, n);
+            places.push_back(p * std::size_t(most_rays_) + std::size_t(k));
+            rays.push_back({.ray = ray,
+                            .seed = hash_words(std::uint32_t(places.back()), view.pass),
+                            .start = camera_clearance(ray.origin)});
+        }
+    }
+    hits.resize(rays.size());
+    place.exact.nearest(rays, hits);
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        if (hits[k].triangle == kNoTriangle) continue;
+        std::uint32_t const layer = layer_of(place, hits[k], rays[k].ray.direction);
+        if (layer == kBackground) {
+            alone.push_back({places[k], {std::uint32_t(places[k]), hits[k].triangle, rays[k].ray}});
+            continue;
+        }
+        met_[places[k]] = layer;
+        std::atomic_ref(slot_[layer]).store(1, std::memory_order_relaxed);
+    }
+}
+
+/// The layer, under the texel that shows a hit, of its triangle; or of one that goes on there in the same way, as of a
+/// mesh finer than texels. kBackground if there is none.
+std::uint32_t LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 direction) const
+{
+    constexpr float kAlike = 0.95f; // cosine
+    Surface const& s = place.world.surfaces[hit.triangle];
+    vec3 const position = s.corner + hit.barycentric.x * s.edge1 + hit.barycentric.y * s.edge2,
+               normal = shading_detail::triangle_normal(s);
+    std::optional<ScreenLayers::Texel> const texel = layers_.texel_at(position);
+    if (!texel) return kBackground;
+    std::uint32_t best = kBackground;
+    float nearest_m = texel->width_m;
+    for (std::uint32_t l = layers_.first(texel->index); l < layers_.first(texel->index + 1); ++l) {
+        if (layers_.triangle(l) == hit.triangle) return l;
+        Surface const& other = place.world.surfaces[layers_.triangle(l)];
+        vec3 const n = shading_detail::triangle_normal(other);
+        float const off = std::abs(glm::dot(n, position - other.corner));
+        if (other.material != s.material || !(glm::dot(n, normal) > kAlike) || !(off < nearest_m)) continue;
+        if (!(glm::dot(n, direction) * glm::dot(normal, direction) > 0)) continue;
+        nearest_m = off;
+        best = l;
+    }
+    return best;
+}
+
+/// A path for every layer that was met: of a texel within the picture the first has its pixel's random numbers.
+void LayeredLens::make_starts(View const& view)
+{
+    starts_.clear();
+    std::size_t const width = std::size_t(view.width) + 2 * std::size_t(margin_),
+                      texels = width * (std::size_t(view.height) + 2 * std::size_t(margin_));
+    for (std::size_t t = 0; t < texels; ++t) {
+        bool first = true;
+        int const x = int(t % width) - margin_, y = int(t / width) - margin_;
+        bool const within = x >= 0 && y >= 0 && x < view.width && y < view.height;
+        for (std::uint32_t l = layers_.first(t); l < layers_.first(t + 1); ++l) {
+            if (slot_[l] == 0) continue;
+            slot_[l] = std::uint32_t(starts_.size());
+            std::uint32_t const stream = within && first ? std::uint32_t(y * view.width + x)
+                                                         : hash_words(layers_.triangle(l), std::uint32_t(t));
+            starts_.push_back(
+                {stream, layers_.triangle(l), eye_.through(vec2{float(t % width), float(t / width)} + at_)});
+            first = false;
+        }
+    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, met_.size(), 16 * kPixelsOfTask), [&](auto const& range) {
+        for (std::size_t k = range.begin(); k != range.end(); ++k)
+            if (met_[k] != kBackground) met_[k] = slot_[met_[k]];
+    });
+}
+
+PathSample LayeredLens::gather(View const& view, WorldView const& world, std::size_t pixel,
+                               std::span<PathSample const> samples) const
+{
+    PathSample mean;
+    int const rays = rays_of(view, pixel);
+    for (int k = 0; k < rays; ++k) {
+        std::uint32_t const start = met_[pixel * std::size_t(most_rays_) + std::size_t(k)];
+        if (start == kBackground) {
+            mean.radiance[0] += background_radiance(world, lens_ray(view, pixel, k, rays).direction);
+            continue;
+        }
+        PathSample const& s = samples[start];
+        for (std::size_t part = 0; part < mean.radiance.size(); ++part) mean.radiance[part] += s.radiance[part];
+        mean.albedo += s.albedo;
+        mean.normal += s.normal;
+        if (k > 0) continue;
+        mean.hit = s.hit;
+        mean.position = s.position;
+        mean.depth = s.depth;
+    }
+    float const share = 1 / float(rays);
+    for (vec3& part : mean.radiance) part *= share;
+    mean.albedo *= share;
+    mean.normal *= share;
+    return mean;
+}
+
+} // namespace gi

@@ -1,0 +1,72 @@
+#pragma once
+// Depth of field from a layered hit buffer of the view (Yu 2012, sec. 7.2, after Lee, Eisemann and Seidel 2010):
+// surfaces are shaded once, as the lens' centre sees them, and every pixel gathers from them by many rays through the
+// lens. What these meet is found exactly; what the layers lack is shaded for the ray alone.
+
+#include "gi/methods/paths/screen_layers.h"
+#include "gi/methods/paths/tracer.h"
+
+#include <vector>
+
+namespace gi {
+
+class LayeredLens {
+public:
+    /// What the lens rays of a pass have in common.
+    struct View {
+        CameraRays const& rays; ///< with a lens
+        int width, height;      ///< pixels
+        PixelFilter filter;
+        std::uint64_t seed;
+        std::uint32_t pass;
+    };
+    /// What they may meet.
+    struct Place {
+        TriangleSoup const& soup;
+        CutOuts const& cut_outs;
+        WorldView world;
+        ExactVisibility const& exact;
+    };
+
+    /// Draws the layers anew, and follows the lens rays of all pixels.
+    void look(View const& view, Place const& place, float near_m, PassStop const& stop);
+    /// Of all surfaces that lens rays met.
+    std::span<PathStart const> starts() const { return starts_; }
+    /// Means of the paths over a pixel's lens rays; of the first of them alone, what can have no mean (whether it met
+    /// something, its place). @param samples  one per start
+    PathSample gather(View const& view, WorldView const& world, std::size_t pixel,
+                      std::span<PathSample const> samples) const;
+    /// Lens rays so far; of these, those that met what no layer shows.
+    std::uint64_t rays() const { return asked_; }
+    std::uint64_t alone() const { return alone_; }
+
+private:
+    static constexpr std::uint32_t kBackground = 0xffffffffu;
+
+    struct Alone {
+        std::size_t at; ///< place in met_
+        PathStart start;
+    };
+
+    void draw(View const& view, Place const& place, float near_m);
+    void choose_numbers(CameraRays const& lens, int most_rays);
+    void follow(View const& view, Place const& place, std::size_t first, std::size_t last,
+                std::vector<Alone>& alone);
+    std::uint32_t layer_of(Place const& place, Hit const& hit, vec3 direction) const;
+    void make_starts(View const& view);
+    int rays_of(View const& view, std::size_t pixel) const;
+    Ray lens_ray(View const& view, std::size_t pixel, int k, int rays) const;
+
+    ScreenLayers layers_;
+    CameraRays eye_{}; ///< of the layers
+    int margin_ = 0;   ///< pixels around the picture
+    int most_rays_ = 0;
+    vec2 at_{0.5f};                   ///< place in the pixel
+    std::vector<int> rays_of_;        ///< per tile of the layers: lens rays of its pixels
+    std::vector<std::uint32_t> met_;  ///< per pixel and lens ray: the index of a start
+    std::vector<std::uint32_t> slot_; ///< per layer: the same
+    std::vector<PathStart> starts_;
+    std::uint64_t asked_ = 0, alone_ = 0;
+};
+
+} // namespace gi
