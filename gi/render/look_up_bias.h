@@ -8,6 +8,7 @@ namespace gi {
 /// A relative difference of two means (0.01: 1 % too bright), and half of its 95 % interval.
 struct Deviation {
     double value = 0, error = 0;
+    double of_all = 0; ///< the difference as a share of all light, direct and indirect
 };
 
 struct LookUpBias {

@@ -4,6 +4,7 @@ Exit code 77: skipped, as the tools are not there (scripts/setup --tests)."""
 
 import base64
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -80,6 +81,15 @@ def tried(folder: Path, python: Path) -> int:
     run(lightwell, "study", "example", "visibility2026", "--out", "study.yaml")
     run(lightwell, "study", "simulate", "study.yaml", "--participants", "1..2", "--out", "simulated")
     run(lightwell, "batch", "--help")
+    # The ffmpeg of imageio-ffmpeg is taken, though no other is in the PATH.
+    (site,) = python.parents[1].glob("lib/python*/site-packages")
+    binaries = site / "imageio_ffmpeg" / "binaries"
+    binaries.mkdir(parents=True)
+    (binaries.parent / "__init__.py").touch()
+    (binaries / "ffmpeg-linux-test").symlink_to(shutil.which("ffmpeg") or "")
+    environment["PATH"] = str(folder)
+    run(lightwell, "render", "cornell", "--frames", "0:2@8", "--size", "32x32", "--paths", "1", "--video", "v.mkv", "--quiet")
+    assert (folder / "v.mkv").stat().st_size > 0
     return 0
 
 

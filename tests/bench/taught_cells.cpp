@@ -20,6 +20,7 @@
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>

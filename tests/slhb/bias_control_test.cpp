@@ -42,7 +42,7 @@ TEST(BiasControl, LightWhereThereIsNoneIsInfinitelyWrong)
 }
 
 char const* const kLoss =
-    "pictures whose light by look-ups is wrong by more than 1 %: exact are --method paths, reference and auto";
+    "pictures whose light by look-ups is wrong by more than 1 %: exact are --method paths and reference";
 
 /// Objects between the centres of texels, which no column has: all agree about what lies behind them.
 TEST(BiasControl, IsThatOfThePicture)

@@ -1,5 +1,6 @@
 // Depth of field, by three methods: the circle of confusion of the thin lens, its energy, and what is in focus.
 
+#include "gi/filter/reused_light.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/registry.h"
 #include "tests/slhb/blur_shapes.h"
@@ -138,6 +139,79 @@ TEST(LayeredLens, HasLessNoiseByAsManyPaths)
     EXPECT_EQ(render_layered_lens(world, camera, s, {}, {}, report).picture.find("color")->data,
               render_paths(world, camera, s, {}, {}, report).picture.find("color")->data)
         << "no lens, nothing else";
+}
+
+/// Frames of two eyes: motion of what stands still is none, hidden pixels are left out, and a frame has the light of a still.
+TEST(LayeredLens, OfFramesAndEyes)
+{
+    Report report;
+    MovingWorld const world(std::make_shared<Scene const>(box_with_block_and_lamp()), 0, report);
+    Camera camera = look_at({0.1, -0.3, 0.95}, {-0.1, -0.5, 0}, 70);
+    camera.aperture_radius_m = 0.1;
+    camera.focus_distance_m = 0.8;
+    RenderSettings const s = small_settings(32, 1, 1);
+    auto const frames = start_layered_lens_frames(world, camera, s, report);
+    std::vector<std::uint8_t> hidden(32 * 32, 0);
+    std::fill(hidden.begin(), hidden.begin() + 32, 1);
+    std::vector<FrameView> views{{camera, 32, 32}, {camera, 32, 32}};
+    views[1].partner = 0;
+    views[1].hidden = hidden;
+    for (int k = 0; k < 2; ++k) {
+        std::vector<RenderResult> const results = frames->views(views, 64, VertexSharing::exact, {});
+        Layer const* const motion = results[0].picture.find("motion");
+        ASSERT_NE(motion, nullptr);
+        for (std::size_t i = 0; i < results[0].picture.pixels(); ++i)
+            ASSERT_NEAR(glm::length(vec2(rgb(*motion, i))), 0, 1e-3f); // z is depth
+        EXPECT_EQ(rgb(*results[1].picture.find("color"), 5), vec3{0}) << "hidden";
+        EXPECT_NE(rgb(*results[1].picture.find("color"), 500), vec3{0});
+        EXPECT_EQ(std::ranges::count(results[1].light_from, kOwnLight), 32 * 32);
+        RenderSettings still = s;
+        still.paths = 256;
+        double const wanted = mean_of(render_reference(world.world(), camera, still, {}, {}, report).picture).mean;
+        EXPECT_NEAR(mean_of(results[0].picture).mean, wanted, 0.05 * wanted);
+    }
+}
+
+/// A card that shines on one side, beside a wide lens: its other side, which the rim sees, is dark.
+TEST(LayeredLens, ShadesTheSideThatALensRaySees)
+{
+    Scene scene = box_with_block_and_lamp();
+    Camera camera = look_at({0, 0, 0.9}, {0, 0, -1}, 60);
+    camera.aperture_radius_m = 0.3;
+    camera.focus_distance_m = 1.8;
+    add_quad(scene, {0.05f, -0.3f, 0.5f}, {0, 0, -0.4f}, {0, 0.6f, 0}, add_material(scene, emitter(vec3{20})));
+    World const world = world_of(std::move(scene));
+    RenderSettings const s = small_settings(48, 256, 1);
+    Report report;
+    Picture const expected = render_reference(world, camera, s, {}, {}, report).picture,
+                  sampled = render_paths(world, camera, s, {}, {}, report).picture,
+                  gathered = render_layered_lens(world, camera, s, {}, {}, report).picture;
+    double const wanted = mean_of(expected, "L0").mean;
+    EXPECT_NEAR(mean_of(gathered, "L0").mean, wanted, 0.02 * wanted);
+    EXPECT_LT(block_distance(gathered, expected), 1.2 * block_distance(sampled, expected)); // both with its noise
+}
+
+/// Where a blurred edge ends, alpha and what denoisers are given are those of sampled lenses.
+TEST(LayeredLens, AlphaAndAlbedoOfABlurredEdge)
+{
+    Scene scene;
+    add_quad(scene, {-5, -5, -4}, {5, 0, 0}, {0, 10, 0}, add_material(scene, lambert(vec3{0.7f})));
+    scene.background.kind = BackgroundKind::transparent;
+    World const world = world_of(std::move(scene));
+    Camera camera = look_at({0, 0, 0}, {0, 0, -1}, 60);
+    camera.aperture_radius_m = 0.4;
+    camera.focus_distance_m = 1;
+    RenderSettings const s = small_settings(32, 512, 0);
+    Report report;
+    Picture const expected = render_reference(world, camera, s, {}, {}, report).picture,
+                  gathered = render_layered_lens(world, camera, s, {}, {}, report).picture;
+    for (std::size_t i = 0; i < expected.pixels(); ++i) {
+        double const alpha = double(expected.find("alpha")->data[i]);
+        ASSERT_NEAR(double(gathered.find("alpha")->data[i]), alpha, 0.12) << i;
+        if (alpha > 0.2) {
+            ASSERT_NEAR(rgb(*gathered.find("albedo"), i).x, rgb(*expected.find("albedo"), i).x, 0.02f) << i;
+        }
+    }
 }
 
 } // namespace

@@ -101,16 +101,8 @@ TEST(VideoWriter, SaysThatThereIsNoFfmpeg)
     TemporaryFolder const folder;
     setenv("IMAGEIO_FFMPEG_EXE", "/nowhere/ffmpeg", 1);
     EXPECT_THROW(VideoWriter(folder / "a.mkv", kWidth, kHeight, 30), gi::InputError);
-    setenv("IMAGEIO_FFMPEG_EXE", "false", 1); // one that ends at once
-    {
-        VideoWriter out(folder / "a.mkv", kWidth, kHeight, 30);
-        EXPECT_THROW(
-            {
-                for (int k = 0; k < 300; ++k) out.add(frame(k));
-                out.finish();
-            },
-            gi::InputError);
-    }
+    setenv("IMAGEIO_FFMPEG_EXE", "false", 1); // one that encodes nothing
+    EXPECT_THROW(VideoWriter(folder / "a.mkv", kWidth, kHeight, 30), gi::InputError);
     unsetenv("IMAGEIO_FFMPEG_EXE");
     EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
 }

@@ -7,6 +7,7 @@
 #include "viewer/report/machine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -92,14 +93,20 @@ std::string stop_option(gi::RenderSettings const& s)
 /// What of light is wrong by look-ups, with 95 % intervals.
 std::string bias_text(gi::LookUpBias const& b)
 {
-    return fmt::format("direct {:+.2f} +- {:.2f} %, indirect {:+.2f} +- {:.2f} %", 100 * b.direct.value,
-                       100 * b.direct.error, 100 * b.indirect.value, 100 * b.indirect.error);
+    auto const part = [](gi::Deviation const& d) {
+        return std::isfinite(d.value) ? fmt::format("{:+.2f} +- {:.2f} %", 100 * d.value, 100 * d.error)
+                                      : fmt::format("{:+.2f} % of all where there is none", 100 * d.of_all);
+    };
+    return fmt::format("direct {}, indirect {}", part(b.direct), part(b.indirect));
 }
 
 Json bias_json(std::optional<gi::LookUpBias> const& b)
 {
     if (!b) return {};
-    auto const part = [](gi::Deviation const& d) { return Json{{"value", d.value}, {"error", d.error}}; };
+    auto const part = [](gi::Deviation const& d) {
+        return Json{
+            {"value", std::isfinite(d.value) ? Json(d.value) : Json()}, {"error", d.error}, {"of_all", d.of_all}};
+    };
     return {{"direct", part(b->direct)}, {"indirect", part(b->indirect)}, {"paths", b->paths}};
 }
 
@@ -124,7 +131,6 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
         {"paths", std::to_string(result.paths)},
         {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
     if (knows_error(result)) facts["estimated_relmse"] = fmt::format("{:.3g}", result.relmse); // unfiltered
-    if (result.look_up_bias) facts["look_up_bias"] = bias_text(*result.look_up_bias);
     return facts;
 }
 

@@ -37,7 +37,9 @@ Codec const& codec_of(fs::path const& file)
     throw cannot(file, "its ending is not a supported video format", "choose .mkv (lossless) or .mp4 (H.264)");
 }
 
-std::vector<std::string> encoding(fs::path const& file, int width, int height, double fps)
+/// @param to  what names the output
+std::vector<std::string> encoding(fs::path const& file, int width, int height, double fps,
+                                  std::vector<std::string> const& to)
 {
     std::vector<std::string> all{"-v",          "error",
                                  "-nostdin",    "-y",
@@ -48,16 +50,26 @@ std::vector<std::string> encoding(fs::path const& file, int width, int height, d
                                  "-i",          "pipe:0"};
     std::ranges::copy(codec_of(file).options, std::back_inserter(all));
     for (char const* const option : {"-fflags", "+bitexact", "-flags:v", "+bitexact"}) all.emplace_back(option);
-    all.push_back("file:" + file.string());
+    std::ranges::copy(to, std::back_inserter(all));
     return all;
 }
 
-/// That decode without errors.
+/// Encodes one frame to nowhere: whether there is such an encoder.
+void try_encoder(fs::path const& file, int width, int height, double fps)
+{
+    Ffmpeg one(encoding(file, width, height, fps, {"-f", "null", "-"}));
+    one.write(std::vector<unsigned char>(3 * std::size_t(width) * std::size_t(height)));
+    if (!one.finish())
+        throw cannot(file, "ffmpeg cannot encode it: " + one.last_message(),
+                     "choose .mkv or .mp4, install another ffmpeg, or save --png frames");
+}
+
+/// Frames that decode; 0 if any has errors.
 int frames_in(fs::path const& file)
 {
-    Ffmpeg reads({"-v", "error", "-nostdin", "-i", "file:" + file.string(), "-map", "0:v:0", "-fps_mode",
-                  "passthrough", "-f", "framecrc", "-"});
-    reads.finish();
+    Ffmpeg reads(
+        {"-v", "error", "-nostdin", "-i", "file:" + file.string(), "-map", "0:v:0", "-f", "framecrc", "-"});
+    if (!reads.finish() || !reads.last_message().empty()) return 0;
     std::string const lines = "\n" + reads.printed(); // one of each frame, after "#..." of the stream
     int frames = 0;
     for (std::size_t at = 0; (at = lines.find("\n0,", at)) != std::string::npos; ++at) ++frames;
@@ -86,7 +98,8 @@ VideoWriter::VideoWriter(fs::path const& file, int width, int height, double fps
     if (!std::ofstream(temporary_))
         throw cannot(file, "its folder cannot be written", "choose another folder, or free some space");
     try {
-        ffmpeg_ = std::make_unique<Ffmpeg>(encoding(temporary_, width, height, fps));
+        try_encoder(file, width, height, fps);
+        ffmpeg_ = std::make_unique<Ffmpeg>(encoding(file, width, height, fps, {"file:" + temporary_.string()}));
     } catch (...) {
         remove_unfinished();
         throw;

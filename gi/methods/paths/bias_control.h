@@ -1,6 +1,6 @@
 #pragma once
 // Measures how far light by look-ups and shadow maps is from that of exact rays, while a picture is rendered: in every pass some paths are traced
-// once more by exact rays, along the same axes, to the same light points and with the same random numbers. So most pairs are equal, and the
+// again by look-ups and by exact rays, along the same axes, to the same light points and with the same random numbers. So most pairs are equal, and the
 // differences of the others have little noise.
 
 #include "gi/core/report.h"
@@ -32,12 +32,13 @@ private:
         double difference = 0, exact = 0, difference2 = 0, exact2 = 0, product = 0;
     };
     Deviation deviation(Moments const& m) const;
+    double all_light() const { return parts_[0].exact + parts_[1].exact; }
 
     std::array<Moments, 2> parts_;
     std::uint64_t passes_ = 0, paths_ = 0;
 };
 
-/// Reports a loss if light is wrong by more than one per cent, beyond doubt.
+/// Reports a loss if direct or indirect light is wrong by more than one per cent of its own, beyond doubt, and by more than a thousandth of all.
 void report_bias(std::optional<LookUpBias> const& bias, Report& report);
 
 } // namespace gi

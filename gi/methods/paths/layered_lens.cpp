@@ -14,8 +14,10 @@ namespace gi {
 namespace {
 
 constexpr std::size_t kPixelsOfTask = 2048;
-constexpr int kMostRays = 8, kLeastRays = 4, kMostMargin = 64;
-constexpr std::size_t kMostRayBytes = 256u << 20;
+constexpr int kMostRays = 8, kMargin = 64;   // margin: pixels around the picture that have layers
+constexpr std::size_t kMostStarts = 1 << 24; ///< of about 130 bytes with their paths
+
+constexpr std::uint32_t kAlone = 0xa10eu; ///< tells streams of random numbers from those of pixels
 
 /// Radius of the circle of confusion of what is at this distance along the view, pixels.
 float confusion_px(CameraRays const& eye, float depth_m)
@@ -29,8 +31,8 @@ float confusion_px(CameraRays const& eye, float depth_m)
 
 int LayeredLens::rays_of(View const& view, std::size_t pixel) const
 {
-    std::size_t const x = pixel % std::size_t(view.width) + std::size_t(margin_),
-                      y = pixel / std::size_t(view.width) + std::size_t(margin_);
+    std::size_t const x = pixel % std::size_t(view.width) + std::size_t(kMargin),
+                      y = pixel / std::size_t(view.width) + std::size_t(kMargin);
     return rays_of_[y / ScreenLayers::kTile * layers_.tiles_across() + x / ScreenLayers::kTile];
 }
 
@@ -41,36 +43,28 @@ Ray LayeredLens::lens_ray(View const& view, std::size_t pixel, int k, int rays) 
     RqmcStream const stream =
         pixel_stream(random_key(view.seed), std::uint32_t(pixel), std::uint32_t(view.width), view.pass);
     vec2 const shift = stream.sample2(kLens);
-    vec2 const u{std::fmod((float(k) + shift.x) / float(rays), 1.0f),
+    vec2 const u{std::fmod(float(k) / float(rays) + shift.x, 1.0f),
                  std::fmod(float(k) * 0.618034f + shift.y, 1.0f)};
     std::size_t const x = pixel % std::size_t(view.width), y = pixel / std::size_t(view.width);
     return view.rays.at_lens(square_to_disk(u)).through(vec2{float(x), float(y)} + at_);
 }
 
-/// The layers are those of the lens' centre, with a margin that holds the blur of the nearest surface within it.
+/// The layers are those of the lens' centre.
 void LayeredLens::draw(View const& view, Place const& place, float near_m)
 {
-    while (true) {
-        eye_ = view.rays.at_lens(vec2{0});
-        eye_.corner -= float(margin_) * (eye_.step_x + eye_.step_y);
-        int const width = view.width + 2 * margin_, height = view.height + 2 * margin_;
-        layers_.draw(place.soup, place.soup.count, place.cut_outs, eye_, width, height,
-                     std::uint32_t(std::max(width, height)), at_, near_m,
-                     std::uint32_t(mix_bits(view.seed) + view.pass));
-        float reach = confusion_px(view.rays, kInf);
-        for (ScreenLayers::Depths const& d : layers_.tiles())
-            reach = std::max(reach, confusion_px(view.rays, d.nearest_m));
-        int const needed = reach < float(kMostMargin) ? int(std::ceil(reach)) + 1 : kMostMargin;
-        if (needed <= margin_) return;
-        margin_ = needed;
-    }
+    eye_ = view.rays.at_lens(vec2{0});
+    eye_.corner -= float(kMargin) * (eye_.step_x + eye_.step_y);
+    int const width = view.width + 2 * kMargin, height = view.height + 2 * kMargin;
+    layers_.draw(place.soup, place.soup.count, place.cut_outs, eye_, width, height,
+                 std::uint32_t(std::max(width, height)), at_, near_m,
+                 std::uint32_t(mix_bits(view.seed) + view.pass), ScreenLayers::Tiles::with_depths);
 }
 
 /// As many lens rays as see all of a pixel's blur, from the depths within the margin around.
-void LayeredLens::choose_numbers(CameraRays const& lens, int most_rays)
+void LayeredLens::choose_numbers(CameraRays const& lens)
 {
     auto const across = int(layers_.tiles_across()), down = int(layers_.tiles().size()) / std::max(1, across),
-               reach = (margin_ + int(ScreenLayers::kTile) - 1) / int(ScreenLayers::kTile);
+               reach = (kMargin + int(ScreenLayers::kTile) - 1) / int(ScreenLayers::kTile);
     rays_of_.resize(layers_.tiles().size());
     tbb::parallel_for(0, down, [&](int y) {
         for (int x = 0; x < across; ++x) {
@@ -82,7 +76,7 @@ void LayeredLens::choose_numbers(CameraRays const& lens, int most_rays)
                         radius =
                             std::max({radius, confusion_px(lens, d.nearest_m), confusion_px(lens, d.farthest_m)});
             rays_of_[std::size_t(y * across + x)] =
-                int(std::clamp(std::ceil(2 * kPi * radius * radius), 1.0f, float(most_rays)));
+                int(std::clamp(std::ceil(2 * kPi * radius * radius), 1.0f, float(most_rays_)));
         }
     });
 }
@@ -90,32 +84,42 @@ void LayeredLens::choose_numbers(CameraRays const& lens, int most_rays)
 void LayeredLens::look(View const& view, Place const& place, float near_m, PassStop const& stop)
 {
     at_ = place_in_pixel(view.filter, view.seed, view.pass);
-    std::size_t const pixels = std::size_t(view.width) * std::size_t(view.height);
-    most_rays_ = int(std::clamp<std::size_t>(kMostRayBytes / (sizeof(met_[0]) * std::max<std::size_t>(1, pixels)),
-                                             kLeastRays, kMostRays));
     draw(view, place, near_m);
-    choose_numbers(view.rays, most_rays_);
+    for (most_rays_ = kMostRays; !follow_all(view, place, stop); most_rays_ /= 2) {
+    }
+}
+
+/// @return false if what they met is too much for most_rays_ > 1
+bool LayeredLens::follow_all(View const& view, Place const& place, PassStop const& stop)
+{
+    std::size_t const pixels = std::size_t(view.width) * std::size_t(view.height);
+    choose_numbers(view.rays);
     met_.assign(pixels * std::size_t(most_rays_), kBackground);
     slot_.assign(layers_.size(), 0);
     std::vector<std::vector<Alone>> alone((pixels + kPixelsOfTask - 1) / kPixelsOfTask);
+    std::atomic<std::uint64_t> asked = 0, met_alone = 0;
     tbb::parallel_for(std::size_t(0), alone.size(), [&](std::size_t k) {
-        if (!stop.given_up())
-            follow(view, place, k * kPixelsOfTask, std::min(pixels, (k + 1) * kPixelsOfTask), alone[k]);
+        if (stop.given_up() || (most_rays_ > 1 && met_alone > kMostStarts)) return;
+        asked += follow(view, place, k * kPixelsOfTask, std::min(pixels, (k + 1) * kPixelsOfTask), alone[k]);
+        met_alone += alone[k].size();
     });
     stop.check();
+    std::size_t const starts = met_alone + std::size_t(std::ranges::count(slot_, 1u));
+    if (most_rays_ > 1 && starts > kMostStarts) return false;
+    asked_ = asked;
+    alone_ = met_alone;
     make_starts(view);
     for (std::vector<Alone> const& some : alone)
         for (Alone const& a : some) {
             met_[a.at] = std::uint32_t(starts_.size());
             starts_.push_back(a.start);
         }
-    for (std::vector<Alone> const& some : alone) alone_ += some.size();
-    for (std::size_t p = 0; p < pixels; ++p) asked_ += std::uint64_t(rays_of(view, p));
+    return true;
 }
 
-/// Follows the lens rays of some pixels.
-void LayeredLens::follow(View const& view, Place const& place, std::size_t first, std::size_t last,
-                         std::vector<Alone>& alone)
+/// Follows the lens rays of some pixels. @return how many
+std::size_t LayeredLens::follow(View const& view, Place const& place, std::size_t first, std::size_t last,
+                                std::vector<Alone>& alone)
 {
     thread_local std::vector<RayQuery> rays;
     thread_local std::vector<Hit> hits;
@@ -123,6 +127,7 @@ void LayeredLens::follow(View const& view, Place const& place, std::size_t first
     rays.clear();
     places.clear();
     for (std::size_t p = first; p < last; ++p) {
+        if (!view.hidden.empty() && view.hidden[p] != 0) continue;
         int const n = rays_of(view, p);
         for (int k = 0; k < n; ++k) {
             Ray const ray = lens_ray(view, p, k, n);
@@ -138,16 +143,18 @@ void LayeredLens::follow(View const& view, Place const& place, std::size_t first
         if (hits[k].triangle == kNoTriangle) continue;
         std::uint32_t const layer = layer_of(place, hits[k], rays[k].ray.direction);
         if (layer == kBackground) {
-            alone.push_back({places[k], {std::uint32_t(places[k]), hits[k].triangle, rays[k].ray}});
+            alone.push_back(
+                {places[k], {hash_words(std::uint32_t(places[k]), kAlone), hits[k].triangle, rays[k].ray}});
             continue;
         }
         met_[places[k]] = layer;
         std::atomic_ref(slot_[layer]).store(1, std::memory_order_relaxed);
     }
+    return rays.size();
 }
 
 /// The layer, under the texel that shows a hit, of its triangle; or of one that goes on there in the same way, as of a
-/// mesh finer than texels. kBackground if there is none.
+/// mesh finer than texels. kBackground if there is none of which the lens' centre sees the same side.
 std::uint32_t LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 direction) const
 {
     constexpr float kAlike = 0.95f; // cosine
@@ -155,7 +162,8 @@ std::uint32_t LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 dir
     vec3 const position = s.corner + hit.barycentric.x * s.edge1 + hit.barycentric.y * s.edge2,
                normal = shading_detail::triangle_normal(s);
     std::optional<ScreenLayers::Texel> const texel = layers_.texel_at(position);
-    if (!texel) return kBackground;
+    bool const front = glm::dot(normal, direction) < 0;
+    if (!texel || (glm::dot(normal, position - eye_.origin) < 0) != front) return kBackground;
     std::uint32_t best = kBackground;
     float nearest_m = texel->width_m;
     for (std::uint32_t l = layers_.first(texel->index); l < layers_.first(texel->index + 1); ++l) {
@@ -164,7 +172,7 @@ std::uint32_t LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 dir
         vec3 const n = shading_detail::triangle_normal(other);
         float const off = std::abs(glm::dot(n, position - other.corner));
         if (other.material != s.material || !(glm::dot(n, normal) > kAlike) || !(off < nearest_m)) continue;
-        if (!(glm::dot(n, direction) * glm::dot(normal, direction) > 0)) continue;
+        if ((glm::dot(n, other.corner - eye_.origin) < 0) != front) continue;
         nearest_m = off;
         best = l;
     }
@@ -175,17 +183,18 @@ std::uint32_t LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 dir
 void LayeredLens::make_starts(View const& view)
 {
     starts_.clear();
-    std::size_t const width = std::size_t(view.width) + 2 * std::size_t(margin_),
-                      texels = width * (std::size_t(view.height) + 2 * std::size_t(margin_));
+    std::size_t const width = std::size_t(view.width) + 2 * std::size_t(kMargin),
+                      texels = width * (std::size_t(view.height) + 2 * std::size_t(kMargin));
     for (std::size_t t = 0; t < texels; ++t) {
         bool first = true;
-        int const x = int(t % width) - margin_, y = int(t / width) - margin_;
+        int const x = int(t % width) - kMargin, y = int(t / width) - kMargin;
         bool const within = x >= 0 && y >= 0 && x < view.width && y < view.height;
         for (std::uint32_t l = layers_.first(t); l < layers_.first(t + 1); ++l) {
             if (slot_[l] == 0) continue;
             slot_[l] = std::uint32_t(starts_.size());
-            std::uint32_t const stream = within && first ? std::uint32_t(y * view.width + x)
-                                                         : hash_words(layers_.triangle(l), std::uint32_t(t));
+            std::uint32_t const stream = within && first
+                                             ? std::uint32_t(y * view.width + x)
+                                             : hash_words(layers_.triangle(l), std::uint32_t(t) ^ kAlone);
             starts_.push_back(
                 {stream, layers_.triangle(l), eye_.through(vec2{float(t % width), float(t / width)} + at_)});
             first = false;
@@ -201,7 +210,9 @@ PathSample LayeredLens::gather(View const& view, WorldView const& world, std::si
                                std::span<PathSample const> samples) const
 {
     PathSample mean;
+    if (!view.hidden.empty() && view.hidden[pixel] != 0) return mean;
     int const rays = rays_of(view, pixel);
+    int met = 0;
     for (int k = 0; k < rays; ++k) {
         std::uint32_t const start = met_[pixel * std::size_t(most_rays_) + std::size_t(k)];
         if (start == kBackground) {
@@ -212,6 +223,7 @@ PathSample LayeredLens::gather(View const& view, WorldView const& world, std::si
         for (std::size_t part = 0; part < mean.radiance.size(); ++part) mean.radiance[part] += s.radiance[part];
         mean.albedo += s.albedo;
         mean.normal += s.normal;
+        ++met;
         if (k > 0) continue;
         mean.hit = s.hit;
         mean.position = s.position;
@@ -219,8 +231,9 @@ PathSample LayeredLens::gather(View const& view, WorldView const& world, std::si
     }
     float const share = 1 / float(rays);
     for (vec3& part : mean.radiance) part *= share;
-    mean.albedo *= share;
-    mean.normal *= share;
+    // These are means over passes whose first ray met something.
+    mean.albedo *= 1 / float(std::max(1, met));
+    mean.normal *= 1 / float(std::max(1, met));
     return mean;
 }
 

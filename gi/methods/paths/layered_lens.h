@@ -17,6 +17,7 @@ public:
         CameraRays const& rays; ///< with a lens
         int width, height;      ///< pixels
         PixelFilter filter;
+        std::span<std::uint8_t const> hidden; ///< as in FrameView
         std::uint64_t seed;
         std::uint32_t pass;
     };
@@ -36,7 +37,7 @@ public:
     /// something, its place). @param samples  one per start
     PathSample gather(View const& view, WorldView const& world, std::size_t pixel,
                       std::span<PathSample const> samples) const;
-    /// Lens rays so far; of these, those that met what no layer shows.
+    /// Lens rays of the pass; of these, those that met what no layer shows.
     std::uint64_t rays() const { return asked_; }
     std::uint64_t alone() const { return alone_; }
 
@@ -49,9 +50,10 @@ private:
     };
 
     void draw(View const& view, Place const& place, float near_m);
-    void choose_numbers(CameraRays const& lens, int most_rays);
-    void follow(View const& view, Place const& place, std::size_t first, std::size_t last,
-                std::vector<Alone>& alone);
+    void choose_numbers(CameraRays const& lens);
+    bool follow_all(View const& view, Place const& place, PassStop const& stop);
+    std::size_t follow(View const& view, Place const& place, std::size_t first, std::size_t last,
+                       std::vector<Alone>& alone);
     std::uint32_t layer_of(Place const& place, Hit const& hit, vec3 direction) const;
     void make_starts(View const& view);
     int rays_of(View const& view, std::size_t pixel) const;
@@ -59,7 +61,6 @@ private:
 
     ScreenLayers layers_;
     CameraRays eye_{}; ///< of the layers
-    int margin_ = 0;   ///< pixels around the picture
     int most_rays_ = 0;
     vec2 at_{0.5f};                   ///< place in the pixel
     std::vector<int> rays_of_;        ///< per tile of the layers: lens rays of its pixels

@@ -27,10 +27,7 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
                            &stop);
     options += renderer.level_option();
     renderer.find_lamp_caustics();
-    if (!renderer.control_bias() && looks_up)
-        report_untrusted_look_ups(world, make_soup(world),
-                                  camera_rays(camera, settings.width, settings.height, world.origin),
-                                  chosen.of<SlhbSettings>(), report);
+    renderer.control_bias();
     std::uint64_t const print =
         loop.keeps_state() ? fingerprint(world, camera, chosen, name, options + lamp_light_version(world)) : 0;
     bool const cached = chosen.of<PathsSettings>().cache == RadianceCaching::on;
@@ -45,6 +42,10 @@ RenderResult render_by(char const* name, World const& world, Camera const& camer
     report.lose("radiance samples for which the radiance cache had no room", renderer.refused_notes());
     result.look_up_bias = renderer.look_up_bias();
     report_bias(result.look_up_bias, report);
+    if (!result.look_up_bias && looks_up)
+        report_untrusted_look_ups(world, renderer.soup(),
+                                  camera_rays(camera, settings.width, settings.height, world.origin),
+                                  chosen.of<SlhbSettings>(), report);
     result.rays = renderer.rays();
     result.options = options;
     loop.deliver(world, result);

@@ -229,7 +229,7 @@ void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& st
     StageTimer const timer(report_, "G-buffer");
     for (SeenView& v : views_) {
         stop.check();
-        CameraRays const eye = eye_of_pass(v.rays, settings_.seed, index);
+        CameraRays eye = eye_of_pass(v.rays, settings_.seed, index);
         float const near_m = near_plane(world_.bounds);
         if (by_.surfaces == SurfacesBy::screen) {
             auto const draw = [&](std::optional<ScreenLayers>& layers, std::size_t last) {
@@ -242,13 +242,14 @@ void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& st
             draw(v.screen, traced_.soup.count);
             if (sides == Sides::pair) draw(v.screen_behind, std::min(traced_.first_moving, traced_.soup.count));
         }
-        if (sides == Sides::pair || !by_lenses()) {
+        bool const lens = sides == Sides::one && by_lenses();
+        if (!lens) {
             v.lens.reset();
         } else {
             if (!v.lens) v.lens.emplace();
-            v.lens->look({v.rays, v.width, v.height, v.filter, settings_.seed, index},
+            eye = v.rays.at_lens(vec2{0});
+            v.lens->look({v.rays, v.width, v.height, v.filter, v.hidden, settings_.seed, index},
                          {traced_.soup, traced_.cut_outs, view(world_), *exact_}, near_m, stop);
-            continue;
         }
         if (!v.primary) continue;
         if (sides == Sides::pair)
@@ -300,6 +301,9 @@ void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Verte
         paths_.trace_lenses(tracing, views_, sums);
     else
         paths_.trace(tracing, views_, sharing, sums);
+    if (by_.layered_lens && !by_lenses() &&
+        std::ranges::any_of(views_, [](SeenView const& v) { return v.rays.has_lens(); }))
+        report_.lose("passes whose lens was sampled, not gathered from layers, as another view has none", 1);
     if (control_) paths_.control(tracing, views_[0], *control_);
     if (cache_) cache_->end_pass();
     for (Accumulator& s : sums) ++s.paths;
@@ -348,11 +352,6 @@ void PathsRenderer::report_work() const
 {
     paths_.report_work();
     axes_.report_work();
-    for (SeenView const& v : views_) {
-        if (!v.lens) continue;
-        report_.count("lens rays", double(v.lens->rays()));
-        report_.count("lens rays that met what no layer shows", double(v.lens->alone()));
-    }
     report_.count("shadow maps built", double(earlier_maps_ + light_points_->maps_built()));
     if (!cache_) return;
     report_.count("cells of the radiance cache", double(cache_->cells()));

@@ -77,15 +77,15 @@ public:
     {
         if (exact_ && LampCaustics::exist(world_, settings_)) caustics_.emplace(world_, settings_, report_);
     }
-    /// From the next pass on, if exact rays decide what is doubtful: some paths of the first view are traced by them once more. @return whether
-    bool control_bias()
+    /// From the next pass on, if exact rays decide what is doubtful: some paths of the first view are traced by them once more.
+    void control_bias()
     {
         if (slhb_.confirm == Confirming::on && exact_) control_.emplace();
-        return control_.has_value();
     }
     std::optional<LookUpBias> look_up_bias() const { return control_ ? control_->bias() : std::nullopt; }
     /// Fraction of the last pass's path time that went into indirect light.
     double indirect_share() const { return paths_.indirect_share(); }
+    TriangleSoup const& soup() const { return traced_.soup; }
     /// Number of look-ups and exact rays so far.
     double rays() const { return paths_.rays(); }
     /// See Windows::option().

@@ -8,7 +8,8 @@
 namespace gi {
 
 void ScreenLayers::draw(TriangleSoup const& soup, std::size_t last, CutOuts const& cut_outs, CameraRays const& eye,
-                        int width, int height, std::uint32_t texels, vec2 at, float near_m, std::uint32_t seed)
+                        int width, int height, std::uint32_t texels, vec2 at, float near_m, std::uint32_t seed,
+                        Tiles tiles)
 {
     auto const side = [&](int pixels) {
         return std::max(1, int(float(texels) * float(pixels) / float(std::max(width, height)) + 0.5f));
@@ -33,7 +34,7 @@ void ScreenLayers::draw(TriangleSoup const& soup, std::size_t last, CutOuts cons
     tiles_.assign(std::size_t(across) * ((grid_.height + kTile - 1) / kTile), {});
     for (BorrowedFragments& f : parts) {
         sum += f->count;
-        for (std::size_t k = 0; k < f->count; ++k) {
+        for (std::size_t k = 0; tiles == Tiles::with_depths && k < f->count; ++k) {
             std::uint32_t const x = f->texel[k] % grid_.width, y = f->texel[k] / grid_.width;
             Depths& tile = tiles_[std::size_t(y / kTile) * across + x / kTile];
             float const depth_m = 1 / f->depth[k];
@@ -43,7 +44,7 @@ void ScreenLayers::draw(TriangleSoup const& soup, std::size_t last, CutOuts cons
     }
     if (sum > 0x7fffffff)
         throw InputError("a layered hit buffer of the view has more than 2^31 layers",
-                         "they are indexed with 32 bits", "lower --hit-buffer");
+                         "they are indexed with 32 bits", "lower --size or --hit-buffer");
     for (std::size_t t = 0; t < grid_.texels(); ++t) offset_[t + 1] += offset_[t];
     layers_.resize(offset_.back());
     std::vector<std::uint32_t> next(offset_.begin(), offset_.end() - 1);

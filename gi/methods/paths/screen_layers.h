@@ -13,11 +13,13 @@ namespace gi {
 
 class ScreenLayers {
 public:
+    enum class Tiles : std::uint8_t { none, with_depths };
     /// Draws the view of triangles 0..last - 1 anew. @param eye  without a lens, not orthographic  @param width, height  of its picture, pixels
     /// @param texels  along the picture's longer side  @param at  place of the samples in a texel, [0, 1)^2
     /// @param near_m  distance of the near plane  @param seed  of the random decisions about partial coverage
     void draw(TriangleSoup const& soup, std::size_t last, CutOuts const& cut_outs, CameraRays const& eye,
-              int width, int height, std::uint32_t texels, vec2 at, float near_m, std::uint32_t seed);
+              int width, int height, std::uint32_t texels, vec2 at, float near_m, std::uint32_t seed,
+              Tiles tiles = Tiles::none);
     /// The nearest surface along a ray from a surface. @param triangle  where it starts
     /// @param watched  @param near_watched  set if a texel on the ray's way has a triangle from `watched` on
     LayerHit nearest(View<Surface const> surfaces, vec3 origin, std::uint32_t triangle, vec3 direction,
@@ -33,7 +35,7 @@ public:
         float width_m;
     };
     std::optional<Texel> texel_at(vec3 point) const;
-    /// Distances along the view, m, of the layers under kTile x kTile texels; without any, kInf and 0.
+    /// Distances along the view, m, of the layers under kTile x kTile texels; without any, kInf and 0. If asked for.
     struct Depths {
         float nearest_m = kInf, farthest_m = 0;
     };

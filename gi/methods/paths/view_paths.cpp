@@ -272,13 +272,12 @@ void ViewPaths::trace(PathsTracer::Pass const& pass, SeenViews const& views, Ver
 
 void ViewPaths::trace_lenses(PathsTracer::Pass const& pass, SeenViews const& views, std::span<Accumulator> all)
 {
-    samples_.resize(views.back().first + views.back().pixels());
-    taken_from_.clear();
-    light_from_.clear();
+    std::size_t const pixels = views.back().first + views.back().pixels();
+    samples_.resize(pixels);
+    light_from_.assign(views.size() > 1 ? pixels : 0, kOwnLight);
     choose_block();
     Work work;
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        SeenView const& view = views[v];
+    for (SeenView const& view : views) {
         std::span<PathStart const> const starts = view.lens->starts();
         PathsTracer const tracer = tracer_of(view);
         of_layers_.resize(starts.size());
@@ -288,17 +287,24 @@ void ViewPaths::trace_lenses(PathsTracer::Pass const& pass, SeenViews const& vie
                          local.paths, local.work);
         };
         in_turns(pass, starts.size(), trace_block, work);
-        pass.stop.check();
-        LayeredLens::View const through{view.rays,   view.width,     view.height,
-                                        view.filter, settings_.seed, pass.index};
+        LayeredLens::View const through{view.rays,   view.width,     view.height, view.filter,
+                                        view.hidden, settings_.seed, pass.index};
         WorldView const world = gi::view(world_);
-        work.in_blocks(view.pixels(), PassStop(nullptr), [&](std::size_t first, std::size_t last, Counts&) {
-            for (std::size_t p = first; p < last; ++p) {
+        work.in_blocks(view.pixels(), pass.stop, [&](std::size_t first, std::size_t last, Counts&) {
+            for (std::size_t p = first; p < last; ++p)
                 samples_[view.first + p] = view.lens->gather(through, world, p, of_layers_);
-                all[v].add(p, samples_[view.first + p], all[v].paths);
-            }
         });
-        pixels_ += view.pixels();
+        lens_rays_ += view.lens->rays();
+        lens_paths_ += starts.size();
+        lens_alone_ += view.lens->alone();
+    }
+    pass.stop.check();
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        work.in_blocks(views[v].pixels(), PassStop(nullptr), [&](std::size_t first, std::size_t last, Counts&) {
+            for (std::size_t p = first; p < last; ++p) all[v].add(p, samples_[views[v].first + p], all[v].paths);
+        });
+        hidden_ += views[v].hidden_pixels;
+        pixels_ += views[v].pixels();
     }
     add_work(work, all[0].counts);
 }
@@ -429,6 +435,11 @@ void ViewPaths::report_work() const
     if (hidden_ > 0) {
         report_.count("pixels not rendered, as nobody sees them", double(hidden_));
         report_.count("share of pixels not rendered", double(hidden_) / double(pixels_));
+    }
+    if (lens_rays_ > 0) {
+        report_.count("lens rays", double(lens_rays_));
+        report_.count("paths of what lens rays met", double(lens_paths_));
+        report_.count("of these, of what no layer shows", double(lens_alone_));
     }
     if (pair_paths_ > 0)
         report_.count("share of a pair's paths traced on both sides",

@@ -110,6 +110,7 @@ private:
     std::uint64_t taken_ = 0, taking_ = 0; ///< pixels that reused a partner's light; pixels that could
     /// Pixels not traced because they are hidden; all pixels; over all passes.
     std::uint64_t hidden_ = 0, pixels_ = 0;
+    std::uint64_t lens_rays_ = 0, lens_paths_ = 0, lens_alone_ = 0;
     /// Paths of pairs with dynamic geometry; of these, traced again without it.
     std::uint64_t pair_paths_ = 0, without_paths_ = 0;
 };
