@@ -132,6 +132,7 @@ constexpr std::array kMethods{
            .options = paths_options,
            .explain = explain_paths<kPathsLayeredLens>,
            .ends_frames_early = true,
+           .pairs = true,
            .for_display = paths_for_display,
            .check = check_layered_lens_options},
     Method{"whitted", "ray trees: direct light, mirrors and glass, no diffuse interreflection", render_whitted,
