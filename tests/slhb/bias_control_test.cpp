@@ -44,18 +44,9 @@ TEST(BiasControl, LightWhereThereIsNoneIsInfinitelyWrong)
 char const* const kLoss =
     "pictures whose light by look-ups is wrong by more than 1 %: exact are --method paths and reference";
 
-/// Objects between the centres of texels, which no column has: all agree about what lies behind them.
 TEST(BiasControl, IsThatOfThePicture)
 {
-    Scene village;
-    int const ground = add_material(village, lambert(vec3{0.5f}));
-    add_quad(village, {-5000, 0, 5000}, {10000, 0, 0}, {0, 0, -10000}, ground);
-    for (int k = 0; k < 25; ++k) {
-        vec3 const at{float(k % 5) * 30 - 60, 0, float(k / 5) * -30};
-        add_box(village, at, at + vec3{8, 6, 8}, ground, false);
-    }
-    set_environment(village, vec3{1});
-    World const world = world_of(std::move(village));
+    World const world = world_of(village());
     Camera const camera = look_at({0, 10, 40}, {0, 2, -60}, 60);
     RenderSettings s = small_settings(48, 64, 2);
     SlhbSettings& slhb = s.of<SlhbSettings>();

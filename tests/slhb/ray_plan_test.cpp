@@ -26,15 +26,7 @@ TEST(RayPlan, LookUpsAreNotTrustedInARoomOfALargeWorld)
     EXPECT_LT(agreement(world_of(room_on_a_plane(50)), kInRoom, 64), 0.8);
     for (float const reach : {50.0f, 500.0f, 5000.0f}) // with windows around the camera
         EXPECT_GT(agreement(world_of(room_on_a_plane(reach)), kInRoom, 256, 0), kTrustedLookUps) << reach;
-    // Objects between texel centres: no column has them, and all agree about what lies beyond.
-    Scene village;
-    int const ground = add_material(village, lambert(vec3{0.5f}));
-    add_quad(village, {-5000, 0, 5000}, {10000, 0, 0}, {0, 0, -10000}, ground);
-    for (int k = 0; k < 25; ++k) {
-        vec3 const at{float(k % 5) * 30 - 60, 0, float(k / 5) * -30};
-        add_box(village, at, at + vec3{8, 6, 8}, ground, false);
-    }
-    EXPECT_LT(agreement(world_of(std::move(village)), look_at({0, 10, 40}, {0, 2, -60}, 60), 256), 0.8);
+    EXPECT_LT(agreement(world_of(village()), look_at({0, 10, 40}, {0, 2, -60}, 60), 256), 0.8);
     Scene closed;
     add_box(closed, {-1, -1, -1}, {1, 1, 1}, add_material(closed, lambert(vec3{0.6f})), true);
     EXPECT_GT(agreement(world_of(std::move(closed)), look_at({0, 0, 0}, {1, 0.2, 0.1}, 70), 256), 0.9);

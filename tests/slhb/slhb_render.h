@@ -85,6 +85,20 @@ inline Scene room_on_a_plane(float reach)
     set_environment(scene, vec3{1});
     return scene;
 }
+/// Boxes of 8 m on a plane of 10 km: between texel centres, so that no column has them, and all agree about what lies beyond.
+inline Scene village()
+{
+    Scene scene;
+    int const ground = add_material(scene, lambert(vec3{0.5f}));
+    add_quad(scene, {-5000, 0, 5000}, {10000, 0, 0}, {0, 0, -10000}, ground);
+    for (int k = 0; k < 25; ++k) {
+        vec3 const at{float(k % 5) * 30 - 60, 0, float(k / 5) * -30};
+        add_box(scene, at, at + vec3{8, 6, 8}, ground, false);
+    }
+    set_environment(scene, vec3{1});
+    return scene;
+}
+
 inline Camera const kInRoom = look_at({0.5, 1.6, 1.5}, {-0.3, 0.8, -1}, 70);
 
 } // namespace gi::test
