@@ -1,5 +1,5 @@
 #pragma once
-// The program `ffmpeg`, which writes videos: in a process of its own, as its libraries are 200 and load in 0.2 s.
+// The program `ffmpeg`, which writes videos: in a process of its own, so that only videos load its libraries.
 
 #include <span>
 #include <string>

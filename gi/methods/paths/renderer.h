@@ -77,7 +77,8 @@ public:
     {
         if (exact_ && LampCaustics::exist(world_, settings_)) caustics_.emplace(world_, settings_, report_);
     }
-    /// From the next pass on, if exact rays decide what is doubtful: some paths of the first view are traced by them once more.
+    /// From the next pass on, if exact rays decide what is doubtful: some paths of the first view are traced again, by look-ups
+    /// and by exact rays.
     void control_bias()
     {
         if (slhb_.confirm == Confirming::on && exact_) control_.emplace();
