@@ -203,9 +203,11 @@ bool is_interrupted(PhotonMethod const& m, World const& world, RenderSettings co
     return false;
 }
 
-/// How often a whole render asks whether to stop.
+/// How often a whole render asks whether to stop, at least: by one thread, since work that threads share is cut by
+/// chance into more pieces, and each piece asks.
 std::uint64_t asks_of(PhotonMethod const& m, World const& world, RenderSettings const& s)
 {
+    tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
     StopAtAsk never;
     EXPECT_FALSE(is_interrupted(m, world, s, never));
     return never.asks();
