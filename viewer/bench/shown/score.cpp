@@ -126,6 +126,7 @@ std::vector<PathChange> path_changes(std::vector<std::string> const& texts, std:
 ShownErrors score(ShownOptions const& o, std::span<PathChange const> changes, RecordedScenes const& scenes,
                   std::vector<SeenMoment> const& seen, gi::dvec3 origin, gi::StopRequest const& stop)
 {
+    if (seen.empty()) return {};
     gi::Report report;
     RenderSession exact(scenes.load, o.scene.settings.threads, report);
     if (scenes.drive) exact.drive_bodies(scenes.drive);

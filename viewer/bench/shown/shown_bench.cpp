@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/core/quantile.h"
+#include "gi/filter/oidn.h"
 #include "viewer/app/pose_at.h"
 #include "viewer/app/presenter.h"
 #include "viewer/app/surfaces_scale.h"
@@ -319,6 +320,7 @@ BenchTable run_shown(ShownOptions const& o, gi::StopRequest const& stop, gi::Rep
     std::vector<PathChange> const changes = path_changes(o.changes, o.changes_file);
     std::vector<AvatarChoice> const avatars = avatar_choices(o.avatar, kPathEyeHeight_m, {}, {});
     RecordedScenes const scenes = scenes_with(o.scene, avatars, report);
+    if (o.moments > 0 && o.truth_filter.starts_with("oidn")) gi::check_oidn(); // before minutes of showing
     check_folder(o.out);
     std::filesystem::create_directories(o.out);
     GlContext const gl = GlContext::surfaceless(report);
