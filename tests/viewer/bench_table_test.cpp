@@ -153,5 +153,23 @@ TEST(Page, EscapesAllText)
     EXPECT_NE(html.find("/nowhere/&lt;p&gt;.png"), std::string::npos) << "only names within the folder";
 }
 
+/// Rows of one table may lie in several folders, as a batch leaves them.
+TEST(BenchPage, ShowsHowTablesOfTheThesisGrow)
+{
+    BenchTable t{
+        "thesis",
+        {"table", "triangles", "bounces", "frame_ms", "published_ms", "l2_flip", "paths_ms", "paths_l2_flip"}};
+    Page page;
+    for (double const triangles : {1000.0, 4000.0, 16000.0}) {
+        t.rows = {{std::string("6.1"), triangles, 1.0, std::sqrt(triangles), 10.0, 0.1, 5.0, 0.05}};
+        page.folders.push_back({"/nowhere", {t}, {}});
+    }
+    std::string const html = make_page(page);
+    EXPECT_NE(html.find("slhb, 1 bounce: 0.50; published, 1 bounce: 0.00."), std::string::npos);
+    EXPECT_NE(html.find("table 6.1: error against time"), std::string::npos);
+    EXPECT_EQ(html.find("table 6.2"), std::string::npos);
+    EXPECT_EQ(thesis_figures({}), "");
+}
+
 } // namespace
 } // namespace viewer::test

@@ -68,6 +68,7 @@ std::string make_page(Page const& page)
     std::string html, next;
     if (!page.lead.empty()) html += gi::html_paragraph(page.lead);
     for (BenchFolder const& folder : page.folders) html += render_figures(folder);
+    html += thesis_figures(page.folders);
     for (BenchFolder const& folder : page.folders)
         for (BenchTable const& table : folder.tables) html += section(table, folder.path, page.pictures);
     for (std::string const& command : page.next) next += gi::html_code(command);

@@ -26,6 +26,9 @@ std::string render_figures(BenchFolder const& folder);
 /// method, budget_s, frame_s and relmse.
 std::string sweep_figures(BenchTable const& table, std::filesystem::path const& folder);
 
+/// Curves of the tables of `bench thesis` in all folders: time, error, and how they grow; empty if there are none.
+std::string thesis_figures(std::vector<BenchFolder> const& folders);
+
 /// Strips of figures, each with its heading, beside a reference picture.
 std::string picture_strips(std::string const& reference_html,
                            std::vector<std::pair<std::string, std::string>> const& strips);

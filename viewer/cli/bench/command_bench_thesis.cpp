@@ -286,7 +286,8 @@ void add_bench_thesis(CLI::App& bench, int& exit_code)
 frame_ms is the time of the whole frame: hit buffers of all axes (build_ms alone), shadow maps, G-buffers and
 paths. l2_*: errors of indirect light, by look-ups alone (--confirm off). paths and embree: the methods paths and reference, with as many paths and
 bounces. rays_per_s counts look-ups and rays, and leaves out the building of hit buffers or of the tree.
-At full size a CPU takes hours: data/batch/thesis.yaml makes tasks of it, of which the finished ones are kept.)");
+At full size a CPU takes hours: data/batch/thesis.yaml makes tasks of it, of which the finished ones are kept.
+bench report FOLDER... draws curves of time and error, and says how they grow.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 
