@@ -8,13 +8,11 @@
 // 61st pixel, against 2,048 directions each. doubtful: share of the look-ups that an exact ray decides.
 
 #include "gi/core/morton.h"
-#include "gi/core/rng.h"
 #include "gi/hit_buffers/query_batch.h"
 #include "gi/hit_buffers/shadow_maps/shadow_map.h"
-#include "gi/render/exact_visibility.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
-#include "gi/scene/shading/warp.h"
+#include "tests/bench/first_surfaces.h"
 
 #include <algorithm>
 #include <atomic>
@@ -33,11 +31,6 @@ namespace {
 
 using namespace gi;
 
-struct Point {
-    vec3 position, normal; ///< normal: unit length, on the side that is seen
-    std::uint32_t triangle;
-};
-
 struct Options {
     int width = 1280, height = 800;
     float radius = RayQuery::kFar;
@@ -49,23 +42,9 @@ public:
     Queries(World const& world, Options const& o)
         : world_(world), o_(o), cut_outs_(world), exact_(world, plan_scene(world).alpha_tests, 0)
     {
-        CameraRays const through = camera_rays(world.cameras.at(0), o.width, o.height, world.origin);
-        std::vector<RayQuery> rays;
-        for (int y = 0; y < o.height; ++y)
-            for (int x = 0; x < o.width; ++x)
-                rays.push_back({through.through({float(x) + 0.5f, float(y) + 0.5f})});
-        std::vector<Hit> hits(rays.size());
-        exact_.nearest(rays, hits);
-        for (std::size_t k = 0; k < hits.size(); ++k) {
-            if (hits[k].triangle == kNoTriangle) continue;
-            Surface const& s = world.surfaces[hits[k].triangle];
-            vec3 n = glm::normalize(glm::cross(s.edge1, s.edge2));
-            if (glm::dot(n, rays[k].ray.direction) > 0) n = -n;
-            points_.push_back({s.corner + hits[k].barycentric.x * s.edge1 + hits[k].barycentric.y * s.edge2, n,
-                               hits[k].triangle});
-        }
+        points_ = first_surfaces(world, exact_, world.cameras.at(0), o.width, o.height);
         soup_ = make_soup(world);
-        find_truth();
+        truth_ = true_shares(world, exact_, points_, o.radius);
     }
     std::size_t points() const { return points_.size(); }
 
@@ -73,9 +52,10 @@ public:
     std::vector<float> by_own_rays(int directions)
     {
         std::vector<float> share(points_.size());
-        each_part([&](std::size_t first, std::size_t end) {
+        each_part(points_.size(), [&](std::size_t first, std::size_t end) {
             std::vector<RayQuery> rays;
-            for (std::size_t p = first; p < end; ++p) add_own(p, directions, 1, rays);
+            for (std::size_t p = first; p < end; ++p)
+                add_own_rays(world_, points_[p], p, directions, 1, o_.radius, rays);
             std::vector<std::uint8_t> blocked(rays.size());
             exact_.occluded(rays, blocked);
             for (std::size_t k = 0; k < rays.size(); ++k)
@@ -90,7 +70,7 @@ public:
         std::vector<std::uint32_t> order(points_.size());
         std::iota(order.begin(), order.end(), 0u);
         std::vector<std::uint64_t> keys(points_.size());
-        for (vec3 const axis : axes(directions)) {
+        for (vec3 const axis : half_sphere_axes(directions)) {
             if (sorted) {
                 RasterGrid const grid = make_grid(world_.bounds, axis, 1024, vec2{0.5f}, 0);
                 for (std::size_t p = 0; p < points_.size(); ++p) {
@@ -102,7 +82,7 @@ public:
                 }
                 std::ranges::sort(order, {}, [&](std::uint32_t p) { return keys[p]; });
             }
-            each_part([&](std::size_t first, std::size_t end) {
+            each_part(points_.size(), [&](std::size_t first, std::size_t end) {
                 std::vector<RayQuery> rays;
                 for (std::size_t k = first; k < end; ++k) rays.push_back(along(order[k], axis));
                 std::vector<std::uint8_t> blocked(rays.size());
@@ -117,7 +97,7 @@ public:
     std::vector<float> by_hit_buffers(int directions, std::uint32_t texels, bool confirm)
     {
         std::vector<float> share(points_.size());
-        std::vector<vec3> const all = axes(directions);
+        std::vector<vec3> const all = half_sphere_axes(directions);
         constexpr std::size_t kTogether = 8;
         for (std::size_t first_axis = 0; first_axis < all.size(); first_axis += kTogether) {
             std::size_t const n = std::min(kTogether, all.size() - first_axis);
@@ -131,7 +111,7 @@ public:
             });
             AxisPool pool;
             fill_pool(buffers, pool);
-            each_part([&](std::size_t first, std::size_t end) {
+            each_part(points_.size(), [&](std::size_t first, std::size_t end) {
                 thread_local QueryBatch batch;
                 thread_local std::vector<RayQuery> rays;
                 thread_local std::vector<std::uint32_t> asked;
@@ -140,7 +120,8 @@ public:
                 batch.resize(end - first);
                 for (std::size_t a = 0; a < n; ++a) {
                     vec3 const axis = all[first_axis + a];
-                    for (std::size_t p = first; p < end; ++p) batch.set(p - first, walk(p, axis), 0);
+                    for (std::size_t p = first; p < end; ++p)
+                        batch.set(p - first, walk_along(world_, points_[p], axis), 0);
                     nearest_layers(pool, a, world_.surfaces, batch);
                     rays.clear();
                     asked.clear();
@@ -172,7 +153,7 @@ public:
     std::vector<float> by_shadow_maps(int directions, std::uint32_t texels)
     {
         std::vector<float> share(points_.size());
-        std::vector<vec3> const all = axes(directions);
+        std::vector<vec3> const all = half_sphere_axes(directions);
         ShadowMapBuilder const builder(world_.bounds, {}, soup_, cut_outs_, texels);
         constexpr std::size_t kTogether = 8;
         for (std::size_t first_axis = 0; first_axis < all.size(); first_axis += kTogether) {
@@ -184,13 +165,13 @@ public:
                 builder.start(from, vec2{0.4f}, 0.3f, maps[m]);
                 builder.build(from, 0, soup_.count, 0, maps[m]);
             });
-            each_part([&](std::size_t first, std::size_t end) {
+            each_part(points_.size(), [&](std::size_t first, std::size_t end) {
                 std::vector<RayQuery> rays;
                 std::vector<std::pair<std::uint32_t, std::uint32_t>> asked;
                 for (std::size_t a = 0; a < n; ++a)
                     for (std::size_t p = first; p < end; ++p) {
                         vec3 const axis = all[first_axis + a];
-                        Point const& at = points_[p];
+                        SeenPoint const& at = points_[p];
                         ShadowMap const& map = maps[2 * a + (glm::dot(at.normal, axis) > 0 ? 0 : 1)];
                         LitBy const by = map.lit_by(map.look(at.position, at.normal, vec2{0.5f}), world_.surfaces,
                                                     at.position, at.normal, at.triangle);
@@ -211,15 +192,7 @@ public:
         }
         return share;
     }
-    double rms(std::vector<float> const& share) const
-    {
-        double sum = 0;
-        for (std::size_t k = 0; k < truth_.size(); ++k) {
-            double const off = double(share[k * kEvery]) - double(truth_[k]);
-            sum += off * off;
-        }
-        return std::sqrt(sum / double(truth_.size()));
-    }
+    double rms(std::vector<float> const& share) const { return rms_error(share, truth_); }
     double take_doubtful()
     {
         double const share = asked_ > 0 ? double(doubtful_) / double(asked_) : 0;
@@ -228,70 +201,10 @@ public:
     }
 
 private:
-    static constexpr std::size_t kEvery = 61;
-
-    /// On half a sphere: a lattice (Keinert et al. 2015), turned.
-    static std::vector<vec3> axes(int n)
-    {
-        std::vector<vec3> all;
-        vec3 const up = glm::normalize(vec3{0.31f, 0.87f, 0.38f});
-        Frame const frame = Frame::about(up);
-        for (int k = 0; k < n; ++k) {
-            float const z = (float(k) + 0.5f) / float(n), r = std::sqrt(1 - z * z),
-                        phi = 2 * kPi * std::fmod(float(k) * 0.618034f, 1.0f) + 0.7f;
-            all.push_back(frame.to_world({r * std::cos(phi), r * std::sin(phi), z}));
-        }
-        return all;
-    }
-    template <class Work>
-    void each_part(Work const& work) const
-    {
-        constexpr std::size_t kPart = 4096;
-        tbb::parallel_for(std::size_t(0), (points_.size() + kPart - 1) / kPart,
-                          [&](std::size_t k) { work(k * kPart, std::min(points_.size(), (k + 1) * kPart)); });
-    }
-    vec3 leave(Point const& p) const { return p.position + world_.surfaces[p.triangle].clearance * p.normal; }
-    RayQuery along(std::uint32_t p, vec3 axis) const
-    {
-        Point const& at = points_[p];
-        return {.ray = {leave(at), glm::dot(at.normal, axis) > 0 ? axis : -axis}, .reach = o_.radius};
-    }
-    WalkOrigin walk(std::size_t p, vec3 axis) const
-    {
-        Point const& at = points_[p];
-        Surface const& s = world_.surfaces[at.triangle];
-        float const cosine = glm::dot(at.normal, axis);
-        return {at.position, at.triangle, glm::dot(glm::cross(s.edge1, s.edge2), axis) > 0, cosine > 0,
-                std::sqrt(std::max(0.0f, 1 - cosine * cosine)) / std::max(std::abs(cosine), 1e-4f)};
-    }
+    RayQuery along(std::uint32_t p, vec3 axis) const { return ray_along(world_, points_[p], axis, o_.radius); }
     void add(std::vector<float>& share, std::size_t p, vec3 axis, int directions, bool free) const
     {
-        if (free) share[p] += 2 * std::abs(glm::dot(points_[p].normal, axis)) / float(directions);
-    }
-    void add_own(std::size_t p, int directions, std::uint32_t seed, std::vector<RayQuery>& rays) const
-    {
-        Point const& at = points_[p];
-        Frame const frame = Frame::about(at.normal);
-        Pcg32 rng(p, seed);
-        vec2 const shift = rng.uniform2();
-        for (int k = 0; k < directions; ++k) { // a rank-1 lattice, shifted at random
-            vec2 const u{std::fmod((float(k) + 0.5f) / float(directions) + shift.x, 1.0f),
-                         std::fmod(float(k) * 0.618034f + shift.y, 1.0f)};
-            rays.push_back(
-                {.ray = {leave(at), frame.to_world(square_to_cosine_hemisphere(u))}, .reach = o_.radius});
-        }
-    }
-    void find_truth()
-    {
-        constexpr int kDirections = 2048;
-        truth_.resize((points_.size() + kEvery - 1) / kEvery);
-        tbb::parallel_for(std::size_t(0), truth_.size(), [&](std::size_t k) {
-            std::vector<RayQuery> rays;
-            add_own(k * kEvery, kDirections, 7, rays);
-            std::vector<std::uint8_t> blocked(rays.size());
-            exact_.occluded(rays, blocked);
-            truth_[k] = float(std::ranges::count(blocked, 0)) / kDirections;
-        });
+        add_axis(share[p], points_[p], axis, directions, free);
     }
 
     World const& world_;
@@ -299,8 +212,8 @@ private:
     CutOuts cut_outs_;
     ExactVisibility exact_;
     TriangleSoup soup_;
-    std::vector<Point> points_;
-    std::vector<float> truth_; ///< of every kEvery-th point
+    std::vector<SeenPoint> points_;
+    std::vector<float> truth_; ///< of every kJudgedEvery-th point
     std::atomic<std::size_t> asked_ = 0, doubtful_ = 0;
 };
 
