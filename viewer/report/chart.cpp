@@ -31,8 +31,10 @@ std::string to_figure(Chart const& chart)
     bool const has_level =
         chart.level > 0 && !ys.empty() && chart.level * kNear > *std::min_element(ys.begin(), ys.end());
     if (has_level) ys.push_back(chart.level);
-    gi::Plot p(484 + name_px, 360, gi::axis_over(xs, true), gi::axis_over(ys, true));
-    p.margins(64, 40, name_px + 20, 46);
+    constexpr double kLeft = 64, kInner = 400, kHeight = 274, kBelow = 46;
+    double const right = name_px + 20, above = gi::legend_height(curves, kInner + right);
+    gi::Plot p(kLeft + kInner + right, above + kHeight + kBelow, gi::axis_over(xs, true), gi::axis_over(ys, true));
+    p.margins(kLeft, above, right, kBelow);
     p.x_axis(chart.x_label);
     p.y_axis(chart.y_label);
     if (has_level) {

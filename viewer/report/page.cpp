@@ -58,7 +58,8 @@ std::string section(BenchTable const& t, std::filesystem::path const& folder, Pa
         rows = gi::html_note("Medians; below them the smallest and largest measured values.") + rows;
     return gi::html_section(t.title.empty() ? t.name : t.title,
                             origin_html(t) + figures +
-                                (figures.empty() ? gi::html_part("Rows", rows) : gi::html_details("rows", rows)));
+                                (figures.empty() && t.name != "thesis" ? gi::html_part("Rows", rows)
+                                                                       : gi::html_details("rows", rows)));
 }
 
 } // namespace

@@ -61,6 +61,24 @@ void Plot::y_axis(std::string const& label, int ticks)
             (top() + bottom()) / 2, escaped(label));
 }
 
+namespace {
+
+constexpr double kLegendTop = 20, kLegendLine = 18; // px
+
+double entry_width(PlotSeries const& s) { return 30 + text_width(s.label); }
+
+} // namespace
+
+double legend_height(std::vector<PlotSeries> const& all, double width)
+{
+    double x = 0, height = 2 * kLegendTop;
+    for (PlotSeries const& s : all) {
+        if (x > 0 && x + entry_width(s) > width) x = 0, height += kLegendLine;
+        x += entry_width(s) + 22;
+    }
+    return height;
+}
+
 void Plot::series(std::vector<PlotSeries> const& all)
 {
     constexpr double kLine = 15;
@@ -69,8 +87,9 @@ void Plot::series(std::vector<PlotSeries> const& all)
         double x, y;
     };
     std::vector<Name> names;
-    double legend = left();
+    double legend = left(), legend_y = kLegendTop;
     for (std::size_t i = 0; i < all.size(); ++i) {
+        if (legend > left() && legend + entry_width(all[i]) > width_) legend = left(), legend_y += kLegendLine;
         body_ += fmt::format("<g class=\"c{}\">", i % kSeriesColours);
         std::vector<std::pair<double, double>> path;
         for (PlotPoint const& p : all[i].points) path.emplace_back(p.x, p.y);
@@ -79,11 +98,11 @@ void Plot::series(std::vector<PlotSeries> const& all)
             if (p.y_low < p.y_high) line(x(p.x), y(p.y_low), x(p.x), y(p.y_high), "spread");
             marker(i, x(p.x), y(p.y), fmt::format("{}: {:.3g} at {:.3g}", all[i].label, p.y, p.x));
         }
-        line(legend, 20, legend + 24, 20, "curve");
-        marker(i, legend + 12, 20, "");
+        line(legend, legend_y, legend + 24, legend_y, "curve");
+        marker(i, legend + 12, legend_y, "");
         body_ += "</g>\n";
-        text(legend + 30, 24, all[i].label);
-        legend += 52 + text_width(all[i].label);
+        text(legend + 30, legend_y + 4, all[i].label);
+        legend += entry_width(all[i]) + 22;
         if (!path.empty()) names.push_back({i, x(path.back().first) + 10, y(path.back().second) + 4});
     }
     // Names are pushed apart where they would overlap, and back up if the last ones are below the axis.

@@ -21,6 +21,9 @@ struct PlotSeries {
     std::vector<PlotPoint> points; ///< in the order of the line that joins them
 };
 
+/// Pixels that a legend takes above a plot, in lines of at most `width` pixels.
+double legend_height(std::vector<PlotSeries> const& all, double width);
+
 /// A rectangle with axes; data are drawn inside it, text at pixel positions around it.
 class Plot {
 public:
@@ -37,7 +40,8 @@ public:
 
     void x_axis(std::string const& label, int ticks = 5);
     void y_axis(std::string const& label, int ticks = 5);
-    /// Lines with markers, names at their ends and a legend above; needs 40 px above and room at the right.
+    /// Lines with markers, names at their ends and a legend above, as high as legend_height() from the left margin to
+    /// the right border; needs room at the right.
     void series(std::vector<PlotSeries> const& all);
     /// A curve without markers. @param points values
     void curve(std::vector<std::pair<double, double>> points, std::string_view style);
