@@ -11,7 +11,7 @@ struct Photon {
     vec3 normal;     ///< unit, geometric, on the lit side
     vec3 from;       ///< unit, towards where the light came from
     vec3 flux;       ///< W, with the correction for shading normals of LightVertex::power
-    vec3 reflected;  ///< share of the flux that leaves by diffuse reflection, as radiant exitance
+    vec3 reflected;  ///< share of the flux that leaves in all directions alike, as radiant exitance
     float footprint; ///< see LightVertex
     std::uint32_t triangle;
     std::uint32_t path;        ///< see LightVertex
@@ -22,8 +22,17 @@ struct Photon {
 
 inline Photon to_photon(LightVertex const& v)
 {
-    return {v.position, v.normal, v.frame.to_world(v.arrived),  v.power,    v.bsdf.diffuse, v.footprint,
-            v.triangle, v.path,   std::uint16_t(v.scatterings), v.by_delta, v.front};
+    return {v.position,
+            v.normal,
+            v.frame.to_world(v.arrived),
+            v.power,
+            diffuse_albedo(v.bsdf, v.arrived.z),
+            v.footprint,
+            v.triangle,
+            v.path,
+            std::uint16_t(v.scatterings),
+            v.by_delta,
+            v.front};
 }
 
 } // namespace gi

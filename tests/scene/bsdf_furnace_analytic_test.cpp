@@ -70,10 +70,10 @@ TEST(BsdfFurnace, NoMaterialMakesLight)
             DeltaAlbedo const front = delta_albedo(b, wo, true), back = delta_albedo(b, wo, false);
             for (int k = 0; k < 3; ++k) {
                 double const rough = rough_albedo(b, wo, k);
-                EXPECT_LE(rough + front.reflected[k] + front.transmitted[k], 1.0001)
-                    << c.name << " from " << angle;
-                EXPECT_LE(rough + back.reflected[k] + back.transmitted[k], 1.0001)
-                    << c.name << " behind " << angle;
+                // Tables tell what rough lobes leave to others.
+                double const most = b.f90.x > 0 && b.alpha >= kSmoothAlpha ? 1.003 : 1.0001;
+                EXPECT_LE(rough + front.reflected[k] + front.transmitted[k], most) << c.name << " from " << angle;
+                EXPECT_LE(rough + back.reflected[k] + back.transmitted[k], most) << c.name << " behind " << angle;
             }
         }
 }
@@ -86,16 +86,40 @@ TEST(BsdfFurnace, LambertReflectsItsAlbedo)
             EXPECT_NEAR(rough_albedo(b, seen_at(angle), c), double(b.diffuse[c]), 1e-5) << angle;
 }
 
-TEST(BsdfFurnace, WhiteBaseUnderASmoothCoatReflectsEverything)
+Material coated(float base, float roughness)
 {
-    Material plastic;
-    plastic.base_color = vec3{1};
-    plastic.roughness = 0;
-    Bsdf const b = make_bsdf(plastic);
-    for (double const angle : view_angles()) {
-        vec3 const wo = seen_at(angle);
-        EXPECT_NEAR(rough_albedo(b, wo, 0) + delta_albedo(b, wo, true).reflected.x, 1, 2e-4) << angle;
-    }
+    Material m;
+    m.base_color = vec3{base};
+    m.roughness = roughness;
+    return m;
+}
+
+/// With what passes the coat twice, and what facets reflect more than once, nothing is lost at any angle.
+TEST(BsdfFurnace, WhiteSurfacesReflectEverything)
+{
+    for (float const roughness : {0.0f, 0.1f, 0.2f, 0.447f, 0.6f, 0.8f, 1.0f})
+        for (double const angle : {0.0, 30.0, 60.0, 75.0, 80.0, 85.0, 88.0})
+            for (float const specular : {0.0f, 0.5f, 1.0f})
+                for (float const metallic : {0.0f, 0.5f, 1.0f}) {
+                    Material m = coated(1, roughness);
+                    m.specular = specular;
+                    m.metallic = metallic;
+                    Bsdf const b = make_bsdf(m);
+                    vec3 const wo = seen_at(angle);
+                    EXPECT_NEAR(rough_albedo(b, wo, 0) + delta_albedo(b, wo, true).reflected.x, 1,
+                                roughness > 0 ? 4e-3 : 2e-4)
+                        << "roughness " << roughness << ", specular " << specular << ", metallic " << metallic
+                        << ", " << angle << " degrees";
+                }
+}
+
+/// A base of 0.8 under a coat: what Blender's Cycles 5.0 renders in a white furnace.
+TEST(BsdfFurnace, CoatsAgreeWithAnotherRenderer)
+{
+    for (auto const& [roughness, angle, cycles] :
+         {std::tuple{0.447f, 80.0, 0.828}, {0.9f, 60.0, 0.806}, {0.9f, 80.0, 0.810}})
+        EXPECT_NEAR(rough_albedo(make_bsdf(coated(0.8f, roughness)), seen_at(angle), 0), cycles, 0.01)
+            << "roughness " << roughness << ", " << angle << " degrees";
 }
 
 /// Integral of k_s (n + 1) / 2 pi cos^(n + 1) over the hemisphere = k_s (n + 1) / (n + 2).
@@ -116,15 +140,15 @@ TEST(BsdfFurnace, PhongFromAboveHasItsClosedForm)
 }
 
 /// f cos = c / 2 pi (1 + c) for alpha = 1 seen from above; its integral is 1 - ln 2.
-TEST(BsdfFurnace, RoughestMetalFromAboveHasItsClosedForm)
+TEST(BsdfFurnace, RoughestLobeFromAboveHasItsClosedForm)
 {
-    EXPECT_NEAR(rough_albedo(make_bsdf(white_metal(1)), {0, 0, 1}, 0), 1 - std::log(2.0), 1e-5);
+    EXPECT_NEAR(rough_albedo(glossy_lobe(make_bsdf(white_metal(1))), {0, 0, 1}, 0), 1 - std::log(2.0), 1e-5);
 }
 
-/// Single scattering loses what bounces twice among the microfacets:
+/// A lobe alone loses what bounces twice among the microfacets:
 /// from above a white metal of roughness 0.3 keeps 0.991, of 0.5 0.916, of 0.7 0.698, of 1 0.307.
 /// The judge is an independent quadrature over microfacet normals.
-TEST(BsdfFurnace, WhiteMetalLosesWhatIsMultiplyScattered)
+TEST(BsdfFurnace, LobesLoseWhatIsMultiplyScattered)
 {
     auto const independent = [](double alpha, double cos_o) {
         double const a2 = alpha * alpha;
@@ -147,9 +171,11 @@ TEST(BsdfFurnace, WhiteMetalLosesWhatIsMultiplyScattered)
     for (float const roughness : {0.1f, 0.3f, 0.5f, 0.7f, 1.0f})
         for (double const angle : {0.0, 45.0, 80.0}) {
             Bsdf const b = make_bsdf(white_metal(roughness));
-            double const albedo = rough_albedo(b, seen_at(angle), 0);
-            EXPECT_NEAR(albedo, independent(double(b.alpha), std::cos(glm::radians(angle))), 1e-3)
+            double const cosine = std::cos(glm::radians(angle)), truth = independent(double(b.alpha), cosine);
+            EXPECT_NEAR(rough_albedo(glossy_lobe(b), seen_at(angle), 0), truth, 1e-3)
                 << "roughness " << roughness << ", " << angle << " degrees";
+            EXPECT_NEAR(ggx_albedo(float(cosine), b.alpha).sum(), truth, 3e-3)
+                << "table, roughness " << roughness << ", " << angle << " degrees";
         }
 }
 

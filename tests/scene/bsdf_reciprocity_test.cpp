@@ -40,7 +40,7 @@ TEST(BsdfValue, MetalIsGgx)
     for (float const roughness : {0.1f, 0.3f, 0.7f, 1.0f}) {
         Material m = mirror({1, 0.8f, 0.3f});
         m.roughness = roughness;
-        Bsdf const b = make_bsdf(m);
+        Bsdf const b = glossy_lobe(make_bsdf(m));
         double const a2 = std::pow(double(roughness), 4);
         auto const lambda = [a2](double c) { return 0.5 * (std::sqrt(1 + a2 * (1 - c * c) / (c * c)) - 1); };
         for (int i = 0; i < 2000; ++i) {

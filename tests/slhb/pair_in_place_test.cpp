@@ -5,6 +5,7 @@
 #include "gi/scene/generate/generate.h"
 #include "tests/slhb/slhb_render.h"
 
+#include <algorithm>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -100,7 +101,7 @@ protected:
     using Start = std::unique_ptr<FrameRenderer> (*)(MovingWorld const&, Camera const&, RenderSettings const&,
                                                      Report&);
     std::vector<PairResult> frames(PairDifference difference, Report& report,
-                                   Start start = start_frames_as_set) const
+                                   Start start = start_frames_as_set, std::uint32_t times = 1) const
     {
         MovingWorld world(scene_, 0, report);
         Camera const eye = look_at({-0.6, 0.1, 0.95}, {0.2, -0.6, 0}, 80);
@@ -108,7 +109,7 @@ protected:
         std::vector<PairResult> results;
         for (int k = 0; k < 3; ++k)
             results.push_back(ask<PairFrames>(*frames)->pair(
-                {eye, 40, 40}, {k == 1 ? 1u : 3u, difference},
+                {eye, 40, 40}, {(k == 1 ? 1u : 3u) * times, difference},
                 [&](PairSide side) { return world.advance(pose(k * GetParam().time_step_s, side)); }, {}));
         return results;
     }
@@ -168,8 +169,9 @@ TEST_P(InPlace, GivesTheLightOfBothWorldsOnTheScreen)
     settings_.of<SlhbSettings>().light_samples = settings_.of<SlhbSettings>().fresh_light_samples = 64;
     settings_.of<SlhbSettings>().shadow_resolution = 128;
     Report report;
-    auto const quick = frames(PairDifference::vanishing, report, start_screen_lhb_frames),
-               whole = frames(PairDifference::anything, report, start_screen_lhb_frames);
+    constexpr std::uint32_t kTimes = 8; // against noise
+    auto const quick = frames(PairDifference::vanishing, report, start_screen_lhb_frames, kTimes),
+               whole = frames(PairDifference::anything, report, start_screen_lhb_frames, kTimes);
     auto const light = [](std::vector<PairResult> const& all, auto side) {
         double sum = 0;
         for (PairResult const& r : all) sum += mean_of((r.*side).picture, "L2").mean;
@@ -177,8 +179,8 @@ TEST_P(InPlace, GivesTheLightOfBothWorldsOnTheScreen)
     };
     double const with = light(whole, &PairResult::with), without = light(whole, &PairResult::without);
     EXPECT_NEAR(light(quick, &PairResult::with), with, 0.2 * with);
-    // Of the ground under a sky alone there is none: the object must have left the layers, too.
-    EXPECT_NEAR(light(quick, &PairResult::without), without, 0.04 * without);
+    // Of the ground under a sky alone there is hardly any: the object must have left the layers, too.
+    EXPECT_NEAR(light(quick, &PairResult::without), without, std::max(0.04 * without, 0.03 * with));
 }
 
 } // namespace

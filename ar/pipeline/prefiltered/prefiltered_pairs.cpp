@@ -29,11 +29,9 @@ Seen seen_through(gi::WorldView const& world, gi::CameraRays const& rays, gi::Ne
     gi::vec2 const where = gi::barycentric_at(world.surfaces[texel.primitive], rays.origin + along / texel.key);
     gi::ShadingPoint const s = gi::shading_point(world, texel.primitive, where, direction);
     gi::vec3 const n = s.frame.normal;
-    GlossyLobe const lobe = glossy_lobe_of(s.bsdf, -glm::dot(n, direction));
-    gi::Bsdf const& b = s.bsdf;
-    float const through = b.coat_f90 > 0 ? 1 - gi::schlick_mean(b.coat_f0, b.coat_f90) : 1.0f;
-    return {{s.position, n, s.geometric_normal, texel.primitive, -direction, lobe},
-            gi::kInvPi * through * b.diffuse};
+    float const cosine = -glm::dot(n, direction);
+    return {{s.position, n, s.geometric_normal, texel.primitive, -direction, glossy_lobe_of(s.bsdf, cosine)},
+            gi::kInvPi * gi::diffuse_albedo(s.bsdf, cosine)};
 }
 
 /// Far below the steps of a camera's bytes.

@@ -29,8 +29,8 @@ public:
             if (!(p.wo.z > 0)) continue;
             if constexpr (std::is_same_v<Lattice, PhotonLattices>)
                 if (caustic_map_ == nullptr) layer_of(*p.sample, p.scatterings + 1) += p.throughput * caustics(p);
-            if (max_component(p.at.bsdf.diffuse) > 0)
-                out[i] = diffuse_response(p) * lattice_.irradiance(p.at.position, p.at.frame.normal);
+            if (vec3 const response = diffuse_response(p); max_component(response) > 0)
+                out[i] = response * lattice_.irradiance(p.at.position, p.at.frame.normal);
             out[i] += glossy_radiance(p, glossy_directions(p),
                                       [&](vec3 wi) { return lattice_.radiance(p.at.position, wi); });
         }

@@ -34,8 +34,8 @@ public:
             out[i] = vec3{0};
             if (!(p.wo.z > 0)) continue;
             if (caustics_ != nullptr) layer_of(*p.sample, p.scatterings + 1) += p.throughput * caustics(p);
-            if (max_component(p.at.bsdf.diffuse) > 0)
-                out[i] = diffuse_response(p) * volume_.irradiance(p.at.position, p.at.frame.normal);
+            if (vec3 const response = diffuse_response(p); max_component(response) > 0)
+                out[i] = response * volume_.irradiance(p.at.position, p.at.frame.normal);
             out[i] +=
                 glossy_radiance(p, p.direct ? 8 : 1, [&](vec3 wi) { return volume_.radiance(p.at.position, wi); });
         }

@@ -137,7 +137,7 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
 {
     ShadingPoint const& at = point.at;
     vec3 out{0};
-    if (max_component(at.bsdf.diffuse) > 0) {
+    if (vec3 const response = diffuse_response(point); max_component(response) > 0) {
         vec3 arriving{0};
         if (settings_.gather_directions == 0) {
             arriving = field_irradiance(cell, degree_, at.frame.normal);
@@ -154,7 +154,7 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
             spherical_harmonics(at.frame.normal, degree_, y);
             arriving *= glm::clamp(series(cell.distance, y, coefficients_) / settings_.obscurance_m, 0.0f, 1.0f);
         }
-        out += diffuse_response(point) * arriving;
+        out += response * arriving;
     }
     int const n = point.direct ? settings_.glossy_directions : std::max(1, settings_.glossy_directions / 8);
     return out + glossy_radiance(point, n, [&](vec3 wi) { return field_radiance(cell, degree_, wi); });

@@ -6,15 +6,7 @@
 namespace gi {
 
 /// Radiance that the diffuse base of a surface sends towards wo, per irradiance, 1/sr.
-inline vec3 diffuse_response(TreePoint const& p)
-{
-    Bsdf const& b = p.at.bsdf;
-    float const through =
-        b.model == MaterialModel::metal_rough
-            ? bsdf_detail::through_coat(b, p.wo.z, 1 / 1.5f) // the coat's mean angle of incidence
-            : 1.0f;
-    return through * b.diffuse * kInvPi;
-}
+inline vec3 diffuse_response(TreePoint const& p) { return kInvPi * diffuse_albedo(p.at.bsdf, p.wo.z); }
 
 /// Radiance that the glossy lobe of a surface sends towards wo; none if a ray brings it.
 /// @param directions  samples of the lobe  @param radiance  (unit direction) -> radiance that comes from there

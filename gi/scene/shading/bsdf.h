@@ -11,8 +11,8 @@ namespace gi {
 inline constexpr float kSmoothAlpha = 1e-4f;
 
 /// Scattering parameters at one point: a material with its textures evaluated.
-///   metal_rough: the diffuse base below a Schlick coat + GGX reflection with Fresnel f0..f90; a share `clear`
-///     of the surface is smooth dielectric instead (exact Fresnel, roughness ignored)
+///   metal_rough: the diffuse base below a Schlick coat + GGX reflection with Fresnel f0..f90, by metals also more than
+///     once; a share `clear` of the surface is smooth dielectric instead (exact Fresnel, roughness ignored)
 ///   phong: Lambert + Phong lobe
 struct Bsdf {
     MaterialModel model = MaterialModel::metal_rough;
@@ -21,6 +21,7 @@ struct Bsdf {
     vec3 f0{0}, f90{0}; ///< reflectance at normal and grazing incidence, times 1 - clear; 0 = no specular lobe
     float coat_f0 = 0, coat_f90 = 0; ///< the same of the dielectric coat over the base, largest channel
     float alpha = 1;                 ///< GGX width; < kSmoothAlpha: delta
+    vec3 again{0}; ///< what metal facets reflect more than once, over (1 - E(wo)) (1 - E(wi)), see bsdf.inl.h
     float clear = 0;                 ///< share that is glass, (1 - metallic) transmission; 0 = opaque
     vec3 transmitted{0};             ///< tint of transmitted light, times clear
     float ior = 1.5f;                ///< inside over outside, seen from the front face
@@ -61,11 +62,14 @@ GI_FN BsdfValue evaluate(Bsdf const& bsdf, vec3 wo, vec3 wi);
 GI_FN BsdfSample sample(Bsdf const& bsdf, vec3 wo, bool front, float u_lobe, vec2 u);
 /// The delta lobes' directions, each with all of its light; pdf and chances do not matter. Returns their number.
 GI_FN int delta_lobes(Bsdf const& bsdf, vec3 wo, bool front, BsdfSample lobes[3]);
+/// Reflectance of uniform light, towards a direction, by what leaves in all directions alike: the base below its coat, and
+/// what metal facets reflect more than once.
+GI_FN vec3 diffuse_albedo(Bsdf const& bsdf, float cos_o);
 /// The glossy lobe of a surface alone.
 GI_FN inline Bsdf glossy_lobe(Bsdf const& b)
 {
     Bsdf lobe = b;
-    lobe.diffuse = vec3{0};
+    lobe.diffuse = lobe.again = vec3{0};
     lobe.clear = 0;
     return lobe;
 }

@@ -3,8 +3,25 @@
 
 #include "gi/scene/shading/fresnel.h"
 #include "gi/scene/shading/ggx.h"
+#include "gi/scene/shading/ggx_albedo.h"
 
 namespace gi {
+
+namespace bsdf_detail {
+
+/// Light that metal facets reflect more than once leaves in all directions (Kulla and Conty 2017): f = again (1 - E(wo))
+/// (1 - E(wi)) / pi, where E is what facets that reflect everything reflect once. With it, those lose nothing.
+/// @param f0  reflectance of the facets at normal incidence, 1 at grazing
+GI_FN inline vec3 reflected_again(vec3 f0, float alpha)
+{
+    constexpr float kLeast = 1e-4f; // of the light
+    float const once = ggx_mean_albedo(alpha).sum(), rest = 1 - once;
+    if (rest < kLeast || alpha < kSmoothAlpha) return vec3{0};
+    vec3 const f = schlick_mean(f0, vec3{1});
+    return f * f * once / ((vec3{1} - f * rest) * rest);
+}
+
+} // namespace bsdf_detail
 
 GI_FN inline Bsdf make_bsdf(Material const& m, MaterialFactors const& f)
 {
@@ -33,6 +50,7 @@ GI_FN inline Bsdf make_bsdf(Material const& m, MaterialFactors const& f)
     b.coat_f90 = f.specular;
     b.f0 = opaque * coat_f0 + f.metallic * f.base_color;
     b.f90 = vec3{opaque * f.specular + f.metallic};
+    if (f.metallic > 0) b.again = f.metallic * bsdf_detail::reflected_again(f.base_color, b.alpha);
     return b;
 }
 
@@ -43,14 +61,44 @@ GI_FN inline Bsdf make_bsdf(Material const& m)
 
 namespace bsdf_detail {
 
+GI_FN inline bool specular_is_delta(Bsdf const& b)
+{
+    return b.model == MaterialModel::metal_rough && b.alpha < kSmoothAlpha;
+}
+
+/// How much of the light along a direction the microfacets reflect once, in parts of f0 and f90.
+GI_FN inline GgxAlbedo facets_albedo(Bsdf const& b, float cosine)
+{
+    if (!specular_is_delta(b)) return ggx_albedo(cosine, b.alpha);
+    float const grazing = schlick_weight(cosine);
+    return {1 - grazing, grazing};
+}
+
 /// Fraction of light that passes the coat on the way in and out, such that base and coat together conserve energy
-/// and are reciprocal (Shirley et al. 1997).
-GI_FN inline float through_coat(Bsdf const& b, float cos_o, float cos_i)
+/// and are reciprocal (Shirley et al. 1997, with the reflectance of a rough coat).
+/// @param once_o, once_i  facets_albedo of both directions
+GI_FN inline float through_coat(Bsdf const& b, GgxAlbedo once_o, GgxAlbedo once_i)
 {
     if (b.coat_f90 == 0) return 1;
-    float const mean = 1 - schlick_mean(b.coat_f0, b.coat_f90);
+    float const mean = 1 - (specular_is_delta(b) ? schlick_mean(b.coat_f0, b.coat_f90)
+                                                 : ggx_mean_albedo(b.alpha).of(b.coat_f0, b.coat_f90));
     if (!(mean > 0)) return 0; // a coat that reflects everything
-    return (1 - schlick(b.coat_f0, b.coat_f90, cos_o)) * (1 - schlick(b.coat_f0, b.coat_f90, cos_i)) / mean;
+    return (1 - once_o.of(b.coat_f0, b.coat_f90)) * (1 - once_i.of(b.coat_f0, b.coat_f90)) / mean;
+}
+
+/// f of all that leaves in all directions alike: the base below the coat, and what metal facets reflect again.
+GI_FN inline vec3 diffuse_value(Bsdf const& b, GgxAlbedo once_o, GgxAlbedo once_i)
+{
+    return kInvPi *
+           (through_coat(b, once_o, once_i) * b.diffuse + (1 - once_o.sum()) * (1 - once_i.sum()) * b.again);
+}
+
+/// What diffuse_value makes of uniform light.
+GI_FN inline vec3 diffuse_albedo(Bsdf const& b, GgxAlbedo once_o)
+{
+    vec3 base = b.diffuse * (1 - once_o.of(b.coat_f0, b.coat_f90));
+    if (!(max_component(b.again) > 0)) return base;
+    return base + (1 - once_o.sum()) * (1 - ggx_mean_albedo(b.alpha).sum()) * b.again;
 }
 
 /// Probabilities of sampling each lobe; all zero if everything is black.
@@ -59,19 +107,22 @@ struct LobeChances {
 };
 
 /// Probabilities in proportion to the maximum reflectance of each lobe.
-GI_FN inline LobeChances lobe_chances(Bsdf const& b, float cos_o)
+GI_FN inline LobeChances lobe_chances(Bsdf const& b, GgxAlbedo once_o)
 {
-    float diffuse = max_component(b.diffuse);
-    float specular = 0;
+    float diffuse = max_component(b.diffuse), specular = 0;
     if (b.model == MaterialModel::phong) {
         specular = max_component(b.phong_specular);
     } else if (b.f90.x > 0) {
-        specular = max_component(schlick(b.f0, b.f90, cos_o));
-        diffuse *= 1 - schlick(b.coat_f0, b.coat_f90, cos_o);
+        specular = max_component(once_o.of(b.f0, b.f90));
+        diffuse = max_component(diffuse_albedo(b, once_o));
     }
     float const all = b.clear + specular + diffuse;
     if (!(all > 0)) return {};
     return {b.clear / all, specular / all, diffuse / all};
+}
+GI_FN inline LobeChances lobe_chances(Bsdf const& b, float cos_o)
+{
+    return lobe_chances(b, b.f90.x > 0 ? facets_albedo(b, cos_o) : GgxAlbedo{});
 }
 
 GI_FN inline vec3 reflect(vec3 wo, vec3 h) { return 2 * glm::dot(wo, h) * h - wo; }
@@ -80,11 +131,6 @@ GI_FN inline vec3 mirror(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
 GI_FN inline float phong_power(float cos_alpha, float exponent)
 {
     return cos_alpha > 0 ? std::pow(cos_alpha, exponent) : 0.0f;
-}
-
-GI_FN inline bool specular_is_delta(Bsdf const& b)
-{
-    return b.model == MaterialModel::metal_rough && b.alpha < kSmoothAlpha;
 }
 
 /// True if the surface has only a diffuse base, as most surfaces of most rooms.
@@ -146,6 +192,12 @@ GI_FN inline vec3 sample_specular(Bsdf const& b, vec3 wo, vec2 u)
 
 } // namespace bsdf_detail
 
+GI_FN inline vec3 diffuse_albedo(Bsdf const& b, float cos_o)
+{
+    if (b.model == MaterialModel::phong || b.f90.x == 0) return b.diffuse;
+    return bsdf_detail::diffuse_albedo(b, bsdf_detail::facets_albedo(b, cos_o));
+}
+
 GI_FN inline bool only_delta(Bsdf const& b)
 {
     bool const specular_seen = b.model == MaterialModel::phong ? max_component(b.phong_specular) > 0
@@ -158,17 +210,20 @@ GI_FN inline BsdfValue evaluate(Bsdf const& b, vec3 wo, vec3 wi)
     using namespace bsdf_detail;
     if (!(wo.z > 0) || !(wi.z > 0)) return {};
     if (is_matt(b)) return {b.diffuse * kInvPi, wi.z * kInvPi};
-    LobeChances const chance = lobe_chances(b, wo.z);
-    BsdfValue v{b.diffuse * kInvPi, chance.diffuse * wi.z * kInvPi};
     if (b.model == MaterialModel::phong) {
+        LobeChances const chance = lobe_chances(b, GgxAlbedo{});
+        BsdfValue v{b.diffuse * kInvPi, chance.diffuse * wi.z * kInvPi};
         float const lobe =
             (b.phong_exponent + 1) * (0.5f * kInvPi) * phong_power(glm::dot(mirror(wo), wi), b.phong_exponent);
         v.f += b.phong_specular * lobe;
         v.pdf += chance.specular * lobe;
         return v;
     }
-    v.f *= through_coat(b, wo.z, wi.z);
-    if (specular_is_delta(b) || b.f90.x == 0) return v;
+    if (b.f90.x == 0) return {b.diffuse * kInvPi, lobe_chances(b, GgxAlbedo{}).diffuse * wi.z * kInvPi};
+    GgxAlbedo const once_o = facets_albedo(b, wo.z), once_i = facets_albedo(b, wi.z);
+    LobeChances const chance = lobe_chances(b, once_o);
+    BsdfValue v{diffuse_value(b, once_o, once_i), chance.diffuse * wi.z * kInvPi};
+    if (specular_is_delta(b)) return v;
     vec3 const h = glm::normalize(wo + wi);
     float const normals = ggx_normals(h, b.alpha);
     v.f += schlick(b.f0, b.f90, glm::dot(wo, h)) * (normals * ggx_visibility(wo.z, wi.z, b.alpha));

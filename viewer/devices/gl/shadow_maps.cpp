@@ -1,5 +1,6 @@
 #include "viewer/devices/gl/shadow_maps.h"
 
+#include "gi/scene/shading/ggx_albedo.h"
 #include "viewer/devices/gl/draw_target.h"
 #include "viewer/devices/gl/view_matrices.h"
 
@@ -27,6 +28,25 @@ struct Block {
     std::array<LightBlock, 4> lights;
     std::array<glm::mat4, 4 * kMostFaces> map_from_world;
 };
+
+/// The tables of ggx_albedo.h: sums and grazing shares, x from left to right, roughness from the bottom up; in the last
+/// column the means.
+GlObject facets_texture()
+{
+    constexpr int kSide = gi::ggx_tables::kSide;
+    std::vector<glm::vec2> texels;
+    auto const add = [&](std::uint16_t red, std::uint16_t green) {
+        texels.push_back(glm::vec2(red, green) / 65535.0f);
+    };
+    for (int j = 0; j < kSide; ++j) {
+        for (int i = 0; i < kSide; ++i)
+            add(gi::ggx_tables::sums()[i * kSide + j], gi::ggx_tables::grazing_shares()[i * kSide + j]);
+        add(gi::ggx_tables::means()[j], gi::ggx_tables::means()[kSide + j]);
+    }
+    GlObject texture = texture_2d(GL_RG32F, {kSide + 1, kSide}, GL_LINEAR);
+    glTextureSubImage2D(texture.id(), 0, 0, 0, kSide + 1, kSide, GL_RG, GL_FLOAT, texels.data());
+    return texture;
+}
 
 glm::mat4 facing(glm::vec3 from, glm::vec3 forward)
 {
@@ -108,6 +128,7 @@ void ShadowMaps::place(SceneMeshes const& meshes, glm::vec3 eye)
     bool const leaves = window_m_ > 0 && glm::length(eye - middle_) > 0.25f * window_m_;
     if (is_placed_ && !leaves) return;
     is_placed_ = true;
+    if (facets_.id() == 0) facets_ = facets_texture();
     gi::Bounds const all = gi::joined(meshes.still_bounds(), meshes.moving_bounds());
     constexpr int kSide_px = 2048;
     bool const wide = glm::length(all.high - all.low) > kWidestTexel_m * float(kSide_px);
@@ -287,6 +308,7 @@ void ShadowMaps::bind() const
 {
     if (lights_.empty()) return;
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, block_.id());
+    glBindTextureUnit(1, facets_.id());
     glBindTextureUnit(13, shown_.id() != 0 ? shown_.id() : still_.id());
 }
 

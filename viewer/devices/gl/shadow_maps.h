@@ -21,7 +21,7 @@ public:
     bool prepare(SceneMeshes const& meshes, glm::vec3 eye);
     /// Draws all that is missing or has moved.
     void update(SceneMeshes const& meshes, glm::vec3 eye);
-    /// To block 1 and unit 13 of shaders/surface_punctual.glsl.
+    /// To block 1 and units 1 and 13 of shaders/surface_punctual.glsl.
     void bind() const;
     /// 0 to 4.
     std::vector<gi::Light> const& lights() const { return lights_; }
@@ -53,6 +53,7 @@ private:
     std::vector<Map> maps_;
     GlObject still_, shown_; ///< a layer for each; shown_: with what moves, if anything can
     GlObject block_, framebuffer_;
+    GlObject facets_;         ///< tables of gi/scene/shading/ggx_albedo.h
     std::uint64_t moves_ = 0; ///< SceneMeshes::moves_so_far of what is drawn
     std::map<std::string, GlProgram> programs_;
 };
