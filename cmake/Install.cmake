@@ -55,7 +55,11 @@ endif()
 string(REGEX MATCH "(^|\n)ID=\"?([a-z]+)" none "${system}")
 string(SUBSTRING "${CMAKE_MATCH_2}" 0 3 of)
 string(REGEX MATCH "(^|\n)VERSION_ID=\"?([0-9.]+)" none "${system}")
+set(LIGHTWELL_VARIANT "" CACHE STRING "What tells packages from the usual ones of their version (cuda)")
 set(CPACK_DEBIAN_PACKAGE_RELEASE "1+${of}${CMAKE_MATCH_2}")
+if(LIGHTWELL_VARIANT)
+  string(APPEND CPACK_DEBIAN_PACKAGE_RELEASE "+${LIGHTWELL_VARIANT}")
+endif()
 
 # Written by the programs themselves: manual pages of their commands, completions of shells.
 set(written ${PROJECT_BINARY_DIR}/written)

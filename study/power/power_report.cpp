@@ -106,12 +106,13 @@ std::string power_page(Script const& script, PowerStudy const& study, PowerSetti
     std::string figures;
     for (int const r : repeats) {
         std::vector<double> const ends{double(*sizes.begin()), double(*sizes.rbegin())};
-        gi::Plot plot(640, 360, gi::axis_over(ends), gi::PlotAxis{0, 1});
-        plot.margins(56, 44, 110, 46);
-        plot.x_axis("participants");
-        plot.y_axis("power");
         std::vector<gi::PlotSeries> all;
         for (double const e : effects) all.push_back(curve_of(study, r, e));
+        double const above = gi::legend_height(all, 640 - 56);
+        gi::Plot plot(640, 316 + above, gi::axis_over(ends), gi::PlotAxis{0, 1});
+        plot.margins(56, above, 110, 46);
+        plot.x_axis("participants");
+        plot.y_axis("power");
         plot.series(all);
         figures += plot.figure(fmt::format("Power with {} repeats", r),
                                gi::escaped(fmt::format("{} repeats of the block. Bars: 95 % intervals of the "

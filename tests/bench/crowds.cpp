@@ -1,4 +1,4 @@
-// What a crowd costs in every frame: ten walking figures of 10,880 triangles each stand before the camera, and the first
+// What a crowd costs in every frame: ten figures of 10,880 triangles each walk on the spot before the camera, and the first
 // surfaces of a picture ask along shared axes how much of the sky they see. Exact rays with a BVH that is refitted, against
 // static hit buffers that are kept and to which what moves is added. All threads.
 //   bench_crowds [--size WxH] [--figures N] [--frames N] [SCENE...]      default: 1280x800, 10, 8; atrium, cornell
@@ -24,6 +24,7 @@
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
+#include <tbb/task_arena.h>
 
 namespace {
 
@@ -111,6 +112,7 @@ public:
             for (vec3 const axis : axes_)
                 each_part(points_.size(), [&](std::size_t first, std::size_t end) {
                     std::vector<RayQuery> rays;
+                    rays.reserve(end - first);
                     for (std::size_t p = first; p < end; ++p) rays.push_back(ray_along(world(), points_[p], axis));
                     std::vector<std::uint8_t> blocked(rays.size());
                     exact_.occluded(rays, blocked);
@@ -190,10 +192,12 @@ void run(Options const& o, std::string const& name)
     for (auto const& [axes, texels] : {std::pair{16, 256u}, {64, 256u}, {16, 1024u}, {64, 1024u}}) {
         Frames frames(scene, o, axes, texels);
         if (first)
-            fmt::print("{}, {} triangles, of which {} move\n  {:<34}{:>6}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
+            fmt::print("{}, {} triangles, of which {} move, {} x {} pixels, {} threads\n  "
+                       "{:<34}{:>6}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
                        name, frames.world().triangles.size(),
-                       frames.world().triangles.size() - frames.world().static_triangles, "", "axes", "texels",
-                       "update", "queries", "both", "rms", "doubtful");
+                       frames.world().triangles.size() - frames.world().static_triangles, o.width, o.height,
+                       tbb::this_task_arena::max_concurrency(), "", "axes", "texels", "update", "queries", "both",
+                       "rms", "doubtful");
         first = false;
         struct Tool {
             char const* name;

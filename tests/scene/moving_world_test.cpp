@@ -30,7 +30,8 @@ void expect_same_bsdf(Bsdf const& a, Bsdf const& b)
 {
     EXPECT_EQ(a.model, b.model);
     EXPECT_EQ(a.thin, b.thin);
-    for (auto const field : {&Bsdf::diffuse, &Bsdf::f0, &Bsdf::f90, &Bsdf::transmitted, &Bsdf::phong_specular})
+    for (auto const field :
+         {&Bsdf::diffuse, &Bsdf::f0, &Bsdf::f90, &Bsdf::again, &Bsdf::transmitted, &Bsdf::phong_specular})
         EXPECT_EQ(a.*field, b.*field);
     for (auto const field :
          {&Bsdf::coat_f0, &Bsdf::coat_f90, &Bsdf::alpha, &Bsdf::clear, &Bsdf::ior, &Bsdf::phong_exponent})

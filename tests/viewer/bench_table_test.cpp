@@ -168,6 +168,8 @@ TEST(BenchPage, ShowsHowTablesOfTheThesisGrow)
     EXPECT_NE(html.find("slhb, 1 bounce: 0.50; published, 1 bounce: 0.00."), std::string::npos);
     EXPECT_NE(html.find("table 6.1: error against time"), std::string::npos);
     EXPECT_EQ(html.find("table 6.2"), std::string::npos);
+    t.rows = {{std::string("6.4"), 1e6, 5.0, 10.0, 10.0, 0.1, 5.0, 0.05}};
+    EXPECT_NE(thesis_figures({{"/nowhere", {t}, {}}}).find("1000K triangles"), std::string::npos);
     EXPECT_EQ(thesis_figures({}), "");
 }
 

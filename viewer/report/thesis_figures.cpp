@@ -3,6 +3,7 @@
 #include "viewer/report/page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -25,13 +26,14 @@ struct Varied {
     char const* x_label;
     std::function<double(ThesisRow const&)> x;
     std::function<std::string(ThesisRow const&)> curve;
+    std::function<double(ThesisRow const&)> order; ///< of curves; errors are comparable where it is the same
 };
 
 std::vector<Varied> varied()
 {
     auto const column = [](char const* name) { return [name](ThesisRow const& r) { return r.value(name); }; };
     auto const of_model = [](ThesisRow const& r) {
-        return fmt::format("{:.3g}K triangles", r.value("triangles") / 1000);
+        return fmt::format("{:.0f}K triangles", r.value("triangles") / 1000);
     };
     auto const bounces = [](ThesisRow const& r) {
         return fmt::format("{:g} bounce{}", r.value("bounces"), r.value("bounces") == 1 ? "" : "s");
@@ -43,11 +45,13 @@ std::vector<Varied> varied()
     auto const before_colon = [](ThesisRow const& r) {
         return r.text("directions").substr(0, r.text("directions").find(':'));
     };
-    return {{"6.1", "triangles", column("triangles"), bounces},
-            {"6.2", "directions", after_colon, before_colon},
-            {"6.3", "texels on a side of a hit buffer", column("hit_buffer"), of_model},
-            {"6.4", "paths per pixel", column("paths"), of_model},
-            {"6.5", "triangles", column("triangles"), [](ThesisRow const&) { return std::string(); }}};
+    auto const none = [](ThesisRow const&) { return std::string(); };
+    auto const same = [](ThesisRow const&) { return 0.0; };
+    return {{"6.1", "triangles", column("triangles"), bounces, column("bounces")},
+            {"6.2", "directions", after_colon, before_colon, same},
+            {"6.3", "texels on a side of a hit buffer", column("hit_buffer"), of_model, column("triangles")},
+            {"6.4", "paths per pixel", column("paths"), of_model, column("triangles")},
+            {"6.5", "triangles", column("triangles"), none, same}};
 }
 
 struct Measure {
@@ -120,18 +124,21 @@ std::string table_html(Varied const& v, std::vector<ThesisRow> const& rows)
                 : curves_of(rows, v, v.x, {{"frame_ms", "slhb"}, {"published_ms", "published"}});
     std::string charts = figure(name + (of_rays ? ": rays per second" : ": time of a frame"), v.x_label,
                                 of_rays ? "rays per second" : "ms", costs);
-    charts += figure(name + ": error of indirect light", v.x_label, "FLIP",
-                     curves_of(rows, v, v.x, {{"l2_flip", "slhb"}, {"paths_l2_flip", "paths"}}));
-    // Errors differ by what curves vary, so that against time only the last kind is shown.
+    std::vector<Measure> errors{{"l2_flip", "slhb"}};
+    if (std::string_view(v.table) != "6.3")
+        errors.push_back({"paths_l2_flip", "paths"}); // which have no hit buffers
+    charts += figure(name + ": error of indirect light", v.x_label, "FLIP", curves_of(rows, v, v.x, errors));
     std::vector<ThesisRow> last;
     for (ThesisRow const& r : rows)
-        if (v.curve(r) == v.curve(rows.back())) last.push_back(r);
-    std::vector<gi::PlotSeries> by_time;
-    for (auto const& [ms, flip, tool] : {std::tuple{"frame_ms", "l2_flip", "slhb"},
-                                         {"paths_ms", "paths_l2_flip", "paths"},
-                                         {"embree_ms", "embree_l2_flip", "Embree"}})
+        if (v.order(r) == v.order(rows.back())) last.push_back(r);
+    std::vector<gi::PlotSeries> by_time =
+        curves_of(last, v, [](ThesisRow const& r) { return r.value("frame_ms"); }, {{"l2_flip", "slhb"}});
+    Varied alike = v;
+    alike.curve = [](ThesisRow const&) { return std::string(); };
+    for (auto const& [ms, flip, tool] :
+         {std::array{"paths_ms", "paths_l2_flip", "paths"}, {"embree_ms", "embree_l2_flip", "Embree"}})
         for (gi::PlotSeries& c :
-             curves_of(last, v, [&](ThesisRow const& r) { return r.value(ms); }, {{flip, tool}}))
+             curves_of(last, alike, [&](ThesisRow const& r) { return r.value(ms); }, {{flip, tool}}))
             by_time.push_back(std::move(c));
     charts += figure(name + ": error against time", "time of a frame, ms", "FLIP of indirect light", by_time);
     return gi::html_part("Table " + std::string(v.table), gi::html_group("charts", charts) + growth(costs));
@@ -149,7 +156,7 @@ std::string thesis_figures(std::vector<BenchFolder> const& folders)
                 for (std::vector<Cell> const& row : t.rows)
                     if (ThesisRow const r{&t, &row}; t.name == "thesis" && r.text("table") == v.table)
                         rows.push_back(r);
-        std::ranges::stable_sort(rows, {}, v.x);
+        std::ranges::stable_sort(rows, {}, [&](ThesisRow const& r) { return std::pair(v.order(r), v.x(r)); });
         if (!rows.empty()) html += table_html(v, rows);
     }
     if (html.empty()) return "";

@@ -5,7 +5,7 @@
 
 namespace gi {
 
-/// Radiance that the diffuse base of a surface sends towards wo, per irradiance, 1/sr.
+/// Radiance that a surface sends towards wo by what leaves in all directions alike, per irradiance, 1/sr.
 inline vec3 diffuse_response(TreePoint const& p) { return kInvPi * diffuse_albedo(p.at.bsdf, p.wo.z); }
 
 /// Radiance that the glossy lobe of a surface sends towards wo; none if a ray brings it.

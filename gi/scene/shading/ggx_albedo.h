@@ -25,10 +25,13 @@ namespace ggx_tables {
 
 inline constexpr int kSide = 24;
 
+/// Place among the nodes, of 0 to 1; NaN is 0.
+GI_FN inline float place(float x) { return x > 0 ? glm::min(x, 1.0f) * (kSide - 1) : 0.0f; }
+
 /// Reads a table between its nodes, linearly. Rows by x, columns by y, both 0 to 1.
 GI_FN inline float between(std::uint16_t const* table, float x, float y)
 {
-    float const at_x = glm::clamp(x, 0.0f, 1.0f) * (kSide - 1), at_y = glm::clamp(y, 0.0f, 1.0f) * (kSide - 1);
+    float const at_x = place(x), at_y = place(y);
     int const i = glm::min(int(at_x), kSide - 2), j = glm::min(int(at_y), kSide - 2);
     float const u = at_x - float(i), v = at_y - float(j);
     std::uint16_t const* const t = table + i * kSide + j;
@@ -142,11 +145,13 @@ GI_FN inline std::uint16_t const* means()
 
 } // namespace ggx_tables
 
-/// Found by quadrature of the lobes, in nodes that least squares chose: errors up to 0.0022 of the sum, and 0.0032 of the
+/// Found by quadrature of the lobes, in nodes that least squares chose (scripts/ggx-albedo): errors up to 0.0022 of the sum, and 0.0032 of the
 /// grazing part (0.007 where the cosine is below 0.02).
 /// @param cosine  of the direction to the normal, 0 to 1  @param alpha  the lobe's width, roughness squared
 GI_FN inline GgxAlbedo ggx_albedo(float cosine, float alpha)
 {
+    cosine = cosine > 0 ? glm::min(cosine, 1.0f) : 0.0f; // NaN is 0
+    alpha = alpha > 0 ? alpha : 0.0f;
     float const roughness = std::sqrt(alpha), half = 0.5f * alpha;
     float const sum = ggx_tables::between(ggx_tables::sums(), cosine * (1 + half) / (cosine + half + 1e-12f),
                                           roughness),
@@ -157,7 +162,7 @@ GI_FN inline GgxAlbedo ggx_albedo(float cosine, float alpha)
 /// Its mean over the hemisphere, weighted by the cosine.
 GI_FN inline GgxAlbedo ggx_mean_albedo(float alpha)
 {
-    float const at = glm::clamp(std::sqrt(alpha), 0.0f, 1.0f) * (ggx_tables::kSide - 1);
+    float const at = ggx_tables::place(std::sqrt(alpha));
     int const i = glm::min(int(at), ggx_tables::kSide - 2);
     float const u = at - float(i);
     std::uint16_t const* const t = ggx_tables::means() + i;
