@@ -59,7 +59,8 @@ protected:
         eye.is_drawn = true;
         TextureTarget const to(TextureTarget::Format::bytes, kSize);
         DisplayPass pass;
-        SurfaceDisplay().draw(0, pass, to.target(), eye, {});
+        SurfaceDisplay display;
+        stretch(display.encoded(0, pass, eye, {}).target(), to.target());
         std::vector<char> white;
         std::vector<unsigned char> const rgb = read_bytes(to.target());
         for (std::size_t i = 0; i < rgb.size(); i += 3) white.push_back(rgb[i] > 127);

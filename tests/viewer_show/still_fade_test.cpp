@@ -3,6 +3,8 @@
 #include "tests/viewer_gl/surfaceless.h"
 #include "viewer/app/presenter.h"
 
+#include <algorithm>
+
 namespace viewer::test {
 namespace {
 
@@ -32,13 +34,13 @@ protected:
         ViewCommand view{"window", {}, kSize.x, kSize.y, -1};
         view.camera.yfov_rad = 1;
         view.camera.world_from_camera[3].x = eye_x;
-        frame->command.views = {view};
+        frame->command.views.assign(std::size_t(std::max(0, panes_[0].right) + 1), view);
         frame->command.frame = number;
         frame->result.still_frames = still_frames;
         gi::Picture picture{kSize.x, kSize.y, {}, {}};
         for (float& c : picture.add("color", 3).data) c = radiance;
         for (float& d : picture.add("depth", 1).data) d = 2;
-        frame->result.views.push_back({picture, {}, {}, {}});
+        frame->result.views.assign(frame->command.views.size(), {picture, {}, {}, {}});
         presenter_->take(frame, panes_);
         camera_ = view.camera;
         return again();
@@ -46,11 +48,12 @@ protected:
 
     int again()
     {
-        presenter_->draw(window_->target(), {0, 0}, panes_, settings_, {camera_});
+        presenter_->draw(window_->target(), {0, 0}, panes_, settings_,
+                         {std::size_t(std::max(0, panes_[0].right) + 1), camera_});
         return read_bytes(window_->target())[3 * std::size_t(kSize.x * kSize.y / 2)];
     }
 
-    std::vector<Pane> const panes_{{{0, 0}, kSize, StereoMode::off, 0, -1}};
+    std::vector<Pane> panes_{{{0, 0}, kSize, StereoMode::off, 0, -1}};
     std::optional<TextureTarget> window_;
     std::optional<Presenter> presenter_;
     PresentSettings settings_;
@@ -118,6 +121,35 @@ TEST_F(StillFadeTest, OtherViewsAndExposuresAreShownAtOnce)
     settings_.tone.exposure_ev = 1;
     EXPECT_EQ(again(), 0);
     EXPECT_FALSE(presenter_->fades());
+}
+
+TEST_F(StillFadeTest, BothEyesFadeInForStereo)
+{
+    panes_[0].right = 1;
+    for (StereoMode const mode : {StereoMode::side_by_side, StereoMode::rows, StereoMode::anaglyph_red_cyan}) {
+        panes_[0].stereo = mode;
+        EXPECT_EQ(show(1, 1, 0), 0);
+        int last = show(2, 2, 1);
+        for (int step = 2; step <= StillFade::kSteps / 2; ++step) {
+            EXPECT_TRUE(presenter_->fades()) << step;
+            int const next = again();
+            EXPECT_NEAR(next - last, 2 * 255.0 / StillFade::kSteps, 1.5) << step;
+            last = next;
+        }
+        std::vector<unsigned char> const both = read_bytes(window_->target());
+        EXPECT_TRUE(std::ranges::all_of(both, [](unsigned char b) { return b == 255; })) << int(mode);
+        EXPECT_FALSE(presenter_->fades());
+        EXPECT_EQ(show(3, 1, 0), 0);
+    }
+}
+
+TEST_F(StillFadeTest, WallsFadeInBeforeTheyAreBent)
+{
+    presenter_.emplace(std::vector<WallSettings>(1));
+    panes_[0].wall = panes_[0].of_wall = 0;
+    EXPECT_EQ(show(1, 1, 0), 0);
+    EXPECT_NEAR(show(2, 2, 1), 2 * 255.0 / StillFade::kSteps, 1.5);
+    EXPECT_TRUE(presenter_->fades());
 }
 
 TEST_F(StillFadeTest, WithoutFadesPicturesAreThereAtOnce)

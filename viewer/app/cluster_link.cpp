@@ -21,6 +21,15 @@ enum class Said : std::uint8_t { light, done };
 
 static_assert(std::is_trivially_copyable_v<FrameWork>);
 
+/// As a rank tells the leader.
+std::string note_of(RanksShown const& own) { return {own.draw_surfaces ? '1' : '0', own.fade ? '1' : '0'}; }
+
+RanksShown joined(RanksShown const& all, std::string const& note)
+{
+    bool const is_note = note.size() == 2;
+    return {all.draw_surfaces && is_note && note[0] == '1', all.fade || (is_note && note[1] == '1')};
+}
+
 } // namespace
 
 ClusterLink::~ClusterLink()
@@ -209,13 +218,14 @@ bool ClusterLink::swap_together(Cluster& cluster)
     if (leads_) {
         if (!is_drawn || !s.is_announced || !cluster.may_swap(s.number)) return false;
         std::vector<std::string> const notes = cluster.release(s.number, s.state);
-        all_draw_ = s.draws_surfaces && std::ranges::count(notes, "1") == std::ptrdiff_t(notes.size());
+        all_shown_ = s.own;
+        for (std::string const& n : notes) all_shown_ = joined(all_shown_, n);
         s.released = s.number;
         return true;
     }
     if (!s.is_announced) {
         if (!is_drawn && Cluster::now_s() - s.since_s < kLongestDrawing_s) return false;
-        cluster.arrive(s.number, s.state, s.draws_surfaces ? "1" : "0");
+        cluster.arrive(s.number, s.state, note_of(s.own));
         return s.is_announced = true;
     }
     if (!cluster.may_swap(s.number)) return false;
@@ -333,11 +343,11 @@ void ClusterLink::wake_by(std::function<void()> wake)
     wake_ = std::move(wake);
 }
 
-void ClusterLink::drawn(std::uint64_t number, bool draws_surfaces)
+void ClusterLink::drawn(std::uint64_t number, RanksShown own)
 {
     std::unique_lock lock(mutex_);
     showing_.drawn = number;
-    showing_.draws_surfaces = draws_surfaces;
+    showing_.own = own;
     work_.notify_all();
     changed_.wait_for(lock, kLongestDrawing, [&] { return is_over_ || showing_.released >= number; });
 }
@@ -348,10 +358,10 @@ void ClusterLink::swapped(std::uint64_t number, double steady_s)
     swaps_.emplace_back(number, steady_s);
 }
 
-bool ClusterLink::all_draw_surfaces() const
+RanksShown ClusterLink::ranks_shown() const
 {
     std::lock_guard const lock(mutex_);
-    return all_draw_;
+    return all_shown_;
 }
 
 } // namespace viewer

@@ -35,50 +35,97 @@ void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> c
     views_.take(std::move(frame), views);
 }
 
-EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
+Presenter::SeenView Presenter::see(int view, Drawing const& d)
 {
-    return views_.eye(view, view >= 0 && std::size_t(view) < now.size() ? &now[std::size_t(view)] : nullptr);
+    SeenView seen{view, {}, {}, false};
+    bool const is_newer = view >= 0 && std::size_t(view) < d.now.size();
+    seen.picture = views_.eye(view, is_newer ? &d.now[std::size_t(view)] : nullptr);
+    if (seen.picture.picture.texture == 0) return seen;
+    gi::Camera const& rendered = views_.command(view).camera;
+    seen.camera = is_newer ? d.now[std::size_t(view)] : rendered;
+    seen.as_rendered = seen.camera == rendered;
+    return seen;
 }
 
-void Presenter::draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings,
-                           std::size_t side, std::vector<gi::Camera> const& now)
+std::array<Presenter::SeenView, 2> Presenter::see(Pane const& pane, Drawing const& d)
+{
+    std::array<SeenView, 2> eyes{see(pane.left, d), {}};
+    eyes[1] = pane.right >= 0 ? see(pane.right, d) : eyes[0];
+    if (d.settings.swap_eyes) std::swap(eyes[0], eyes[1]);
+    if (pane.right_alone) eyes[0] = eyes[1];
+    return eyes;
+}
+
+bool Presenter::encodes(SeenView const& seen, DisplaySettings const& settings, Drawing const& d)
+{
+    return settings.comparison == Comparison::off &&
+           (seen.picture.is_drawn || (d.settings.fades && seen.as_rendered));
+}
+
+TextureTarget const& Presenter::encoded(std::size_t pane, SeenView const& seen, glm::ivec2 size_px,
+                                        DisplaySettings settings, Drawing& d)
+{
+    std::pair const key(pane, seen.view);
+    StillFade& fade = fades_[key];
+    d.may_fade.insert(key);
+    settings.stereo = StereoMode::off;
+    if (seen.picture.is_drawn) {
+        int const number = surface_numbers_.try_emplace(key, int(surface_numbers_.size())).first->second;
+        TextureTarget const& drawn = surface_display_->encoded(number, pass_, seen.picture, settings);
+        fade.show_surfaces(drawn, seen.camera, settings.tone);
+        return drawn;
+    }
+    if (!encodes(seen, settings, d)) fade.forget();
+    LiveFrame const& f = views_.frame();
+    return fade.draw(pass_, fade_pass_, size_px, seen.picture, seen.camera,
+                     {f.command.frame, f.result.still_frames}, settings);
+}
+
+void Presenter::show(std::size_t pane, DrawTarget const& to, SeenView const& left, SeenView const& right,
+                     DisplaySettings const& settings, Drawing& d)
+{
+    bool const is_alone = settings.stereo == StereoMode::off;
+    if (!encodes(left, settings, d) && (is_alone || !encodes(right, settings, d)))
+        return pass_.draw(to, left.picture, right.picture, settings);
+    glm::ivec2 const size = eye_size(settings.stereo, to.size_px);
+    TextureTarget const& l = encoded(pane, left, size, settings, d);
+    TextureTarget const& r = is_alone || right.view == left.view ? l : encoded(pane, right, size, settings, d);
+    SurfaceDisplay::compose(pass_, to, l, r, settings);
+}
+
+void Presenter::draw_faces(std::size_t number, Pane const& pane, PaneFaces const& faces,
+                           DisplaySettings const& settings, std::size_t side, Drawing& d)
 {
     std::vector<ShownFace> shown;
     for (std::size_t k = 0; k < faces.views.size(); ++k) {
-        EyeView const picture = eye(faces.views[k], now);
-        if (picture.picture.texture == 0) continue;
+        SeenView const seen = see(faces.views[k], d);
+        glm::ivec2 const size = seen.picture.picture.size_px;
+        if (seen.picture.picture.texture == 0) continue;
         while (face_targets_.size() <= k) {
-            face_targets_.emplace_back(TextureTarget::Format::bytes, picture.picture.size_px);
-            face_px_.push_back(picture.picture.size_px);
+            face_targets_.emplace_back(TextureTarget::Format::bytes, size);
+            face_px_.push_back(size);
         }
-        if (face_px_[k] != picture.picture.size_px) {
-            face_targets_[k] = TextureTarget(TextureTarget::Format::bytes, picture.picture.size_px);
-            face_px_[k] = picture.picture.size_px;
+        if (face_px_[k] != size) {
+            face_targets_[k] = TextureTarget(TextureTarget::Format::bytes, size);
+            face_px_[k] = size;
         }
-        pass_.draw(face_targets_[k].target(), picture, picture, settings);
+        show(number, face_targets_[k].target(), seen, seen, settings, d);
         gi::Camera const& camera = views_.command(faces.views[k]).camera;
         if (camera.off_axis) shown.push_back({faces.faces[k], *camera.off_axis, face_targets_[k].shown()});
     }
     surfaces_[std::size_t(pane.wall)]->draw(flat_[side]->target(), shown, faces.eye_m);
 }
 
-bool Presenter::bend(Pane const& pane, PresentSettings const& shown, DisplaySettings const& settings,
-                     std::vector<gi::Camera> const& now, WallPass::Outside outside)
+bool Presenter::bend(std::size_t number, Pane const& pane, DisplaySettings const& settings, Drawing& d,
+                     WallPass::Outside outside)
 {
     bool const is_curved = !pane.left_faces.views.empty();
-    std::array<EyeView, 2> eyes{eye(pane.left, now), {}};
-    eyes[1] = pane.right >= 0 ? eye(pane.right, now) : eyes[0];
+    std::array<SeenView, 2> const eyes = see(pane, d);
     std::array<PaneFaces const*, 2> faces{&pane.left_faces,
                                           pane.right_faces.views.empty() ? &pane.left_faces : &pane.right_faces};
-    if (!is_curved && (eyes[0].picture.texture == 0 || eyes[1].picture.texture == 0)) return false;
-    if (shown.swap_eyes) {
-        std::swap(eyes[0], eyes[1]);
-        std::swap(faces[0], faces[1]);
-    }
-    if (pane.right_alone) {
-        eyes[0] = eyes[1];
-        faces[0] = faces[1];
-    }
+    if (!is_curved && (eyes[0].picture.picture.texture == 0 || eyes[1].picture.picture.texture == 0)) return false;
+    if (d.settings.swap_eyes) std::swap(faces[0], faces[1]);
+    if (pane.right_alone) faces[0] = faces[1];
     glm::ivec2 const size = eye_size(settings.stereo, pane.size_px);
     if (bent_px_ != size) {
         flat_ = {};
@@ -93,10 +140,10 @@ bool Presenter::bend(Pane const& pane, PresentSettings const& shown, DisplaySett
             bent_[side].emplace(TextureTarget::Format::bytes, size);
         }
         if (is_curved)
-            draw_faces(pane, *faces[side], alone, side, now);
+            draw_faces(number, pane, *faces[side], alone, side, d);
         else
-            pass_.draw(flat_[side]->target(), eyes[side], eyes[side], alone);
-        if (has_overlay(pane, shown)) draw_overlay(shown.overlay, flat_[side]->target());
+            show(number, flat_[side]->target(), eyes[side], eyes[side], alone, d);
+        if (has_overlay(pane, d.settings)) draw_overlay(d.settings.overlay, flat_[side]->target());
         walls_[std::size_t(pane.wall)].draw(bent_[side]->target(), flat_[side]->shown(), outside);
     }
     return true;
@@ -123,22 +170,6 @@ void Presenter::draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, 
                            GL_COLOR_BUFFER_BIT, GL_LINEAR);
 }
 
-void Presenter::draw_one(std::size_t pane, DrawTarget const& part, EyeView const& view, gi::Camera const& camera,
-                         bool as_rendered, DisplaySettings const& settings, bool fades)
-{
-    StillFade& fade = fades_[pane];
-    if (view.is_drawn) {
-        TextureTarget const& drawn = surface_display_->draw(int(pane), pass_, part, view, settings);
-        fade.show_surfaces(drawn, camera, settings.tone);
-    } else if (fades && as_rendered) {
-        LiveFrame const& f = views_.frame();
-        fade.draw(pass_, fade_pass_, part, view, camera, {f.command.frame, f.result.still_frames}, settings);
-    } else {
-        fade.forget();
-        pass_.draw(part, view, view, settings);
-    }
-}
-
 void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& all,
                      PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
@@ -147,7 +178,8 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
     std::vector<Pane> panes = all;
     for (Pane& pane : panes)
         if (has_overlay(pane, s)) pane.wall = pane.of_wall; // also through a wall pass that changes nothing
-    std::vector<char> is_drawn(panes.size()), may_fade(panes.size());
+    std::vector<char> is_drawn(panes.size());
+    Drawing drawing{s, now, {}};
     for (std::size_t k = 0; k < panes.size(); ++k) {
         if (is_drawn[k]) continue;
         Pane const& pane = panes[k];
@@ -159,19 +191,10 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
         settings.split = s.split;
         settings.on_screen_px = on_screen_px + pane.corner_px;
         if (pane.wall < 0) {
-            EyeView left = eye(pane.left, now), right = pane.right >= 0 ? eye(pane.right, now) : left;
-            if (left.picture.texture == 0 || right.picture.texture == 0) continue;
-            if (s.swap_eyes) std::swap(left, right);
-            if (pane.right_alone) left = right;
+            auto const [left, right] = see(pane, drawing);
+            if (left.picture.picture.texture == 0 || right.picture.picture.texture == 0) continue;
             settings.light = s.light;
-            gi::Camera const& rendered = views_.command(pane.left).camera;
-            gi::Camera const& camera =
-                std::size_t(pane.left) < now.size() ? now[std::size_t(pane.left)] : rendered;
-            may_fade[k] = settings.stereo == StereoMode::off && settings.comparison == Comparison::off;
-            if (may_fade[k])
-                draw_one(k, part, left, camera, camera == rendered, settings, s.fades);
-            else
-                pass_.draw(part, left, right, settings);
+            show(k, part, left, right, settings, drawing);
             continue;
         }
         // Walls with meshes may share a viewport.
@@ -182,7 +205,8 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
                 other.stereo != pane.stereo || other.right_alone != pane.right_alone)
                 continue;
             is_drawn[q] = 1;
-            if (bend(other, s, settings, now, has_picture ? WallPass::Outside::kept : WallPass::Outside::black))
+            if (bend(q, other, settings, drawing,
+                     has_picture ? WallPass::Outside::kept : WallPass::Outside::black))
                 has_picture = true;
         }
         if (!has_picture) continue;
@@ -192,8 +216,8 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
         settings.comparison = Comparison::off;
         pass_.draw(part, l, r, settings);
     }
-    for (auto& [pane, fade] : fades_)
-        if (pane >= may_fade.size() || !may_fade[pane]) fade.forget();
+    for (auto& [seen, fade] : fades_)
+        if (!drawing.may_fade.contains(seen)) fade.forget();
 }
 
 } // namespace viewer

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <set>
 
 namespace viewer {
 
@@ -77,16 +78,34 @@ public:
     ShownViews& views() { return views_; }
 
 private:
-    EyeView eye(int view, std::vector<gi::Camera> const& now);
+    /// What one eye sees in a pane.
+    struct SeenView {
+        int view = -1;
+        EyeView picture;
+        gi::Camera camera;        ///< for which it is shown
+        bool as_rendered = false; ///< that of the frame
+    };
+    /// Of all panes.
+    struct Drawing {
+        PresentSettings const& settings;
+        std::vector<gi::Camera> const& now;
+        std::set<std::pair<std::size_t, int>> may_fade; ///< as fades_
+    };
+    SeenView see(int view, Drawing const& d);
+    /// Of a pane: left and right, as they reach the eyes. Without textures: not shown.
+    std::array<SeenView, 2> see(Pane const& pane, Drawing const& d);
+    static bool encodes(SeenView const& seen, DisplaySettings const& settings, Drawing const& d);
+    TextureTarget const& encoded(std::size_t pane, SeenView const& seen, glm::ivec2 size_px,
+                                 DisplaySettings settings, Drawing& d);
+    /// One eye, or both eyes composed for stereo.
+    void show(std::size_t pane, DrawTarget const& to, SeenView const& left, SeenView const& right,
+              DisplaySettings const& settings, Drawing& d);
     /// Bends the pictures of one wall into bent_. False if it has none.
-    bool bend(Pane const& pane, PresentSettings const& shown, DisplaySettings const& settings,
-              std::vector<gi::Camera> const& now, WallPass::Outside outside);
+    bool bend(std::size_t number, Pane const& pane, DisplaySettings const& settings, Drawing& d,
+              WallPass::Outside outside);
     /// The picture of one eye on a wall that is not flat, in flat_.
-    void draw_faces(Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings, std::size_t side,
-                    std::vector<gi::Camera> const& now);
-    /// A pane that shows one view, for one eye.
-    void draw_one(std::size_t pane, DrawTarget const& part, EyeView const& view, gi::Camera const& camera,
-                  bool as_rendered, DisplaySettings const& settings, bool fades);
+    void draw_faces(std::size_t number, Pane const& pane, PaneFaces const& faces, DisplaySettings const& settings,
+                    std::size_t side, Drawing& d);
     void draw_overlay(std::shared_ptr<WallOverlay const> const& overlay, DrawTarget const& wall_picture);
 
     std::shared_ptr<WallOverlay const> uploaded_;
@@ -100,7 +119,8 @@ private:
     std::array<std::optional<TextureTarget>, 2> flat_, bent_;
     std::optional<SurfaceDisplay> surface_display_;
     FadePass fade_pass_;
-    std::map<std::size_t, StillFade> fades_; ///< of panes, by their places in draw()
+    std::map<std::pair<std::size_t, int>, StillFade> fades_;     ///< by the pane's place in draw(), and the view
+    std::map<std::pair<std::size_t, int>, int> surface_numbers_; ///< of surface_display_
     glm::ivec2 bent_px_{};
 };
 

@@ -183,7 +183,7 @@ std::optional<ShownPicture> ShownViews::surfaces(int view, ViewPart part, gi::Ca
     if (!is_ready_ || shown.other) return std::nullopt;
     add_light();
     if (!renderer_->has_light()) return std::nullopt;
-    if (pose_s_ && frame_->ordered.empty()) renderer_->show_at(*pose_s_); // ranks do not show all the same moments
+    if (pose_s_) renderer_->show_at(*pose_s_);
     glm::ivec2 size = glm::max(glm::ivec2(glm::round(surfaces_scale_ * glm::dvec2(size_px))), glm::ivec2(1));
     size = {no_power_of_two(size.x), no_power_of_two(size.y)};
     std::size_t const number = numbers_[std::size_t(view)];

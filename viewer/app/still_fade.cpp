@@ -29,10 +29,11 @@ void StillFade::show_surfaces(TextureTarget const& drawn, gi::Camera const& came
     share_ = 1;
 }
 
-void StillFade::draw(DisplayPass& pass, FadePass const& fade, DrawTarget const& to, EyeView const& view,
-                     gi::Camera const& camera, StillPicture picture, DisplaySettings const& settings)
+TextureTarget const& StillFade::draw(DisplayPass& pass, FadePass const& fade, glm::ivec2 size_px,
+                                     EyeView const& view, gi::Camera const& camera, StillPicture picture,
+                                     DisplaySettings const& settings)
 {
-    fit(to.size_px);
+    fit(size_px);
     bool const same_view = shown_ == camera && settings.tone == tone_,
                is_new = surfaces_ != nullptr || picture.frame != frame_,
                begins = same_view && is_new && (surfaces_ != nullptr || picture.still_frames > 1),
@@ -51,14 +52,13 @@ void StillFade::draw(DisplayPass& pass, FadePass const& fade, DrawTarget const& 
     if (!begins && !goes_on) share_ = 1;
     if (!goes_on) pass.draw(after_->target(), view, view, settings);
     if (fades()) share_ = std::min(share_ + float(std::max(picture.still_frames, 1)) / kSteps, 1.0f);
-    if (fades())
-        fade.draw(to, before_->shown(), after_->shown(), share_);
-    else
-        stretch(after_->target(), to);
     surfaces_ = nullptr;
     shown_ = camera;
     frame_ = picture.frame;
     tone_ = settings.tone;
+    if (!fades()) return *after_;
+    fade.draw(mixed_->target(), before_->shown(), after_->shown(), share_);
+    return *mixed_;
 }
 
 } // namespace viewer

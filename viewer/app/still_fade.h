@@ -15,15 +15,16 @@ struct StillPicture {
     int still_frames = 1;    ///< that it is the mean of; 1: something has moved before
 };
 
-/// What is drawn into one pane, step by step. Belongs to the context that was current at its creation.
+/// What one eye sees in one pane, step by step. Belongs to the context that was current at its creation.
 class StillFade {
 public:
     /// The first picture takes so many steps. The next ones change less, and take fewer.
     static constexpr int kSteps = 16;
 
-    /// Shows a picture. The first time, it begins to fade in if the pane shows the same view of a scene that stands still.
-    void draw(DisplayPass& pass, FadePass const& fade, DrawTarget const& to, EyeView const& view,
-              gi::Camera const& camera, StillPicture picture, DisplaySettings const& settings);
+    /// The picture to show, encoded, of this size; valid until the next draw(). The first time, it begins to fade in if the
+    /// pane shows the same view of a scene that stands still. @param settings  without stereo
+    TextureTarget const& draw(DisplayPass& pass, FadePass const& fade, glm::ivec2 size_px, EyeView const& view,
+                              gi::Camera const& camera, StillPicture picture, DisplaySettings const& settings);
     /// The pane shows drawn surfaces of this camera now. @param drawn  encoded; valid until the next draw()
     void show_surfaces(TextureTarget const& drawn, gi::Camera const& camera, gi::ToneMapSettings const& tone);
     /// The pane shows something else.

@@ -8,27 +8,29 @@ SurfaceDisplay::SurfaceDisplay()
     outlines_.draw(to.target(), from.shown());
 }
 
-TextureTarget const& SurfaceDisplay::smoothed(int number, DisplayPass& pass, EyeView const& view,
-                                              DisplaySettings const& settings)
+TextureTarget const& SurfaceDisplay::encoded(int number, DisplayPass& pass, EyeView const& eye,
+                                             DisplaySettings settings)
 {
-    glm::ivec2 const size = view.picture.size_px;
+    glm::ivec2 const size = eye.picture.size_px;
     auto at = textures_.find(number);
     if (at == textures_.end() || at->second.encoded.shown().size_px != size) {
         constexpr auto kBytes = TextureTarget::Format::bytes;
         at = textures_.insert_or_assign(number, Textures{{kBytes, size}, {kBytes, size}}).first;
     }
     auto const& [encoded, smoothed] = at->second;
-    pass.draw(encoded.target(), view, view, settings);
+    settings.stereo = StereoMode::off;
+    pass.draw(encoded.target(), eye, eye, settings);
+    if (!eye.is_drawn) return encoded;
     outlines_.draw(smoothed.target(), encoded.shown());
     return smoothed;
 }
 
-TextureTarget const& SurfaceDisplay::draw(int number, DisplayPass& pass, DrawTarget const& to, EyeView const& view,
-                                          DisplaySettings const& settings)
+void SurfaceDisplay::compose(DisplayPass& pass, DrawTarget const& to, TextureTarget const& left,
+                             TextureTarget const& right, DisplaySettings settings)
 {
-    TextureTarget const& drawn = smoothed(number, pass, view, settings);
-    stretch(drawn.target(), to);
-    return drawn;
+    if (settings.stereo == StereoMode::off) return stretch(left.target(), to);
+    settings.values = PictureValues::encoded;
+    pass.draw(to, {left.shown(), {}}, {right.shown(), {}}, settings);
 }
 
 } // namespace viewer

@@ -1,6 +1,6 @@
 #pragma once
-// Shows drawn surfaces: their picture is encoded, its outlines are smoothed, and it is stretched to the view's size. A
-// software driver takes a third of the time if it encodes first.
+// Shows drawn surfaces: the picture of each eye is encoded, its outlines are smoothed, and both are composed at the view's size.
+// A software driver takes a third of the time if it encodes first.
 
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/outline_pass.h"
@@ -14,12 +14,12 @@ class SurfaceDisplay {
 public:
     /// Drivers compile then, which takes long the first time.
     SurfaceDisplay();
-    /// Returns smoothed().
-    TextureTarget const& draw(int number, DisplayPass& pass, DrawTarget const& to, EyeView const& view,
-                              DisplaySettings const& settings);
-    /// The smoothed picture before it is stretched. Valid until the next one of this number.
-    TextureTarget const& smoothed(int number, DisplayPass& pass, EyeView const& view,
-                                  DisplaySettings const& settings);
+    /// One eye's picture, encoded; smoothed if it is drawn. Valid until the next one of this number.
+    /// @param settings  their stereo mode is not read
+    TextureTarget const& encoded(int number, DisplayPass& pass, EyeView const& eye, DisplaySettings settings);
+    /// Shows encoded pictures of both eyes, stretched where they are smaller. @param right  not read if stereo is off
+    static void compose(DisplayPass& pass, DrawTarget const& to, TextureTarget const& left,
+                        TextureTarget const& right, DisplaySettings settings);
 
 private:
     struct Textures {

@@ -281,7 +281,7 @@ private:
         }
         at.views = std::move(layout.views);
         at.jump = state_.navigation.jump();
-        bool const can_draw = link_ != nullptr ? link_->all_draw_surfaces() : draws_surfaces_;
+        bool const can_draw = link_ != nullptr ? link_->ranks_shown().draw_surfaces : draws_surfaces_;
         if (can_draw && !state_.wants_screenshot && !core_.requests.wants_bytes() && state_.settings().reproject &&
             (link_ != nullptr || !shown_.windows.empty()))
             at.drawn_scale = surfaces_scale_.next();
@@ -364,7 +364,8 @@ private:
         bool const moved = !follows() && state_.settings().reproject && newest &&
                            (has_moved() || (newest->command.only_light && !shows(*newest))) &&
                            since_s > std::max({1 / kPresentation_Hz, kDrawings * draw_s_, pause_s});
-        bool const fades = !follows() && fades_ && since_s > std::max(1 / kFades_Hz, pause_s);
+        bool const fades = !follows() && (link_ != nullptr ? link_->ranks_shown().fade : fades_) &&
+                           since_s > std::max(1 / kFades_Hz, pause_s);
         bool const draws = prepares_ && since_s > 1 / kMessages_Hz;
         bool const flickers = state_.settings().view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
@@ -453,7 +454,7 @@ private:
                 set_panes(
                     display_panes(*core_.display, p->settings.moment->views, p->settings.moment->world_from_room));
         }
-        p->settings.fades = !p->wants_bytes && link_ == nullptr && state_.settings().compare.empty();
+        p->settings.fades = !p->wants_bytes && state_.settings().compare.empty();
         state_.live_error = meter_.latest();
         for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();
@@ -540,7 +541,7 @@ private:
                 w->window.gl().make_current();
                 glFinish();
             }
-            link_->drawn(p.number, p.can_draw);
+            link_->drawn(p.number, {p.can_draw, p.fades});
         }
         for (auto const& w : shown_.windows) {
             w->window.gl().make_current();

@@ -65,10 +65,9 @@ public:
     {
         settings_.tone = tone_settings(session.settings());
         settings_.fades = true;
-        for (int e = 0; e < o.eyes; ++e) {
-            panes_.push_back({{0, 0}, size_px, StereoMode::off, e, -1});
-            for (int k = 0; k < 2; ++k) targets_.emplace_back(TextureTarget::Format::bytes, size_px);
-        }
+        for (int e = 0; e < o.eyes; ++e) panes_.push_back({{e * size_px.x, 0}, size_px, StereoMode::off, e, -1});
+        for (int k = 0; k < 2; ++k)
+            targets_.emplace_back(TextureTarget::Format::bytes, glm::ivec2(o.eyes * size_px.x, size_px.y));
     }
 
     void run()
@@ -170,9 +169,7 @@ private:
 
     void draw(std::size_t target, std::vector<gi::Camera> const& now)
     {
-        for (int e = 0; e < o_.eyes; ++e)
-            presenter_.draw(targets_[std::size_t(2 * e) + target].target(), {0, 0}, {panes_[std::size_t(e)]},
-                            settings_, now);
+        presenter_.draw(targets_[target].target(), {0, 0}, panes_, settings_, now);
         glFinish();
     }
 
@@ -194,7 +191,8 @@ private:
 
     std::vector<unsigned char> on_screen(int eye) const
     {
-        return read_bytes(targets_[std::size_t(2 * eye) + turn_].target());
+        Pane const& pane = panes_[std::size_t(eye)];
+        return read_bytes(part_of(targets_[turn_].target(), pane.corner_px, pane.size_px));
     }
 
     void show(double now)
@@ -298,8 +296,8 @@ private:
     SurfacesScale scale_;
     Anticipation anticipation_;
     std::vector<Pane> panes_;
-    std::vector<TextureTarget> targets_; ///< two per eye: one is shown while the other is drawn
-    std::size_t turn_ = 0;               ///< which of an eye's two is shown
+    std::vector<TextureTarget> targets_; ///< two: one is shown while the other is drawn
+    std::size_t turn_ = 0;               ///< which of them is shown
     double begun_s_ = 0, last_s_ = 0, shown_s_ = 0, surfaces_s_ = 0, drew_s_ = 0;
     std::shared_ptr<LiveFrame const> shown_;
     std::vector<SeenMoment> seen_;

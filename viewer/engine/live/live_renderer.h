@@ -78,6 +78,12 @@ struct FrameLight {
     std::shared_ptr<gi::LightCellTable const> cells; ///< the leader's; null = none
 };
 
+/// How ranks showed something.
+struct RanksShown {
+    bool draw_surfaces = false; ///< could draw those of their views
+    bool fade = false;          ///< are to draw again soon
+};
+
 /// Link to other processes that render the same frame commands and show the same moments: the ranks of a cluster.
 class FrameLink {
 public:
@@ -106,11 +112,11 @@ public:
     virtual std::optional<ShownMoment> next_shown() = 0;
     /// Called when something new is there for next_shown(), or the session has ended, on any thread.
     virtual void wake_by(std::function<void()> wake) = 0;
-    /// It is drawn here; returns when it is on all ranks. @param draws_surfaces  this rank can draw those of its views
-    virtual void drawn(std::uint64_t number, bool draws_surfaces) = 0;
+    /// It is drawn here; returns when it is on all ranks.
+    virtual void drawn(std::uint64_t number, RanksShown own) = 0;
     virtual void swapped(std::uint64_t number, double steady_s) = 0;
-    /// Leader: all ranks could draw surfaces when they showed something last.
-    virtual bool all_draw_surfaces() const = 0;
+    /// Leader: what they showed last: whether all could draw surfaces, and whether any fades.
+    virtual RanksShown ranks_shown() const = 0;
 };
 
 class LiveRenderer {
