@@ -2,11 +2,11 @@
 
 #include "ar/scene/read_values.h"
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/motion/animation.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
@@ -17,9 +17,7 @@ namespace {
 bool is_scene(std::filesystem::path const& file)
 {
     static std::set<std::string> const kinds{".gltf", ".glb", ".fbx", ".dae"};
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return kinds.contains(extension);
+    return kinds.contains(gi::lower_extension(file));
 }
 
 /// Without its scale; cameras of scenes look along -z with y up, those of frames along z with y down.

@@ -5,7 +5,6 @@
 #include "gi/image_io/picture_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <opencv2/imgcodecs.hpp>
@@ -58,9 +57,7 @@ cv::Mat decoded_png(std::filesystem::path const& file)
 
 cv::Mat read_depth_map(std::filesystem::path const& file, double metres_per_unit, gi::Report* report)
 {
-    std::string ending = file.extension().string();
-    for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-    bool const is_exr = ending == ".exr";
+    bool const is_exr = gi::lower_extension(file) == ".exr";
     cv::Mat const map = is_exr ? decoded_exr(file, report) : decoded_png(file);
     return map * (metres_per_unit > 0 ? metres_per_unit : is_exr ? 1 : 1e-3);
 }

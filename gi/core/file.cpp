@@ -4,6 +4,8 @@
 #include "gi/core/progress.h"
 #include "gi/core/temporary_file.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
@@ -65,6 +67,13 @@ InputError cannot_read(fs::path const& file, std::string const& why, std::string
 }
 
 } // namespace
+
+std::string lower_extension(fs::path const& file)
+{
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return extension;
+}
 
 std::uintmax_t regular_file_bytes(fs::path const& file)
 {

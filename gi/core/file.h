@@ -16,6 +16,8 @@ namespace gi {
 void write_by_rename(std::filesystem::path const& file,
                      std::function<void(std::filesystem::path const&)> const& write);
 void write_text(std::filesystem::path const& file, std::string_view text);
+/// ".glb" of "Room.GLB"; empty if it has none.
+std::string lower_extension(std::filesystem::path const& file);
 /// Size of a file. Throws InputError if it does not exist, or is a folder, a device or a pipe: a device may have
 /// no end, and a pipe nobody who writes to it.
 std::uintmax_t regular_file_bytes(std::filesystem::path const& file);

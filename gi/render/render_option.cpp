@@ -44,7 +44,9 @@ RenderOptionTable const& common_options()
     };
     static RenderOptionTable const all = [&] {
         RenderOptionTable table{
-            common("bounces", {0, 1024}, "indirect bounces; 0 = direct light only", &S::bounces),
+            common("bounces", {0, 1024},
+                   "indirect bounces; 0 = direct light only; what glass and mirrors pass on does not count",
+                   &S::bounces),
             common("filter", {"box", "tent"}, "pixel filter: box, one pixel wide; tent, a radius of one pixel",
                    &S::filter),
             common("seed", {0, 0x1p64}, "seed of the random numbers", &S::seed),

@@ -635,6 +635,8 @@ TEST_F(AssimpFolder, WhatCannotBeASceneIsRefusedWithAReason)
     EXPECT_NE(refusal(write("empty.obj", "")).find("is empty"), std::string::npos);
     EXPECT_NE(refusal(write("points.obj", "v 0 0 0\nv 1 0 0\n")).find("points.obj"), std::string::npos);
     EXPECT_NE(refusal(write("what.xyzzy", "nothing known")).find("cannot be read"), std::string::npos);
+    for (char const* name : {"a.blend", "a.USDA", "a.usdz", "a.pbrt", "a.xml"})
+        EXPECT_NE(refusal(write(name, "<scene/>")).find("save it as glTF"), std::string::npos) << name;
     EXPECT_NE(refusal((folder_ / "what.xyzzy").string()).find("another format"), std::string::npos);
     EXPECT_NE(refusal(folder_.string()).find("empty.obj"), std::string::npos)
         << "a folder is a sequence of frames";

@@ -37,6 +37,7 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render", "SCENE"},
              {"render cornell --path 1",
               "'--path' was not expected (the call is not valid) did you mean '--paths'?"},
+             {"render cornell --spp 4", "'--spp' was not expected (the call is not valid) here it is --paths;"},
              {"render --sice=8x8", "'--sice' was not expected (the call is not valid) did you mean '--size'?"},
              {"render cornell more", "more"},
              {"render cornell --bogus", "--bogus"},

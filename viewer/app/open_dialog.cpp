@@ -1,5 +1,6 @@
 #include "viewer/app/open_dialog.h"
 
+#include "gi/core/file.h"
 #include "gi/scene/load/load.h"
 
 #include <algorithm>
@@ -16,9 +17,8 @@ constexpr std::size_t kMostEntries = 5000;
 bool is_scene(fs::path const& file)
 {
     static std::vector<std::string> const endings = gi::scene_extensions();
-    std::string ending = file.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return file.filename() == "sequence.json" || std::ranges::find(endings, ending) != endings.end();
+    return file.filename() == "sequence.json" ||
+           std::ranges::find(endings, gi::lower_extension(file)) != endings.end();
 }
 
 /// A clickable line; true if it was clicked. @param shown  may differ from the name that identifies the line

@@ -1,9 +1,9 @@
 #include "viewer/base/outputs.h"
 
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -56,8 +56,7 @@ void check_outputs(std::vector<std::string> const& files, std::vector<std::strin
 void check_ending(std::string const& file, std::string const& ending, std::string const& what,
                   std::string const& suggestion)
 {
-    std::string given = fs::path(file).extension().string();
-    std::ranges::transform(given, given.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::string const given = gi::lower_extension(file);
     if (!given.empty() && given != ending)
         throw gi::InputError("'" + file + "' cannot be " + what, "its ending is not " + ending, suggestion);
 }

@@ -23,6 +23,7 @@
 #include <new>
 #include <stdexcept>
 #include <unistd.h>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -48,6 +49,14 @@ std::string suggest(std::string const& word, std::vector<std::string> const& kno
     return gi::nearest_word(word, known) ? gi::suggest(word, known) + " " + help : help;
 }
 
+/// What other renderers call options.
+constexpr std::pair<char const*, char const*> kNamesElsewhere[]{
+    {"--spp", "--paths"},          {"--samples", "--paths"},       {"--depth", "--bounces"},
+    {"--max-depth", "--bounces"},  {"--max-bounces", "--bounces"}, {"--integrator", "--method"},
+    {"--resolution", "--size"},    {"--denoiser", "--denoise"},    {"--output", "--out"},
+    {"--environment", "--envmap"},
+};
+
 /// Describes an invalid call. Unknown words are reported before missing arguments.
 gi::InputError describe(CLI::ParseError const& e, CLI::App const& app)
 {
@@ -68,7 +77,12 @@ gi::InputError describe(CLI::ParseError const& e, CLI::App const& app)
                     return {"'" + word + "' was not expected", misfit,
                             fmt::format("if it belongs to {}: its values are joined by commas, without blanks",
                                         longest_name(*o))};
-            return {"'" + word + "' was not expected", misfit, suggest(word, option_names(*a), help)};
+            std::vector<std::string> const names = option_names(*a);
+            for (auto const& [other, own] : kNamesElsewhere)
+                if (word == other && std::ranges::find(names, own) != names.end())
+                    return {"'" + word + "' was not expected", misfit,
+                            fmt::format("here it is {}; {}", own, help)};
+            return {"'" + word + "' was not expected", misfit, suggest(word, names, help)};
         }
         a = given.empty() ? nullptr : given.back();
     }

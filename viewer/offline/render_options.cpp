@@ -237,7 +237,8 @@ void declare_options(CLI::App& c, RenderOptions& o)
         "of alpha 1");
     c.add_option("--paths", o.paths, fmt::format("paths per pixel (default {})", kDefaultPaths))
         ->check(CLI::Range(1u, kNoLimit));
-    c.add_option("--budget", o.budget, "time for structures and paths: 500ms, 2s, 3min");
+    c.add_option("--budget", o.budget,
+                 "time for structures and paths: 500ms, 2s, 3min; loading, filters and writing come on top");
     c.add_option("--until", o.until, "relmse=E: render until the estimated relMSE is below E");
     declare_option(c, o.settings, "bounces");
     declare_option(c, o.settings, "filter");

@@ -10,11 +10,42 @@
 #include "gi/scene/load/load.h"
 #include "gi/scene/load/mesh_frames.h"
 
+#include <algorithm>
+
 namespace gi {
+
+namespace {
+
+/// Formats of other programs that people ask for, in lower case.
+struct ForeignFormat {
+    char const *extension, *why, *suggestion;
+};
+constexpr char const* kSaveAsGltf = "save it as glTF (.glb) in the program that made it, or in Blender";
+constexpr ForeignFormat kForeign[]{
+    {".blend", "only Blender reads all of its own format", "save it as glTF in Blender: File, Export, glTF 2.0"},
+    {".usd", "USD is not supported", kSaveAsGltf},
+    {".usda", "USD is not supported", kSaveAsGltf},
+    {".usdc", "USD is not supported", kSaveAsGltf},
+    {".usdz", "USD is not supported", kSaveAsGltf},
+    {".pbrt", "scenes of PBRT are not supported", kSaveAsGltf}};
+
+std::string what_else(std::string const& extension)
+{
+    if (extension == ".xml") return std::string("if it is a scene of Mitsuba or another renderer: ") + kSaveAsGltf;
+    return Assimp::Importer().IsExtensionSupported(extension)
+               ? "correct that place, or open it in Blender and export glTF (.glb), which is checked best"
+               : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp supports";
+}
+
+} // namespace
 
 ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces,
                             std::function<void(aiScene const&)> const& use)
 {
+    std::string const extension = lower_extension(file);
+    auto const foreign = std::ranges::find(kForeign, extension, &ForeignFormat::extension);
+    if (foreign != std::end(kForeign))
+        throw InputError("'" + file.string() + "' cannot be read", foreign->why, foreign->suggestion);
     if (regular_file_bytes(file) == 0)
         throw InputError("'" + file.string() + "' is empty", "there is nothing to load",
                          "was it copied or exported to its end? take it from where it came from");
@@ -22,12 +53,7 @@ ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces
     if (!tried) tried = AssimpTrials({file}, faces).outcome(file, faces);
     AssimpReader reader;
     std::string const why = !tried->empty() ? *tried : reader.read(file, faces);
-    if (!why.empty())
-        throw InputError(
-            "'" + file.string() + "' cannot be read", why,
-            Assimp::Importer().IsExtensionSupported(file.extension().string())
-                ? "correct that place, or open it in Blender and export glTF (.glb), which is checked best"
-                : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp supports");
+    if (!why.empty()) throw InputError("'" + file.string() + "' cannot be read", why, what_else(extension));
     use(reader.scene());
     return reader.files();
 }
@@ -39,7 +65,10 @@ std::vector<std::string> assimp_extensions()
     std::vector<std::string> all;
     for (std::size_t at = 0; at < list.size();) {
         std::size_t const end = std::min(list.find(';', at), list.size());
-        if (end > at + 1) all.push_back(list.substr(at + 1, end - at - 1));
+        std::string const extension = end > at + 1 ? list.substr(at + 1, end - at - 1) : "";
+        if (!extension.empty() &&
+            std::ranges::find(kForeign, extension, &ForeignFormat::extension) == std::end(kForeign))
+            all.push_back(extension);
         at = end + 1;
     }
     return all;

@@ -2,6 +2,7 @@
 
 #include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/load/assimp_import.h"
 
@@ -22,9 +23,7 @@ Reader reader_of(std::filesystem::path const& file)
     std::error_code error;
     if (std::filesystem::is_directory(file, error) || file.filename() == "sequence.json")
         return Reader::mesh_sequence;
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
+    std::string const extension = lower_extension(file);
     if (extension == ".gltf" || extension == ".glb") return Reader::gltf;
     return extension == ".yaml" || extension == ".yml" ? Reader::scene_file : Reader::assimp;
 }

@@ -3,6 +3,7 @@
 // them. Memory: 24 bytes per vertex and frame.
 
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "gi/scene/load/assimp_convert.h"
 #include "gi/scene/load/assimp_import.h"
 #include "gi/scene/load/assimp_trial.h"
@@ -18,13 +19,6 @@ namespace gi {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_extension(fs::path const& file)
-{
-    std::string e = file.extension().string();
-    std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return e;
-}
 
 /// Returns the frame files sorted by name, with numbers in names compared by value.
 std::vector<fs::path> frame_files(fs::path const& folder)
