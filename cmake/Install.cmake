@@ -65,7 +65,7 @@ endif()
 set(written ${PROJECT_BINARY_DIR}/written)
 add_custom_target(written DEPENDS man VERBATIM COMMENT "Writing completions and compressed manual pages to ${written}"
   COMMAND ${CMAKE_COMMAND} -DBINARY=${PROJECT_BINARY_DIR} -DOUT=${written}
-          -DRELEASE=${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE} -P ${PROJECT_SOURCE_DIR}/cmake/written.cmake)
+          -DRELEASE=${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE} -DVARIANT=${LIGHTWELL_VARIANT} -P ${PROJECT_SOURCE_DIR}/cmake/written.cmake)
 install(DIRECTORY ${written}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT lightwell OPTIONAL)
 install(FILES ${written}/lightwell.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lightwell COMPONENT lightwell OPTIONAL)
 install(FILES ${written}/lightwell.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _lightwell COMPONENT lightwell OPTIONAL)

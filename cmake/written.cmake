@@ -1,4 +1,4 @@
-# What programs write of themselves for packages: completions, manual pages; notices of others; and the changelog. BINARY: build tree, OUT: folder, RELEASE: version of the packages
+# What programs write of themselves for packages: completions, manual pages; notices of others; and the changelog. BINARY: build tree, OUT: folder, RELEASE: version of the packages, VARIANT: LIGHTWELL_VARIANT
 file(REMOVE_RECURSE ${OUT})
 file(MAKE_DIRECTORY ${OUT}/man1)
 foreach(shell bash zsh fish)
@@ -14,6 +14,11 @@ execute_process(COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/../scripts/sbom ${BINA
 if(failed)
   file(REMOVE ${OUT}/NOTICES)
 else()
+  if(VARIANT STREQUAL "cuda")
+    string(REPEAT "=" 100 line)
+    file(APPEND ${OUT}/NOTICES "${line}\nCUDA runtime, linked statically\n${line}\nCopyright NVIDIA Corporation, under the CUDA Toolkit End User License Agreement: "
+         "https://docs.nvidia.com/cuda/eula/\n")
+  endif()
   execute_process(COMMAND gzip -9n ${OUT}/NOTICES COMMAND_ERROR_IS_FATAL ANY)
 endif()
 execute_process(COMMAND gzip -9nc ${CMAKE_CURRENT_LIST_DIR}/../CHANGELOG.md OUTPUT_FILE ${OUT}/NEWS.gz COMMAND_ERROR_IS_FATAL ANY)
