@@ -73,6 +73,15 @@ TEST(Plot, DrawsSeriesWithErrorBarsAndTheirNames)
     EXPECT_EQ(count("<polyline"), 3);
 }
 
+TEST(Plot, CurvesOfOneColourHaveOtherStrokes)
+{
+    Plot p(500, 300, {0, 2, false}, {0, 4, false});
+    p.series(std::vector<PlotSeries>(13, {"a", {{0, 1, 0, 0}}}));
+    std::string const svg = p.svg("series");
+    for (char const* of_first_colour : {"<g class=\"c0\">", "<g class=\"c0 dashed\">", "<g class=\"c0 dotted\">"})
+        EXPECT_NE(svg.find(of_first_colour), std::string::npos) << of_first_colour;
+}
+
 TEST(RowPlot, HasRoomForItsNames)
 {
     RowPlot const p({"a name of some length", "b"}, {}, "x", 200);

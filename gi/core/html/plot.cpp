@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <tuple>
 
 namespace gi {
@@ -90,7 +91,9 @@ void Plot::series(std::vector<PlotSeries> const& all)
     double legend = left(), legend_y = kLegendTop;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (legend > left() && legend + entry_width(all[i]) > width_) legend = left(), legend_y += kLegendLine;
-        body_ += fmt::format("<g class=\"c{}\">", i % kSeriesColours);
+        constexpr char const* kStrokes[]{"", " dashed", " dotted"}; // where colours repeat
+        body_ += fmt::format("<g class=\"c{}{}\">", i % kSeriesColours,
+                             kStrokes[i / kSeriesColours % std::size(kStrokes)]);
         std::vector<std::pair<double, double>> path;
         for (PlotPoint const& p : all[i].points) path.emplace_back(p.x, p.y);
         curve(path, "curve");

@@ -62,7 +62,7 @@ svg .right { fill: var(--c0); } svg .wrong { fill: var(--paper); stroke: var(--c
 .c0 { stroke: var(--c0); fill: var(--c0); } .c1 { stroke: var(--c1); fill: var(--c1); }
 .c2 { stroke: var(--c2); fill: var(--c2); } .c3 { stroke: var(--c3); fill: var(--c3); }
 .c4 { stroke: var(--c4); fill: var(--c4); } .c5 { stroke: var(--c5); fill: var(--c5); }
-svg .curve { fill: none; stroke-width: 2; } svg .spread { stroke-width: 1.5; opacity: .6; }
+svg .curve { fill: none; stroke-width: 2; } svg .dashed .curve { stroke-dasharray: 7 4; } svg .dotted .curve { stroke-dasharray: 2 3; } svg .spread { stroke-width: 1.5; opacity: .6; }
 svg .name { stroke: none; font-weight: 600; }
 .charts { display: flex; flex-wrap: wrap; gap: 1rem; }
 .pictures { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: 0 1rem; }
