@@ -69,10 +69,12 @@ std::string level_in(fs::path const& here)
                              fmt::format("choose {}", fmt::join(gi::kProcessorLevels, ", ")));
     if (!gi::has_level(forced))
         throw gi::InputError(problem, "this machine's processor is of a lower level", "choose that, or unset it");
-    if (!fs::is_directory(here / wanted, none))
-        throw gi::InputError(problem, fmt::format("{} has no programs for it", here.string()),
-                             fmt::format("choose {}, or unset it", gi::kCompiledLevel));
-    return wanted;
+    if (fs::is_directory(here / wanted, none)) return wanted;
+    std::vector<std::string> there{gi::kCompiledLevel};
+    for (char const* const level : gi::kProcessorLevels)
+        if (gi::has_level(level) && fs::is_directory(here / level, none)) there.emplace_back(level);
+    throw gi::InputError(problem, fmt::format("{} has no programs for it", here.string()),
+                         fmt::format("choose {}, or unset it", fmt::join(there, " or ")));
 }
 
 } // namespace
